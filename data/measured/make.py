@@ -1,0 +1,143 @@
+"""Makes the tables of this folder: Mitsuba's own BSDFs, tabulated as a MERL file would hold them.
+
+    python data/measured/make.py               # all of them
+    python data/measured/make.py car_paint     # one
+
+None of them is one of brdfkit's models, so a fit has something to miss; nobody but this project
+has a right in them, so they can be shipped and tested against. To add one, write a function like
+those below and an entry in `index.toml`.
+
+The average over both orders of the directions stands in a cell, as a MERL table is reciprocal
+and Mitsuba's BSDFs need not be. Values are rounded to 16 significant bits (relative error at
+most 1.6e-5), or they would not compress. Equal versions of Mitsuba give equal bytes.
+"""
+
+import hashlib
+import lzma
+import struct
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from brdfkit.files import written
+from brdfkit.formats.merl import NOT_MEASURED, SCALE
+from brdfkit.llvm import use_variant
+from brdfkit.table import Table
+
+# Twice as many phi_d as theta_d cells: MERL's way to say that phi_d spans half a circle
+SHAPE = (72, 36, 72)
+BITS = 16
+# xz -9 for an array of doubles: differences of neighbours, aligned to 8 bytes
+FILTERS = [
+    {"id": lzma.FILTER_DELTA, "dist": 8},
+    {"id": lzma.FILTER_LZMA2, "preset": 9, "lc": 1, "lp": 3, "pb": 3},
+]
+
+
+def red_plastic():
+    """Red pigment under a rough surface: its light is scattered again and again inside."""
+    return {
+        "type": "roughplastic",
+        "distribution": "ggx",
+        "alpha": 0.12,
+        "nonlinear": True,
+        "diffuse_reflectance": rgb(0.78, 0.05, 0.04),
+    }
+
+
+def car_paint():
+    """Violet flakes over a deep teal base, under a clear coat: a narrow lobe on two wide ones."""
+    base = {
+        "type": "principled",
+        "base_color": rgb(0.01, 0.25, 0.42),
+        "metallic": 0.7,
+        "roughness": 0.65,
+    }
+    flakes = {
+        "type": "principled",
+        "base_color": rgb(0.68, 0.12, 0.78),
+        "metallic": 1.0,
+        "roughness": 0.42,
+    }
+    # the clear coat of `principled` has a quarter of the strength and drowns in the flakes
+    coat = {
+        "type": "roughplastic",
+        "distribution": "ggx",
+        "alpha": 0.025,
+        "int_ior": 1.9,
+        "diffuse_reflectance": rgb(0.0, 0.0, 0.0),
+    }
+    return blend(blend(base, flakes, 0.5), coat, 0.35)
+
+
+def dusty_gold():
+    """Rough gold seen through a third of dust, which has a sheen at grazing angles."""
+    gold = {"type": "roughconductor", "material": "Au", "distribution": "ggx", "alpha": 0.2}
+    dust = {
+        "type": "principled",
+        "base_color": rgb(0.45, 0.40, 0.33),
+        "roughness": 0.9,
+        "specular": 0.2,
+        "sheen": 1.0,
+        "sheen_tint": 0.5,
+    }
+    return blend(gold, dust, 0.35)
+
+
+MATERIALS = {make.__name__: make for make in (red_plastic, car_paint, dusty_gold)}
+
+
+def rgb(*values):
+    return {"type": "rgb", "value": list(values)}
+
+
+def blend(first, second, share):
+    """(1 - share) of the first BSDF and `share` of the second."""
+    return {"type": "blendbsdf", "weight": share, "bsdf_0": first, "bsdf_1": second}
+
+
+def tabulate(name):
+    """BRDF (*SHAPE, 3) in sr⁻¹ of a material at the cell centres, NaN below the surface."""
+    import mitsuba as mi
+
+    use_variant()
+    bsdf = mi.load_dict(MATERIALS[name]())
+    values = np.full((*SHAPE, 3), np.nan)
+    wi, wo = Table(values).directions()
+    above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
+    wi, wo = wi[above], wo[above]
+    values[above] = (evaluate(bsdf, wi, wo) + evaluate(bsdf, wo, wi)) / 2
+    return values
+
+
+def evaluate(bsdf, wi, wo):
+    """BRDF (n, 3) in sr⁻¹ of a Mitsuba BSDF, whose `eval` has the cosine of `wo` in it."""
+    import mitsuba as mi
+
+    si = mi.SurfaceInteraction3f()
+    si.wi = mi.Vector3f(wi.T.astype(np.float32))
+    values = bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(wo.T.astype(np.float32)))
+    return np.array(values).T / wo[:, 2:]
+
+
+def write(values, path):
+    """The table as a MERL file, rounded and compressed."""
+    stored = np.where(np.isnan(values), NOT_MEASURED, rounded(values / SCALE))
+    with written(path) as beside, lzma.open(beside, "wb", filters=FILTERS) as stream:
+        stream.write(struct.pack("<3i", *SHAPE))
+        stream.write(np.moveaxis(stored, -1, 0).astype("<f8").tobytes())
+
+
+def rounded(x):
+    """To `BITS` significant bits."""
+    mantissa, exponent = np.frexp(x)
+    return np.ldexp(np.round(np.ldexp(mantissa, BITS)), exponent - BITS)
+
+
+if __name__ == "__main__":
+    for name in sys.argv[1:] or MATERIALS:
+        path = Path(__file__).with_name(f"{name}.binary.xz")
+        write(tabulate(name), path)
+        checksum = hashlib.sha256(path.read_bytes()).hexdigest()
+        print(f"{path.name}: {path.stat().st_size:,} bytes, sha256 {checksum}")

@@ -1,0 +1,30 @@
+"""Cook-Torrance: Beckmann's facets in V-grooves, with Fresnel reflectance.
+
+    f = k_d / π + k_s / π · D G F / ((N·L)(N·V)),   D = exp[-(tanθ_h / m)²] / (m² cos⁴θ_h)
+
+R. L. Cook & K. E. Torrance, "A reflectance model for computer graphics", ACM TOG 1(1), 1982;
+Kurt 2007, eqs. 3.28, 3.29, with Schlick's F (3.16). As printed, the term is four times today's
+D G F / 4(N·L)(N·V): energy is conserved only for about k_d + 4 k_s ≤ 1. Shows metals and
+plastics of one roughness; no anisotropy.
+"""
+
+from brdfkit.lobes import HalfVector, Lobe, lambertian
+from brdfkit.microfacet import Beckmann, dot, half_vector, schlick, v_groove
+from brdfkit.model import Model, shape, weight
+
+
+class CookTorrance(Model):
+    diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
+    specular_reflectance = weight(0.1, "k_s: strength of the highlight")
+    alpha = shape(0.2, (0.001, 1.0), "m: rms slope of the facets", log=True)
+    f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
+
+    def specular(self, wi, wo):
+        h = half_vector(wi, wo)
+        D = Beckmann(self.alpha, self.alpha).D(h)  # holds the 1/π of (3.28)
+        F = schlick(self.f0, dot(wi, h))
+        return D * v_groove(wi, wo, h) * F / (wi.z * wo.z)
+
+    def lobes(self):
+        sampling = HalfVector(Beckmann(self.alpha, self.alpha))
+        return lambertian(), Lobe(self.specular, sampling, energy=4 * self.f0)

@@ -1,0 +1,32 @@
+"""GGX: Trowbridge-Reitz facets with Smith's height-correlated shadowing, today's reference.
+
+    f = k_d / π + k_s D G₂ F / (4 (N·L)(N·V))
+
+B. Walter et al., "Microfacet models for refraction through rough surfaces", EGSR 2007;
+E. Heitz, "Understanding the masking-shadowing function in microfacet-based BRDFs", JCGT 3(2),
+2014. F is Schlick's. Its long tails show most metals, paints and plastics; no retro-reflection,
+no scattering between facets.
+"""
+
+from brdfkit.lobes import HalfVector, Lobe, lambertian
+from brdfkit.microfacet import GGX as Distribution
+from brdfkit.microfacet import dot, half_vector, schlick
+from brdfkit.model import Model, follows, shape, weight
+
+
+class GGX(Model):
+    diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
+    specular_reflectance = weight(0.5, "k_s: strength of the highlight")
+    alpha_u = shape(0.2, (0.001, 1.0), "α_u: width of the slopes along x", log=True)
+    alpha_v = follows("alpha_u", alpha_u, "α_v: width of the slopes along y")
+    f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
+
+    def specular(self, wi, wo):
+        facets = Distribution(self.alpha_u, self.alpha_v)
+        h = half_vector(wi, wo)
+        F = schlick(self.f0, dot(wi, h))
+        return facets.D(h) * facets.G2(wi, wo) * F / (4 * wi.z * wo.z)
+
+    def lobes(self):
+        sampling = HalfVector(Distribution(self.alpha_u, self.alpha_v))
+        return lambertian(), Lobe(self.specular, sampling, energy=self.f0)

@@ -1,0 +1,17 @@
+"""Lambert: light scattered evenly, whatever the directions.
+
+    f = k_d / π
+
+J. H. Lambert, "Photometria", 1760; Kurt 2007, eq. 3.1. Shows chalk and matte paper; nothing
+that depends on the view.
+"""
+
+from brdfkit.lobes import lambertian
+from brdfkit.model import Model, weight
+
+
+class Lambert(Model):
+    diffuse_reflectance = weight(0.5, "k_d: albedo")
+
+    def lobes(self):
+        return (lambertian(),)

@@ -1,0 +1,30 @@
+"""Ward: a Gaussian of the surface slopes, isotropic or elliptic.
+
+    f = k_d / π + k_s exp[-tan²θ_h (cos²φ_h / α_u² + sin²φ_h / α_v²)]
+                  / (4π α_u α_v √((N·L)(N·V)))
+
+G. J. Ward, "Measuring and modeling anisotropic reflection", SIGGRAPH 1992; Kurt 2007,
+eqs. 3.6, 3.7. Shows brushed metal and satin paint; loses energy at grazing angles, has no
+Fresnel effect and no retro-reflection.
+"""
+
+import drjit as dr
+
+from brdfkit.lobes import HalfVector, Lobe, lambertian
+from brdfkit.microfacet import Beckmann, half_vector
+from brdfkit.model import Model, follows, shape, weight
+
+
+class Ward(Model):
+    diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
+    specular_reflectance = weight(0.2, "k_s: strength of the highlight")
+    alpha_u = shape(0.2, (0.001, 1.0), "α_u: rms slope of the surface along x", log=True)
+    alpha_v = follows("alpha_u", alpha_u, "α_v: rms slope along y")
+
+    def specular(self, wi, wo):
+        gauss = Beckmann(self.alpha_u, self.alpha_v).gauss(half_vector(wi, wo))
+        return gauss / (4 * dr.pi * self.alpha_u * self.alpha_v * dr.sqrt(wi.z * wo.z))
+
+    def lobes(self):
+        sampling = HalfVector(Beckmann(self.alpha_u, self.alpha_v))
+        return lambertian(), Lobe(self.specular, sampling)

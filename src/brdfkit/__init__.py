@@ -1,0 +1,21 @@
+"""brdfkit: any measured material becomes a validated, importance-sampled Mitsuba material.
+
+>>> import brdfkit as bk
+>>> paint = bk.load("C10_Copper.astm")                          # doctest: +SKIP
+>>> fits = [bk.fit(name, paint) for name in ("ward", "ggx")]    # doctest: +SKIP
+>>> bk.render([paint, *fits]).write("copper.exr")               # doctest: +SKIP
+
+Importing brdfkit is light and sets no Mitsuba variant. It makes the models known to Mitsuba as
+BSDF plugins in every variant, and chooses the LLVM that Dr.Jit loads (`brdfkit.llvm`).
+"""
+
+import lazy_loader
+
+from brdfkit import llvm, mitsuba_hook
+
+# The public names are listed in __init__.pyi alone, and imported when used
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__version__ = "0.1.0"
+
+llvm.prepare()
+mitsuba_hook.install()

@@ -1,0 +1,54 @@
+"""Double precision with Dr.Jit: the arrays in which models are evaluated and fitted.
+
+With LLVM (or CUDA) a kernel runs over all directions at once and has derivatives; without
+either, Dr.Jit's scalar arrays do the same work slower, and a fit takes finite differences.
+"""
+
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+
+class Vector(NamedTuple):
+    """Directions as a model sees them: x, y, z, each an array over all directions."""
+
+    x: Any
+    y: Any
+    z: Any
+
+
+@cache
+def float64():
+    """The array type: Dr.Jit's `Float64` of the LLVM or CUDA backend, else `ArrayXf64`."""
+    import drjit as dr
+
+    from brdfkit import llvm
+
+    if llvm.loaded_version() >= llvm.OLDEST:
+        return dr.llvm.ad.Float64
+    if dr.has_backend(dr.JitBackend.CUDA):
+        return dr.cuda.ad.Float64
+    return dr.scalar.ArrayXf64
+
+
+def differentiable():
+    """True where `float64()` has derivatives."""
+    import drjit as dr
+
+    return bool(dr.is_diff_v(float64()))
+
+
+def vector(w):
+    """A `Vector` of NumPy directions (n, 3)."""
+    Float64 = float64()
+    return Vector(*(Float64(np.ascontiguousarray(w[:, k])) for k in range(3)))
+
+
+def scalar(value):
+    """A number as an array of size 1 that is not compiled into the kernel as a constant."""
+    import drjit as dr
+
+    number = float64()(float(value))
+    dr.make_opaque(number)
+    return number

@@ -1,0 +1,184 @@
+"""The one adapter from a model to a Mitsuba BSDF.
+
+Written once for all models: textures for every parameter, one component per lobe, lobes chosen
+by their weight, and a share of cosine samples that keeps the weights of a sample bounded.
+"""
+
+import functools
+import operator
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+
+# Share of the samples that follow the cosine, whatever the lobes
+COSINE_SHARE = 0.1
+# Directions this close to the horizon (cosine) count as below it: 1/cos stays finite in float32
+HORIZON = 1e-6
+
+
+def scene_dict(model):
+    """The dictionary for `mitsuba.load_dict` of a model with values."""
+    entries = {"type": model.type_name()}
+    for name, value in model.values.items():
+        follows = model.parameters[name].follows
+        if follows and value == model.values[follows]:
+            continue
+        entries[name] = _rgb(value) if isinstance(value, tuple) else value
+    return entries
+
+
+def _rgb(value):
+    value = value * 3 if len(value) == 1 else value
+    return {"type": "rgb", "value": list(value)}
+
+
+def define(mi, model):
+    """The class of `mi.BSDF` that evaluates and samples `model` in the current variant."""
+    import drjit as dr
+
+    flags = mi.BSDFFlags
+    defaults = model()
+    kinds = [
+        flags.DiffuseReflection if lobe.diffuse else flags.GlossyReflection
+        for lobe in defaults.lobes()
+    ]
+    anisotropic = flags.Anisotropic if model.anisotropic() else flags.Empty
+    components = [
+        kind | flags.FrontSide | (anisotropic if kind == flags.GlossyReflection else flags.Empty)
+        for kind in kinds
+    ]
+
+    class Plugin(mi.BSDF):
+        def __init__(self, props):
+            super().__init__(props)
+            self.textures = {}
+            for name, parameter in model.parameters.items():
+                if parameter.follows and not props.has_property(name):
+                    continue
+                _require_within_bounds(props, model, name)
+                self.textures[name] = props.get_unbounded_texture(name, getattr(defaults, name))
+            varying = any(t.is_spatially_varying() for t in self.textures.values())
+            extra = flags.SpatiallyVarying if varying else flags.Empty
+            self.m_components = [component | extra for component in components]
+            self.m_flags = functools.reduce(operator.or_, self.m_components)
+
+        def traverse(self, callback):
+            for name, texture in self.textures.items():
+                kind = mi.ParamFlags.Differentiable
+                if not model.parameters[name].linear:
+                    kind |= mi.ParamFlags.Discontinuous
+                callback.put(name, texture, kind)
+
+        def sample(self, ctx, si, sample1, sample2, active=True):
+            wi, active = above(si.wi, active)
+            weights, lobes = self.terms(si, active)
+            shares = self.shares(ctx, weights, lobes)
+
+            # Choose a lobe, or the cosine, by sample1
+            wo = COSINE.sample(wi, sample2)
+            component = mi.UInt32(first_enabled(ctx))
+            chosen_up_to = mi.Float(COSINE_SHARE)
+            for k, (lobe, share) in enumerate(zip(lobes, shares, strict=True)):
+                if share is None:
+                    continue
+                hit = (sample1 >= chosen_up_to) & (sample1 < chosen_up_to + share)
+                chosen_up_to += share
+                wo = dr.select(hit, lobe.sampling.sample(wi, sample2), wo)
+                component = dr.select(hit, k, component)
+
+            sample = dr.zeros(mi.BSDFSample3f)
+            above_wo, active = above(wo, active)
+            value, pdf = self.value_and_pdf(ctx, weights, lobes, shares, wi, above_wo)
+            active &= pdf > 0
+            sample.wo = wo
+            sample.pdf = dr.select(active, pdf, 0)
+            sample.eta = 1.0
+            sample.sampled_component = component
+            sample.sampled_type = kind_of(component)
+            pdf = dr.select(active, pdf, 1)
+            return sample, dr.select(active, value / dr.detach(pdf), 0)
+
+        def eval(self, ctx, si, wo, active=True):
+            return self.eval_pdf(ctx, si, wo, active)[0]
+
+        def pdf(self, ctx, si, wo, active=True):
+            return self.eval_pdf(ctx, si, wo, active)[1]
+
+        def eval_pdf(self, ctx, si, wo, active=True):
+            wi, active = above(si.wi, active)
+            wo, active = above(wo, active)
+            weights, lobes = self.terms(si, active)
+            shares = self.shares(ctx, weights, lobes)
+            value, pdf = self.value_and_pdf(ctx, weights, lobes, shares, wi, wo)
+            return dr.select(active, value, 0), dr.select(active, pdf, 0)
+
+        def eval_diffuse_reflectance(self, si, active=True):
+            weights, lobes = self.terms(si, active)
+            diffuse = [w for w, lobe in zip(weights, lobes, strict=True) if lobe.diffuse]
+            return sum(diffuse, mi.Spectrum(0))
+
+        def terms(self, si, active):
+            """Weights and lobes at a surface point."""
+            values = {
+                name: texture.eval(si, active)
+                if model.parameters[name].linear
+                else texture.eval_1(si, active)
+                for name, texture in self.textures.items()
+            }
+            return [values[name] for name in model.weights()], model.bind(values).lobes()
+
+        def shares(self, ctx, weights, lobes):
+            """Probability of each lobe, None where the context leaves it out."""
+            energies = [
+                dr.detach(dr.mean(weight) * lobe.energy) + 1e-8 if enabled(ctx, k) else None
+                for k, (weight, lobe) in enumerate(zip(weights, lobes, strict=True))
+            ]
+            total = sum(e for e in energies if e is not None)
+            return [None if e is None else (1 - COSINE_SHARE) * e / total for e in energies]
+
+        def value_and_pdf(self, ctx, weights, lobes, shares, wi, wo):
+            """BRDF times cosine of the enabled lobes, and the density of `sample`."""
+            value = mi.Spectrum(0)
+            pdf = mi.Float(COSINE_SHARE * COSINE.pdf(wi, wo))
+            for weight, lobe, share in zip(weights, lobes, shares, strict=True):
+                if share is not None:
+                    value += weight * lobe.eval(wi, wo)
+                    pdf += share * lobe.sampling.pdf(wi, wo)
+            return value * wo.z, pdf
+
+        def to_string(self):
+            lines = [f"  {name} = {texture}" for name, texture in self.textures.items()]
+            return "\n".join([f"{model.__name__}[", *lines, "]"])
+
+    from brdfkit.lobes import Cosine
+
+    COSINE = Cosine()
+
+    def above(w, active):
+        """The direction, or the normal where it is not above the surface, which turns inactive."""
+        up = w.z > HORIZON
+        return dr.select(up, w, mi.Vector3f(0, 0, 1)), active & up
+
+    def enabled(ctx, k):
+        return ctx.is_enabled(kinds[k], k)
+
+    def first_enabled(ctx):
+        return next((k for k in range(len(kinds)) if enabled(ctx, k)), 0)
+
+    def kind_of(component):
+        kind = mi.UInt32(int(kinds[0]))
+        for k, other in enumerate(kinds[1:], 1):
+            kind = dr.select(component == k, int(other), kind)
+        return kind
+
+    return Plugin
+
+
+def _require_within_bounds(props, model, name):
+    """An error for a constant parameter out of bounds; textures are taken as they are."""
+    value = props[name] if props.has_property(name) else None
+    if isinstance(value, float | int) or type(value).__name__.endswith("Color3d"):
+        problem = model.parameters[name].problem_with(np.array(value, float))
+        if problem:
+            raise BrdfkitError(f"{model.type_name()}: {name} = {problem}.")

@@ -1,0 +1,53 @@
+"""What every material must fulfil: `check`. The test-suite runs the same over every model.
+
+A check is a function `(subject) -> (passed, figure)` with the decorator `checked`, in a module
+of this folder.
+"""
+
+import importlib
+import pkgutil
+from dataclasses import dataclass
+
+from brdfkit.checks.subject import Finding, Subject, checks
+
+for _module in pkgutil.iter_modules(__path__):
+    importlib.import_module(f"{__name__}.{_module.name}")
+
+
+@dataclass(frozen=True)
+class Report:
+    """What `check` found; true when everything passed."""
+
+    name: str
+    findings: tuple[Finding, ...]
+
+    def __bool__(self):
+        return all(finding.passed for finding in self.findings)
+
+    def __str__(self):
+        width = max(len(f.check) for f in self.findings)
+        lines = [
+            f"  {'ok  ' if f.passed else 'FAIL'}  {f.check:<{width}}  {f.figure}"
+            for f in self.findings
+        ]
+        return "\n".join([f"{self.name}: {'passed' if self else 'failed'}", *lines])
+
+
+def check(thing, only=None, progress=None):
+    """Check a model with values, a fit or a measured material; returns a `Report`.
+
+    Sampling (χ² at five incidences to grazing, coverage, weight = eval / pdf), reciprocity,
+    finiteness to the horizon, energy, derivatives, and that the Mitsuba plugin computes the
+    formula. `only`: names of checks; `progress`: called with (done, total). Needs an LLVM or
+    CUDA variant.
+
+    >>> print(check(models()["ward"](alpha_u=0.1)))    # doctest: +SKIP
+    """
+    subject = Subject(thing)
+    names = list(checks) if only is None else list(only)
+    findings = []
+    for name in names:
+        findings.append(Finding(name, *checks[name](subject)))
+        if progress:
+            progress(len(findings), len(names))
+    return Report(thing.name, tuple(findings))

@@ -1,0 +1,42 @@
+"""Checks that the BRDF is one: reciprocal, not negative, finite, not brighter than its light."""
+
+import numpy as np
+
+from brdfkit.checks.sampling import albedo
+from brdfkit.checks.subject import checked, incidences, random_pairs
+from brdfkit.directions import from_angles
+
+
+@checked
+def reciprocity(subject):
+    """f(wi, wo) = f(wo, wi), in double precision over 10,000 pairs."""
+    wi, wo = random_pairs(10_000, seed=4)
+    forth, back = subject.thing.eval(wi, wo), subject.thing.eval(wo, wi)
+    difference = np.max(np.abs(forth - back) / np.maximum(np.abs(forth), 1e-12))
+    return bool(difference < 1e-10), f"relative difference at most {difference:.1e}"
+
+
+@checked
+def finite(subject):
+    """Finite and not negative up to the horizon, 0 below it, in the renderer's precision."""
+    heights = np.array([-1, -1e-3, 0, 1e-8, 1e-6, 1e-4, 1e-2, 0.1, 0.5, 1.0])
+    phi = np.linspace(0, 2 * np.pi, 13)
+    z_i, z_o, phi = (a.ravel() for a in np.meshgrid(heights, heights, phi))
+    value = subject.plugin_eval(from_angles(np.arccos(z_i), 0.1), from_angles(np.arccos(z_o), phi))
+    below = (z_i <= 0) | (z_o <= 0)
+    problems = {
+        "not finite": (~np.isfinite(value)).sum(),
+        "negative": (value < 0).sum(),
+        "not black below the horizon": (value[below] != 0).sum(),
+    }
+    found = "; ".join(f"{count} {what}" for what, count in problems.items() if count)
+    return not found, found or f"{value.size} values to the horizon"
+
+
+@checked
+def energy(subject):
+    """No more light is reflected than came: albedo ≤ 1 at every incidence to 85°."""
+    figures = {degrees: albedo(subject, wi) for degrees, wi in incidences()}
+    degrees = max(figures, key=lambda d: figures[d][0])
+    value, error = figures[degrees]
+    return value <= 1 + 4 * error, f"albedo at most {value:.4f}, at {degrees}°"

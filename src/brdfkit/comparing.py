@@ -1,0 +1,46 @@
+"""`compare`: how well models describe a measured material, as a table."""
+
+from dataclasses import dataclass
+
+from brdfkit.names import unused
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Errors of several BRDFs against one measured material, under every loss.
+
+    `errors`: name → loss → E, the best by the log loss first.
+    """
+
+    material: str
+    errors: dict[str, dict[str, float]]
+
+    @property
+    def best(self):
+        """Name of the BRDF with the least log loss."""
+        return next(iter(self.errors))
+
+    def __str__(self):
+        names = list(next(iter(self.errors.values())))
+        width = max(map(len, [self.material, *self.errors]))
+        lines = [f"{self.material:<{width}}" + "".join(f"{n:>12}" for n in names)]
+        for name, row in self.errors.items():
+            lines.append(f"{name:<{width}}" + "".join(f"{row[n]:12.5f}" for n in names))
+        return "\n".join(lines)
+
+
+def compare(data, things, max_angle=80.0):
+    """Compare fits, models or other materials to a `Measured`; returns a `Comparison`.
+
+    >>> print(compare(paint, [fit("ward", paint), fit("ggx", paint)]))    # doctest: +SKIP
+    """
+    from brdfkit.fitting import losses
+    from brdfkit.metrics import error
+
+    things = list(things) if isinstance(things, list | tuple) else [things]
+    errors = {}
+    for thing in things:
+        errors[unused(thing.name, errors)] = {
+            loss: error(thing, data, loss, max_angle) for loss in losses
+        }
+    return Comparison(data.name, dict(sorted(errors.items(), key=lambda item: item[1]["log"])))

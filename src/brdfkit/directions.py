@@ -1,0 +1,71 @@
+"""Directions on the hemisphere: angles, and half/difference coordinates and back.
+
+Unit vectors in the local frame, z along the normal, both pointing away from the surface;
+the mirror direction of ``wi`` is at Δφ = 180°. NumPy, float64, shape (..., 3).
+
+Half/difference coordinates: S. Rusinkiewicz, "A new change of variables for efficient BRDF
+representation", EGWR 1998.
+"""
+
+import numpy as np
+
+
+def from_angles(theta, phi):
+    """Unit vectors (..., 3) at polar angle `theta` and azimuth `phi` [rad].
+
+    >>> from_angles(0.0, 0.0)
+    array([0., 0., 1.])
+    """
+    theta, phi = np.broadcast_arrays(np.asarray(theta, float), np.asarray(phi, float))
+    sin_theta = np.sin(theta)
+    return np.stack([sin_theta * np.cos(phi), sin_theta * np.sin(phi), np.cos(theta)], axis=-1)
+
+
+def to_angles(w):
+    """Polar angle in [0, π] and azimuth in (-π, π] [rad] of unit vectors (..., 3)."""
+    w = np.asarray(w, float)
+    return np.arctan2(np.hypot(w[..., 0], w[..., 1]), w[..., 2]), np.arctan2(w[..., 1], w[..., 0])
+
+
+def normalize(w):
+    """Vectors (..., 3) at unit length."""
+    w = np.asarray(w, float)
+    return w / np.linalg.norm(w, axis=-1, keepdims=True)
+
+
+def to_half_difference(wi, wo):
+    """(theta_h, theta_d, phi_d) [rad] of direction pairs (..., 3); phi_d in [0, 2π).
+
+    Exchanging `wi` and `wo` turns phi_d by π: a reciprocal BRDF has period π in phi_d.
+    The azimuth of the half vector, which only an anisotropic BRDF sees, is left out.
+    """
+    wi, wo = np.asarray(wi, float), np.asarray(wo, float)
+    h = normalize(wi + wo)
+    theta_h, phi_h = to_angles(h)
+    # wi as seen from the half vector: turned by -phi_h about z, then by -theta_h about y
+    d = _rotate_y(_rotate_z(wi, -phi_h), -theta_h)
+    theta_d, phi_d = to_angles(d)
+    return theta_h, theta_d, np.mod(phi_d, 2 * np.pi)
+
+
+def from_half_difference(theta_h, theta_d, phi_d):
+    """Direction pairs (wi, wo), each (..., 3), with the half vector at azimuth 0.
+
+    A direction below the surface comes back as such (z < 0): the caller masks it.
+    """
+    theta_h, theta_d, phi_d = np.broadcast_arrays(theta_h, theta_d, phi_d)
+    wi = _rotate_y(from_angles(theta_d, phi_d), theta_h)
+    wo = _rotate_y(from_angles(theta_d, phi_d + np.pi), theta_h)
+    return wi, wo
+
+
+def _rotate_z(w, angle):
+    c, s = np.cos(angle), np.sin(angle)
+    x, y = w[..., 0], w[..., 1]
+    return np.stack([c * x - s * y, s * x + c * y, w[..., 2]], axis=-1)
+
+
+def _rotate_y(w, angle):
+    c, s = np.cos(angle), np.sin(angle)
+    x, z = w[..., 0], w[..., 2]
+    return np.stack([c * x + s * z, w[..., 1], -s * x + c * z], axis=-1)

@@ -1,0 +1,148 @@
+"""Files, safely: written whole or not at all, read within a limit, compressed or not."""
+
+import gzip
+import lzma
+import os
+import secrets
+import zlib
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from brdfkit.errors import BrdfkitError
+
+LIMIT = 2**30  # bytes, decompressed; the largest MERL table has 70 MB
+CHUNK = 2**20  # bytes
+GZIP, XZ = ".gz", ".xz"
+COMPRESSED = {GZIP: b"\x1f\x8b", XZ: b"\xfd7zXZ\x00"}  # suffix: first bytes
+
+
+@contextmanager
+def written(path):
+    """A temporary path beside `path`, to write to; it takes the name `path` on success.
+
+    Whatever interrupts the block, Ctrl-C too, leaves an older file at `path` as it was and
+    nothing else behind. The temporary path has the suffix of `path`, for libraries that choose
+    a format by it. Raises `BrdfkitError` when the folder or disk does not take the file; an
+    `OSError` inside the block counts as such.
+
+    >>> with written("copper.json") as beside:  # doctest: +SKIP
+    ...     beside.write_text("{}")
+    """
+    target = Path(path).resolve()  # a link is written through, not replaced
+    _require_writable(target, path)
+    beside = target.with_name(f".brdfkit-{secrets.token_hex(4)}{target.suffix}")
+    try:
+        beside.touch(exist_ok=False)
+        yield beside
+        os.replace(beside, target)
+    except OSError as error:
+        raise BrdfkitError(
+            f"{path}: cannot be written ({_reason(error)}); choose another folder or make room."
+        ) from error
+    finally:
+        with suppress(OSError):
+            beside.unlink()
+
+
+def folder(path):
+    """Make the folder `path`, where it is not there, for results.
+
+    >>> folder("results")
+    """
+    try:
+        Path(path).mkdir(parents=True, exist_ok=True)
+        if not os.access(path, os.W_OK):
+            raise PermissionError("it is write-protected")
+    except OSError as error:
+        raise BrdfkitError(
+            f"{path}: cannot be made a folder for results ({_reason(error)}); name another."
+        ) from error
+
+
+def require_writable(path):
+    """Raise now what `written` would raise after the work, as far as it can be known."""
+    _require_writable(Path(path).resolve(), path)
+
+
+def _require_writable(target, path):
+    try:
+        if not target.parent.is_dir():
+            raise BrdfkitError(f"{path}: there is no folder {target.parent}; create it first.")
+        if target.exists() and not target.is_file():
+            raise BrdfkitError(f"{path}: is no regular file; choose another name.")
+        if target.exists() and not os.access(target, os.W_OK):
+            raise BrdfkitError(f"{path}: is write-protected; choose another name.")
+    except OSError as error:
+        raise BrdfkitError(
+            f"{path}: cannot be written ({_reason(error)}); choose another folder or name."
+        ) from error
+
+
+def contents(path):
+    """The bytes of a file, decompressed where it is gzip or xz by its name or its first bytes.
+
+    Raises `BrdfkitError` when it is missing, no regular file, unreadable, empty, damaged, or
+    above `LIMIT` bytes, which are never held in memory.
+
+    >>> contents("gold.binary.xz")[:4]  # doctest: +SKIP
+    b'Z\\x00\\x00\\x00'
+    """
+    path = Path(path)
+    try:
+        _require_file(path)
+        data = _read(path)
+    except (gzip.BadGzipFile, zlib.error, lzma.LZMAError, EOFError) as error:
+        raise BrdfkitError(
+            f"{path}: the compressed data are damaged or cut short ({_reason(error)}); "
+            "fetch the file again."
+        ) from error
+    except OSError as error:
+        raise BrdfkitError(
+            f"{path}: cannot be read ({_reason(error)}); check its permissions."
+        ) from error
+    if not data:
+        raise BrdfkitError(f"{path}: the file is empty; fetch it again.")
+    return data
+
+
+def _require_file(path):
+    if path.is_dir():
+        raise BrdfkitError(f"{path}: is a folder; name a file in it.")
+    if path.is_file():
+        return
+    if path.exists():
+        raise BrdfkitError(f"{path}: is no regular file; name one.")
+    raise BrdfkitError(f"{path}: there is no such file; check the path.")
+
+
+def _read(path):
+    with path.open("rb") as stream:
+        first = stream.read(8)
+    for suffix, magic in COMPRESSED.items():
+        if first and (path.suffix.lower() == suffix or first.startswith(magic)):
+            return _decompress(path, gzip.open if suffix == GZIP else lzma.open)
+    if path.stat().st_size > LIMIT:
+        raise _too_large(path)
+    return path.read_bytes()
+
+
+def _decompress(path, opened):
+    """All of a compressed file; a small one that unpacks to terabytes is stopped at `LIMIT`."""
+    data = bytearray()
+    with opened(path) as stream:
+        while chunk := stream.read(CHUNK):
+            data += chunk
+            if len(data) > LIMIT:
+                raise _too_large(path)
+    return bytes(data)
+
+
+def _too_large(path):
+    return BrdfkitError(
+        f"{path}: holds more than {LIMIT:,} bytes, which no BRDF file needs; "
+        "check that it is the right file."
+    )
+
+
+def _reason(error):
+    return getattr(error, "strerror", None) or str(error).strip().rstrip(".") or "unknown cause"

@@ -1,0 +1,136 @@
+"""Fits a model to a measured material: `fit`, its result `Fit`, and the `losses`."""
+
+import math
+import time
+
+import numpy as np
+
+from brdfkit import registry
+from brdfkit.errors import BrdfkitError
+from brdfkit.fitting.loss import losses as losses
+from brdfkit.fitting.problem import Problem
+from brdfkit.fitting.result import Fit as Fit
+from brdfkit.fitting.search import Outcome, Space, evaluate, slsqp, starts
+from brdfkit.fitting.selection import selected
+
+# The starts are compared on a random part of a large table, the best goes on with all of it
+PART = 20_000
+# How many of the starts, by their loss, are searched from
+FOLLOWED = 3
+
+
+def fit(
+    name,
+    data,
+    loss="log",
+    *,
+    starts=16,
+    bounds=None,
+    fixed=None,
+    max_angle=80.0,
+    seed=0,
+    progress=None,
+):
+    """Fit the model `name` to a measured material, in double precision.
+
+    SQP over the shape parameters from several starts; the weights are solved inside, per
+    channel, not negative. Spectral data is fitted as linear sRGB.
+
+    `data`: a `Measured`; `loss`: a name in `losses`; `starts`: the default and points spread
+    over the bounds; `bounds`: other bounds by name, ``{"alpha_u": (0.01, 0.5)}``; `fixed`: shape
+    parameters held at a value, ``{"f0": 0.04}``; `max_angle`: samples with an angle at or beyond
+    it [degrees] are left out; `progress`: called with (done, total). Returns a `Fit`.
+
+    >>> print(fit("ward", load("paint.binary")))    # doctest: +SKIP
+    """
+    began = time.perf_counter()
+    model, loss = registry.model(name), _loss(loss)
+    space = _space(model, bounds or {}, fixed or {})
+    wi, wo, values = selected(data, loss, max_angle)
+    default = space.coordinates(model().values)
+
+    rng = np.random.default_rng(seed)
+    whole = Problem(model, wi, wo, values, loss)
+    part = whole
+    if len(values) > 2 * PART:
+        rows = np.sort(rng.choice(len(values), PART, replace=False))
+        part = Problem(model, wi[rows], wo[rows], values[rows], loss)
+
+    report = progress or (lambda done, total: None)
+    best, evaluations = _search(part, space, default, starts if space.names else 1, seed, report)
+    if part is not whole:
+        best = slsqp(whole, space, best.u)
+        evaluations += best.evaluations
+
+    shapes = {k: float(v) for k, v in (space.values(best.u) | space.fixed).items()}
+    weights = whole.solve(shapes)
+    fitted = model(**shapes, **dict(zip(model.weights(), map(tuple, weights.T), strict=True)))
+    return Fit(
+        model=fitted,
+        data=data.name,
+        loss_name=loss.name,
+        loss=math.sqrt(whole.error(shapes, weights)),
+        samples=len(values),
+        evaluations=evaluations,
+        seconds=time.perf_counter() - began,
+        message=best.message,
+        at_bounds=_at_bounds(space, best.u, model, weights),
+        settings={
+            "max_angle": max_angle,
+            "seed": seed,
+            "starts": starts,
+            "bounds": dict(bounds or {}),
+            "fixed": dict(fixed or {}),
+        },
+    )
+
+
+def _search(problem, space, default, count, seed, report) -> tuple[Outcome, int]:
+    """The best outcome from the most promising starts, and the evaluations of them all."""
+    points = starts(space, default, count, seed)
+    total = len(points) + min(FOLLOWED, len(points))
+    errors = []
+    if len(points) > 1:
+        for k, u in enumerate(points):
+            errors.append(evaluate(problem, space, u))
+            report(k + 1, total)
+        points = points[np.argsort(errors, kind="stable")[:FOLLOWED]]
+    outcomes = []
+    for k, u in enumerate(points):
+        outcomes.append(slsqp(problem, space, u))
+        report(len(errors) + k + 1, total)
+    evaluations = len(errors) + sum(o.evaluations for o in outcomes)
+    return min(outcomes, key=lambda o: o.error), evaluations
+
+
+def _loss(name):
+    if name not in losses:
+        raise BrdfkitError(f"There is no loss {name!r}; there are {', '.join(losses)}.")
+    return losses[name]
+
+
+def _space(model, bounds, fixed):
+    """The shape parameters to search, within the model's bounds or narrower ones."""
+    for name, value in fixed.items():
+        if model.parameter(name).linear:
+            raise BrdfkitError(
+                f"{model.type_name()}: {name} is a weight; only shapes can be fixed."
+            )
+        model(**{name: value})
+    for name, (low, high) in bounds.items():
+        allowed = model.parameter(name).bounds
+        if not allowed[0] <= low < high <= allowed[1]:
+            raise BrdfkitError(
+                f"{model.type_name()}: the bounds {low:g}..{high:g} of {name} should lie "
+                f"within {allowed[0]:g}..{allowed[1]:g}."
+            )
+    names = tuple(n for n in model.shapes() if n not in fixed)
+    limits = np.array([bounds.get(n, model.parameters[n].bounds) for n in names]).reshape(-1, 2)
+    log = np.array([model.parameters[n].log for n in names], bool)
+    return Space(names, limits[:, 0], limits[:, 1], log, {k: float(v) for k, v in fixed.items()})
+
+
+def _at_bounds(space, u, model, weights):
+    shapes = [n for n, v in zip(space.names, u, strict=True) if min(v, 1 - v) < 1e-6]
+    black = [n for n, w in zip(model.weights(), weights.T, strict=True) if (w == 0).all()]
+    return tuple(black + shapes)

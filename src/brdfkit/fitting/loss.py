@@ -1,0 +1,86 @@
+"""Losses: what a fit makes small.
+
+    E² = Σ_n w_n Σ_c [g(κ_n R_nc) - g(κ_n M_nc)]² / N
+
+R is measured, M the model, κ a factor of cosines and g a transform that weighs dark against
+bright. Samples with an angle beyond 80° are left out, where measurements are least reliable
+(Ngan et al. 2005).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import drjit as dr
+import numpy as np
+
+# Below this the logarithm turns linear: about the noise of a measured table, in sr⁻¹
+LOG_OFFSET = 1e-3
+# The cube root has no derivative at 0
+CBRT_OFFSET = 1e-6
+
+
+@dataclass(frozen=True)
+class Loss:
+    """One loss. `g`, its derivative `dg` and second derivative `ddg` take Dr.Jit arrays."""
+
+    name: str
+    meaning: str
+    g: Callable
+    dg: Callable
+    ddg: Callable
+    cosines: Callable
+    weights: Callable
+    linear: bool = False
+    channel_mean: bool = True
+
+    def geometry(self, wi, wo):
+        """(κ, w), each (n,), of NumPy directions (n, 3)."""
+        return self.cosines(wi[:, 2], wo[:, 2]), self.weights(wi)
+
+    def usable(self, values):
+        """Mask (n,) of samples that the loss can take: a logarithm knows no negative BRDF."""
+        return np.ones(len(values), bool) if self.linear else (values >= 0).all(axis=1)
+
+    def normaliser(self, weights, channels):
+        """N: Σ w, times the number of channels where E is a mean over them."""
+        return weights.sum() * (channels if self.channel_mean else 1)
+
+
+def _sin_theta(w):
+    return np.sqrt(np.maximum(1 - w[:, 2] ** 2, 0))
+
+
+losses = {
+    loss.name: loss
+    for loss in (
+        Loss(
+            name="cosine",
+            meaning="cosine-weighted L2, w = sin θ_i, channels summed (Kurt 2007, eq. 5.13)",
+            g=lambda x: x,
+            dg=lambda x: 1,
+            ddg=lambda x: 0,
+            cosines=lambda cos_i, cos_o: cos_i,
+            weights=_sin_theta,
+            linear=True,
+            channel_mean=False,
+        ),
+        Loss(
+            name="log",
+            meaning="RMS difference of ln(f cos θ_i cos θ_o + 0.001): relative error, dark counts",
+            g=lambda x: dr.log(x + LOG_OFFSET),
+            dg=lambda x: 1 / (x + LOG_OFFSET),
+            ddg=lambda x: -1 / dr.square(x + LOG_OFFSET),
+            cosines=lambda cos_i, cos_o: cos_i * cos_o,
+            weights=lambda wi: np.ones(len(wi)),
+        ),
+        Loss(
+            name="cbrt",
+            meaning="RMS difference of the cube root of f cos θ_i: between cosine and log",
+            g=lambda x: dr.cbrt(x + CBRT_OFFSET),
+            dg=lambda x: 1 / (3 * dr.square(dr.cbrt(x + CBRT_OFFSET))),
+            ddg=lambda x: -2 / (9 * dr.cbrt(x + CBRT_OFFSET) ** 5),
+            cosines=lambda cos_i, cos_o: cos_i,
+            weights=lambda wi: np.ones(len(wi)),
+        ),
+    )
+}

@@ -1,0 +1,137 @@
+"""The problem of a fit: samples, a model and a loss, as a function of the shape parameters.
+
+The weights are solved inside, per channel (variable projection), so that the search sees only
+the shape parameters x. At the best weights the derivative of E² by x is the partial one with
+the weights held fixed (envelope theorem), which Dr.Jit gives exactly.
+"""
+
+import drjit as dr
+import numpy as np
+
+from brdfkit import backend
+from brdfkit.fitting.weights import bounded_quadratic
+
+
+class Problem:
+    """E² of a model on samples `wi`, `wo` (n, 3), `values` (n, channels) in sr⁻¹."""
+
+    def __init__(self, model, wi, wo, values, loss):
+        cosines, weights = loss.geometry(wi, wo)
+        Float64 = backend.float64()
+        self.model, self.loss = model, loss
+        self.size, self.channels = values.shape
+        self.wi, self.wo = backend.vector(wi), backend.vector(wo)
+        self.cosines = Float64(cosines)
+        self.weights = Float64(weights / loss.normaliser(weights, self.channels))
+        self.measured = [Float64(np.ascontiguousarray(v * cosines)) for v in values.T]
+        self.targets = [loss.g(m) + 0 for m in self.measured]
+        dr.eval(self.targets)
+        # E² of a black model: the scale of the problem
+        zero = loss.g(Float64(0.0))
+        self.scale = sum(_sum(self.weights * dr.square(zero - t)) for t in self.targets)
+
+    def lobes(self, values):
+        """The lobes times κ, each (n,), at `values` of the shape parameters."""
+        one = self.cosines * 0 + 1
+        lobes = self.model.bind(values).lobes()
+        return [one * lobe.eval(self.wi, self.wo) * self.cosines for lobe in lobes]
+
+    def solve(self, values):
+        """The best weights (channels, lobes) ≥ 0 at numbers `values` of the shape parameters."""
+        lobes = self.lobes({name: backend.scalar(v) for name, v in values.items()})
+        dr.eval(lobes)
+        return np.array([self._solve_channel(lobes, c) for c in range(self.channels)])
+
+    def _solve_channel(self, lobes, c):
+        # Linearised about the data: exact where g is the identity, else the start of Newton's
+        slope = self.loss.dg(self.measured[c])
+        weight = self.weights * slope * slope
+        gram = _symmetric(
+            [[_sum(weight * a * b) for b in lobes[: i + 1]] for i, a in enumerate(lobes)]
+        )
+        moment = np.array([_sum(weight * a * self.measured[c]) for a in lobes])
+        solution = bounded_quadratic(gram, moment)
+        return solution if self.loss.linear else self._newton(lobes, c, solution)
+
+    def _newton(self, lobes, c, solution):
+        """Newton's method with the bounds, from a start near the solution."""
+        error, gradient, hessian = self._expand(lobes, c, solution)
+        for _ in range(30):
+            proposed = bounded_quadratic(hessian, hessian @ solution - gradient)
+            step = proposed - solution
+            for _halving in range(12):
+                trial = solution + step
+                expansion = self._expand(lobes, c, trial)
+                if expansion[0] <= error * (1 + 1e-14):
+                    break
+                step = step / 2
+            else:
+                return solution
+            solution, (error, gradient, hessian) = trial, expansion
+            if np.all(np.abs(step) <= 1e-9 * np.abs(solution).max(initial=1e-9)):
+                break
+        return solution
+
+    def _expand(self, lobes, c, solution):
+        """E² of a channel with gradient and (positive definite) Hessian by the weights, halved."""
+        model = self._mixture(lobes, solution)
+        residual = self.loss.g(model) - self.targets[c]
+        slope, curvature = self.loss.dg(model), self.loss.ddg(model)
+        first = self.weights * residual * slope
+        second = self.weights * (slope * slope + residual * curvature)
+        dr.eval(residual, first, second)
+        error = _sum(self.weights * residual * residual)
+        gradient = np.array([_sum(first * a) for a in lobes])
+        hessian = _symmetric(
+            [[_sum(second * a * b) for b in lobes[: i + 1]] for i, a in enumerate(lobes)]
+        )
+        eigenvalues, vectors = np.linalg.eigh(hessian)
+        eigenvalues = np.maximum(np.abs(eigenvalues), 1e-12 * np.abs(eigenvalues).max() + 1e-300)
+        return error, gradient, (vectors * eigenvalues) @ vectors.T
+
+    def _mixture(self, lobes, solution):
+        return sum(backend.scalar(a) * lobe for a, lobe in zip(solution, lobes, strict=True))
+
+    def error(self, values, weights):
+        """E² at `values` of the shape parameters and `weights` (channels, lobes)."""
+        return _sum(self._error({n: backend.scalar(v) for n, v in values.items()}, weights))
+
+    def error_and_gradient(self, values, weights):
+        """E² and its derivatives by the shape parameters, the weights held fixed."""
+        names = list(values)
+        if not backend.differentiable():
+            return self.error(values, weights), self._differences(values, weights)
+        bound = {name: backend.scalar(v) for name, v in values.items()}
+        for name in names:
+            dr.enable_grad(bound[name])
+        total = dr.sum(self._error(bound, weights))
+        dr.backward(total)
+        return float(dr.detach(total)[0]), np.array([float(dr.grad(bound[n])[0]) for n in names])
+
+    def _error(self, bound, weights):
+        lobes = self.lobes(bound)
+        squares = 0
+        for c in range(self.channels):
+            model = self._mixture(lobes, weights[c])
+            squares = squares + dr.square(self.loss.g(model) - self.targets[c])
+        return self.weights * squares
+
+    def _differences(self, values, weights):
+        """Central differences, where the backend has no derivatives."""
+        gradient = []
+        for name, value in values.items():
+            h = 1e-6 * max(abs(value), 1e-3)
+            low, high = max(value - h, 0), value + h
+            ends = [self.error({**values, name: v}, weights) for v in (low, high)]
+            gradient.append((ends[1] - ends[0]) / (high - low))
+        return np.array(gradient)
+
+
+def _sum(x):
+    # Evaluated sums run in a fixed order: the fit is reproducible to the last digit
+    return float(np.asarray(dr.sum(x)).reshape(-1)[0])
+
+
+def _symmetric(lower_rows):
+    n = len(lower_rows)
+    return np.array([[lower_rows[max(i, j)][min(i, j)] for j in range(n)] for i in range(n)])

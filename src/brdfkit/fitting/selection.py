@@ -1,0 +1,23 @@
+"""Which samples of a measured material a fit, and its errors, are about."""
+
+import math
+
+from brdfkit.errors import BrdfkitError
+
+
+def selected(data, loss, max_angle):
+    """(wi, wo, values) of the valid samples with both angles below `max_angle` [degrees].
+
+    Spectral data comes as linear sRGB; samples that the loss cannot take are left out.
+    """
+    data = data.rgb
+    samples = data.samples
+    cos_min = math.cos(math.radians(max_angle)) * (1 + 1e-12)
+    rows = samples.valid & (samples.wi[:, 2] > cos_min) & (samples.wo[:, 2] > cos_min)
+    rows[rows] = loss.usable(samples.values[rows])
+    if not rows.any():
+        raise BrdfkitError(
+            f"{data.name}: no valid sample has both angles below {max_angle:g}°; "
+            "give a larger max_angle."
+        )
+    return samples.wi[rows], samples.wo[rows], samples.values[rows]

@@ -1,0 +1,142 @@
+"""What a format's `read` is given: the file's content, its lines, and sentences about it."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from brdfkit.directions import from_angles
+from brdfkit.errors import BrdfkitError
+from brdfkit.files import COMPRESSED, contents
+from brdfkit.measured import RGB, Measured
+
+ANGLE_TOLERANCE = 1e-3  # rad: files round 90° to 1.5708
+REMEDY = "mend the line or fetch the file again"
+
+
+@dataclass(frozen=True)
+class Source:
+    """A file to read: `path`, for messages; `data`: its bytes, decompressed.
+
+    `sample`: what stood behind '#' in the path, or None.
+
+    >>> Source(Path("paint/copper.astm.xz"), None, b"...").name
+    'copper'
+    """
+
+    path: Path
+    sample: str | None
+    data: bytes = field(repr=False)
+
+    @property
+    def suffix(self):
+        """The format's suffix, in lower case: that before .gz or .xz."""
+        return format_suffix(self.path)
+
+    @property
+    def name(self):
+        """The file's name without its suffixes."""
+        name = _uncompressed(self.path).name
+        return name[: -len(self.suffix)] if self.suffix else name
+
+    @cached_property
+    def lines(self):
+        """The lines that are neither blank nor a '#' comment, as (number from 1, text)."""
+        stripped = ((n, line.strip()) for n, line in enumerate(self._text, 1))
+        return [(n, line) for n, line in stripped if line and not line.startswith("#")]
+
+    @cached_property
+    def comments(self):
+        """The texts of the '#' lines."""
+        stripped = (line.strip() for line in self._text)
+        return [line.strip("# ") for line in stripped if line.startswith("#")]
+
+    @property
+    def _text(self):
+        text = self.data.decode("utf-8-sig", errors="replace")
+        return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+    def error(self, problem):
+        """The `BrdfkitError` that says `problem` (what and remedy, no full stop) of this file."""
+        return BrdfkitError(f"{self.path}: {problem}.")
+
+    def sibling(self, name):
+        """The file `name` in the same folder, compressed or not, as a `Source`."""
+        for suffix in ("", *COMPRESSED):
+            path = self.path.with_name(name + suffix)
+            if path.exists():
+                return Source(path, None, contents(path))
+        raise self.error(f"needs {name} beside it; put the two in one folder")
+
+    def numbers(self, line, fields, count=None):
+        """The `fields` of `line` as floats; `count` of them where it is given."""
+        if count is not None and len(fields) != count:
+            raise self.error(
+                f"line {line} has {len(fields)} columns where {count} belong (cut short?); {REMEDY}"
+            )
+        try:
+            return [_number(text) for text in fields]
+        except ValueError:
+            wrong = next(text for text in fields if not _is_number(text))
+            raise self.error(
+                f"line {line} has {wrong[:40]!r} where a number belongs; {REMEDY}"
+            ) from None
+
+    def measured(self, lines, angles, values, valid=True, channels=RGB, name=None, info=None):
+        """The `Measured` of `angles` (n, 4), theta_i phi_i theta_o phi_o [rad], and `values`.
+
+        `lines` (n,) are the lines they stood on. A value that is not finite was not measured.
+        """
+        angles, values = np.array(angles, float), np.array(values, float)
+        self._require_radians(lines, angles)
+        finite = np.isfinite(values).all(axis=1)
+        info = dict(info or {})
+        if not finite.all():
+            info["not finite"] = f"{(~finite).sum()} of {len(finite)} rows, masked"
+        wi, wo = from_angles(*angles[:, :2].T), from_angles(*angles[:, 2:].T)
+        name = name or self.name
+        try:
+            return Measured.from_samples(wi, wo, values, finite & valid, channels, name, info)
+        except BrdfkitError:
+            raise self.error(
+                "no row is a valid measurement (masked, not finite or at the horizon); "
+                "fetch the file again"
+            ) from None
+
+    def _require_radians(self, lines, angles):
+        limit = np.array([np.pi / 2, 2 * np.pi] * 2) + ANGLE_TOLERANCE
+        wrong = ~(np.abs(angles) <= limit)  # NaN is wrong, too
+        if wrong.any():
+            row, column = np.argwhere(wrong)[0]
+            raise self.error(
+                f"line {lines[row]} has the angle {angles[row, column]:g} where at most "
+                f"{limit[column]:.3f} rad belongs; convert degrees to radians or mend the line"
+            )
+
+
+def format_suffix(path):
+    """The suffix that names the format, in lower case: that before .gz or .xz.
+
+    >>> format_suffix(Path("copper.astm.xz"))
+    '.astm'
+    """
+    return _uncompressed(path).suffix.lower()
+
+
+def _uncompressed(path):
+    return path.with_suffix("") if path.suffix.lower() in COMPRESSED else path
+
+
+def _number(text):
+    if "_" in text:  # Python reads 1_0 as ten; a damaged file means nothing by it
+        raise ValueError
+    return float(text)
+
+
+def _is_number(text):
+    try:
+        _number(text)
+    except ValueError:
+        return False
+    return True

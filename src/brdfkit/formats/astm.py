@@ -1,0 +1,114 @@
+"""ASTM E1392-like text, `.astm`: a header of keys up to VARS, then comma-separated rows.
+
+VARS names the columns: theta_i, phi_i, theta_s, phi_s [rad] and the channels [sr⁻¹], which are
+R, G, B, wavelengths such as 465nm, or a single one. Two instruments are known to differ:
+
+- Cornell/Kodak: phi_i = 0; negative values are kept.
+- Light Tec Mini-Diff V2: phi_i = 180°; VARS leaves out phi_s, though the rows have it; the
+  wavelengths 465, 525, 630 nm stand for B, G, R; beyond theta_s = 75° nothing was measured,
+  the file holds a straight line down to 0 there.
+
+In both, the mirror direction is at Δφ = 180°.
+"""
+
+import re
+
+import numpy as np
+
+from brdfkit.measured import RGB
+
+NAME = "ASTM"
+SUFFIXES = (".astm",)
+
+ANGLES = ("theta_i", "phi_i", "theta_s", "phi_s")
+MINI_DIFF = "Mini-Diff"
+MINI_DIFF_CHANNELS = ("630nm", "525nm", "465nm")  # as R, G, B
+MINI_DIFF_LIMIT = np.radians(75) + 1e-6
+
+
+def sniff(head):
+    """Whether a line of `head` begins with VARS, behind lines that begin with a key."""
+    return re.search(rb"^VARS\s", head, re.MULTILINE) is not None
+
+
+def read(source):
+    """The samples as `Measured`, its channels R, G, B, or as VARS names them.
+
+    Raises `BrdfkitError` when VARS is missing, the columns do not add up, NUM_POINTS does not
+    match the rows, or text stands among numbers.
+    """
+    header, vars_line, rows = _header(source)
+    lines = [n for n, _ in rows]
+    names, notes = _names(source, header["VARS"], vars_line, rows)
+    data = np.array([source.numbers(n, line.split(","), len(names)) for n, line in rows])
+    channels, columns, note = _channels(source, names, vars_line)
+    notes.update(note)
+
+    column = dict(zip(names, data.T, strict=True))
+    angles = np.stack([column[name] for name in ANGLES], axis=1)
+    values = np.stack([column[name] for name in columns], axis=1)
+    valid = np.ones(len(rows), bool)
+    if MINI_DIFF in header.get("SYSTEM_NAME", ""):
+        valid = angles[:, 2] <= MINI_DIFF_LIMIT
+        notes["masked"] = f"{(~valid).sum():,} rows beyond theta_s = 75°, not measured"
+    info = {"format": NAME, **header, **notes}
+    return source.measured(lines, angles, values, valid, channels, info=info)
+
+
+def _header(source):
+    """Keys with their values, the line of VARS, and the lines of the rows."""
+    header = {}
+    for at, (n, line) in enumerate(source.lines):
+        key, *value = line.split(maxsplit=1)
+        header[key] = "".join(value)
+        if key == "VARS":
+            rows = source.lines[at + 1 :]
+            _require_count(source, header.get("NUM_POINTS"), rows)
+            return header, n, rows
+    raise source.error(
+        f"has no line VARS that names its columns; add it, as in 'VARS {','.join((*ANGLES, *RGB))}'"
+    )
+
+
+def _require_count(source, announced, rows):
+    if not rows:
+        raise source.error("has no rows behind its header; fetch the file again")
+    if announced is not None and announced != str(len(rows)):
+        raise source.error(
+            f"NUM_POINTS announces {announced[:20]} rows, but {len(rows)} follow; "
+            "fetch the file again or mend the number"
+        )
+
+
+def _names(source, text, vars_line, rows):
+    """The names of the columns, and a note where phi_s had to be put in."""
+    names = [name.strip() for name in text.split(",")]
+    notes = {}
+    more = len(rows[0][1].split(",")) - len(names)
+    if "phi_s" not in names and names[:3] == list(ANGLES[:3]) and more == 1:
+        names.insert(3, "phi_s")
+        notes["columns"] = "VARS leaves out phi_s, which is the fourth column"
+    if len(set(names)) != len(names) or not set(ANGLES) < set(names):
+        raise source.error(
+            f"line {vars_line} names the columns {text[:80]!r}, but {', '.join(ANGLES)} and at "
+            "least one channel belong, each once; mend the line"
+        )
+    return names, notes
+
+
+def _channels(source, names, vars_line):
+    """The channels' names, the columns they are taken from, and a note where those differ."""
+    columns = tuple(name for name in names if name not in ANGLES)
+    if set(columns) == set(RGB):
+        return RGB, RGB, {}
+    if set(columns) == set(MINI_DIFF_CHANNELS):
+        note = f"R, G, B are the values at {', '.join(MINI_DIFF_CHANNELS)}"
+        return RGB, MINI_DIFF_CHANNELS, {"channels": note}
+    if all(re.fullmatch(r"\d+(\.\d+)?nm", name) for name in columns):
+        return columns, columns, {}
+    if len(columns) == 1:
+        return ("Y",), columns, {"channels": f"Y is the column {columns[0]}"}
+    raise source.error(
+        f"line {vars_line} names the channels {', '.join(columns)[:80]}, but R,G,B or wavelengths "
+        "such as 550nm, or a single one belong; mend the line"
+    )

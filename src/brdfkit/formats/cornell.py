@@ -1,0 +1,103 @@
+"""Cornell Program of Computer Graphics: `.brdf` text with spectral samples.
+
+'#' comments, the number of wavelengths, the wavelengths [nm], then a row per sample:
+theta_i phi_i theta_s phi_s [rad] and one value [sr⁻¹] per wavelength. The mirror direction is
+at Δφ = 180°. https://www.graphics.cornell.edu/online/measurements/reflectance
+"""
+
+import numpy as np
+
+NAME = "Cornell"
+SUFFIXES = (".brdf",)
+
+MOST_WAVELENGTHS = 4096
+NANOMETRES = (100, 100_000)  # what a wavelength can be
+SUSPICIOUS = 5  # times the next largest value
+
+
+def sniff(head):
+    """Whether a whole number of plausible wavelengths follows the comments of `head`."""
+    lines = [line for line in head.split(b"\n") if line.strip() and not line.startswith(b"#")]
+    tokens = b" ".join(lines[:3]).split()
+    try:
+        return int(tokens[0]) > 0 and _plausible(float(tokens[1]))
+    except (ValueError, IndexError):
+        return False
+
+
+def read(source):
+    """The samples as `Measured`, its channels the wavelengths: ``("400nm", ...)``.
+
+    Raises `BrdfkitError` for a row with too few or too many columns, text among numbers,
+    wavelengths that do not add up, or angles that are not in radians.
+    """
+    wavelengths, rows = _wavelengths(source)
+    columns = 4 + len(wavelengths)
+    if not rows:
+        raise source.error("has no samples behind its wavelengths; fetch the file again")
+    data = np.array([source.numbers(n, line.split(), columns) for n, line in rows])
+    angles, values = data[:, :4], data[:, 4:]
+    lines = [n for n, _ in rows]
+    channels = tuple(f"{w:g}nm" for w in wavelengths)
+    info = {"format": NAME, **_description(source), **_clipped(values), **_spike(angles, values)}
+    return source.measured(lines, angles, values, channels=channels, info=info)
+
+
+def _wavelengths(source):
+    """The wavelengths, and the lines behind them; they may stand on several lines."""
+    if not source.lines:
+        raise source.error("has comments only, no wavelengths; fetch the file again")
+    first, text = source.lines[0]
+    if not text.isdecimal() or len(text) > 4 or not 1 <= int(text) <= MOST_WAVELENGTHS:
+        raise source.error(
+            f"line {first} has {text[:40]!r} where the number of wavelengths belongs; "
+            "check that it is a Cornell file"
+        )
+    count, found, used = int(text), [], 1
+    for n, line in source.lines[1:]:
+        if len(found) >= count:
+            break
+        found += source.numbers(n, line.split())
+        used += 1
+    if len(found) != count:
+        raise source.error(
+            f"line {first} announces {count} wavelengths, but the next lines list {len(found)}; "
+            "mend the number or fetch the file again"
+        )
+    if len(set(found)) != count or not all(map(_plausible, found)):
+        raise source.error(
+            f"the wavelengths behind line {first} repeat or are not in nm; mend them"
+        )
+    return found, source.lines[used:]
+
+
+def _plausible(wavelength):
+    return NANOMETRES[0] <= wavelength <= NANOMETRES[1]
+
+
+def _description(source):
+    """What the comments before the first number say of the sample."""
+    told = [c for c in source.comments if c and not c.startswith(("num wls", "wls", "theta i"))]
+    return {"description": "; ".join(told)} if told else {}
+
+
+def _clipped(values):
+    zeros = (values == 0).mean()
+    if not zeros:
+        return {}
+    return {"clipped": f"{zeros:.1%} of the values are 0: negative ones were set to 0"}
+
+
+def _spike(angles, values):
+    """A note where the one sample near grazing mirror reflection stands out; it is kept."""
+    brightest = np.nan_to_num(values, nan=-np.inf).max(axis=1)
+    top = int(np.argmax(brightest))
+    theta_i, phi_i, theta_s, phi_s = np.degrees(angles[top])
+    others = np.delete(brightest, top)
+    near_grazing = theta_i > 79.5 and theta_s > 78.5 and abs(abs(phi_s - phi_i) - 180) < 0.5
+    if not near_grazing or not others.size or brightest[top] <= SUSPICIOUS * others.max():
+        return {}
+    return {
+        "suspicious": f"the sample at theta_i {theta_i:.0f}°, theta_s {theta_s:.0f}° in the "
+        f"mirror's azimuth is {brightest[top] / others.max():.1f} times the next largest"
+    }

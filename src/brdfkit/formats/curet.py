@@ -1,0 +1,66 @@
+"""CUReT: `abrdf.dat`, 61 samples × 205 geometries, averaged over the channels.
+
+K. Dana et al., "Reflectance and texture of real-world surfaces", ACM TOG 18(1), 1999. A row of
+`abrdf.dat` is a sample's number and its values [sr⁻¹]; `table.txt` beside it lists the
+geometries: number, theta_v, phi_v, theta_i, phi_i [rad], the viewing direction first.
+"""
+
+NAME = "CUReT"
+SUFFIXES = (".dat",)
+MANY = True
+
+SAMPLES = 61
+GEOMETRIES = 205
+TABLE = "table.txt"
+
+
+def sniff(head):
+    """Whether the first line of `head` has a sample's number and 205 values."""
+    fields = head.lstrip().split(b"\n", 1)[0].split()
+    try:
+        return len(list(map(float, fields))) == 1 + GEOMETRIES and fields[0].isdigit()
+    except ValueError:
+        return False
+
+
+def read(source):
+    """One sample, ``abrdf.dat#1``, as `Measured` with the one channel Y.
+
+    Raises `BrdfkitError` when no sample is named, `table.txt` is missing, or either file is not
+    61 × 205.
+    """
+    rows = _rows(source, SAMPLES, GEOMETRIES)
+    sample = _sample(source)
+    table = source.sibling(TABLE)
+    geometries = _rows(table, GEOMETRIES, 4)
+    lines = [n for n, _ in table.lines]
+    theta_v, phi_v, theta_i, phi_i = zip(*geometries, strict=True)
+    angles = list(zip(theta_i, phi_i, theta_v, phi_v, strict=True))
+    info = {
+        "format": NAME,
+        "sample": str(sample),
+        "channels": "Y is the mean of R, G and B",
+        "overexposed": "entries that were overexposed are not marked in the file",
+    }
+    values = [[value] for value in rows[sample - 1]]
+    return table.measured(lines, angles, values, channels=("Y",), name=f"CUReT {sample}", info=info)
+
+
+def _sample(source):
+    number = source.sample or ""
+    if number.isascii() and number.isdecimal() and 1 <= int(number[:9]) <= SAMPLES:
+        return int(number[:9])
+    given = f", not '#{number[:20]}'" if number else ""
+    raise source.error(
+        f"holds {SAMPLES} samples; name one of 1 to {SAMPLES}{given}, as in '{source.path.name}#1'"
+    )
+
+
+def _rows(source, count, columns):
+    """The numbers of each line behind its own number, which must be 1, 2, ... `count`."""
+    rows = [source.numbers(n, line.split(), 1 + columns) for n, line in source.lines]
+    if [row[0] for row in rows] != list(range(1, count + 1)):
+        raise source.error(
+            f"has {len(rows)} rows where {count} belong, numbered from 1; fetch the file again"
+        )
+    return [row[1:] for row in rows]

@@ -1,0 +1,118 @@
+"""MERL BRDF database: `.binary` tables over half/difference angles.
+
+W. Matusik et al., "A data-driven reflectance model", SIGGRAPH 2003. Little-endian: three
+int32 (n_theta_h, n_theta_d, n_phi_d), then the planes R, G, B of float64. A cell that was not
+measured is negative. Four times as many phi_d as theta_d cells span the full circle (a table
+that is not reciprocal), else they span half of it.
+"""
+
+import struct
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.measured import RGB, Measured
+
+NAME = "MERL"
+SUFFIXES = (".binary",)
+
+HEADER = 12  # bytes
+SCALE = np.array([1.0, 1.15, 1.66]) / 1500  # sr⁻¹ per stored unit of R, G, B
+MOST_CELLS = 4096  # along one axis
+NOT_MEASURED = -1.0
+
+
+def sniff(head):
+    """Whether `head` begins with the dimensions of a table, in either byte order."""
+    return len(head) >= HEADER and any(map(_plausible, _dimensions(head)))
+
+
+def read(source):
+    """The table as `Measured`, channels R, G, B; NaN where a stored value is negative.
+
+    Raises `BrdfkitError` when header and size disagree, a value is not finite, or no cell is
+    valid.
+    """
+    shape = _shape(source)
+    raw = np.frombuffer(source.data, "<f8", offset=HEADER).reshape(3, *shape)
+    finite = np.isfinite(raw)
+    if not finite.all():
+        first = HEADER + 8 * int(np.argmin(finite))
+        raise source.error(
+            f"{(~finite).sum():,} values are not finite, the first at byte {first:,}; "
+            "a MERL table holds none, so fetch the file again"
+        )
+    # before scaling: what is stored decides
+    unknown = (raw < 0).any(axis=0)
+    if unknown.all():
+        raise source.error("every cell is marked as not measured; fetch the file again")
+    values = np.multiply(np.moveaxis(raw, 0, -1), SCALE, order="C")
+    values[unknown] = np.nan
+    info = {"format": NAME, "cells not measured": f"{unknown.sum():,} of {unknown.size:,}"}
+    return Measured.from_table(values, _phi_d_period(shape), RGB, source.name, info)
+
+
+def write(obj, stream):
+    """Write the table of a `Measured`, in linear sRGB; achromatic values stand in each plane.
+
+    Negative values, which the format takes for "not measured", are written as 0.
+    """
+    if not isinstance(obj, Measured):
+        raise BrdfkitError(
+            f"a MERL table holds a measured material, not a {type(obj).__name__}; "
+            "choose another suffix."
+        )
+    table = obj.rgb.table
+    if not _plausible(table.shape) or not np.isclose(
+        table.phi_d_period, _phi_d_period(table.shape)
+    ):
+        raise BrdfkitError(
+            f"a MERL table cannot say that {table.shape} cells span {table.phi_d_period:.3f} rad "
+            "of phi_d; resample to 2 or, for the full circle, 4 phi_d cells per theta_d cell."
+        )
+    unknown = ~np.isfinite(table.values).all(axis=-1, keepdims=True)
+    raw = np.where(unknown, NOT_MEASURED, np.maximum(table.values, 0) / SCALE)
+    stream.write(struct.pack("<3i", *table.shape))
+    stream.write(np.moveaxis(raw, -1, 0).astype("<f8").tobytes())
+
+
+def _shape(source):
+    """The dimensions of the header, once they agree with the size of the file."""
+    size = len(source.data)
+    if size < HEADER:
+        raise source.error(f"has {size} bytes, fewer than a MERL header; fetch the file again")
+    little, big = _dimensions(source.data)
+    if not _plausible(little):
+        if _plausible(big):
+            raise source.error(
+                f"is big-endian (its header reads {_times(big)} so); swap the byte order to "
+                "little-endian"
+            )
+        raise source.error(
+            f"its header says {_times(little)} cells where 1 to {MOST_CELLS} belong on each axis; "
+            "check that it is a MERL table"
+        )
+    expected = HEADER + 3 * 8 * int(np.prod(little))
+    if size != expected:
+        raise source.error(
+            f"is {'cut short' if size < expected else 'too long'}: {size:,} bytes where its "
+            f"header, {_times(little)} cells, asks for {expected:,}; fetch the file again"
+        )
+    return little
+
+
+def _dimensions(data):
+    """The three integers of the header, as little-endian and as big-endian."""
+    return struct.unpack_from("<3i", data), struct.unpack_from(">3i", data)
+
+
+def _plausible(dimensions):
+    return all(1 <= n <= MOST_CELLS for n in dimensions)
+
+
+def _phi_d_period(shape):
+    return 2 * np.pi if shape[2] == 4 * shape[1] else np.pi
+
+
+def _times(dimensions):
+    return "×".join(map(str, dimensions))

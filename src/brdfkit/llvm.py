@@ -1,0 +1,124 @@
+"""Finds an LLVM that Dr.Jit can live with, before Dr.Jit is loaded; chooses Mitsuba's variant.
+
+Dr.Jit looks for libLLVM when it is imported and takes the newest of the system. With LLVM 15
+or 16 everything seems well until the first kernel that holds a `minimum`: then LLVM aborts the
+process. So the library is chosen here, through DRJIT_LIBLLVM_PATH:
+
+1. the one that the user named there, if it is LLVM 17 or newer;
+2. the one that the package karellen-llvm-core brought into this environment;
+3. the newest of the system, if it is LLVM 17 or newer;
+4. none: Mitsuba's scalar variants remain.
+"""
+
+import ctypes
+import os
+import re
+import site
+import sys
+import warnings
+from pathlib import Path
+
+from brdfkit.errors import BrdfkitError
+
+VARIABLE = "DRJIT_LIBLLVM_PATH"
+OLDEST = 17
+SYSTEM_FOLDERS = ("/usr/lib/*-linux-gnu*", "/usr/lib64", "/usr/lib", "/usr/local/lib")
+VARIANTS = ("cuda_ad_rgb", "llvm_ad_rgb", "scalar_rgb")
+REMEDY = (
+    "install karellen-llvm-core (Linux x86-64) or set DRJIT_LIBLLVM_PATH to a libLLVM of version "
+    f"{OLDEST} or newer"
+)
+# A path that cannot be loaded turns Dr.Jit's LLVM backend off
+NO_LIBRARY = "no-LLVM-17-or-newer-found"
+
+
+def prepare():
+    """Point Dr.Jit to a usable libLLVM; called when brdfkit is imported.
+
+    Where Dr.Jit was imported before, its choice stands: a bad one is reported.
+    """
+    if "drjit" in sys.modules:
+        _warn_of_bad_choice()
+    elif sys.platform == "linux":
+        chosen = find_library()
+        named = os.environ.get(VARIABLE)
+        if named and named not in (chosen, NO_LIBRARY):
+            instead = f"{chosen} is used instead" if chosen else "the scalar variants remain"
+            warnings.warn(
+                f"{VARIABLE} names {named}, which is not an LLVM of version {OLDEST} or newer; "
+                f"{instead}.",
+                stacklevel=3,
+            )
+        os.environ[VARIABLE] = str(chosen or NO_LIBRARY)
+
+
+def find_library():
+    """Path of the libLLVM to use, None if there is none of version 17 or newer."""
+    named = os.environ.get(VARIABLE)
+    if named and library_version(named) >= OLDEST:
+        return named
+    for prefix in (sys.prefix, site.getuserbase()):
+        bundled = Path(prefix, "lib", "libLLVM.so")
+        if bundled.exists():
+            return str(bundled)
+    found = [p for folder in SYSTEM_FOLDERS for p in Path("/").glob(f"{folder[1:]}/libLLVM*.so*")]
+    newest = max(found, key=library_version, default=None)
+    return str(newest) if newest and library_version(newest) >= OLDEST else None
+
+
+def library_version(path):
+    """Major version of a libLLVM, by its name or else by asking it; 0 if it cannot be loaded."""
+    by_name = re.search(r"libLLVM(?:-|\.so\.)(\d+)", str(path))
+    if by_name and Path(path).exists():
+        return int(by_name[1])
+    try:
+        library = ctypes.CDLL(str(path))
+        major = ctypes.c_uint()
+        library.LLVMGetVersion(ctypes.byref(major), None, None)
+        return major.value
+    except (OSError, AttributeError):  # no such library; LLVM before 16 has no LLVMGetVersion
+        return 0
+
+
+def loaded_version():
+    """Major version of the LLVM in Dr.Jit, -1 where it has none."""
+    import drjit as dr
+
+    return dr.detail.llvm_version()[0]
+
+
+def refuse_bad_choice(variant):
+    """Raise before a kernel runs with an LLVM that aborts the process."""
+    if variant and variant.startswith("llvm") and 0 < loaded_version() < OLDEST:
+        raise BrdfkitError(_bad_choice())
+
+
+def use_variant():
+    """The current Mitsuba variant; where none is set, set the best that works, and return it.
+
+    One sentence says when that is only `scalar_rgb`, which is many times slower.
+    """
+    import mitsuba as mi
+
+    if mi.variant() is None:
+        usable = loaded_version() >= OLDEST
+        mi.set_variant(*(v for v in VARIANTS if usable or not v.startswith("llvm")))
+        if mi.variant() == "scalar_rgb":
+            warnings.warn(
+                f"No CUDA device and no LLVM {OLDEST} or newer was found: Mitsuba's slow variant "
+                f"scalar_rgb is used. To mend it, {REMEDY}.",
+                stacklevel=2,
+            )
+    return mi.variant()
+
+
+def _warn_of_bad_choice():
+    if 0 < loaded_version() < OLDEST:
+        warnings.warn(_bad_choice(), stacklevel=4)
+
+
+def _bad_choice():
+    return (
+        f"Dr.Jit was imported before brdfkit and took LLVM {loaded_version()}, which aborts the "
+        f"process in Mitsuba's llvm variants: import brdfkit first, or {REMEDY}."
+    )

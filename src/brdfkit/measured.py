@@ -1,0 +1,163 @@
+"""A measured material: a BRDF given by samples or by a table, with what is known of it."""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.table import Table
+
+RGB = ("R", "G", "B")
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """Direction pairs with their BRDF.
+
+    `wi`, `wo`: unit vectors (n, 3); `values`: (n, channels) in sr⁻¹, as measured, negative
+    ones too; `valid`: (n,), False where the reader or the format says that nothing was measured.
+    """
+
+    wi: np.ndarray
+    wo: np.ndarray
+    values: np.ndarray
+    valid: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """A measured BRDF. Make one with `brdfkit.load`, `from_samples` or `from_table`.
+
+    `name`: for people; `channels`: what the columns of the values are: ``("R", "G", "B")``,
+    ``("Y",)`` (one, achromatic) or wavelengths as ``("400nm", ...)``; `info`: notes of the
+    file and of its reader.
+
+    >>> wi = wo = np.array([[0, 0, 1.0]])
+    >>> Measured.from_samples(wi, wo, [[0.2]], channels=("Y",), name="grey").values
+    array([[0.2]])
+    """
+
+    name: str
+    channels: tuple[str, ...]
+    info: dict[str, str] = field(default_factory=dict)
+    _samples: Samples | None = field(default=None, repr=False)
+    _table: Table | None = field(default=None, repr=False)
+
+    @classmethod
+    def from_samples(cls, wi, wo, values, valid=None, channels=RGB, name="samples", info=None):
+        """From direction pairs `wi`, `wo` (n, 3) and BRDF `values` (n, channels) in sr⁻¹.
+
+        Directions need not be normalised. `valid` (n,) marks what was measured; without it
+        everything finite above the surface is.
+        """
+        wi, wo, values = (np.array(a, float, ndmin=2) for a in (wi, wo, values))
+        if wi.shape != wo.shape or wi.shape[1] != 3 or values.shape != (len(wi), len(channels)):
+            raise BrdfkitError(
+                f"{name}: wi {wi.shape} and wo {wo.shape} should be (n, 3), "
+                f"values {values.shape} should be (n, {len(channels)}) for the channels {channels}."
+            )
+        with np.errstate(invalid="ignore", divide="ignore"):
+            wi, wo = (w / np.linalg.norm(w, axis=1, keepdims=True) for w in (wi, wo))
+        seen = np.isfinite(values).all(axis=1) & (wi[:, 2] > 0) & (wo[:, 2] > 0)
+        if valid is not None:
+            seen &= np.asarray(valid, bool)
+        _require_some(seen, name)
+        samples = Samples(wi, wo, values, seen)
+        return cls(name, tuple(channels), dict(info or {}), _samples=samples)
+
+    @classmethod
+    def from_table(cls, values, phi_d_period=np.pi, channels=RGB, name="table", info=None):
+        """From a table (n_theta_h, n_theta_d, n_phi_d, channels) in sr⁻¹, NaN = not measured.
+
+        Its axes are those of `brdfkit.table.Table`.
+        """
+        values = np.asarray(values, float)
+        if values.ndim != 4 or values.shape[-1] != len(channels) or 0 in values.shape:
+            raise BrdfkitError(
+                f"{name}: a table of shape {values.shape} was given; "
+                f"it should be (n_theta_h, n_theta_d, n_phi_d, {len(channels)})."
+            )
+        _require_some(np.isfinite(values).all(axis=-1), name)
+        table = Table(values, phi_d_period)
+        return cls(name, tuple(channels), dict(info or {}), _table=table)
+
+    @property
+    def is_table(self):
+        """True when the measurement came as a table, False when as scattered samples."""
+        return self._table is not None
+
+    @cached_property
+    def samples(self):
+        """The direction pairs and values; those of a table are its cell centres."""
+        if self._samples is not None:
+            return self._samples
+        wi, wo = (w.reshape(-1, 3) for w in self._table.directions())
+        values = self._table.values.reshape(-1, len(self.channels))
+        valid = np.isfinite(values).all(axis=1) & (wi[:, 2] > 0) & (wo[:, 2] > 0)
+        return Samples(wi, wo, values, valid)
+
+    @cached_property
+    def table(self):
+        """The table to look up in; that of scattered samples is interpolated (`scattered.py`)."""
+        if self._table is not None:
+            return self._table
+        from brdfkit.scattered import to_table
+
+        return to_table(self.samples)
+
+    @property
+    def values(self):
+        """Measured BRDF (n, channels) in sr⁻¹ at `samples`."""
+        return self.samples.values
+
+    def eval(self, wi, wo):
+        """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3), interpolated, never negative."""
+        return np.maximum(self.table.eval(wi, wo), 0)
+
+    @cached_property
+    def rgb(self):
+        """The same material in linear sRGB, or itself where it is RGB or achromatic already."""
+        if self.channels == RGB or len(self.channels) == 1:
+            return self
+        from brdfkit.spectra import to_rgb
+
+        return to_rgb(self)
+
+    def with_values(self, values, channels, **info):
+        """The same geometry with other values (n, channels) at `samples`."""
+        info = {**self.info, **info}
+        if self.is_table:
+            table = Table(values.reshape(*self._table.shape, -1), self._table.phi_d_period)
+            return replace(self, channels=tuple(channels), info=info, _table=table)
+        samples = replace(self._samples, values=values)
+        return replace(self, channels=tuple(channels), info=info, _samples=samples)
+
+    def scene_dict(self):
+        """The dictionary for `mitsuba.load_dict`: the table, looked up (an isotropic BSDF)."""
+        import mitsuba as mi
+
+        table = self.rgb.table
+        values = np.maximum(table.filled, 0).astype(np.float32)
+        if values.shape[-1] == 1:
+            values = np.repeat(values, 3, axis=-1)
+        return {
+            "type": "measured_table",
+            "table": mi.TensorXf(np.ascontiguousarray(values)),
+            "phi_d_period": float(table.phi_d_period),
+        }
+
+    def __str__(self):
+        valid = self.samples.valid
+        size = "×".join(map(str, self._table.shape)) + " table" if self.is_table else "samples"
+        return (
+            f"{self.name}: {size}, {valid.sum():,} of {len(valid):,} valid, "
+            f"channels {' '.join(self.channels)}"
+        )
+
+
+def _require_some(valid, name):
+    if not valid.any():
+        raise BrdfkitError(
+            f"{name}: no valid measurement is left (all masked, not finite or below the surface)."
+        )

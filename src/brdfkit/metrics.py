@@ -1,0 +1,31 @@
+"""Errors of a BRDF against a measured material."""
+
+import math
+
+import numpy as np
+
+from brdfkit import backend
+from brdfkit.fitting.loss import losses
+from brdfkit.fitting.selection import selected
+
+
+def error(thing, data, loss, max_angle=80.0):
+    """E of the loss named `loss` between `thing` (anything with `.eval`) and a `Measured`.
+
+    Over the samples with both angles below `max_angle` [degrees]; its units: `brdfkit.losses`.
+
+    >>> error(models()["lambert"](), load("paint.binary"), "log")    # doctest: +SKIP
+    """
+    loss = losses[loss]
+    wi, wo, measured = selected(data, loss, max_angle)
+    cosines, weights = loss.geometry(wi, wo)
+    values = np.broadcast_to(thing.eval(wi, wo), measured.shape)
+    squares = np.square(_transformed(loss, values, cosines) - _transformed(loss, measured, cosines))
+    total = weights @ squares.sum(axis=1)
+    return math.sqrt(total / loss.normaliser(weights, measured.shape[1]))
+
+
+def _transformed(loss, values, cosines):
+    Float64 = backend.float64()
+    columns = [loss.g(Float64(np.ascontiguousarray(v * cosines))) for v in values.T]
+    return np.stack([np.asarray(c) for c in columns], axis=1)

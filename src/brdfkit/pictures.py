@@ -1,0 +1,168 @@
+"""A rendering as files: everything as a multi-part OpenEXR, for people as a montage."""
+
+import json
+from math import ceil, floor, inf, log10
+from pathlib import Path
+
+import numpy as np
+
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+COLUMNS = 4
+TILE = 320  # narrower pictures are enlarged to this width [pixels], so that captions fit
+GAP = 20
+INK, FAINT, PAPER = (26, 26, 26), (105, 105, 105), (255, 255, 255)
+DIVERGING = "RdBu_r"  # blue: darker than the reference, red: brighter
+
+
+def write_exr(rendering, path):
+    """Write every picture and difference as a named part; `Rendering.write` says what is in it."""
+    import OpenEXR
+
+    parts = []
+    named = {name: (name, p) for name, p in rendering.pictures.items()}
+    named |= {f"difference: {n}": (n, d) for n, d in rendering.differences.items()}
+    for title, (name, picture) in named.items():
+        header = {
+            "type": OpenEXR.scanlineimage,
+            "compression": OpenEXR.ZIP_COMPRESSION,
+            "spp": rendering.spp,
+            "seed": rendering.seed,
+            "brdfkit": _version(),
+            "parameters": json.dumps(rendering.parameters.get(name, {}), default=_plain),
+        }
+        channels = {c: np.ascontiguousarray(picture[..., i]) for i, c in enumerate("RGB")}
+        parts.append(OpenEXR.Part(header, channels, title))
+    try:
+        OpenEXR.File(parts).write(str(path))
+    except RuntimeError as error:  # a full disk, for instance
+        raise OSError(str(error)) from error
+
+
+def _version():
+    import brdfkit
+
+    return brdfkit.__version__
+
+
+def _plain(value):
+    """NumPy's numbers and arrays, and other array-likes, for JSON."""
+    return np.asarray(value, float).tolist()
+
+
+def montage(rendering):
+    """The pictures with captions as a `PIL.Image`, rows of up to four, differences below each.
+
+    Differences are of lightness, in false colour, all on one scale that a legend states.
+    """
+    from PIL import Image, ImageDraw
+
+    captions, differences = rendering.captions, _lightness_differences(rendering)
+    limit = _round_up(max((_percentile(d) for d in differences.values()), default=0))
+    names = list(rendering.pictures)
+    zoom = ceil(TILE / rendering.pictures[names[0]].shape[1])
+    height, width = (zoom * n for n in rendering.pictures[names[0]].shape[:2])
+    text = max(15, width // 24)
+    caption = round(3.2 * text)
+    row = caption + height + GAP + (height + GAP if differences else 0)
+    columns, rows = min(len(names), COLUMNS), ceil(len(names) / COLUMNS)
+    page = Image.new("RGB", (GAP + columns * (width + GAP), GAP + rows * row), PAPER)
+    draw = ImageDraw.Draw(page)
+    for i, name in enumerate(names):
+        x, y = GAP + i % COLUMNS * (width + GAP), GAP + i // COLUMNS * row
+        _caption(draw, (x, y), name, captions[name], width, text)
+        page.paste(_image(_srgb(rendering.pictures[name]), zoom), (x, y + caption))
+        y += caption + height + GAP
+        if name in differences:
+            page.paste(_image(_false_colour(differences[name], limit), zoom), (x, y))
+            draw.rectangle((x, y, x + width - 1, y + height - 1), outline=(200, 200, 200))
+        elif differences:
+            _legend(page, draw, (x, y, width, height), limit, text)
+    return page
+
+
+def _image(rgb, zoom):
+    """A `PIL.Image` of (height, width, 3) in 0..1."""
+    from PIL import Image
+
+    image = Image.fromarray((np.clip(rgb, 0, 1) * 255 + 0.5).astype(np.uint8))
+    return image.resize((image.width * zoom, image.height * zoom), Image.Resampling.NEAREST)
+
+
+def _srgb(linear):
+    """sRGB in 0..1 of linear values; magenta where they are not finite, to be seen."""
+    x = np.clip(linear, 0, 1)
+    x = np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
+    return np.where(np.isfinite(linear).all(axis=-1, keepdims=True), x, (1, 0, 1))
+
+
+def _lightness_differences(rendering):
+    """Name → (height, width) of CIE L* minus that of the reference.
+
+    Not luminance: a highlight would drown what is seen as well elsewhere. Not clipped at 100.
+    """
+    lightness = {n: _lightness(p) for n, p in rendering.pictures.items()}
+    first = lightness.pop(rendering.reference)
+    return {n: value - first for n, value in lightness.items()}
+
+
+def _lightness(linear):
+    y = np.maximum(linear @ LUMINANCE, 0)
+    return np.where(y > 216 / 24389, 116 * np.cbrt(y) - 16, y * 24389 / 27)
+
+
+def _false_colour(difference, limit):
+    import matplotlib as mpl
+
+    return mpl.colormaps[DIVERGING]((difference / limit + 1) / 2)[..., :3]
+
+
+def _percentile(difference):
+    finite = np.abs(difference[np.isfinite(difference)])
+    return np.percentile(finite, 99) if finite.size else 0
+
+
+def _round_up(value):
+    """The next of 1, 2, 5, 10, 20 ... × 10^k; 1 for 0, where any scale does."""
+    if not 0 < value < inf:
+        return 1.0
+    unit = 10.0 ** floor(log10(value))
+    return next(unit * step for step in (1, 2, 5, 10) if value <= unit * step * (1 + 1e-9))
+
+
+def _font(size, bold=False):
+    import matplotlib as mpl
+    from PIL import ImageFont
+
+    file = f"fonts/ttf/DejaVuSans{'-Bold' if bold else ''}.ttf"  # comes with matplotlib
+    return ImageFont.truetype(str(Path(mpl.get_data_path(), file)), size)
+
+
+def _caption(draw, corner, name, below, width, size):
+    """The name, shortened in its middle where it is too long, and a line below it."""
+    x, y = corner
+    bold = _font(size, bold=True)
+    shown, keep = name, len(name)
+    while bold.getlength(shown) > width and keep > 2:
+        keep -= 1
+        shown = f"{name[: ceil(keep / 2)]}…{name[-(keep // 2) :]}"
+    draw.text((x, y), shown, INK, bold)
+    draw.text((x, y + round(1.4 * size)), below, FAINT, _font(size))
+
+
+def _legend(page, draw, box, limit, size):
+    """What the colours of the differences mean, in the empty place below the reference."""
+    x, y, width, height = box
+    font, small = _font(size), _font(round(0.85 * size))
+    middle = y + height // 2
+    draw.text((x, middle - 3 * size), "difference in lightness L*", INK, font)
+    draw.text((x, middle - round(1.6 * size)), "picture minus reference, white = 100", FAINT, small)
+    bar = np.broadcast_to(np.linspace(-limit, limit, width), (size, width))
+    page.paste(_image(_false_colour(bar, limit), 1), (x, middle))
+    draw.rectangle((x, middle, x + width - 1, middle + size - 1), outline=(200, 200, 200))
+    below = middle + round(1.35 * size)
+    for place, anchor, label in (
+        (0, "la", f"−{limit:g}"),
+        (width / 2, "ma", "0"),
+        (width, "ra", f"+{limit:g}"),
+    ):
+        draw.text((x + place, below), label, INK, small, anchor=anchor)

@@ -1,0 +1,183 @@
+"""`plot`: the lobes of BRDFs in the plane of incidence, measured and modelled."""
+
+import math
+from itertools import chain, count, cycle
+
+import numpy as np
+
+from brdfkit.directions import from_angles, to_angles
+from brdfkit.errors import BrdfkitError
+from brdfkit.measured import Measured
+from brdfkit.table import Table
+
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # of linear sRGB
+STEP = 0.1  # degrees between the points of a line
+NEAR_THETA, NEAR_PHI = 3, 5  # degrees: samples this close to the plane are drawn in it
+
+BLACK, GREY = "black", "0.45"
+# Okabe and Ito's colours, which the colour-blind tell apart
+COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+DASHES = ("-", "--", "-.", ":")
+SMALL = {"size": 8, "color": "0.35"}
+MOST_COLUMNS = 3
+MOST_DECADES = 4
+
+
+def plot(things, theta_i=(15, 45, 75)):
+    """Polar plots of BRDFs in the plane of incidence, one panel per angle of incidence.
+
+    `things`: one or a list of what has `eval` and `name`: measured materials, fits, models.
+    `theta_i`: one or several angles of incidence [degrees], 0 ≤ theta_i < 90. The radius is
+    logarithmic in the BRDF [sr⁻¹], in its luminance where it has colour; what is too dark for the
+    scale lies in the centre. Light comes from the left, along the arrow. The first measured
+    material is black: a table a line, where it was measured, and scattered samples dots, those
+    within 3° of theta_i and 5° of the plane. Returns a matplotlib `Figure`. Raises `BrdfkitError`
+    for angles out of range, values that are neither achromatic nor RGB, and for nothing to plot.
+
+    >>> plot([paint, *fits]).savefig("paint.png")    # doctest: +SKIP
+    """
+    things = list(things) if isinstance(things, list | tuple) else [things]
+    angles = np.atleast_1d(np.asarray(theta_i, float))
+    if not things:
+        raise BrdfkitError("plot: there is nothing to plot; give a material, a fit or a model.")
+    if angles.ndim != 1 or not angles.size or not np.all((angles >= 0) & (angles < 90)):
+        raise BrdfkitError(f"plot: theta_i = {theta_i} should be angles from 0 to below 90°.")
+    things = [thing.rgb if isinstance(thing, Measured) else thing for thing in things]
+    return _figure(things, angles)
+
+
+def lobe(thing, theta_i):
+    """What `plot` draws at `theta_i` [degrees]: angles to the normal and luminances, both (n,).
+
+    The angles [degrees] are negative on the light's side. The luminance [sr⁻¹] of a table is NaN
+    where it was not measured.
+    """
+    if _scattered(thing):
+        return _samples_near(thing.samples, theta_i)
+    theta_o = np.linspace(-90, 90, round(180 / STEP) + 1)[1:-1]
+    wi = np.broadcast_to(from_angles(np.radians(theta_i), np.pi), (len(theta_o), 3))
+    wo = from_angles(np.radians(theta_o), 0.0)
+    values = luminance(thing.eval(wi, wo))
+    if isinstance(thing, Measured):
+        values = np.where(_was_measured(thing.table, wi, wo), values, np.nan)
+    return theta_o, values
+
+
+def luminance(values):
+    """Luminance (n,) of BRDF values (n, 1) or, in linear sRGB, (n, 3)."""
+    channels = values.shape[-1]
+    if channels not in (1, 3):
+        raise BrdfkitError(
+            f"plot: values with {channels} channels have no luminance; convert them to RGB first."
+        )
+    return values[:, 0] if channels == 1 else values @ LUMINANCE
+
+
+def _scattered(thing):
+    return isinstance(thing, Measured) and not thing.is_table
+
+
+def _samples_near(samples, theta_i):
+    (theta, phi_i), (theta_o, phi_o) = to_angles(samples.wi), to_angles(samples.wo)
+    turned = np.cos(phi_o - phi_i)  # -1 in the mirror's azimuth, 1 in that of the light
+    near = samples.valid & (np.abs(np.degrees(theta) - theta_i) <= NEAR_THETA)
+    near &= (np.abs(turned) >= np.cos(np.radians(NEAR_PHI))) | (theta_o == 0)
+    return np.degrees(-np.sign(turned) * theta_o)[near], luminance(samples.values[near])
+
+
+def _was_measured(table, wi, wo):
+    """Where a lookup rests on measured cells by more than half."""
+    known = np.isfinite(table.values).all(axis=-1, keepdims=True)
+    return Table(known.astype(float), table.phi_d_period).eval(wi, wo)[:, 0] > 0.5
+
+
+def _figure(things, angles):
+    # a Figure of its own and not pyplot's: no window and no global state
+    from matplotlib.figure import Figure
+
+    rows = math.ceil(len(angles) / MOST_COLUMNS)
+    columns = math.ceil(len(angles) / rows)
+    figure = Figure(figsize=(max(4.2 * columns, 6), 2.75 * rows + 0.35), layout="constrained")
+    styles = _styles(things)
+    for place, theta_i in enumerate(angles, 1):
+        _panel(figure.add_subplot(rows, columns, place), theta_i, things, styles)
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    ncols = min(len(labels), 2 * columns)
+    figure.legend(handles, labels, loc="outside lower center", ncols=ncols, frameon=False)
+    return figure
+
+
+def _styles(things):
+    """Keywords of matplotlib's `plot` for each thing; no two look or are called the same."""
+    colours = [{"color": c, "linestyle": dash} for dash in DASHES for c in COLOURS]
+    unused, styles, taken = cycle(colours), [], set()
+    black = next((thing for thing in things if isinstance(thing, Measured)), None)
+    for thing in things:
+        style = {"color": BLACK, "linestyle": "-"} if thing is black else next(unused)
+        style = {**style, "linewidth": 2.4 if isinstance(thing, Measured) else 1.4}
+        if _scattered(thing):
+            style |= {"linestyle": "", "marker": "o", "markersize": 3}
+        style["label"] = _unused(thing.name, taken)
+        taken.add(style["label"])
+        styles.append(style)
+    return styles
+
+
+def _unused(name, taken):
+    """`name`, numbered where it is taken: "ward", "ward (2)"."""
+    names = chain([name], (f"{name} ({n})" for n in count(2)))
+    return next(n for n in names if n not in taken)
+
+
+def _panel(axes, theta_i, things, styles):
+    """Half a disc, the normal upwards: the lobes at one angle of incidence."""
+    lobes = [lobe(thing, theta_i) for thing in things]
+    radius = _Radius(np.concatenate([values for _, values in lobes]))
+    _half_disc(axes, radius)
+    axes.set_title(rf"$\theta_i$ = {theta_i:g}°", size=11)
+    arrow = {"arrowstyle": "-|>", "color": GREY, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", (0, 0), _xy(-theta_i, 1), arrowprops=arrow, zorder=1.5)
+    for (theta_o, values), style in zip(lobes, styles, strict=True):
+        axes.plot(*_xy(theta_o, radius(values)), **style)
+
+
+class _Radius:
+    """The radius of a BRDF value, 0 to 1: its logarithm between a power of ten and the largest."""
+
+    def __init__(self, values):
+        values = values[values > 0] if (values > 0).any() else np.array([1.0])
+        highest, lowest = np.log10(values.max()), np.log10(np.percentile(values, 2))
+        self.lowest = math.floor(min(max(lowest, highest - MOST_DECADES), highest - 0.5))
+        self.decades = 1.03 * (highest - self.lowest)
+
+    def __call__(self, values):
+        floor = 10.0**self.lowest  # NaN, not measured, stays NaN
+        return (np.log10(np.maximum(values, floor)) - self.lowest) / self.decades
+
+    def ticks(self):
+        """The powers of ten from the centre to the rim."""
+        return 10.0 ** np.arange(self.lowest, self.lowest + self.decades)
+
+
+def _half_disc(axes, radius):
+    """The axes and their labels; matplotlib's own half of a polar plot leaves half a page blank."""
+    axes.set(aspect="equal", xlim=(-1.2, 1.2), ylim=(-0.27, 1.13))
+    axes.set_axis_off()
+    half = np.arange(-90, 91)
+    rim = {"color": "0.3", "linewidth": 0.8, "zorder": 1.2}
+    grid = {"color": "0.87", "linewidth": 0.7, "zorder": 1}
+    axes.plot(*_xy(half, 1), **rim)
+    axes.plot([-1, 1], [0, 0], **rim)
+    for theta in range(-90, 91, 30):
+        axes.plot(*_xy(theta, np.array([0, 1])), **grid)
+        text = f"{theta}°".replace("-", "−")
+        axes.text(*_xy(theta, 1.1), text, ha="center", va="center", **SMALL)
+    for tick in radius.ticks():
+        axes.plot(*_xy(half, radius(tick)), **grid)
+        axes.text(radius(tick), -0.03, f"{tick:g}", ha="center", va="top", **SMALL)
+    axes.text(0, -0.17, "BRDF [sr⁻¹], logarithmic", ha="center", va="top", **SMALL)
+
+
+def _xy(theta, radius):
+    """Where an angle to the normal [degrees], positive to the right, and a radius lie."""
+    return radius * np.sin(np.radians(theta)), radius * np.cos(np.radians(theta))

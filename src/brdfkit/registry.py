@@ -1,0 +1,140 @@
+"""Finds the plugin files and makes them known to Mitsuba. No list names them: a file in
+`plugins/bsdfs/` is a plugin, and its name is the plugin's type.
+
+A file holds either a `Model` (see `brdfkit.model`), or a function `define(mi)` that returns a
+`mi.BSDF` class for the current variant.
+"""
+
+import importlib
+import importlib.util
+import sys
+from functools import cache
+from pathlib import Path
+
+from brdfkit.errors import BrdfkitError
+
+_user_files: dict[str, Path] = {}
+_registered: set[tuple[str, str]] = set()
+
+
+def models():
+    """The models there are, by name: ``{"blinn_phong": BlinnPhong, ...}``.
+
+    >>> sorted(models())[0]
+    'blinn_phong'
+    """
+    found = {name: model_in(path) for name, path in plugin_files().items()}
+    return {name: model for name, model in found.items() if model is not None}
+
+
+def model(name):
+    """The model of that name; `BrdfkitError` lists those there are."""
+    found = model_in(plugin_files()[name]) if name in plugin_files() else None
+    if found is None:
+        known = ", ".join(models())
+        raise BrdfkitError(f"There is no model {name!r}; there are {known}.")
+    return found
+
+
+def model_with_values(name, values):
+    """The model of that name with these values; a pickled model comes back through it."""
+    return model(name)(**values)
+
+
+def load_models(path):
+    """Make the models of a file or folder of yours known, beside brdfkit's; returns them.
+
+    >>> load_models("my_models/")    # doctest: +SKIP
+    {'velvet': <class 'brdfkit.user_plugins.velvet.Velvet'>}
+    """
+    path = Path(path)
+    files = sorted(path.glob("*.py")) if path.is_dir() else [path]
+    if not path.exists() or not files:
+        raise BrdfkitError(f"{path} is no Python file and no folder with any.")
+    loaded = {}
+    for file in files:
+        if file.stem in _shipped_files():
+            raise BrdfkitError(f"{file}: brdfkit has a model {file.stem!r}; rename the file.")
+        found = model_in(file)
+        if found is None:
+            raise BrdfkitError(f"{file} defines no class derived from brdfkit.Model.")
+        _user_files[file.stem] = file
+        loaded[file.stem] = found
+    if "mitsuba" in sys.modules and sys.modules["mitsuba"].variant() is not None:
+        register_in_mitsuba()
+    return loaded
+
+
+def plugin_files():
+    """Name → file of every BSDF plugin, brdfkit's and those that were loaded."""
+    return {**_shipped_files(), **_user_files}
+
+
+@cache
+def _shipped_files():
+    from brdfkit import plugins
+
+    files = [f for folder in plugins.__path__ for f in Path(folder, "bsdfs").glob("*.py")]
+    return {file.stem: file for file in sorted(files)}
+
+
+def model_in(path):
+    """The `Model` class that a file defines, None if it defines none."""
+    from brdfkit.model import Model
+
+    module = _module(path)
+    own = [
+        value
+        for value in vars(module).values()
+        if isinstance(value, type) and issubclass(value, Model)
+        if value.__module__ == module.__name__
+    ]
+    if len(own) > 1:
+        names = ", ".join(c.__name__ for c in own)
+        raise BrdfkitError(f"{path} defines {len(own)} models ({names}); a file holds one.")
+    return own[0] if own else None
+
+
+@cache
+def _module(path):
+    if _shipped_files().get(path.stem) == path:
+        return importlib.import_module(f"brdfkit.plugins.bsdfs.{path.stem}")
+    name = f"brdfkit.user_plugins.{path.stem}"
+    spec = importlib.util.spec_from_file_location(name, path)
+    if not path.is_file() or spec is None:
+        raise BrdfkitError(f"{path} is not a Python file.")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        del sys.modules[name]
+        raise BrdfkitError(f"{path} cannot be imported: {error}.") from error
+    return module
+
+
+def register_in_mitsuba():
+    """Register every plugin in the current Mitsuba variant; each is built when first used."""
+    import mitsuba as mi
+
+    variant = mi.variant()
+    for name, path in plugin_files().items():
+        if (variant, name) not in _registered:
+            _registered.add((variant, name))
+            mi.register_bsdf(name, lambda props, path=path: _plugin_class(path)(props))
+
+
+def _plugin_class(path):
+    import mitsuba as mi
+
+    return _defined(path, mi.variant())
+
+
+@cache
+def _defined(path, variant):
+    import mitsuba as mi
+
+    from brdfkit import bsdf
+
+    model = model_in(path)
+    return _module(path).define(mi) if model is None else bsdf.define(mi, model)

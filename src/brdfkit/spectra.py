@@ -1,0 +1,68 @@
+"""From spectral samples to linear sRGB."""
+
+import re
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.measured import RGB
+
+ILLUMINANT = "D65"
+OBSERVER = "CIE 1931 2 Degree Standard Observer"
+# Without measurements on both sides of this range a colour would be a guess.
+NEEDED = (480, 620)  # nm
+
+
+def to_rgb(measured):
+    """A `Measured` with wavelengths as channels, in linear sRGB under D65 (CIE 1931, 2°).
+
+    Reflectance is linear between the wavelengths and constant beyond them; reflectance 1
+    everywhere becomes (1, 1, 1). Colours outside sRGB keep their negative values.
+    Raises `BrdfkitError` for channels that are no wavelengths or leave out much of the visible.
+
+    >>> to_rgb(load("cayman.brdf")).channels  # doctest: +SKIP
+    ('R', 'G', 'B')
+    """
+    wavelengths = _wavelengths(measured)
+    note = f"linear sRGB from {len(wavelengths)} wavelengths under {ILLUMINANT}, {OBSERVER}"
+    return measured.with_values(measured.values @ _weights(wavelengths), RGB, rgb=note)
+
+
+def _wavelengths(measured):
+    """The channels as wavelengths [nm]."""
+    found = [re.fullmatch(r"(\d+(?:\.\d+)?)nm", channel) for channel in measured.channels]
+    if not all(found):
+        raise BrdfkitError(
+            f"{measured.name}: the channels {', '.join(measured.channels)[:80]} have no known "
+            "conversion to RGB; name them as wavelengths, such as '550nm'."
+        )
+    wavelengths = np.array([float(match[1]) for match in found])
+    if wavelengths.min() > NEEDED[0] or wavelengths.max() < NEEDED[1]:
+        raise BrdfkitError(
+            f"{measured.name}: its wavelengths, {wavelengths.min():g} to {wavelengths.max():g} "
+            f"nm, do not span {NEEDED[0]} to {NEEDED[1]} nm and give no colour; "
+            "choose one channel with `with_values`."
+        )
+    return wavelengths
+
+
+def _weights(wavelengths):
+    """What each wavelength's reflectance adds to linear R, G, B: (n, 3), summing to 1."""
+    import colour
+
+    observer = colour.MSDS_CMFS[OBSERVER]
+    light = np.interp(
+        observer.wavelengths,
+        colour.SDS_ILLUMINANTS[ILLUMINANT].wavelengths,
+        colour.SDS_ILLUMINANTS[ILLUMINANT].values,
+    )
+    order = np.argsort(wavelengths)
+    between = np.stack(  # the hat function of each wavelength
+        [np.interp(observer.wavelengths, wavelengths[order], row) for row in np.eye(len(order))]
+    )
+    xyz = between @ (light[:, None] * observer.values)
+    rgb = xyz @ colour.RGB_COLOURSPACES["sRGB"].matrix_XYZ_to_RGB.T
+    weights = np.empty_like(rgb)
+    # the sum is the illuminant's own colour, which differs from sRGB's white in the fourth digit
+    weights[order] = rgb / rgb.sum(axis=0)
+    return weights

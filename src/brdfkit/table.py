@@ -1,0 +1,90 @@
+"""A table over half/difference coordinates: the cells of MERL, and their trilinear lookup.
+
+W. Matusik et al., "A data-driven reflectance model", SIGGRAPH 2003. theta_h is square-root
+spaced, so that cells are small where highlights are; theta_d and phi_d are evenly spaced.
+A value stands at the centre of its cell.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from brdfkit.directions import from_half_difference, to_half_difference
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """BRDF values (n_theta_h, n_theta_d, n_phi_d, channels) in sr⁻¹, NaN where nothing is known.
+
+    `phi_d_period` is π for a reciprocal table (half of the azimuths suffice), else 2π.
+
+    >>> Table(np.full((9, 9, 18, 1), 1 / np.pi)).eval([[0, 0, 1.0]], [[0, 0, 1.0]])
+    array([[0.31830989]])
+    """
+
+    values: np.ndarray
+    phi_d_period: float = np.pi
+
+    @property
+    def shape(self):
+        """Number of cells (n_theta_h, n_theta_d, n_phi_d)."""
+        return self.values.shape[:3]
+
+    @cached_property
+    def centres(self):
+        """Centres of the cells along each axis, (theta_h, theta_d, phi_d) [rad]."""
+        n_h, n_d, n_p = self.shape
+        return (
+            ((np.arange(n_h) + 0.5) / n_h) ** 2 * np.pi / 2,
+            (np.arange(n_d) + 0.5) / n_d * np.pi / 2,
+            (np.arange(n_p) + 0.5) / n_p * self.phi_d_period,
+        )
+
+    def directions(self):
+        """(wi, wo) at the centre of every cell, each (*shape, 3); z < 0 below the surface."""
+        return from_half_difference(*np.meshgrid(*self.centres, indexing="ij"))
+
+    @cached_property
+    def filled(self):
+        """The values with each unknown cell taken from the nearest known one (in cells)."""
+        unknown = np.isnan(self.values).any(axis=-1)
+        if not unknown.any():
+            return self.values
+        from scipy.ndimage import distance_transform_edt
+
+        nearest = distance_transform_edt(unknown, return_distances=False, return_indices=True)
+        return self.values[tuple(nearest)]
+
+    def eval(self, wi, wo):
+        """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3): trilinear between cell centres.
+
+        Clamped at the ends of theta_h and theta_d, periodic in phi_d; 0 below the surface.
+        """
+        wi, wo = np.asarray(wi, float), np.asarray(wo, float)
+        theta_h, theta_d, phi_d = to_half_difference(wi, wo)
+        n_h, n_d, n_p = self.shape
+        h0, h1, th = _clamped(np.sqrt(theta_h / (np.pi / 2)) * n_h, n_h)
+        d0, d1, td = _clamped(theta_d / (np.pi / 2) * n_d, n_d)
+        p0, p1, tp = _periodic(phi_d / self.phi_d_period * n_p, n_p)
+
+        result = np.zeros((*theta_h.shape, self.values.shape[-1]))
+        for h, wh in ((h0, 1 - th), (h1, th)):
+            for d, wd in ((d0, 1 - td), (d1, td)):
+                for p, wp in ((p0, 1 - tp), (p1, tp)):
+                    result += (wh * wd * wp)[..., None] * self.filled[h, d, p]
+        above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
+        return np.where(above[..., None], result, 0.0)
+
+
+def _clamped(position, n):
+    """Lower cell, upper cell and fraction of a position counted in cells from the axis' start."""
+    x = np.clip(position - 0.5, 0, n - 1)
+    lower = np.minimum(x.astype(int), max(n - 2, 0))
+    return lower, np.minimum(lower + 1, n - 1), x - lower
+
+
+def _periodic(position, n):
+    x = np.mod(position - 0.5, n)
+    lower = np.minimum(x.astype(int), n - 1)
+    return lower, (lower + 1) % n, x - lower

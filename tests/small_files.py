@@ -1,0 +1,97 @@
+"""A small valid file of each format, for the tests of the formats and for their fuzzing."""
+
+import struct
+
+import numpy as np
+
+from brdfkit.measured import Samples
+
+MIRROR_PHI = 3.141593
+MERL_SHAPE = (3, 2, 4)
+WAVELENGTHS = (450, 550, 650)
+
+
+def merl(shape=MERL_SHAPE, raw=None, order="<"):
+    """A MERL table; `raw` (3, *shape) are the stored values, 1500, 1501, ... unless given."""
+    raw = 1500 + np.arange(3 * np.prod(shape)) if raw is None else np.asarray(raw)
+    return struct.pack(f"{order}3i", *shape) + raw.astype(f"{order}f8").tobytes()
+
+
+def cornell(spike=False):
+    """Two illuminations, three views each, three wavelengths; the mirror one is brightest."""
+    rows = [
+        f"{theta:.6f} 0.000000 {view:.6f} {phi:.6f} {value:.6f} {value / 2:.6f} 0.000000"
+        for theta in (0.5, 1.0)
+        for view, phi, value in ((theta, MIRROR_PHI, 3.0), (theta, 0.0, 0.25), (0.1, 1.5, 0.125))
+    ]
+    if spike:
+        rows.append(f"1.396263 0.000000 1.378810 {MIRROR_PHI} 99.0 98.0 97.0")
+    header = ["# A paint", "# High-gloss", "# num wls", "3", "", "# wls", "450 550", "650", ""]
+    return "\r\n".join([*header, "# theta i  phi i  theta s  phi_s", *rows, ""]).encode()
+
+
+def _astm(system, columns, rows):
+    keys = [f"SYSTEM_NAME {system}", "SAMPLE_NAME A paint", f"NUM_POINTS {len(rows)}"]
+    lines = ["LAB_NAME A laboratory", "", *keys, f"VARS {columns}", ""]
+    return "\n".join([*lines, *(",".join(map(str, row)) for row in rows), ""]).encode()
+
+
+def astm(columns="theta_i,phi_i,theta_s,phi_s,R,G,B"):
+    """Cornell's convention: phi_i = 0, a negative value, the mirror direction at 180°."""
+    rows = [
+        (0.5, 0, 0.5, MIRROR_PHI, 3.0, 2.0, 1.0),
+        (0.5, 0, 0.5, 0, -0.01, 0.25, 0.5),
+        (1.0, 0, 0.1, 1.5, 0.125, 0.25, 0.5),
+    ]
+    return _astm("Cornell/Kodak gonioreflectometer", columns, rows)
+
+
+def mini_diff():
+    """Mini-Diff's: phi_i = 180°, no phi_s in VARS, blue first, one row beyond theta_s = 75°."""
+    rows = [
+        (0.5, np.pi, 0.5, 0, 1.0, 2.0, 3.0),
+        (0.5, np.pi, np.radians(75), 0, 0.125, 0.25, 0.5),
+        (0.5, np.pi, np.radians(76), 0, 0.0625, 0.125, 0.25),
+    ]
+    return _astm("Mini-Diff V2", "theta_i,phi_i,theta_s,465nm,525nm,630nm", rows)
+
+
+def curet(samples=61, geometries=205):
+    """`abrdf.dat`, its value number g of sample s being s + g / 1000."""
+    rows = ([s, *(f"{s + g / 1000:.3f}" for g in range(geometries))] for s in range(1, samples + 1))
+    return "\n".join("   ".join(map(str, row)) for row in rows).encode()
+
+
+def curet_table(geometries=205):
+    """`table.txt`: the view at 0.3 rad all around, the illumination at 1.2 rad."""
+    rows = (f"{g + 1} 0.3 {-3.0 + g / 40:.6f} 1.2 0.5" for g in range(geometries))
+    return "\r\n".join(rows).encode()
+
+
+FILES = {  # format or convention: (name, content)
+    "merl": ("grey.binary", merl()),
+    "cornell": ("paint.brdf", cornell()),
+    "astm": ("paint.astm", astm()),
+    "mini_diff": ("copper.astm", mini_diff()),
+    "curet": ("abrdf.dat", curet()),
+}
+
+
+def place(folder, kind, data=None, name=None):
+    """Write a file of `kind` into `folder`, with `data` in place of the valid content.
+
+    Returns the path to load.
+    """
+    default, content = FILES[kind]
+    path = folder / (name or default)
+    path.write_bytes(content if data is None else data)
+    if kind != "curet":
+        return path
+    (folder / "table.txt").write_bytes(curet_table())
+    return path.with_name(path.name + "#1")
+
+
+def assert_same(a: Samples, b: Samples):
+    """The same samples to the last bit."""
+    for name in ("wi", "wo", "values", "valid"):
+        np.testing.assert_array_equal(getattr(a, name), getattr(b, name), err_msg=name)

@@ -1,0 +1,117 @@
+"""The formats on real files, found through BRDFKIT_DATA; skipped where it is not set."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from brdfkit.formats import load, save
+from brdfkit.measured import RGB
+
+DATA = Path(os.environ.get("BRDFKIT_DATA", "unset"))
+pytestmark = pytest.mark.skipif(not DATA.is_dir(), reason="BRDFKIT_DATA names no folder")
+
+CORNELL = sorted(DATA.glob("cornell/*.brdf")) + sorted(DATA.glob("cornell/*.astm"))
+MINI_DIFF = sorted(DATA.glob("minidiff_paints/*.astm*"))
+
+
+def from_mirror(samples):
+    """Angle [degrees] of each view from the mirror direction of its illumination."""
+    cosine = np.sum(samples.wo * samples.wi * [-1, -1, 1], axis=1)
+    return np.degrees(np.arccos(np.clip(cosine, -1, 1)))
+
+
+@pytest.mark.parametrize("path", CORNELL, ids=lambda path: path.name)
+def test_cornell(path):
+    material = load(path)
+    samples = material.samples
+    assert len(material.values) == 1439
+    assert samples.valid.all()
+    assert material.name == path.name.split(".")[0]
+    angle = from_mirror(samples)
+    assert angle[np.argmax(samples.values.max(axis=1))] < 1.5
+    # at moderate angles as well, where no lone grazing point helps
+    moderate = samples.wi[:, 2] > np.cos(np.radians(61))
+    brightest = np.argsort(samples.values.max(axis=1) * moderate)[-5:]
+    assert (angle[brightest] < 20).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "zeros", "spike"),
+    [("acryl_blue", 0.42, False), ("cayman", 0.27, True), ("krylon_blue", 0.03, True)],
+)
+def test_cornell_notes(name, zeros, spike):
+    material = load(DATA / "cornell" / f"{name}.brdf")
+    assert (material.values == 0).mean() == pytest.approx(zeros, abs=0.006)
+    assert float(material.info["clipped"].split("%")[0]) == pytest.approx(100 * zeros, abs=0.6)
+    assert ("suspicious" in material.info) == spike
+    assert material.channels == tuple(f"{nm}nm" for nm in range(400, 701, 10))
+
+
+def test_cornell_spectra_and_rgb_file_agree():
+    """The two files of one sample: linear sRGB here, Trinitron phosphors there."""
+    spectra, rgb = (
+        load(DATA / "cornell" / n) for n in ("krylon_blue.brdf", "krylon_blue_RGB.astm")
+    )
+    np.testing.assert_allclose(spectra.samples.wo, rgb.samples.wo, atol=1e-5)
+    assert (rgb.values < 0).mean() == pytest.approx(0.218, abs=0.001)
+    for ours, theirs in zip(spectra.rgb.values.T, rgb.values.T, strict=True):
+        # up to a factor: the RGB file is 0.36 times as bright as the spectra
+        assert np.corrcoef(ours, theirs)[0, 1] > 0.9999
+        assert ours @ theirs / (theirs @ theirs) == pytest.approx(2.8, abs=0.1)
+
+
+@pytest.mark.parametrize("path", MINI_DIFF, ids=lambda path: path.name)
+def test_mini_diff(path):
+    material = load(path)
+    samples = material.samples
+    theta_s = np.degrees(np.arccos(np.clip(samples.wo[:, 2], -1, 1)))
+    assert material.channels == RGB
+    assert len(samples.valid) == 12964
+    # one row at theta_s = 0 and 36 at each of 1 to 75 degrees, at four angles of incidence
+    assert samples.valid.sum() == 4 * (1 + 75 * 36)
+    assert theta_s[samples.valid].max() == pytest.approx(75)
+    assert theta_s[~samples.valid].min() == pytest.approx(76)
+    assert (samples.values[samples.valid] < 0).mean() < 1e-3
+
+
+def test_mini_diff_conventions():
+    gloss = load(DATA / "minidiff_paints/C1_White.astm.xz").samples
+    brightest = np.argmax(gloss.values[:, 1] * gloss.valid)
+    assert from_mirror(gloss)[brightest] < 3
+    assert gloss.values[gloss.valid].max() == pytest.approx(36, abs=1)
+    red = load(DATA / "minidiff_paints/C3_Red.astm.xz")
+    r, g, b = np.median(red.values[red.samples.valid], axis=0)
+    assert r > 3 * max(g, b)
+    r, g, b = np.median(load(DATA / "minidiff_paints/C14_NavyBlue.astm.xz").values, axis=0)
+    assert b > max(r, g)
+
+
+def test_curet_every_sample():
+    materials = [load(f"{DATA}/curet/abrdf.dat#{sample}") for sample in range(1, 62)]
+    negative = [(material.values < 0).sum() for material in materials]
+    assert sum(negative) == 29
+    assert negative[60] == 28
+    assert negative[3] == 1
+    everything = np.stack([material.values for material in materials])
+    assert everything.max() == pytest.approx(2.59, abs=0.005)
+    assert np.median(everything) == pytest.approx(0.146)
+
+
+def test_curet_geometry():
+    samples = load(DATA / "curet" / "abrdf.dat#1").samples
+    theta_i, theta_v = (np.arccos(w[:, 2]) for w in (samples.wi, samples.wo))
+    near = (np.degrees(theta_i) < 80) & (np.degrees(theta_v) < 80)
+    assert near.sum() == 189
+    assert np.sin(theta_i[near]).sum() == pytest.approx(136.1973, abs=1e-3)
+    assert np.degrees(theta_v).max() == pytest.approx(84, abs=0.5)  # the view goes lower
+    assert np.degrees(theta_i).max() == pytest.approx(79, abs=0.5)
+
+
+def test_mini_diff_as_merl(tmp_path):
+    material = load(DATA / "minidiff_paints/C11_GalGray.astm.xz")
+    save(material, tmp_path / "grey.binary")
+    back = load(tmp_path / "grey.binary")
+    wi, wo = material.samples.wi[::97], material.samples.wo[::97]
+    np.testing.assert_allclose(back.eval(wi, wo), material.eval(wi, wo), rtol=1e-12)

@@ -1,0 +1,232 @@
+"""Pictures: repeatable, unbiased in their seeds, rightly exposed; written whole or not at all."""
+
+import json
+
+import numpy as np
+import pytest
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.pictures import montage
+from brdfkit.rendering import Rendering, _passes, render, render_scene
+from brdfkit.scenes import ball, ball_mask
+
+WHITE = {"name": "white", "type": "diffuse", "reflectance": 0.8}
+GREY = {"name": "grey", "type": "diffuse", "reflectance": 0.2}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def variant():
+    mi = pytest.importorskip("mitsuba")
+    before = mi.variant()
+    mi.set_variant("llvm_ad_rgb")
+    yield
+    if before:
+        mi.set_variant(before)
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return render([WHITE, GREY], spp=8, size=32)
+
+
+class Painted:
+    """What `render` takes besides dictionaries."""
+
+    name = "painted"
+    parameters = {"diffuse_reflectance": (0.8, 0.1, 0.1), "alpha": np.float64(0.2)}  # noqa: RUF012
+
+    def scene_dict(self):
+        return {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0.8, 0.1, 0.1]}}
+
+
+@pytest.mark.quick
+def test_equal_seeds_give_equal_pictures(pair):
+    again = render([WHITE, GREY], spp=8, size=32)
+    other = render([WHITE, GREY], spp=8, size=32, seed=1)
+    for name, picture in pair.pictures.items():
+        assert picture.shape == (32, 32, 3)
+        assert picture.dtype == np.float32
+        np.testing.assert_allclose(again.pictures[name], picture, rtol=1e-5, atol=1e-6)
+        assert np.abs(other.pictures[name] - picture).max() > 1e-3
+
+
+@pytest.mark.quick
+def test_all_pictures_share_their_samples():
+    twice = render([WHITE, WHITE, ("other", GREY)], spp=4, size=16)
+    assert list(twice.pictures) == ["white", "white (2)", "other"]
+    assert np.abs(twice.differences["white (2)"]).max() < 1e-5
+    assert twice.psnr()["white (2)"] > 80
+
+
+def test_seeds_agree_in_the_mean():
+    """Two independent sets of 12 pictures; |t| > 4 comes by chance once in 1,600 (22 d.o.f.)."""
+    mask = ball_mask((16, 16))
+    means = [
+        render(WHITE, spp=4, size=16, seed=s).pictures["white"][mask].mean() for s in range(24)
+    ]
+    first, second = np.reshape(means, (2, 12))
+    error = np.sqrt((first.var(ddof=1) + second.var(ddof=1)) / 12)
+    assert error > 0
+    assert abs(first.mean() - second.mean()) < 4 * error
+
+
+def test_white_paint_is_exposed_right():
+    """Nothing clips, and the brightest part comes out near sRGB 200 (0.58 linear).
+
+    48 pixels at 64 spp: the noise of a pixel is about 1 %, the tolerance 12 %.
+    """
+    white = render(WHITE, spp=64, size=48)
+    lit = white.pictures["white"][white.mask]
+    assert lit.max() < 1
+    assert np.percentile(lit, 99) == pytest.approx(0.58, rel=0.12)
+    assert lit.min() > 0.02  # no black rim
+
+
+def test_a_white_furnace_returns_the_sky():
+    """A ball of reflectance 1 under a sky of radiance 1 all around is as bright as the sky.
+
+    A convex ball sees nothing else, so that one bounce tells all.
+    """
+
+    def furnace(bsdf, size):
+        scene = ball(bsdf, size)
+        del scene["sky"], scene["softbox"], scene["ground"]
+        return scene | {"sky": {"type": "constant", "radiance": 1.0}}
+
+    white = {"type": "diffuse", "reflectance": 1.0}
+    picture = render(white, spp=256, size=16, scene=furnace).pictures["diffuse"]
+    # the noise of a pixel at 256 spp is below 2 %, of the mean of 256 pixels below 0.2 %
+    assert picture.mean() == pytest.approx(1, abs=0.01)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("size", [(32, 32), (48, 32), (24, 40)])
+def test_the_mask_is_where_the_camera_sees_the_ball(size):
+    import mitsuba as mi
+
+    scene = mi.load_dict(ball({"type": "diffuse"}, size))
+    x, y = (a.ravel() for a in np.meshgrid(*((np.arange(n) + 0.5) / n for n in size)))
+    rays, _ = scene.sensors()[0].sample_ray(0, 0.5, mi.Point2f(x, y), mi.Point2f(0.5))
+    hit = scene.ray_intersect(rays)
+    radius = np.linalg.norm(hit.p.numpy().T - (0, 0, 1), axis=1)
+    on_ball = hit.is_valid().numpy() & (np.abs(radius - 1) < 1e-3)
+    assert (ball_mask(size) == on_ball.reshape(size[::-1])).mean() > 0.998
+    assert ball_mask((200, 200)).any(axis=1).mean() == pytest.approx(0.7, abs=0.03)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("spp", [1, 2, 7, 32, 64, 100])
+def test_passes_add_up(spp):
+    passes = list(_passes(spp, 32))
+    assert sum(passes) == spp
+    assert max(passes) <= 32
+
+
+@pytest.mark.quick
+def test_an_exr_reads_back_with_names_and_header(tmp_path):
+    import OpenEXR
+
+    rendering = render([WHITE, Painted()], spp=5, size=16, seed=3)
+    rendering.write(tmp_path / "both.exr")
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["both.exr", "both.png"]
+    expected = rendering.pictures | {"difference: painted": rendering.differences["painted"]}
+    with OpenEXR.File(str(tmp_path / "both.exr"), separate_channels=True) as file:
+        parts = {part.name(): part for part in file.parts}
+        assert list(parts) == list(expected)
+        for name, part in parts.items():
+            read = np.stack([part.channels[c].pixels for c in "RGB"], axis=-1)
+            assert read.dtype == np.float32
+            np.testing.assert_array_equal(read, expected[name])
+            assert (part.header["spp"], part.header["seed"]) == (5, 3)
+            assert part.header["brdfkit"]
+        parameters = json.loads(parts["painted"].header["parameters"])
+        assert parameters == {"diffuse_reflectance": [0.8, 0.1, 0.1], "alpha": 0.2}
+        assert json.loads(parts["white"].header["parameters"]) == {}
+
+
+@pytest.mark.quick
+def test_psnr_is_that_of_the_definition():
+    reference = np.full((4, 4, 3), 0.5, np.float32)
+    off = reference + np.float32(0.05)
+    rendering = Rendering({"r": reference, "off": off, "same": reference}, spp=1, seconds=0.0)
+    assert rendering.psnr()["off"] == pytest.approx(20, abs=1e-4)
+    assert rendering.psnr()["same"] == np.inf
+    assert "off: PSNR 20.0 dB" in str(rendering)
+
+
+@pytest.mark.quick
+def test_an_interrupted_render_keeps_what_every_picture_has():
+    def stop_in_second_pass(done, total):
+        assert total == 4  # two passes of 30 spp × two pictures
+        if done == 3:
+            raise KeyboardInterrupt
+
+    kept = render([WHITE, GREY], spp=60, size=16, progress=stop_in_second_pass)
+    first_pass = render([WHITE, GREY], spp=30, size=16)
+    assert kept.spp == 30
+    for name, picture in first_pass.pictures.items():
+        np.testing.assert_allclose(kept.pictures[name], picture, rtol=1e-5, atol=1e-6)
+
+
+@pytest.mark.quick
+def test_an_interrupt_before_the_first_pass_is_raised():
+    def stop(done, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        render([WHITE, GREY], spp=4, size=16, progress=stop)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("path", ["missing/a.exr", "a.jpg", "a"])
+def test_what_cannot_be_written_leaves_nothing(pair, tmp_path, path):
+    with pytest.raises(BrdfkitError, match=path):
+        pair.write(tmp_path / path)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"things": []}, "nothing to render"),
+        ({"things": 5}, "5 cannot be rendered"),
+        ({"things": {"type": "no_such_bsdf"}}, "no_such_bsdf: Mitsuba cannot load it"),
+        ({"things": WHITE, "spp": 0}, "0 spp"),
+        ({"things": WHITE, "size": 0}, "size above 0"),
+        ({"things": WHITE, "seed": -1}, "seed -1"),
+    ],
+)
+def test_what_cannot_be_rendered_is_said(arguments, message):
+    with pytest.raises(BrdfkitError, match=message):
+        render(**{"spp": 1, "size": 16} | arguments)
+
+
+@pytest.mark.quick
+def test_a_montage_holds_every_picture(pair, tmp_path):
+    from PIL import Image
+
+    pair.write(tmp_path / "pair.png")
+    with Image.open(tmp_path / "pair.png") as image:
+        assert image.size == montage(pair).size
+        assert image.width > 2 * 320  # small pictures are enlarged so that captions fit
+    five = {f"a very long name of the material number {i}": np.ones((8, 8, 3)) for i in range(5)}
+    broken = five | {"not finite": np.full((8, 8, 3), np.nan)}
+    for pictures, rows in ((dict(list(five.items())[:4]), 1), (broken, 2)):
+        page = montage(Rendering(pictures, spp=1, seconds=0.0))
+        assert page.width < 5 * 400
+        assert 600 * rows < page.height < 900 * rows
+
+
+@pytest.mark.quick
+def test_a_scene_file_is_rendered(tmp_path):
+    scene = """<scene version="3.0.0">
+      <sensor type="perspective"><film type="hdrfilm">
+        <integer name="width" value="12"/><integer name="height" value="8"/></film></sensor>
+      <integrator type="path"/>
+      <emitter type="constant"/></scene>"""
+    (tmp_path / "empty.xml").write_text(scene)
+    picture = render_scene(tmp_path / "empty.xml", spp=2).pictures["empty"]
+    np.testing.assert_allclose(picture, np.ones((8, 12, 3)), rtol=1e-5)
+    with pytest.raises(BrdfkitError, match="no such scene"):
+        render_scene(tmp_path / "missing.xml")
