@@ -9,7 +9,7 @@ those below and an entry in `index.toml`.
 
 The average over both orders of the directions stands in a cell, as a MERL table is reciprocal
 and Mitsuba's BSDFs need not be. Values are rounded to 16 significant bits (relative error at
-most 1.6e-5), or they would not compress. Equal versions of Mitsuba give equal bytes.
+most 1.6e-5), or they would not compress. Equal versions of Mitsuba and LLVM give equal bytes.
 """
 
 import hashlib
@@ -22,7 +22,6 @@ import numpy as np
 
 from brdfkit.files import written
 from brdfkit.formats.merl import NOT_MEASURED, SCALE
-from brdfkit.llvm import use_variant
 from brdfkit.table import Table
 
 # Twice as many phi_d as theta_d cells: MERL's way to say that phi_d spans half a circle
@@ -98,10 +97,12 @@ def blend(first, second, share):
 
 
 def tabulate(name):
-    """BRDF (*SHAPE, 3) in sr⁻¹ of a material at the cell centres, NaN below the surface."""
+    """BRDF (*SHAPE, 3) in sr⁻¹ of a material at the cell centres, NaN below the surface.
+
+    In the current variant of Mitsuba, which should be one of the RGB ones.
+    """
     import mitsuba as mi
 
-    use_variant()
     bsdf = mi.load_dict(MATERIALS[name]())
     values = np.full((*SHAPE, 3), np.nan)
     wi, wo = Table(values).directions()
@@ -121,12 +122,11 @@ def evaluate(bsdf, wi, wo):
     return np.array(values).T / wo[:, 2:]
 
 
-def write(values, path):
-    """The table as a MERL file, rounded and compressed."""
+def encoded(values):
+    """The bytes of a MERL file with these values, rounded."""
     stored = np.where(np.isnan(values), NOT_MEASURED, rounded(values / SCALE))
-    with written(path) as beside, lzma.open(beside, "wb", filters=FILTERS) as stream:
-        stream.write(struct.pack("<3i", *SHAPE))
-        stream.write(np.moveaxis(stored, -1, 0).astype("<f8").tobytes())
+    planes = np.moveaxis(stored, -1, 0).astype("<f8")
+    return struct.pack("<3i", *SHAPE) + planes.tobytes()
 
 
 def rounded(x):
@@ -136,8 +136,12 @@ def rounded(x):
 
 
 if __name__ == "__main__":
+    import mitsuba as mi
+
+    mi.set_variant("llvm_ad_rgb")
     for name in sys.argv[1:] or MATERIALS:
         path = Path(__file__).with_name(f"{name}.binary.xz")
-        write(tabulate(name), path)
+        with written(path) as beside, lzma.open(beside, "wb", filters=FILTERS) as stream:
+            stream.write(encoded(tabulate(name)))
         checksum = hashlib.sha256(path.read_bytes()).hexdigest()
         print(f"{path.name}: {path.stat().st_size:,} bytes, sha256 {checksum}")

@@ -140,11 +140,11 @@ def define(mi):
         return kind(*map(float, row))
 
     def _table(props):
-        if props.has_property("filename"):
+        if "filename" in props:
             from brdfkit.formats import load
 
             return load(props["filename"]).rgb.table
-        if not props.has_property("table"):
+        if "table" not in props:
             raise BrdfkitError("measured_table needs a filename (or the tensor table).")
         period = props.get("phi_d_period", float(np.pi))
         return Table(np.array(props["table"], float), period)

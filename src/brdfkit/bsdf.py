@@ -54,7 +54,7 @@ def define(mi, model):
             super().__init__(props)
             self.textures = {}
             for name, parameter in model.parameters.items():
-                if parameter.follows and not props.has_property(name):
+                if parameter.follows and name not in props:
                     continue
                 _require_within_bounds(props, model, name)
                 self.textures[name] = props.get_unbounded_texture(name, getattr(defaults, name))
@@ -177,7 +177,7 @@ def define(mi, model):
 
 def _require_within_bounds(props, model, name):
     """An error for a constant parameter out of bounds; textures are taken as they are."""
-    value = props[name] if props.has_property(name) else None
+    value = props[name] if name in props else None
     if isinstance(value, float | int) or type(value).__name__.endswith("Color3d"):
         problem = model.parameters[name].problem_with(np.array(value, float))
         if problem:

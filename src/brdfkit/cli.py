@@ -60,7 +60,7 @@ def render_options(command):
     for option in (
         click.option("--seed", default=0, show_default=True, help="Seed of the samples."),
         click.option("--size", default=512, show_default=True, help="Side of a picture [pixels]."),
-        click.option("--spp", default=128, show_default=True, help="Samples per pixel."),
+        click.option("--spp", default=64, show_default=True, help="Samples per pixel."),
     ):
         command = option(command)
     return command

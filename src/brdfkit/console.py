@@ -43,7 +43,8 @@ class Console:
         try:
             yield report
         finally:
-            bar.stop()
+            if bar.live.is_started:  # stopping an unstarted bar prints an empty line
+                bar.stop()
 
     def json(self, record):
         if not self.quiet:

@@ -82,7 +82,7 @@ def contents(path):
     """The bytes of a file, decompressed where it is gzip or xz by its name or its first bytes.
 
     Raises `BrdfkitError` when it is missing, no regular file, unreadable, empty, damaged, or
-    above `LIMIT` bytes, which are never held in memory.
+    above `LIMIT` bytes; a plain file is then not read at all, unpacking stops at the limit.
 
     >>> contents("gold.binary.xz")[:4]  # doctest: +SKIP
     b'Z\\x00\\x00\\x00'

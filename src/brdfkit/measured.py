@@ -1,6 +1,6 @@
 """A measured material: a BRDF given by samples or by a table, with what is known of it."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -16,13 +16,21 @@ class Samples:
     """Direction pairs with their BRDF.
 
     `wi`, `wo`: unit vectors (n, 3); `values`: (n, channels) in sr⁻¹, as measured, negative
-    ones too; `valid`: (n,), False where the reader or the format says that nothing was measured.
+    ones too; `valid`: (n,), False where the reader or the format says that nothing was measured;
+    `weight`: (n,), how much each counts in a loss: 1 for a scattered sample, the width in
+    theta_h for a table's cell, so that a table counts evenly over Rusinkiewicz's angles however
+    finely it divides the highlight.
     """
 
     wi: np.ndarray
     wo: np.ndarray
     values: np.ndarray
     valid: np.ndarray
+    weight: np.ndarray
+
+    def at(self, rows):
+        """These `rows` (mask or indices) only."""
+        return Samples(*(getattr(self, f.name)[rows] for f in fields(self)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +71,7 @@ class Measured:
         if valid is not None:
             seen &= np.asarray(valid, bool)
         _require_some(seen, name)
-        samples = Samples(wi, wo, values, seen)
+        samples = Samples(wi, wo, values, seen, np.ones(len(seen)))
         return cls(name, tuple(channels), dict(info or {}), _samples=samples)
 
     @classmethod
@@ -95,7 +103,8 @@ class Measured:
         wi, wo = (w.reshape(-1, 3) for w in self._table.directions())
         values = self._table.values.reshape(-1, len(self.channels))
         valid = np.isfinite(values).all(axis=1) & (wi[:, 2] > 0) & (wo[:, 2] > 0)
-        return Samples(wi, wo, values, valid)
+        weight = np.broadcast_to(self._table.theta_h_widths[:, None, None], self._table.shape)
+        return Samples(wi, wo, values, valid, weight.reshape(-1))
 
     @cached_property
     def table(self):

@@ -17,9 +17,10 @@ def error(thing, data, loss, max_angle=80.0):
     >>> error(models()["lambert"](), load("paint.binary"), "log")    # doctest: +SKIP
     """
     loss = losses[loss]
-    wi, wo, measured = selected(data, loss, max_angle)
-    cosines, weights = loss.geometry(wi, wo)
-    values = np.broadcast_to(thing.eval(wi, wo), measured.shape)
+    samples = selected(data, loss, max_angle)
+    cosines, weights = loss.geometry(samples)
+    measured = samples.values
+    values = np.broadcast_to(thing.eval(samples.wi, samples.wo), measured.shape)
     squares = np.square(_transformed(loss, values, cosines) - _transformed(loss, measured, cosines))
     total = weights @ squares.sum(axis=1)
     return math.sqrt(total / loss.normaliser(weights, measured.shape[1]))

@@ -1,13 +1,16 @@
 """`plot`: the lobes of BRDFs in the plane of incidence, measured and modelled."""
 
+import io
 import math
-from itertools import chain, count, cycle
+from itertools import cycle
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from brdfkit.directions import from_angles, to_angles
 from brdfkit.errors import BrdfkitError
 from brdfkit.measured import Measured
+from brdfkit.names import unused
 from brdfkit.table import Table
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # of linear sRGB
@@ -20,37 +23,49 @@ COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 DASHES = ("-", "--", "-.", ":")
 SMALL = {"size": 8, "color": "0.35"}
 MOST_COLUMNS = 3
-MOST_DECADES = 4
+MOST_DECADES = 5
 
 
-def plot(things, theta_i=(15, 45, 75)):
+def plot(things, theta_i=None):
     """Polar plots of BRDFs in the plane of incidence, one panel per angle of incidence.
 
-    `things`: one or a list of what has `eval` and `name`: measured materials, fits, models.
-    `theta_i`: one or several angles of incidence [degrees], 0 ≤ theta_i < 90. The radius is
-    logarithmic in the BRDF [sr⁻¹], in its luminance where it has colour; what is too dark for the
-    scale lies in the centre. Light comes from the left, along the arrow. The first measured
-    material is black: a table a line, where it was measured, and scattered samples dots, those
-    within 3° of theta_i and 5° of the plane. Returns a matplotlib `Figure`. Raises `BrdfkitError`
-    for angles out of range, values that are neither achromatic nor RGB, and for nothing to plot.
+    `things`: one or several of what has `eval` and `name`: measured materials, fits, models.
+    `theta_i`: one or several angles of incidence [degrees], 0 ≤ theta_i < 90; without it 15, 45
+    and 75, or the nearest ones at which the first scattered material was measured.
+
+    The radius is logarithmic in the BRDF [sr⁻¹], in its luminance where it has colour; what is
+    too dark for the scale lies in the centre. Light comes from the left, along the arrow. The
+    first measured material is black: a table a line, where it was measured, and scattered samples
+    dots, those within 3° of theta_i and 5° of the plane. Returns a matplotlib `Figure`. Raises
+    `BrdfkitError` for angles out of range, for values that are neither achromatic nor RGB, and
+    for what cannot be plotted.
 
     >>> plot([paint, *fits]).savefig("paint.png")    # doctest: +SKIP
     """
-    things = list(things) if isinstance(things, list | tuple) else [things]
-    angles = np.atleast_1d(np.asarray(theta_i, float))
-    if not things:
-        raise BrdfkitError("plot: there is nothing to plot; give a material, a fit or a model.")
+    things = _things(things)
+    angles = _usual_angles(things) if theta_i is None else np.atleast_1d(theta_i).astype(float)
     if angles.ndim != 1 or not angles.size or not np.all((angles >= 0) & (angles < 90)):
         raise BrdfkitError(f"plot: theta_i = {theta_i} should be angles from 0 to below 90°.")
-    things = [thing.rgb if isinstance(thing, Measured) else thing for thing in things]
     return _figure(things, angles)
+
+
+class Plot(Figure):
+    """A matplotlib `Figure` that is not pyplot's: no window, no global state.
+
+    Notebooks show it, also where pyplot has not told them how.
+    """
+
+    def _repr_png_(self):
+        png = io.BytesIO()
+        self.savefig(png, format="png", dpi=100)
+        return png.getvalue()
 
 
 def lobe(thing, theta_i):
     """What `plot` draws at `theta_i` [degrees]: angles to the normal and luminances, both (n,).
 
-    The angles [degrees] are negative on the light's side. The luminance [sr⁻¹] of a table is NaN
-    where it was not measured.
+    The angles [degrees] are negative on the light's side. The luminance [sr⁻¹] is NaN where
+    a table was not measured, or where a model has no finite value.
     """
     if _scattered(thing):
         return _samples_near(thing.samples, theta_i)
@@ -58,9 +73,10 @@ def lobe(thing, theta_i):
     wi = np.broadcast_to(from_angles(np.radians(theta_i), np.pi), (len(theta_o), 3))
     wo = from_angles(np.radians(theta_o), 0.0)
     values = luminance(thing.eval(wi, wo))
+    known = np.isfinite(values)
     if isinstance(thing, Measured):
-        values = np.where(_was_measured(thing.table, wi, wo), values, np.nan)
-    return theta_o, values
+        known &= _was_measured(thing.table, wi, wo)
+    return theta_o, np.where(known, values, np.nan)
 
 
 def luminance(values):
@@ -73,16 +89,49 @@ def luminance(values):
     return values[:, 0] if channels == 1 else values @ LUMINANCE
 
 
+def _things(things):
+    things = list(things) if np.iterable(things) else [things]
+    for thing in things or ["nothing"]:
+        if isinstance(thing, type) or not hasattr(thing, "eval"):
+            raise BrdfkitError(
+                f"plot: {thing!r} cannot be plotted; give a measured material, a fit or a model."
+            )
+    return [thing.rgb if isinstance(thing, Measured) else thing for thing in things]
+
+
+def _usual_angles(things):
+    usual = np.array([15.0, 45.0, 75.0])
+    scattered = next((thing for thing in things if _scattered(thing)), None)
+    if scattered is None:
+        return usual
+    there = to_angles(scattered.samples.wi[_in_plane(scattered.samples)])[0]
+    there = np.unique(np.degrees(there).round(1))
+    there = there[there < 90]
+    if not there.size:
+        return usual
+    return np.unique([there[np.argmin(np.abs(there - angle))] for angle in usual])
+
+
 def _scattered(thing):
     return isinstance(thing, Measured) and not thing.is_table
 
 
+def _in_plane(samples):
+    """Which samples are valid and within `NEAR_PHI` of the plane of incidence."""
+    beside = np.abs(_turned(samples)) >= np.cos(np.radians(NEAR_PHI))
+    return samples.valid & (beside | (samples.wo[:, 2] == 1))
+
+
+def _turned(samples):
+    """cos Δφ: 1 in the light's azimuth, -1 in the mirror's."""
+    return np.cos(to_angles(samples.wo)[1] - to_angles(samples.wi)[1])
+
+
 def _samples_near(samples, theta_i):
-    (theta, phi_i), (theta_o, phi_o) = to_angles(samples.wi), to_angles(samples.wo)
-    turned = np.cos(phi_o - phi_i)  # -1 in the mirror's azimuth, 1 in that of the light
-    near = samples.valid & (np.abs(np.degrees(theta) - theta_i) <= NEAR_THETA)
-    near &= (np.abs(turned) >= np.cos(np.radians(NEAR_PHI))) | (theta_o == 0)
-    return np.degrees(-np.sign(turned) * theta_o)[near], luminance(samples.values[near])
+    near = np.abs(np.degrees(to_angles(samples.wi)[0]) - theta_i) <= NEAR_THETA
+    near &= _in_plane(samples)
+    theta_o = -np.sign(_turned(samples)) * np.degrees(to_angles(samples.wo)[0])
+    return theta_o[near], luminance(samples.values[near])
 
 
 def _was_measured(table, wi, wo):
@@ -92,17 +141,14 @@ def _was_measured(table, wi, wo):
 
 
 def _figure(things, angles):
-    # a Figure of its own and not pyplot's: no window and no global state
-    from matplotlib.figure import Figure
-
     rows = math.ceil(len(angles) / MOST_COLUMNS)
     columns = math.ceil(len(angles) / rows)
-    figure = Figure(figsize=(max(4.2 * columns, 6), 2.75 * rows + 0.35), layout="constrained")
+    figure = Plot(figsize=(max(4.2 * columns, 6), 2.75 * rows + 0.35), layout="constrained")
     styles = _styles(things)
     for place, theta_i in enumerate(angles, 1):
         _panel(figure.add_subplot(rows, columns, place), theta_i, things, styles)
     handles, labels = figure.axes[0].get_legend_handles_labels()
-    ncols = min(len(labels), 2 * columns)
+    ncols = min(len(labels), columns + 2)
     figure.legend(handles, labels, loc="outside lower center", ncols=ncols, frameon=False)
     return figure
 
@@ -110,29 +156,25 @@ def _figure(things, angles):
 def _styles(things):
     """Keywords of matplotlib's `plot` for each thing; no two look or are called the same."""
     colours = [{"color": c, "linestyle": dash} for dash in DASHES for c in COLOURS]
-    unused, styles, taken = cycle(colours), [], set()
+    palette, styles, taken = cycle(colours), [], set()
     black = next((thing for thing in things if isinstance(thing, Measured)), None)
     for thing in things:
-        style = {"color": BLACK, "linestyle": "-"} if thing is black else next(unused)
-        style = {**style, "linewidth": 2.4 if isinstance(thing, Measured) else 1.4}
+        style = {"color": BLACK, "linestyle": "-"} if thing is black else next(palette)
+        style = {**style, "linewidth": 1.4}
+        if isinstance(thing, Measured):  # thick, and under the models' lines
+            style |= {"linewidth": 2.4, "zorder": 1.9}
         if _scattered(thing):
             style |= {"linestyle": "", "marker": "o", "markersize": 3}
-        style["label"] = _unused(thing.name, taken)
+        style["label"] = unused(thing.name.replace("$", r"\$"), taken)  # $ begins a formula
         taken.add(style["label"])
         styles.append(style)
     return styles
 
 
-def _unused(name, taken):
-    """`name`, numbered where it is taken: "ward", "ward (2)"."""
-    names = chain([name], (f"{name} ({n})" for n in count(2)))
-    return next(n for n in names if n not in taken)
-
-
 def _panel(axes, theta_i, things, styles):
     """Half a disc, the normal upwards: the lobes at one angle of incidence."""
     lobes = [lobe(thing, theta_i) for thing in things]
-    radius = _Radius(np.concatenate([values for _, values in lobes]))
+    radius = _Radius([values for _, values in lobes])
     _half_disc(axes, radius)
     axes.set_title(rf"$\theta_i$ = {theta_i:g}°", size=11)
     arrow = {"arrowstyle": "-|>", "color": GREY, "shrinkA": 0, "shrinkB": 0}
@@ -144,9 +186,11 @@ def _panel(axes, theta_i, things, styles):
 class _Radius:
     """The radius of a BRDF value, 0 to 1: its logarithm between a power of ten and the largest."""
 
-    def __init__(self, values):
-        values = values[values > 0] if (values > 0).any() else np.array([1.0])
-        highest, lowest = np.log10(values.max()), np.log10(np.percentile(values, 2))
+    def __init__(self, curves):
+        shown = [values[values > 0] for values in curves]
+        shown = [values for values in shown if values.size] or [np.ones(1)]
+        highest = np.log10(max(values.max() for values in shown))
+        lowest = np.log10(min(np.percentile(values, 2) for values in shown))
         self.lowest = math.floor(min(max(lowest, highest - MOST_DECADES), highest - 0.5))
         self.decades = 1.03 * (highest - self.lowest)
 
@@ -155,8 +199,9 @@ class _Radius:
         return (np.log10(np.maximum(values, floor)) - self.lowest) / self.decades
 
     def ticks(self):
-        """The powers of ten from the centre to the rim."""
-        return 10.0 ** np.arange(self.lowest, self.lowest + self.decades)
+        """Powers of ten from the centre to the rim, not so many that their labels would touch."""
+        step = math.ceil(self.decades / 4.5)
+        return 10.0 ** np.arange(self.lowest, self.lowest + self.decades, step)
 
 
 def _half_disc(axes, radius):
@@ -171,11 +216,12 @@ def _half_disc(axes, radius):
     for theta in range(-90, 91, 30):
         axes.plot(*_xy(theta, np.array([0, 1])), **grid)
         text = f"{theta}°".replace("-", "−")
-        axes.text(*_xy(theta, 1.1), text, ha="center", va="center", **SMALL)
+        va = "bottom" if abs(theta) == 90 else "center"  # above the numbers along the radius
+        axes.text(*_xy(theta, 1.1), text, ha="center", va=va, **SMALL)
     for tick in radius.ticks():
         axes.plot(*_xy(half, radius(tick)), **grid)
         axes.text(radius(tick), -0.03, f"{tick:g}", ha="center", va="top", **SMALL)
-    axes.text(0, -0.17, "BRDF [sr⁻¹], logarithmic", ha="center", va="top", **SMALL)
+    axes.text(0, -0.17, "luminance of the BRDF [sr⁻¹], logarithmic", ha="center", va="top", **SMALL)
 
 
 def _xy(theta, radius):

@@ -41,6 +41,12 @@ class Table:
             (np.arange(n_p) + 0.5) / n_p * self.phi_d_period,
         )
 
+    @property
+    def theta_h_widths(self):
+        """Widths of the theta_h cells (n_theta_h,), 1 in the mean."""
+        n_h = self.shape[0]
+        return (2 * np.arange(n_h) + 1) / n_h
+
     def directions(self):
         """(wi, wo) at the centre of every cell, each (*shape, 3); z < 0 below the surface."""
         return from_half_difference(*np.meshgrid(*self.centres, indexing="ij"))

@@ -8,7 +8,9 @@ import importlib
 import pkgutil
 from dataclasses import dataclass
 
+from brdfkit import llvm
 from brdfkit.checks.subject import Finding, Subject, checks
+from brdfkit.errors import BrdfkitError
 
 for _module in pkgutil.iter_modules(__path__):
     importlib.import_module(f"{__name__}.{_module.name}")
@@ -43,6 +45,8 @@ def check(thing, only=None, progress=None):
 
     >>> print(check(models()["ward"](alpha_u=0.1)))    # doctest: +SKIP
     """
+    if llvm.use_variant().startswith("scalar"):
+        raise BrdfkitError(f"check needs an LLVM or CUDA variant of Mitsuba; {llvm.REMEDY}.")
     subject = Subject(thing)
     names = list(checks) if only is None else list(only)
     findings = []

@@ -17,18 +17,28 @@ def chi_squared(subject):
     import mitsuba as mi
     from mitsuba.chi2 import ChiSquareTest, SphericalDomain
 
+    class UpperHemisphere(SphericalDomain):
+        # The horizon, where densities jump, lies on an edge of the histogram
+        def bounds(self):
+            return mi.ScalarBoundingBox2f([-dr.pi, -1], [dr.pi, 0])
+
+        # At grazing incidence a lobe is narrower in azimuth: four times the cells of z
+        def aspect(self):
+            return 1 / 4
+
     p_values, messages = [], []
     for degrees, wi in incidences():
         si = subject.interaction(wi)
 
         def sample(u, si=si):
             drawn, _ = subject.bsdf.sample(mi.BSDFContext(), si, u[0], mi.Point2f(u[1], u[2]))
-            return drawn.wo, dr.select(drawn.pdf > 0, mi.Float(1), 0)
+            kept = drawn.pdf > 0
+            return dr.select(kept, drawn.wo, mi.Vector3f(0, 0, 1)), dr.select(kept, mi.Float(1), 0)
 
         def pdf(wo, si=si):
             return subject.bsdf.pdf(mi.BSDFContext(), si, wo)
 
-        test = ChiSquareTest(SphericalDomain(), sample, pdf, 3, SAMPLES, res=101, ires=32)
+        test = ChiSquareTest(UpperHemisphere(), sample, pdf, 3, SAMPLES, res=32, ires=96)
         if not test.run(SIGNIFICANCE, test_count=len(INCIDENCES), quiet=True):
             messages.append(f"rejected at {degrees}°")
         p_values.append(test.p_value)

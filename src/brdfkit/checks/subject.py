@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from brdfkit.directions import from_angles
-from brdfkit.errors import BrdfkitError
 from brdfkit.model import Model
 
 # Incidence of every statistical check [degrees], up to grazing, at an azimuth off the axes
@@ -49,10 +48,6 @@ class Subject:
         """The Mitsuba BSDF in the current variant."""
         import mitsuba as mi
 
-        from brdfkit import llvm
-
-        if llvm.use_variant().startswith("scalar"):
-            raise BrdfkitError(f"check needs an LLVM or CUDA variant of Mitsuba; {llvm.REMEDY}.")
         return mi.load_dict(self.thing.scene_dict())
 
     def interaction(self, wi):
@@ -71,9 +66,8 @@ class Subject:
         """BRDF times cosine (n, channels) of the Mitsuba BSDF, float32."""
         import mitsuba as mi
 
-        bsdf = self.bsdf  # sets the variant
         wo = mi.Vector3f(np.asarray(wo, np.float32).T)
-        value = bsdf.eval(mi.BSDFContext(), self.interaction(wi), wo)
+        value = self.bsdf.eval(mi.BSDFContext(), self.interaction(wi), wo)
         return np.array(value).T.astype(float)
 
 

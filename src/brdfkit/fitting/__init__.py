@@ -46,15 +46,15 @@ def fit(
     began = time.perf_counter()
     model, loss = registry.model(name), _loss(loss)
     space = _space(model, bounds or {}, fixed or {})
-    wi, wo, values = selected(data, loss, max_angle)
+    samples = selected(data, loss, max_angle)
     default = space.coordinates(model().values)
 
     rng = np.random.default_rng(seed)
-    whole = Problem(model, wi, wo, values, loss)
+    whole = Problem(model, samples, loss)
     part = whole
-    if len(values) > 2 * PART:
-        rows = np.sort(rng.choice(len(values), PART, replace=False))
-        part = Problem(model, wi[rows], wo[rows], values[rows], loss)
+    if len(samples.wi) > 2 * PART:
+        rows = np.sort(rng.choice(len(samples.wi), PART, replace=False))
+        part = Problem(model, samples.at(rows), loss)
 
     report = progress or (lambda done, total: None)
     best, evaluations = _search(part, space, default, starts if space.names else 1, seed, report)
@@ -70,7 +70,7 @@ def fit(
         data=data.name,
         loss_name=loss.name,
         loss=math.sqrt(whole.error(shapes, weights)),
-        samples=len(values),
+        samples=len(samples.wi),
         evaluations=evaluations,
         seconds=time.perf_counter() - began,
         message=best.message,

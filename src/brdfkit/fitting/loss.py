@@ -33,9 +33,10 @@ class Loss:
     linear: bool = False
     channel_mean: bool = True
 
-    def geometry(self, wi, wo):
-        """(κ, w), each (n,), of NumPy directions (n, 3)."""
-        return self.cosines(wi[:, 2], wo[:, 2]), self.weights(wi)
+    def geometry(self, samples):
+        """(κ, w), each (n,), of `Samples`; w times how much each counts."""
+        cosines = self.cosines(samples.wi[:, 2], samples.wo[:, 2])
+        return cosines, self.weights(samples.wi) * samples.weight
 
     def usable(self, values):
         """Mask (n,) of samples that the loss can take: a logarithm knows no negative BRDF."""

@@ -13,17 +13,17 @@ from brdfkit.fitting.weights import bounded_quadratic
 
 
 class Problem:
-    """E² of a model on samples `wi`, `wo` (n, 3), `values` (n, channels) in sr⁻¹."""
+    """E² of a model on `Samples`, all of them valid."""
 
-    def __init__(self, model, wi, wo, values, loss):
-        cosines, weights = loss.geometry(wi, wo)
+    def __init__(self, model, samples, loss):
+        cosines, weights = loss.geometry(samples)
         Float64 = backend.float64()
         self.model, self.loss = model, loss
-        self.size, self.channels = values.shape
-        self.wi, self.wo = backend.vector(wi), backend.vector(wo)
+        self.channels = samples.values.shape[1]
+        self.wi, self.wo = backend.vector(samples.wi), backend.vector(samples.wo)
         self.cosines = Float64(cosines)
         self.weights = Float64(weights / loss.normaliser(weights, self.channels))
-        self.measured = [Float64(np.ascontiguousarray(v * cosines)) for v in values.T]
+        self.measured = [Float64(np.ascontiguousarray(v * cosines)) for v in samples.values.T]
         self.targets = [loss.g(m) + 0 for m in self.measured]
         dr.eval(self.targets)
         # E² of a black model: the scale of the problem

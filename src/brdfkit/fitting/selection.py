@@ -6,7 +6,7 @@ from brdfkit.errors import BrdfkitError
 
 
 def selected(data, loss, max_angle):
-    """(wi, wo, values) of the valid samples with both angles below `max_angle` [degrees].
+    """The valid `Samples` with both angles below `max_angle` [degrees].
 
     Spectral data comes as linear sRGB; samples that the loss cannot take are left out.
     """
@@ -20,4 +20,4 @@ def selected(data, loss, max_angle):
             f"{data.name}: no valid sample has both angles below {max_angle:g}°; "
             "give a larger max_angle."
         )
-    return samples.wi[rows], samples.wo[rows], samples.values[rows]
+    return samples.at(rows)

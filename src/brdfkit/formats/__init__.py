@@ -34,8 +34,9 @@ def load(path):
 
     The content decides the format; the suffix decides between formats that all, or none,
     recognise it. ``.gz`` and ``.xz`` are unpacked. ``abrdf.dat#1`` names a sample of a file
-    that holds many. Where there is no such file, a name of `brdfkit info` is that material. Raises `BrdfkitError` with one sentence for every file that cannot be read,
-    or that holds more than 1 GiB.
+    that holds many. Where there is no such file, the name of a known material
+    (`brdfkit.catalogue`) stands for its file. Raises `BrdfkitError` with one sentence for every
+    file that cannot be read.
 
     >>> print(load("gold-metallic-paint.binary.xz"))  # doctest: +SKIP
     gold-metallic-paint: 90×90×180 table, 1,048,000 of 1,458,000 valid, channels R G B

@@ -1,0 +1,151 @@
+"""Every model × every public check, at the defaults and at random values; and that a check
+notices what it is for."""
+
+import drjit as dr
+import numpy as np
+import pytest
+from random_models import random_model
+
+import brdfkit as bk
+from brdfkit.checks import checks
+from brdfkit.checks.sampling import spread
+from brdfkit.checks.subject import INCIDENCES, Subject
+from brdfkit.lobes import Cosine, HalfVector, Lobe, lambertian
+from brdfkit.microfacet import Beckmann
+from brdfkit.model import Model, shape, weight
+
+pytestmark = pytest.mark.usefixtures("llvm_variant")
+
+
+@pytest.mark.parametrize("check", checks)
+def test_default_model(model, check):
+    report = bk.check(model(), only=[check])
+    assert report, str(report)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_random_model(model, seed):
+    # Beyond 80° Ward-Dür gains energy by its formula, which is what `energy` would find
+    report = bk.check(random_model(model, seed), only=set(checks) - {"energy"})
+    assert report, str(report)
+
+
+def test_weights_of_samples_vary_little(model):
+    """Standard deviation of the weight ≤ 0.75 of its mean at the defaults, to grazing."""
+    subject = Subject(model())
+    assert max(spread(subject, degrees) for degrees in INCIDENCES) <= 0.75
+
+
+@pytest.mark.quick
+def test_measured_table_passes_the_checks():
+    report = bk.check(bk.load("red_plastic"), only=set(checks) - {"reciprocity"})
+    assert report, str(report)
+
+
+# What each check is for, done wrong
+
+
+class Right(Model):
+    diffuse_reflectance = weight(0.4, "")
+    specular_reflectance = weight(0.4, "")
+    alpha = shape(0.3, (0.01, 1.0), "")
+
+    def specular(self, wi, wo):
+        return (
+            bk.models()["ward"]
+            .bind({"alpha_u": self.alpha, "alpha_v": self.alpha})
+            .specular(wi, wo)
+        )
+
+    def lobes(self):
+        facets = HalfVector(Beckmann(self.alpha, self.alpha))
+        return lambertian(), Lobe(self.specular, facets)
+
+
+class WrongDensity(HalfVector):
+    def pdf(self, wi, wo):
+        return 1.05 * super().pdf(wi, wo)
+
+
+class WithWrongDensity(Right):
+    def lobes(self):
+        facets = WrongDensity(Beckmann(self.alpha, self.alpha))
+        return lambertian(), Lobe(self.specular, facets)
+
+
+class NotReciprocal(Right):
+    def specular(self, wi, wo):
+        return super().specular(wi, wo) * (1 + 1e-6 * wo.z)
+
+
+class TooBright(Right):
+    diffuse_reflectance = weight(0.9, "")
+
+
+class NegativeAtGrazing(Right):
+    def lobes(self):
+        return Lobe(lambda wi, wo: wo.z - 0.05, Cosine(), diffuse=True), super().lobes()[1]
+
+
+class WrongDerivative(Right):
+    def specular(self, wi, wo):
+        return super().specular(wi, wo) * self.alpha / dr.detach(self.alpha)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "check"),
+    [
+        (WithWrongDensity, "chi squared"),
+        (NotReciprocal, "reciprocity"),
+        (TooBright, "energy"),
+        (NegativeAtGrazing, "finite"),
+        (WrongDerivative, "gradient"),
+    ],
+)
+def test_check_notices(wrong, check, monkeypatch):
+    assert _check(Right, check, monkeypatch)
+    assert not _check(wrong, check, monkeypatch)
+
+
+def test_coverage_notices_a_missing_lobe(monkeypatch):
+    """χ² passes a sampler that never reaches the diffuse lobe; coverage does not."""
+
+    class Narrow:
+        """Draws half vectors of the lobe only: what lies beyond is missed."""
+
+        def __init__(self, facets):
+            self.facets = facets
+
+        def sample(self, wi, u):
+            return self.facets.sample(wi, u)
+
+        def pdf(self, wi, wo):
+            return self.facets.pdf(wi, wo)
+
+    class Missing(Right):
+        alpha = shape(0.05, (0.01, 1.0), "")
+
+        def lobes(self):
+            facets = Narrow(HalfVector(Beckmann(self.alpha, self.alpha)))
+            return Lobe(lambda wi, wo: 1 / dr.pi, facets), Lobe(self.specular, facets)
+
+    monkeypatch.setattr("brdfkit.bsdf.COSINE_SHARE", 0.0)
+    assert _check(Missing, "chi squared", monkeypatch)
+    assert not _check(Missing, "coverage", monkeypatch)
+
+
+def _check(model, check, monkeypatch):
+    """The report of a model that lies in no file."""
+    import mitsuba as mi
+
+    from brdfkit import bsdf
+
+    class Bsdf(bsdf.define(mi, model)):
+        def __init__(self):
+            super().__init__(mi.Properties("test"))
+
+    subject = Subject(model())
+    monkeypatch.setitem(subject.__dict__, "bsdf", Bsdf())
+    passed, figure = checks[check](subject)
+    assert np.isscalar(passed) or isinstance(passed, bool | np.bool_), figure
+    return passed

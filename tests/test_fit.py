@@ -1,0 +1,212 @@
+"""Fits: known parameters come back, published optima are met, and bad requests are refused."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+from random_models import random_model
+
+import brdfkit as bk
+from brdfkit.directions import from_angles
+from brdfkit.errors import BrdfkitError
+from brdfkit.fitting.weights import bounded_quadratic
+from brdfkit.table import Table
+
+
+def synthetic(model, n=3000, seed=0):
+    """A model measured at random directions in and near the plane of incidence."""
+    rng = np.random.default_rng(seed)
+    wi = from_angles(rng.uniform(0, 1.5, n), rng.uniform(0, 2 * np.pi, n))
+    near = wi * [-1, -1, 1] + rng.normal(0, 0.15, (n, 3))
+    far = from_angles(rng.uniform(0, 1.5, n), rng.uniform(0, 2 * np.pi, n))
+    wo = np.where((np.arange(n) % 2 == 0)[:, None], near, far)
+    wo /= np.linalg.norm(wo, axis=1, keepdims=True)
+    wo[:, 2] = np.abs(wo[:, 2])
+    values = model.eval(wi, wo)
+    channels = ("R", "G", "B") if values.shape[1] == 3 else ("Y",)
+    return bk.Measured.from_samples(wi, wo, values, channels=channels, name="synthetic")
+
+
+def isotropic(model):
+    """Random values with the anisotropic parameters tied, as a fit of them is."""
+    drawn = random_model(model, seed=5)
+    own = {n: v for n, v in drawn.values.items() if not model.parameters[n].follows}
+    return model(**own)
+
+
+@pytest.mark.parametrize("loss", bk.losses)
+@pytest.mark.parametrize("starts", [1, 16])
+def test_known_parameters_come_back(model, loss, starts):
+    """To 1e-4, from the default start alone and with the usual several ones."""
+    truth = isotropic(model)
+    found = bk.fit(truth.type_name(), synthetic(truth), loss=loss, starts=starts)
+    for name, value in truth.values.items():
+        np.testing.assert_allclose(found.parameters[name], value, rtol=1e-4, err_msg=name)
+    assert found.loss < 1e-5
+
+
+@pytest.mark.quick
+def test_known_parameters_come_back_from_a_table(model):
+    truth = isotropic(model)
+    table = Table(np.full((24, 12, 24, 3), np.nan))
+    wi, wo = table.directions()
+    above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
+    table.values[above] = truth.eval(wi[above], wo[above])
+    found = bk.fit(truth.type_name(), bk.Measured.from_table(table.values))
+    for name, value in truth.values.items():
+        np.testing.assert_allclose(found.parameters[name], value, rtol=1e-4, err_msg=name)
+
+
+# Kurt 2007, digest of the optima on the RGB-averaged CUReT, one channel, k ≥ 0, α ≤ 0.5:
+# (sample, model): loss, then shape parameters by name
+CURET = {
+    (12, "lambert"): (0.042722, {"diffuse_reflectance": 0.728533}),
+    (12, "blinn_phong"): (0.036352, {"exponent": 10.479}),
+    (12, "ward"): (0.024458, {"alpha_u": 0.43778}),
+    (12, "ward_duer"): (0.008626, {"alpha_u": 0.41556}),
+    (12, "cook_torrance"): (0.007487, {"alpha": 0.40746, "f0": 0.55425}),
+    (33, "lambert"): (0.015552, {"diffuse_reflectance": 0.094881}),
+    (33, "blinn_phong"): (0.012181, {"exponent": 16.145}),
+    (33, "ward"): (0.007699, {"alpha_u": 0.45220}),
+    (33, "ward_duer"): (0.006815, {"alpha_u": 0.5}),
+    (33, "cook_torrance"): (0.006672, {"alpha": 0.47657, "f0": 1.0}),
+    (36, "lambert"): (0.023274, {"diffuse_reflectance": 0.346586}),
+    (36, "blinn_phong"): (0.022754, {"exponent": 32.603}),
+    (36, "ward"): (0.019474, {"alpha_u": 0.27011}),
+    (36, "ward_duer"): (0.011467, {"alpha_u": 0.30381}),
+    (36, "cook_torrance"): (0.003596, {"alpha": 0.45725, "f0": 0.0461}),
+}
+
+
+@pytest.mark.parametrize(("sample", "name"), CURET)
+def test_optima_on_curet(sample, name, measured_data):
+    loss, expected = CURET[sample, name]
+    data = bk.load(measured_data / "curet" / f"abrdf.dat#{sample}")
+    bounds = {"alpha_u": (0.001, 0.5)} if name.startswith("ward") else {}
+    found = bk.fit(name, data, loss="cosine", bounds=bounds)
+    assert found.samples == 189
+    assert found.loss == pytest.approx(loss, rel=3e-3)
+    for parameter, value in expected.items():
+        assert np.mean(found.parameters[parameter]) == pytest.approx(value, rel=1e-2), parameter
+
+
+def test_large_tables_end_where_all_cells_say():
+    """The starts see a part of the cells, the end all of them: no start may be better."""
+    data = bk.load("red_plastic")
+    found = bk.fit("ggx", data)
+    assert found.samples > 40_000
+    again = bk.fit("ggx", data, seed=3)
+    assert again.loss == pytest.approx(found.loss, rel=1e-6)
+
+
+@pytest.mark.quick
+def test_reproducible_to_the_last_digit():
+    data = synthetic(bk.models()["ggx"]())
+    first, second = (bk.fit("ggx", data, loss="cbrt") for _ in range(2))
+    assert first.parameters == second.parameters
+    assert first.loss == second.loss
+
+
+@pytest.mark.quick
+def test_fit_is_plain_data(tmp_path):
+    """Saved and loaded, pickled and copied, a fit is the same material."""
+    found = bk.fit("ward", synthetic(bk.models()["ward"]()), starts=1)
+    bk.save(found, tmp_path / "ward.json")
+    wi, wo = from_angles([0.5], [0.0]), from_angles([0.6], [3.0])
+    for other in (
+        bk.load(tmp_path / "ward.json"),
+        pickle.loads(pickle.dumps(found)),
+        copy.deepcopy(found),
+    ):
+        assert other.parameters == found.parameters
+        assert other.loss == found.loss
+        np.testing.assert_array_equal(other.eval(wi, wo), found.eval(wi, wo))
+
+
+@pytest.mark.quick
+def test_what_sits_on_a_bound_is_named():
+    data = synthetic(bk.models()["ward"](alpha_u=0.4))
+    found = bk.fit("ward", data, bounds={"alpha_u": (0.01, 0.3)})
+    assert found.at_bounds == ("alpha_u",)
+    assert found.parameters["alpha_u"] == pytest.approx(0.3)
+    assert "on its bound" in str(found)
+
+
+@pytest.mark.quick
+def test_a_lobe_that_is_not_there_is_named():
+    """A facet model without its tails would want less than nothing diffuse: it gets none."""
+    data = synthetic(bk.models()["ggx"](diffuse_reflectance=0.0))
+    found = bk.fit("blinn_phong", data, loss="cosine", bounds={"exponent": (0.1, 2.0)})
+    assert found.parameters["diffuse_reflectance"] == (0.0,)
+    assert "diffuse_reflectance" in found.at_bounds
+
+
+@pytest.mark.quick
+def test_fixed_parameter_stays():
+    data = synthetic(bk.models()["ggx"](f0=0.2))
+    found = bk.fit("ggx", data, fixed={"f0": 0.04})
+    assert found.parameters["f0"] == 0.04
+    assert found.loss > 0.01
+
+
+@pytest.mark.quick
+def test_metrics_agree_with_the_fit():
+    """`compare`, which evaluates in NumPy, finds the loss that the fit reported."""
+    data = synthetic(random_model(bk.models()["ggx"], 3))
+    for loss in bk.losses:
+        found = bk.fit("ward", data, loss=loss)
+        assert bk.compare(data, found).errors["ward"][loss] == pytest.approx(found.loss, rel=1e-9)
+
+
+def test_without_derivatives_the_fit_is_the_same(monkeypatch):
+    """The fallback without LLVM: scalar arrays and finite differences."""
+    import drjit as dr
+
+    from brdfkit import backend
+
+    data = synthetic(bk.models()["cook_torrance"](alpha=0.3, f0=0.2), n=500)
+    exact = bk.fit("cook_torrance", data)
+    monkeypatch.setattr(backend, "float64", lambda: dr.scalar.ArrayXf64)
+    assert not backend.differentiable()
+    slow = bk.fit("cook_torrance", data)
+    for name, value in exact.parameters.items():
+        np.testing.assert_allclose(slow.parameters[name], value, rtol=1e-4)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"name": "wrad"}, ["'wrad'", "ward_duer"]),
+        ({"loss": "l2"}, ["'l2'", "cosine, log, cbrt"]),
+        ({"bounds": {"alpha_w": (0, 1)}}, ["'alpha_w'", "alpha_u"]),
+        ({"bounds": {"alpha_u": (0.5, 0.1)}}, ["alpha_u", "0.001..1"]),
+        ({"bounds": {"alpha_u": (0.1, 7.0)}}, ["alpha_u", "0.001..1"]),
+        ({"fixed": {"alpha_u": 9.0}}, ["alpha_u = 9.0", "between 0.001 and 1"]),
+        ({"fixed": {"diffuse_reflectance": 0.5}}, ["diffuse_reflectance", "weight"]),
+        ({"max_angle": 0.0}, ["max_angle"]),
+    ],
+)
+def test_bad_requests_are_refused(arguments, words):
+    data = synthetic(bk.models()["lambert"](), n=50)
+    with pytest.raises(BrdfkitError) as caught:
+        bk.fit(**{"name": "ward", "data": data, **arguments})
+    for word in words:
+        assert word in str(caught.value)
+    assert str(caught.value).count("\n") == 0
+
+
+@pytest.mark.quick
+def test_bounded_quadratic_meets_the_optimality_conditions():
+    rng = np.random.default_rng(0)
+    for _ in range(200):
+        n = rng.integers(1, 5)
+        factor = rng.normal(size=(n + 2, n)) * 10.0 ** rng.integers(-4, 4, n)
+        hessian, moment = factor.T @ factor, factor.T @ rng.normal(size=n + 2)
+        a = bounded_quadratic(hessian, moment)
+        scale = np.sqrt(np.diag(hessian))
+        gradient = (hessian @ a - moment) / scale
+        assert (a >= 0).all()
+        assert (gradient > -1e-8).all()
+        assert np.abs(gradient[a > 0]).max(initial=0) < 1e-8
