@@ -10,11 +10,6 @@ Sampled by a share of cosine and a distribution of normals that is read off the 
 
 import numpy as np
 
-# Cosine samples: never fewer, since the distribution of normals misses what is not specular
-LEAST_DIFFUSE, MOST_DIFFUSE = 0.25, 0.9
-# The distribution of normals is read where shadowing and Fresnel matter least
-THETA_D_MAX = np.radians(60)
-COS_MIN = 0.2
 HORIZON = 1e-6
 
 
@@ -25,6 +20,7 @@ def define(mi):
     from brdfkit.errors import BrdfkitError
     from brdfkit.lobes import Cosine
     from brdfkit.microfacet import dot, half_vector, reflect
+    from brdfkit.normals import normals_of
     from brdfkit.table import Table
 
     COSINE = Cosine()
@@ -46,14 +42,11 @@ def define(mi):
                 values = np.broadcast_to(values, (*table.shape, 3))
             self.values = buffer(values)
 
-            floor, diffuse_share, masses = normals(table)
-            self.floor = floor
-            self.diffuse_share = diffuse_share
-            self.cell = mi.DiscreteDistribution(masses.astype(np.float32))
-            edges = (np.arange(len(masses) + 1) / len(masses)) ** 2 * np.pi / 2
-            self.cosines = buffer(np.cos(edges))
-            density = masses / masses.sum() / (-np.diff(np.cos(edges)) * 2 * np.pi)
-            self.density = buffer(density)
+            facets = normals_of(table)
+            self.diffuse, self.diffuse_share = facets.diffuse, facets.diffuse_share
+            self.cell = mi.DiscreteDistribution(facets.masses.astype(np.float32))
+            self.cosines = buffer(facets.cosines)
+            self.density = buffer(facets.density)
 
             flags = mi.BSDFFlags
             self.m_components = [flags.GlossyReflection | flags.FrontSide]
@@ -97,7 +90,7 @@ def define(mi):
             return self.eval(ctx, si, wo, active), self.pdf(ctx, si, wo, active)
 
         def eval_diffuse_reflectance(self, si, active=True):
-            return mi.Spectrum(mi.Float(float(np.pi * self.floor)))
+            return mi.Spectrum(mi.Float(self.diffuse))
 
         def normal(self, u):
             """A half vector: a cell of theta_h by its mass, evenly within it."""
@@ -182,31 +175,3 @@ def define(mi):
         return dr.minimum(mi.UInt32(position), n - 1)
 
     return MeasuredTable
-
-
-def normals(table):
-    """(diffuse BRDF, share of cosine samples, mass of each theta_h cell) read off a table.
-
-    A facet model has f = D · F G / (4 cos θ_i cos θ_o): D is about the mean of f cos θ_i cos θ_o
-    over the cells of one theta_h, less the floor that is there at every theta_h.
-    """
-    theta_h, theta_d, _ = table.centres
-    wi, wo = table.directions()
-    cosines = wi[..., 2] * wo[..., 2]
-    seen = (wi[..., 2] > COS_MIN) & (wo[..., 2] > COS_MIN)
-    seen &= (theta_d < THETA_D_MAX)[None, :, None]
-    brightness = np.maximum(table.filled, 0).mean(axis=-1)
-    count = np.maximum(seen.sum(axis=(1, 2)), 1)
-    f = (brightness * seen).sum(axis=(1, 2)) / count
-    known = seen.any(axis=(1, 2))
-    floor = f[known].min(initial=np.inf) if known.any() else 0.0
-    D = ((brightness - floor) * cosines * seen).sum(axis=(1, 2)) / count
-    D = np.maximum(np.where(known, D, D[known][-1] if known.any() else 0), 0)
-
-    edges = (np.arange(len(theta_h) + 1) / len(theta_h)) ** 2 * np.pi / 2
-    masses = D * np.cos(theta_h) * -np.diff(np.cos(edges)) * 2 * np.pi
-    specular, diffuse = 4 * masses.sum(), np.pi * floor
-    share = np.clip(diffuse / max(diffuse + specular, 1e-12), LEAST_DIFFUSE, MOST_DIFFUSE)
-    # every cell keeps a little: the density must not vanish where the table does not
-    masses = masses + 1e-3 * masses.sum() * -np.diff(np.cos(edges)) + 1e-12
-    return floor, float(share), masses

@@ -177,7 +177,7 @@ def define(mi, model):
 
 def _require_within_bounds(props, model, name):
     """An error for a constant parameter out of bounds; textures are taken as they are."""
-    value = props[name] if name in props else None
+    value = props.get(name, None)
     if isinstance(value, float | int) or type(value).__name__.endswith("Color3d"):
         problem = model.parameters[name].problem_with(np.array(value, float))
         if problem:

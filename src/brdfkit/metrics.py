@@ -17,9 +17,9 @@ def error(thing, data, loss, max_angle=80.0):
     >>> error(models()["lambert"](), load("paint.binary"), "log")    # doctest: +SKIP
     """
     loss = losses[loss]
-    samples = selected(data, loss, max_angle)
+    samples = selected(data, max_angle)
     cosines, weights = loss.geometry(samples)
-    measured = samples.values
+    measured = loss.target(samples.values)
     values = np.broadcast_to(thing.eval(samples.wi, samples.wo), measured.shape)
     squares = np.square(_transformed(loss, values, cosines) - _transformed(loss, measured, cosines))
     total = weights @ squares.sum(axis=1)

@@ -4,6 +4,7 @@ Shepard's inverse-distance mean of the nearest samples, of the logarithm of the 
 the result is positive and passes through the samples. The space is the half vector's angle and
 the folded difference vector: reciprocity and the mirror symmetry of an isotropic surface put
 the four equivalent pairs on one point. Beyond the samples the nearest ones continue unchanged.
+A channel that is not positive counts as a thousandth of the median.
 
 D. Shepard, "A two-dimensional interpolation function for irregularly-spaced data", ACM 1968.
 """
@@ -25,8 +26,10 @@ def to_table(samples, shape=SHAPE):
     from scipy.spatial import cKDTree
 
     known = samples.valid & (samples.values > 0).any(axis=1)
+    if not known.any():  # a black material
+        known = samples.valid
     values = samples.values[known]
-    floor = 1e-3 * np.median(values[values > 0])
+    floor = 1e-3 * np.median(values[values > 0]) if (values > 0).any() else 1e-12
     logarithms = np.log(np.maximum(values, floor))
     tree = cKDTree(_coordinates(samples.wi[known], samples.wo[known]))
 

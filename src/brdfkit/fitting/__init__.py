@@ -46,7 +46,7 @@ def fit(
     began = time.perf_counter()
     model, loss = registry.model(name), _loss(loss)
     space = _space(model, bounds or {}, fixed or {})
-    samples = selected(data, loss, max_angle)
+    samples = selected(data, max_angle)
     default = space.coordinates(model().values)
 
     rng = np.random.default_rng(seed)
@@ -75,6 +75,7 @@ def fit(
         seconds=time.perf_counter() - began,
         message=best.message,
         at_bounds=_at_bounds(space, best.u, model, weights),
+        notes=_notes(samples, loss),
         settings={
             "max_angle": max_angle,
             "seed": seed,
@@ -128,6 +129,13 @@ def _space(model, bounds, fixed):
     limits = np.array([bounds.get(n, model.parameters[n].bounds) for n in names]).reshape(-1, 2)
     log = np.array([model.parameters[n].log for n in names], bool)
     return Space(names, limits[:, 0], limits[:, 1], log, {k: float(v) for k, v in fixed.items()})
+
+
+def _notes(samples, loss):
+    negative = (samples.values < 0).mean()
+    if loss.linear or not negative:
+        return ()
+    return (f"{negative:.1%} of the measured values are negative and count as 0",)
 
 
 def _at_bounds(space, u, model, weights):

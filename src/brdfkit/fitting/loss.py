@@ -4,7 +4,8 @@
 
 R is measured, M the model, κ a factor of cosines and g a transform that weighs dark against
 bright. Samples with an angle beyond 80° are left out, where measurements are least reliable
-(Ngan et al. 2005).
+(Ngan et al. 2005). A negative measurement (noise, or a colour out of gamut) counts as it is in the
+cosine loss, and as 0 in the others, whose g knows no negative BRDF.
 """
 
 from collections.abc import Callable
@@ -38,9 +39,9 @@ class Loss:
         cosines = self.cosines(samples.wi[:, 2], samples.wo[:, 2])
         return cosines, self.weights(samples.wi) * samples.weight
 
-    def usable(self, values):
-        """Mask (n,) of samples that the loss can take: a logarithm knows no negative BRDF."""
-        return np.ones(len(values), bool) if self.linear else (values >= 0).all(axis=1)
+    def target(self, values):
+        """`values` (n, channels) as the loss sees them: g takes no negative BRDF, which is 0."""
+        return values if self.linear else np.maximum(values, 0)
 
     def normaliser(self, weights, channels):
         """N: Σ w, times the number of channels where E is a mean over them."""

@@ -23,7 +23,8 @@ class Problem:
         self.wi, self.wo = backend.vector(samples.wi), backend.vector(samples.wo)
         self.cosines = Float64(cosines)
         self.weights = Float64(weights / loss.normaliser(weights, self.channels))
-        self.measured = [Float64(np.ascontiguousarray(v * cosines)) for v in samples.values.T]
+        values = loss.target(samples.values)
+        self.measured = [Float64(np.ascontiguousarray(v * cosines)) for v in values.T]
         self.targets = [loss.g(m) + 0 for m in self.measured]
         dr.eval(self.targets)
         # E² of a black model: the scale of the problem

@@ -11,7 +11,8 @@ class Fit:
     """A model fitted to a measured material. Evaluates and renders like its `model`.
 
     `loss`: E of the loss named `loss_name` (its units: `brdfkit.losses`); `at_bounds`:
-    parameters that ended on a bound; `data`: name of the material; `settings`: what `fit` got.
+    parameters that ended on a bound; `notes`: what else one should know; `data`: name of the
+    material; `settings`: what `fit` got.
     """
 
     model: Model
@@ -23,6 +24,7 @@ class Fit:
     seconds: float
     message: str
     at_bounds: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
     settings: dict[str, Any] = field(default_factory=dict)
 
     @property
@@ -52,6 +54,7 @@ class Fit:
             )
             note = "   on its bound" if name in self.at_bounds else ""
             lines.append(f"  {name:<{width}}  {numbers}{note}")
+        lines += [f"  {note}" for note in self.notes]
         lines.append(
             f"  {self.message}; {self.samples:,} samples, {self.evaluations} evaluations, "
             f"{self.seconds:.2f} s"

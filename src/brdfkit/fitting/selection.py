@@ -5,16 +5,15 @@ import math
 from brdfkit.errors import BrdfkitError
 
 
-def selected(data, loss, max_angle):
+def selected(data, max_angle):
     """The valid `Samples` with both angles below `max_angle` [degrees].
 
-    Spectral data comes as linear sRGB; samples that the loss cannot take are left out.
+    Spectral data comes as linear sRGB.
     """
     data = data.rgb
     samples = data.samples
     cos_min = math.cos(math.radians(max_angle)) * (1 + 1e-12)
     rows = samples.valid & (samples.wi[:, 2] > cos_min) & (samples.wo[:, 2] > cos_min)
-    rows[rows] = loss.usable(samples.values[rows])
     if not rows.any():
         raise BrdfkitError(
             f"{data.name}: no valid sample has both angles below {max_angle:g}°; "

@@ -30,7 +30,8 @@ def read(source):
     except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise source.error(f"is no fit that brdfkit saved ({error!r}); fit it again") from None
     try:
-        rest["at_bounds"] = tuple(rest.get("at_bounds", ()))
+        for name in ("at_bounds", "notes"):
+            rest[name] = tuple(rest.get(name, ()))
         return Fit(model=registry.model_with_values(model, values), **rest)
     except (BrdfkitError, TypeError) as error:
         raise source.error(f"cannot be restored ({str(error).rstrip('.')}); fit it again") from None
