@@ -1,9 +1,9 @@
-# make demo | test | quick | lint | wheel; everything happens in .venv, nothing else is needed
+# make demo | test | quick | lint | bench | wheel; everything happens in .venv, nothing else is needed
 PYTHON ?= python3
 VENV := .venv
 RUN := $(VENV)/bin
 
-.PHONY: demo test quick lint wheel clean
+.PHONY: demo test quick lint bench wheel clean
 
 $(VENV)/.ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -24,6 +24,9 @@ quick: $(VENV)/.ready
 lint: $(VENV)/.ready
 	$(RUN)/ruff check
 	$(RUN)/ruff format --check
+
+bench: $(VENV)/.ready
+	$(RUN)/python tests/benchmark.py
 
 wheel: $(VENV)/.ready
 	$(RUN)/python -m build

@@ -1,13 +1,17 @@
 """What the command line prints: tables for people, or JSON; a progress bar on the terminal."""
 
+import inspect
 import json
-import time
+import sys
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from functools import cached_property
+from threading import Timer
+
+from brdfkit import records
 
 # A bar that appears for a blink is noise
-PATIENCE = 1.0
+PATIENCE = 1.0  # seconds
 
 
 @dataclass(frozen=True)
@@ -21,50 +25,57 @@ class Console:
     def out(self):
         from rich.console import Console
 
-        return Console(quiet=self.quiet, highlight=False, soft_wrap=True)
+        # no markup: a name from a file may hold brackets
+        return Console(quiet=self.quiet, highlight=False, markup=False, emoji=False, soft_wrap=True)
 
     @contextmanager
     def progress(self, what):
-        """A callback (done, total) that shows a bar with the time left, after a second."""
+        """A callback (done, total) behind a bar with the time left, which shows after a second.
+
+        The bar waits in a thread of its own, so that it shows before the first call, too.
+        """
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
         terminal = Console(stderr=True)
-        columns = TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn(compact=True)
-        bar = Progress(*columns, console=terminal, transient=True, disable=self.quiet)
+        text = TextColumn("{task.description}", markup=False)
+        columns = text, BarColumn(), TimeRemainingColumn(compact=True)
+        bar = Progress(*columns, console=terminal, transient=True)
         task = bar.add_task(what, total=None)
-        began = time.monotonic()
-
-        def report(done, total):
-            bar.update(task, completed=done, total=total)
-            if terminal.is_terminal and time.monotonic() - began > PATIENCE:
-                bar.start()
-
+        patience = Timer(PATIENCE, bar.start)
+        patience.daemon = True
+        if terminal.is_terminal and not self.quiet:
+            patience.start()
         try:
-            yield report
+            yield lambda done, total: bar.update(task, completed=done, total=total)
         finally:
+            patience.cancel()
+            if patience.ident:
+                patience.join()
             if bar.live.is_started:  # stopping an unstarted bar prints an empty line
                 bar.stop()
 
     def json(self, record):
         if not self.quiet:
-            print(json.dumps(record, indent=2, default=str))
+            print(json.dumps(records.plain(record), indent=2))
 
     def table(self, *columns, title=None):
+        """An empty table; a column whose name begins with ">" is flush right."""
         from rich.box import SIMPLE_HEAD
-        from rich.markup import escape
         from rich.table import Table
+        from rich.text import Text
 
+        title = title and Text(title)
         table = Table(box=SIMPLE_HEAD, title=title, title_justify="left", pad_edge=False)
         for column in columns:
             side = "right" if column.startswith(">") else "left"
-            table.add_column(escape(column.removeprefix(">")), justify=side)
+            table.add_column(Text(column.removeprefix(">")), justify=side)
         return table
 
     def models(self, models):
         """The list of models."""
         if self.as_json:
-            return self.json({name: _parameters(model) for name, model in models.items()})
+            return self.json({name: records.parameters(model) for name, model in models.items()})
         table = self.table("model", "what it is", "parameters")
         for name, model in models.items():
             table.add_row(name, _page(model)[0].partition(": ")[2], ", ".join(model.parameters))
@@ -75,10 +86,8 @@ class Console:
     def model(self, model):
         """The page of one model."""
         if self.as_json:
-            return self.json({model.type_name(): _parameters(model)})
-        from rich.markup import escape
-
-        self.out.print(escape("\n".join(_page(model))))
+            return self.json({model.type_name(): records.parameters(model)})
+        self.out.print("\n".join(_page(model)))
         table = self.table("parameter", ">default", ">from", ">to", "meaning")
         for name, p in model.parameters.items():
             low, high = (f"{v:g}" if v < float("inf") else "" for v in p.bounds)
@@ -104,15 +113,14 @@ class Console:
 
     def measured(self, data):
         """What is in a measured material."""
-        record = _summary(data)
+        record = records.measured(data)
         if self.as_json:
             return self.json(record)
-        self.out.print(f"[bold]{data.name}[/bold]")
         table = self.table("", "")
         table.show_header = False
-        for key, value in record.items():
-            if key != "name":
-                table.add_row(key.replace("_", " "), str(value))
+        for key, value in _described(record).items():
+            table.add_row(key.replace("_", " "), str(value))
+        self.out.print(data.name, style="bold")
         self.out.print(table)
         return None
 
@@ -122,22 +130,17 @@ class Console:
             return self.json(
                 {
                     "material": material.name,
-                    "fits": [_fit_record(f, comparison, psnr) for f in fits],
-                    "written": [str(path) for path in written],
+                    "fits": [records.fit(f, comparison, psnr) for f in fits],
+                    "written": written,
                 }
             )
         for found in fits:
-            self.out.print(str(found), markup=False)
+            self.out.print(found)
             self.out.print()
-        extra = [">PSNR [dB]"] if psnr else []
-        losses = list(next(iter(comparison.errors.values())))
-        table = self.table(
-            "model",
-            *(f">{n}" for n in losses),
-            *extra,
-            ">time [s]",
-            title=f"{material.name}: errors",
-        )
+        losses = [f">{name}" for name in next(iter(comparison.errors.values()))]
+        image = [">PSNR [dB]"] if psnr else []
+        title = f"{material.name}: errors"
+        table = self.table("model", *losses, *image, ">time [s]", title=title)
         for found in fits:
             errors = [f"{e:.5f}" for e in comparison.errors[found.name].values()]
             image = [f"{psnr[found.name]:.1f}"] if psnr else []
@@ -148,7 +151,9 @@ class Console:
 
     def rendering(self, picture, path):
         """What was rendered, and where it is."""
-        written = [path, path.with_suffix(".png")] if path.suffix == ".exr" else [path]
+        written = [path]
+        if path.suffix.lower() == ".exr":
+            written += [path.with_suffix(".png")]
         if self.as_json:
             return self.json(
                 {
@@ -156,84 +161,42 @@ class Console:
                     "psnr": picture.psnr(),
                     "spp": picture.spp,
                     "seconds": picture.seconds,
-                    "written": [str(p) for p in written],
+                    "written": written,
                 }
             )
-        self.out.print(str(picture), markup=False)
+        self.out.print(picture)
         self.written(written)
         return None
 
     def reports(self, reports):
         """What the checks found."""
         if self.as_json:
-            return self.json(
-                [
-                    {"name": r.name, "passed": bool(r), "findings": [asdict(f) for f in r.findings]}
-                    for r in reports
-                ]
-            )
+            return self.json([records.report(report) for report in reports])
         for report in reports:
-            self.out.print(str(report), markup=False)
+            self.out.print(report)
         return None
 
     def written(self, paths):
         for path in paths:
-            self.out.print(f"written: {path}", markup=False)
+            self.out.print(f"written: {path}")
 
 
 def _page(model):
-    import inspect
-    import sys
-
+    """The lines of a model's page: its file's docstring."""
     return inspect.cleandoc(sys.modules[model.__module__].__doc__ or model.__name__).splitlines()
 
 
-def _parameters(model):
+def _described(record):
+    """A measured material's record in words."""
+    channels, brdf = record["channels"], record["brdf"]
+    if len(channels) > 5:
+        channels = [f"{len(channels)} wavelengths, {channels[0]} to {channels[-1]}"]
     return {
-        name: {
-            "default": p.default,
-            "bounds": [None if abs(b) == float("inf") else b for b in p.bounds],
-            "follows": p.follows,
-            "linear": p.linear,
-            "meaning": p.meaning,
-        }
-        for name, p in model.parameters.items()
-    }
-
-
-def _summary(data):
-    import numpy as np
-
-    samples = data.samples
-    valid = samples.values[samples.valid]
-    cosines = np.minimum(samples.wi[samples.valid, 2], samples.wo[samples.valid, 2])
-    kind = "×".join(map(str, data.table.shape)) + " table" if data.is_table else "samples"
-    channels = " ".join(data.channels)
-    if len(data.channels) > 5:
-        channels = f"{len(data.channels)} wavelengths, {data.channels[0]} to {data.channels[-1]}"
-    return {
-        "name": data.name,
-        "kind": kind,
-        "channels": channels,
-        "valid": f"{samples.valid.sum():,} of {len(samples.valid):,}",
-        "negative": f"{(valid < 0).any(axis=1).mean():.2%} of the valid",
-        "BRDF": f"{valid.min():.4g} to {valid.max():.4g}, median {np.median(valid):.4g} sr⁻¹",
-        "angles": f"to {np.degrees(np.arccos(cosines.min())):.1f}°",
-        **data.info,
-    }
-
-
-def _fit_record(fit, comparison, psnr):
-    return {
-        "model": fit.name,
-        "parameters": fit.parameters,
-        "loss": fit.loss_name,
-        "error": fit.loss,
-        "errors": comparison.errors[fit.name],
-        "psnr": psnr.get(fit.name),
-        "at_bounds": fit.at_bounds,
-        "evaluations": fit.evaluations,
-        "samples": fit.samples,
-        "seconds": fit.seconds,
-        "message": fit.message,
+        "kind": "×".join(map(str, record["shape"])) + " table" if record["shape"] else "samples",
+        "channels": " ".join(channels),
+        "valid": f"{record['valid']:,} of {record['samples']:,}",
+        "negative": f"{record['negative'] / record['valid']:.2%} of the valid",
+        "BRDF": f"{brdf['min']:.4g} to {brdf['max']:.4g}, median {brdf['median']:.4g} sr⁻¹",
+        "angles": f"to {record['max_angle']:.1f}°",
+        **record["info"],
     }

@@ -1,0 +1,75 @@
+"""Results as plain data, for `--json` and for the tables."""
+
+import math
+
+import numpy as np
+
+
+def plain(value):
+    """`value` as JSON knows it: NumPy's numbers as Python's, null for what is not finite."""
+    if isinstance(value, dict):
+        return {str(key): plain(v) for key, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(v) for v in value]
+    if isinstance(value, np.ndarray | np.generic):
+        return plain(value.tolist())
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    return value if isinstance(value, str | int | None) else str(value)
+
+
+def parameters(model):
+    """The parameters of a model by name."""
+    return {
+        name: {
+            "default": p.default,
+            "bounds": p.bounds,
+            "follows": p.follows,
+            "linear": p.linear,
+            "meaning": p.meaning,
+        }
+        for name, p in model.parameters.items()
+    }
+
+
+def measured(data):
+    """What is in a measured material."""
+    samples = data.samples
+    values = samples.values[samples.valid]
+    cosines = np.minimum(samples.wi[samples.valid, 2], samples.wo[samples.valid, 2])
+    return {
+        "name": data.name,
+        "shape": data.table.shape if data.is_table else None,
+        "channels": data.channels,
+        "samples": len(samples.valid),
+        "valid": samples.valid.sum(),
+        "negative": (values < 0).any(axis=1).sum(),
+        "brdf": {"min": values.min(), "max": values.max(), "median": np.median(values)},
+        "max_angle": np.degrees(np.arccos(cosines.min())),
+        "info": data.info,
+    }
+
+
+def fit(found, comparison, psnr):
+    """A fit, with its errors under every loss and the PSNR of its picture, if there is one."""
+    return {
+        "model": found.name,
+        "parameters": found.parameters,
+        "loss": found.loss_name,
+        "error": found.loss,
+        "errors": comparison.errors[found.name],
+        "psnr": psnr.get(found.name),
+        "at_bounds": found.at_bounds,
+        "evaluations": found.evaluations,
+        "samples": found.samples,
+        "seconds": found.seconds,
+        "message": found.message,
+    }
+
+
+def report(checked):
+    """What the checks of one material found."""
+    findings = [
+        {"check": f.check, "passed": bool(f.passed), "figure": f.figure} for f in checked.findings
+    ]
+    return {"name": checked.name, "passed": bool(checked), "findings": findings}
