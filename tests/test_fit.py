@@ -42,7 +42,7 @@ def test_known_parameters_come_back(model, loss, starts):
     truth = isotropic(model)
     found = bk.fit(truth.type_name(), synthetic(truth), loss=loss, starts=starts)
     for name, value in truth.values.items():
-        np.testing.assert_allclose(found.parameters[name], value, rtol=1e-4, err_msg=name)
+        np.testing.assert_allclose(found.values[name], value, rtol=1e-4, err_msg=name)
     assert found.loss < 1e-5
 
 
@@ -55,7 +55,7 @@ def test_known_parameters_come_back_from_a_table(model):
     table.values[above] = truth.eval(wi[above], wo[above])
     found = bk.fit(truth.type_name(), bk.Measured.from_table(table.values))
     for name, value in truth.values.items():
-        np.testing.assert_allclose(found.parameters[name], value, rtol=1e-4, err_msg=name)
+        np.testing.assert_allclose(found.values[name], value, rtol=1e-4, err_msg=name)
 
 
 # Kurt 2007, digest of the optima on the RGB-averaged CUReT, one channel, k ≥ 0, α ≤ 0.5:
@@ -88,7 +88,7 @@ def test_optima_on_curet(sample, name, measured_data):
     assert found.samples == 189
     assert found.loss == pytest.approx(loss, rel=3e-3)
     for parameter, value in expected.items():
-        assert np.mean(found.parameters[parameter]) == pytest.approx(value, rel=1e-2), parameter
+        assert np.mean(found.values[parameter]) == pytest.approx(value, rel=1e-2), parameter
 
 
 def test_large_tables_end_where_all_cells_say():
@@ -104,7 +104,7 @@ def test_large_tables_end_where_all_cells_say():
 def test_reproducible_to_the_last_digit():
     data = synthetic(bk.models()["ggx"]())
     first, second = (bk.fit("ggx", data, loss="cbrt") for _ in range(2))
-    assert first.parameters == second.parameters
+    assert first.values == second.values
     assert first.loss == second.loss
 
 
@@ -119,7 +119,7 @@ def test_fit_is_plain_data(tmp_path):
         pickle.loads(pickle.dumps(found)),
         copy.deepcopy(found),
     ):
-        assert other.parameters == found.parameters
+        assert other.values == found.values
         assert other.loss == found.loss
         np.testing.assert_array_equal(other.eval(wi, wo), found.eval(wi, wo))
 
@@ -129,7 +129,7 @@ def test_what_sits_on_a_bound_is_named():
     data = synthetic(bk.models()["ward"](alpha_u=0.4))
     found = bk.fit("ward", data, bounds={"alpha_u": (0.01, 0.3)})
     assert found.at_bounds == ("alpha_u",)
-    assert found.parameters["alpha_u"] == pytest.approx(0.3)
+    assert found.values["alpha_u"] == pytest.approx(0.3)
     assert "on its bound" in str(found)
 
 
@@ -138,15 +138,32 @@ def test_a_lobe_that_is_not_there_is_named():
     """A facet model without its tails would want less than nothing diffuse: it gets none."""
     data = synthetic(bk.models()["ggx"](diffuse_reflectance=0.0))
     found = bk.fit("blinn_phong", data, loss="cosine", bounds={"exponent": (0.1, 2.0)})
-    assert found.parameters["diffuse_reflectance"] == (0.0,)
+    assert found.values["diffuse_reflectance"] == (0.0,)
     assert "diffuse_reflectance" in found.at_bounds
+
+
+@pytest.mark.quick
+def test_anisotropy_comes_back_where_it_is_asked_for():
+    truth = bk.models()["ward"](alpha_u=0.1, alpha_v=0.35)
+    found = bk.fit("ward", synthetic(truth), anisotropic=True)
+    for name, value in truth.values.items():
+        np.testing.assert_allclose(found.values[name], value, rtol=1e-4, err_msg=name)
+
+
+@pytest.mark.quick
+def test_a_black_material_is_fitted():
+    data = synthetic(bk.models()["lambert"](diffuse_reflectance=0.0), n=50)
+    for loss in bk.losses:
+        found = bk.fit("ward", data, loss=loss, starts=2)
+        assert found.loss < 1e-9
+        assert found.values["diffuse_reflectance"][0] < 1e-9
 
 
 @pytest.mark.quick
 def test_fixed_parameter_stays():
     data = synthetic(bk.models()["ggx"](f0=0.2))
     found = bk.fit("ggx", data, fixed={"f0": 0.04})
-    assert found.parameters["f0"] == 0.04
+    assert found.values["f0"] == 0.04
     assert found.loss > 0.01
 
 
@@ -170,8 +187,8 @@ def test_without_derivatives_the_fit_is_the_same(monkeypatch):
     monkeypatch.setattr(backend, "float64", lambda: dr.scalar.ArrayXf64)
     assert not backend.differentiable()
     slow = bk.fit("cook_torrance", data)
-    for name, value in exact.parameters.items():
-        np.testing.assert_allclose(slow.parameters[name], value, rtol=1e-4)
+    for name, value in exact.values.items():
+        np.testing.assert_allclose(slow.values[name], value, rtol=1e-4)
 
 
 @pytest.mark.quick
@@ -184,7 +201,10 @@ def test_without_derivatives_the_fit_is_the_same(monkeypatch):
         ({"bounds": {"alpha_u": (0.5, 0.1)}}, ["alpha_u", "0.001..1"]),
         ({"bounds": {"alpha_u": (0.1, 7.0)}}, ["alpha_u", "0.001..1"]),
         ({"fixed": {"alpha_u": 9.0}}, ["alpha_u = 9.0", "between 0.001 and 1"]),
-        ({"fixed": {"diffuse_reflectance": 0.5}}, ["diffuse_reflectance", "weight"]),
+        ({"fixed": {"diffuse_reflectance": 0.5}}, ["diffuse_reflectance", "not searched"]),
+        ({"bounds": {"alpha_v": (0.1, 0.2)}}, ["alpha_v", "not searched"]),
+        ({"bounds": {"alpha_u": (0.1, 0.2)}, "fixed": {"alpha_u": 0.1}}, ["alpha_u", "choose one"]),
+        ({"starts": 0}, ["starts = 0"]),
         ({"max_angle": 0.0}, ["max_angle"]),
     ],
 )

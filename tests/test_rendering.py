@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+import brdfkit as bk
 from brdfkit.errors import BrdfkitError
 from brdfkit.pictures import montage
 from brdfkit.rendering import Rendering, _passes, render, render_scene
@@ -27,16 +28,6 @@ def variant():
 @pytest.fixture(scope="module")
 def pair():
     return render([WHITE, GREY], spp=8, size=32)
-
-
-class Painted:
-    """What `render` takes besides dictionaries."""
-
-    name = "painted"
-    parameters = {"diffuse_reflectance": (0.8, 0.1, 0.1), "alpha": np.float64(0.2)}  # noqa: RUF012
-
-    def scene_dict(self):
-        return {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0.8, 0.1, 0.1]}}
 
 
 @pytest.mark.quick
@@ -126,10 +117,12 @@ def test_passes_add_up(spp):
 def test_an_exr_reads_back_with_names_and_header(tmp_path):
     import OpenEXR
 
-    rendering = render([WHITE, Painted()], spp=5, size=16, seed=3)
+    rendering = render(
+        [WHITE, bk.models()["lambert"](diffuse_reflectance=(0.8, 0.1, 0.1))], spp=5, size=16, seed=3
+    )
     rendering.write(tmp_path / "both.exr")
     assert sorted(p.name for p in tmp_path.iterdir()) == ["both.exr", "both.png"]
-    expected = rendering.pictures | {"difference: painted": rendering.differences["painted"]}
+    expected = rendering.pictures | {"difference: lambert": rendering.differences["lambert"]}
     with OpenEXR.File(str(tmp_path / "both.exr"), separate_channels=True) as file:
         parts = {part.name(): part for part in file.parts}
         assert list(parts) == list(expected)
@@ -139,8 +132,8 @@ def test_an_exr_reads_back_with_names_and_header(tmp_path):
             np.testing.assert_array_equal(read, expected[name])
             assert (part.header["spp"], part.header["seed"]) == (5, 3)
             assert part.header["brdfkit"]
-        parameters = json.loads(parts["painted"].header["parameters"])
-        assert parameters == {"diffuse_reflectance": [0.8, 0.1, 0.1], "alpha": 0.2}
+        parameters = json.loads(parts["lambert"].header["parameters"])
+        assert parameters == {"diffuse_reflectance": [0.8, 0.1, 0.1]}
         assert json.loads(parts["white"].header["parameters"]) == {}
 
 

@@ -9,8 +9,7 @@ no scattering between facets.
 """
 
 from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import GGX as Distribution
-from brdfkit.microfacet import dot, half_vector, schlick
+from brdfkit.microfacet import TrowbridgeReitz, dot, half_vector, schlick
 from brdfkit.model import Model, follows, shape, weight
 
 
@@ -22,11 +21,11 @@ class GGX(Model):
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
     def specular(self, wi, wo):
-        facets = Distribution(self.alpha_u, self.alpha_v)
+        facets = TrowbridgeReitz(self.alpha_u, self.alpha_v)
         h = half_vector(wi, wo)
         F = schlick(self.f0, dot(wi, h))
         return facets.D(h) * facets.G2(wi, wo) * F / (4 * wi.z * wo.z)
 
     def lobes(self):
-        sampling = HalfVector(Distribution(self.alpha_u, self.alpha_v))
+        sampling = HalfVector(TrowbridgeReitz(self.alpha_u, self.alpha_v))
         return lambertian(), Lobe(self.specular, sampling, energy=self.f0)

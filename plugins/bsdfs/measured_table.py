@@ -10,16 +10,15 @@ Sampled by a share of cosine and a distribution of normals that is read off the 
 
 import numpy as np
 
-HORIZON = 1e-6
-
 
 def define(mi):
     """The class of `mi.BSDF` for the current variant."""
     import drjit as dr
 
+    from brdfkit.colours import luminance
     from brdfkit.errors import BrdfkitError
     from brdfkit.lobes import Cosine
-    from brdfkit.microfacet import dot, half_vector, reflect
+    from brdfkit.microfacet import above_horizon, dot, half_vector, reflect
     from brdfkit.normals import normals_of
     from brdfkit.table import Table
 
@@ -37,7 +36,7 @@ def define(mi):
             self.shape, self.period = table.shape, table.phi_d_period
             values = np.maximum(table.filled, 0)
             if mi.is_monochromatic:
-                values = values.mean(axis=-1, keepdims=True)
+                values = luminance(values)[..., None]
             else:
                 values = np.broadcast_to(values, (*table.shape, 3))
             self.values = buffer(values)
@@ -53,7 +52,7 @@ def define(mi):
             self.m_flags = self.m_components[0]
 
         def sample(self, ctx, si, sample1, sample2, active=True):
-            wi, active = above(si.wi, active)
+            wi, active = above_horizon(si.wi, active)
             diffuse = sample1 < self.diffuse_share
             wo = dr.select(diffuse, COSINE.sample(wi, sample2), reflect(wi, self.normal(sample2)))
             pdf = self.pdf(ctx, si, wo, active)
@@ -69,14 +68,14 @@ def define(mi):
 
         def eval(self, ctx, si, wo, active=True):
             active &= ctx.is_enabled(mi.BSDFFlags.GlossyReflection, 0)
-            wi, active = above(si.wi, active)
-            wo, active = above(wo, active)
+            wi, active = above_horizon(si.wi, active)
+            wo, active = above_horizon(wo, active)
             return dr.select(active, self.lookup(wi, wo) * wo.z, 0)
 
         def pdf(self, ctx, si, wo, active=True):
             active &= ctx.is_enabled(mi.BSDFFlags.GlossyReflection, 0)
-            wi, active = above(si.wi, active)
-            wo, active = above(wo, active)
+            wi, active = above_horizon(si.wi, active)
+            wo, active = above_horizon(wo, active)
             h = half_vector(wi, wo)
             n = self.shape[0]
             position = dr.sqrt(dr.safe_acos(h.z) / (dr.pi / 2)) * n
@@ -141,10 +140,6 @@ def define(mi):
             raise BrdfkitError("measured_table needs a filename (or the tensor table).")
         period = props.get("phi_d_period", float(np.pi))
         return Table(np.array(props["table"], float), period)
-
-    def above(w, active):
-        up = w.z > HORIZON
-        return dr.select(up, w, mi.Vector3f(0, 0, 1)), active & up
 
     def half_difference(wi, wo):
         h = half_vector(wi, wo)

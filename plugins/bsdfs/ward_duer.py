@@ -17,8 +17,8 @@ from brdfkit.model import Model, follows, shape, weight
 class WardDuer(Model):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.2, "k_s: strength of the highlight")
-    alpha_u = shape(0.2, (0.001, 1.0), "α_u: rms slope of the surface along x", log=True)
-    alpha_v = follows("alpha_u", alpha_u, "α_v: rms slope along y")
+    alpha_u = shape(0.2, (0.001, 1.0), "α_u: width of the slopes along x", log=True)
+    alpha_v = follows("alpha_u", alpha_u, "α_v: width of the slopes along y")
 
     def specular(self, wi, wo):
         gauss = Beckmann(self.alpha_u, self.alpha_v).gauss(half_vector(wi, wo))

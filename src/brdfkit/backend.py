@@ -4,18 +4,34 @@ With LLVM (or CUDA) a kernel runs over all directions at once and has derivative
 either, Dr.Jit's scalar arrays do the same work slower, and a fit takes finite differences.
 """
 
+from dataclasses import dataclass
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 
-class Vector(NamedTuple):
+@dataclass(frozen=True)
+class Vector:
     """Directions as a model sees them: x, y, z, each an array over all directions."""
 
     x: Any
     y: Any
     z: Any
+
+    def __add__(self, other):
+        return Vector(self.x + other.x, self.y + other.y, self.z + other.z)
+
+    def __sub__(self, other):
+        return Vector(self.x - other.x, self.y - other.y, self.z - other.z)
+
+    def __neg__(self):
+        return Vector(-self.x, -self.y, -self.z)
+
+    def __mul__(self, factor):
+        return Vector(self.x * factor, self.y * factor, self.z * factor)
+
+    __rmul__ = __mul__
 
 
 @cache
@@ -52,3 +68,9 @@ def scalar(value):
     number = float64()(float(value))
     dr.make_opaque(number)
     return number
+
+
+def shapes(model):
+    """The free shape parameters of a model with values, by name, each a `scalar`."""
+    linear = model.weights()
+    return {name: scalar(v) for name, v in model.free_values.items() if name not in linear}

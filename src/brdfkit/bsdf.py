@@ -1,7 +1,8 @@
 """The one adapter from a model to a Mitsuba BSDF.
 
 Written once for all models: textures for every parameter, one component per lobe, lobes chosen
-by their weight, and a share of cosine samples that keeps the weights of a sample bounded.
+by their weight and energy, and a share of cosine samples, which bounds the weight of a sample
+where the BRDF itself is bounded.
 """
 
 import functools
@@ -10,20 +11,18 @@ import operator
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.lobes import Cosine
+from brdfkit.microfacet import above_horizon
 
 # Share of the samples that follow the cosine, whatever the lobes
 COSINE_SHARE = 0.1
-# Directions this close to the horizon (cosine) count as below it: 1/cos stays finite in float32
-HORIZON = 1e-6
+COSINE = Cosine()
 
 
 def scene_dict(model):
     """The dictionary for `mitsuba.load_dict` of a model with values."""
     entries = {"type": model.type_name()}
-    for name, value in model.values.items():
-        follows = model.parameters[name].follows
-        if follows and value == model.values[follows]:
-            continue
+    for name, value in model.free_values.items():
         entries[name] = _rgb(value) if isinstance(value, tuple) else value
     return entries
 
@@ -41,13 +40,30 @@ def define(mi, model):
     defaults = model()
     kinds = [
         flags.DiffuseReflection if lobe.diffuse else flags.GlossyReflection
-        for lobe in defaults.lobes()
+        for _, lobe in defaults.terms()
     ]
     anisotropic = flags.Anisotropic if model.anisotropic() else flags.Empty
     components = [
         kind | flags.FrontSide | (anisotropic if kind == flags.GlossyReflection else flags.Empty)
         for kind in kinds
     ]
+
+    def enabled(ctx, k):
+        return ctx.is_enabled(kinds[k], k)
+
+    def first_enabled(ctx):
+        return next((k for k in range(len(kinds)) if enabled(ctx, k)), 0)
+
+    def kind_of(component):
+        kind = mi.UInt32(int(kinds[0]))
+        for k, other in enumerate(kinds[1:], 1):
+            kind = dr.select(component == k, int(other), kind)
+        return kind
+
+    def within(value, parameter):
+        # A texture may hold anything. Not dr.clip: on a bound it has half the derivative
+        low, high = parameter.bounds
+        return dr.select(value < low, low, dr.select(value > high, high, value))
 
     class Plugin(mi.BSDF):
         def __init__(self, props):
@@ -71,7 +87,7 @@ def define(mi, model):
                 callback.put(name, texture, kind)
 
         def sample(self, ctx, si, sample1, sample2, active=True):
-            wi, active = above(si.wi, active)
+            wi, active = above_horizon(si.wi, active)
             weights, lobes = self.terms(si, active)
             shares = self.shares(ctx, weights, lobes)
 
@@ -87,8 +103,10 @@ def define(mi, model):
                 wo = dr.select(hit, lobe.sampling.sample(wi, sample2), wo)
                 component = dr.select(hit, k, component)
 
+            # Directions are drawn without derivatives, and so is their density in the weight
+            wo = dr.detach(wo)
             sample = dr.zeros(mi.BSDFSample3f)
-            above_wo, active = above(wo, active)
+            above_wo, active = above_horizon(wo, active)
             value, pdf = self.value_and_pdf(ctx, weights, lobes, shares, wi, above_wo)
             active &= pdf > 0
             sample.wo = wo
@@ -106,8 +124,8 @@ def define(mi, model):
             return self.eval_pdf(ctx, si, wo, active)[1]
 
         def eval_pdf(self, ctx, si, wo, active=True):
-            wi, active = above(si.wi, active)
-            wo, active = above(wo, active)
+            wi, active = above_horizon(si.wi, active)
+            wo, active = above_horizon(wo, active)
             weights, lobes = self.terms(si, active)
             shares = self.shares(ctx, weights, lobes)
             value, pdf = self.value_and_pdf(ctx, weights, lobes, shares, wi, wo)
@@ -120,12 +138,12 @@ def define(mi, model):
 
         def terms(self, si, active):
             """Weights and lobes at a surface point."""
-            values = {
-                name: texture.eval(si, active)
-                if model.parameters[name].linear
-                else texture.eval_1(si, active)
-                for name, texture in self.textures.items()
-            }
+            values = {}
+            for name, texture in self.textures.items():
+                if model.parameters[name].linear:
+                    values[name] = texture.eval(si, active)
+                else:
+                    values[name] = within(texture.eval_1(si, active), model.parameters[name])
             return [values[name] for name in model.weights()], model.bind(values).lobes()
 
         def shares(self, ctx, weights, lobes):
@@ -140,7 +158,8 @@ def define(mi, model):
         def value_and_pdf(self, ctx, weights, lobes, shares, wi, wo):
             """BRDF times cosine of the enabled lobes, and the density of `sample`."""
             value = mi.Spectrum(0)
-            pdf = mi.Float(COSINE_SHARE * COSINE.pdf(wi, wo))
+            none = all(share is None for share in shares)
+            pdf = mi.Float(0 if none else COSINE_SHARE * COSINE.pdf(wi, wo))
             for weight, lobe, share in zip(weights, lobes, shares, strict=True):
                 if share is not None:
                     value += weight * lobe.eval(wi, wo)
@@ -150,27 +169,6 @@ def define(mi, model):
         def to_string(self):
             lines = [f"  {name} = {texture}" for name, texture in self.textures.items()]
             return "\n".join([f"{model.__name__}[", *lines, "]"])
-
-    from brdfkit.lobes import Cosine
-
-    COSINE = Cosine()
-
-    def above(w, active):
-        """The direction, or the normal where it is not above the surface, which turns inactive."""
-        up = w.z > HORIZON
-        return dr.select(up, w, mi.Vector3f(0, 0, 1)), active & up
-
-    def enabled(ctx, k):
-        return ctx.is_enabled(kinds[k], k)
-
-    def first_enabled(ctx):
-        return next((k for k in range(len(kinds)) if enabled(ctx, k)), 0)
-
-    def kind_of(component):
-        kind = mi.UInt32(int(kinds[0]))
-        for k, other in enumerate(kinds[1:], 1):
-            kind = dr.select(component == k, int(other), kind)
-        return kind
 
     return Plugin
 

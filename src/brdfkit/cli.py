@@ -9,7 +9,7 @@ from brdfkit.command import Group, output_options, render_options, say, values_o
 from brdfkit.errors import BrdfkitError
 
 
-@click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group("brdfkit", cls=Group, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, "-V", "--version", prog_name="brdfkit")
 def main():
     """Fit BRDF models to measured materials, and path-trace both.
@@ -37,7 +37,7 @@ def models(name, console):
 @click.argument("file", required=False)
 @output_options
 def info(file, console):
-    """Show what is in a measured FILE; without it, list the materials that brdfkit brings."""
+    """Show what is in a measured FILE. Without it, list the materials that brdfkit brings."""
     from brdfkit import catalogue
     from brdfkit.targets import measured
 
@@ -51,13 +51,115 @@ def info(file, console):
 
 @main.command()
 @click.argument("file")
-@click.option("-m", "--model", "names", multiple=True, metavar="NAME", help=MODEL)
-@click.option("--loss", default="log", show_default=True, metavar="NAME", help=LOSS)
+@click.option("-m", "--model", "names", multiple=True, help="A model; repeat it. Default: all.")
+@click.option("--loss", default="log", show_default=True, help="cosine, log or cbrt.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results.")
 @click.option("--render", "rendered", is_flag=True, help="Path-trace the measurement and the fits.")
 @click.option("--max-angle", default=80.0, show_default=True, help="Use angles below [degrees].")
 @render_options
 @output_options
 def fit(file, names, loss, output, rendered, max_angle, spp, size, seed, console):
-    """Fit models to a measured FILE, or to a material that brdfkit brings."""
+    """Fit models to a measured FILE, or to a material of brdfkit's."""
     from brdfkit import registry
+    from brdfkit.comparing import compare
+    from brdfkit.fitting import fit as fit_model
+    from brdfkit.formats import save
+    from brdfkit.targets import measured, results
+
+    names = list(dict.fromkeys(names or registry.models()))
+    for name in names:
+        registry.model(name)
+    with console.progress(f"read {file}"):
+        material = measured(file)
+    if output is None and rendered:
+        output = Path(material.name)
+
+    fits, psnr, interrupted = [], {}, False
+    with results(output):
+        try:
+            for number, name in enumerate(names, 1):
+                with console.progress(f"fit {name} ({number} of {len(names)})") as progress:
+                    found = fit_model(
+                        name, material, loss, max_angle=max_angle, seed=seed, progress=progress
+                    )
+                if output is not None:
+                    save(found, output / f"{name}.json")
+                fits.append(found)
+        except KeyboardInterrupt:
+            if not fits:
+                raise
+            say(f"interrupted; {len(fits)} of {len(names)} fits are finished.")
+            interrupted = True
+
+        fits.sort(key=lambda f: f.loss)
+        written = [output / f"{f.name}.json" for f in fits] if output else []
+        if rendered and not interrupted:
+            picture = _render([material, *fits], output / "render.exr", spp, size, seed, console)
+            psnr = picture.psnr()
+            written += [output / "render.exr", output / "render.png"]
+    with console.progress("compare"):
+        comparison = compare(material, fits, max_angle)
+    console.fits(material, fits, comparison, psnr, written)
+    if interrupted:
+        click.get_current_context().exit(130)
+
+
+@main.command()
+@click.argument("things", nargs=-1, required=True, metavar="FIT|NAME|FILE|SCENE.xml...")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="Picture to write, .exr (with a .png beside it) or .png. Default: NAME.png.",
+)
+@values_option
+@render_options
+@output_options
+def render(things, output, values, spp, size, seed, console):
+    """Path-trace fits, models, measured files or a Mitsuba scene.
+
+    Several are rendered side by side; the first is the reference of the differences. A scene is
+    rendered alone, in its own size.
+    """
+    from brdfkit.rendering import render_scene
+    from brdfkit.targets import material, picture_file
+
+    scenes = [t for t in things if t.lower().endswith(".xml")]
+    if scenes:
+        if len(things) > 1 or values:
+            raise BrdfkitError("A scene is rendered alone and as it is: name one SCENE.xml.")
+        output = picture_file(output or Path(scenes[0]).with_suffix(".png").name)
+        with console.progress("render") as progress:
+            picture = render_scene(scenes[0], spp=spp, seed=seed, progress=progress)
+        picture.write(output)
+    else:
+        found = [material(thing, values) for thing in things]
+        output = picture_file(output or f"{found[0].name}.png")
+        picture = _render(found, output, spp, size, seed, console)
+    console.rendering(picture, output)
+
+
+@main.command()
+@click.argument("things", nargs=-1, required=True, metavar="NAME|FILE.py|FIT|FILE...")
+@values_option
+@output_options
+def check(things, values, console):
+    """Check that models sample, conserve energy and differentiate."""
+    from brdfkit.checks import check as check_thing
+    from brdfkit.targets import to_check
+
+    reports = []
+    for thing in [t for name in things for t in to_check(name, values)]:
+        with console.progress(f"check {thing.name}") as progress:
+            reports.append(check_thing(thing, progress=progress))
+    console.reports(reports)
+    click.get_current_context().exit(0 if all(reports) else 1)
+
+
+def _render(things, output, spp, size, seed, console):
+    from brdfkit.rendering import render as render_things
+
+    with console.progress("render") as progress:
+        picture = render_things(things, spp=spp, size=size, seed=seed, progress=progress)
+    picture.write(output)
+    return picture

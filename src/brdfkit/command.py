@@ -3,40 +3,58 @@
 import functools
 import sys
 import warnings
+from contextlib import contextmanager, nullcontext
 
 import click
 
 from brdfkit.errors import BrdfkitError
 
-LARGEST_SEED = 2**31 - 1
-
 
 class Group(click.Group):
     """Tells errors that are meant for people in one sentence, with exit status 2."""
+
+    def make_context(self, info_name, args, *others, **extra):
+        with told() if args else nullcontext():  # without any click shows the help
+            return super().make_context(info_name, args, *others, **extra)
 
     def invoke(self, ctx):
         for stream in (sys.stdout, sys.stderr):  # a terminal may not know θ: ? stands for it
             if hasattr(stream, "reconfigure"):
                 stream.reconfigure(errors="replace")
-        try:
-            with warnings.catch_warnings():
-                warnings.showwarning = _say_warning
-                return super().invoke(ctx)
-        except BrdfkitError as error:
-            say(error)
-            ctx.exit(2)
-        except click.UsageError as error:
-            at = error.ctx.command_path if error.ctx else ctx.command_path
-            say(f"{error.format_message().rstrip('.')}; see {at} --help.")
-            ctx.exit(2)
-        except KeyboardInterrupt:
-            say("interrupted.")
-            ctx.exit(130)
+        with told(), warnings.catch_warnings():
+            warnings.showwarning = _say_warning
+            return super().invoke(ctx)
+
+
+class Told(click.ClickException):
+    """Ends the program with one sentence."""
+
+    def __init__(self, message, exit_code=2):
+        super().__init__(message)
+        self.exit_code = exit_code
+
+    def show(self, file=None):
+        say(self.message)
+
+
+@contextmanager
+def told():
+    """Turns errors for people, those of click too, and Ctrl-C into `Told`."""
+    try:
+        yield
+    except BrdfkitError as error:
+        raise Told(str(error)) from error
+    except click.UsageError as error:
+        command = error.ctx.command_path if error.ctx else "brdfkit"
+        message = error.format_message().rstrip(".")
+        raise Told(f"{message}; see {command} --help.") from error
+    except KeyboardInterrupt as error:
+        raise Told("interrupted.", 130) from error
 
 
 def say(message):
     """One sentence for people, on stderr."""
-    click.echo(f"brdfkit: {message}", err=True)
+    click.echo(f"brdfkit: {' '.join(str(message).split())}", err=True)
 
 
 def _say_warning(message, *_args, **_kwargs):
@@ -59,13 +77,15 @@ def output_options(command):
 
 def render_options(command):
     """The options of every command that renders."""
-    positive = click.IntRange(min=1)
-    seeds = click.IntRange(0, LARGEST_SEED)
-    for option in (
-        click.option("--seed", default=0, type=seeds, metavar="N", help="Seed of the samples."),
-        _number("--size", 512, positive, "Side of a picture [pixels]."),
-        _number("--spp", 64, positive, "Samples per pixel."),
+    for name, default, least, meaning in (
+        ("--seed", 0, 0, "Seed of the samples."),
+        ("--size", 512, 1, "Side of a picture [pixels]."),
+        ("--spp", 64, 1, "Samples per pixel."),
     ):
+        kind = click.IntRange(min=least)
+        option = click.option(
+            name, default=default, type=kind, metavar="N", show_default=True, help=meaning
+        )
         command = option(command)
     return command
 
@@ -81,9 +101,3 @@ def values_option(command):
         help="A parameter of the models named, a number or R,G,B; repeat it.",
     )
     return option(command)
-
-
-def _number(name, default, kind, meaning):
-    return click.option(
-        name, default=default, type=kind, metavar="N", show_default=True, help=meaning
-    )

@@ -118,7 +118,7 @@ class Console:
             return self.json(record)
         table = self.table("", "")
         table.show_header = False
-        for key, value in _described(record).items():
+        for key, value in records.described(record).items():
             table.add_row(key.replace("_", " "), str(value))
         self.out.print(data.name, style="bold")
         self.out.print(table)
@@ -135,7 +135,7 @@ class Console:
                 }
             )
         for found in fits:
-            self.out.print(found)
+            self.out.print(str(found))
             self.out.print()
         losses = [f">{name}" for name in next(iter(comparison.errors.values()))]
         image = [">PSNR [dB]"] if psnr else []
@@ -164,7 +164,7 @@ class Console:
                     "written": written,
                 }
             )
-        self.out.print(picture)
+        self.out.print(str(picture))
         self.written(written)
         return None
 
@@ -173,7 +173,7 @@ class Console:
         if self.as_json:
             return self.json([records.report(report) for report in reports])
         for report in reports:
-            self.out.print(report)
+            self.out.print(str(report))
         return None
 
     def written(self, paths):
@@ -184,19 +184,3 @@ class Console:
 def _page(model):
     """The lines of a model's page: its file's docstring."""
     return inspect.cleandoc(sys.modules[model.__module__].__doc__ or model.__name__).splitlines()
-
-
-def _described(record):
-    """A measured material's record in words."""
-    channels, brdf = record["channels"], record["brdf"]
-    if len(channels) > 5:
-        channels = [f"{len(channels)} wavelengths, {channels[0]} to {channels[-1]}"]
-    return {
-        "kind": "×".join(map(str, record["shape"])) + " table" if record["shape"] else "samples",
-        "channels": " ".join(channels),
-        "valid": f"{record['valid']:,} of {record['samples']:,}",
-        "negative": f"{record['negative'] / record['valid']:.2%} of the valid",
-        "BRDF": f"{brdf['min']:.4g} to {brdf['max']:.4g}, median {brdf['median']:.4g} sr⁻¹",
-        "angles": f"to {record['max_angle']:.1f}°",
-        **record["info"],
-    }

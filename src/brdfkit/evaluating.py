@@ -30,20 +30,21 @@ def evaluate_model(model, wi, wo):
     above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
     up = np.array([0.0, 0.0, 1.0])
     lobes = lobe_values(model, np.where(above[:, None], wi, up), np.where(above[:, None], wo, up))
+    return np.where(above[:, None], lobes @ weight_matrix(model), 0.0)
+
+
+def weight_matrix(model):
+    """Weights (lobes, channels) of a model."""
     weights = [np.atleast_1d(getattr(model, name)) for name in model.weights()]
     channels = max(len(w) for w in weights)
-    weights = np.array([np.broadcast_to(w, channels) for w in weights])
-    return np.where(above[:, None], lobes @ weights, 0.0)
+    return np.array([np.broadcast_to(w, channels) for w in weights])
 
 
 def lobe_values(model, wi, wo):
     """Lobes (n, lobes) in sr⁻¹ of directions (n, 3) above the surface."""
     from brdfkit import backend
 
-    bound = model.bind(
-        {name: backend.scalar(getattr(model, name)) for name in model.shapes()}
-        | {n: backend.scalar(getattr(model, n)) for n, p in model.parameters.items() if p.follows}
-    )
+    bound = model.bind(backend.shapes(model))
     wi, wo = backend.vector(wi), backend.vector(wo)
-    columns = [np.asarray(lobe.eval(wi, wo)) for lobe in bound.lobes()]
+    columns = [np.asarray(lobe.eval(wi, wo)) for _, lobe in bound.terms()]
     return np.stack([np.broadcast_to(c, len(wi.x)) for c in columns], axis=1)

@@ -10,7 +10,6 @@ process. So the library is chosen here, through DRJIT_LIBLLVM_PATH:
 4. none: Mitsuba's scalar variants remain.
 """
 
-import ctypes
 import os
 import re
 import site
@@ -59,7 +58,7 @@ def find_library():
         return named
     for prefix in (sys.prefix, site.getuserbase()):
         bundled = Path(prefix, "lib", "libLLVM.so")
-        if bundled.exists():
+        if library_version(bundled) >= OLDEST:
             return str(bundled)
     found = [p for folder in SYSTEM_FOLDERS for p in Path("/").glob(f"{folder[1:]}/libLLVM*.so*")]
     newest = max(found, key=library_version, default=None)
@@ -68,9 +67,11 @@ def find_library():
 
 def library_version(path):
     """Major version of a libLLVM, by its name or else by asking it; 0 if it cannot be loaded."""
-    by_name = re.search(r"libLLVM(?:-|\.so\.)(\d+)", str(path))
+    by_name = re.search(r"libLLVM(?:-|\.so\.)(\d+)", os.path.realpath(path))
     if by_name and Path(path).exists():
         return int(by_name[1])
+    import ctypes  # only here: `--help` should be instant
+
     try:
         library = ctypes.CDLL(str(path))
         major = ctypes.c_uint()
@@ -104,11 +105,14 @@ def use_variant():
         usable = loaded_version() >= OLDEST
         mi.set_variant(*(v for v in VARIANTS if usable or not v.startswith("llvm")))
         if mi.variant() == "scalar_rgb":
+            # one that is there now was not when Dr.Jit looked
+            remedy = "import brdfkit before mitsuba and drjit" if find_library() else REMEDY
             warnings.warn(
-                f"No CUDA device and no LLVM {OLDEST} or newer was found: Mitsuba's slow variant "
-                f"scalar_rgb is used. To mend it, {REMEDY}.",
+                f"Mitsuba has no CUDA device and no LLVM {OLDEST} or newer: its slow variant "
+                f"scalar_rgb is used; to mend it, {remedy}.",
                 stacklevel=2,
             )
+    refuse_bad_choice(mi.variant())
     return mi.variant()
 
 

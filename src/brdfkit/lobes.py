@@ -1,17 +1,28 @@
-"""Lobes, the terms of a model, and the ways to draw their outgoing direction.
-
-A way to draw answers `sample(wi, u)` → wo for a point `u` of the unit square, and its density
-`pdf(wi, wo)` [sr⁻¹]. A direction drawn below the surface gets weight 0 from the adapter; `pdf`
-is asked only for directions above it.
-"""
+"""Lobes, the terms of a model, and the ways to draw their outgoing direction."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import drjit as dr
 
 from brdfkit.microfacet import dot, half_vector, reflect
+
+
+class Sampling(Protocol):
+    """A way to draw the outgoing direction of a lobe."""
+
+    def sample(self, wi, u):
+        """A unit vector wo for a point `u` (x, y) of the unit square.
+
+        It may lie below the surface: the adapter gives it weight 0.
+        """
+
+    def pdf(self, wi, wo):
+        """Density of `sample` per solid angle [sr⁻¹], asked for `wo` above the surface only.
+
+        Its integral over the sphere is 1, over the hemisphere less where samples fall below.
+        """
 
 
 @dataclass(frozen=True)
@@ -19,13 +30,13 @@ class Lobe:
     """One term of a model, without its weight.
 
     `eval(wi, wo)`: value in sr⁻¹ without cosine, both directions above the surface;
-    `sampling`: a way to draw `wo`; `energy`: about how much light the lobe
-    reflects for weight 1, by which it is chosen; `diffuse`: Mitsuba's kind of the lobe.
+    `sampling`: a way to draw `wo`; `energy`: about how much light the lobe reflects for weight
+    1, by which it is chosen, a number or an array; `diffuse`: Mitsuba's kind of the lobe.
     """
 
     eval: Callable
-    sampling: Any
-    energy: float = 1.0
+    sampling: Sampling
+    energy: Any = 1.0
     diffuse: bool = False
 
 

@@ -9,6 +9,15 @@ from typing import Any
 
 import drjit as dr
 
+# Directions this close to the horizon (cosine) count as below it: 1/cos stays finite in float32
+HORIZON = 1e-6
+
+
+def above_horizon(w, active):
+    """The direction, or the normal where it is not above the surface, which turns inactive."""
+    up = w.z > HORIZON
+    return dr.select(up, w, type(w)(0, 0, 1)), active & up
+
 
 def dot(a, b):
     """Scalar product."""
@@ -17,15 +26,13 @@ def dot(a, b):
 
 def half_vector(wi, wo):
     """Unit vector halfway between two directions above the surface."""
-    x, y, z = wi.x + wo.x, wi.y + wo.y, wi.z + wo.z
-    length = dr.sqrt(x * x + y * y + z * z)
-    return type(wi)(x / length, y / length, z / length)
+    s = wi + wo
+    return s * dr.rsqrt(dot(s, s))
 
 
 def reflect(wi, h):
     """Mirror image of `wi` about `h`."""
-    s = 2 * dot(wi, h)
-    return type(wi)(s * h.x - wi.x, s * h.y - wi.y, s * h.z - wi.z)
+    return 2 * dot(wi, h) * h - wi
 
 
 def schlick(f0, cos_theta):
@@ -53,7 +60,7 @@ def _slope_exponent(h, alpha_u, alpha_v):
 
 @dataclass(frozen=True)
 class Beckmann:
-    """Gaussian slopes of rms `alpha_u` along x, `alpha_v` along y.
+    """Gaussian slopes of width `alpha_u` along x, `alpha_v` along y.
 
     P. Beckmann & A. Spizzichino 1963; sampling: Kurt 2007, eqs. 4.23-4.25.
     """
@@ -81,8 +88,8 @@ class Beckmann:
 
 
 @dataclass(frozen=True)
-class GGX:
-    """Trowbridge-Reitz slopes of width `alpha_u` along x, `alpha_v` along y.
+class TrowbridgeReitz:
+    """Slopes with long tails, of width `alpha_u` along x, `alpha_v` along y: "GGX".
 
     B. Walter et al. 2007; E. Heitz, "Understanding the masking-shadowing function", JCGT 2014.
     """
@@ -131,21 +138,42 @@ class CosinePower:
     exponent: Any
 
     def D(self, h):
-        return (self.exponent + 2) / (2 * dr.pi) * cosine_power(h.z, self.exponent)
+        return (self.exponent + 2) / (2 * dr.pi) * self._power(h)
 
     def sample(self, wi, u):
-        cos_theta = cosine_power(dr.maximum(1 - u.x, 1e-12), 1 / (self.exponent + 1))
-        sin_theta = dr.sqrt(dr.maximum(1 - cos_theta * cos_theta, 0))
+        # 1 - cosθ, of which cosθ in single precision knows too little
+        complement = -expm1(dr.log(dr.maximum(1 - u.x, 1e-12)) / (self.exponent + 1))
+        sin_theta = dr.sqrt(complement * (2 - complement))
         sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.y)
-        return type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
+        return type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, 1 - complement)
 
     def pdf(self, wi, h):
-        return (self.exponent + 1) / (2 * dr.pi) * cosine_power(h.z, self.exponent)
+        return (self.exponent + 1) / (2 * dr.pi) * self._power(h)
+
+    def _power(self, h):
+        return cosine_power((h.x * h.x + h.y * h.y) / (1 + h.z), self.exponent)
 
 
-def cosine_power(cosine, exponent):
-    """cosine^exponent for a cosine in [0, 1], with finite derivatives at 0."""
-    return dr.exp(exponent * dr.log(dr.maximum(cosine, 1e-12)))
+def cosine_power(complement, exponent):
+    """cosine^exponent by `complement` = 1 - cosine, accurate for large exponents.
+
+    0 where the cosine is not positive.
+    """
+    power = dr.exp(exponent * log1p(-dr.minimum(complement, 1 - 1e-6)))
+    return dr.select(complement < 1, power, 0)
+
+
+def log1p(x):
+    """log(1 + x), accurate for small x: W. Kahan's way."""
+    y = 1 + x
+    return dr.select(y == 1, x, dr.log(y) * x / dr.select(y == 1, 1, y - 1))
+
+
+def expm1(x):
+    """exp(x) - 1, accurate for small x: W. Kahan's way."""
+    y = dr.exp(x)
+    log_y = dr.log(dr.maximum(y, 1e-30))
+    return dr.select(y == 1, x, (y - 1) * x / dr.select(y == 1, 1, log_y))
 
 
 def _from_slope(vector, x, y):

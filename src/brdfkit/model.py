@@ -30,6 +30,10 @@ class Parameter:
     log: bool = False
     follows: str | None = None
 
+    def __post_init__(self):
+        if self.log and self.bounds[0] <= 0:
+            raise BrdfkitError(f"{self.meaning!r}: log=True needs bounds above 0.")
+
     def problem_with(self, value):
         """What is wrong with `value` (one number or several), None if it is within the bounds."""
         low, high = self.bounds
@@ -67,6 +71,9 @@ class Model:
 
     def __init_subclass__(cls):
         own = {k: v for k, v in vars(cls).items() if isinstance(v, Parameter)}
+        for name in own:
+            if hasattr(Model, name):
+                raise BrdfkitError(f"{cls.__name__}: no parameter can be named {name!r}.")
         cls.parameters = {**cls.parameters, **own}
 
     def __init__(self, **values):
@@ -104,9 +111,13 @@ class Model:
         return [name for name, p in cls.parameters.items() if p.linear]
 
     @classmethod
-    def shapes(cls):
-        """Names of the nonlinear parameters that do not follow another."""
-        return [name for name, p in cls.parameters.items() if not p.linear and not p.follows]
+    def shapes(cls, anisotropic=False):
+        """Names of the nonlinear parameters; those that follow another if `anisotropic`."""
+        return [
+            name
+            for name, p in cls.parameters.items()
+            if not p.linear and (anisotropic or not p.follows)
+        ]
 
     @classmethod
     def anisotropic(cls):
@@ -127,10 +138,27 @@ class Model:
         """One lobe per weight, in the order of the weights."""
         raise NotImplementedError(f"{type(self).__name__} should give its lobes")
 
+    def terms(self):
+        """(name of the weight, lobe) of every term."""
+        weights, lobes = self.weights(), self.lobes()
+        if len(weights) != len(lobes):
+            raise BrdfkitError(
+                f"{self.type_name()}: lobes() gives {len(lobes)} lobes for the {len(weights)} "
+                f"weights {', '.join(weights)}; it should give one each."
+            )
+        return list(zip(weights, lobes, strict=True))
+
     @property
     def values(self):
         """The parameters' values by name."""
         return {name: getattr(self, name) for name in self.parameters}
+
+    @property
+    def free_values(self):
+        """`values` without the parameters that follow another one and equal it."""
+        values = self.values
+        followed = {name: p.follows for name, p in self.parameters.items() if p.follows}
+        return {n: v for n, v in values.items() if n not in followed or v != values[followed[n]]}
 
     @property
     def name(self):

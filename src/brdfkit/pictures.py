@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+from brdfkit.colours import luminance
+
 COLUMNS = 4
 TILE = 320  # narrower pictures are enlarged to this width [pixels], so that captions fit
 GAP = 20
@@ -106,7 +107,7 @@ def _lightness_differences(rendering):
 
 
 def _lightness(linear):
-    y = np.maximum(linear @ LUMINANCE, 0)
+    y = np.maximum(luminance(linear), 0)
     return np.where(y > 216 / 24389, 116 * np.cbrt(y) - 16, y * 24389 / 27)
 
 

@@ -7,13 +7,13 @@ from itertools import cycle
 import numpy as np
 from matplotlib.figure import Figure
 
+from brdfkit.colours import luminance
 from brdfkit.directions import from_angles, to_angles
 from brdfkit.errors import BrdfkitError
 from brdfkit.measured import Measured
 from brdfkit.names import unused
 from brdfkit.table import Table
 
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # of linear sRGB
 STEP = 0.1  # degrees between the points of a line
 NEAR_THETA, NEAR_PHI = 3, 5  # degrees: samples this close to the plane are drawn in it
 
@@ -77,16 +77,6 @@ def lobe(thing, theta_i):
     if isinstance(thing, Measured):
         known &= _was_measured(thing.table, wi, wo)
     return theta_o, np.where(known, values, np.nan)
-
-
-def luminance(values):
-    """Luminance (n,) of BRDF values (n, 1) or, in linear sRGB, (n, 3)."""
-    channels = values.shape[-1]
-    if channels not in (1, 3):
-        raise BrdfkitError(
-            f"plot: values with {channels} channels have no luminance; convert them to RGB first."
-        )
-    return values[:, 0] if channels == 1 else values @ LUMINANCE
 
 
 def _things(things):

@@ -50,11 +50,27 @@ def measured(data):
     }
 
 
+def described(record):
+    """A measured material's record in words."""
+    channels, brdf = record["channels"], record["brdf"]
+    if len(channels) > 5:
+        channels = [f"{len(channels)} wavelengths, {channels[0]} to {channels[-1]}"]
+    return {
+        "kind": "×".join(map(str, record["shape"])) + " table" if record["shape"] else "samples",
+        "channels": " ".join(channels),
+        "valid": f"{record['valid']:,} of {record['samples']:,}",
+        "negative": f"{record['negative'] / record['valid']:.2%} of the valid",
+        "BRDF": f"{brdf['min']:.4g} to {brdf['max']:.4g}, median {brdf['median']:.4g} sr⁻¹",
+        "angles": f"to {record['max_angle']:.1f}°",
+        **record["info"],
+    }
+
+
 def fit(found, comparison, psnr):
     """A fit, with its errors under every loss and the PSNR of its picture, if there is one."""
     return {
         "model": found.name,
-        "parameters": found.parameters,
+        "parameters": found.values,
         "loss": found.loss_name,
         "error": found.loss,
         "errors": comparison.errors[found.name],

@@ -47,22 +47,38 @@ def load_models(path):
     >>> load_models("my_models/")    # doctest: +SKIP
     {'velvet': <class 'brdfkit.user_plugins.velvet.Velvet'>}
     """
-    path = Path(path)
-    files = sorted(path.glob("*.py")) if path.is_dir() else [path]
+    path = Path(path).absolute()
+    files = sorted(path.glob("[!_]*.py")) if path.is_dir() else [path]
     if not path.exists() or not files:
         raise BrdfkitError(f"{path} is no Python file and no folder with any.")
     loaded = {}
     for file in files:
-        if file.stem in _shipped_files():
-            raise BrdfkitError(f"{file}: brdfkit has a model {file.stem!r}; rename the file.")
+        _require_free(file)
         found = model_in(file)
         if found is None:
             raise BrdfkitError(f"{file} defines no class derived from brdfkit.Model.")
-        _user_files[file.stem] = file
         loaded[file.stem] = found
+    _user_files.update({file.stem: file for file in files})
     if "mitsuba" in sys.modules and sys.modules["mitsuba"].variant() is not None:
         register_in_mitsuba()
     return loaded
+
+
+def _require_free(file):
+    """An error where the name of a user's file is taken: Mitsuba would go on with the other."""
+    import mitsuba as mi
+
+    name = file.stem
+    built_in = Path(mi.__file__).with_name("plugins").iterdir()
+    if name in _shipped_files():
+        owner = "brdfkit has a plugin"
+    elif name in {f.stem for f in built_in}:
+        owner = "Mitsuba has a plugin"
+    elif _user_files.get(name, file) != file:
+        owner = f"{_user_files[name]} is loaded as"
+    else:
+        return
+    raise BrdfkitError(f"{file}: {owner} {name!r}; rename the file.")
 
 
 def plugin_files():

@@ -16,6 +16,7 @@ import numpy as np
 from brdfkit import scenes
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import written
+from brdfkit.fitting.result import Fit
 from brdfkit.model import Model
 from brdfkit.names import unused
 from brdfkit.pictures import montage, write_exr
@@ -182,8 +183,7 @@ def _material(thing):
     if _is_pair(thing):
         return thing[0], *_material(thing[1])[1:]
     if hasattr(thing, "scene_dict"):
-        # a model describes its parameters; a table has none
-        values = thing.values if isinstance(thing, Model) else getattr(thing, "parameters", {})
+        values = thing.values if isinstance(thing, Model | Fit) else {}
         return str(thing.name), thing.scene_dict(), dict(values)
     if isinstance(thing, dict) and "type" in thing:
         bsdf = dict(thing)

@@ -1,16 +1,19 @@
-"""What a word on the command line means: a file, a model, or a material that brdfkit brings."""
+"""What a word on the command line means: a file, a model, or a material that brdfkit brings;
+and where results go."""
 
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from brdfkit import catalogue, registry
 from brdfkit.errors import BrdfkitError
+from brdfkit.files import folder, require_writable
 from brdfkit.formats import load
 from brdfkit.measured import Measured
 
 
 def measured(name):
     """The measured material in a file, or the one of that name that brdfkit brings."""
-    thing = load(name)
+    thing = _load(name)
     if not isinstance(thing, Measured):
         raise BrdfkitError(f"{name} is a saved fit; name a measured file.")
     return thing
@@ -18,12 +21,12 @@ def measured(name):
 
 def material(name, settings=()):
     """What can be rendered: a model by name with `settings`, a saved fit, a measured file."""
-    if name in registry.models() and not Path(name).exists():
+    if name in registry.models() and not Path(name).is_file():
         return registry.model_with_values(name, values(name, settings))
     if settings:
         raise BrdfkitError(f"{name} is no model: parameters can be set for models only.")
     try:
-        return load(name)
+        return _load(name)
     except BrdfkitError as error:
         if Path(name).suffix or Path(name).exists():
             raise
@@ -31,6 +34,12 @@ def material(name, settings=()):
         raise BrdfkitError(
             f"{name} is no file, no model ({models}) and no material of brdfkit's ({materials})."
         ) from error
+
+
+def _load(name):
+    # A folder may have a material's name: the results of its fits
+    known = name in catalogue.materials() and not Path(name).is_file()
+    return load(catalogue.path(name) if known else name)
 
 
 def to_check(name, settings=()):
@@ -51,7 +60,33 @@ def values(name, settings):
             numbers = [float(part) for part in text.split(",")]
         except ValueError:
             numbers = []
-        if not equals or not numbers:
+        if not equals or len(numbers) not in (1, 3):
             raise BrdfkitError(f"{setting!r} should read {parameter}=VALUE or {parameter}=R,G,B.")
         parsed[parameter] = numbers[0] if len(numbers) == 1 else numbers
     return parsed
+
+
+@contextmanager
+def results(path):
+    """Makes the folder `path`, unless None; it is gone again where nothing was written to it."""
+    if path is None:
+        yield
+        return
+    made = [p for p in (path, *path.parents) if not p.exists()]
+    try:
+        folder(path)
+        yield
+    finally:
+        for p in made:
+            with suppress(OSError):  # rmdir takes empty folders only
+                p.rmdir()
+
+
+def picture_file(name):
+    """The path of a picture, once it is sure that it can be written: rendering takes long."""
+    path = Path(name)
+    if path.suffix.lower() not in (".exr", ".png"):
+        raise BrdfkitError(f"{path}: pictures are written as .exr or .png; choose one of them.")
+    require_writable(path)
+    require_writable(path.with_suffix(".png"))
+    return path

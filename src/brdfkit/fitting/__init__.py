@@ -10,7 +10,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.loss import losses as losses
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.result import Fit as Fit
-from brdfkit.fitting.search import Outcome, Space, evaluate, slsqp, starts
+from brdfkit.fitting.search import Outcome, Space, evaluate, slsqp, start_points
 from brdfkit.fitting.selection import selected
 
 # The starts are compared on a random part of a large table, the best goes on with all of it
@@ -27,6 +27,7 @@ def fit(
     starts=16,
     bounds=None,
     fixed=None,
+    anisotropic=False,
     max_angle=80.0,
     seed=0,
     progress=None,
@@ -38,14 +39,17 @@ def fit(
 
     `data`: a `Measured`; `loss`: a name in `losses`; `starts`: the default and points spread
     over the bounds; `bounds`: other bounds by name, ``{"alpha_u": (0.01, 0.5)}``; `fixed`: shape
-    parameters held at a value, ``{"f0": 0.04}``; `max_angle`: samples with an angle at or beyond
-    it [degrees] are left out; `progress`: called with (done, total). Returns a `Fit`.
+    parameters held at a value, ``{"f0": 0.04}``; `anisotropic`: search ``alpha_v`` and its like
+    too, which otherwise follow ``alpha_u``; `max_angle`: samples with an angle at or beyond it
+    [degrees] are left out; `progress`: called with (done, total). Returns a `Fit`.
 
     >>> print(fit("ward", load("paint.binary")))    # doctest: +SKIP
     """
     began = time.perf_counter()
     model, loss = registry.model(name), _loss(loss)
-    space = _space(model, bounds or {}, fixed or {})
+    space = _space(model, bounds or {}, fixed or {}, anisotropic)
+    if starts < 1:
+        raise BrdfkitError(f"starts = {starts}: give at least 1, the default.")
     samples = selected(data, max_angle)
     default = space.coordinates(model().values)
 
@@ -69,7 +73,7 @@ def fit(
         model=fitted,
         data=data.name,
         loss_name=loss.name,
-        loss=math.sqrt(whole.error(shapes, weights)),
+        loss=whole.scale * math.sqrt(whole.error(shapes, weights)),
         samples=len(samples.wi),
         evaluations=evaluations,
         seconds=time.perf_counter() - began,
@@ -82,13 +86,14 @@ def fit(
             "starts": starts,
             "bounds": dict(bounds or {}),
             "fixed": dict(fixed or {}),
+            "anisotropic": anisotropic,
         },
     )
 
 
 def _search(problem, space, default, count, seed, report) -> tuple[Outcome, int]:
     """The best outcome from the most promising starts, and the evaluations of them all."""
-    points = starts(space, default, count, seed)
+    points = start_points(space, default, count, seed)
     total = len(points) + min(FOLLOWED, len(points))
     errors = []
     if len(points) > 1:
@@ -110,22 +115,27 @@ def _loss(name):
     return losses[name]
 
 
-def _space(model, bounds, fixed):
+def _space(model, bounds, fixed, anisotropic):
     """The shape parameters to search, within the model's bounds or narrower ones."""
-    for name, value in fixed.items():
-        if model.parameter(name).linear:
+    shapes = model.shapes(anisotropic)
+    for name in (*bounds, *fixed):
+        if name not in shapes:
+            model.parameter(name)
             raise BrdfkitError(
-                f"{model.type_name()}: {name} is a weight; only shapes can be fixed."
+                f"{model.type_name()}: {name} is not searched, so it can be neither bounded nor "
+                f"fixed; searched are {', '.join(shapes) or 'none'}."
             )
-        model(**{name: value})
+    if both := set(bounds) & set(fixed):
+        raise BrdfkitError(f"{model.type_name()}: {both.pop()} is bounded and fixed; choose one.")
     for name, (low, high) in bounds.items():
-        allowed = model.parameter(name).bounds
+        allowed = model.parameters[name].bounds
         if not allowed[0] <= low < high <= allowed[1]:
             raise BrdfkitError(
                 f"{model.type_name()}: the bounds {low:g}..{high:g} of {name} should lie "
                 f"within {allowed[0]:g}..{allowed[1]:g}."
             )
-    names = tuple(n for n in model.shapes() if n not in fixed)
+    model(**fixed)  # within the bounds
+    names = tuple(name for name in shapes if name not in fixed)
     limits = np.array([bounds.get(n, model.parameters[n].bounds) for n in names]).reshape(-1, 2)
     log = np.array([model.parameters[n].log for n in names], bool)
     return Space(names, limits[:, 0], limits[:, 1], log, {k: float(v) for k, v in fixed.items()})

@@ -13,29 +13,31 @@ from brdfkit.fitting.weights import bounded_quadratic
 
 
 class Problem:
-    """E² of a model on `Samples`, all of them valid."""
+    """E² of a model on `Samples`, all of them valid, in units of that of a black model."""
 
     def __init__(self, model, samples, loss):
-        cosines, weights = loss.geometry(samples)
+        cosines, importance = loss.geometry(samples)
         Float64 = backend.float64()
         self.model, self.loss = model, loss
         self.channels = samples.values.shape[1]
         self.wi, self.wo = backend.vector(samples.wi), backend.vector(samples.wo)
         self.cosines = Float64(cosines)
-        self.weights = Float64(weights / loss.normaliser(weights, self.channels))
         values = loss.target(samples.values)
         self.measured = [Float64(np.ascontiguousarray(v * cosines)) for v in values.T]
-        self.targets = [loss.g(m) + 0 for m in self.measured]
-        dr.eval(self.targets)
-        # E² of a black model: the scale of the problem
-        zero = loss.g(Float64(0.0))
-        self.scale = sum(_sum(self.weights * dr.square(zero - t)) for t in self.targets)
+        self.targets = [loss.g(m) for m in self.measured]
+
+        # The loss itself is scale · √E²
+        self.importance = Float64(importance / loss.normaliser(importance, self.channels))
+        black = loss.g(Float64(0.0))
+        squares = sum(_sum(self.importance * dr.square(black - t)) for t in self.targets)
+        self.scale = squares**0.5 or 1.0
+        self.importance /= self.scale**2
+        dr.eval(self.targets, self.importance)
 
     def lobes(self, values):
         """The lobes times κ, each (n,), at `values` of the shape parameters."""
-        one = self.cosines * 0 + 1
-        lobes = self.model.bind(values).lobes()
-        return [one * lobe.eval(self.wi, self.wo) * self.cosines for lobe in lobes]
+        terms = self.model.bind(values).terms()
+        return [self.cosines * lobe.eval(self.wi, self.wo) for _, lobe in terms]
 
     def solve(self, values):
         """The best weights (channels, lobes) ≥ 0 at numbers `values` of the shape parameters."""
@@ -46,7 +48,7 @@ class Problem:
     def _solve_channel(self, lobes, c):
         # Linearised about the data: exact where g is the identity, else the start of Newton's
         slope = self.loss.dg(self.measured[c])
-        weight = self.weights * slope * slope
+        weight = self.importance * slope * slope
         gram = _symmetric(
             [[_sum(weight * a * b) for b in lobes[: i + 1]] for i, a in enumerate(lobes)]
         )
@@ -78,10 +80,10 @@ class Problem:
         model = self._mixture(lobes, solution)
         residual = self.loss.g(model) - self.targets[c]
         slope, curvature = self.loss.dg(model), self.loss.ddg(model)
-        first = self.weights * residual * slope
-        second = self.weights * (slope * slope + residual * curvature)
+        first = self.importance * residual * slope
+        second = self.importance * (slope * slope + residual * curvature)
         dr.eval(residual, first, second)
-        error = _sum(self.weights * residual * residual)
+        error = _sum(self.importance * residual * residual)
         gradient = np.array([_sum(first * a) for a in lobes])
         hessian = _symmetric(
             [[_sum(second * a * b) for b in lobes[: i + 1]] for i, a in enumerate(lobes)]
@@ -97,17 +99,17 @@ class Problem:
         """E² at `values` of the shape parameters and `weights` (channels, lobes)."""
         return _sum(self._error({n: backend.scalar(v) for n, v in values.items()}, weights))
 
-    def error_and_gradient(self, values, weights):
-        """E² and its derivatives by the shape parameters, the weights held fixed."""
-        names = list(values)
+    def error_and_gradient(self, values, fixed, weights):
+        """E² and its derivatives by `values`, with `fixed` and the weights held."""
         if not backend.differentiable():
-            return self.error(values, weights), self._differences(values, weights)
-        bound = {name: backend.scalar(v) for name, v in values.items()}
-        for name in names:
+            gradient = self._differences(values, fixed, weights)
+            return self.error(values | fixed, weights), gradient
+        bound = {name: backend.scalar(v) for name, v in (values | fixed).items()}
+        for name in values:
             dr.enable_grad(bound[name])
         total = dr.sum(self._error(bound, weights))
         dr.backward(total)
-        return float(dr.detach(total)[0]), np.array([float(dr.grad(bound[n])[0]) for n in names])
+        return _number(dr.detach(total)), np.array([_number(dr.grad(bound[n])) for n in values])
 
     def _error(self, bound, weights):
         lobes = self.lobes(bound)
@@ -115,22 +117,27 @@ class Problem:
         for c in range(self.channels):
             model = self._mixture(lobes, weights[c])
             squares = squares + dr.square(self.loss.g(model) - self.targets[c])
-        return self.weights * squares
+        return self.importance * squares
 
-    def _differences(self, values, weights):
-        """Central differences, where the backend has no derivatives."""
+    def _differences(self, values, fixed, weights):
+        """Differences within the bounds, where the backend has no derivatives."""
         gradient = []
         for name, value in values.items():
+            low, high = self.model.parameters[name].bounds
             h = 1e-6 * max(abs(value), 1e-3)
-            low, high = max(value - h, 0), value + h
-            ends = [self.error({**values, name: v}, weights) for v in (low, high)]
-            gradient.append((ends[1] - ends[0]) / (high - low))
+            ends = max(value - h, low), min(value + h, high)
+            below, above = (self.error(values | fixed | {name: v}, weights) for v in ends)
+            gradient.append((above - below) / (ends[1] - ends[0]))
         return np.array(gradient)
 
 
 def _sum(x):
     # Evaluated sums run in a fixed order: the fit is reproducible to the last digit
-    return float(np.asarray(dr.sum(x)).reshape(-1)[0])
+    return _number(dr.sum(x))
+
+
+def _number(x):
+    return float(np.asarray(x).reshape(-1)[0])
 
 
 def _symmetric(lower_rows):

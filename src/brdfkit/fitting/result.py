@@ -33,8 +33,8 @@ class Fit:
         return self.model.name
 
     @property
-    def parameters(self):
-        """Values by name; a weight is a tuple with one number per channel."""
+    def values(self):
+        """The parameters' values by name; a weight is a tuple with one number per channel."""
         return self.model.values
 
     def eval(self, wi, wo):
@@ -46,9 +46,9 @@ class Fit:
         return self.model.scene_dict()
 
     def __str__(self):
-        width = max(map(len, self.parameters))
+        width = max(map(len, self.values))
         lines = [f"{self.name} fitted to {self.data}: {self.loss_name} loss {self.loss:.6g}"]
-        for name, value in self.parameters.items():
+        for name, value in self.values.items():
             numbers = "  ".join(
                 f"{v:.6g}" for v in (value if isinstance(value, tuple) else [value])
             )

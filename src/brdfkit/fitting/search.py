@@ -44,7 +44,7 @@ class Space:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Where a search ended: coordinates, E², evaluations of the loss, and why it stopped."""
+    """Where a search ended: coordinates, E², evaluations of it, and why it stopped."""
 
     u: np.ndarray
     error: float
@@ -52,7 +52,7 @@ class Outcome:
     message: str
 
 
-def starts(space, default, count, seed):
+def start_points(space, default, count, seed):
     """The default and `count - 1` points spread over the bounds, (count, parameters)."""
     from scipy.stats import qmc
 
@@ -63,9 +63,9 @@ def starts(space, default, count, seed):
 
 
 def evaluate(problem, space, u):
-    """E² at coordinates `u`, relative to a black model."""
+    """E² at coordinates `u`."""
     values = space.values(u) | space.fixed
-    return problem.error(values, problem.solve(values)) / problem.scale
+    return problem.error(values, problem.solve(values))
 
 
 def slsqp(problem, space, u):
@@ -83,11 +83,10 @@ def slsqp(problem, space, u):
         evaluations += 1
         searched = space.values(u)
         weights = problem.solve(searched | space.fixed)
-        error, gradient = problem.error_and_gradient(searched | space.fixed, weights)
-        if error / problem.scale < best.error:
-            best = replace(best, u=u.copy(), error=error / problem.scale)
-        gradient = gradient[: len(space.names)] * space.slopes(u)
-        return error / problem.scale, gradient / problem.scale
+        error, gradient = problem.error_and_gradient(searched, space.fixed, weights)
+        if error < best.error:
+            best = replace(best, u=u.copy(), error=error)
+        return error, gradient * space.slopes(u)
 
     result = minimize(
         objective,
@@ -101,12 +100,9 @@ def slsqp(problem, space, u):
 
 
 def _why(result):
-    if result.status == 0:
-        return "converged"
-    if (
-        result.status == 8
-    ):  # no descent left along the search direction: the end of double precision
-        return "converged to the precision of the loss"
-    if result.status == 9:
-        return f"stopped after {result.nit} iterations"
-    return f"stopped: {result.message}"
+    converged = {
+        0: "converged",
+        8: "converged to the precision of the loss",  # no descent left along the direction
+        9: f"stopped after {result.nit} iterations",
+    }
+    return converged.get(result.status, f"stopped: {result.message}")

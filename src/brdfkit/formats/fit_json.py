@@ -46,7 +46,7 @@ def write(fit, stream):
     record = {
         KEY: brdfkit.__version__,
         "model": fit.model.type_name(),
-        "parameters": fit.parameters,
+        "parameters": fit.values,
         "fit": {f.name: getattr(fit, f.name) for f in fields(fit) if f.name != "model"},
     }
     stream.write(json.dumps(record, indent=2).encode() + b"\n")
