@@ -65,7 +65,7 @@ def test_ward_duer_gains_energy_at_the_horizon():
 
 @pytest.mark.quick
 def test_ggx_is_mitsubas(llvm_variant):
-    """`ggx` with F = 1 is roughconductor's GGX with Smith's separable masking, but for G."""
+    """`ggx` with F = 1 is roughconductor's GGX, whose masking is separable and not correlated."""
     mi = llvm_variant
     from brdfkit.checks.subject import Subject, random_pairs
 
@@ -73,7 +73,12 @@ def test_ggx_is_mitsubas(llvm_variant):
         name = "mirror"
 
         def scene_dict(self):
-            return {"type": "roughconductor", "material": "none", "alpha": 0.3}
+            return {
+                "type": "roughconductor",
+                "distribution": "ggx",
+                "material": "none",
+                "alpha": 0.3,
+            }
 
     wi, wo = random_pairs(5000, seed=0, max_degrees=85)
     theirs = Subject(Thing()).plugin_eval(wi, wo)[:, 0] / wo[:, 2]

@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import resource
 import subprocess
 import sys
 import time
@@ -392,16 +393,22 @@ def run(*words, cwd=None, **environment):
 
 @pytest.mark.quick
 def test_help_is_instant_and_fits_a_terminal():
-    """At most 0.15 s: the best of five, since other tests run beside."""
+    """At most 0.15 s of processor time, the best of five: other tests run beside."""
     seconds = []
     for _ in range(5):
-        began = time.perf_counter()
+        began = _used()
         helped = run("--help")
-        seconds.append(time.perf_counter() - began)
+        seconds.append(_used() - began)
     assert helped.returncode == 0
     assert min(seconds) <= 0.15
     assert "..." not in helped.stdout.partition("Commands:")[2]
     assert max(map(len, helped.stdout.splitlines())) <= 80
+
+
+def _used():
+    """Processor time of all child processes [s]."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 @pytest.mark.quick

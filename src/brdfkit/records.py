@@ -76,6 +76,7 @@ def fit(found, comparison, psnr):
         "errors": comparison.errors[found.name],
         "psnr": psnr.get(found.name),
         "at_bounds": found.at_bounds,
+        "notes": found.notes,
         "evaluations": found.evaluations,
         "samples": found.samples,
         "seconds": found.seconds,

@@ -160,6 +160,8 @@ def render_scene(path, spp: int = 256, seed: int = 0, progress=None) -> Renderin
     if not path.is_file():
         raise BrdfkitError(f"{path}: there is no such scene file; check the path.")
     loaded = {path.stem: _load(_mitsuba().load_file, str(path), path)}
+    if not loaded[path.stem].sensors():
+        raise BrdfkitError(f"{path}: the scene has no sensor to see it with; add a <sensor>.")
     pictures, spp, seconds = _trace(loaded, spp, seed, progress)
     return Rendering(pictures, spp, seconds, seed)
 

@@ -13,7 +13,7 @@ from brdfkit.measured import Measured
 
 def measured(name):
     """The measured material in a file, or the one of that name that brdfkit brings."""
-    thing = _load(name)
+    thing = load(name)
     if not isinstance(thing, Measured):
         raise BrdfkitError(f"{name} is a saved fit; name a measured file.")
     return thing
@@ -26,7 +26,7 @@ def material(name, settings=()):
     if settings:
         raise BrdfkitError(f"{name} is no model: parameters can be set for models only.")
     try:
-        return _load(name)
+        return load(name)
     except BrdfkitError as error:
         if Path(name).suffix or Path(name).exists():
             raise
@@ -34,12 +34,6 @@ def material(name, settings=()):
         raise BrdfkitError(
             f"{name} is no file, no model ({models}) and no material of brdfkit's ({materials})."
         ) from error
-
-
-def _load(name):
-    # A folder may have a material's name: the results of its fits
-    known = name in catalogue.materials() and not Path(name).is_file()
-    return load(catalogue.path(name) if known else name)
 
 
 def to_check(name, settings=()):

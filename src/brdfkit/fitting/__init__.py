@@ -48,8 +48,8 @@ def fit(
     began = time.perf_counter()
     model, loss = registry.model(name), _loss(loss)
     space = _space(model, bounds or {}, fixed or {}, anisotropic)
-    if starts < 1:
-        raise BrdfkitError(f"starts = {starts}: give at least 1, the default.")
+    if starts < 1 or seed < 0:
+        raise BrdfkitError(f"starts = {starts} should be at least 1, seed = {seed} at least 0.")
     samples = selected(data, max_angle)
     default = space.coordinates(model().values)
 

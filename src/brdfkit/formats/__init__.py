@@ -41,7 +41,7 @@ def load(path):
     >>> print(load("gold-metallic-paint.binary.xz"))  # doctest: +SKIP
     gold-metallic-paint: 90×90×180 table, 1,048,000 of 1,458,000 valid, channels R G B
     """
-    if str(path) in catalogue.materials() and not os.path.exists(path):
+    if str(path) in catalogue.materials() and not os.path.isfile(path):
         path = catalogue.path(str(path))
     path, sample = _split(path)
     source = Source(path, sample, contents(path))

@@ -27,8 +27,8 @@ def read(source):
         values = dict(record["parameters"])
         known = {f.name for f in fields(Fit)} - {"model"}
         rest = {name: found[name] for name in known if name in found}
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
-        raise source.error(f"is no fit that brdfkit saved ({error!r}); fit it again") from None
+    except (ValueError, KeyError, TypeError, RecursionError):
+        raise source.error("is no fit that brdfkit saved, or is damaged; fit it again") from None
     try:
         for name in ("at_bounds", "notes"):
             rest[name] = tuple(rest.get(name, ()))
