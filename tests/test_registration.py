@@ -241,6 +241,19 @@ def test_a_users_folder(folder, llvm_variant):
 
 
 @pytest.mark.quick
+def test_an_edited_file_is_read_anew(folder, llvm_variant):
+    """In a notebook a model is written step by step; Mitsuba must not keep the first try."""
+    mi = llvm_variant
+    file = folder / "users_wool.py"
+    for albedo in (0.3, 0.6):
+        file.write_text(FELT.replace("0.3", str(albedo)))
+        os.utime(file, ns=(0, int(albedo * 10)))
+        bk.load_models(file)
+        bsdf = mi.load_dict({"type": "users_wool"})
+        np.testing.assert_allclose(evaluated(mi, bsdf), albedo / np.pi * WO_Z, rtol=1e-5)
+
+
+@pytest.mark.quick
 @pytest.mark.parametrize("name", ["ward", "measured_table", "diffuse", "roughconductor"])
 def test_a_taken_name_is_refused(folder, name):
     (folder / f"{name}.py").write_text(FELT)

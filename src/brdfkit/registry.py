@@ -1,8 +1,8 @@
 """Finds the plugin files and makes them known to Mitsuba. No list names them: a file in
 `plugins/bsdfs/` is a plugin, and its name is the plugin's type.
 
-A file holds either a `Model` (see `brdfkit.model`), or a function `define(mi)` that returns a
-`mi.BSDF` class for the current variant.
+A file of brdfkit's holds either a `Model` (see `brdfkit.model`), or a function `define(mi)` that
+returns a `mi.BSDF` class for the current variant; a file of the user's holds a `Model`.
 """
 
 import importlib
@@ -111,13 +111,20 @@ def model_in(path):
     return own[0] if own else None
 
 
-@cache
 def _module(path):
     if _shipped_files().get(path.stem) == path:
         return importlib.import_module(f"brdfkit.plugins.bsdfs.{path.stem}")
+    if not path.is_file():
+        raise BrdfkitError(f"{path} is not a Python file.")
+    return _executed(path, path.stat().st_mtime_ns)
+
+
+@cache
+def _executed(path, _changed):
+    """The module of a user's file, anew when the file has changed."""
     name = f"brdfkit.user_plugins.{path.stem}"
     spec = importlib.util.spec_from_file_location(name, path)
-    if not path.is_file() or spec is None:
+    if spec is None:
         raise BrdfkitError(f"{path} is not a Python file.")
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
@@ -134,23 +141,25 @@ def register_in_mitsuba():
     import mitsuba as mi
 
     variant = mi.variant()
-    for name, path in plugin_files().items():
+    for name in plugin_files():
         if (variant, name) not in _registered:
             _registered.add((variant, name))
-            mi.register_bsdf(name, lambda props, path=path: _plugin_class(path)(props))
+            mi.register_bsdf(name, lambda props, name=name: _plugin_class(name)(props))
 
 
-def _plugin_class(path):
+def _plugin_class(name):
     import mitsuba as mi
 
-    return _defined(path, mi.variant())
+    path = plugin_files()[name]
+    model = model_in(path)
+    return _defined(model or _module(path), mi.variant())
 
 
 @cache
-def _defined(path, variant):
+def _defined(source, _variant):
+    """The class of `mi.BSDF` of a `Model`, or of a module that defines it itself."""
     import mitsuba as mi
 
     from brdfkit import bsdf
 
-    model = model_in(path)
-    return _module(path).define(mi) if model is None else bsdf.define(mi, model)
+    return bsdf.define(mi, source) if isinstance(source, type) else source.define(mi)

@@ -49,6 +49,8 @@ def check(thing, only=None, progress=None):
         raise BrdfkitError(f"check needs an LLVM or CUDA variant of Mitsuba; {llvm.REMEDY}.")
     subject = Subject(thing)
     names = list(checks) if only is None else list(only)
+    if unknown := set(names) - set(checks):
+        raise BrdfkitError(f"There is no check {unknown.pop()!r}; there are {', '.join(checks)}.")
     findings = []
     for name in names:
         findings.append(Finding(name, *checks[name](subject)))
