@@ -23,4 +23,4 @@ class BlinnPhong(Model):
 
     def lobes(self):
         sampling = HalfVector(CosinePower(self.exponent))
-        return lambertian(), Lobe(self.specular, sampling, energy=3)
+        return lambertian(), Lobe(self.specular, sampling, lambda wi: 4 * wi.z)

@@ -27,4 +27,4 @@ class CookTorrance(Model):
 
     def lobes(self):
         sampling = HalfVector(Beckmann(self.alpha, self.alpha))
-        return lambertian(), Lobe(self.specular, sampling, energy=4 * self.f0)
+        return lambertian(), Lobe(self.specular, sampling, lambda wi: 4 * schlick(self.f0, wi.z))

@@ -28,4 +28,4 @@ class GGX(Model):
 
     def lobes(self):
         sampling = HalfVector(TrowbridgeReitz(self.alpha_u, self.alpha_v))
-        return lambertian(), Lobe(self.specular, sampling, energy=self.f0)
+        return lambertian(), Lobe(self.specular, sampling, lambda wi: schlick(self.f0, wi.z))

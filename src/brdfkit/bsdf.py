@@ -89,7 +89,7 @@ def define(mi, model):
         def sample(self, ctx, si, sample1, sample2, active=True):
             wi, active = above_horizon(si.wi, active)
             weights, lobes = self.terms(si, active)
-            shares = self.shares(ctx, weights, lobes)
+            shares = self.shares(ctx, wi, weights, lobes)
 
             # Choose a lobe, or the cosine, by sample1
             wo = COSINE.sample(wi, sample2)
@@ -127,7 +127,7 @@ def define(mi, model):
             wi, active = above_horizon(si.wi, active)
             wo, active = above_horizon(wo, active)
             weights, lobes = self.terms(si, active)
-            shares = self.shares(ctx, weights, lobes)
+            shares = self.shares(ctx, wi, weights, lobes)
             value, pdf = self.value_and_pdf(ctx, weights, lobes, shares, wi, wo)
             return dr.select(active, value, 0), dr.select(active, pdf, 0)
 
@@ -146,10 +146,10 @@ def define(mi, model):
                     values[name] = within(texture.eval_1(si, active), model.parameters[name])
             return [values[name] for name in model.weights()], model.bind(values).lobes()
 
-        def shares(self, ctx, weights, lobes):
+        def shares(self, ctx, wi, weights, lobes):
             """Probability of each lobe, None where the context leaves it out."""
             energies = [
-                dr.detach(dr.mean(weight) * lobe.energy) + 1e-8 if enabled(ctx, k) else None
+                dr.detach(dr.mean(weight) * lobe.energy(wi)) + 1e-8 if enabled(ctx, k) else None
                 for k, (weight, lobe) in enumerate(zip(weights, lobes, strict=True))
             ]
             total = sum(e for e in energies if e is not None)

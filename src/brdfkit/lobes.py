@@ -30,13 +30,13 @@ class Lobe:
     """One term of a model, without its weight.
 
     `eval(wi, wo)`: value in sr⁻¹ without cosine, both directions above the surface;
-    `sampling`: a way to draw `wo`; `energy`: about how much light the lobe reflects for weight
-    1, by which it is chosen, a number or an array; `diffuse`: Mitsuba's kind of the lobe.
+    `sampling`: a way to draw `wo`; `energy(wi)`: about the lobe's albedo, by which it is chosen;
+    `diffuse`: Mitsuba's kind of the lobe.
     """
 
     eval: Callable
     sampling: Sampling
-    energy: Any = 1.0
+    energy: Callable = lambda wi: 1.0
     diffuse: bool = False
 
 
