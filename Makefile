@@ -2,6 +2,8 @@
 PYTHON ?= python3
 VENV := .venv
 RUN := $(VENV)/bin
+# NumPy's threads beside Dr.Jit's, times two workers, would wait for each other
+PYTEST := OPENBLAS_NUM_THREADS=1 $(RUN)/python -m pytest -n 2
 
 .PHONY: demo test quick lint bench wheel clean
 
@@ -12,14 +14,14 @@ $(VENV)/.ready: pyproject.toml
 	@touch $@
 
 demo: $(VENV)/.ready
-	$(RUN)/brdfkit fit car_paint --render -o demo
+	$(RUN)/brdfkit fit car_paint -m ggx+ggx -m ggx -m ward_duer --render -o demo
 	@echo "The pictures: demo/render.png (to look at), demo/render.exr (all parts, linear)"
 
 test: lint
-	$(RUN)/python -m pytest -n 2
+	$(PYTEST)
 
 quick: $(VENV)/.ready
-	$(RUN)/python -m pytest -n 2 -m quick
+	$(PYTEST) -m quick
 
 lint: $(VENV)/.ready
 	$(RUN)/ruff check

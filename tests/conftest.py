@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import brdfkit as bk
+from brdfkit import registry
 
 
 @pytest.fixture
@@ -27,9 +28,29 @@ def measured_data():
 
 
 def pytest_generate_tests(metafunc):
-    """Every model × every test that asks for `model_name`."""
+    """Every model × every test that asks for `model_name`; with every option × `form`."""
     if "model_name" in metafunc.fixturenames:
         metafunc.parametrize("model_name", bk.models())
+    if "form" in metafunc.fixturenames:
+        metafunc.parametrize("form", forms())
+
+
+def forms():
+    """Every model, and each of its options once with every word, or the next number, it takes."""
+    found = list(bk.models())
+    for name, model in bk.models().items():
+        for option, declared in model.options.items():
+            words = declared.choices if isinstance(declared.default, str) else ()
+            found += [f"{name}:{option}={w}" for w in words or () if w != declared.default]
+            if isinstance(declared.default, int):
+                found.append(f"{name}:{option}={declared.default + 1}")
+    return found
+
+
+@pytest.fixture
+def configured(form):
+    """A model with its options."""
+    return registry.model(form)
 
 
 @pytest.fixture

@@ -3,11 +3,16 @@
 Kurt 2007, digest §2.12: quadrature over the hemisphere, at 0, 30, 60, 75 and 85 degrees.
 """
 
+import importlib
+
 import numpy as np
 import pytest
 
 import brdfkit as bk
+from brdfkit import backend, registry
+from brdfkit.checks.subject import random_pairs
 from brdfkit.directions import from_angles
+from brdfkit.microfacet import Beckmann
 
 DEGREES = (0, 30, 60, 75, 85)
 # (model, shape parameters): albedo at each of DEGREES
@@ -15,23 +20,35 @@ ALBEDOS = {
     ("blinn_phong", "exponent=1"): (1.3657, 1.3039, 1.1184, 0.9776, 0.8639),
     ("blinn_phong", "exponent=10"): (2.8661, 2.3062, 1.1474, 0.6420, 0.3866),
     ("blinn_phong", "exponent=100"): (3.8462, 2.9038, 1.0195, 0.3312, 0.0948),
+    ("phong", "exponent=1"): (1.0000, 0.8808, 0.6090, 0.4584, 0.3631),
+    ("phong", "exponent=10"): (1.0000, 0.8660, 0.5047, 0.2919, 0.1713),
+    ("phong", "exponent=100"): (1.0000, 0.8660, 0.5000, 0.2589, 0.0976),
+    ("lafortune", "c_x=-1 c_z=1 exponent=20"): (1.0000, 0.8660, 0.5005, 0.2712, 0.1383),
+    ("lafortune", "c_x=-0.7 c_z=0.3 exponent=10"): (0.0002, 0.0052, 0.0886, 0.1419, 0.1383),
+    ("ashikhmin_shirley", "f0=1 exponent_u=10"): (0.6957, 0.6882, 0.6133, 0.5586, 0.5197),
+    ("ashikhmin_shirley", "f0=1 exponent_u=100"): (0.9612, 0.9337, 0.8459, 0.7247, 0.5834),
+    ("ashikhmin_shirley", "f0=0.05 exponent_u=100"): (0.0481, 0.0468, 0.0692, 0.1658, 0.2855),
     ("ward", "alpha_u=0.1"): (0.9711, 0.8416, 0.4890, 0.2595, 0.1196),
     ("ward", "alpha_u=0.2"): (0.8949, 0.7773, 0.4589, 0.2692, 0.1816),
     ("ward", "alpha_u=0.5"): (0.5855, 0.5144, 0.3507, 0.2772, 0.2862),
     ("ward_duer", "alpha_u=0.1"): (0.9806, 0.9806, 0.9805, 0.9683, 0.9766),
     ("ward_duer", "alpha_u=0.2"): (0.9283, 0.9283, 0.9169, 0.8893, 1.1282),
     ("ward_duer", "alpha_u=0.5"): (0.6947, 0.6793, 0.6572, 0.7460, 1.3334),
+    ("ward_duer:form=bounded", "alpha_u=0.2"): (0.960, 0.953, 0.898, 0.821, 0.806),
     ("cook_torrance", "f0=1 alpha=0.1"): (4.0000, 4.0000, 3.9963, 3.8795, 3.7499),
     ("cook_torrance", "f0=1 alpha=0.3"): (3.9823, 3.9248, 3.6991, 3.7092, 3.8810),
     ("cook_torrance", "f0=1 alpha=0.6"): (3.1904, 3.2168, 3.4940, 3.7336, 3.9100),
+    ("torrance_sparrow", "f0=1 alpha=0.1"): (0.9934, 0.9934, 0.9923, 0.9634, 0.9313),
+    ("torrance_sparrow", "f0=1 alpha=0.3"): (0.9326, 0.9193, 0.8723, 0.8741, 0.9137),
+    ("torrance_sparrow", "f0=1 alpha=0.6"): (0.6151, 0.6225, 0.6815, 0.7322, 0.7711),
 }
 
 
-def albedo(model, degrees, n_theta=600, n_phi=1440):
-    """Quadrature of f cosθ over the hemisphere: Gauss-Legendre in θ, even in φ."""
+def albedo(model, degrees, n_theta=400, n_phi=720):
+    """Quadrature of f cosθ over one half of the hemisphere: Gauss-Legendre in θ, even in φ."""
     x, w = np.polynomial.legendre.leggauss(n_theta)
     theta, w = (x + 1) * np.pi / 4, w * np.pi / 4
-    phi = (np.arange(n_phi) + 0.5) * 2 * np.pi / n_phi
+    phi = (np.arange(n_phi) + 0.5) * np.pi / n_phi
     wo = from_angles(theta[:, None], phi[None, :]).reshape(-1, 3)
     wi = np.broadcast_to(from_angles(np.radians(degrees), 0.0), wo.shape)
     f = model.eval(wi, wo)[:, 0].reshape(n_theta, n_phi)
@@ -42,9 +59,33 @@ def albedo(model, degrees, n_theta=600, n_phi=1440):
 @pytest.mark.parametrize(("name", "shape"), ALBEDOS)
 def test_specular_albedo(name, shape):
     values = {k: float(v) for k, v in (pair.split("=") for pair in shape.split())}
-    model = bk.models()[name](diffuse_reflectance=0, specular_reflectance=1, **values)
+    model = registry.model(name)(diffuse_reflectance=0, specular_reflectance=1, **values)
     found = [albedo(model, degrees) for degrees in DEGREES]
     np.testing.assert_allclose(found, ALBEDOS[name, shape], atol=1e-3)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("exponent", [1, 10, 100])
+def test_exact_blinn_phong_reflects_all_at_normal_incidence(exponent):
+    model = registry.model("blinn_phong:normalisation=exact")
+    model = model(diffuse_reflectance=0, specular_reflectance=1, exponent=exponent)
+    assert albedo(model, 0) == pytest.approx(1, abs=5e-4)
+
+
+# σ: albedo at each of DEGREES, k_d = 1, with the light that bounces between the facets
+FULL_OREN_NAYAR = {
+    0.25: (0.9756, 0.9772, 0.9927, 1.0109, 1.0301),
+    0.5: (0.8963, 0.8993, 0.9270, 0.9596, 0.9941),
+    1.0: (0.7745, 0.7782, 0.8128, 0.8535, 0.8965),
+}
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("sigma", FULL_OREN_NAYAR)
+def test_full_oren_nayar(sigma):
+    model = registry.model("oren_nayar:form=full")(diffuse_reflectance=1, sigma=sigma)
+    found = [albedo(model, degrees) for degrees in DEGREES]
+    np.testing.assert_allclose(found, FULL_OREN_NAYAR[sigma], atol=1e-3)
 
 
 @pytest.mark.quick
@@ -92,3 +133,177 @@ def test_ggx_is_mitsubas(llvm_variant):
         diffuse_reflectance=0, specular_reflectance=1, f0=1.0, alpha_u=0.3
     ).eval(wi, wo)[:, 0]
     np.testing.assert_allclose(ours / correlated, theirs / (g1[0] * g1[1]), rtol=2e-3)
+
+
+@pytest.mark.quick
+def test_phong_reflects_its_weights_from_above():
+    model = bk.models()["phong"](diffuse_reflectance=0.3, specular_reflectance=0.6, exponent=7)
+    assert albedo(model, 0) == pytest.approx(0.9, abs=1e-6)
+
+
+@pytest.mark.quick
+def test_lafortune_between_minus_one_and_one_is_phong():
+    wi, wo = random_pairs(10_000, seed=0)
+    for exponent in (0.3, 20, 3000):
+        phong = bk.models()["phong"](exponent=exponent).eval(wi, wo)
+        for c in (1.0, 0.3):
+            lafortune = bk.models()["lafortune"](c_x=-c, c_z=c, exponent=exponent)
+            np.testing.assert_allclose(lafortune.eval(wi, wo), phong, rtol=1e-12)
+
+
+@pytest.mark.quick
+def test_lafortune_knows_only_ratios():
+    wi, wo = random_pairs(10_000, seed=0)
+    c = np.array([-0.8, 0.5, 0.6])
+    values = [
+        bk.models()["lafortune"](**dict(zip(("c_x", "c_y", "c_z"), t * c, strict=True))).eval(
+            wi, wo
+        )
+        for t in (1, 0.31, 0.01)
+    ]
+    np.testing.assert_allclose(values[1], values[0], rtol=1e-12)
+    np.testing.assert_allclose(values[2], values[0], rtol=1e-12)
+    assert np.isfinite(values[0]).all()
+    bracket = (c * wi * wo).sum(axis=1)
+    assert (bracket < 0).any()
+    np.testing.assert_allclose(values[0][bracket < 0], 0.4 / np.pi)
+
+
+@pytest.mark.quick
+def test_lafortunes_lobes_add_up():
+    """As printed, with the C of each lobe its own."""
+    wi, wo = random_pairs(1_000, seed=0)
+    one, two = bk.models()["lafortune"], registry.model("lafortune:lobe_count=2")
+    first = {"specular_reflectance": 0.3, "c_x": -0.9, "c_z": 0.5, "exponent": 40.0}
+    second = {"specular_reflectance": 0.2, "c_x": 0.4, "c_z": 0.8, "exponent": 3.0}
+    both = two(diffuse_reflectance=0.1, **first, **{f"{k}_2": v for k, v in second.items()})
+    expected = 0.1 / np.pi
+    for c in (first, second):
+        bracket = (np.array([c["c_x"], c["c_x"], c["c_z"]]) * wi * wo).sum(axis=1)
+        n, largest = c["exponent"], max(abs(c["c_x"]), c["c_z"])
+        power = (np.maximum(bracket, 0) / largest) ** n
+        expected = expected + c["specular_reflectance"] * (n + 2) / (2 * np.pi) * power
+        np.testing.assert_allclose(
+            one(diffuse_reflectance=0, **c).eval(wi, wo)[:, 0],
+            c["specular_reflectance"] * (n + 2) / (2 * np.pi) * power,
+            rtol=1e-9,
+            atol=1e-12,
+        )
+    np.testing.assert_allclose(both.eval(wi, wo)[:, 0], expected, rtol=1e-9)
+
+
+@pytest.mark.quick
+def test_ashikhmin_shirleys_diffuse_term():
+    """From above 0.96875, from everywhere 0.82143, and none where F₀ is 1."""
+    values = {"diffuse_reflectance": 1, "specular_reflectance": 0}
+    coupled = registry.model("ashikhmin_shirley:diffuse=coupled")
+    model = coupled(**values, f0=0)
+    found = [albedo(model, degrees) for degrees in DEGREES]
+    np.testing.assert_allclose(found, (0.9688, 0.9414, 0.7627, 0.4999, 0.1997), atol=1e-4)
+    x, w = np.polynomial.legendre.leggauss(8)
+    cosines = (x + 1) / 2
+    albedos = [albedo(model, degrees, 100, 8) for degrees in np.degrees(np.arccos(cosines))]
+    everywhere = np.sum(w * cosines * albedos)
+    assert everywhere == pytest.approx(0.82143, abs=1e-4)
+    assert albedo(coupled(**values, f0=1), 30) == pytest.approx(0, abs=1e-12)
+
+
+@pytest.mark.quick
+def test_anisotropic_ashikhmin_shirley_is_as_printed():
+    wi, wo = random_pairs(1_000, seed=0)
+    n_u, n_v, f0 = 10.0, 200.0, 0.3
+    h = (wi + wo) / np.linalg.norm(wi + wo, axis=1, keepdims=True)
+    phi, cos_d = np.arctan2(h[:, 1], h[:, 0]), (wi * h).sum(axis=1)
+    power = h[:, 2] ** (n_u * np.cos(phi) ** 2 + n_v * np.sin(phi) ** 2)
+    fresnel = f0 + (1 - f0) * (1 - cos_d) ** 5
+    norm = np.sqrt((n_u + 1) * (n_v + 1)) / (8 * np.pi)
+    expected = norm * power * fresnel / (cos_d * np.maximum(wi[:, 2], wo[:, 2]))
+    model = bk.models()["ashikhmin_shirley"](
+        diffuse_reflectance=0, specular_reflectance=1, exponent_u=n_u, exponent_v=n_v, f0=f0
+    )
+    np.testing.assert_allclose(model.eval(wi, wo)[:, 0], expected, rtol=1e-9, atol=1e-12)
+
+
+OREN_NAYAR = {
+    0.25: (0.9204, 0.9428, 0.9754, 0.9949, 1.0072),
+    0.5: (0.7845, 0.8247, 0.8831, 0.9181, 0.9402),
+    1.0: (0.6241, 0.6743, 0.7471, 0.7908, 0.8183),
+}
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("sigma", OREN_NAYAR)
+def test_oren_nayar_albedo(sigma):
+    model = bk.models()["oren_nayar"](diffuse_reflectance=1, sigma=sigma)
+    found = [albedo(model, degrees) for degrees in DEGREES]
+    np.testing.assert_allclose(found, OREN_NAYAR[sigma], atol=1e-3)
+
+
+@pytest.mark.quick
+def test_smooth_oren_nayar_is_lambert():
+    wi, wo = random_pairs(10_000, seed=0)
+    model = bk.models()["oren_nayar"](diffuse_reflectance=1, sigma=0)
+    np.testing.assert_allclose(model.eval(wi, wo), 1 / np.pi, rtol=1e-12)
+
+
+def projected(D):
+    """∫ D cosθ_h dω over the hemisphere, of a distribution's D, in log θ_h."""
+    x, w = np.polynomial.legendre.leggauss(2000)
+    low, high = np.log(1e-9), np.log(np.pi / 2)
+    theta, w = np.exp(low + (x + 1) / 2 * (high - low)), w * (high - low) / 2
+    values = np.array(D(backend.vector(from_angles(theta, 0.0))))
+    return np.sum(2 * np.pi * values * np.cos(theta) * np.sin(theta) * theta * w)
+
+
+def file_of(name):
+    return importlib.import_module(bk.models()[name].__module__)
+
+
+@pytest.mark.quick
+def test_constants_of_the_distributions():
+    """Cook-Torrance's is 1, with the 1/π; Torrance-Sparrow's only for small m; the shifted gamma's
+    is 1 up to the quadrature of its own constant."""
+    for m, expected in zip(
+        (0.1, 0.2, 0.3, 0.6, 1.0), (0.9934, 0.9738, 0.9421, 0.7913, 0.5477), strict=True
+    ):
+        width = backend.scalar(m)
+        assert projected(Beckmann(width, width).D) == pytest.approx(1, abs=1e-6)
+        gaussian = file_of("torrance_sparrow").GaussianAngle(width)
+        assert projected(gaussian.D) == pytest.approx(expected, abs=1e-3)
+    for alpha in (1e-4, 1.0):
+        for p in (0.0, 1.0, 2.0):
+            facets = file_of("sgd").ShiftedGamma(*map(backend.scalar, (alpha, p)))
+            assert projected(facets.D) == pytest.approx(1, abs=2e-3)
+
+
+@pytest.mark.quick
+def test_shifted_gamma_is_the_published_one():
+    """K and G₁ of MERL's fits, "pvc" and "teflon", red: G₁ there is an approximation."""
+    for alpha, p, K, Lambda, c, k, theta_0 in (
+        (0.0171547, 0.769726, 25.8231, 1.20095, 1.02768e-07, 51.5975, 0.218049),
+        (0.678586, 1.2402, 3.91532, 2.09871, 0.0378525, 6.8689, 0.166634),
+    ):
+        facets = file_of("sgd").ShiftedGamma(*map(backend.scalar, (alpha, p)))
+        normal = backend.vector(from_angles([0.0], [0.0]))
+        published = K * np.exp(-alpha) / alpha**p / np.pi
+        assert np.array(facets.D(normal))[0] == pytest.approx(published, rel=1e-3)
+        theta = np.radians([0, 30, 50, 70, 80, 85, 88])
+        G1 = 1 + Lambda * (1 - np.exp(c * np.maximum(theta - theta_0, 0) ** k))
+        found = np.array(facets.G1(backend.vector(from_angles(theta, 0.0))))
+        np.testing.assert_allclose(found, G1, atol=3e-3)
+
+
+@pytest.mark.quick
+def test_abc_is_as_printed():
+    wi, wo = random_pairs(1_000, seed=0)
+    A, B, C, n = 30.0, 700.0, 1.0, 1.7
+    h = (wi + wo) / np.linalg.norm(wi + wo, axis=1, keepdims=True)
+    cos_d, cos_i, cos_o, cos_h = (wi * h).sum(axis=1), wi[:, 2], wo[:, 2], h[:, 2]
+    # Fresnel by Snell's law
+    cos_t = np.sqrt(1 - (1 - cos_d**2) / n**2)
+    s, p = (cos_d - n * cos_t) / (cos_d + n * cos_t), (n * cos_d - cos_t) / (n * cos_d + cos_t)
+    F, D = (s**2 + p**2) / 2, A / (1 + B * (1 - cos_h)) ** C
+    G = np.minimum(1, 2 * cos_h * np.minimum(cos_i, cos_o) / cos_d)
+    model = bk.models()["abc"](diffuse_reflectance=0, specular_reflectance=A, b=B, c=C, ior=n)
+    expected = D * G * F / (np.pi * cos_i * cos_o)
+    np.testing.assert_allclose(model.eval(wi, wo)[:, 0], expected, rtol=1e-9)

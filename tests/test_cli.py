@@ -90,11 +90,12 @@ def test_page_of_a_model(cli, model):
     page = cli("models", name)
     assert_fine(page)
     assert all(word in page.stdout for word in [*model.parameters, f'"type": "{name}"'])
+    assert all(word in page.stdout for word in model.options)
     record = json.loads(cli("models", name, "--json").stdout)[name]
     for parameter, found in model.parameters.items():
-        low, high = found.bounds
         assert record[parameter]["default"] == found.default
-        assert record[parameter]["bounds"] == [low, None if high == np.inf else high]
+        finite = [None if np.isinf(bound) else bound for bound in found.bounds]
+        assert record[parameter]["bounds"] == finite
 
 
 @pytest.mark.quick

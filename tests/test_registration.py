@@ -15,7 +15,7 @@ import brdfkit as bk
 from brdfkit import llvm, registry
 
 VARIANTS = ("llvm_ad_rgb", "llvm_ad_mono", "llvm_ad_spectral", "scalar_rgb", "scalar_spectral")
-WO_Z = math.sqrt(1 - 0.05)
+WO_Z = math.sqrt(1 - 0.34)
 FELT = """from brdfkit.lobes import lambertian
 from brdfkit.model import Model, weight
 
@@ -39,14 +39,14 @@ def variant():
 
 
 def values(model, factor=1.0):
-    """Every parameter of a model, times `factor`, within the bounds."""
-    given = {name: p.default or model().values[name] for name, p in model.parameters.items()}
+    """Every parameter of a model, times `factor`, within the bounds; none is 0."""
+    given = {name: value or 0.02 for name, value in model().values.items()}
     return {n: float(np.clip(v * factor, *model.parameters[n].bounds)) for n, v in given.items()}
 
 
 def interaction(mi, u=0.1):
     si = dr.zeros(mi.SurfaceInteraction3f)
-    si.wi = mi.Vector3f(0.3, 0.1, 0.9)
+    si.wi = mi.Vector3f(0.6, 0.3, 0.7)
     si.wi /= dr.norm(si.wi)
     si.uv = mi.Point2f(u, 0.1)
     si.sh_frame = mi.Frame3f([0, 0, 1])
@@ -55,7 +55,7 @@ def interaction(mi, u=0.1):
 
 def evaluated(mi, bsdf, u=0.1):
     """BRDF times cosine at one pair of directions, as NumPy."""
-    wo = mi.Vector3f(-0.2, 0.1, WO_Z)
+    wo = mi.Vector3f(-0.5, 0.3, WO_Z)
     return np.array(bsdf.eval(mi.BSDFContext(), interaction(mi, u), wo)).ravel()
 
 
@@ -73,7 +73,7 @@ def test_loads_in_every_variant(model, variant, name):
     by_xml = mi.load_string(f'<bsdf version="3.0.0" type="{kind}"/>')
     for bsdf in (by_dict, by_xml):
         assert isinstance(bsdf, mi.BSDF)
-        assert bsdf.component_count() == len(model().lobes())
+        assert bsdf.component_count() == len({id(x.sampling) for x in model().lobes()})
     if not mi.is_spectral:  # an interaction without wavelengths has no spectrum
         np.testing.assert_array_equal(evaluated(mi, by_dict), evaluated(mi, by_xml))
         assert (evaluated(mi, by_dict) > 0).all()
@@ -209,7 +209,7 @@ def test_errors_name_the_parameter(model, variant, name):
     assert "no_such_parameter" in str(error.value).splitlines()[-1]
     for parameter, found in model.parameters.items():
         for wrong in (found.bounds[0] - 1, found.bounds[1] + 1, float("nan")):
-            if wrong == float("inf"):
+            if math.isinf(wrong):
                 continue
             with pytest.raises(RuntimeError) as error:
                 mi.load_dict({"type": kind, parameter: wrong})

@@ -1,26 +1,42 @@
 """Blinn-Phong: a power of the cosine between the normal and the half vector.
 
-    f = k_d / π + k_s (n + 2) / 2π (N·H)^n
+    f = k_d / π + k_s c (N·H)^(n_u cos²φ_h + n_v sin²φ_h)
 
-J. F. Blinn, "Models of light reflection for computer synthesized pictures", SIGGRAPH 1977;
-Kurt 2007, eq. 3.4. The constant is Phong's, as printed there: with the half vector the lobe
-reflects up to four times k_s, so that energy is conserved only for about k_d + 4 k_s ≤ 1.
+    normalisation=printed   c = (n + 2) / 2π
+    normalisation=exact     c = (n + 2)(n + 4) / 8π (2^(-n/2) + n)
+
+n + 2 stands for √((n_u + 2)(n_v + 2)) where the exponents differ. J. F. Blinn, "Models of light
+reflection for computer synthesized pictures", SIGGRAPH 1977; Kurt 2007, eq. 3.4. The printed
+constant is Phong's: with the half vector the lobe reflects up to four times k_s, so that energy is
+conserved only for about k_d + 4 k_s ≤ 1; with the exact one k_s is the albedo at normal incidence.
 Shows plastics; no Fresnel effect, no retro-reflection.
 """
 
+import drjit as dr
+
 from brdfkit.lobes import HalfVector, Lobe, lambertian
 from brdfkit.microfacet import CosinePower, half_vector
-from brdfkit.model import Model, shape, weight
+from brdfkit.model import Model, follows, option, shape, weight
 
 
 class BlinnPhong(Model):
+    normalisation = option("printed", ("printed", "exact"), "the constant c")
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.1, "k_s: strength of the highlight")
-    exponent = shape(30.0, (0.1, 1e4), "n: sharpness of the highlight", log=True)
+    exponent = shape(30.0, (0.1, 1e4), "n_u: sharpness of the highlight, along x", log=True)
+    exponent_v = follows("exponent", exponent, "n_v: sharpness along y")
+
+    def constant(self):
+        n = dr.sqrt((self.exponent + 2) * (self.exponent_v + 2)) - 2
+        if self.normalisation == "printed":
+            return (n + 2) / (2 * dr.pi)
+        return (n + 2) * (n + 4) / (8 * dr.pi * (dr.exp(-n / 2 * dr.log(2.0)) + n))
 
     def specular(self, wi, wo):
-        return CosinePower(self.exponent).D(half_vector(wi, wo))
+        facets = CosinePower(self.exponent, self.exponent_v)
+        return self.constant() * facets.power(half_vector(wi, wo))
 
     def lobes(self):
-        sampling = HalfVector(CosinePower(self.exponent))
-        return lambertian(), Lobe(self.specular, sampling, lambda wi: 4 * wi.z)
+        sampling = HalfVector(CosinePower(self.exponent, self.exponent_v))
+        brightest = 4 if self.normalisation == "printed" else 1
+        return lambertian(), Lobe(self.specular, sampling, lambda wi: brightest * wi.z)

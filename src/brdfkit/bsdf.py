@@ -1,8 +1,8 @@
 """The one adapter from a model to a Mitsuba BSDF.
 
-Written once for all models: textures for every parameter, one component per lobe, lobes chosen
-by their weight and energy, and a share of cosine samples, which bounds the weight of a sample
-where the BRDF itself is bounded.
+Written once for all models: textures for every parameter, one component per lobe (or per sampling,
+where lobes share one), chosen by its weight and energy, and a share of cosine samples, which bounds
+the weight of a sample where the BRDF itself is bounded.
 """
 
 import functools
@@ -21,7 +21,7 @@ COSINE = Cosine()
 
 def scene_dict(model):
     """The dictionary for `mitsuba.load_dict` of a model with values."""
-    entries = {"type": model.type_name()}
+    entries = {"type": model.type_name(), **model.chosen()}
     for name, value in model.free_values.items():
         entries[name] = _rgb(value) if isinstance(value, tuple) else value
     return entries
@@ -38,9 +38,10 @@ def define(mi, model):
 
     flags = mi.BSDFFlags
     defaults = model()
+    groups = components_of(defaults.lobes())
     kinds = [
         flags.DiffuseReflection if lobe.diffuse else flags.GlossyReflection
-        for _, lobe in defaults.terms()
+        for lobe in (defaults.lobes()[group[0]] for group in groups)
     ]
     anisotropic = flags.Anisotropic if model.anisotropic() else flags.Empty
     components = [
@@ -91,16 +92,16 @@ def define(mi, model):
             weights, lobes = self.terms(si, active)
             shares = self.shares(ctx, wi, weights, lobes)
 
-            # Choose a lobe, or the cosine, by sample1
+            # Choose a component, or the cosine, by sample1
             wo = COSINE.sample(wi, sample2)
             component = mi.UInt32(first_enabled(ctx))
             chosen_up_to = mi.Float(COSINE_SHARE)
-            for k, (lobe, share) in enumerate(zip(lobes, shares, strict=True)):
+            for k, (group, share) in enumerate(zip(groups, shares, strict=True)):
                 if share is None:
                     continue
                 hit = (sample1 >= chosen_up_to) & (sample1 < chosen_up_to + share)
                 chosen_up_to += share
-                wo = dr.select(hit, lobe.sampling.sample(wi, sample2), wo)
+                wo = dr.select(hit, lobes[group[0]].sampling.sample(wi, sample2), wo)
                 component = dr.select(hit, k, component)
 
             # Directions are drawn without derivatives, and so is their density in the weight
@@ -133,7 +134,12 @@ def define(mi, model):
 
         def eval_diffuse_reflectance(self, si, active=True):
             weights, lobes = self.terms(si, active)
-            diffuse = [w for w, lobe in zip(weights, lobes, strict=True) if lobe.diffuse]
+            normal = mi.Vector3f(0, 0, 1)
+            diffuse = [
+                weight * lobe.energy(normal)
+                for weight, lobe in zip(weights, lobes, strict=True)
+                if lobe.diffuse
+            ]
             return sum(diffuse, mi.Spectrum(0))
 
         def terms(self, si, active):
@@ -147,23 +153,29 @@ def define(mi, model):
             return [values[name] for name in model.weights()], model.bind(values).lobes()
 
         def shares(self, ctx, wi, weights, lobes):
-            """Probability of each lobe, None where the context leaves it out."""
-            energies = [
-                dr.detach(dr.mean(weight) * lobe.energy(wi)) + 1e-8 if enabled(ctx, k) else None
-                for k, (weight, lobe) in enumerate(zip(weights, lobes, strict=True))
-            ]
+            """Probability of each component, None where the context leaves it out."""
+            energies = []
+            for k, group in enumerate(groups):
+                energy = sum(dr.mean(dr.abs(weights[i])) * lobes[i].energy(wi) for i in group)
+                energies.append(dr.detach(energy) + 1e-8 if enabled(ctx, k) else None)
             total = sum(e for e in energies if e is not None)
             return [None if e is None else (1 - COSINE_SHARE) * e / total for e in energies]
 
         def value_and_pdf(self, ctx, weights, lobes, shares, wi, wo):
-            """BRDF times cosine of the enabled lobes, and the density of `sample`."""
+            """BRDF times cosine of the enabled components, and the density of `sample`."""
             value = mi.Spectrum(0)
             none = all(share is None for share in shares)
             pdf = mi.Float(0 if none else COSINE_SHARE * COSINE.pdf(wi, wo))
-            for weight, lobe, share in zip(weights, lobes, shares, strict=True):
-                if share is not None:
-                    value += weight * lobe.eval(wi, wo)
-                    pdf += share * lobe.sampling.pdf(wi, wo)
+            for group, share in zip(groups, shares, strict=True):
+                if share is None:
+                    continue
+                pdf += share * lobes[group[0]].sampling.pdf(wi, wo)
+                for i in group:
+                    value += weights[i] * lobes[i].eval(wi, wo)
+                    if lobes[i].quadratic is not None:
+                        value += weights[i] * weights[i] * lobes[i].quadratic(wi, wo)
+            if model.signed():
+                value = dr.maximum(value, 0)
             return value * wo.z, pdf
 
         def to_string(self):
@@ -171,6 +183,14 @@ def define(mi, model):
             return "\n".join([f"{model.__name__}[", *lines, "]"])
 
     return Plugin
+
+
+def components_of(lobes):
+    """Indices of the lobes of each component: lobes that share a sampling are one."""
+    groups = {}
+    for index, lobe in enumerate(lobes):
+        groups.setdefault(id(lobe.sampling), []).append(index)
+    return list(groups.values())
 
 
 def _require_within_bounds(props, model, name):

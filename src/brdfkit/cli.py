@@ -64,7 +64,7 @@ def fit(file, names, loss, output, rendered, max_angle, spp, size, seed, console
     from brdfkit.comparing import compare
     from brdfkit.fitting import fit as fit_model
     from brdfkit.formats import save
-    from brdfkit.targets import measured, results
+    from brdfkit.targets import fit_file, measured, results
 
     names = list(dict.fromkeys(names or registry.models()))
     for name in names:
@@ -83,7 +83,7 @@ def fit(file, names, loss, output, rendered, max_angle, spp, size, seed, console
                         name, material, loss, max_angle=max_angle, seed=seed, progress=progress
                     )
                 if output is not None:
-                    save(found, output / f"{name}.json")
+                    save(found, fit_file(output, found))
                 fits.append(found)
         except KeyboardInterrupt:
             if not fits:
@@ -92,7 +92,7 @@ def fit(file, names, loss, output, rendered, max_angle, spp, size, seed, console
             interrupted = True
 
         fits.sort(key=lambda f: f.loss)
-        written = [output / f"{f.name}.json" for f in fits] if output else []
+        written = [fit_file(output, f) for f in fits] if output else []
         if rendered and not interrupted:
             picture = _render([material, *fits], output / "render.exr", spp, size, seed, console)
             psnr = picture.psnr()

@@ -2,6 +2,7 @@
 
 import inspect
 import json
+import math
 import sys
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
@@ -69,7 +70,8 @@ class Console:
         table = Table(box=SIMPLE_HEAD, title=title, title_justify="left", pad_edge=False)
         for column in columns:
             side = "right" if column.startswith(">") else "left"
-            table.add_column(Text(column.removeprefix(">")), justify=side)
+            name = Text(column.removeprefix(">"))
+            table.add_column(name, justify=side, no_wrap=not table.columns)
         return table
 
     def models(self, models):
@@ -90,11 +92,18 @@ class Console:
         self.out.print("\n".join(_page(model)))
         table = self.table("parameter", ">default", ">from", ">to", "meaning")
         for name, p in model.parameters.items():
-            low, high = (f"{v:g}" if v < float("inf") else "" for v in p.bounds)
+            low, high = ("" if math.isinf(v) else f"{v:g}" for v in p.bounds)
             default = p.follows or f"{p.default:g}"
             per_channel = " (per channel)" if p.linear else ""
             table.add_row(name, default, low, high, p.meaning + per_channel)
         self.out.print(table)
+        if model.options:
+            table = self.table("option", "default", "choices", "meaning")
+            for name, o in model.options.items():
+                table.add_row(name, str(o.default), records.choices(o), o.meaning)
+            self.out.print(table)
+            example = records.example(model, next(iter(model.options)))
+            self.out.print(f"With another choice: brdfkit fit FILE -m {example}")
         self.out.print(
             f'Mitsuba: {{"type": "{model.type_name()}", ...}}; every parameter may be a texture.'
         )

@@ -25,12 +25,26 @@ def evaluate(brdf, wi, wo):
 
 
 def evaluate_model(model, wi, wo):
-    """`evaluate` for a `Model`: Σ weight · lobe, in double precision."""
+    """`evaluate` for a `Model`: Σ weight · lobe + weight² · quadratic, in double precision."""
     wi, wo = np.asarray(wi, float), np.asarray(wo, float)
     above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
     up = np.array([0.0, 0.0, 1.0])
-    lobes = lobe_values(model, np.where(above[:, None], wi, up), np.where(above[:, None], wo, up))
-    return np.where(above[:, None], lobes @ weight_matrix(model), 0.0)
+    wi, wo = np.where(above[:, None], wi, up), np.where(above[:, None], wo, up)
+    plain, squared = lobe_values(model, wi, wo)
+    weights = weight_matrix(model)
+    values = plain @ weights + squared @ weights**2
+    return np.where(above[:, None], np.maximum(values, 0) if model.signed() else values, 0.0)
+
+
+def clamped_share(model, n=20_000):
+    """Share of direction pairs, even in solid angle, where a channel of a signed model is below 0
+    and clamped."""
+    z, phi = np.random.default_rng(0).random((2, 2, n))
+    sine, phi = np.sqrt(1 - z * z), 2 * np.pi * phi
+    wi, wo = np.stack([sine * np.cos(phi), sine * np.sin(phi), z], axis=-1)
+    plain, squared = lobe_values(model, wi, wo)
+    weights = weight_matrix(model)
+    return float((plain @ weights + squared @ weights**2 < 0).any(axis=1).mean())
 
 
 def weight_matrix(model):
@@ -41,10 +55,16 @@ def weight_matrix(model):
 
 
 def lobe_values(model, wi, wo):
-    """Lobes (n, lobes) in sr⁻¹ of directions (n, 3) above the surface."""
+    """Lobes (n, lobes) in sr⁻¹ of directions (n, 3) above the surface, and those of the weights'
+    squares, likewise."""
     from brdfkit import backend
 
-    bound = model.bind(backend.shapes(model))
+    terms = model.bind(backend.shapes(model)).terms()
     wi, wo = backend.vector(wi), backend.vector(wo)
-    columns = [np.asarray(lobe.eval(wi, wo)) for _, lobe in bound.terms()]
-    return np.stack([np.broadcast_to(c, len(wi.x)) for c in columns], axis=1)
+    plain = [lobe.eval(wi, wo) for _, lobe in terms]
+    squared = [lobe.quadratic(wi, wo) if lobe.quadratic else 0.0 for _, lobe in terms]
+    shape = len(wi.x), len(terms)
+    return [
+        np.stack([np.broadcast_to(np.asarray(c), shape[0]) for c in columns], axis=1)
+        for columns in (plain, squared)
+    ]

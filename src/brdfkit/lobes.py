@@ -29,14 +29,16 @@ class Sampling(Protocol):
 class Lobe:
     """One term of a model, without its weight.
 
-    `eval(wi, wo)`: value in sr⁻¹ without cosine, both directions above the surface;
-    `sampling`: a way to draw `wo`; `energy(wi)`: about the lobe's albedo, by which it is chosen;
-    `diffuse`: Mitsuba's kind of the lobe.
+    `eval(wi, wo)`: value in sr⁻¹ without cosine, both directions above the surface; `sampling`: a
+    way to draw `wo`, one object for lobes that are drawn together; `energy(wi)`: about the lobe's
+    albedo, by which it is chosen; `quadratic(wi, wo)`: a value that the square of the weight
+    multiplies, where light scattered twice counts; `diffuse`: Mitsuba's kind of the lobe.
     """
 
     eval: Callable
     sampling: Sampling
     energy: Callable = lambda wi: 1.0
+    quadratic: Callable | None = None
     diffuse: bool = False
 
 

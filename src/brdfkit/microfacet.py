@@ -4,6 +4,7 @@ A distribution answers `D(h)` [sr⁻¹, ∫ D cosθ_h dω = 1], `sample(wi, u)` 
 per solid angle of h. `wi`, `h` are vectors with x, y, z in the local frame, z along the normal.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -55,7 +56,12 @@ def v_groove(wi, wo, h):
 def _slope_exponent(h, alpha_u, alpha_v):
     # tan²θ_h (cos²φ_h/α_u² + sin²φ_h/α_v²), without a trigonometric function
     x, y = h.x / alpha_u, h.y / alpha_v
-    return (x * x + y * y) / (h.z * h.z)
+    return (x * x + y * y) / cos_squared(h)
+
+
+def cos_squared(h):
+    """cos²θ_h, kept off 0: its powers divide, and their derivatives in single precision."""
+    return dr.maximum(h.z * h.z, 1e-6)
 
 
 @dataclass(frozen=True)
@@ -73,7 +79,7 @@ class Beckmann:
         return dr.exp(-_slope_exponent(h, self.alpha_u, self.alpha_v))
 
     def D(self, h):
-        cos_2 = h.z * h.z
+        cos_2 = cos_squared(h)
         return self.gauss(h) / (dr.pi * self.alpha_u * self.alpha_v * cos_2 * cos_2)
 
     def sample(self, wi, u):
@@ -133,25 +139,64 @@ class TrowbridgeReitz:
 
 @dataclass(frozen=True)
 class CosinePower:
-    """(N·H)^n, the lobe of Blinn-Phong. J. Blinn, SIGGRAPH 1977."""
+    """(N·H)^(n_u cos²φ_h + n_v sin²φ_h): J. Blinn 1977, M. Ashikhmin & P. Shirley 2000."""
 
-    exponent: Any
+    n_u: Any
+    n_v: Any
 
-    def D(self, h):
-        return (self.exponent + 2) / (2 * dr.pi) * self._power(h)
+    def power(self, h):
+        x, y = h.x * h.x, h.y * h.y
+        exponent = (self.n_u * x + self.n_v * y) / dr.maximum(x + y, 1e-20)
+        return cosine_power((x + y) / (1 + h.z), exponent)
 
     def sample(self, wi, u):
-        # 1 - cosθ, of which cosθ in single precision knows too little
-        complement = -expm1(dr.log(dr.maximum(1 - u.x, 1e-12)) / (self.exponent + 1))
-        sin_theta = dr.sqrt(complement * (2 - complement))
         sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.y)
-        return type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, 1 - complement)
+        x, y = cos_phi * dr.sqrt(self.n_v + 1), sin_phi * dr.sqrt(self.n_u + 1)
+        inverse = dr.rsqrt(x * x + y * y)
+        x, y = x * inverse, y * inverse
+        exponent = self.n_u * x * x + self.n_v * y * y
+        # 1 - cosθ, of which cosθ in single precision knows too little
+        complement = -expm1(dr.log(dr.maximum(1 - u.x, 1e-12)) / (exponent + 1))
+        sin_theta = dr.sqrt(complement * (2 - complement))
+        return type(wi)(sin_theta * x, sin_theta * y, 1 - complement)
 
     def pdf(self, wi, h):
-        return (self.exponent + 1) / (2 * dr.pi) * self._power(h)
+        return dr.sqrt((self.n_u + 1) * (self.n_v + 1)) / (2 * dr.pi) * self.power(h)
 
-    def _power(self, h):
-        return cosine_power((h.x * h.x + h.y * h.y) / (1 + h.z), self.exponent)
+
+@dataclass(frozen=True)
+class PowerLobe:
+    """Outgoing directions by cos^n about `axis(wi)`, which is above the surface; what would fall
+    below it is mirrored up.
+
+    E. P. Lafortune & Y. D. Willems, "Using the modified Phong reflectance model", 1994.
+    """
+
+    axis: Callable
+    exponent: Any
+
+    def sample(self, wi, u):
+        about_z = CosinePower(self.exponent, self.exponent).sample(wi, u)
+        wo = reflect(about_z, half_vector(type(wi)(0, 0, 1), self.axis(wi)))
+        return type(wi)(wo.x, wo.y, dr.abs(wo.z))
+
+    def pdf(self, wi, wo):
+        axis, below = self.axis(wi), type(wo)(wo.x, wo.y, -wo.z)
+        power = cosine_power(one_minus_dot(axis, wo), self.exponent)
+        power += cosine_power(one_minus_dot(axis, below), self.exponent)
+        return (self.exponent + 1) / (2 * dr.pi) * power
+
+    def energy(self, wi):
+        """About ∫ (n + 2) / 2π cos^n cosθ dω over the hemisphere: 1 about the normal, towards the
+        horizon the cosine of the axis, at it 0.4 / √(n + 0.6)."""
+        z = self.axis(wi).z
+        return 0.5 * (z + dr.sqrt(z * z + 0.64 / (self.exponent + 0.6)))
+
+
+def one_minus_dot(a, b):
+    """1 - a·b of unit vectors, accurate where they are close."""
+    d = a - b
+    return 0.5 * dot(d, d)
 
 
 def cosine_power(complement, exponent):
@@ -171,9 +216,9 @@ def log1p(x):
 
 def expm1(x):
     """exp(x) - 1, accurate for small x: W. Kahan's way."""
-    y = dr.exp(x)
-    log_y = dr.log(dr.maximum(y, 1e-30))
-    return dr.select(y == 1, x, (y - 1) * x / dr.select(y == 1, 1, log_y))
+    y = dr.exp(dr.maximum(x, -50))
+    log_y = dr.log(y)
+    return dr.select(y == 1, x, (y - 1) * dr.maximum(x, -50) / dr.select(y == 1, 1, log_y))
 
 
 def _from_slope(vector, x, y):

@@ -8,55 +8,22 @@ channels. A model is a class in a file of its own: its parameters are class attr
 
 The same lines run in the renderer, where a parameter is a value per ray, and in a fit, where
 it is a double with derivatives. So a model uses `dr.*` and no Python `if` on values.
+
+What is no number to fit, a form or an order, is an `option`: a plain Python value, and another
+class for each (`Model.configured`). Where the parameters depend on it, `more_parameters` adds them.
 """
 
-import math
-from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.lobes import Lobe
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """A parameter of a model: its default, its bounds and what it means."""
-
-    default: float | None
-    bounds: tuple[float, float]
-    meaning: str
-    linear: bool = False
-    log: bool = False
-    follows: str | None = None
-
-    def __post_init__(self):
-        if self.log and self.bounds[0] <= 0:
-            raise BrdfkitError(f"{self.meaning!r}: log=True needs bounds above 0.")
-
-    def problem_with(self, value):
-        """What is wrong with `value` (one number or several), None if it is within the bounds."""
-        low, high = self.bounds
-        given = np.asarray(value)
-        if np.all(np.isfinite(given) & (given >= low) & (given <= high)):
-            return None
-        limits = f"at least {low:g}" if math.isinf(high) else f"between {low:g} and {high:g}"
-        return f"{value} is out of bounds: it should be {limits}"
-
-
-def weight(default, meaning):
-    """A linear parameter: the strength of one lobe, per colour channel, not negative."""
-    return Parameter(default, (0.0, math.inf), meaning, linear=True)
-
-
-def shape(default, bounds, meaning, log=False):
-    """A nonlinear parameter within `bounds`; `log` where its magnitude counts, as of a width."""
-    return Parameter(default, bounds, meaning, log=log)
-
-
-def follows(other, parameter, meaning):
-    """A shape parameter that equals the one named `other` unless given: anisotropy."""
-    return Parameter(None, parameter.bounds, meaning, log=parameter.log, follows=other)
+from brdfkit.parameters import Option, Parameter
+from brdfkit.parameters import follows as follows
+from brdfkit.parameters import option as option
+from brdfkit.parameters import shape as shape
+from brdfkit.parameters import weight as weight
 
 
 class Model:
@@ -68,13 +35,39 @@ class Model:
     """
 
     parameters: dict[str, Parameter] = {}  # noqa: RUF012  filled by __init_subclass__
+    options: dict[str, Option] = {}  # noqa: RUF012
 
     def __init_subclass__(cls):
-        own = {k: v for k, v in vars(cls).items() if isinstance(v, Parameter)}
+        own = {k: v for k, v in vars(cls).items() if isinstance(v, Parameter | Option)}
         for name in own:
             if hasattr(Model, name):
                 raise BrdfkitError(f"{cls.__name__}: no parameter can be named {name!r}.")
-        cls.parameters = {**cls.parameters, **own}
+        options = {name: o for name, o in own.items() if isinstance(o, Option)}
+        for name, declared in options.items():
+            setattr(cls, name, declared.default)
+        cls.options = {**cls.options, **options}
+        declared = {name: p for name, p in own.items() if isinstance(p, Parameter)}
+        cls._declared = {**getattr(cls, "_declared", {}), **declared}
+        cls.parameters = {**cls._declared, **cls.more_parameters()}
+
+    @classmethod
+    def more_parameters(cls) -> dict[str, Parameter]:
+        """Parameters by name that depend on the options, which are attributes of `cls`."""
+        return {}
+
+    @classmethod
+    def configured(cls, **options):
+        """The model with other options, a class like this one.
+
+        >>> models()["ashikhmin_shirley"].configured(diffuse="coupled")    # doctest: +SKIP
+        """
+        for name, given in options.items():
+            if name not in cls.options:
+                known = ", ".join(cls.options) or "none"
+                raise BrdfkitError(f"{cls.type_name()} has no option {name!r}; it has {known}.")
+            options[name] = cls.options[name].read(given, f"{cls.type_name()}: {name}")
+        changed = {n: v for n, v in options.items() if v != getattr(cls, n)}
+        return _configured(cls, tuple(sorted(changed.items()))) if changed else cls
 
     def __init__(self, **values):
         """Values by name; what is not given has its default. Weights: one number or one per
@@ -98,8 +91,24 @@ class Model:
         return cls.__module__.rpartition(".")[2]
 
     @classmethod
+    def chosen(cls):
+        """The options that are not the default, by name."""
+        values = {name: getattr(cls, name) for name in cls.options}
+        return {name: v for name, v in values.items() if v != cls.options[name].default}
+
+    @classmethod
+    def label(cls):
+        """The type with the options that are not the default: ``"lafortune:lobe_count=2"``."""
+        options = ",".join(f"{name}={value}" for name, value in cls.chosen().items())
+        return f"{cls.type_name()}:{options}" if options else cls.type_name()
+
+    @classmethod
     def parameter(cls, name):
         """The parameter of that name, or an error that lists those there are."""
+        if name in cls.options:
+            raise BrdfkitError(
+                f"{cls.type_name()}: {name} is an option; write {cls.type_name()}:{name}=VALUE."
+            )
         if name not in cls.parameters:
             known = ", ".join(cls.parameters)
             raise BrdfkitError(f"{cls.type_name()} has no parameter {name!r}; it has {known}.")
@@ -123,6 +132,16 @@ class Model:
     def anisotropic(cls):
         """True for a model with a parameter per surface direction."""
         return any(p.follows for p in cls.parameters.values())
+
+    @classmethod
+    def signed(cls):
+        """True where a weight may be negative: then the sum is clamped at 0."""
+        return any(p.linear and p.bounds[0] < 0 for p in cls.parameters.values())
+
+    @classmethod
+    def determined(cls, samples):
+        """Shape parameters by name that a fit takes from where was measured, not from a search."""
+        return {}
 
     @classmethod
     def bind(cls, values):
@@ -163,7 +182,7 @@ class Model:
     @property
     def name(self):
         """What pictures and tables call it."""
-        return self.type_name()
+        return self.label()
 
     def eval(self, wi, wo):
         """BRDF (n, channels) in sr⁻¹ of NumPy direction pairs (n, 3); 0 below the surface."""
@@ -180,11 +199,11 @@ class Model:
     def __reduce__(self):
         from brdfkit import registry
 
-        return registry.model_with_values, (self.type_name(), self.values)
+        return registry.model_with_values, (self.label(), self.values)
 
     def __repr__(self):
         values = ", ".join(f"{name}={_short(value)}" for name, value in self.values.items())
-        return f"{self.type_name()}({values})"
+        return f"{self.label()}({values})"
 
 
 def _number(value, per_channel, what):
@@ -203,3 +222,9 @@ def _short(value):
     if isinstance(value, tuple):
         return "[" + ", ".join(f"{v:.4g}" for v in value) + "]"
     return f"{value:.4g}"
+
+
+@cache
+def _configured(cls, options):
+    attributes = dict(options) | {"__module__": cls.__module__, "__doc__": cls.__doc__}
+    return type(cls.__name__, (cls,), attributes)

@@ -32,6 +32,25 @@ def parameters(model):
     }
 
 
+def choices(option):
+    """The choices of an option in words."""
+    if option.choices is None:
+        return "any"
+    if isinstance(option.default, int):
+        return f"{min(option.choices)} to {max(option.choices)}"
+    return ", ".join(map(str, option.choices))
+
+
+def example(model, option):
+    """The label of a model with another choice."""
+    declared = model.options[option]
+    if declared.choices is None:
+        return declared.default
+    after = declared.choices.index(declared.default) + 1
+    other = declared.choices[after % len(declared.choices)]
+    return f"{model.type_name()}:{option}={other}"
+
+
 def measured(data):
     """What is in a measured material."""
     samples = data.samples

@@ -27,18 +27,36 @@ def models():
     return {name: model for name, model in found.items() if model is not None}
 
 
-def model(name):
-    """The model of that name; `BrdfkitError` lists those there are."""
+def model(label):
+    """The model of a label: its name, with options ``"lafortune:lobe_count=2"``, or a sum of
+    labels, ``"ggx+ward"``: one diffuse term and the other terms of each.
+
+    `BrdfkitError` lists the models there are.
+    """
+    if "+" in label:
+        return model("mixture").configured(models=label)
+    name, _, settings = label.partition(":")
     found = model_in(plugin_files()[name]) if name in plugin_files() else None
     if found is None:
         known = ", ".join(models())
         raise BrdfkitError(f"There is no model {name!r}; there are {known}.")
-    return found
+    options = {}
+    for setting in filter(None, settings.split(",")):
+        key, equals, value = setting.partition("=")
+        if not equals:
+            raise BrdfkitError(f"{label}: {setting!r} should read OPTION=VALUE.")
+        options[key] = value
+    return found.configured(**options)
 
 
-def model_with_values(name, values):
-    """The model of that name with these values; a pickled model comes back through it."""
-    return model(name)(**values)
+def is_label(word):
+    """Whether a word can only be meant as a model: "ggx", "ggx+ward", "koenderink:order=4"."""
+    return all(part.partition(":")[0] in models() for part in word.split("+"))
+
+
+def model_with_values(label, values):
+    """The model of that label with these values; a pickled model comes back through it."""
+    return model(label)(**values)
 
 
 def load_models(path):
@@ -144,15 +162,18 @@ def register_in_mitsuba():
     for name in plugin_files():
         if (variant, name) not in _registered:
             _registered.add((variant, name))
-            mi.register_bsdf(name, lambda props, name=name: _plugin_class(name)(props))
+            mi.register_bsdf(name, lambda props, name=name: _plugin(name, props))
 
 
-def _plugin_class(name):
+def _plugin(name, props):
     import mitsuba as mi
 
     path = plugin_files()[name]
-    model = model_in(path)
-    return _defined(model or _module(path), mi.variant())
+    source = model_in(path)
+    if source is None:
+        return _defined(_module(path), mi.variant())(props)
+    options = {option: props[option] for option in source.options if option in props}
+    return _defined(source.configured(**options), mi.variant())(props)
 
 
 @cache

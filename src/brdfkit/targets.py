@@ -21,7 +21,7 @@ def measured(name):
 
 def material(name, settings=()):
     """What can be rendered: a model by name with `settings`, a saved fit, a measured file."""
-    if name in registry.models() and not Path(name).is_file():
+    if registry.is_label(name) and not Path(name).is_file():
         return registry.model_with_values(name, values(name, settings))
     if settings:
         raise BrdfkitError(f"{name} is no model: parameters can be set for models only.")
@@ -84,3 +84,8 @@ def picture_file(name):
     require_writable(path)
     require_writable(path.with_suffix(".png"))
     return path
+
+
+def fit_file(output, fit):
+    """The file of a `Fit` in the folder `output`; a label's colon is not for every file system."""
+    return Path(output) / f"{fit.name.replace(':', '-')}.json"

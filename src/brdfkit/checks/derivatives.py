@@ -61,8 +61,9 @@ def plugin_gradient(subject):
         found = float(np.sum(np.array(dr.grad(value))))
         parameters[key] = dr.detach(value)
         parameters.update()
-        expected = float((_total_derivative(model, name, wi, wo) * cosines).sum())
-        worst = max(worst, abs(found - expected) / max(abs(expected), 1e-6))
+        expected = _total_derivative(model, name, wi, wo) * cosines
+        difference = abs(found - float(expected.sum()))
+        worst = max(worst, difference / max(float(np.abs(expected).sum()), 1e-6))
     if missing:
         return False, f"not in traverse: {', '.join(missing)}"
     return worst < 1e-3, f"relative difference at most {worst:.1e}"
@@ -113,7 +114,15 @@ def _total_derivative(model, name, wi, wo):
         channels = _derivative(model, name, wi, wo)
         return channels * (3 if channels.shape[1] == 1 else 1)
     lobe = model.weights().index(name)
-    return 3 * lobe_values(model, wi, wo)[:, [lobe]]
+    plain, squared = lobe_values(model, wi, wo)
+    if model.signed():  # no derivative where the sum is clamped
+        kept = model.eval(wi, wo) > 0
+        return (plain[:, [lobe]] * kept) * (3 if kept.shape[1] == 1 else 1)
+    return sum(plain[:, [lobe]] + 2 * w * squared[:, [lobe]] for w in _three(getattr(model, name)))
+
+
+def _three(weight):
+    return np.broadcast_to(weight, 3)
 
 
 def _derivative(model, name, wi, wo):
@@ -128,11 +137,17 @@ def _derivative(model, name, wi, wo):
     values = backend.shapes(model)
     dr.enable_grad(values[name])
     directions = backend.vector(wi), backend.vector(wo)
+    Float64 = backend.float64()
     terms = model.bind(values).terms()
-    lobes = [backend.float64()(lobe.eval(*directions)) for _, lobe in terms]
+    plain = [Float64(lobe.eval(*directions)) for _, lobe in terms]
+    squared = [Float64(lobe.quadratic(*directions) if lobe.quadratic else 0) for _, lobe in terms]
     dr.forward_from(values[name])
-    columns = [np.broadcast_to(np.array(dr.grad(lobe)), len(wi)) for lobe in lobes]
-    return np.stack(columns, axis=1) @ weight_matrix(model)
+    plain, squared = (
+        np.stack([np.broadcast_to(np.array(dr.grad(c)), len(wi)) for c in columns], axis=1)
+        for columns in (plain, squared)
+    )
+    weights = weight_matrix(model)
+    return plain @ weights + squared @ weights**2
 
 
 def _difference(model, name, wi, wo):

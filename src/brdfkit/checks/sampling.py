@@ -104,10 +104,10 @@ def weights(subject):
     return worst < 1e-3, f"relative difference at most {worst:.1e}"
 
 
-def spread(subject, degrees):
+def spread(subject, degrees, samples=SAMPLES):
     """Standard deviation of the weight of a sample over its mean, at an incidence [degrees]."""
     wi = dict(incidences())[degrees]
-    weights = _own_weights(subject, wi)
+    weights = _own_weights(subject, wi, samples)
     return float(weights.std() / weights.mean())
 
 
@@ -116,11 +116,11 @@ def albedo(subject, wi):
     return _mean(_own_weights(subject, wi))
 
 
-def _own_weights(subject, wi):
+def _own_weights(subject, wi, samples=SAMPLES):
     import mitsuba as mi
 
-    si = subject.interaction(np.tile(wi, (SAMPLES, 1)))
-    _, weight = subject.bsdf.sample(mi.BSDFContext(), si, *uniform(SAMPLES, seed=1))
+    si = subject.interaction(np.tile(wi, (samples, 1)))
+    _, weight = subject.bsdf.sample(mi.BSDFContext(), si, *uniform(samples, seed=1))
     return np.array(weight).mean(axis=0, dtype=float)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from brdfkit import registry
 from brdfkit.errors import BrdfkitError
+from brdfkit.evaluating import clamped_share
 from brdfkit.fitting.loss import losses as losses
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.result import Fit as Fit
@@ -47,10 +48,12 @@ def fit(
     """
     began = time.perf_counter()
     model, loss = registry.model(name), _loss(loss)
-    space = _space(model, bounds or {}, fixed or {}, anisotropic)
+    samples = selected(data, max_angle)
+    determined = model.determined(samples)
+    given = {n: v for n, v in determined.items() if n not in (bounds or {})} | (fixed or {})
+    space = _space(model, bounds or {}, given, anisotropic)
     if starts < 1 or seed < 0:
         raise BrdfkitError(f"starts = {starts} should be at least 1, seed = {seed} at least 0.")
-    samples = selected(data, max_angle)
     default = space.coordinates(model().values)
 
     rng = np.random.default_rng(seed)
@@ -79,7 +82,7 @@ def fit(
         seconds=time.perf_counter() - began,
         message=best.message,
         at_bounds=_at_bounds(space, best.u, model, weights),
-        notes=_notes(samples, loss),
+        notes=_notes(samples, loss, fitted),
         settings={
             "max_angle": max_angle,
             "seed": seed,
@@ -141,11 +144,15 @@ def _space(model, bounds, fixed, anisotropic):
     return Space(names, limits[:, 0], limits[:, 1], log, {k: float(v) for k, v in fixed.items()})
 
 
-def _notes(samples, loss):
+def _notes(samples, loss, fitted):
+    notes = []
     negative = (samples.values < 0).mean()
-    if loss.linear or not negative:
-        return ()
-    return (f"{negative:.1%} of the measured values are negative and count as 0",)
+    if negative and not loss.linear:
+        notes.append(f"{negative:.1%} of the measured values are negative and count as 0")
+    if fitted.signed():
+        clamped = clamped_share(fitted)
+        notes.append(f"{clamped:.1%} of the hemisphere's direction pairs are clamped at 0")
+    return tuple(notes)
 
 
 def _at_bounds(space, u, model, weights):

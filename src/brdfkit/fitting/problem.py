@@ -9,7 +9,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit import backend
-from brdfkit.fitting.weights import bounded_quadratic
+from brdfkit.fitting.weights import bounded_quadratic, weighted_gram
 
 
 class Problem:
@@ -19,81 +19,97 @@ class Problem:
         cosines, importance = loss.geometry(samples)
         Float64 = backend.float64()
         self.model, self.loss = model, loss
-        self.channels = samples.values.shape[1]
+        self.bounded = np.array([model.parameters[n].bounds[0] >= 0 for n in model.weights()])
         self.wi, self.wo = backend.vector(samples.wi), backend.vector(samples.wo)
         self.cosines = Float64(cosines)
-        values = loss.target(samples.values)
-        self.measured = [Float64(np.ascontiguousarray(v * cosines)) for v in values.T]
-        self.targets = [loss.g(m) for m in self.measured]
+        self.measured = np.ascontiguousarray((loss.target(samples.values) * cosines[:, None]).T)
+        self.channels = len(self.measured)
+        self.targets = [loss.g(Float64(m)) for m in self.measured]
 
         # The loss itself is scale · √E²
-        self.importance = Float64(importance / loss.normaliser(importance, self.channels))
+        importance = importance / loss.normaliser(importance, self.channels)
         black = loss.g(Float64(0.0))
-        squares = sum(_sum(self.importance * dr.square(black - t)) for t in self.targets)
+        squares = sum(_sum(Float64(importance) * dr.square(black - t)) for t in self.targets)
         self.scale = squares**0.5 or 1.0
-        self.importance /= self.scale**2
+        self.importance = Float64(importance / self.scale**2)
         dr.eval(self.targets, self.importance)
 
     def lobes(self, values):
-        """The lobes times κ, each (n,), at `values` of the shape parameters."""
+        """(lobes, lobes of the squared weights), times κ: lists of (n,), at `values` of the shape
+        parameters; None where a weight has no square."""
         terms = self.model.bind(values).terms()
-        return [self.cosines * lobe.eval(self.wi, self.wo) for _, lobe in terms]
+        plain = [self.cosines * lobe.eval(self.wi, self.wo) for _, lobe in terms]
+        squared = [
+            None if lobe.quadratic is None else self.cosines * lobe.quadratic(self.wi, self.wo)
+            for _, lobe in terms
+        ]
+        return plain, squared
 
     def solve(self, values):
-        """The best weights (channels, lobes) ≥ 0 at numbers `values` of the shape parameters."""
-        lobes = self.lobes({name: backend.scalar(v) for name, v in values.items()})
-        dr.eval(lobes)
-        return np.array([self._solve_channel(lobes, c) for c in range(self.channels)])
-
-    def _solve_channel(self, lobes, c):
-        # Linearised about the data: exact where g is the identity, else the start of Newton's
-        slope = self.loss.dg(self.measured[c])
-        weight = self.importance * slope * slope
-        gram = _symmetric(
-            [[_sum(weight * a * b) for b in lobes[: i + 1]] for i, a in enumerate(lobes)]
+        """The best weights (channels, lobes) at numbers `values` of the shape parameters."""
+        plain, squared = self.lobes({name: backend.scalar(v) for name, v in values.items()})
+        dr.eval(plain, squared)
+        plain = np.stack([np.asarray(lobe) for lobe in plain])
+        squared = (
+            None
+            if squared.count(None) == len(squared)
+            else np.stack(
+                [np.zeros(plain.shape[1]) if q is None else np.asarray(q) for q in squared]
+            )
         )
-        moment = np.array([_sum(weight * a * self.measured[c]) for a in lobes])
-        solution = bounded_quadratic(gram, moment)
-        return solution if self.loss.linear else self._newton(lobes, c, solution)
+        return np.array([self._solve_channel(plain, squared, c) for c in range(self.channels)])
 
-    def _newton(self, lobes, c, solution):
+    def _solve_channel(self, plain, squared, c):
+        # Linearised about the data: exact where g is the identity, else the start of Newton's
+        measured = self.measured[c]
+        slope = self.loss.dg(backend.float64()(measured))
+        weight = np.asarray(self.importance * slope * slope)
+        gram, moment = weighted_gram(plain, weight), plain @ (weight * measured)
+        start = bounded_quadratic(gram, moment, self.bounded)
+        linear = self.loss.linear and squared is None
+        return start if linear else self._newton(plain, squared, c, start)
+
+    def _newton(self, plain, squared, c, weights):
         """Newton's method with the bounds, from a start near the solution."""
-        error, gradient, hessian = self._expand(lobes, c, solution)
+        error, gradient, hessian = self._expand(plain, squared, c, weights)
         for _ in range(30):
-            proposed = bounded_quadratic(hessian, hessian @ solution - gradient)
-            step = proposed - solution
+            moment = hessian @ weights - gradient
+            step = bounded_quadratic(hessian, moment, self.bounded) - weights
             for _halving in range(12):
-                trial = solution + step
-                expansion = self._expand(lobes, c, trial)
+                expansion = self._expand(plain, squared, c, weights + step)
                 if expansion[0] <= error * (1 + 1e-14):
                     break
                 step = step / 2
             else:
-                return solution
-            solution, (error, gradient, hessian) = trial, expansion
-            if np.all(np.abs(step) <= 1e-9 * np.abs(solution).max(initial=1e-9)):
+                return weights
+            weights, (error, gradient, hessian) = weights + step, expansion
+            # Newton's steps square: what is left after one of 1e-6 is 1e-12
+            if np.all(np.abs(step) <= 1e-6 * np.abs(weights).max(initial=1e-9)):
                 break
-        return solution
+        return weights
 
-    def _expand(self, lobes, c, solution):
+    def _expand(self, plain, squared, c, weights):
         """E² of a channel with gradient and (positive definite) Hessian by the weights, halved."""
-        model = self._mixture(lobes, solution)
+        Float64 = backend.float64()
+        columns, mixture = plain, weights @ plain
+        if squared is not None:
+            columns = plain + 2 * weights[:, None] * squared
+            mixture = mixture + weights**2 @ squared
+        # A trial step of free weights may leave the domain of g
+        model = dr.maximum(Float64(mixture), 0) if not self.loss.linear else Float64(mixture)
         residual = self.loss.g(model) - self.targets[c]
         slope, curvature = self.loss.dg(model), self.loss.ddg(model)
         first = self.importance * residual * slope
         second = self.importance * (slope * slope + residual * curvature)
-        dr.eval(residual, first, second)
-        error = _sum(self.importance * residual * residual)
-        gradient = np.array([_sum(first * a) for a in lobes])
-        hessian = _symmetric(
-            [[_sum(second * a * b) for b in lobes[: i + 1]] for i, a in enumerate(lobes)]
-        )
+        squares = self.importance * residual * residual
+        dr.eval(first, second, squares)
+        first, second, error = np.asarray(first), np.asarray(second), _sum(squares)
+        hessian = weighted_gram(columns, second)
+        if squared is not None:
+            hessian = hessian + np.diag(2 * squared @ first)
         eigenvalues, vectors = np.linalg.eigh(hessian)
         eigenvalues = np.maximum(np.abs(eigenvalues), 1e-12 * np.abs(eigenvalues).max() + 1e-300)
-        return error, gradient, (vectors * eigenvalues) @ vectors.T
-
-    def _mixture(self, lobes, solution):
-        return sum(backend.scalar(a) * lobe for a, lobe in zip(solution, lobes, strict=True))
+        return error, columns @ first, (vectors * eigenvalues) @ vectors.T
 
     def error(self, values, weights):
         """E² at `values` of the shape parameters and `weights` (channels, lobes)."""
@@ -112,10 +128,15 @@ class Problem:
         return _number(dr.detach(total)), np.array([_number(dr.grad(bound[n])) for n in values])
 
     def _error(self, bound, weights):
-        lobes = self.lobes(bound)
+        plain, squared = self.lobes(bound)
         squares = 0
         for c in range(self.channels):
-            model = self._mixture(lobes, weights[c])
+            model = 0
+            for a, lobe, quadratic in zip(weights[c], plain, squared, strict=True):
+                a = backend.scalar(a)
+                model = model + a * lobe + (0 if quadratic is None else a * a * quadratic)
+            if not self.loss.linear:
+                model = dr.maximum(model, 0)
             squares = squares + dr.square(self.loss.g(model) - self.targets[c])
         return self.importance * squares
 
@@ -138,8 +159,3 @@ def _sum(x):
 
 def _number(x):
     return float(np.asarray(x).reshape(-1)[0])
-
-
-def _symmetric(lower_rows):
-    n = len(lower_rows)
-    return np.array([[lower_rows[max(i, j)][min(i, j)] for j in range(n)] for i in range(n)])

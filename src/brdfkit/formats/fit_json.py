@@ -45,7 +45,7 @@ def write(fit, stream):
         )
     record = {
         KEY: brdfkit.__version__,
-        "model": fit.model.type_name(),
+        "model": fit.model.label(),
         "parameters": fit.values,
         "fit": {f.name: getattr(fit, f.name) for f in fields(fit) if f.name != "model"},
     }

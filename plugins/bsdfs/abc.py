@@ -1,0 +1,87 @@
+"""ABC: the facets' distribution of smooth surfaces, a power with a flat top, in V-grooves.
+
+    f = k_d / π + D G F / (π (N·L)(N·V)),   D = A / (1 + B (1 - N·H))^C
+
+J. Löw, J. Kronander, A. Ynnerman & J. Unger, "BRDF models for accurate and efficient rendering
+of glossy surfaces", ACM TOG 31(1), 2012, eq. 15: the microfacet ABC model, with the 1/π of the
+fits that its authors published. A is the specular weight as it enters there: D is not normalised,
+the albedo goes with A / B. As in the paper, F is a dielectric's for unpolarised light, in the form
+of R. L. Cook & K. E. Torrance, and G theirs too. With C = 2 the peak is about GGX's of width
+√(2/B). Shows polished metals, paints and plastics, whose tails may be longer or shorter than
+GGX's; no anisotropy, no retro-reflection.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import drjit as dr
+
+from brdfkit.lobes import HalfVector, Lobe, lambertian
+from brdfkit.microfacet import dot, expm1, half_vector, log1p, v_groove
+from brdfkit.model import Model, shape, weight
+
+
+@dataclass(frozen=True)
+class PowerOfHeight:
+    """Normals with a density per solid angle of (1 + B (1 - cosθ_h))^-C."""
+
+    B: Any
+    C: Any
+
+    def power(self, h):
+        return dr.exp(-self.C * self._log(h))
+
+    def sample(self, wi, u):
+        # x = log(1 + B (1 - cosθ)) has the density exp(q x)
+        q = self._q()
+        x = log1p(u.x * expm1(q * log1p(self.B))) / q
+        complement = dr.minimum(expm1(x) / self.B, 1)
+        sin_theta = dr.sqrt(complement * (2 - complement))
+        sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.y)
+        return type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, 1 - complement)
+
+    def pdf(self, wi, h):
+        return dr.exp((self._q() - 1) * self._log(h)) / self.integral()
+
+    def integral(self):
+        """Of `power` over the hemisphere."""
+        q = self._q()
+        return 2 * dr.pi / self.B * expm1(q * log1p(self.B)) / q
+
+    def _q(self):
+        # 1 - C, kept away from 0, where the integral is a logarithm: for sampling near enough
+        q = 1 - self.C
+        return dr.select(abs(q) < 1e-3, 1e-3, q)
+
+    def _log(self, h):
+        return log1p(self.B * (h.x * h.x + h.y * h.y) / (1 + h.z))
+
+
+def fresnel(ior, cos_theta):
+    """Reflectance of a dielectric for unpolarised light: Cook & Torrance 1982."""
+    g = dr.sqrt(ior * ior - 1 + cos_theta * cos_theta)
+    a = (g - cos_theta) / (g + cos_theta)
+    b = (cos_theta * (g + cos_theta) - 1) / (cos_theta * (g - cos_theta) + 1)
+    return 0.5 * a * a * (1 + b * b)
+
+
+class ABC(Model):
+    diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
+    specular_reflectance = weight(60.0, "A: height of the highlight")
+    b = shape(1000.0, (1.0, 1e7), "B: sharpness of the highlight", log=True)
+    c = shape(1.5, (0.05, 5.0), "C: steepness of its tails", log=True)
+    ior = shape(1.5, (1.01, 100.0), "η: index of refraction", log=True)
+
+    def specular(self, wi, wo):
+        h = half_vector(wi, wo)
+        D = PowerOfHeight(self.b, self.c).power(h)
+        F = fresnel(self.ior, dot(wi, h))
+        return D * v_groove(wi, wo, h) * F / (dr.pi * wi.z * wo.z)
+
+    def lobes(self):
+        facets = PowerOfHeight(self.b, self.c)
+
+        def energy(wi):
+            return 4 / dr.pi * facets.integral() * fresnel(self.ior, wi.z)
+
+        return lambertian(), Lobe(self.specular, HalfVector(facets), energy)

@@ -1,0 +1,52 @@
+"""Ashikhmin-Shirley: Phong-like facets with Fresnel reflectance, isotropic or elliptic.
+
+    f = f_d + k_s √((n_u + 1)(n_v + 1)) / 8π (N·H)^(n_u cos²φ_h + n_v sin²φ_h) F
+              / ((V·H) max(N·L, N·V)),     F = F₀ + (1 - F₀)(1 - V·H)⁵
+
+    diffuse=lambert   f_d = k_d / π
+    diffuse=coupled   f_d = 28 k_d / 23π (1 - F₀) (1 - (1 - N·L/2)⁵) (1 - (1 - N·V/2)⁵)
+
+M. Ashikhmin & P. Shirley, "An anisotropic Phong BRDF model", JGT 5(2), 2000; Kurt 2007,
+eqs. 3.13-3.17. The paper has no k_s, and the coupled f_d, which dims as the highlight brightens.
+Shows metals, brushed or not, and varnished surfaces; no retro-reflection. Where F₀ is about 1,
+only the product k_s F₀ is told by measurements.
+"""
+
+import drjit as dr
+
+from brdfkit.lobes import Cosine, HalfVector, Lobe, lambertian
+from brdfkit.microfacet import CosinePower, dot, fifth_power, half_vector, schlick
+from brdfkit.model import Model, follows, option, shape, weight
+
+
+class AshikhminShirley(Model):
+    diffuse = option("lambert", ("lambert", "coupled"), "form of the diffuse term")
+    diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
+    specular_reflectance = weight(0.5, "k_s: strength of the highlight")
+    exponent_u = shape(100.0, (0.1, 1e4), "n_u: sharpness of the highlight along x", log=True)
+    exponent_v = follows("exponent_u", exponent_u, "n_v: sharpness of the highlight along y")
+    f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
+
+    def coupled(self, wi, wo):
+        return 28 / (23 * dr.pi) * (1 - self.f0) * entering(wi.z) * entering(wo.z)
+
+    def coupled_albedo(self, wi):
+        return (1 - self.f0) * entering(wi.z)
+
+    def specular(self, wi, wo):
+        h = half_vector(wi, wo)
+        cos_d = dot(wi, h)
+        power = CosinePower(self.exponent_u, self.exponent_v).pdf(wi, h)
+        return power * schlick(self.f0, cos_d) / (4 * cos_d * dr.maximum(wi.z, wo.z))
+
+    def lobes(self):
+        sampling = HalfVector(CosinePower(self.exponent_u, self.exponent_v))
+        specular = Lobe(self.specular, sampling, lambda wi: schlick(self.f0, wi.z))
+        if self.diffuse == "lambert":
+            return lambertian(), specular
+        diffuse = Lobe(self.coupled, Cosine(), self.coupled_albedo, diffuse=True)
+        return diffuse, specular
+
+
+def entering(cosine):
+    return 1 - fifth_power(1 - cosine / 2)

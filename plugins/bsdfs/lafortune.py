@@ -1,0 +1,80 @@
+"""Lafortune: generalised cosine lobes, about the mirror direction, off it or back to the light.
+
+    f = k_d / π + Σ_j k_s (n + 2) / 2π [C_x l_x v_x + C_y l_y v_y + C_z l_z v_z]₊ⁿ
+                      / max(|C_x|, |C_y|, |C_z|)ⁿ
+
+E. P. F. Lafortune, S.-C. Foo, K. E. Torrance & D. P. Greenberg, "Non-linear approximation of
+reflectance functions", SIGGRAPH 1997; Kurt 2007, eqs. 3.10-3.12. Only the ratios of the C count.
+-C_x = -C_y = C_z is Phong's lobe, C_z < -C_x peaks below the mirror direction, C_x > 0 reflects
+back, C_x ≠ C_y is anisotropic; `lobe_count` sums several. k_s is the albedo of a mirror lobe from
+above, others reflect less. Shows off-specular and retro-reflection of rough surfaces; highlights
+are round, never elliptic, and there is no Fresnel effect.
+"""
+
+import drjit as dr
+
+from brdfkit.lobes import Lobe, lambertian
+from brdfkit.microfacet import PowerLobe, cosine_power, dot
+from brdfkit.model import Model, follows, option, shape, weight
+
+
+class Lafortune(Model):
+    lobe_count = option(1, (1, 2, 3), "S: the number of lobes")
+    diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
+    specular_reflectance = weight(0.3, "k_s: strength of the lobe")
+    # The scale is free, so these bounds hold all ratios to 1000; C_z > 0 keeps the lobe's axis
+    # above the surface, and one of the C off 0
+    c_x = shape(-0.7, (-1.0, 1.0), "C_x: below 0 towards the mirror direction, above 0 back")
+    c_y = follows("c_x", c_x, "C_y: the same along y")
+    c_z = shape(0.68, (0.001, 1.0), "C_z: along the normal; the ratios to C_x, C_y count")
+    exponent = shape(30.0, (0.1, 1e4), "n: sharpness of the lobe", log=True)
+
+    @classmethod
+    def more_parameters(cls):
+        more = {}
+        for j in range(2, cls.lobe_count + 1):
+            # Alike, the lobes would be a saddle of the fit: each next one begins wider
+            more |= {
+                f"specular_reflectance_{j}": weight(0.1, f"k_s: strength of lobe {j}"),
+                f"c_x_{j}": (c_x := shape(-0.7, (-1.0, 1.0), f"C_x of lobe {j}")),
+                f"c_y_{j}": follows(f"c_x_{j}", c_x, f"C_y of lobe {j}"),
+                f"c_z_{j}": shape(0.68, (0.001, 1.0), f"C_z of lobe {j}"),
+                f"exponent_{j}": shape(30.0 / 5 ** (j - 1), (0.1, 1e4), f"n of lobe {j}", log=True),
+            }
+        return more
+
+    def lobes(self):
+        endings = ["", *(f"_{j}" for j in range(2, self.lobe_count + 1))]
+        names = ("c_x", "c_y", "c_z", "exponent")
+        return lambertian(), *(lobe(*(getattr(self, n + e) for n in names)) for e in endings)
+
+
+def lobe(c_x, c_y, c_z, n):
+    """One term of the sum."""
+    largest = dr.maximum(dr.maximum(dr.abs(c_x), dr.abs(c_y)), c_z)
+    a_x, a_y, a_z = c_x / largest, c_y / largest, c_z / largest
+
+    def value(wi, wo):
+        # 1 - bracket, accurate where it is small
+        complement = missing(a_x, wi.x, wo.x) + missing(a_y, wi.y, wo.y) + missing(a_z, wi.z, wo.z)
+        return (n + 2) / (2 * dr.pi) * cosine_power(complement, n)
+
+    def axis(wi):
+        c = type(wi)(a_x * wi.x, a_y * wi.y, a_z * wi.z)
+        return c * dr.rsqrt(dot(c, c))
+
+    def energy(wi):
+        # The bracket is |(a_x l_x, a_y l_y, a_z l_z)| times the cosine to the axis
+        x, y, z = wi.x * wi.x, wi.y * wi.y, wi.z * wi.z
+        lost = (1 - a_x * a_x) * x + (1 - a_y * a_y) * y + (1 - a_z * a_z) * z
+        return cosine_power(lost, n / 2) * sampling.energy(wi)
+
+    sampling = PowerLobe(axis, n)
+    return Lobe(value, sampling, energy)
+
+
+def missing(a, l, v):
+    """(l² + v²)/2 - a l v, a sum of two small terms where a is about ±1 and l about ±v."""
+    sign = dr.select(a < 0, -1, 1)
+    d = l - sign * v
+    return 0.5 * d * d + (sign - a) * l * v

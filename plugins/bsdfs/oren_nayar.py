@@ -1,0 +1,69 @@
+"""Oren-Nayar: matt facets in V-grooves, brighter towards the light than Lambert.
+
+    form=qualitative   f = k_d / π (A + B max(0, cosΔφ) sinα tanβ)
+    form=full          f = k_d / π [C₁ + cosΔφ C₂ tanβ + (1 - |cosΔφ|) C₃ tan((α + β)/2)]
+                         + 0.17 k_d² / π · σ² / (σ² + 0.13) [1 - cosΔφ (2β/π)²]
+
+with α, β = greater, lesser of θ_i, θ_o; A = C₁ = 1 - 0.5 σ² / (σ² + 0.33),
+B = 0.45 σ² / (σ² + 0.09), C₂ = B (sinα, less (2β/π)³ where cosΔφ < 0),
+C₃ = 0.125 σ² / (σ² + 0.09) (4αβ/π²)². The term of k_d² is light that bounces between facets.
+
+M. Oren & S. K. Nayar, "Generalization of Lambert's reflectance model", SIGGRAPH 1994; Kurt 2007,
+eqs. 3.18-3.24 (the bracket of eq. 3.23 closes too early: black at normal incidence). Lambert at
+σ = 0. Shows clay, plaster, cloth and the moon: flat, with retro-reflection at grazing angles; no
+gloss. The full form reflects up to 3 % more than it receives at grazing incidence.
+"""
+
+import drjit as dr
+
+from brdfkit.lobes import Cosine, Lobe
+from brdfkit.model import Model, option, shape, weight
+
+
+class OrenNayar(Model):
+    form = option("qualitative", ("qualitative", "full"), "the short form, or all its terms")
+    diffuse_reflectance = weight(0.5, "k_d: albedo of a facet")
+    sigma = shape(0.2, (0.0, 1.5), "σ: standard deviation of the facets' inclination [rad]")
+
+    def qualitative(self, wi, wo):
+        A, B, _ = self.factors()
+        # max(0, cosΔφ) sinα tanβ, without a trigonometric function
+        towards = dr.maximum(wi.x * wo.x + wi.y * wo.y, 0) / dr.maximum(wi.z, wo.z)
+        return (A + B * towards) / dr.pi
+
+    def full(self, wi, wo):
+        C1, B, _ = self.factors()
+        alpha, beta, cos_phi = angles(wi, wo)
+        less = dr.select(cos_phi < 0, cube(2 * beta / dr.pi), 0)
+        C2 = B * (dr.sin(alpha) - less)
+        C3 = 0.125 / 0.45 * B * dr.square(4 * alpha * beta / dr.pi**2)
+        across = (1 - dr.abs(cos_phi)) * C3 * dr.tan((alpha + beta) / 2)
+        # Opposite the light and near the horizon rough facets would come out below 0
+        return dr.maximum(C1 + cos_phi * C2 * dr.tan(beta) + across, 0) / dr.pi
+
+    def bounced(self, wi, wo):
+        _, _, share = self.factors()
+        _, beta, cos_phi = angles(wi, wo)
+        return 0.17 / dr.pi * share * (1 - cos_phi * dr.square(2 * beta / dr.pi))
+
+    def factors(self):
+        """A = C₁, B and σ² / (σ² + 0.13)."""
+        s = self.sigma * self.sigma
+        return 1 - 0.5 * s / (s + 0.33), 0.45 * s / (s + 0.09), s / (s + 0.13)
+
+    def lobes(self):
+        if self.form == "qualitative":
+            return (Lobe(self.qualitative, Cosine(), diffuse=True),)
+        return (Lobe(self.full, Cosine(), quadratic=self.bounced, diffuse=True),)
+
+
+def angles(wi, wo):
+    """α, β [rad] and cosΔφ, 0 where a direction is the normal."""
+    high, low = dr.minimum(wi.z, wo.z), dr.maximum(wi.z, wo.z)
+    sines = dr.sqrt(dr.maximum((1 - wi.z * wi.z) * (1 - wo.z * wo.z), 1e-20))
+    cos_phi = dr.maximum(dr.minimum((wi.x * wo.x + wi.y * wo.y) / sines, 1), -1)
+    return dr.safe_acos(high), dr.safe_acos(low), cos_phi
+
+
+def cube(x):
+    return x * x * x

@@ -1,0 +1,109 @@
+"""PCA polynomial: a polynomial of the principal components of products of the directions.
+
+    isotropic    f = β_0 + Σ_k (β_{2k-1} Z_1^k + β_{2k} Z_2^k)
+                 Z = W U,  W_1 = l_x v_x + l_y v_y,  W_2 = l_z v_z
+    anisotropic  f = β_0 + Σ_k (β_{3k-2} Z_1^k + β_{3k-1} Z_2^k + β_{3k} Z_3^k)
+                 Z = X U,  X_1 = l_x v_x,  X_2 = l_y v_y,  X_3 = l_z v_z
+
+k = 1 ... `degree`. U turns the products to their principal axes over the measured directions: a fit
+takes it from them, and it belongs to the fitted material. It is given by its angles [rad]. Weights
+may be negative; a sum below 0 is clamped at 0. Interactions Z_1^j Z_2^k are left out, as printed,
+although uncorrelated components may well interact.
+
+A. Öztürk, M. Kurt, A. Bilgili & C. Güngör, "Linear approximation of bidirectional reflectance
+distribution functions", Computers & Graphics 32(2), 2008; Kurt 2007, eqs. 7.4, 7.5. Shows diffuse
+and rough materials; a highlight takes a degree that then swings below 0 elsewhere.
+"""
+
+import math
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.lobes import Cosine, Lobe
+from brdfkit.model import Model, option, shape, weight
+
+# The planes that the angles turn, one after the other: of two components, of three
+PLANES = {2: ((0, 1),), 3: ((0, 1), (0, 2), (1, 2))}
+
+
+def products(wi, wo, components):
+    """W of two components, X of three."""
+    x, y, z = wi.x * wo.x, wi.y * wo.y, wi.z * wo.z
+    return [x + y, z] if components == 2 else [x, y, z]
+
+
+def turned(products, angles):
+    """Z: the products along the axes that the angles give."""
+    z = list(products)
+    for (a, b), angle in zip(PLANES[len(z)], angles, strict=True):
+        sine, cosine = dr.sin(angle), dr.cos(angle)
+        z[a], z[b] = cosine * z[a] + sine * z[b], cosine * z[b] - sine * z[a]
+    return z
+
+
+def angles_of(axes):
+    """The angles [rad] by which `turned` goes to `axes`, the rows of an orthonormal matrix."""
+    if np.linalg.det(axes) < 0:  # the sign of a component is free
+        axes = np.vstack([axes[:-1], -axes[-1]])
+    angles = [math.atan2(axes[0, 1], axes[0, 0])]
+    if len(axes) == 3:
+        angles.append(math.atan2(axes[0, 2], math.hypot(axes[0, 0], axes[0, 1])))
+        angles.append(math.atan2(axes[1, 2], axes[2, 2]))
+    return angles
+
+
+class PCAPolynomial(Model):
+    degree = option(3, tuple(range(1, 17)), "p, the degree")
+    symmetry = option("isotropic", ("isotropic", "anisotropic"), "whether the azimuth counts")
+
+    @classmethod
+    def components(cls):
+        return 2 if cls.symmetry == "isotropic" else 3
+
+    @classmethod
+    def angle_names(cls):
+        return [f"angle_{a + 1}_{b + 1}" for a, b in PLANES[cls.components()]]
+
+    @classmethod
+    def powers(cls):
+        """(component j from 0, exponent k) of β_1, β_2, ..."""
+        return [(j, k) for k in range(1, cls.degree + 1) for j in range(cls.components())]
+
+    @classmethod
+    def more_parameters(cls):
+        signed = (-math.inf, math.inf)
+        constant = {"beta_0": weight(0.15, "β_0: constant", signed)}
+        betas = {
+            f"beta_{number}": weight(0.0, f"β_{number}: weight of Z_{j + 1}^{k}", signed)
+            for number, (j, k) in enumerate(cls.powers(), 1)
+        }
+        angles = {
+            name: shape(0.0, (-math.pi, math.pi), "turn of the principal axes in this plane [rad]")
+            for name in cls.angle_names()
+        }
+        return constant | betas | angles
+
+    @classmethod
+    def determined(cls, samples):
+        """The angles of the principal axes of the measured directions."""
+        data = samples.wi * samples.wo
+        if cls.components() == 2:
+            data = np.stack([data[:, 0] + data[:, 1], data[:, 2]], axis=1)
+        variances, axes = np.linalg.eigh(np.cov(data.T))
+        axes = axes[:, np.argsort(-variances)].T
+        axes = axes * np.sign(axes[range(len(axes)), np.abs(axes).argmax(axis=1)])[:, None]
+        return dict(zip(cls.angle_names(), angles_of(axes), strict=True))
+
+    def lobes(self):
+        cosine = Cosine()
+        angles = [getattr(self, name) for name in self.angle_names()]
+
+        def power(j, k):
+            def value(wi, wo):
+                return turned(products(wi, wo, self.components()), angles)[j] ** k
+
+            return Lobe(value, cosine, lambda wi: 0.0, diffuse=True)
+
+        constant = Lobe(lambda wi, wo: 1.0, cosine, lambda wi: math.pi, diffuse=True)
+        return constant, *(power(j, k) for j, k in self.powers())

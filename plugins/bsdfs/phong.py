@@ -1,0 +1,35 @@
+"""Phong: a power of the cosine between the mirror direction and the view, normalised.
+
+    f = k_d / π + k_s (n + 2) / 2π (cos α)ⁿ,   cos α = max(0, R·V),   R = 2 (N·L) N - L
+
+B. T. Phong, "Illumination for computer generated pictures", CACM 18(6), 1975, in the reciprocal
+form of E. P. Lafortune & Y. D. Willems, "Using the modified Phong reflectance model for physically
+based rendering", 1994; Kurt 2007, eqs. 3.2, 3.3. Energy is conserved for k_d + k_s ≤ 1. Shows
+plastics from above; highlights stay round and grow darker towards grazing angles, where those of
+materials grow long and bright; no retro-reflection.
+"""
+
+import drjit as dr
+
+from brdfkit.lobes import Lobe, lambertian
+from brdfkit.microfacet import PowerLobe, cosine_power, one_minus_dot
+from brdfkit.model import Model, shape, weight
+
+
+class Phong(Model):
+    diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
+    specular_reflectance = weight(0.3, "k_s: albedo of the highlight, seen from above")
+    exponent = shape(30.0, (0.1, 1e4), "n: sharpness of the highlight", log=True)
+
+    def specular(self, wi, wo):
+        power = cosine_power(one_minus_dot(mirrored(wi), wo), self.exponent)
+        return (self.exponent + 2) / (2 * dr.pi) * power
+
+    def lobes(self):
+        sampling = PowerLobe(mirrored, self.exponent)
+        return lambertian(), Lobe(self.specular, sampling, sampling.energy)
+
+
+def mirrored(w):
+    """R: the mirror direction about the normal."""
+    return type(w)(-w.x, -w.y, w.z)

@@ -1,0 +1,70 @@
+"""Torrance-Sparrow: facets in V-grooves, their inclination distributed like a Gaussian.
+
+    f = k_d / π + k_s D G F / (4 (N·L)(N·V)),   D = exp(-θ_h² / m²) / (π m²)
+    G = min(1, 2 (N·H)(N·V) / (V·H), 2 (N·H)(N·L) / (V·H))
+
+K. E. Torrance & E. M. Sparrow, "Theory for off-specular reflection from roughened surfaces",
+JOSA 57(9), 1967; Kurt 2007, eqs. 3.25-3.27, with Schlick's F (3.16). The constant of D, R.
+Ramamoorthi's and P. Hanrahan's of 2001, is that of small m: ∫ D cosθ_h dω is 0.974 at m = 0.2
+and 0.548 at m = 1, so that rough surfaces come out darker, never brighter. Shows metals and
+plastics of one roughness and their off-specular peaks; no long tails, no anisotropy.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import drjit as dr
+
+from brdfkit.lobes import HalfVector, Lobe, lambertian
+from brdfkit.microfacet import dot, half_vector, log1p, schlick, v_groove
+from brdfkit.model import Model, shape, weight
+
+
+@dataclass(frozen=True)
+class GaussianAngle:
+    """Normals whose inclination θ_h has the density θ_h exp(-θ_h²/m²) up to the horizon."""
+
+    m: Any
+
+    def D(self, h):
+        x = _angle(h) / self.m
+        return dr.exp(-x * x) / (dr.pi * self.m * self.m)
+
+    def sample(self, wi, u):
+        theta = self.m * dr.sqrt(-log1p(-u.x * self._share()))
+        sin_theta, cos_theta = dr.sincos(theta)
+        sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.y)
+        return type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
+
+    def pdf(self, wi, h):
+        # D θ/sinθ, and θ/sinθ = 1 at the normal
+        return self.D(h) * _angle(h) / (_sine(h) * self._share())
+
+    def _share(self):
+        """Of the Gaussian in the plane, what lies within a radius of π/2."""
+        end = dr.pi / 2 / self.m
+        return 1 - dr.exp(-end * end)
+
+
+def _sine(h):
+    return dr.sqrt(dr.maximum(h.x * h.x + h.y * h.y, 1e-14))
+
+
+def _angle(h):
+    return dr.atan2(_sine(h), h.z)
+
+
+class TorranceSparrow(Model):
+    diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
+    specular_reflectance = weight(0.5, "k_s: strength of the highlight")
+    alpha = shape(0.2, (0.001, 1.0), "m: rms inclination of the facets [rad]", log=True)
+    f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
+
+    def specular(self, wi, wo):
+        h = half_vector(wi, wo)
+        F = schlick(self.f0, dot(wi, h))
+        return GaussianAngle(self.alpha).D(h) * v_groove(wi, wo, h) * F / (4 * wi.z * wo.z)
+
+    def lobes(self):
+        sampling = HalfVector(GaussianAngle(self.alpha))
+        return lambertian(), Lobe(self.specular, sampling, lambda wi: schlick(self.f0, wi.z))

@@ -1,0 +1,78 @@
+"""What a model declares: parameters, linear or not, and options."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a model: its default, its bounds and what it means."""
+
+    default: float | None
+    bounds: tuple[float, float]
+    meaning: str
+    linear: bool = False
+    log: bool = False
+    follows: str | None = None
+
+    def __post_init__(self):
+        if self.log and self.bounds[0] <= 0:
+            raise BrdfkitError(f"{self.meaning!r}: log=True needs bounds above 0.")
+
+    def problem_with(self, value):
+        """What is wrong with `value` (one number or several), None if it is within the bounds."""
+        low, high = self.bounds
+        given = np.asarray(value)
+        if np.all(np.isfinite(given) & (given >= low) & (given <= high)):
+            return None
+        limits = f"at least {low:g}" if math.isinf(high) else f"between {low:g} and {high:g}"
+        return f"{value} is out of bounds: it should be {limits}"
+
+
+def weight(default, meaning, bounds=(0.0, math.inf)):
+    """A linear parameter: the strength of one lobe, per colour channel."""
+    return Parameter(default, bounds, meaning, linear=True)
+
+
+def shape(default, bounds, meaning, log=False):
+    """A nonlinear parameter within `bounds`; `log` where its magnitude counts, as of a width."""
+    return Parameter(default, bounds, meaning, log=log)
+
+
+def follows(other, parameter, meaning):
+    """A shape parameter that equals the one named `other` unless given: anisotropy."""
+    return Parameter(None, parameter.bounds, meaning, log=parameter.log, follows=other)
+
+
+@dataclass(frozen=True)
+class Option:
+    """A choice that is no number to fit: a form of the model, an order, a count of lobes."""
+
+    default: Any
+    choices: tuple | None
+    meaning: str
+
+    def read(self, given, what):
+        """`given`, a word or a number, as this option takes it; `what`: for the error."""
+        value = type(self.default)(given) if _is_a(type(self.default), given) else given
+        if type(value) is not type(self.default) or (self.choices and value not in self.choices):
+            one_of = " or ".join(map(str, self.choices)) if self.choices else "of another kind"
+            raise BrdfkitError(f"{what} = {given} should be {one_of}.")
+        return value
+
+
+def option(default, choices, meaning):
+    """An option with its `choices`, None where any value of the default's type will do."""
+    return Option(default, choices, meaning)
+
+
+def _is_a(kind, given):
+    try:
+        return kind(given) == given or str(kind(given)) == given
+    except (TypeError, ValueError):
+        return False

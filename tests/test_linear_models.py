@@ -1,0 +1,131 @@
+"""The models that are linear in all their weights: Koenderink's basis and the PCA polynomial."""
+
+import sys
+
+import numpy as np
+import pytest
+
+import brdfkit as bk
+from brdfkit import registry
+from brdfkit.directions import from_angles
+from brdfkit.evaluating import lobe_values
+from brdfkit.fitting.selection import selected
+
+
+def hemisphere(n_theta, n_phi):
+    """Directions (n, 3) and solid angles (n,): Gauss-Legendre in cosθ, even in φ."""
+    x, w = np.polynomial.legendre.leggauss(n_theta)
+    z, w = (x + 1) / 2, w / 2
+    phi = np.arange(n_phi) * 2 * np.pi / n_phi
+    directions = from_angles(np.arccos(z)[:, None], phi[None, :]).reshape(-1, 3)
+    return directions, np.repeat(w * 2 * np.pi / n_phi, n_phi)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("order", "isotropic", "anisotropic"),
+    [
+        (0, 1, 1),
+        (2, 5, 21),
+        (4, 14, 120),
+        (6, 30, None),
+        (8, 55, 1035),
+    ],
+)
+def test_counts_of_weights(order, isotropic, anisotropic):
+    """Kurt 2007 prints 14, 55 and 295 anisotropic ones, which is no truncation of the basis."""
+    assert len(registry.model(f"koenderink:order={order}").weights()) == isotropic
+    if anisotropic:
+        label = f"koenderink:order={order},symmetry=anisotropic"
+        assert len(registry.model(label).weights()) == anisotropic
+
+
+@pytest.mark.parametrize("label", ["koenderink:order=8", "koenderink:symmetry=anisotropic"])
+def test_basis_is_orthonormal(label):
+    """∫∫ I_a I_b dω_i dω_r = δ_ab, by a quadrature that is exact for the polynomials."""
+    model = registry.model(label)()
+    isotropic = "8" in label
+    wo, weight_o = hemisphere(9, 18)
+    if isotropic:  # only Δφ counts: one azimuth of wi stands for all
+        wi, weight_i = hemisphere(9, 1)
+    else:
+        wi, weight_i = hemisphere(4, 8)
+    pairs_i, pairs_o = np.repeat(wi, len(wo), axis=0), np.tile(wo, (len(wi), 1))
+    weights = np.repeat(weight_i, len(wo)) * np.tile(weight_o, len(wi))
+    basis, _ = lobe_values(model, pairs_i, pairs_o)
+    gram = (basis * weights[:, None]).T @ basis
+    np.testing.assert_allclose(gram, np.eye(len(gram)), atol=1e-10)
+
+
+@pytest.mark.quick
+def test_order_0_is_lambert():
+    koenderink = registry.model("koenderink:order=0")(a_0_0_0=0.6)
+    wi, wo = from_angles([0.3], [0.1]), from_angles([1.2], [2.0])
+    assert koenderink.eval(wi, wo) == pytest.approx(0.3 / np.pi, rel=1e-12)
+
+
+@pytest.mark.quick
+def test_counts_of_the_polynomial():
+    """2p + 1 weights and one angle, which stands for the 4 entries of U; anisotropic 3p + 1."""
+    for degree in (1, 2, 7):
+        model = registry.model(f"pca_polynomial:degree={degree}")
+        assert (len(model.weights()), len(model.shapes())) == (2 * degree + 1, 1)
+        model = registry.model(f"pca_polynomial:degree={degree},symmetry=anisotropic")
+        assert (len(model.weights()), len(model.shapes())) == (3 * degree + 1, 3)
+
+
+@pytest.mark.quick
+def test_turned_by_its_angles_data_has_its_principal_axes():
+    rng = np.random.default_rng(1)
+    data = rng.normal(size=(500, 3)) @ rng.normal(size=(3, 3))
+    model = registry.model("pca_polynomial")
+    module = sys.modules[model.__module__]
+    _, axes = np.linalg.eigh(np.cov(data.T))
+    import drjit as dr
+
+    columns = [dr.llvm.Float64(np.ascontiguousarray(c)) for c in data.T]
+    turned = module.turned(columns, module.angles_of(axes.T))
+    covariance = np.cov(np.array([np.array(c) for c in turned]))
+    np.testing.assert_allclose(covariance, np.diag(np.diag(covariance)), atol=1e-10)
+
+
+def test_principal_axes_of_curet(measured_data):
+    """Kurt 2007: the first axis at -1.80°, by the 189 geometries below 80°."""
+    samples = selected(bk.load(measured_data / "curet" / "abrdf.dat#1"), 80.0)
+    angles = registry.model("pca_polynomial").determined(samples)
+    assert np.degrees(angles["angle_1_2"]) == pytest.approx(-1.80, abs=5e-3)
+    # All 205 geometries: -0.92°
+    samples = selected(bk.load(measured_data / "curet" / "abrdf.dat#1"), 89.0)
+    angles = registry.model("pca_polynomial").determined(samples)
+    assert np.degrees(angles["angle_1_2"]) == pytest.approx(-0.92, abs=5e-3)
+
+
+# Kurt 2007, digest: E of the weighted least squares on the RGB-averaged CUReT
+OPTIMA = {
+    (12, "pca_polynomial:degree=2"): 0.029292,
+    (12, "pca_polynomial:degree=7"): 0.010463,
+    (12, "koenderink:order=2"): 0.026411,
+    (12, "koenderink:order=8"): 0.003462,
+    (33, "pca_polynomial:degree=2"): 0.006708,
+    (33, "pca_polynomial:degree=7"): 0.003911,
+    (33, "koenderink:order=2"): 0.006020,
+    (33, "koenderink:order=8"): 0.002639,
+}
+
+
+@pytest.mark.parametrize(("sample", "label"), OPTIMA)
+def test_optima_on_curet(sample, label, measured_data):
+    data = bk.load(measured_data / "curet" / f"abrdf.dat#{sample}")
+    assert bk.fit(label, data, loss="cosine").loss == pytest.approx(OPTIMA[sample, label], abs=1e-5)
+
+
+@pytest.mark.quick
+def test_what_is_clamped_is_said():
+    dark = registry.model("koenderink")(a_0_0_0=0.1, a_2_2_0=0.2)
+    wi, wo = (from_angles(np.full(50, 0.4), np.zeros(50)), from_angles(np.linspace(0, 1.5, 50), 2))
+    assert (dark.eval(wi, wo) >= 0).all()
+    assert (dark.eval(wi, wo) == 0).any()
+    data = bk.Measured.from_samples(
+        wi, wo, np.where(np.arange(50) < 25, 0.3, 0.0)[:, None], channels=("Y",)
+    )
+    assert "clamped" in bk.fit("koenderink:order=4", data, loss="cosine").notes[0]

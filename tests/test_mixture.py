@@ -1,0 +1,100 @@
+"""Several lobes over one diffuse term: named by a sum, fitted, saved and rendered as one model."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import brdfkit as bk
+from brdfkit import registry
+from brdfkit.checks.subject import random_pairs
+from brdfkit.errors import BrdfkitError
+
+
+@pytest.mark.quick
+def test_a_mixture_is_the_sum_of_its_parts():
+    ggx, ward = bk.models()["ggx"], bk.models()["ward"]
+    both = registry.model("ggx+ward")(
+        diffuse_reflectance=0.3,
+        ggx_1_specular_reflectance=0.4,
+        ggx_1_alpha_u=0.3,
+        ggx_1_f0=0.2,
+        ward_2_specular_reflectance=0.1,
+        ward_2_alpha_u=0.05,
+    )
+    parts = (
+        ggx(diffuse_reflectance=0.3, specular_reflectance=0.4, alpha_u=0.3, f0=0.2),
+        ward(diffuse_reflectance=0.0, specular_reflectance=0.1, alpha_u=0.05),
+    )
+    pairs = random_pairs(1000, seed=0)
+    np.testing.assert_allclose(both.eval(*pairs), sum(p.eval(*pairs) for p in parts), rtol=1e-12)
+
+
+@pytest.mark.parametrize("label", ["lambert+blinn_phong+ggx", "ggx+ward_duer", "ward+ward+ward"])
+def test_any_sum_passes_the_checks(label, llvm_variant):
+    report = bk.check(registry.model(label)())
+    assert report, str(report)
+
+
+def test_two_lobes_come_back():
+    truth = registry.model("ggx+ggx")(
+        diffuse_reflectance=(0.1, 0.2, 0.3),
+        ggx_1_specular_reflectance=(0.4, 0.3, 0.2),
+        ggx_1_alpha_u=0.4,
+        ggx_2_specular_reflectance=(0.1, 0.1, 0.1),
+        ggx_2_alpha_u=0.06,
+        ggx_2_f0=0.05,
+    )
+    pairs = random_pairs(4000, seed=3, max_degrees=79)
+    data = bk.Measured.from_samples(*pairs, truth.eval(*pairs))
+    found = bk.fit("ggx+ggx", data)
+    np.testing.assert_allclose(found.eval(*pairs), truth.eval(*pairs), rtol=1e-4)
+
+
+def test_a_second_lobe_fits_better():
+    data = bk.load("car_paint")
+    one, two = bk.fit("ggx", data), bk.fit("ggx+ggx", data)
+    assert two.loss < one.loss / 3
+
+
+@pytest.mark.quick
+def test_a_mixture_is_plain_data(tmp_path):
+    model = registry.model("lambert+ward")(ward_2_alpha_u=0.1)
+    copy = pickle.loads(pickle.dumps(model))
+    assert copy.name == "lambert+ward"
+    assert copy.values == model.values
+    data = bk.Measured.from_samples(
+        *random_pairs(500, 1), model.eval(*random_pairs(500, 1)), channels=("Y",)
+    )
+    found = bk.fit("lambert+ward", data, starts=1)
+    bk.save(found, tmp_path / "fit.json")
+    assert bk.load(tmp_path / "fit.json").values == found.values
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("label", "words"),
+    [
+        ("ggx+nothing", ["'nothing'"]),
+        ("ggx+lambert", ["lambert", "first"]),
+        ("ggx:colour=red", ["ggx", "'colour'"]),
+        ("koenderink:order", ["'order'", "OPTION=VALUE"]),
+        ("koenderink:order=99", ["order = 99", "0 or 1"]),
+        ("koenderink:order=two", ["order = two"]),
+    ],
+)
+def test_bad_labels_are_refused(label, words):
+    with pytest.raises(BrdfkitError) as caught:
+        registry.model(label)
+    for word in words:
+        assert word in str(caught.value)
+
+
+@pytest.mark.quick
+def test_options_reach_mitsuba(llvm_variant):
+    mi = llvm_variant
+    bsdf = mi.load_dict({"type": "mixture", "models": "lambert+ward", "ward_2_alpha_u": 0.3})
+    assert "ward_2_alpha_u.value" in mi.traverse(bsdf)
+    assert bsdf.component_count() == 2
+    bsdf = mi.load_dict({"type": "koenderink", "order": 4, "a_4_4_4": 0.01})
+    assert bsdf.component_count() == 1
