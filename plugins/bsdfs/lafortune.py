@@ -52,7 +52,7 @@ class Lafortune(Model):
 def lobe(c_x, c_y, c_z, n):
     """One term of the sum."""
     largest = dr.maximum(dr.maximum(dr.abs(c_x), dr.abs(c_y)), c_z)
-    a_x, a_y, a_z = c_x / largest, c_y / largest, c_z / largest
+    a_x, a_y, a_z = (ratio(c, largest) for c in (c_x, c_y, c_z))
 
     def value(wi, wo):
         # 1 - bracket, accurate where it is small
@@ -71,6 +71,12 @@ def lobe(c_x, c_y, c_z, n):
 
     sampling = PowerLobe(axis, n)
     return Lobe(value, sampling, energy)
+
+
+def ratio(c, largest):
+    """c / largest; ±1 without a derivative for the largest, whose two terms would cancel."""
+    sign = dr.select(c < 0, -1, 1)
+    return dr.select(dr.abs(c) == largest, sign, c / largest)
 
 
 def missing(a, l, v):
