@@ -8,8 +8,9 @@ import pytest
 import brdfkit as bk
 from brdfkit.errors import BrdfkitError
 from brdfkit.pictures import montage
-from brdfkit.rendering import Rendering, _passes, render, render_scene
+from brdfkit.rendering import Rendering, render, render_scene
 from brdfkit.scenes import ball, ball_mask
+from brdfkit.tracing import passes_of
 
 WHITE = {"name": "white", "type": "diffuse", "reflectance": 0.8}
 GREY = {"name": "grey", "type": "diffuse", "reflectance": 0.2}
@@ -108,7 +109,7 @@ def test_the_mask_is_where_the_camera_sees_the_ball(size):
 @pytest.mark.quick
 @pytest.mark.parametrize("spp", [1, 2, 7, 32, 64, 100])
 def test_passes_add_up(spp):
-    passes = list(_passes(spp, 32))
+    passes = list(passes_of(spp, 32))
     assert sum(passes) == spp
     assert max(passes) <= 32
 

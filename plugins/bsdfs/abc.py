@@ -17,8 +17,10 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import dot, expm1, half_vector, log1p, v_groove
+from brdfkit.microfacet import v_groove
 from brdfkit.model import Model, shape, weight
+from brdfkit.numerics import expm1, log1p
+from brdfkit.vectors import dot, half_vector
 
 
 @dataclass(frozen=True)

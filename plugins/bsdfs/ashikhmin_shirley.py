@@ -15,8 +15,9 @@ only the product k_s F₀ is told by measurements.
 import drjit as dr
 
 from brdfkit.lobes import Cosine, HalfVector, Lobe, lambertian
-from brdfkit.microfacet import CosinePower, dot, fifth_power, half_vector, schlick
+from brdfkit.microfacet import CosinePower, fifth_power, schlick
 from brdfkit.model import Model, follows, option, shape, weight
+from brdfkit.vectors import dot, half_vector
 
 
 class AshikhminShirley(Model):

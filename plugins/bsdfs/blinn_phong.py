@@ -15,8 +15,9 @@ Shows plastics; no Fresnel effect, no retro-reflection.
 import drjit as dr
 
 from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import CosinePower, half_vector
+from brdfkit.microfacet import CosinePower
 from brdfkit.model import Model, follows, option, shape, weight
+from brdfkit.vectors import half_vector
 
 
 class BlinnPhong(Model):

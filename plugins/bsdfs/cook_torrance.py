@@ -9,8 +9,9 @@ plastics of one roughness; no anisotropy.
 """
 
 from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import Beckmann, dot, half_vector, schlick, v_groove
+from brdfkit.microfacet import Beckmann, schlick, v_groove
 from brdfkit.model import Model, shape, weight
+from brdfkit.vectors import dot, half_vector
 
 
 class CookTorrance(Model):

@@ -9,8 +9,9 @@ no scattering between facets.
 """
 
 from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import TrowbridgeReitz, dot, half_vector, schlick
+from brdfkit.microfacet import TrowbridgeReitz, schlick
 from brdfkit.model import Model, follows, shape, weight
+from brdfkit.vectors import dot, half_vector
 
 
 class GGX(Model):

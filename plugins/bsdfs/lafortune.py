@@ -13,9 +13,10 @@ are round, never elliptic, and there is no Fresnel effect.
 
 import drjit as dr
 
-from brdfkit.lobes import Lobe, lambertian
-from brdfkit.microfacet import PowerLobe, cosine_power, dot
+from brdfkit.lobes import Lobe, PowerLobe, lambertian
 from brdfkit.model import Model, follows, option, shape, weight
+from brdfkit.numerics import cosine_power
+from brdfkit.vectors import dot
 
 
 class Lafortune(Model):

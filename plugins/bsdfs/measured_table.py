@@ -18,9 +18,9 @@ def define(mi):
     from brdfkit.colours import luminance
     from brdfkit.errors import BrdfkitError
     from brdfkit.lobes import Cosine
-    from brdfkit.microfacet import above_horizon, dot, half_vector, reflect
     from brdfkit.normals import normals_of
     from brdfkit.table import Table
+    from brdfkit.vectors import above_horizon, dot, half_vector, reflect
 
     COSINE = Cosine()
 

@@ -21,8 +21,10 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import dot, expm1, half_vector, log1p, schlick
+from brdfkit.microfacet import schlick
 from brdfkit.model import Model, shape, weight
+from brdfkit.numerics import expm1, log1p
+from brdfkit.vectors import dot, half_vector
 
 # Gauss-Legendre; the integrals over slopes end where the Gaussian has fallen to exp(-END)
 POINTS, GAUSS = np.polynomial.legendre.leggauss(12)

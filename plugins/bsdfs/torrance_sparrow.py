@@ -16,8 +16,10 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import dot, half_vector, log1p, schlick, v_groove
+from brdfkit.microfacet import schlick, v_groove
 from brdfkit.model import Model, shape, weight
+from brdfkit.numerics import log1p
+from brdfkit.vectors import dot, half_vector
 
 
 @dataclass(frozen=True)

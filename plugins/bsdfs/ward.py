@@ -11,8 +11,9 @@ Fresnel effect and no retro-reflection.
 import drjit as dr
 
 from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import Beckmann, half_vector
+from brdfkit.microfacet import Beckmann
 from brdfkit.model import Model, follows, shape, weight
+from brdfkit.vectors import half_vector
 
 
 class Ward(Model):

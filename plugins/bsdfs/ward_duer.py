@@ -13,8 +13,9 @@ stays below 1.
 import drjit as dr
 
 from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import Beckmann, dot, half_vector
+from brdfkit.microfacet import Beckmann
 from brdfkit.model import Model, follows, option, shape, weight
+from brdfkit.vectors import dot, half_vector
 
 
 class WardDuer(Model):

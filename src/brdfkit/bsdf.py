@@ -12,7 +12,7 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.lobes import Cosine
-from brdfkit.microfacet import above_horizon
+from brdfkit.vectors import above_horizon
 
 # Share of the samples that follow the cosine, whatever the lobes
 COSINE_SHARE = 0.1

@@ -6,7 +6,9 @@ from typing import Any, Protocol
 
 import drjit as dr
 
-from brdfkit.microfacet import dot, half_vector, reflect
+from brdfkit.microfacet import CosinePower
+from brdfkit.numerics import cosine_power
+from brdfkit.vectors import dot, half_vector, one_minus_dot, reflect
 
 
 class Sampling(Protocol):
@@ -72,3 +74,32 @@ class HalfVector:
     def pdf(self, wi, wo):
         h = half_vector(wi, wo)
         return self.distribution.pdf(wi, h) / (4 * dot(wi, h))
+
+
+@dataclass(frozen=True)
+class PowerLobe:
+    """Outgoing directions by cos^n about `axis(wi)`, which is above the surface; what would fall
+    below it is mirrored up.
+
+    E. P. Lafortune & Y. D. Willems, "Using the modified Phong reflectance model", 1994.
+    """
+
+    axis: Callable
+    exponent: Any
+
+    def sample(self, wi, u):
+        about_z = CosinePower(self.exponent, self.exponent).sample(wi, u)
+        wo = reflect(about_z, half_vector(type(wi)(0, 0, 1), self.axis(wi)))
+        return type(wi)(wo.x, wo.y, dr.abs(wo.z))
+
+    def pdf(self, wi, wo):
+        axis, below = self.axis(wi), type(wo)(wo.x, wo.y, -wo.z)
+        power = cosine_power(one_minus_dot(axis, wo), self.exponent)
+        power += cosine_power(one_minus_dot(axis, below), self.exponent)
+        return (self.exponent + 1) / (2 * dr.pi) * power
+
+    def energy(self, wi):
+        """About ∫ (n + 2) / 2π cos^n cosθ dω over the hemisphere: 1 about the normal, towards the
+        horizon the cosine of the axis, at it 0.4 / √(n + 0.6)."""
+        z = self.axis(wi).z
+        return 0.5 * (z + dr.sqrt(z * z + 0.64 / (self.exponent + 0.6)))

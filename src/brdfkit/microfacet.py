@@ -4,36 +4,13 @@ A distribution answers `D(h)` [sr⁻¹, ∫ D cosθ_h dω = 1], `sample(wi, u)` 
 per solid angle of h. `wi`, `h` are vectors with x, y, z in the local frame, z along the normal.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import drjit as dr
 
-# Directions this close to the horizon (cosine) count as below it: 1/cos stays finite in float32
-HORIZON = 1e-6
-
-
-def above_horizon(w, active):
-    """The direction, or the normal where it is not above the surface, which turns inactive."""
-    up = w.z > HORIZON
-    return dr.select(up, w, type(w)(0, 0, 1)), active & up
-
-
-def dot(a, b):
-    """Scalar product."""
-    return a.x * b.x + a.y * b.y + a.z * b.z
-
-
-def half_vector(wi, wo):
-    """Unit vector halfway between two directions above the surface."""
-    s = wi + wo
-    return s * dr.rsqrt(dot(s, s))
-
-
-def reflect(wi, h):
-    """Mirror image of `wi` about `h`."""
-    return 2 * dot(wi, h) * h - wi
+from brdfkit.numerics import cosine_power, expm1
+from brdfkit.vectors import dot
 
 
 def schlick(f0, cos_theta):
@@ -162,63 +139,6 @@ class CosinePower:
 
     def pdf(self, wi, h):
         return dr.sqrt((self.n_u + 1) * (self.n_v + 1)) / (2 * dr.pi) * self.power(h)
-
-
-@dataclass(frozen=True)
-class PowerLobe:
-    """Outgoing directions by cos^n about `axis(wi)`, which is above the surface; what would fall
-    below it is mirrored up.
-
-    E. P. Lafortune & Y. D. Willems, "Using the modified Phong reflectance model", 1994.
-    """
-
-    axis: Callable
-    exponent: Any
-
-    def sample(self, wi, u):
-        about_z = CosinePower(self.exponent, self.exponent).sample(wi, u)
-        wo = reflect(about_z, half_vector(type(wi)(0, 0, 1), self.axis(wi)))
-        return type(wi)(wo.x, wo.y, dr.abs(wo.z))
-
-    def pdf(self, wi, wo):
-        axis, below = self.axis(wi), type(wo)(wo.x, wo.y, -wo.z)
-        power = cosine_power(one_minus_dot(axis, wo), self.exponent)
-        power += cosine_power(one_minus_dot(axis, below), self.exponent)
-        return (self.exponent + 1) / (2 * dr.pi) * power
-
-    def energy(self, wi):
-        """About ∫ (n + 2) / 2π cos^n cosθ dω over the hemisphere: 1 about the normal, towards the
-        horizon the cosine of the axis, at it 0.4 / √(n + 0.6)."""
-        z = self.axis(wi).z
-        return 0.5 * (z + dr.sqrt(z * z + 0.64 / (self.exponent + 0.6)))
-
-
-def one_minus_dot(a, b):
-    """1 - a·b of unit vectors, accurate where they are close."""
-    d = a - b
-    return 0.5 * dot(d, d)
-
-
-def cosine_power(complement, exponent):
-    """cosine^exponent by `complement` = 1 - cosine, accurate for large exponents.
-
-    0 where the cosine is not positive.
-    """
-    power = dr.exp(exponent * log1p(-dr.minimum(complement, 1 - 1e-6)))
-    return dr.select(complement < 1, power, 0)
-
-
-def log1p(x):
-    """log(1 + x), accurate for small x: W. Kahan's way."""
-    y = 1 + x
-    return dr.select(y == 1, x, dr.log(y) * x / dr.select(y == 1, 1, y - 1))
-
-
-def expm1(x):
-    """exp(x) - 1, accurate for small x: W. Kahan's way."""
-    y = dr.exp(dr.maximum(x, -50))
-    log_y = dr.log(y)
-    return dr.select(y == 1, x, (y - 1) * dr.maximum(x, -50) / dr.select(y == 1, 1, log_y))
 
 
 def _from_slope(vector, x, y):

@@ -5,10 +5,9 @@ pass by pass, so that an interrupted render still compares like with like.
 """
 
 import io
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import inf, isqrt
+from math import inf
 from pathlib import Path
 
 import numpy as np
@@ -20,9 +19,7 @@ from brdfkit.fitting.result import Fit
 from brdfkit.model import Model
 from brdfkit.names import unused
 from brdfkit.pictures import montage, write_exr
-
-PASS = 32  # samples per pixel in one pass at most: how often progress shows
-RAYS = 2**23  # camera rays in one pass at most: bounds the memory, about 1 GB
+from brdfkit.tracing import trace
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +142,7 @@ def render(
         raise BrdfkitError("There is nothing to render; give at least one material.")
     build, mask = (scene, None) if scene else (scenes.ball, scenes.ball_mask(size))
     loaded = {n: _load(mi.load_dict, build(bsdf, size), n) for n, bsdf in materials.items()}
-    pictures, spp, seconds = _trace(loaded, spp, seed, progress)
+    pictures, spp, seconds = trace(loaded, spp, seed, progress)
     return Rendering(pictures, spp, seconds, seed, parameters, mask)
 
 
@@ -162,7 +159,7 @@ def render_scene(path, spp: int = 256, seed: int = 0, progress=None) -> Renderin
     loaded = {path.stem: _load(_mitsuba().load_file, str(path), path)}
     if not loaded[path.stem].sensors():
         raise BrdfkitError(f"{path}: the scene has no sensor to see it with; add a <sensor>.")
-    pictures, spp, seconds = _trace(loaded, spp, seed, progress)
+    pictures, spp, seconds = trace(loaded, spp, seed, progress)
     return Rendering(pictures, spp, seconds, seed)
 
 
@@ -204,54 +201,3 @@ def _load(load, source, name):
         # a plugin written in Python reports its traceback, of which people want the last line
         reason = lines[-1] if any("Traceback" in line for line in lines) else " ".join(lines)
         raise BrdfkitError(f"{name}: Mitsuba cannot load it ({reason.rstrip('.')}).") from error
-
-
-def _trace(loaded, spp, seed, progress):
-    """(pictures, spp reached, seconds) of name → scene; passes outside, pictures inside."""
-    if spp < 1:
-        raise BrdfkitError(f"{spp} spp make no picture; give a number above 0.")
-    if not 0 <= seed < 2**31:
-        raise BrdfkitError(f"The seed {seed} is out of bounds; give one from 0 to 2³¹ - 1.")
-    start = time.perf_counter()
-    pixels = max(int(np.prod(s.sensors()[0].film().crop_size())) for s in loaded.values())
-    passes = list(_passes(spp, max(1, min(PASS, RAYS // pixels))))
-    # one stream of seeds a render; the same pass has the same seed in every picture
-    seeds = np.random.SeedSequence(seed).generate_state(len(passes))
-    total = len(passes) * len(loaded)
-    sums, reached = dict.fromkeys(loaded, 0.0), 0
-    try:
-        for number, (count, pass_seed) in enumerate(zip(passes, seeds, strict=True)):
-            finished = {}
-            for done, (name, scene) in enumerate(loaded.items(), number * len(loaded) + 1):
-                # not mi.render: it turns Ctrl-C into a RuntimeError
-                image = scene.integrator().render(scene, seed=int(pass_seed), spp=count)
-                picture = _rgb(image)
-                finished[name] = sums[name] + count * picture
-                if len(finished) == len(loaded):
-                    sums, reached = finished, reached + count
-                if progress:
-                    progress(done, total)
-    except KeyboardInterrupt:
-        if not reached:
-            raise
-    pictures = {name: (s / reached).astype(np.float32) for name, s in sums.items()}
-    return pictures, reached, time.perf_counter() - start
-
-
-def _passes(spp, largest):
-    """Sample counts of the passes; each is a side × (side or a bit more), which stratify well.
-
-    >>> list(_passes(64, 32))
-    [30, 30, 4]
-    """
-    while spp:
-        count = min(spp, largest)
-        count -= count % isqrt(count)
-        yield count
-        spp -= count
-
-
-def _rgb(image):
-    """(height, width, 3) float64 of a film, whatever its channels (one: grey; alpha is left)."""
-    values = np.array(image, float)
-    return np.repeat(values[..., :1], 3, axis=-1) if values.shape[-1] < 3 else values[..., :3]

@@ -1,0 +1,34 @@
+"""Directions in a formula: anything with x, y, z, z along the normal, in any precision."""
+
+import drjit as dr
+
+# Directions this close to the horizon (cosine) count as below it: 1/cos stays finite in float32
+HORIZON = 1e-6
+
+
+def above_horizon(w, active):
+    """The direction, or the normal where it is not above the surface, which turns inactive."""
+    up = w.z > HORIZON
+    return dr.select(up, w, type(w)(0, 0, 1)), active & up
+
+
+def dot(a, b):
+    """Scalar product."""
+    return a.x * b.x + a.y * b.y + a.z * b.z
+
+
+def half_vector(wi, wo):
+    """Unit vector halfway between two directions above the surface."""
+    s = wi + wo
+    return s * dr.rsqrt(dot(s, s))
+
+
+def reflect(wi, h):
+    """Mirror image of `wi` about `h`."""
+    return 2 * dot(wi, h) * h - wi
+
+
+def one_minus_dot(a, b):
+    """1 - a·b of unit vectors, accurate where they are close."""
+    d = a - b
+    return 0.5 * dot(d, d)
