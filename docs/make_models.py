@@ -1,136 +1,177 @@
-"""Makes the pages and pictures of `docs/models/` from the models' files: nothing is written twice.
+"""Makes `docs/models/` of the models' files: a page each, with balls and lobes, and the index.
 
-    python docs/make_models.py              # pages, balls and lobes, two minutes
-    python docs/make_models.py ward ggx     # the pictures of these, and all pages
-    python docs/make_models.py --check      # exit 1 where a page is not what its model says
-
-A form with parameters of its own has another table and begins at other values; one that has the
-same parameters is shown beside the default.
+python docs/make_models.py              # pages and pictures, in two minutes
+python docs/make_models.py --check      # exits 1 where a page is not what its model says
 """
 
-import argparse
 import inspect
-import io
-import math
+import json
 import sys
 from pathlib import Path
+
+import numpy as np
+from PIL import Image
 
 import brdfkit as bk
 from brdfkit import records, registry
 
 FOLDER = Path(__file__).with_name("models")
-SIZE, SPP, COLOURS = 320, 128, 192
-ANGLES = (15, 45, 75)  # degrees of incidence
-RGB = (1.0, 0.8, 0.6)  # the example's colour, times the default
+SIZE, SPP = 320, 128
+INDEX = """A model is a file in [`plugins/bsdfs/`](../../plugins/bsdfs), of which
+`docs/make_models.py` makes its page here. The balls show the defaults, all in the same light. A
+form of a model is named with its option, `koenderink:order=8`, a sum of models with a plus,
+`oren_nayar+ward`: see [mixture](mixture.md). In Mitsuba every parameter may be a texture, and one
+that is "per channel" takes a number or one per colour."""
+USE = """    {fits}
 
+```python
+import brdfkit as bk
+import mitsuba as mi
 
-def models():
-    """brdfkit's own models by name, without a user's that were loaded."""
-    ours = "brdfkit.plugins."
-    return {name: m for name, m in bk.models().items() if m.__module__.startswith(ours)}
+measured = bk.load("car_paint")  # a file, or a material that brdfkit brings
+fit = bk.fit("{label}", measured)
+bk.render([measured, fit]).write("fit.png")
+
+mi.set_variant("llvm_ad_rgb")
+material = {entries}
+bsdf = mi.load_dict(material)
+```
+
+```xml
+{xml}
+```"""
 
 
 def pages():
-    """File name → text of every page, the index among them."""
-    return {"README.md": index()} | {f"{name}.md": page(m) for name, m in models().items()}
+    """File name → text of all pages."""
+    rows = []
+    for name, model in models().items():
+        options = "<br>".join(f"`{n}`: {records.choices(o)}" for n, o in model.options.items())
+        rows.append((f"[{name}]({name}.md)", docstring(model)[1], options, ball(model, SIZE // 2)))
+    index = paragraphs("# The models", INDEX, table("model, what it is, options, defaults", rows))
+    return {"README.md": index} | {f"{name}.md": page(m) for name, m in models().items()}
 
 
-def index():
-    """All models with a sentence, their options and a ball."""
-    rows = [
-        [f"[{name}]({name}.md)", sentence(model), options_in_short(model), ball(model, 160)]
-        for name, model in models().items()
-    ]
-    return joined(
-        "# The models",
-        "One file in [`plugins/bsdfs/`](../../plugins/bsdfs) is one model; `docs/make_models.py` "
-        "made these pages from them. The balls show the defaults: weights, exposure and light are "
-        "equal for none but the light. `brdfkit models NAME` prints a page on the command line.",
-        table(["model", "what it is", "options", ""], rows),
-    )
+def models():
+    """brdfkit's own models by name, without those of a user's that were loaded."""
+    found = bk.models().items()
+    return {name: m for name, m in found if m.__module__.startswith("brdfkit.plugins.")}
 
 
 def page(model):
-    """Everything about one model."""
-    name, (title, _, _), text = model.type_name(), *docstring(model)
-    shown = forms(model)
-    labels = ", ".join(f"`{form.label()}`" for form in shown)
-    return joined(
-        f"# {title}",
-        sentence(model),
-        table([f"`{form.label()}`" for form in shown], [[ball(form, SIZE) for form in shown]]),
-        text,
-        "## Parameters",
-        table(["parameter", "default", "bounds", "meaning", "per channel"], parameters(model)),
-        options(model),
-        "## Its lobes",
-        f"![Lobes of {name}]({name}_lobes.png)",
-        f"In the plane of incidence, at the defaults: {labels}.",
-        usage(model),
-        f"The source: [`{name}.py`](../../plugins/bsdfs/{name}.py). [All models](README.md)",
+    """The text of a model's page."""
+    name, (title, sentence, text), shown = model.type_name(), docstring(model), forms(model)
+    balls = table(", ".join(f"`{f.label()}`" for f in shown), [[ball(f, SIZE) for f in shown]])
+    parameters = [parameter(*item) for item in model.parameters.items()]
+    options = [
+        (f"`{n}`", o.default, records.choices(o), o.meaning) for n, o in model.options.items()
+    ]
+    return paragraphs(
+        *(f"# {title}", sentence, balls, text),
+        table("parameter, default, bounds, meaning, per channel", parameters),
+        options and table("option, default, choices, meaning", options),
+        f"![Polar plots of {name} in the plane of incidence]({name}_lobes.png)",
+        *("## Use", use(model)),
+        f"[The source](../../plugins/bsdfs/{name}.py) · [all models](README.md)",
+    )
+
+
+def paragraphs(*texts):
+    return "\n\n".join(filter(None, texts)) + "\n"
+
+
+def table(head, rows):
+    lines = [head.split(", "), ["---"] * len(head.split(", ")), *rows]
+    return "\n".join(
+        "| " + " | ".join(str(c).replace("|", "∣") for c in line) + " |" for line in lines
     )
 
 
 def docstring(model):
-    """(title, ": ", sentence) and the other lines of the model's page."""
+    """Title, sentence and the other lines of the docstring of the model's file."""
     head, _, text = inspect.getdoc(sys.modules[model.__module__]).partition("\n")
-    return head.partition(": "), text.strip("\n")
+    title, _, sentence = head.partition(": ")
+    return title, sentence[0].upper() + sentence[1:], text.strip("\n")
 
 
-def sentence(model):
-    """What the model is, from the first line of its file."""
-    text = docstring(model)[0][2]
-    return text[0].upper() + text[1:]
+def parameter(name, p):
+    default = f"`{p.follows}`" if p.follows else f"{p.default:.4g}"
+    bounds = "{:g} to {:g}".format(*p.bounds).replace("-", "−").replace("inf", "∞")
+    return f"`{name}`", default, bounds, p.meaning, "yes" if p.linear else ""
 
 
 def forms(model):
-    """The model, and it with each other word of an option that leaves the parameters the same."""
+    """The model, and it with each word of an option that leaves the parameters as they are."""
     words = [(n, w) for n, o in model.options.items() for w in o.choices or () if w != o.default]
-    others = [model.configured(**{name: w}) for name, w in words if isinstance(w, str)]
+    others = [model.configured(**{name: word}) for name, word in words if isinstance(word, str)]
     return [model, *(other for other in others if other.parameters == model.parameters)]
-
-
-def picture(form):
-    """File name of the ball of a form."""
-    return "_".join([form.type_name(), *(f"{n}_{v}" for n, v in form.chosen().items())]) + ".png"
 
 
 def ball(form, width):
     return f'<img src="{picture(form)}" width="{width}" alt="A ball of {form.label()}">'
 
 
-def parameters(model):
-    """The rows of the table of parameters."""
-    for name, p in model.parameters.items():
-        default = f"as `{p.follows}`" if p.follows else f"{p.default:g}"
-        bounds = "{} to {}".format(*map(bound, p.bounds))
-        yield [f"`{name}`", default, bounds, p.meaning, "yes" if p.linear else ""]
+def picture(form):
+    return "_".join([form.type_name(), *form.chosen().values()]) + ".png"
 
 
-def bound(value):
-    sign = "−" if value < 0 else ""
-    return sign + ("∞" if math.isinf(value) else f"{abs(value):.4g}")
+def use(model):
+    """Examples, with the first option where there is one."""
+    option = next(iter(model.options), None)
+    form = registry.model(records.example(model, option)) if option else model
+    entries = {"type": form.type_name()} | ({option: getattr(form, option)} if option else {})
+    for name in [*form.weights()[:1], *form.shapes()[:1]]:
+        entries[name] = form.parameters[name].default
+    fits = [f"brdfkit fit FILE -m {name}" for name in dict.fromkeys([model.label(), form.label()])]
+    words = {"fits": "\n    ".join(fits), "entries": python(entries), "xml": xml(**entries)}
+    return USE.format(label=form.label(), **words)
 
 
-def options(model):
-    """The table of options, nothing where there are none."""
-    rows = [
-        [f"`{name}`", str(o.default), records.choices(o), o.meaning]
-        for name, o in model.options.items()
-    ]
-    head = ["option", "default", "choices", "meaning"]
-    return joined("## Options", table(head, rows)) if rows else ""
+def python(entries):
+    """A dictionary as ruff formats it."""
+    return json.dumps(entries, indent=4).replace("\n}", ",\n}")
 
 
-def options_in_short(model):
-    return "<br>".join(f"`{n}`: {records.choices(o)}" for n, o in model.options.items())
+def xml(type, **entries):
+    kinds = {str: "string", int: "integer", float: "float"}
+    tags = [f'    <{kinds[v.__class__]} name="{n}" value="{v}"/>' for n, v in entries.items()]
+    return "\n".join([f'<bsdf type="{type}">', *tags, "</bsdf>"])
 
 
-def example(model):
-    """(options, values) by name that show how they are written: one of each kind."""
-    chosen = {}
-    for name in list(model.options)[:1]:
-        model = registry.model(records.example(model, name))
-        chosen[name] = getattr(model, name)
-    values = {n: [round(c * model.parameters[n].default, 4) for c in RGB] for n in model.weights()[:1]}
-    return chosen, values | {n: model.parameters[n].default for n in model.shapes()[:1]}
+def draw(model):
+    """Write a model's pictures."""
+    import mitsuba as mi
+
+    shown = [form() for form in forms(model)]
+    balls = bk.render(shown, spp=SPP, size=SIZE).pictures.values()
+    for form, linear in zip(shown, balls, strict=True):
+        bitmap = np.array(mi.util.convert_to_bitmap(linear))
+        write(Image.fromarray(bitmap), FOLDER / picture(form))
+    lobes = FOLDER / f"{model.type_name()}_lobes.png"
+    bk.plot(shown, theta_i=(15, 45, 75)).savefig(lobes, dpi=100)
+    write(Image.open(lobes).convert("RGB"), lobes)
+
+
+def write(image, path):
+    """Write a PNG with a palette: less than half the bytes, and at most 4 of 255 off."""
+    image.quantize(256, method=Image.Quantize.MAXCOVERAGE, kmeans=3).save(path, optimize=True)
+
+
+def problems():
+    """What is not as the models' files say, in words."""
+    made, files = pages(), {file.name for file in FOLDER.iterdir()}
+    pictures = {picture(form) for model in models().values() for form in forms(model)}
+    wanted = {*made, *pictures, *(f"{name}_lobes.png" for name in models())}
+    found = [f"{name} is missing" for name in sorted(wanted - files)]
+    found += [f"{name} belongs to no model" for name in sorted(files - wanted)]
+    read = {name: (FOLDER / name).read_text(encoding="utf-8") for name in made if name in files}
+    return found + [f"{name} is not up to date" for name, t in read.items() if t != made[name]]
+
+
+if __name__ == "__main__":
+    if "--check" in sys.argv[1:]:
+        sys.exit("\n".join(problems()) or 0)
+    for name, text in pages().items():
+        (FOLDER / name).write_text(text, encoding="utf-8")
+    for model in models().values():
+        draw(model)

@@ -1,0 +1,73 @@
+"""The documentation: the models' pages are what their files say, and no link leads nowhere."""
+
+import importlib.util
+import re
+from pathlib import Path
+from urllib.parse import unquote
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGES = [
+    ROOT / "README.md",
+    ROOT / "CONTRIBUTING.md",
+    *sorted(ROOT.glob("docs/*.md")),
+    *sorted(ROOT.glob("docs/models/*.md")),
+]
+LINK = re.compile(r'\]\(([^)\s]+)\)|(?:src|href)="([^"]+)"')
+
+pytestmark = pytest.mark.quick
+
+
+@pytest.fixture(scope="module")
+def make():
+    """The program that makes the models' pages, as a module."""
+    path = ROOT / "docs" / "make_models.py"
+    spec = importlib.util.spec_from_file_location("make_models", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture
+def copied(make, monkeypatch, tmp_path):
+    """A copy of the pages that may be changed."""
+    for file in make.FOLDER.iterdir():
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    monkeypatch.setattr(make, "FOLDER", tmp_path)
+    return tmp_path
+
+
+def test_the_pages_are_what_the_models_say(make):
+    """Otherwise: python docs/make_models.py"""
+    assert make.problems() == []
+
+
+def test_every_model_has_a_page_and_two_pictures(make):
+    for plugin in make.models():
+        for name in (f"{plugin}.md", f"{plugin}.png", f"{plugin}_lobes.png"):
+            assert (make.FOLDER / name).stat().st_size > 0, name
+
+
+def test_a_changed_a_missing_and_a_superfluous_file_are_found(make, copied):
+    with (copied / "ward.md").open("a", encoding="utf-8") as page:
+        page.write("More.\n")
+    (copied / "ggx_lobes.png").unlink()
+    (copied / "velvet.md").write_text("# Velvet\n", encoding="utf-8")
+    assert make.problems() == [
+        "ggx_lobes.png is missing",
+        "velvet.md belongs to no model",
+        "ward.md is not up to date",
+    ]
+
+
+def test_the_pictures_are_small(make):
+    assert sum(file.stat().st_size for file in make.FOLDER.glob("*.png")) < 1.5e6
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_lead_to_files(page):
+    links = [a or b for a, b in LINK.findall(page.read_text(encoding="utf-8"))]
+    files = [unquote(link.partition("#")[0]) for link in links if ":" not in link]
+    missing = [file for file in files if not (page.parent / file).exists()]
+    assert not missing
