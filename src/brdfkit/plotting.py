@@ -134,6 +134,7 @@ def _figure(things, angles):
     rows = math.ceil(len(angles) / MOST_COLUMNS)
     columns = math.ceil(len(angles) / rows)
     figure = Plot(figsize=(max(4.2 * columns, 6), 2.75 * rows + 0.35), layout="constrained")
+    figure.get_layout_engine().set(h_pad=0.08)
     styles = _styles(things)
     for place, theta_i in enumerate(angles, 1):
         _panel(figure.add_subplot(rows, columns, place), theta_i, things, styles)
@@ -189,9 +190,13 @@ class _Radius:
         return (np.log10(np.maximum(values, floor)) - self.lowest) / self.decades
 
     def ticks(self):
-        """Powers of ten from the centre to the rim, not so many that their labels would touch."""
+        """Powers of ten from the centre to the rim, not so many that their labels would touch; in
+        less than two decades with what lies between."""
         step = math.ceil(self.decades / 4.5)
-        return 10.0 ** np.arange(self.lowest, self.lowest + self.decades, step)
+        powers = 10.0 ** np.arange(self.lowest, self.lowest + self.decades, step)
+        between = (1, 2, 5) if self.decades < 1.2 else (1, 3) if self.decades < 2 else (1,)
+        ticks = np.outer(powers, between).ravel()
+        return ticks[np.log10(ticks) - self.lowest < self.decades]
 
 
 def _half_disc(axes, radius):
