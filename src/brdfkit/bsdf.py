@@ -70,10 +70,13 @@ def define(mi, model):
         def __init__(self, props):
             super().__init__(props)
             self.textures = {}
+            self.scales = {}
             for name, parameter in model.parameters.items():
                 if parameter.follows and name not in props:
                     continue
                 _require_within_bounds(props, model, name)
+                if mi.is_spectral and _is_colour(props.get(name, None)):
+                    self.scales[name] = _fit_for_a_spectrum(props, model, name)
                 self.textures[name] = props.get_unbounded_texture(name, getattr(defaults, name))
             varying = any(t.is_spatially_varying() for t in self.textures.values())
             extra = flags.SpatiallyVarying if varying else flags.Empty
@@ -147,7 +150,7 @@ def define(mi, model):
             values = {}
             for name, texture in self.textures.items():
                 if model.parameters[name].linear:
-                    values[name] = texture.eval(si, active)
+                    values[name] = texture.eval(si, active) * self.scales.get(name, 1)
                 else:
                     values[name] = within(texture.eval_1(si, active), model.parameters[name])
             return [values[name] for name in model.weights()], model.bind(values).lobes()
@@ -196,7 +199,24 @@ def components_of(lobes):
 def _require_within_bounds(props, model, name):
     """An error for a constant parameter out of bounds; textures are taken as they are."""
     value = props.get(name, None)
-    if isinstance(value, float | int) or type(value).__name__.endswith("Color3d"):
+    if isinstance(value, float | int) or _is_colour(value):
         problem = model.parameters[name].problem_with(np.array(value, float))
         if problem:
             raise BrdfkitError(f"{model.type_name()}: {name} = {problem}.")
+
+
+def _fit_for_a_spectrum(props, model, name):
+    """Bring a colour to 0..1, beyond which Mitsuba clips its spectrum without a word; the scale."""
+    value = props[name]
+    if min(value) < 0:
+        raise BrdfkitError(
+            f"{model.type_name()}: {name} is a colour with a value below 0, which a spectrum cannot "
+            "hold; use an rgb or mono variant of Mitsuba."
+        )
+    scale = 2 * max(value) if max(value) > 1 else 1
+    props[name] = value / scale
+    return scale
+
+
+def _is_colour(value):
+    return type(value).__name__.endswith("Color3d")

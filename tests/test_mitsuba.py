@@ -1,0 +1,467 @@
+"""The models as citizens of Mitsuba: gradients of pictures, BSDFs around BSDFs, instances, albedo
+and attributes, contexts that ask for one component, and every kind of colour.
+
+All is compared with something found another way: differences, mixtures by hand, cosine samples.
+"""
+
+import math
+
+import drjit as dr
+import numpy as np
+import pytest
+
+import brdfkit as bk
+from brdfkit.bsdf import components_of
+from brdfkit.checks.sampling import uniform
+from brdfkit.checks.subject import random_pairs
+from brdfkit.directions import from_angles
+
+# All z-scores of this file, some 30: a right renderer exceeds this once in 5,000 files
+HIGHEST_Z = 4.5
+# The luminance of linear sRGB
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+
+
+@pytest.fixture
+def variant():
+    """A function that sets a variant; afterwards the old one is back."""
+    import mitsuba as mi
+
+    before = mi.variant()
+    yield mi.set_variant
+    mi.set_variant(before or "llvm_ad_rgb")
+
+
+def coloured(model):
+    """`model` with values near its defaults: coloured, anisotropic, none of them 0."""
+    values = {}
+    for name, value in model().values.items():
+        parameter = model.parameters[name]
+        value = value or 0.02
+        if parameter.linear:
+            values[name] = [value, 0.8 * value, 0.5 * value]
+        else:
+            values[name] = value * (1.2 if parameter.follows else 1)
+    if "c_z" in values:  # Lafortune: a lobe about the mirror direction
+        values |= {"c_x": -0.6, "c_y": -0.65}
+    return model(**values)
+
+
+def lights():
+    """Light from everywhere, and some from a small area."""
+    to_world = look_at([0, -2, 4], [0, 0, 0]).scale(0.2)
+    emitter = {"type": "area", "radiance": {"type": "rgb", "value": 100.0}}
+    return {
+        "everywhere": {"type": "constant", "radiance": {"type": "rgb", "value": 0.05}},
+        "area": {"type": "rectangle", "to_world": to_world, "emitter": emitter},
+    }
+
+
+def look_at(origin, target):
+    import mitsuba as mi
+
+    return mi.ScalarTransform4f().look_at(origin, target, [0, 1, 0])
+
+
+def scene(shapes, integrator=None, size=16, variant_lights=None):
+    """`shapes` under `lights`, seen from aside: in line with a pole, a ball shows one azimuth."""
+    film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}}
+    camera = {"type": "perspective", "fov": 32, "to_world": look_at([2.2, -2, 2.6], [0, 0, 0])}
+    return {
+        "type": "scene",
+        "integrator": integrator or {"type": "path", "max_depth": 3},
+        "sensor": {**camera, "film": film},
+        **(lights() if variant_lights is None else variant_lights),
+        **shapes,
+    }
+
+
+def ball(bsdf):
+    return {"ball": {"type": "sphere", "bsdf": bsdf}}
+
+
+def interaction(mi, wi):
+    """A surface interaction that also has what a bump map looks at."""
+    wi = np.atleast_2d(np.asarray(wi, np.float32))
+    si = dr.zeros(mi.SurfaceInteraction3f, len(wi))
+    si.t = 1.0
+    si.wi = mi.Vector3f(wi.T)
+    si.n = mi.Normal3f(0, 0, 1)
+    si.sh_frame = mi.Frame3f([0, 0, 1])
+    si.uv = mi.Point2f(0.3, 0.4)
+    si.dp_du, si.dp_dv = mi.Vector3f(1, 0, 0), mi.Vector3f(0, 1, 0)
+    return si
+
+
+def evaluated(mi, bsdf, wi, wo, ctx=None):
+    """BRDF times cosine (n, channels) and density (n,)."""
+    si, wo = interaction(mi, wi), mi.Vector3f(np.asarray(wo, np.float32).T)
+    value, pdf = bsdf.eval_pdf(ctx or mi.BSDFContext(), si, wo)
+    return np.array(value, float).T, np.array(pdf, float)
+
+
+def z_of(values, expected=0.0):
+    """Standard errors between the mean of independent `values` (n, ...) and `expected`."""
+    error = values.std(axis=0, ddof=1) / math.sqrt(len(values))
+    return float(np.max(np.abs(values.mean(axis=0) - expected) / np.maximum(error, 1e-12)))
+
+
+# Gradients of pictures
+
+# Samples of a pixel; central differences of a parameter, relative; and how far they may be off
+SAMPLES, STEP, TOLERANCE = 1024, 0.03, 0.02
+
+
+def test_gradient_of_a_picture(model, llvm_variant):
+    """By every parameter, backwards through prb, what differences of pictures of the same seed say.
+
+    The directions of prb are detached and those of a difference move, so that the two agree in the
+    mean over samples. The highlight weighs most: over the whole picture the derivative by a width
+    nearly cancels.
+    """
+    mi = llvm_variant
+    integrator = {"type": "prb", "max_depth": 2}
+    loaded = mi.load_dict(scene(ball(coloured(model).scene_dict()), integrator))
+    found = mi.traverse(loaded)
+    names = list(model.parameters)
+    if model.signed():  # many weights, all alike
+        names = [*model.weights()[:2], model.weights()[-1], *model.shapes()]
+    keys = {name: f"ball.bsdf.{name}.value" for name in names}
+    before = {name: type(found[key])(found[key]) for name, key in keys.items()}
+
+    def picture(seed=0):
+        return np.array(mi.render(loaded, spp=SAMPLES, seed=seed), float).sum(axis=2)
+
+    def moved(name, factor):
+        found[keys[name]] = before[name] * factor
+        found.update()
+        image = picture()
+        found[keys[name]] = before[name]
+        found.update()
+        return image
+
+    pixels = picture(seed=1)
+    pixels = (pixels / pixels.max()) ** 2
+    expected = {}
+    for name in names:
+        slope = (moved(name, 1 + STEP) - moved(name, 1 - STEP)) / (2 * STEP)
+        expected[name] = np.sum(pixels * slope)
+    for name in names:
+        value = type(before[name])(before[name])
+        dr.enable_grad(value)
+        found[keys[name]] = value
+    found.update()
+    # not by mi.render, which takes other samples for the derivative
+    weights = mi.TensorXf(np.repeat(pixels[..., None], 3, axis=2).astype(np.float32))
+    loaded.integrator().render_backward(loaded, found, weights, seed=0, spp=SAMPLES)
+    exact = {n: np.sum(np.array(dr.grad(found[k]) * before[n])) for n, k in keys.items()}
+    assert all(np.abs(list(exact.values())) > 1e-3), exact
+    np.testing.assert_allclose(*([d[n] for n in names] for d in (exact, expected)), TOLERANCE)
+
+
+# BSDFs around BSDFs
+
+
+def flat():
+    """A normal map that changes nothing."""
+    return uniform_map([0.5, 0.5, 1.0])
+
+
+def uniform_map(colour):
+    import mitsuba as mi
+
+    pixels = np.tile(np.float32(colour), (4, 4, 1))
+    return {"type": "bitmap", "bitmap": mi.Bitmap(pixels), "raw": True}
+
+
+def bumps():
+    import mitsuba as mi
+
+    u = np.linspace(0, 6 * np.pi, 64, dtype=np.float32)
+    pixels = (0.01 * np.sin(u)[:, None] * np.sin(u))[..., None]
+    return {"type": "bitmap", "bitmap": mi.Bitmap(np.ascontiguousarray(pixels)), "raw": True}
+
+
+@pytest.mark.quick
+def test_nested(model, llvm_variant):
+    """Each outer BSDF with a model inside says what its definition makes of the model's values."""
+    mi = llvm_variant
+    inner, other = coloured(model).scene_dict(), {"type": "roughplastic"}
+    plain, second = mi.load_dict(inner), mi.load_dict(other)
+    wi, wo = random_pairs(2000, seed=1, max_degrees=80)
+    value, pdf = evaluated(mi, plain, wi, wo)
+    assert value.min() >= 0
+    assert value.max() > 0
+
+    twosided = mi.load_dict({"type": "twosided", "bsdf": inner})
+    below = [1, 1, -1]
+    for sides in (1, below):
+        both = evaluated(mi, twosided, wi * sides, wo * sides)
+        np.testing.assert_array_equal(both[0], value)
+        np.testing.assert_array_equal(both[1], pdf)
+    assert not evaluated(mi, plain, wi * below, wo * below)[0].any()
+    assert not evaluated(mi, twosided, wi * below, wo)[0].any()
+    assert mi.has_flag(twosided.flags(), mi.BSDFFlags.BackSide)
+
+    blend = mi.load_dict({"type": "blendbsdf", "weight": 0.3, "a": inner, "b": other})
+    for mixed, a, b in zip(
+        evaluated(mi, blend, wi, wo), (value, pdf), evaluated(mi, second, wi, wo), strict=True
+    ):
+        np.testing.assert_allclose(mixed, 0.7 * a + 0.3 * b, rtol=1e-4, atol=1e-6)
+    assert blend.component_count() == plain.component_count() + second.component_count()
+
+    mask = mi.load_dict({"type": "mask", "opacity": 0.4, "bsdf": inner})
+    masked = evaluated(mi, mask, wi, wo)[0]
+    np.testing.assert_allclose(masked, 0.4 * value, rtol=1e-5, atol=1e-9)
+
+    for outer in (
+        {"type": "bumpmap", "map": uniform_map([0.5])},
+        {"type": "normalmap", "normalmap": flat()},
+    ):
+        found = evaluated(mi, mi.load_dict({**outer, "bsdf": inner}), wi, wo)[0]
+        np.testing.assert_allclose(found, value, rtol=1e-3, atol=1e-3 * value.max())
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("outer", ["twosided", "mask", "bumpmap", "normalmap", "blendbsdf"])
+def test_nested_parameters_are_traversed(model, llvm_variant, outer):
+    """An optimiser reaches the parameters inside, and they act."""
+    mi = llvm_variant
+    extra = {
+        "mask": {"opacity": 0.5},
+        "bumpmap": {"map": bumps()},
+        "normalmap": {"normalmap": flat()},
+        "blendbsdf": {"weight": 0.5, "b": {"type": "diffuse"}},
+    }.get(outer, {})
+    bsdf = mi.load_dict({"type": outer, "a": coloured(model).scene_dict(), **extra})
+    found = mi.traverse(bsdf)
+    name = model.weights()[0]
+    (key,) = [k for k in found.keys() if f".{name}." in k]  # noqa: SIM118
+    wi, wo = random_pairs(100, seed=2, max_degrees=60)
+    before = evaluated(mi, bsdf, wi, wo)[0]
+    found[key] = found[key] * 1.5
+    found.update()
+    assert (evaluated(mi, bsdf, wi, wo)[0] > before).any()
+
+
+def test_nested_render(model, llvm_variant):
+    """Every outer BSDF in one picture, seen and lit from both sides: finite, and nowhere black."""
+    mi = llvm_variant
+    inner = coloured(model).scene_dict()
+    nested = [
+        {"type": "twosided", "bsdf": inner},
+        {"type": "bumpmap", "map": bumps(), "bsdf": inner},
+        {"type": "normalmap", "normalmap": uniform_map([0.6, 0.45, 0.95]), "bsdf": inner},
+        {"type": "mask", "opacity": 0.5, "bsdf": inner},
+        {"type": "blendbsdf", "weight": 0.5, "a": inner, "b": {"type": "roughplastic"}},
+    ]
+    shapes = {}
+    for i, bsdf in enumerate(nested):
+        centre = [math.sin(1.2566 * i), math.cos(1.2566 * i), 0]
+        shapes[f"ball_{i}"] = {"type": "sphere", "center": centre, "radius": 0.5, "bsdf": bsdf}
+    to_world = look_at([0, 0, -1], [0, 0, -5])  # shows its back
+    shapes["back"] = {"type": "rectangle", "to_world": to_world, "bsdf": nested[0]}
+    image = np.array(mi.render(mi.load_dict(scene(shapes, size=32)), spp=16))
+    assert np.isfinite(image).all()
+    assert image.min() > 0
+
+
+# Instances, albedo and attributes
+
+
+def test_an_instance_is_the_shape(model, llvm_variant):
+    """The same picture from the same seed, of a ball and of an instance of it."""
+    mi = llvm_variant
+    bsdf = coloured(model).scene_dict()
+    group = {"type": "shapegroup", **ball(bsdf)}
+    instance = {
+        "group": group,
+        "ball": {"type": "instance", "group": {"type": "ref", "id": "group"}},
+    }
+    one, other = (
+        np.array(mi.render(mi.load_dict(scene(shapes)), spp=16, seed=3))
+        for shapes in (ball(bsdf), instance)
+    )
+    assert one.max() > 0.1
+    np.testing.assert_allclose(other, one, rtol=2e-3, atol=1e-4)
+
+
+@pytest.mark.quick
+def test_albedo(model, llvm_variant):
+    """`eval_diffuse_reflectance` is the weight of a Lambertian lobe, and of others about the
+    albedo from above; so the aov integrator shows it. Mitsuba's default would show highlights.
+    """
+    mi = llvm_variant
+    values = coloured(model)
+    for material in (model(), values):
+        bsdf = mi.load_dict(material.scene_dict())
+        found = np.array(bsdf.eval_diffuse_reflectance(interaction(mi, [0, 0, 1.0]))).ravel()
+        assert (found >= 0).all()
+        assert (found <= 1).all()
+        if lambertian_diffuse(mi, model):
+            np.testing.assert_allclose(found, material.diffuse_reflectance * np.ones(3), rtol=1e-5)
+            continue
+        ctx = mi.BSDFContext()
+        ctx.type_mask = mi.BSDFFlags.DiffuseReflection
+        _, u = uniform(200_000, seed=4)
+        wo = mi.warp.square_to_cosine_hemisphere(u)
+        value = bsdf.eval(ctx, interaction(mi, [[0, 0, 1.0]]), wo)
+        albedo = np.mean(np.array(value * (dr.pi / wo.z), float), axis=1)
+        np.testing.assert_allclose(found, albedo, rtol=0.25 if model.signed() else 0.06)
+    integrator = {"type": "aov", "aovs": "albedo:albedo"}
+    image = np.array(mi.render(mi.load_dict(scene(ball(values.scene_dict()), integrator)), spp=4))
+    np.testing.assert_allclose(image[8, 8, -3:], found, rtol=1e-5)
+
+
+def lambertian_diffuse(mi, model):
+    """Whether the only diffuse lobe is 1/π."""
+    diffuse = [lobe for lobe in model().lobes() if lobe.diffuse]
+    up = mi.Vector3f(0, 0, 1)
+    return len(diffuse) == 1 and isinstance(diffuse[0].eval(up, up), float)
+
+
+@pytest.mark.quick
+def test_attributes(model, llvm_variant):
+    """Every parameter can be asked for by its name, as a roughness for a G-buffer."""
+    mi = llvm_variant
+    values = coloured(model)
+    bsdf = mi.load_dict(values.scene_dict())
+    si = interaction(mi, [0, 0, 1.0])
+    for name, value in values.free_values.items():
+        assert dr.all(bsdf.has_attribute(name))
+        if model.parameters[name].linear:
+            found = np.array(bsdf.eval_attribute(name, si)).ravel()
+            np.testing.assert_allclose(found, value, rtol=1e-6)
+        else:
+            assert float(bsdf.eval_attribute_1(name, si)[0]) == pytest.approx(value, rel=1e-6)
+    assert not dr.any(bsdf.has_attribute("no_such_parameter"))
+
+
+# Contexts
+
+
+def contexts(mi, bsdf):
+    """A context per component, with its index."""
+    for k in range(bsdf.component_count()):
+        ctx = mi.BSDFContext()
+        ctx.component = k
+        yield k, ctx
+
+
+@pytest.mark.quick
+def test_components_sum_to_the_whole(model, llvm_variant):
+    """Over the indices of the components, and over Mitsuba's kinds of them."""
+    mi = llvm_variant
+    bsdf = mi.load_dict(coloured(model).scene_dict())
+    assert bsdf.component_count() == len(components_of(model().lobes()))
+    wi, wo = random_pairs(5000, seed=5, max_degrees=85)
+    whole, _ = evaluated(mi, bsdf, wi, wo)
+    parts = [evaluated(mi, bsdf, wi, wo, ctx)[0] for _, ctx in contexts(mi, bsdf)]
+    assert all(part.max() > 0 for part in parts)
+    kinds = []
+    for kind in (mi.BSDFFlags.Diffuse, mi.BSDFFlags.Glossy):
+        ctx = mi.BSDFContext()
+        ctx.type_mask = kind
+        kinds.append(evaluated(mi, bsdf, wi, wo, ctx)[0])
+    for found in (parts, kinds):
+        np.testing.assert_allclose(sum(found), whole, rtol=1e-5, atol=1e-7)
+
+
+@pytest.mark.quick
+def test_sampling_of_a_component(model, llvm_variant):
+    """It reports that component alone, with its pdf, and the mean weight is its albedo."""
+    mi = llvm_variant
+    bsdf = mi.load_dict(coloured(model).scene_dict())
+    n = 100_000
+    wi = from_angles(math.radians(40), 0.5)
+    si = interaction(mi, np.tile(wi, (n, 1)))
+    for k, ctx in contexts(mi, bsdf):
+        drawn, weight = bsdf.sample(ctx, si, *uniform(n, seed=6))
+        assert np.unique(np.array(drawn.sampled_component)).tolist() == [k]
+        assert dr.all((drawn.sampled_type & int(bsdf.flags(k))) == drawn.sampled_type)
+        pdf = np.array(bsdf.pdf(ctx, si, drawn.wo))
+        np.testing.assert_allclose(np.array(drawn.pdf), pdf, rtol=1e-3, atol=1e-6)
+        _, u = uniform(n, seed=7)
+        wo = mi.warp.square_to_cosine_hemisphere(u)
+        cosine = np.array(bsdf.eval(ctx, si, wo) * (dr.pi / wo.z), float).mean(axis=0)
+        own = np.array(weight, float).mean(axis=0)
+        error = math.hypot(own.std(), cosine.std()) / math.sqrt(n)
+        z = abs(own.mean() - cosine.mean()) / max(error, 1e-5 * cosine.mean())
+        assert z < HIGHEST_Z
+    ctx = mi.BSDFContext()
+    ctx.type_mask = mi.BSDFFlags.DeltaTransmission
+    drawn, weight = bsdf.sample(ctx, si, *uniform(n, seed=6))
+    assert not np.array(weight).any()
+    assert not np.array(drawn.pdf).any()
+
+
+# Colours
+
+
+def luminance(mi, material, seed=0, spp=256, **keywords):
+    """Mean luminance of a picture of a ball."""
+    loaded = mi.load_dict(scene(ball(material), {"type": "path", "max_depth": 2}, **keywords))
+    image = np.array(mi.render(loaded, spp=spp, seed=seed), float)
+    return float((image @ LUMINANCE if image.shape[2] == 3 else image).mean())
+
+
+def test_spectral_has_the_luminance_of_rgb(model, variant):
+    """A colour becomes a spectrum, and comes back from the film within 3 %; weights above 1 too."""
+    import mitsuba as mi
+
+    found = {}
+    for name in ("llvm_ad_rgb", "llvm_ad_spectral"):
+        variant(name)
+        entries = coloured(model).scene_dict()
+        if model.signed():  # there is no spectrum of a negative colour
+            for weight, value in model().values.items():
+                entries[weight] = entries[weight] if value else 0.02
+        found[name] = luminance(mi, entries)
+    rgb, spectral = found.values()
+    assert spectral == pytest.approx(rgb, rel=0.03)
+
+
+def test_mono_is_a_channel_of_rgb(model, variant):
+    """Under a constant light, from the same samples."""
+    import mitsuba as mi
+
+    grey = {"everywhere": {"type": "constant", "radiance": 0.5}}
+    found = []
+    for name in ("llvm_ad_rgb", "llvm_ad_mono"):
+        variant(name)
+        found.append(luminance(mi, model().scene_dict(), spp=64, variant_lights=grey))
+    assert found[1] == pytest.approx(found[0], rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["lambert", "ward"])
+def test_scalar_is_llvm(variant, name):
+    """The mean of tiny pictures, over seeds."""
+    import mitsuba as mi
+
+    material = coloured(bk.models()[name])
+    variant("scalar_rgb")
+    scalar = np.array(
+        [luminance(mi, material.scene_dict(), seed, spp=4, size=4) for seed in range(12)]
+    )
+    variant("llvm_ad_rgb")
+    expected = luminance(mi, material.scene_dict(), spp=8192, size=4)
+    z = z_of(scalar, expected)
+    assert z < HIGHEST_Z
+    assert scalar.std(ddof=1) / math.sqrt(12) < 0.05 * expected
+
+
+@pytest.mark.quick
+def test_a_negative_colour_is_refused_where_it_has_no_spectrum():
+    """Mitsuba would clip it, and a fitted Koenderink model would render wrong without a word."""
+    import mitsuba as mi
+
+    before = mi.variant()
+    mi.set_variant("llvm_ad_spectral")
+    try:
+        colour = {"type": "rgb", "value": [0.1, -0.1, 0.2]}
+        with pytest.raises(
+            RuntimeError, match="koenderink: a_2_2_2 is a colour with a value below"
+        ):
+            mi.load_dict({"type": "koenderink", "a_2_2_2": colour})
+    finally:
+        mi.set_variant(before or "llvm_ad_rgb")
