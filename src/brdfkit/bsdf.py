@@ -210,8 +210,8 @@ def _fit_for_a_spectrum(props, model, name):
     value = props[name]
     if min(value) < 0:
         raise BrdfkitError(
-            f"{model.type_name()}: {name} is a colour with a value below 0, which a spectrum cannot "
-            "hold; use an rgb or mono variant of Mitsuba."
+            f"{model.type_name()}: {name} is a colour with a value below 0, which no spectrum "
+            "holds; use an rgb or mono variant of Mitsuba."
         )
     scale = 2 * max(value) if max(value) > 1 else 1
     props[name] = value / scale
