@@ -1,11 +1,11 @@
-# make demo | test | quick | lint | bench | wheel; everything happens in .venv, nothing else is needed
+# make demo | test | quick | lint | bench | docs | wheel; everything happens in .venv, nothing else is needed
 PYTHON ?= python3
 VENV := .venv
 RUN := $(VENV)/bin
 # NumPy's threads beside Dr.Jit's, times two workers, would wait for each other
 PYTEST := OPENBLAS_NUM_THREADS=1 $(RUN)/python -m pytest -n 2
 
-.PHONY: demo test quick lint bench wheel clean
+.PHONY: demo test quick lint bench docs wheel clean
 
 $(VENV)/.ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -29,6 +29,9 @@ lint: $(VENV)/.ready
 
 bench: $(VENV)/.ready
 	$(RUN)/python tests/benchmark.py
+
+docs: $(VENV)/.ready
+	$(RUN)/python docs/make_models.py
 
 wheel: $(VENV)/.ready
 	$(RUN)/python -m build
