@@ -28,7 +28,7 @@ lint: $(VENV)/.ready
 	$(RUN)/ruff format --check
 
 bench: $(VENV)/.ready
-	$(RUN)/python tests/benchmark.py
+	DRJIT_CACHE_DIR=$$(mktemp -d) $(RUN)/python tests/benchmark.py
 
 docs: $(VENV)/.ready
 	$(RUN)/python docs/make_models.py
