@@ -37,4 +37,5 @@ wheel: $(VENV)/.ready
 	$(RUN)/python -m build
 
 clean:
-	rm -rf $(VENV) build dist demo
+	rm -rf $(VENV) build dist demo .pytest_cache .ruff_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
