@@ -7,12 +7,22 @@ from pathlib import Path
 import numpy as np
 
 from brdfkit.colours import luminance
+from brdfkit.errors import BrdfkitError
+from brdfkit.records import plain
 
 COLUMNS = 4
 TILE = 320  # narrower pictures are enlarged to this width [pixels], so that captions fit
 GAP = 20
 INK, FAINT, PAPER = (26, 26, 26), (105, 105, 105), (255, 255, 255)
 DIVERGING = "RdBu_r"  # blue: darker than the reference, red: brighter
+
+
+def picture_suffix(path):
+    """.exr or .png; an error for any other suffix of the `Path`."""
+    suffix = path.suffix.lower()
+    if suffix not in (".exr", ".png"):
+        raise BrdfkitError(f"{path}: pictures are written as .exr or .png; choose one of them.")
+    return suffix
 
 
 def write_exr(rendering, path):
@@ -29,7 +39,7 @@ def write_exr(rendering, path):
             "spp": rendering.spp,
             "seed": rendering.seed,
             "brdfkit": _version(),
-            "parameters": json.dumps(rendering.parameters.get(name, {}), default=_plain),
+            "parameters": json.dumps(plain(rendering.parameters.get(name, {}))),
         }
         channels = {c: np.ascontiguousarray(picture[..., i]) for i, c in enumerate("RGB")}
         parts.append(OpenEXR.Part(header, channels, title))
@@ -43,11 +53,6 @@ def _version():
     import brdfkit
 
     return brdfkit.__version__
-
-
-def _plain(value):
-    """NumPy's numbers and arrays, and other array-likes, for JSON."""
-    return np.asarray(value, float).tolist()
 
 
 def montage(rendering):

@@ -18,7 +18,7 @@ from brdfkit.files import written
 from brdfkit.fitting.result import Fit
 from brdfkit.model import Model
 from brdfkit.names import unused
-from brdfkit.pictures import montage, write_exr
+from brdfkit.pictures import montage, picture_suffix, write_exr
 from brdfkit.tracing import trace
 
 
@@ -74,9 +74,7 @@ class Rendering:
         Raises `BrdfkitError` for another suffix or where it cannot write; no half-written file.
         """
         path = Path(path)
-        suffix = path.suffix.lower()
-        if suffix not in (".exr", ".png"):
-            raise BrdfkitError(f"{path}: pictures are written as .exr or .png; choose one of them.")
+        suffix = picture_suffix(path)
         png = self._repr_png_()
         if suffix == ".exr":
             with written(path) as beside:

@@ -9,6 +9,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.files import folder, require_writable
 from brdfkit.formats import load
 from brdfkit.measured import Measured
+from brdfkit.pictures import picture_suffix
 
 
 def measured(name):
@@ -79,8 +80,7 @@ def results(path):
 def picture_file(name):
     """The path of a picture, once it is sure that it can be written: rendering takes long."""
     path = Path(name)
-    if path.suffix.lower() not in (".exr", ".png"):
-        raise BrdfkitError(f"{path}: pictures are written as .exr or .png; choose one of them.")
+    picture_suffix(path)
     require_writable(path)
     require_writable(path.with_suffix(".png"))
     return path

@@ -1,5 +1,7 @@
 """Checks of what differentiable fitting and rendering rest on."""
 
+from contextlib import contextmanager
+
 import numpy as np
 
 from brdfkit.checks.sampling import uniform
@@ -43,29 +45,20 @@ def plugin_gradient(subject):
         return True, "no parameters"
     wi, wo = random_pairs(2_000, seed=7, max_degrees=80)
     cosines = wo[:, 2:]
-    parameters = mi.traverse(subject.bsdf)
-    worst, missing = 0.0, []
+    exposed = {key.split(".")[0] for key in mi.traverse(subject.bsdf).keys()}  # noqa: SIM118
+    if missing := [name for name in model.free_values if name not in exposed]:
+        return False, f"not in traverse: {', '.join(missing)}"
+    worst = 0.0
     for name in model.free_values:
-        key = next((k for k in parameters.keys() if k.split(".")[0] == name), None)  # noqa: SIM118
-        if key is None:
-            missing.append(name)
-            continue
-        value = type(parameters[key])(parameters[key])
-        dr.enable_grad(value)
-        parameters[key] = value
-        parameters.update()
-        image = subject.bsdf.eval(
-            mi.BSDFContext(), subject.interaction(wi), mi.Vector3f(wo.astype(np.float32).T)
-        )
-        dr.backward(dr.sum(dr.sum(image)))
-        found = float(np.sum(np.array(dr.grad(value))))
-        parameters[key] = dr.detach(value)
-        parameters.update()
+        with _differentiated(subject.bsdf, name) as value:
+            image = subject.bsdf.eval(
+                mi.BSDFContext(), subject.interaction(wi), mi.Vector3f(wo.astype(np.float32).T)
+            )
+            dr.backward(dr.sum(dr.sum(image)))
+            found = float(np.sum(np.array(dr.grad(value))))
         expected = _total_derivative(model, name, wi, wo) * cosines
         difference = abs(found - float(expected.sum()))
         worst = max(worst, difference / max(float(np.abs(expected).sum()), 1e-6))
-    if missing:
-        return False, f"not in traverse: {', '.join(missing)}"
     return worst < 1e-3, f"relative difference at most {worst:.1e}"
 
 
@@ -82,20 +75,13 @@ def sampling_gradient(subject):
     if model is None or not model.shapes():
         return True, "no shape parameters"
     n, wi = 200_000, incidences()[1][1]
-    parameters = mi.traverse(subject.bsdf)
     worst = 0.0
     for name in _free_shapes(model):
-        key = next(k for k in parameters.keys() if k.split(".")[0] == name)  # noqa: SIM118
-        value = mi.Float(getattr(model, name))
-        dr.enable_grad(value)
-        parameters[key] = value
-        parameters.update()
-        si = subject.interaction(np.tile(wi, (n, 1)))
-        _, weight = subject.bsdf.sample(mi.BSDFContext(), si, *uniform(n, seed=8))
-        dr.forward_from(value)
-        own = np.array(dr.grad(weight)).mean(axis=0, dtype=float)
-        parameters[key] = dr.detach(value)
-        parameters.update()
+        with _differentiated(subject.bsdf, name) as value:
+            si = subject.interaction(np.tile(wi, (n, 1)))
+            _, weight = subject.bsdf.sample(mi.BSDFContext(), si, *uniform(n, seed=8))
+            dr.forward_from(value)
+            own = np.array(dr.grad(weight)).mean(axis=0, dtype=float)
 
         _, u = uniform(n, seed=9)
         wo = np.array(mi.warp.square_to_cosine_hemisphere(u)).T.astype(float)
@@ -103,6 +89,23 @@ def sampling_gradient(subject):
         error = np.hypot(own.std(), cosine.std()) / np.sqrt(n)
         worst = max(worst, abs(own.mean() - cosine.mean()) / max(error, 1e-9))
     return worst < 4.5, f"at most {worst:.1f} standard errors apart"
+
+
+@contextmanager
+def _differentiated(bsdf, name):
+    """The value of a BSDF's parameter, with derivatives within the block."""
+    import drjit as dr
+    import mitsuba as mi
+
+    parameters = mi.traverse(bsdf)
+    key = next(k for k in parameters.keys() if k.split(".")[0] == name)  # noqa: SIM118
+    value = type(parameters[key])(parameters[key])
+    dr.enable_grad(value)
+    parameters[key] = value
+    parameters.update()
+    yield value
+    parameters[key] = dr.detach(value)
+    parameters.update()
 
 
 def _total_derivative(model, name, wi, wo):
