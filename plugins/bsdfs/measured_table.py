@@ -8,6 +8,8 @@ Trilinear between the cells' centres, phi_d wraps. Isotropic: the table has no a
 Sampled by a share of cosine and a distribution of normals that is read off the table itself.
 """
 
+import itertools
+
 import numpy as np
 
 
@@ -34,6 +36,7 @@ def define(mi):
                 )
             table = _table(props)
             self.shape, self.period = table.shape, table.phi_d_period
+            self.anisotropic = table.anisotropic
             values = np.maximum(table.filled, 0)
             if mi.is_monochromatic:
                 values = luminance(values)[..., None]
@@ -103,17 +106,23 @@ def define(mi):
 
         def lookup(self, wi, wo):
             """BRDF in sr⁻¹: `Table.eval`, in the renderer."""
-            n_h, n_d, n_p = self.shape
-            theta_h, theta_d, phi_d = half_difference(wi, wo)
-            h0, h1, th = clamped(dr.sqrt(theta_h / (dr.pi / 2)) * n_h, n_h)
-            d0, d1, td = clamped(theta_d / (dr.pi / 2) * n_d, n_d)
-            p0, p1, tp = periodic(phi_d / self.period * n_p, n_p)
+            n_h, n_d, n_p = self.shape[-3:]
+            theta_h, theta_d, phi_d, phi_h = half_difference(wi, wo)
+            axes = [
+                clamped(dr.sqrt(theta_h / (dr.pi / 2)) * n_h, n_h),
+                clamped(theta_d / (dr.pi / 2) * n_d, n_d),
+                periodic(phi_d / self.period * n_p, n_p),
+            ]
+            if self.anisotropic:
+                n_a = self.shape[0]
+                axes.insert(0, periodic(phi_h / (2 * dr.pi) * n_a, n_a))
             result = mi.Spectrum(0)
-            for h, wh in ((h0, 1 - th), (h1, th)):
-                for d, wd in ((d0, 1 - td), (d1, td)):
-                    for p, wp in ((p0, 1 - tp), (p1, tp)):
-                        index = (h * n_d + d) * n_p + p
-                        result += wh * wd * wp * gather(mi.Spectrum, self.values, index)
+            for corner in itertools.product((0, 1), repeat=len(axes)):
+                index, share = mi.UInt32(0), mi.Float(1)
+                for n, (*cells, t), upper in zip(self.shape, axes, corner, strict=True):
+                    index = index * n + cells[upper]
+                    share *= t if upper else 1 - t
+                result += share * gather(mi.Spectrum, self.values, index)
             return result
 
         def to_string(self):
@@ -151,9 +160,11 @@ def define(mi):
         sin_p = dr.select(sin_h > 1e-7, h.y / safe, 0)
         x, y = cos_p * wi.x + sin_p * wi.y, cos_p * wi.y - sin_p * wi.x
         x, z = h.z * x - sin_h * wi.z, sin_h * x + h.z * wi.z
-        phi_d = dr.atan2(y, x)
-        phi_d = dr.select(phi_d < 0, phi_d + 2 * dr.pi, phi_d)
-        return theta_h, dr.atan2(dr.safe_sqrt(x * x + y * y), z), phi_d
+        return theta_h, dr.atan2(dr.safe_sqrt(x * x + y * y), z), azimuth(x, y), azimuth(h.x, h.y)
+
+    def azimuth(x, y):
+        phi = dr.atan2(y, x)
+        return dr.select(phi < 0, phi + 2 * dr.pi, phi)
 
     def clamped(position, n):
         x = dr.clip(position - 0.5, 0, n - 1)

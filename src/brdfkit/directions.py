@@ -37,7 +37,7 @@ def to_half_difference(wi, wo):
     """(theta_h, theta_d, phi_d) [rad] of direction pairs (..., 3); phi_d in [0, 2π).
 
     Exchanging `wi` and `wo` turns phi_d by π: a reciprocal BRDF has period π in phi_d.
-    The azimuth of the half vector, which only an anisotropic BRDF sees, is left out.
+    The azimuth of the half vector, which only an anisotropic BRDF sees, is `half_azimuth`.
     """
     wi, wo = np.asarray(wi, float), np.asarray(wo, float)
     h = normalize(wi + wo)
@@ -48,15 +48,21 @@ def to_half_difference(wi, wo):
     return theta_h, theta_d, np.mod(phi_d, 2 * np.pi)
 
 
-def from_half_difference(theta_h, theta_d, phi_d):
-    """Direction pairs (wi, wo), each (..., 3), with the half vector at azimuth 0.
+def half_azimuth(wi, wo):
+    """phi_h in [0, 2π) [rad], the azimuth of the half vector, of direction pairs (..., 3)."""
+    s = np.asarray(wi, float) + np.asarray(wo, float)
+    return np.mod(np.arctan2(s[..., 1], s[..., 0]), 2 * np.pi)
+
+
+def from_half_difference(theta_h, theta_d, phi_d, phi_h=0.0):
+    """Direction pairs (wi, wo), each (..., 3), with the half vector at azimuth `phi_h`.
 
     A direction below the surface comes back as such (z < 0): the caller masks it.
     """
-    theta_h, theta_d, phi_d = np.broadcast_arrays(theta_h, theta_d, phi_d)
+    theta_h, theta_d, phi_d, phi_h = np.broadcast_arrays(theta_h, theta_d, phi_d, phi_h)
     wi = _rotate_y(from_angles(theta_d, phi_d), theta_h)
     wo = _rotate_y(from_angles(theta_d, phi_d + np.pi), theta_h)
-    return wi, wo
+    return _rotate_z(wi, phi_h), _rotate_z(wo, phi_h)
 
 
 def _rotate_z(w, angle):

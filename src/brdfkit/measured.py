@@ -1,5 +1,6 @@
 """A measured material: a BRDF given by samples or by a table, with what is known of it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 
@@ -39,7 +40,8 @@ class Measured:
 
     `name`: for people; `channels`: what the columns of the values are: ``("R", "G", "B")``,
     ``("Y",)`` (one, achromatic) or wavelengths as ``("400nm", ...)``; `info`: notes of the
-    file and of its reader.
+    file and of its reader; `anisotropic`: whether the surface's azimuth counts;
+    `standard_error`: (n, channels) of `values`, where the measurement states it.
 
     >>> wi = wo = np.array([[0, 0, 1.0]])
     >>> Measured.from_samples(wi, wo, [[0.2]], channels=("Y",), name="grey").values
@@ -49,15 +51,32 @@ class Measured:
     name: str
     channels: tuple[str, ...]
     info: dict[str, str] = field(default_factory=dict)
+    anisotropic: bool = False
+    standard_error: np.ndarray | None = field(default=None, repr=False)
     _samples: Samples | None = field(default=None, repr=False)
     _table: Table | None = field(default=None, repr=False)
+    _lookup: Callable | None = field(default=None, repr=False)
 
     @classmethod
-    def from_samples(cls, wi, wo, values, valid=None, channels=RGB, name="samples", info=None):
+    def from_samples(
+        cls,
+        wi,
+        wo,
+        values,
+        valid=None,
+        channels=RGB,
+        name="samples",
+        info=None,
+        anisotropic=False,
+        standard_error=None,
+        lookup=None,
+    ):
         """From direction pairs `wi`, `wo` (n, 3) and BRDF `values` (n, channels) in sr⁻¹.
 
         Directions need not be normalised. `valid` (n,) marks what was measured; without it
-        everything finite above the surface is.
+        everything finite above the surface is. `standard_error`: of the values, likewise
+        (n, channels). `lookup(wi, wo)`: values between the samples, where the format defines
+        them; without it `scattered.py` interpolates.
         """
         wi, wo, values = (np.array(a, float, ndmin=2) for a in (wi, wo, values))
         if wi.shape != wo.shape or wi.shape[1] != 3 or values.shape != (len(wi), len(channels)):
@@ -72,23 +91,41 @@ class Measured:
             seen &= np.asarray(valid, bool)
         _require_some(seen, name)
         samples = Samples(wi, wo, values, seen, np.ones(len(seen)))
-        return cls(name, tuple(channels), dict(info or {}), _samples=samples)
+        return cls(
+            name,
+            tuple(channels),
+            dict(info or {}),
+            anisotropic,
+            _errors(standard_error, values, name),
+            _samples=samples,
+            _lookup=lookup,
+        )
 
     @classmethod
-    def from_table(cls, values, phi_d_period=np.pi, channels=RGB, name="table", info=None):
+    def from_table(
+        cls,
+        values,
+        phi_d_period=np.pi,
+        channels=RGB,
+        name="table",
+        info=None,
+        standard_error=None,
+    ):
         """From a table (n_theta_h, n_theta_d, n_phi_d, channels) in sr⁻¹, NaN = not measured.
 
-        Its axes are those of `brdfkit.table.Table`.
+        Its axes are those of `brdfkit.table.Table`; an anisotropic one has n_phi_h before them.
+        `standard_error`: of the values, in the same shape.
         """
         values = np.asarray(values, float)
-        if values.ndim != 4 or values.shape[-1] != len(channels) or 0 in values.shape:
+        if values.ndim not in (4, 5) or values.shape[-1] != len(channels) or 0 in values.shape:
             raise BrdfkitError(
-                f"{name}: a table of shape {values.shape} was given; "
-                f"it should be (n_theta_h, n_theta_d, n_phi_d, {len(channels)})."
+                f"{name}: a table of shape {values.shape} was given; it should be "
+                f"([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, {len(channels)})."
             )
         _require_some(np.isfinite(values).all(axis=-1), name)
         table = Table(values, phi_d_period)
-        return cls(name, tuple(channels), dict(info or {}), _table=table)
+        errors = _errors(standard_error, values, name)
+        return cls(name, tuple(channels), dict(info or {}), table.anisotropic, errors, _table=table)
 
     @property
     def is_table(self):
@@ -103,17 +140,19 @@ class Measured:
         wi, wo = (w.reshape(-1, 3) for w in self._table.directions())
         values = self._table.values.reshape(-1, len(self.channels))
         valid = np.isfinite(values).all(axis=1) & (wi[:, 2] > 0) & (wo[:, 2] > 0)
-        weight = np.broadcast_to(self._table.theta_h_widths[:, None, None], self._table.shape)
+        weight = np.broadcast_to(self._table.theta_h_widths, self._table.shape)
         return Samples(wi, wo, values, valid, weight.reshape(-1))
 
     @cached_property
     def table(self):
-        """The table to look up in; that of scattered samples is interpolated (`scattered.py`)."""
+        """The table to look up in; that of samples is interpolated (`scattered.py`)."""
         if self._table is not None:
             return self._table
-        from brdfkit.scattered import to_table
+        from brdfkit.scattered import sampled, to_table
 
-        return to_table(self.samples)
+        if self._lookup is not None:
+            return sampled(self._lookup, len(self.channels), self.anisotropic)
+        return to_table(self.samples, self.anisotropic)
 
     @property
     def values(self):
@@ -122,7 +161,11 @@ class Measured:
 
     def eval(self, wi, wo):
         """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3), interpolated, never negative."""
-        return np.maximum(self.table.eval(wi, wo), 0)
+        wi, wo = np.asarray(wi, float), np.asarray(wo, float)
+        if self._lookup is None:
+            return np.maximum(self.table.eval(wi, wo), 0)
+        above = (wi[:, 2:] > 0) & (wo[:, 2:] > 0)
+        return np.where(above, np.maximum(self._lookup(wi, wo), 0), 0.0)
 
     @cached_property
     def rgb(self):
@@ -133,14 +176,19 @@ class Measured:
 
         return to_rgb(self)
 
-    def with_values(self, values, channels, **info):
-        """The same geometry with other values (n, channels) at `samples`."""
+    def mixed(self, weights, channels, **info):
+        """The same material in other channels, the old ones mixed by `weights` (old, new)."""
         info = {**self.info, **info}
-        if self.is_table:
-            table = Table(values.reshape(*self._table.shape, -1), self._table.phi_d_period)
-            return replace(self, channels=tuple(channels), info=info, _table=table)
-        samples = replace(self._samples, values=values)
-        return replace(self, channels=tuple(channels), info=info, _samples=samples)
+        changed = {"channels": tuple(channels), "info": info}
+        if self.standard_error is not None:
+            changed["standard_error"] = np.sqrt(self.standard_error**2 @ weights**2)
+        if self._table is not None:
+            changed["_table"] = replace(self._table, values=self._table.values @ weights)
+        if self._samples is not None:
+            changed["_samples"] = replace(self._samples, values=self.values @ weights)
+        if self._lookup is not None:
+            changed["_lookup"] = _Mixed(self._lookup, weights)
+        return replace(self, **changed)
 
     def scene_dict(self):
         """The dictionary for `mitsuba.load_dict`: the table, looked up (an isotropic BSDF)."""
@@ -163,6 +211,30 @@ class Measured:
             f"{self.name}: {size}, {valid.sum():,} of {len(valid):,} valid, "
             f"channels {' '.join(self.channels)}"
         )
+
+
+@dataclass(frozen=True, eq=False)
+class _Mixed:
+    """A lookup in mixed channels."""
+
+    lookup: Callable
+    weights: np.ndarray
+
+    def __call__(self, wi, wo):
+        return self.lookup(wi, wo) @ self.weights
+
+
+def _errors(standard_error, values, name):
+    """Standard errors (n, channels) that belong to `values`, or None."""
+    if standard_error is None:
+        return None
+    errors = np.asarray(standard_error, float)
+    if errors.shape != values.shape:
+        raise BrdfkitError(
+            f"{name}: standard errors {errors.shape} should have the shape {values.shape} of "
+            "the values."
+        )
+    return errors.reshape(-1, values.shape[-1])
 
 
 def _require_some(valid, name):

@@ -25,7 +25,7 @@ def to_rgb(measured):
     """
     wavelengths = _wavelengths(measured)
     note = f"linear sRGB from {len(wavelengths)} wavelengths under {ILLUMINANT}, {OBSERVER}"
-    return measured.with_values(measured.values @ _weights(wavelengths), RGB, rgb=note)
+    return measured.mixed(_weights(wavelengths), RGB, rgb=note)
 
 
 def _wavelengths(measured):
@@ -41,7 +41,7 @@ def _wavelengths(measured):
         raise BrdfkitError(
             f"{measured.name}: its wavelengths, {wavelengths.min():g} to {wavelengths.max():g} "
             f"nm, do not span {NEEDED[0]} to {NEEDED[1]} nm and give no colour; "
-            "choose one channel with `with_values`."
+            "choose one channel with `mixed`."
         )
     return wavelengths
 

@@ -1,21 +1,23 @@
-"""A table over half/difference coordinates: the cells of MERL, and their trilinear lookup.
+"""A table over half/difference coordinates: the cells of MERL, and their multilinear lookup.
 
 W. Matusik et al., "A data-driven reflectance model", SIGGRAPH 2003. theta_h is square-root
 spaced, so that cells are small where highlights are; theta_d and phi_d are evenly spaced.
-A value stands at the centre of its cell.
+An anisotropic table has the azimuth phi_h of the half vector as its first axis, evenly spaced
+over the full circle. A value stands at the centre of its cell.
 """
 
+import itertools
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from brdfkit.directions import from_half_difference, to_half_difference
+from brdfkit.directions import from_half_difference, half_azimuth, to_half_difference
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """BRDF values (n_theta_h, n_theta_d, n_phi_d, channels) in sr⁻¹, NaN where nothing is known.
+    """BRDF values ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, channels) in sr⁻¹, NaN = unknown.
 
     `phi_d_period` is π for a reciprocal table (half of the azimuths suffice), else 2π.
 
@@ -27,29 +29,39 @@ class Table:
     phi_d_period: float = np.pi
 
     @property
+    def anisotropic(self):
+        """Whether the surface's own azimuth counts."""
+        return self.values.ndim == 5
+
+    @property
     def shape(self):
-        """Number of cells (n_theta_h, n_theta_d, n_phi_d)."""
-        return self.values.shape[:3]
+        """Number of cells ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d)."""
+        return self.values.shape[:-1]
 
     @cached_property
     def centres(self):
-        """Centres of the cells along each axis, (theta_h, theta_d, phi_d) [rad]."""
-        n_h, n_d, n_p = self.shape
-        return (
+        """Centres of the cells along each axis, ([phi_h,] theta_h, theta_d, phi_d) [rad]."""
+        n_h, n_d, n_p = self.shape[-3:]
+        centres = (
             ((np.arange(n_h) + 0.5) / n_h) ** 2 * np.pi / 2,
             (np.arange(n_d) + 0.5) / n_d * np.pi / 2,
             (np.arange(n_p) + 0.5) / n_p * self.phi_d_period,
         )
+        if not self.anisotropic:
+            return centres
+        n_a = self.shape[0]
+        return (np.arange(n_a) + 0.5) / n_a * 2 * np.pi, *centres
 
     @property
     def theta_h_widths(self):
-        """Widths of the theta_h cells (n_theta_h,), 1 in the mean."""
-        n_h = self.shape[0]
-        return (2 * np.arange(n_h) + 1) / n_h
+        """Widths of the theta_h cells (n_theta_h, 1, 1), 1 in the mean; for every `shape`."""
+        n_h = self.shape[-3]
+        return ((2 * np.arange(n_h) + 1) / n_h)[:, None, None]
 
     def directions(self):
         """(wi, wo) at the centre of every cell, each (*shape, 3); z < 0 below the surface."""
-        return from_half_difference(*np.meshgrid(*self.centres, indexing="ij"))
+        *phi_h, theta_h, theta_d, phi_d = np.meshgrid(*self.centres, indexing="ij")
+        return from_half_difference(theta_h, theta_d, phi_d, *phi_h)
 
     @cached_property
     def filled(self):
@@ -63,22 +75,27 @@ class Table:
         return self.values[tuple(nearest)]
 
     def eval(self, wi, wo):
-        """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3): trilinear between cell centres.
+        """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3): multilinear between cell centres.
 
-        Clamped at the ends of theta_h and theta_d, periodic in phi_d; 0 below the surface.
+        Clamped at the ends of theta_h and theta_d, periodic in the azimuths; 0 below the surface.
         """
         wi, wo = np.asarray(wi, float), np.asarray(wo, float)
         theta_h, theta_d, phi_d = to_half_difference(wi, wo)
-        n_h, n_d, n_p = self.shape
-        h0, h1, th = _clamped(np.sqrt(theta_h / (np.pi / 2)) * n_h, n_h)
-        d0, d1, td = _clamped(theta_d / (np.pi / 2) * n_d, n_d)
-        p0, p1, tp = _periodic(phi_d / self.phi_d_period * n_p, n_p)
+        n_h, n_d, n_p = self.shape[-3:]
+        axes = [
+            _clamped(np.sqrt(theta_h / (np.pi / 2)) * n_h, n_h),
+            _clamped(theta_d / (np.pi / 2) * n_d, n_d),
+            _periodic(phi_d / self.phi_d_period * n_p, n_p),
+        ]
+        if self.anisotropic:
+            n_a = self.shape[0]
+            axes.insert(0, _periodic(half_azimuth(wi, wo) / (2 * np.pi) * n_a, n_a))
 
         result = np.zeros((*theta_h.shape, self.values.shape[-1]))
-        for h, wh in ((h0, 1 - th), (h1, th)):
-            for d, wd in ((d0, 1 - td), (d1, td)):
-                for p, wp in ((p0, 1 - tp), (p1, tp)):
-                    result += (wh * wd * wp)[..., None] * self.filled[h, d, p]
+        for corner in itertools.product((0, 1), repeat=len(axes)):
+            cells = tuple(axis[upper] for axis, upper in zip(axes, corner, strict=True))
+            parts = [t if upper else 1 - t for (*_, t), upper in zip(axes, corner, strict=True)]
+            result += np.prod(parts, axis=0)[..., None] * self.filled[cells]
         above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
         return np.where(above[..., None], result, 0.0)
 
