@@ -15,7 +15,7 @@ from rich.table import Table as Printed
 
 import brdfkit as bk
 from brdfkit import llvm
-from brdfkit.checks.sampling import albedo, spread
+from brdfkit.checks.sampling import spread
 from brdfkit.checks.subject import INCIDENCES, Subject, incidences
 from brdfkit.table import Table
 
@@ -117,7 +117,7 @@ def main():
             continue
         subject = Subject(bk.models()[name]())
         spreads = [f"{spread(subject, degrees):.2f}" for degrees in INCIDENCES]
-        brightest = max(albedo(subject, wi)[0] for _, wi in incidences())
+        brightest = max(bk.albedo(subject.thing, wi).max() for _, wi in incidences())
         fits = [f"{fit_seconds(name, data, loss):.2f}" for loss in bk.losses]
         table.add_row(name, *spreads, f"{brightest:.3f}", *row, *fits)
     out.print(table)

@@ -79,20 +79,6 @@ def test_loads_in_every_variant(model, variant, name):
         assert (evaluated(mi, by_dict) > 0).all()
 
 
-@pytest.mark.quick
-def test_table_loads_where_there_is_colour(variant):
-    import mitsuba as mi
-
-    table = bk.load("red_plastic")
-    for name in VARIANTS:
-        variant(name)
-        if mi.is_spectral:
-            with pytest.raises(RuntimeError, match="spectral, use an rgb or mono variant"):
-                mi.load_dict(table.scene_dict())
-        else:
-            assert (evaluated(mi, mi.load_dict(table.scene_dict())) > 0).all()
-
-
 LOAD = """
 assert isinstance(mi.load_dict({"type": "ward"}), mi.BSDF)
 mi.load_string('<scene version="3.0.0"><bsdf type="blinn_phong"/></scene>')

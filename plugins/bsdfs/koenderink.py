@@ -108,6 +108,10 @@ class Koenderink(Model):
     symmetry = option("isotropic", ("isotropic", "anisotropic"), "whether the azimuth counts")
 
     @classmethod
+    def anisotropic(cls):
+        return cls.symmetry == "anisotropic"
+
+    @classmethod
     def more_parameters(cls):
         return {
             "a_" + "_".join(str(k).replace("-", "m") for k in index): weight(

@@ -71,6 +71,10 @@ class PCAPolynomial(Model):
         return [(j, k) for k in range(1, cls.degree + 1) for j in range(cls.components())]
 
     @classmethod
+    def anisotropic(cls):
+        return cls.symmetry == "anisotropic"
+
+    @classmethod
     def more_parameters(cls):
         signed = (-math.inf, math.inf)
         constant = {"beta_0": weight(0.15, "β_0: constant", signed)}

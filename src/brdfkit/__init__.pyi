@@ -10,6 +10,7 @@ from .formats import save as save
 from .measured import Measured as Measured
 from .model import Model as Model
 from .plotting import plot as plot
+from .quadrature import albedo as albedo
 from .registry import load_models as load_models
 from .registry import models as models
 from .rendering import Rendering as Rendering

@@ -10,26 +10,17 @@ import operator
 
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.lobes import Cosine
+from brdfkit import properties
+from brdfkit.clamped import tabulated, texture_mean
+from brdfkit.lobes import Cosine, components_of
+from brdfkit.quadrature import cosine_directions
 from brdfkit.vectors import above_horizon
 
 # Share of the samples that follow the cosine, whatever the lobes
 COSINE_SHARE = 0.1
 COSINE = Cosine()
-
-
-def scene_dict(model):
-    """The dictionary for `mitsuba.load_dict` of a model with values."""
-    entries = {"type": model.type_name(), **model.chosen()}
-    for name, value in model.free_values.items():
-        entries[name] = _rgb(value) if isinstance(value, tuple) else value
-    return entries
-
-
-def _rgb(value):
-    value = value * 3 if len(value) == 1 else value
-    return {"type": "rgb", "value": list(value)}
+# Directions over which the diffuse reflectance is the mean
+FROM_ABOVE = cosine_directions(64)
 
 
 def define(mi, model):
@@ -43,10 +34,13 @@ def define(mi, model):
         flags.DiffuseReflection if lobe.diffuse else flags.GlossyReflection
         for lobe in (defaults.lobes()[group[0]] for group in groups)
     ]
+    linear = [model.parameters[name] for name in model.weights()]
+    signed = [k for k, group in enumerate(groups) if any(linear[i].bounds[0] < 0 for i in group)]
     anisotropic = flags.Anisotropic if model.anisotropic() else flags.Empty
+    turning = [k for k, kind in enumerate(kinds) if kind == flags.GlossyReflection or k in signed]
     components = [
-        kind | flags.FrontSide | (anisotropic if kind == flags.GlossyReflection else flags.Empty)
-        for kind in kinds
+        kind | flags.FrontSide | (anisotropic if k in turning else flags.Empty)
+        for k, kind in enumerate(kinds)
     ]
 
     def enabled(ctx, k):
@@ -74,10 +68,12 @@ def define(mi, model):
             for name, parameter in model.parameters.items():
                 if parameter.follows and name not in props:
                     continue
-                _require_within_bounds(props, model, name)
-                if mi.is_spectral and _is_colour(props.get(name, None)):
-                    self.scales[name] = _fit_for_a_spectrum(props, model, name)
+                properties.require_within_bounds(props, model, name)
+                if mi.is_spectral and properties.is_colour(props.get(name, None)):
+                    self.scales[name] = properties.fit_for_a_spectrum(props, model, name)
                 self.textures[name] = props.get_unbounded_texture(name, getattr(defaults, name))
+            self.tables = {}
+            self.parameters_changed()
             varying = any(t.is_spatially_varying() for t in self.textures.values())
             extra = flags.SpatiallyVarying if varying else flags.Empty
             self.m_components = [component | extra for component in components]
@@ -90,6 +86,24 @@ def define(mi, model):
                     kind |= mi.ParamFlags.Discontinuous
                 callback.put(name, texture, kind)
 
+        def parameters_changed(self, keys=()):
+            # A sum of signed lobes is drawn by a table
+            if signed:
+                means = {}
+                for name, texture in self.textures.items():
+                    parameter, mean = model.parameters[name], texture_mean(texture)
+                    mean = np.clip(mean * self.scale(name), *parameter.bounds)
+                    means[name] = mean if parameter.linear else mean[0]
+                self.tables = {k: tabulated(model(**means), groups[k]) for k in signed}
+
+        def sampling(self, k, lobes):
+            """The way to draw component `k`."""
+            return self.tables.get(k, lobes[groups[k][0]].sampling)
+
+        def scale(self, name):
+            """By what the texture of a colour is multiplied."""
+            return self.scales.get(name, 1)
+
         def sample(self, ctx, si, sample1, sample2, active=True):
             wi, active = above_horizon(si.wi, active)
             weights, lobes = self.terms(si, active)
@@ -99,12 +113,12 @@ def define(mi, model):
             wo = COSINE.sample(wi, sample2)
             component = mi.UInt32(first_enabled(ctx))
             chosen_up_to = mi.Float(COSINE_SHARE)
-            for k, (group, share) in enumerate(zip(groups, shares, strict=True)):
+            for k, share in enumerate(shares):
                 if share is None:
                     continue
                 hit = (sample1 >= chosen_up_to) & (sample1 < chosen_up_to + share)
                 chosen_up_to += share
-                wo = dr.select(hit, lobes[group[0]].sampling.sample(wi, sample2), wo)
+                wo = dr.select(hit, self.sampling(k, lobes).sample(wi, sample2), wo)
                 component = dr.select(hit, k, component)
 
             # Directions are drawn without derivatives, and so is their density in the weight
@@ -136,21 +150,38 @@ def define(mi, model):
             return dr.select(active, value, 0), dr.select(active, pdf, 0)
 
         def eval_diffuse_reflectance(self, si, active=True):
+            """Albedo of the diffuse lobes seen along the normal, by quadrature."""
             weights, lobes = self.terms(si, active)
-            normal = mi.Vector3f(0, 0, 1)
-            diffuse = [
-                weight * lobe.energy(normal)
-                for weight, lobe in zip(weights, lobes, strict=True)
-                if lobe.diffuse
-            ]
-            return sum(diffuse, mi.Spectrum(0))
+            diffuse = [i for i, lobe in enumerate(lobes) if lobe.diffuse]
+            total = mi.Spectrum(0)
+            for direction in FROM_ABOVE:
+                wo = mi.Vector3f(*map(float, direction))
+                total += dr.pi * self.value(weights, lobes, diffuse, mi.Vector3f(0, 0, 1), wo)
+            return dr.select(active, total / len(FROM_ABOVE), 0)
+
+        def has_attribute(self, name, active=True):
+            return super().has_attribute(self.attribute(name), active)
+
+        def eval_attribute(self, name, si, active=True):
+            return super().eval_attribute(self.attribute(name), si, active)
+
+        def eval_attribute_1(self, name, si, active=True):
+            return super().eval_attribute_1(self.attribute(name), si, active)
+
+        def eval_attribute_3(self, name, si, active=True):
+            return super().eval_attribute_3(self.attribute(name), si, active)
+
+        def attribute(self, name):
+            """The texture behind a parameter: that of another one which it follows."""
+            follows = name in model.parameters and name not in self.textures
+            return model.parameters[name].follows if follows else name
 
         def terms(self, si, active):
             """Weights and lobes at a surface point."""
             values = {}
             for name, texture in self.textures.items():
                 if model.parameters[name].linear:
-                    values[name] = texture.eval(si, active) * self.scales.get(name, 1)
+                    values[name] = texture.eval(si, active) * self.scale(name)
                 else:
                     values[name] = within(texture.eval_1(si, active), model.parameters[name])
             return [values[name] for name in model.weights()], model.bind(values).lobes()
@@ -166,57 +197,25 @@ def define(mi, model):
 
         def value_and_pdf(self, ctx, weights, lobes, shares, wi, wo):
             """BRDF times cosine of the enabled components, and the density of `sample`."""
-            value = mi.Spectrum(0)
             none = all(share is None for share in shares)
             pdf = mi.Float(0 if none else COSINE_SHARE * COSINE.pdf(wi, wo))
-            for group, share in zip(groups, shares, strict=True):
-                if share is None:
-                    continue
-                pdf += share * lobes[group[0]].sampling.pdf(wi, wo)
-                for i in group:
-                    value += weights[i] * lobes[i].eval(wi, wo)
-                    if lobes[i].quadratic is not None:
-                        value += weights[i] * weights[i] * lobes[i].quadratic(wi, wo)
-            if model.signed():
-                value = dr.maximum(value, 0)
-            return value * wo.z, pdf
+            for k, share in enumerate(shares):
+                if share is not None:
+                    pdf += share * self.sampling(k, lobes).pdf(wi, wo)
+            enabled = [i for g, s in zip(groups, shares, strict=True) if s is not None for i in g]
+            return self.value(weights, lobes, enabled, wi, wo) * wo.z, pdf
+
+        def value(self, weights, lobes, chosen, wi, wo):
+            """BRDF, the sum of the `chosen` lobes."""
+            value = mi.Spectrum(0)
+            for i in chosen:
+                value += weights[i] * lobes[i].eval(wi, wo)
+                if lobes[i].quadratic is not None:
+                    value += weights[i] * weights[i] * lobes[i].quadratic(wi, wo)
+            return dr.maximum(value, 0) if model.signed() else value
 
         def to_string(self):
             lines = [f"  {name} = {texture}" for name, texture in self.textures.items()]
             return "\n".join([f"{model.__name__}[", *lines, "]"])
 
     return Plugin
-
-
-def components_of(lobes):
-    """Indices of the lobes of each component: lobes that share a sampling are one."""
-    groups = {}
-    for index, lobe in enumerate(lobes):
-        groups.setdefault(id(lobe.sampling), []).append(index)
-    return list(groups.values())
-
-
-def _require_within_bounds(props, model, name):
-    """An error for a constant parameter out of bounds; textures are taken as they are."""
-    value = props.get(name, None)
-    if isinstance(value, float | int) or _is_colour(value):
-        problem = model.parameters[name].problem_with(np.array(value, float))
-        if problem:
-            raise BrdfkitError(f"{model.type_name()}: {name} = {problem}.")
-
-
-def _fit_for_a_spectrum(props, model, name):
-    """Bring a colour to 0..1, beyond which Mitsuba clips its spectrum without a word; the scale."""
-    value = props[name]
-    if min(value) < 0:
-        raise BrdfkitError(
-            f"{model.type_name()}: {name} is a colour with a value below 0, which no spectrum "
-            "holds; use an rgb or mono variant of Mitsuba."
-        )
-    scale = 2 * max(value) if max(value) > 1 else 1
-    props[name] = value / scale
-    return scale
-
-
-def _is_colour(value):
-    return type(value).__name__.endswith("Color3d")

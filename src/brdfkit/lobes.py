@@ -44,6 +44,14 @@ class Lobe:
     diffuse: bool = False
 
 
+def components_of(lobes):
+    """Indices of the lobes of each component: lobes that share a sampling are one."""
+    groups = {}
+    for index, lobe in enumerate(lobes):
+        groups.setdefault(id(lobe.sampling), []).append(index)
+    return list(groups.values())
+
+
 def lambertian():
     """The diffuse lobe of all models: 1/π. Kurt 2007, eq. 3.1."""
     return Lobe(lambda wi, wo: 1 / dr.pi, Cosine(), diffuse=True)

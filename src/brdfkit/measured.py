@@ -191,18 +191,22 @@ class Measured:
         return replace(self, **changed)
 
     def scene_dict(self):
-        """The dictionary for `mitsuba.load_dict`: the table, looked up (an isotropic BSDF)."""
+        """The dictionary for `mitsuba.load_dict`, in the current variant: the table, looked up."""
         import mitsuba as mi
 
-        table = self.rgb.table
-        values = np.maximum(table.filled, 0).astype(np.float32)
-        if values.shape[-1] == 1:
-            values = np.repeat(values, 3, axis=-1)
-        return {
+        from brdfkit.spectra import wavelengths
+
+        spectral = mi.is_spectral and len(self.channels) > 1 and self.channels != RGB
+        material = self if spectral else self.rgb
+        values = np.ascontiguousarray(material.table.filled, np.float32)
+        entries = {
             "type": "measured_table",
-            "table": mi.TensorXf(np.ascontiguousarray(values)),
-            "phi_d_period": float(table.phi_d_period),
+            "table": mi.TensorXf(values),
+            "phi_d_period": float(material.table.phi_d_period),
         }
+        if spectral:
+            entries["wavelengths"] = mi.TensorXf(wavelengths(material).astype(np.float32))
+        return entries
 
     def __str__(self):
         valid = self.samples.valid

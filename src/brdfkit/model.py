@@ -130,7 +130,7 @@ class Model:
 
     @classmethod
     def anisotropic(cls):
-        """True for a model with a parameter per surface direction."""
+        """True where the surface's azimuth may count: a parameter for each of its directions."""
         return any(p.follows for p in cls.parameters.values())
 
     @classmethod
@@ -192,7 +192,7 @@ class Model:
 
     def scene_dict(self):
         """The dictionary for `mitsuba.load_dict`."""
-        from brdfkit.bsdf import scene_dict
+        from brdfkit.properties import scene_dict
 
         return scene_dict(self)
 

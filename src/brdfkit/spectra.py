@@ -23,27 +23,26 @@ def to_rgb(measured):
     >>> to_rgb(load("cayman.brdf")).channels  # doctest: +SKIP
     ('R', 'G', 'B')
     """
-    wavelengths = _wavelengths(measured)
-    note = f"linear sRGB from {len(wavelengths)} wavelengths under {ILLUMINANT}, {OBSERVER}"
-    return measured.mixed(_weights(wavelengths), RGB, rgb=note)
+    known = wavelengths(measured)
+    if known.min() > NEEDED[0] or known.max() < NEEDED[1]:
+        raise BrdfkitError(
+            f"{measured.name}: its wavelengths, {known.min():g} to {known.max():g} "
+            f"nm, do not span {NEEDED[0]} to {NEEDED[1]} nm and give no colour; "
+            "choose one channel with `mixed`."
+        )
+    note = f"linear sRGB from {len(known)} wavelengths under {ILLUMINANT}, {OBSERVER}"
+    return measured.mixed(_weights(known), RGB, rgb=note)
 
 
-def _wavelengths(measured):
-    """The channels as wavelengths [nm]."""
+def wavelengths(measured):
+    """The channels of a `Measured` as wavelengths [nm]; `BrdfkitError` if they are none."""
     found = [re.fullmatch(r"(\d+(?:\.\d+)?)nm", channel) for channel in measured.channels]
     if not all(found):
         raise BrdfkitError(
             f"{measured.name}: the channels {', '.join(measured.channels)[:80]} have no known "
             "conversion to RGB; name them as wavelengths, such as '550nm'."
         )
-    wavelengths = np.array([float(match[1]) for match in found])
-    if wavelengths.min() > NEEDED[0] or wavelengths.max() < NEEDED[1]:
-        raise BrdfkitError(
-            f"{measured.name}: its wavelengths, {wavelengths.min():g} to {wavelengths.max():g} "
-            f"nm, do not span {NEEDED[0]} to {NEEDED[1]} nm and give no colour; "
-            "choose one channel with `mixed`."
-        )
-    return wavelengths
+    return np.array([float(match[1]) for match in found])
 
 
 def _weights(wavelengths):

@@ -32,3 +32,14 @@ def one_minus_dot(a, b):
     """1 - a·b of unit vectors, accurate where they are close."""
     d = a - b
     return 0.5 * dot(d, d)
+
+
+def angle(w):
+    """Angle to the normal [rad], accurate about it."""
+    return dr.atan2(dr.sqrt(w.x * w.x + w.y * w.y), w.z)
+
+
+def azimuth(w):
+    """Azimuth in [0, 2π) [rad]."""
+    phi = dr.atan2(w.y, w.x)
+    return dr.select(phi < 0, phi + 2 * dr.pi, phi)

@@ -1,0 +1,49 @@
+"""Constant arrays that a plugin reads by index, in every variant of Mitsuba."""
+
+import numpy as np
+
+
+class Rows:
+    """Rows of numbers (n, columns), or plain numbers (n,), in the current variant's memory.
+
+    >>> Rows([[0.1, 0.2, 0.3]]).at(0, mi.Color3f)    # doctest: +SKIP
+    [[0.1, 0.2, 0.3]]
+    """
+
+    def __init__(self, values):
+        import mitsuba as mi
+
+        values = np.ascontiguousarray(values, np.float32)
+        self.scalar = mi.variant().startswith("scalar")
+        self.values = values if self.scalar else mi.Float(mi.TensorXf(values).array)
+
+    def at(self, index, kind=None, active=True):
+        """Row `index` as `kind` (a colour), by default `mi.Float`; 0 if not `active`."""
+        import drjit as dr
+        import mitsuba as mi
+
+        kind = kind or mi.Float
+        if not self.scalar:
+            return dr.gather(kind, self.values, index, active)
+        row = self.values[index] if active else np.zeros_like(self.values[0])
+        return kind(*np.atleast_1d(row).tolist())
+
+
+def bracket(x, n):
+    """(lower, upper, share of the upper) of the nodes 0 ... n - 1 around `x`, clamped."""
+    import drjit as dr
+    import mitsuba as mi
+
+    x = dr.clip(x, 0, n - 1)
+    lower = dr.minimum(mi.UInt32(x), max(n - 2, 0))
+    return lower, dr.minimum(lower + 1, n - 1), x - mi.Float(lower)
+
+
+def periodic_bracket(x, n):
+    """The same where node n is node 0."""
+    import drjit as dr
+    import mitsuba as mi
+
+    x = x - n * dr.floor(x / n)
+    lower = dr.minimum(mi.UInt32(x), n - 1)
+    return lower, dr.select(lower + 1 == n, 0, lower + 1), x - mi.Float(lower)

@@ -1,0 +1,44 @@
+"""The properties of a model's plugin: written for a scene, and checked when one is loaded."""
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+
+
+def scene_dict(model):
+    """The dictionary for `mitsuba.load_dict` of a model with values."""
+    entries = {"type": model.type_name(), **model.chosen()}
+    for name, value in model.free_values.items():
+        entries[name] = _rgb(value) if isinstance(value, tuple) else value
+    return entries
+
+
+def _rgb(value):
+    value = value * 3 if len(value) == 1 else value
+    return {"type": "rgb", "value": list(value)}
+
+
+def require_within_bounds(props, model, name):
+    """An error for a constant parameter out of bounds; textures are taken as they are."""
+    value = props.get(name, None)
+    if isinstance(value, float | int) or is_colour(value):
+        problem = model.parameters[name].problem_with(np.array(value, float))
+        if problem:
+            raise BrdfkitError(f"{model.type_name()}: {name} = {problem}.")
+
+
+def fit_for_a_spectrum(props, model, name):
+    """Bring a colour to 0..1, beyond which Mitsuba clips its spectrum without a word; the scale."""
+    value = props[name]
+    if min(value) < 0:
+        raise BrdfkitError(
+            f"{model.type_name()}: {name} is a colour with a value below 0, which no spectrum "
+            "holds; use an rgb or mono variant of Mitsuba."
+        )
+    scale = 2 * max(value) if max(value) > 1 else 1
+    props[name] = value / scale
+    return scale
+
+
+def is_colour(value):
+    return type(value).__name__.endswith("Color3d")
