@@ -235,7 +235,7 @@ def test_without_derivatives_the_fit_is_the_same(monkeypatch):
     ("arguments", "words"),
     [
         ({"name": "wrad"}, ["'wrad'", "ward_duer"]),
-        ({"loss": "l2"}, ["'l2'", "cosine, log, cbrt"]),
+        ({"loss": "l2"}, ["'l2'", "cosine, log, cbrt, plain"]),
         ({"bounds": {"alpha_w": (0, 1)}}, ["'alpha_w'", "alpha_u"]),
         ({"bounds": {"alpha_u": (0.5, 0.1)}}, ["alpha_u", "0.001..1"]),
         ({"bounds": {"alpha_u": (0.1, 7.0)}}, ["alpha_u", "0.001..1"]),

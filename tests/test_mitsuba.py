@@ -13,6 +13,7 @@ import pytest
 import brdfkit as bk
 from brdfkit.checks.sampling import uniform
 from brdfkit.checks.subject import random_pairs
+from brdfkit.clamped import tabulated
 from brdfkit.directions import from_angles
 from brdfkit.lobes import components_of
 
@@ -112,7 +113,7 @@ def z_of(values, expected=0.0):
 SAMPLES, STEP, TOLERANCE = 1024, 0.03, 0.02
 
 
-def test_gradient_of_a_picture(model, llvm_variant):
+def test_gradient_of_a_picture(model, llvm_variant, monkeypatch):
     """By every parameter, backwards through prb, what differences of pictures of the same seed say.
 
     The directions of prb are detached and those of a difference move, so that the two agree in the
@@ -120,6 +121,11 @@ def test_gradient_of_a_picture(model, llvm_variant):
     nearly cancels.
     """
     mi = llvm_variant
+    tables = {}  # a table drawn from moves with the weights, and the directions would with it
+    monkeypatch.setattr(
+        "brdfkit.bsdf.tabulated",
+        lambda model, lobes: tables.setdefault(tuple(lobes), tabulated(model, lobes)),
+    )
     integrator = {"type": "prb", "max_depth": 2}
     loaded = mi.load_dict(scene(ball(coloured(model).scene_dict()), integrator))
     found = mi.traverse(loaded)
@@ -220,6 +226,30 @@ def test_nested(model, llvm_variant):
     ):
         found = evaluated(mi, mi.load_dict({**outer, "bsdf": inner}), wi, wo)[0]
         np.testing.assert_allclose(found, value, rtol=1e-3, atol=1e-3 * value.max())
+
+
+@pytest.mark.quick
+def test_tilted_by_a_map(model, llvm_variant):
+    """A normal map and a bump map show the model in a turned frame."""
+    mi = llvm_variant
+    inner = coloured(model).scene_dict()
+    wi, wo = random_pairs(2000, seed=2, max_degrees=50)
+    normal = np.array([0.3, -0.2, 1.0]) / math.sqrt(1.13)
+    # A bump's height h(u, v) has the normal (-∂h/∂u, -∂h/∂v, 1)
+    pixels = (np.arange(64)[:, None] * 0.2 - np.arange(64) * 0.3) / 64
+    slope = mi.Bitmap(np.ascontiguousarray(pixels[..., None], np.float32))
+    maps = {
+        "normalmap": {"normalmap": uniform_map((normal + 1) / 2)},
+        "bumpmap": {"map": {"type": "bitmap", "bitmap": slope, "raw": True}},
+    }
+    s = np.array([1, 0, 0]) - normal * normal[0]
+    s /= np.linalg.norm(s)
+    frame = np.stack([s, np.cross(normal, s), normal], axis=1)
+    expected = evaluated(mi, mi.load_dict(inner), wi @ frame, wo @ frame)[0]
+    for outer, given in maps.items():
+        plain = {"type": outer, "use_shadowing_function": False, **given, "bsdf": inner}
+        found = evaluated(mi, mi.load_dict(plain), wi, wo)[0]
+        np.testing.assert_allclose(found, expected, rtol=2e-3, atol=1e-4 * expected.max())
 
 
 @pytest.mark.quick

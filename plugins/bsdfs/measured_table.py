@@ -13,6 +13,9 @@ part of a measurement is diffuse.
 
 import numpy as np
 
+# The table of half vectors; more would take seconds
+ANISOTROPIC = {"azimuths": 24, "angles": 16, "cells": (60, 32), "points": 1}
+
 
 def define(mi):
     """The class of `mi.BSDF` for the current variant."""
@@ -35,7 +38,7 @@ def define(mi):
             filled = self.table.filled
             values = np.maximum(filled.reshape(-1, filled.shape[-1]), 0)
             self.values = channels(values, wavelengths)
-            size = {"azimuths": 24, "angles": 16} if self.table.anisotropic else {}
+            size = ANISOTROPIC if self.table.anisotropic else {}
             self.sampling = Tabulated(self.table.eval, **size)
             self.albedo = channels(self.sampling.albedo, wavelengths)
 

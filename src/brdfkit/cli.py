@@ -52,13 +52,14 @@ def info(file, console):
 @main.command()
 @click.argument("file")
 @click.option("-m", "--model", "names", multiple=True, help="A model; repeat it. Default: all.")
-@click.option("--loss", default="log", show_default=True, help="cosine, log or cbrt.")
+@click.option("--loss", default="log", show_default=True, help="cosine, log, cbrt, plain.")
+@click.option("--robust", help="Weigh outliers down: bisquare, huber, cauchy ...")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results.")
 @click.option("--render", "rendered", is_flag=True, help="Path-trace the measurement and the fits.")
 @click.option("--max-angle", default=80.0, show_default=True, help="Use angles below [degrees].")
 @render_options
 @output_options
-def fit(file, names, loss, output, rendered, max_angle, spp, size, seed, console):
+def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed, console):
     """Fit models to a measured FILE, or to a material of brdfkit's."""
     from brdfkit import registry
     from brdfkit.comparing import compare
@@ -80,7 +81,13 @@ def fit(file, names, loss, output, rendered, max_angle, spp, size, seed, console
             for number, name in enumerate(names, 1):
                 with console.progress(f"fit {name} ({number} of {len(names)})") as progress:
                     found = fit_model(
-                        name, material, loss, max_angle=max_angle, seed=seed, progress=progress
+                        name,
+                        material,
+                        loss,
+                        robust=robust,
+                        max_angle=max_angle,
+                        seed=seed,
+                        progress=progress,
                     )
                 if output is not None:
                     save(found, fit_file(output, found))

@@ -11,6 +11,7 @@ from brdfkit.evaluating import clamped_share
 from brdfkit.fitting.loss import losses as losses
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.result import Fit as Fit
+from brdfkit.fitting.robust import WEIGHTS, robust_search
 from brdfkit.fitting.search import Outcome, Space, evaluate, slsqp, start_points
 from brdfkit.fitting.selection import selected
 
@@ -25,6 +26,7 @@ def fit(
     data,
     loss="log",
     *,
+    robust=None,
     starts=16,
     bounds=None,
     fixed=None,
@@ -38,8 +40,9 @@ def fit(
     SQP over the shape parameters from several starts; the weights are solved inside, per
     channel, not negative. Spectral data is fitted as linear sRGB.
 
-    `data`: a `Measured`; `loss`: a name in `losses`; `starts`: the default and points spread
-    over the bounds; `bounds`: other bounds by name, ``{"alpha_u": (0.01, 0.5)}``; `fixed`: shape
+    `data`: a `Measured`; `loss`: a name in `losses`; `robust`: a name in `fitting.robust.WEIGHTS`,
+    ``"bisquare"``, by which outliers lose their say; `starts`: the default and points spread over
+    the bounds; `bounds`: other bounds by name, ``{"alpha_u": (0.01, 0.5)}``; `fixed`: shape
     parameters held at a value, ``{"f0": 0.04}``; `anisotropic`: search ``alpha_v`` and its like
     too, which otherwise follow ``alpha_u``; `max_angle`: samples with an angle at or beyond it
     [degrees] are left out; `progress`: called with (done, total). Returns a `Fit`.
@@ -48,6 +51,8 @@ def fit(
     """
     began = time.perf_counter()
     model, loss = registry.model(name), _loss(loss)
+    if robust not in (None, *WEIGHTS):
+        raise BrdfkitError(f"There is no robust weight {robust!r}; there are {', '.join(WEIGHTS)}.")
     samples = selected(data, max_angle)
     determined = model.determined(samples)
     given = {n: v for n, v in determined.items() if n not in (bounds or {})} | (fixed or {})
@@ -69,8 +74,20 @@ def fit(
         best = slsqp(whole, space, best.u)
         evaluations += best.evaluations
 
-    shapes = {k: float(v) for k, v in (space.values(best.u) | space.fixed).items()}
-    weights = whole.solve(shapes)
+    u, notes, message = best.u, [], best.message
+    if robust:
+        found = robust_search(whole, space, u, robust, report)
+        u = found.solution[: len(u)]
+        light = (found.weights < 0.5).mean()
+        notes.append(
+            f"{robust}: {light:.1%} of the samples count less than half; the loss is of all"
+        )
+        settled = "settled" if found.converged else "did not settle"
+        message = f"{settled} in {found.passes} passes"
+    shapes = {k: float(v) for k, v in (space.values(u) | space.fixed).items()}
+    weights = (
+        found.solution[len(u) :].reshape(whole.channels, -1) if robust else whole.solve(shapes)
+    )
     fitted = model(**shapes, **dict(zip(model.weights(), map(tuple, weights.T), strict=True)))
     return Fit(
         model=fitted,
@@ -80,10 +97,11 @@ def fit(
         samples=len(samples.wi),
         evaluations=evaluations,
         seconds=time.perf_counter() - began,
-        message=best.message,
-        at_bounds=_at_bounds(space, best.u, model, weights),
-        notes=_notes(samples, loss, fitted),
+        message=message,
+        at_bounds=_at_bounds(space, u, model, weights),
+        notes=(*notes, *_notes(samples, loss, fitted)),
         settings={
+            "robust": robust,
             "max_angle": max_angle,
             "seed": seed,
             "starts": starts,

@@ -5,7 +5,7 @@
 R is measured, M the model, κ a factor of cosines and g a transform that weighs dark against
 bright. Samples with an angle beyond 80° are left out, where measurements are least reliable
 (Ngan et al. 2005). A negative measurement (noise, or a colour out of gamut) counts as it is in the
-cosine loss, and as 0 in the others, whose g knows no negative BRDF.
+cosine and the plain loss, and as 0 in the others, whose g knows no negative BRDF.
 """
 
 from collections.abc import Callable
@@ -83,6 +83,16 @@ losses = {
             ddg=lambda x: -2 / (9 * dr.cbrt(x + CBRT_OFFSET) ** 5),
             cosines=lambda cos_i, cos_o: cos_i,
             weights=lambda wi: np.ones(len(wi)),
+        ),
+        Loss(
+            name="plain",
+            meaning="RMS difference of f: what is bright counts",
+            g=lambda x: x,
+            dg=lambda x: 1,
+            ddg=lambda x: 0,
+            cosines=lambda cos_i, cos_o: np.ones(len(cos_i)),
+            weights=lambda wi: np.ones(len(wi)),
+            linear=True,
         ),
     )
 }

@@ -5,6 +5,8 @@ the shape parameters x. At the best weights the derivative of E² by x is the pa
 the weights held fixed (envelope theorem), which Dr.Jit gives exactly.
 """
 
+import copy
+
 import drjit as dr
 import numpy as np
 
@@ -31,8 +33,15 @@ class Problem:
         black = loss.g(Float64(0.0))
         squares = sum(_sum(Float64(importance) * dr.square(black - t)) for t in self.targets)
         self.scale = squares**0.5 or 1.0
-        self.importance = Float64(importance / self.scale**2)
-        dr.eval(self.targets, self.importance)
+        self.importance = importance / self.scale**2
+        self.importances = [Float64(self.importance)] * self.channels
+        dr.eval(self.targets, self.importances)
+
+    def reweighted(self, weights):
+        """The same problem with each sample counting `weights` (channels, n) times as much."""
+        other = copy.copy(self)
+        other.importances = [backend.float64()(self.importance * w) for w in weights]
+        return other
 
     def lobes(self, values):
         """(lobes, lobes of the squared weights), times κ: lists of (n,), at `values` of the shape
@@ -47,23 +56,37 @@ class Problem:
 
     def solve(self, values):
         """The best weights (channels, lobes) at numbers `values` of the shape parameters."""
+        plain, squared = self.columns(values)
+        return np.array([self._solve_channel(plain, squared, c) for c in range(self.channels)])
+
+    def columns(self, values):
+        """`lobes` at numbers, as NumPy (lobes, n); None if no weight has a square."""
         plain, squared = self.lobes({name: backend.scalar(v) for name, v in values.items()})
         dr.eval(plain, squared)
         plain = np.stack([np.asarray(lobe) for lobe in plain])
-        squared = (
-            None
-            if squared.count(None) == len(squared)
-            else np.stack(
-                [np.zeros(plain.shape[1]) if q is None else np.asarray(q) for q in squared]
-            )
-        )
-        return np.array([self._solve_channel(plain, squared, c) for c in range(self.channels)])
+        if all(lobe is None for lobe in squared):
+            return plain, None
+        none = np.zeros(plain.shape[1])
+        return plain, np.stack([none if q is None else np.asarray(q) for q in squared])
+
+    def residuals(self, values, weights):
+        """(residuals, their derivatives by the weights): lists by channel of (n,), (lobes, n).
+
+        Their squares add up to E² of a problem that is not reweighted.
+        """
+        plain, squared = self.columns(values)
+        root, residuals, derivatives = np.sqrt(self.importance), [], []
+        for a, target in zip(weights, self.targets, strict=True):
+            model, columns = self._mixture(plain, squared, a)
+            residuals.append(root * np.asarray(self.loss.g(model) - target))
+            derivatives.append(columns * (root * np.asarray(self.loss.dg(model) + 0 * model)))
+        return residuals, derivatives
 
     def _solve_channel(self, plain, squared, c):
         # Linearised about the data: exact where g is the identity, else the start of Newton's
         measured = self.measured[c]
         slope = self.loss.dg(backend.float64()(measured))
-        weight = np.asarray(self.importance * slope * slope)
+        weight = np.asarray(self.importances[c] * slope * slope)
         gram, moment = weighted_gram(plain, weight), plain @ (weight * measured)
         start = bounded_quadratic(gram, moment, self.bounded)
         linear = self.loss.linear and squared is None
@@ -90,18 +113,12 @@ class Problem:
 
     def _expand(self, plain, squared, c, weights):
         """E² of a channel with gradient and (positive definite) Hessian by the weights, halved."""
-        Float64 = backend.float64()
-        columns, mixture = plain, weights @ plain
-        if squared is not None:
-            columns = plain + 2 * weights[:, None] * squared
-            mixture = mixture + weights**2 @ squared
-        # A trial step of free weights may leave the domain of g
-        model = dr.maximum(Float64(mixture), 0) if not self.loss.linear else Float64(mixture)
+        model, columns = self._mixture(plain, squared, weights)
         residual = self.loss.g(model) - self.targets[c]
         slope, curvature = self.loss.dg(model), self.loss.ddg(model)
-        first = self.importance * residual * slope
-        second = self.importance * (slope * slope + residual * curvature)
-        squares = self.importance * residual * residual
+        first = self.importances[c] * residual * slope
+        second = self.importances[c] * (slope * slope + residual * curvature)
+        squares = self.importances[c] * residual * residual
         dr.eval(first, second, squares)
         first, second, error = np.asarray(first), np.asarray(second), _sum(squares)
         hessian = weighted_gram(columns, second)
@@ -110,6 +127,16 @@ class Problem:
         eigenvalues, vectors = np.linalg.eigh(hessian)
         eigenvalues = np.maximum(np.abs(eigenvalues), 1e-12 * np.abs(eigenvalues).max() + 1e-300)
         return error, columns @ first, (vectors * eigenvalues) @ vectors.T
+
+    def _mixture(self, plain, squared, weights):
+        """The model at the samples, and its derivatives (lobes, n) by the weights of a channel."""
+        columns, mixture = plain, weights @ plain
+        if squared is not None:
+            columns = plain + 2 * weights[:, None] * squared
+            mixture = mixture + weights**2 @ squared
+        model = backend.float64()(mixture)
+        # A trial step of free weights may leave the domain of g
+        return model if self.loss.linear else dr.maximum(model, 0), columns
 
     def error(self, values, weights):
         """E² at `values` of the shape parameters and `weights` (channels, lobes)."""
@@ -137,8 +164,9 @@ class Problem:
                 model = model + a * lobe + (0 if quadratic is None else a * a * quadratic)
             if not self.loss.linear:
                 model = dr.maximum(model, 0)
-            squares = squares + dr.square(self.loss.g(model) - self.targets[c])
-        return self.importance * squares
+            residual = self.loss.g(model) - self.targets[c]
+            squares = squares + self.importances[c] * dr.square(residual)
+        return squares
 
     def _differences(self, values, fixed, weights):
         """Differences within the bounds, where the backend has no derivatives."""

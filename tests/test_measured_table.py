@@ -1,0 +1,172 @@
+"""Measured materials in the renderer: looked up in every variant, sampled by their own table."""
+
+from functools import cache
+
+import drjit as dr
+import numpy as np
+import pytest
+
+import brdfkit as bk
+from brdfkit import catalogue
+from brdfkit.checks import checks
+from brdfkit.checks.sampling import spread
+from brdfkit.checks.subject import INCIDENCES, Subject, incidences, random_pairs
+from brdfkit.directions import from_angles
+from brdfkit.table import Table
+
+VARIANTS = ("llvm_ad_rgb", "llvm_ad_mono", "llvm_ad_spectral", "scalar_rgb", "scalar_spectral")
+NODES = (450.0, 550.0, 650.0)  # nm
+
+
+@pytest.fixture
+def variant():
+    """A function that sets a variant; afterwards the old one is back."""
+    import mitsuba as mi
+
+    before = mi.variant()
+    yield mi.set_variant
+    mi.set_variant(before or "llvm_ad_rgb")
+
+
+@cache
+def brushed(channels=("R", "G", "B"), shape=(24, 40, 24, 36)):
+    """An anisotropic material: Ward, tabulated."""
+    model = bk.models()["ward"](alpha_u=0.15, alpha_v=0.4, diffuse_reflectance=[0.3, 0.2, 0.1])
+    values = np.full((*shape, 3), np.nan)
+    wi, wo = Table(values).directions()
+    above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
+    values[above] = model.eval(wi[above], wo[above])
+    return bk.Measured.from_table(values, channels=channels, name="brushed"), model
+
+
+MATERIALS = {"dusty_gold": lambda: bk.load("dusty_gold"), "brushed": lambda: brushed()[0]}
+
+
+def seen(mi, bsdf, wi, wo, wavelengths=None):
+    """BRDF (channels,) of one pair of directions, as NumPy."""
+    si = dr.zeros(mi.SurfaceInteraction3f)
+    si.wi = mi.Vector3f(*map(float, wi))
+    if wavelengths is not None:
+        si.wavelengths = wavelengths
+    value = bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(*map(float, wo)))
+    return np.array(value).ravel() / wo[2]
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+@pytest.mark.parametrize("check", sorted(set(checks) - {"reciprocity"}))
+def test_passes_the_checks(name, check, llvm_variant):
+    report = bk.check(MATERIALS[name](), only=[check])
+    assert report, str(report)
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_looked_up_as_in_numpy(name, llvm_variant):
+    material = MATERIALS[name]()
+    wi, wo = random_pairs(5000, seed=1)
+    expected = material.eval(wi, wo)
+    found = Subject(material).plugin_eval(wi, wo) / wo[:, 2:]
+    np.testing.assert_allclose(found, expected, rtol=2e-3, atol=1e-4 * expected.max())
+
+
+def test_an_anisotropic_table_is_its_material():
+    """The finer, the closer: by the square of the cells' size, as what is linear between them."""
+    wi, wo = random_pairs(5000, seed=2, max_degrees=75)
+    off = []
+    for shape in ((12, 20, 12, 18), (24, 40, 24, 36)):
+        material, model = brushed(shape=shape)
+        found, expected = material.eval(wi, wo), model.eval(wi, wo)
+        off.append(np.percentile(np.abs(found / expected - 1), (50, 90)))
+    assert (off[1] < [2e-3, 0.025]).all(), off
+    assert (off[0] > 3 * off[1]).all(), off
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+@pytest.mark.parametrize("label", VARIANTS)
+def test_in_every_variant(name, label, variant):
+    """The colour in an rgb variant, its luminance in mono, a spectrum with that colour else."""
+    import mitsuba as mi
+
+    material = MATERIALS[name]()
+    wi, wo = from_angles(0.6, 0.3), from_angles(0.5, 3.3)
+    rgb = material.eval(wi[None], wo[None])[0]
+    variant(label)
+    bsdf = mi.load_dict(material.scene_dict())
+    if mi.is_spectral:
+        found = colour_of(lambda nm: seen(mi, bsdf, wi, wo, nm))
+        np.testing.assert_allclose(found, rgb, rtol=4e-3)
+    else:
+        expected = [rgb @ [0.2126, 0.7152, 0.0722]] if mi.is_monochromatic else rgb
+        np.testing.assert_allclose(seen(mi, bsdf, wi, wo), expected, rtol=2e-3)
+
+
+def colour_of(spectrum):
+    """Linear sRGB under D65 of a reflectance, `spectrum` of four wavelengths at a time."""
+    import colour
+
+    nm = np.arange(380.0, 780.0, 5.0)
+    values = np.concatenate([spectrum(list(map(float, four))) for four in nm.reshape(-1, 4)])
+    observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy()
+    light = colour.SDS_ILLUMINANTS["D65"].copy()
+    shape = colour.SpectralShape(380, 775, 5)
+    weights = observer.align(shape).values * light.align(shape).values[:, None]
+    rgb = weights @ colour.RGB_COLOURSPACES["sRGB"].matrix_XYZ_to_RGB.T
+    return values @ rgb / rgb.sum(axis=0)
+
+
+@pytest.mark.parametrize("label", ["llvm_ad_spectral", "scalar_spectral"])
+def test_measured_wavelengths_stay(label, variant):
+    """Between the wavelengths the BRDF is linear, beyond them constant."""
+    import mitsuba as mi
+
+    variant(label)
+    material, _ = brushed(tuple(f"{nm:.0f}nm" for nm in NODES))
+    bsdf = mi.load_dict(material.scene_dict())
+    wi, wo = from_angles(0.6, 0.3), from_angles(0.5, 3.3)
+    at = material.eval(wi[None], wo[None])[0]
+    np.testing.assert_allclose(seen(mi, bsdf, wi, wo, [*NODES, 500.0])[:3], at, rtol=1e-4)
+    between = seen(mi, bsdf, wi, wo, [500.0, 625.0, 380.0, 800.0])
+    expected = [at[:2].mean(), 0.25 * at[1] + 0.75 * at[2], at[0], at[2]]
+    np.testing.assert_allclose(between, expected, rtol=1e-4)
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_albedo_image(name, llvm_variant):
+    """The diffuse reflectance that an albedo image asks for is the albedo at the incidence."""
+    subject = Subject(material := MATERIALS[name]())
+    for degrees, wi in incidences()[:4]:
+        found = np.array(subject.bsdf.eval_diffuse_reflectance(subject.interaction(wi))).ravel()
+        np.testing.assert_allclose(found, bk.albedo(material, wi), rtol=0.02, err_msg=str(degrees))
+
+
+def cosine_spread(material, degrees):
+    """Standard deviation over mean of the weights by cosine sampling."""
+    wi = dict(incidences())[degrees]
+    rng = np.random.default_rng(3)
+    u, phi = rng.random(200_000), rng.random(200_000) * 2 * np.pi
+    wo = from_angles(np.arcsin(np.sqrt(u)), phi)
+    weights = material.eval(np.broadcast_to(wi, wo.shape), wo).mean(axis=1)
+    return weights.std() / weights.mean()
+
+
+@pytest.mark.parametrize("name", [*catalogue.materials(), "brushed"])
+def test_weights_of_samples_vary_little(name, llvm_variant):
+    """Standard deviation ≤ 0.5 of the mean at every incidence, and never worse than by cosine."""
+    material = MATERIALS.get(name, lambda: bk.load(name))()
+    subject = Subject(material)
+    for degrees in INCIDENCES:
+        found = spread(subject, degrees)
+        assert found <= 0.5
+        assert found <= max(cosine_spread(material, degrees), 0.25), degrees
+
+
+GLOSSY = ("minidiff_paints/C10_Copper.astm.xz", "minidiff_paints/C1_White.astm.xz")
+GLOSSY += ("minidiff_paints/C8_Silver.astm.xz", "cornell/cayman.brdf")
+
+
+@pytest.mark.parametrize("name", GLOSSY)
+def test_real_materials_are_sampled_well(name, measured_data, llvm_variant):
+    subject = Subject(bk.load(measured_data / name).rgb)
+    assert max(spread(subject, degrees) for degrees in INCIDENCES[:4]) <= 0.5
+    for check in ("chi squared", "coverage"):
+        passed, figure = checks[check](subject)
+        assert passed, (check, figure)

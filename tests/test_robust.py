@@ -1,0 +1,110 @@
+"""Robust least squares: MATLAB's figures, planted outliers, and the thesis's fits of CUReT."""
+
+import numpy as np
+import pytest
+
+import brdfkit as bk
+from brdfkit.checks.subject import random_pairs
+from brdfkit.fitting.loss import losses
+from brdfkit.fitting.problem import Problem
+from brdfkit.fitting.robust import WEIGHTS, robust_least_squares
+from brdfkit.fitting.selection import selected
+
+# y = 10 - 2x + e with the last one set to 0; MATLAB's robustfit (Kurt 2007, digest 6.5)
+NOISE = [0.5377, 1.8339, -2.2588, 0.8622, 0.3188, -1.3077, -0.4336, 0.3426, 3.5784, 2.7694]
+X = np.arange(1.0, 11.0)
+Y = np.append((10 - 2 * X + NOISE)[:-1], 0.0)
+DESIGN = np.stack([np.ones(10), X], axis=1)
+MATLAB = {
+    ("andrews", None): (8.4485, -1.5273),
+    ("bisquare", None): (8.4505, -1.5278),
+    ("bisquare", 3.0): (9.8618, -1.9040),
+    ("bisquare", 6.0): (8.0878, -1.4293),
+    ("cauchy", None): (8.5473, -1.5537),
+    ("fair", None): (8.4600, -1.5279),
+    ("huber", None): (8.4807, -1.5360),
+    ("logistic", None): (8.5304, -1.5489),
+    ("talwar", None): (7.8518, -1.3645),
+}
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(("name", "tune"), MATLAB)
+def test_coefficients_of_matlab(name, tune):
+    found = robust_least_squares(DESIGN, Y, name, tune)
+    np.testing.assert_allclose(found.solution, MATLAB[name, tune], atol=6e-5)
+    assert found.converged
+
+
+@pytest.mark.quick
+def test_passes_of_matlab():
+    found = robust_least_squares(DESIGN, Y)
+    assert found.passes == 14
+    assert found.weights[-1] == pytest.approx(0.534, abs=5e-4)
+    welsch = robust_least_squares(DESIGN, Y, "welsch")
+    assert (welsch.passes, welsch.converged) == (50, False)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", WEIGHTS)
+def test_no_weight_for_what_is_far(name):
+    weight, _ = WEIGHTS[name]
+    r = np.linspace(-4, 4, 801)
+    assert weight(np.zeros(1)) == pytest.approx(1)
+    np.testing.assert_allclose(weight(r), weight(-r))
+    assert (np.diff(weight(r[r >= 0])) <= 1e-15).all()
+
+
+@pytest.fixture(scope="module")
+def spoiled():
+    """A ggx material (grey), 1 % noise, every tenth sample five times too bright."""
+    truth = bk.models()["ggx"](
+        diffuse_reflectance=0.2, specular_reflectance=0.5, alpha_u=0.3, f0=0.1
+    )
+    wi, wo = random_pairs(3000, seed=5, max_degrees=79)
+    values = truth.eval(wi, wo) * np.random.default_rng(6).normal(1, 0.01, (3000, 1))
+    values[::10] *= 5
+    return truth, bk.Measured.from_samples(wi, wo, values, channels=("Y",))
+
+
+@pytest.mark.parametrize("loss", losses)
+def test_outliers_lose_their_say(spoiled, loss):
+    truth, data = spoiled
+    plain, robust = (bk.fit("ggx", data, loss, robust=r) for r in (None, "bisquare"))
+    assert robust.loss > plain.loss  # which is of all samples
+    assert robust.message.startswith("settled")
+    wi, wo = random_pairs(1000, seed=7, max_degrees=75)
+    off = [np.median(np.abs(f.eval(wi, wo) / truth.eval(wi, wo) - 1)) for f in (plain, robust)]
+    assert off[1] < 0.01 < off[0]
+
+
+def test_a_linear_fit_is_the_least_squares():
+    """Without a search, `fit` and `robust_least_squares` are the same thing."""
+    wi, wo = random_pairs(400, seed=8, max_degrees=79)
+    values = np.random.default_rng(9).standard_t(2, (400, 1)) + 3
+    data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
+    for name in ("bisquare", "huber"):
+        fit = bk.fit("koenderink", data, "plain", robust=name)
+        problem = Problem(type(fit.model), selected(data, 80.0), losses["plain"])
+        columns, _ = problem.columns({})
+        found = robust_least_squares(columns.T, values[:, 0], name)
+        weights = [fit.values[n] for n in fit.model.weights()]
+        np.testing.assert_allclose(np.ravel(weights), found.solution, rtol=1e-8)
+
+
+def test_the_thesis_polynomial(measured_data):
+    """Sample 12, rough paper, p = 7: the bisquare takes the highlight for outliers."""
+    data = bk.load(measured_data / "curet" / "abrdf.dat#12")
+    expected = {None: 0.011160, "bisquare": 0.0243}
+    for robust, error in expected.items():
+        fit = bk.fit("pca_polynomial:degree=7", data, "plain", robust=robust)
+        cosine = Problem(type(fit.model), selected(data, 80.0), losses["cosine"])
+        shapes = {n: fit.values[n] for n in fit.model.shapes()}
+        weights = np.array([fit.values[n] for n in fit.model.weights()]).T
+        assert cosine.scale * cosine.error(shapes, weights) ** 0.5 == pytest.approx(error, rel=3e-3)
+
+
+@pytest.mark.quick
+def test_an_unknown_weight_is_said():
+    with pytest.raises(bk.BrdfkitError, match=r"'tukey'; there are andrews, bisquare"):
+        bk.fit("ggx", bk.load("dusty_gold"), robust="tukey")
