@@ -170,3 +170,57 @@ def test_real_materials_are_sampled_well(name, measured_data, llvm_variant):
     for check in ("chi squared", "coverage"):
         passed, figure = checks[check](subject)
         assert passed, (check, figure)
+
+
+# Scattered samples
+
+
+@pytest.fixture(scope="module")
+def goniometer():
+    """The directions of a goniometer like the Mini-Diff: θ_i to 60°, θ_o to 75°."""
+    theta_i, theta_o, phi = np.meshgrid([0, 20, 40, 60], np.arange(0, 76), np.arange(0, 360, 10))
+    wi = from_angles(np.radians(theta_i.ravel()), np.pi)
+    return wi, from_angles(np.radians(theta_o.ravel()), np.radians(phi.ravel()))
+
+
+@pytest.mark.parametrize("name", ["dusty_gold", "red_plastic", "car_paint"])
+def test_between_and_beyond_samples(name, goniometer):
+    """A table measured anew at a goniometer's angles comes back: where it was not measured, too."""
+    truth = bk.load(name)
+    found = bk.Measured.from_samples(*goniometer, truth.eval(*goniometer))
+    wi, wo = random_pairs(5000, seed=4, max_degrees=75)
+    off = np.abs(np.log(found.eval(wi, wo) / truth.eval(wi, wo)))
+    assert np.median(off) < 0.03
+    for degrees, tolerance in ((0, 0.03), (45, 0.04), (85, 0.2)):
+        wi = from_angles(np.radians(degrees), 0.0)
+        np.testing.assert_allclose(
+            bk.albedo(found, wi).mean(), bk.albedo(truth, wi).mean(), rtol=tolerance
+        )
+
+
+@pytest.mark.quick
+def test_samples_come_back():
+    """In any number of channels, at any height; and the BRDF is positive and reciprocal."""
+    rng = np.random.default_rng(5)
+    wi, wo = random_pairs(200, seed=6, max_degrees=85)
+    values = np.exp(rng.normal(0, 2, (200, 5)))
+    found = bk.Measured.from_samples(wi, wo, values, channels=[f"{k}nm" for k in range(5)])
+    np.testing.assert_allclose(found.eval(wi, wo), values, rtol=1e-6)
+    np.testing.assert_allclose(found.eval(wo, wi), values, rtol=1e-6)
+    wi, wo = random_pairs(2000, seed=7)
+    assert (found.eval(wi, wo) > 0).all()
+    np.testing.assert_allclose(found.eval(wi, wo), found.eval(wo, wi), rtol=1e-9)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("anisotropic", [False, True])
+def test_few_black_or_equal_samples(anisotropic):
+    """What determines no highlight still is a material."""
+    wi, wo = random_pairs(100, seed=8, max_degrees=80)
+    for n, value in ((1, 0.2), (3, 0.2), (100, 0.2), (100, 0.0)):
+        values = np.full((n, 1), value)
+        found = bk.Measured.from_samples(
+            wi[:n], wo[:n], values, channels=("Y",), anisotropic=anisotropic
+        )
+        expected = np.full((100, 1), value)
+        np.testing.assert_allclose(found.eval(wi, wo), expected, rtol=1e-3, atol=1e-9)

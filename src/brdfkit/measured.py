@@ -145,14 +145,19 @@ class Measured:
 
     @cached_property
     def table(self):
-        """The table to look up in; that of samples is interpolated (`scattered.py`)."""
+        """The table to look up in; that of samples has what lies between them, `scattered.py`."""
         if self._table is not None:
             return self._table
-        from brdfkit.scattered import sampled, to_table
+        from brdfkit.scattered import sampled
 
-        if self._lookup is not None:
-            return sampled(self._lookup, len(self.channels), self.anisotropic)
-        return to_table(self.samples, self.anisotropic)
+        return sampled(self._between, len(self.channels), self.anisotropic)
+
+    @cached_property
+    def _between(self):
+        """The BRDF (wi, wo) → (n, channels) between the samples."""
+        from brdfkit.scattered import Scattered
+
+        return self._lookup or Scattered(self.samples, self.anisotropic)
 
     @property
     def values(self):
@@ -162,10 +167,12 @@ class Measured:
     def eval(self, wi, wo):
         """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3), interpolated, never negative."""
         wi, wo = np.asarray(wi, float), np.asarray(wo, float)
-        if self._lookup is None:
-            return np.maximum(self.table.eval(wi, wo), 0)
-        above = (wi[:, 2:] > 0) & (wo[:, 2:] > 0)
-        return np.where(above, np.maximum(self._lookup(wi, wo), 0), 0.0)
+        if self._table is not None:
+            return np.maximum(self._table.eval(wi, wo), 0)
+        above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
+        values = np.zeros((len(wi), len(self.channels)))
+        values[above] = np.maximum(self._between(wi[above], wo[above]), 0)
+        return values
 
     @cached_property
     def rgb(self):

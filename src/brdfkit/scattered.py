@@ -1,12 +1,14 @@
-"""From scattered measurements to a table: a reciprocal BRDF between its samples.
+"""Between scattered samples, and beyond them: a reciprocal BRDF that passes through them all.
 
-Shepard's inverse-distance mean of the nearest samples, of the logarithm of the BRDF, so that
-the result is positive and passes through the samples. The space of an isotropic material is the
-half vector's angle and the folded difference vector: reciprocity and the mirror symmetry put the
-four equivalent pairs on one point. That of an anisotropic one is the half vector and the
-difference vector; each sample stands there twice, with its directions exchanged. Beyond the
-samples the nearest ones continue unchanged. A channel that is not positive counts as a thousandth
-of the median.
+What is interpolated is the ratio of the samples to a guide, the `ggx` model that fits them best, by
+Shepard's inverse-distance mean of its logarithm over the nearest samples. So the result is
+positive, passes through the samples, has the guide's highlight where they are sparse, and beyond
+them continues as the guide does, Fresnel's rise at grazing angles and all.
+
+The space of an isotropic material is the half vector's angle and the folded difference vector:
+reciprocity and the mirror symmetry put the four equivalent pairs on one point. That of an
+anisotropic one is the half vector and the difference vector; each sample stands there twice, with
+its directions exchanged. A channel that is not positive counts as a thousandth of the median.
 
 D. Shepard, "A two-dimensional interpolation function for irregularly-spaced data", ACM 1968.
 """
@@ -19,53 +21,87 @@ from brdfkit.table import Table
 SHAPE = (90, 45, 90)
 ANISOTROPIC_SHAPE = (36, 45, 23, 36)
 NEIGHBOURS = 12
+# Fewer samples determine no guide
+GUIDE, FEWEST = "ggx", 30
+# However white the diffuse term, a surface reflects this much more at the horizon
+LEAST_LEFT = 0.05
 # A highlight is narrow along theta_h and changes slowly with theta_d: one radian of theta_h
 # counts as much as this many units of the difference vector.
 THETA_H_SCALE = 8.0
 
 
-def to_table(samples, anisotropic=False):
-    """The `Table` of valid `samples`."""
-    from scipy.spatial import cKDTree
+class Scattered:
+    """The BRDF (wi, wo) → (n, channels) through the valid `samples`."""
 
-    known = samples.valid & (samples.values > 0).any(axis=1)
-    if not known.any():  # a black material
-        known = samples.valid
-    wi, wo, values = samples.wi[known], samples.wo[known], samples.values[known]
-    floor = 1e-3 * np.median(values[values > 0]) if (values > 0).any() else 1e-12
-    logarithms = np.log(np.maximum(values, floor))
-    coordinates = _isotropic
-    if anisotropic:
-        coordinates = _anisotropic
-        wi, wo = np.concatenate([wi, wo]), np.concatenate([wo, wi])
-        logarithms = np.concatenate([logarithms, logarithms])
-    tree = cKDTree(coordinates(wi, wo))
-    neighbours = min(NEIGHBOURS, len(logarithms))
+    def __init__(self, samples, anisotropic=False):
+        from scipy.spatial import cKDTree
 
-    def interpolated(wi, wo):
-        distance, index = tree.query(coordinates(wi, wo), k=np.arange(1, neighbours + 1))
+        samples = samples.at(samples.valid)
+        positive = samples.values[samples.values > 0]
+        self.floor = 1e-3 * np.median(positive) if positive.size else 1e-12
+        self.guide = _guide(samples, anisotropic)
+        self.coordinates = _anisotropic if anisotropic else _isotropic
+        wi, wo = samples.wi, samples.wo
+        ratios = self._logarithm(samples.values) - self._logarithm(self.guide(wi, wo))
+        if anisotropic:
+            wi, wo = np.concatenate([wi, wo]), np.concatenate([wo, wi])
+            ratios = np.concatenate([ratios, ratios])
+        self.tree, self.ratios = cKDTree(self.coordinates(wi, wo)), ratios
+
+    def __call__(self, wi, wo):
+        neighbours = np.arange(1, min(NEIGHBOURS, len(self.ratios)) + 1)
+        distance, index = self.tree.query(self.coordinates(wi, wo), k=neighbours)
         weight = 1 / np.maximum(distance, 1e-6) ** 3
         weight /= weight.sum(axis=1, keepdims=True)
-        return np.exp(np.einsum("nk,nkc->nc", weight, logarithms[index]))
+        ratio = np.einsum("nk,nkc->nc", weight, self.ratios[index])
+        return np.exp(ratio + self._logarithm(self.guide(wi, wo)))
 
-    return sampled(interpolated, values.shape[1], anisotropic)
+    def _logarithm(self, values):
+        return np.log(np.maximum(values, self.floor))
 
 
-def sampled(lookup, channels, anisotropic=False):
-    """The `Table` of `lookup(wi, wo)` at its cells' centres, NaN below the surface."""
+def sampled(brdf, channels, anisotropic=False):
+    """The `Table` of `brdf(wi, wo)` → (n, channels), NaN below the surface."""
     shape = ANISOTROPIC_SHAPE if anisotropic else SHAPE
     table = Table(np.full((*shape, channels), np.nan))
     wi, wo = table.directions()
     above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
-    table.values[above] = lookup(wi[above], wo[above])
+    table.values[above] = brdf(wi[above], wo[above])
     return table
 
 
+def _guide(samples, anisotropic):
+    """The BRDF (wi, wo) → (n, channels) of the model that fits `samples` best, or of none."""
+    from brdfkit.fitting import fit
+    from brdfkit.fitting.loss import losses
+    from brdfkit.fitting.problem import Problem
+    from brdfkit.measured import Measured
+
+    if len(samples.wi) < FEWEST or samples.values.max() <= 0:
+        return _no_guide
+    grey = samples.values.mean(axis=1, keepdims=True)
+    grey = Measured.from_samples(samples.wi, samples.wo, grey, channels=("Y",))
+    options = {"starts": 1, "anisotropic": anisotropic, "max_angle": 90}
+    found = fit(GUIDE, grey, "log", **options).model
+    specular, left = found.specular_reflectance[0], 1 - found.diffuse_reflectance[0]
+    if specular > max(left, LEAST_LEFT):
+        # Fresnel's rise was not measured: no more than all light is reflected at the horizon
+        f0 = found.f0 * specular / max(left, LEAST_LEFT)
+        found = fit(GUIDE, grey, "log", **options, fixed={"f0": min(f0, 1.0)}).model
+    shapes = {name: getattr(found, name) for name in found.shapes(anisotropic=True)}
+    weights = Problem(type(found), samples, losses["log"]).solve(shapes)
+    return type(found)(**shapes, **dict(zip(found.weights(), weights.T, strict=True))).eval
+
+
+def _no_guide(wi, wo):
+    return np.ones((len(wi), 1))
+
+
 def _isotropic(wi, wo):
-    theta_h, theta_d, phi_d = to_half_difference(wi, wo)
-    in_plane = np.abs(np.sin(theta_d) * np.cos(phi_d))
-    across = np.abs(np.sin(theta_d) * np.sin(phi_d))
-    return np.stack([THETA_H_SCALE * theta_h, in_plane, across], axis=-1)
+    theta_h, theta_d, _ = to_half_difference(wi, wo)
+    # 2 sinθ_h sinθ_d |cos φ_d|: at the mirror direction phi_d means nothing
+    apart = np.abs(wi[:, 2] - wo[:, 2])
+    return np.stack([THETA_H_SCALE * theta_h, np.sin(theta_d), apart], axis=-1)
 
 
 def _anisotropic(wi, wo):

@@ -13,7 +13,7 @@ from brdfkit.evaluating import lobe_values, weight_matrix
 def plugin_is_formula(subject):
     """The Mitsuba BSDF (float32) = the formula in double precision, times the cosine."""
     wi, wo = random_pairs(20_000, seed=5, max_degrees=85)
-    formula = subject.thing.eval(wi, wo) * wo[:, 2:]
+    formula = subject.formula.eval(wi, wo) * wo[:, 2:]
     difference = np.abs(subject.plugin_eval(wi, wo) - formula)
     worst = float(np.max(difference / np.maximum(formula, 1e-3 * formula.max() + 1e-12)))
     return worst < 5e-3, f"relative difference at most {worst:.1e}"

@@ -36,7 +36,7 @@ def finite(subject):
 @checked
 def energy(subject):
     """No more light is reflected than came: albedo ≤ 1 at every incidence to 85°."""
-    figures = {degrees: albedo(subject.thing, wi).max() for degrees, wi in incidences()}
+    figures = {degrees: albedo(subject.formula, wi).max() for degrees, wi in incidences()}
     degrees = max(figures, key=lambda d: figures[d])
     value = figures[degrees]
     return bool(value <= 1 + TOLERANCE), f"albedo at most {value:.4f}, at {degrees}°"

@@ -78,7 +78,7 @@ def coverage(subject):
     worst, where = 0.0, ""
     for degrees, wi in incidences():
         weights = _own_weights(subject, wi)
-        mean, expected = float(weights.mean()), float(albedo(subject.thing, wi).mean())
+        mean, expected = float(weights.mean()), float(albedo(subject.formula, wi).mean())
         error = np.hypot(weights.std() / np.sqrt(len(weights)), TOLERANCE * expected)
         deviation = abs(mean - expected) / max(error, 1e-12)
         if deviation >= worst:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.directions import from_angles
+from brdfkit.measured import Measured
 from brdfkit.model import Model
 
 # Incidence of every statistical check [degrees], up to grazing, at an azimuth off the axes
@@ -42,6 +43,18 @@ class Subject:
         """The `Model` with its values, None for a measured material."""
         model = getattr(self.thing, "model", self.thing)
         return model if isinstance(model, Model) else None
+
+    @cached_property
+    def formula(self):
+        """What the BSDF should compute: anything with `.eval(wi, wo)`.
+
+        That of samples is a table of what `eval` finds between them.
+        """
+        if isinstance(self.thing, Measured) and not self.thing.is_table:
+            table = self.thing.rgb.table
+            channels = self.thing.rgb.channels
+            return Measured.from_table(table.values, table.phi_d_period, channels)
+        return self.thing
 
     @cached_property
     def bsdf(self):

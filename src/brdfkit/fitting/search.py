@@ -54,10 +54,10 @@ class Outcome:
 
 def start_points(space, default, count, seed):
     """The default and `count - 1` points spread over the bounds, (count, parameters)."""
-    from scipy.stats import qmc
-
     if count == 1:
         return default[None, :]
+    from scipy.stats import qmc
+
     spread = qmc.Halton(len(default), rng=seed).random(count - 1)
     return np.vstack([default, spread])
 
