@@ -35,18 +35,35 @@ def models(name, console):
 
 @main.command()
 @click.argument("file", required=False)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="Picture to write: a slice, the lobes and the albedo; .png, .pdf or .svg.",
+)
 @output_options
-def info(file, console):
-    """Show what is in a measured FILE. Without it, list the materials that brdfkit brings."""
-    from brdfkit import catalogue
-    from brdfkit.targets import measured
+def info(file, output, console):
+    """Show what is in a measured FILE, how well it was measured and what is doubtful.
 
+    Without FILE, list the materials that brdfkit brings.
+    """
+    from brdfkit import catalogue
+    from brdfkit.targets import figure_file, measured, write_figure
+
+    if file is None and output:
+        raise BrdfkitError("A picture shows a measurement: name a FILE.")
     if file is None:
         console.materials(catalogue.materials())
-    else:
-        with console.progress(f"read {file}"):
-            material = measured(file)
-        console.measured(material)
+        return
+    output = output and figure_file(output)
+    with console.progress(f"read {file}"):
+        material = measured(file)
+    with console.progress("audit"):
+        audit = material.audit()
+    if output:
+        with console.progress("draw"):
+            write_figure(audit.picture(), output)
+    console.audit(audit, [output] if output else [])
 
 
 @main.command()

@@ -120,17 +120,22 @@ class Console:
         self.out.print("Use a name where a file is asked for: brdfkit fit NAME")
         return None
 
-    def measured(self, data):
-        """What is in a measured material."""
-        record = records.measured(data)
+    def audit(self, found, written):
+        """What is in a measured material, and what is doubtful."""
         if self.as_json:
-            return self.json(record)
+            return self.json(records.audit(found, written))
         table = self.table("", "")
         table.show_header = False
-        for key, value in records.described(record).items():
+        for key, value in found.rows().items():
+            table.add_row(key, value)
+        table.add_section()
+        for key, value in found.data.info.items():
             table.add_row(key.replace("_", " "), str(value))
-        self.out.print(data.name, style="bold")
+        self.out.print(found.name, style="bold")
         self.out.print(table)
+        for finding in found.findings():
+            self.out.print(f"! {finding}")
+        self.written(written)
         return None
 
     def fits(self, material, fits, comparison, psnr, written):

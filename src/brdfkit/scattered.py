@@ -36,7 +36,7 @@ def to_table(samples, anisotropic=False):
     logarithms = np.log(np.maximum(values, floor))
     coordinates = _isotropic
     if anisotropic:
-        coordinates = _anisotropic
+        coordinates = anisotropic_coordinates
         wi, wo = np.concatenate([wi, wo]), np.concatenate([wo, wi])
         logarithms = np.concatenate([logarithms, logarithms])
     tree = cKDTree(coordinates(wi, wo))
@@ -68,7 +68,7 @@ def _isotropic(wi, wo):
     return np.stack([THETA_H_SCALE * theta_h, in_plane, across], axis=-1)
 
 
-def _anisotropic(wi, wo):
+def anisotropic_coordinates(wi, wo):
     theta_h, theta_d, phi_d = to_half_difference(wi, wo)
     phi_h = half_azimuth(wi, wo)
     radius = THETA_H_SCALE * theta_h
