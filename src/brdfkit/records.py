@@ -64,6 +64,19 @@ def audit(found, written):
     }
 
 
+def collection(found):
+    """A public collection, with where its files lie or are to be had."""
+    here = found.here()
+    files = {
+        name: {"file": listed.file, "bytes": listed.bytes or None, "url": listed.url or None}
+        for name, listed in found.files.items()
+    }
+    for name, file in here.items():
+        files.setdefault(name, {"file": file.name})["path"] = file
+    texts = {f.name: getattr(found, f.name) for f in fields(found) if f.name != "files"}
+    return {**texts, "folder": found.folder, "files": files}
+
+
 def fit(found, comparison, psnr):
     """A fit, with its errors under every loss and the PSNR of its picture, if there is one."""
     return {

@@ -31,7 +31,7 @@ def material(name, settings=()):
     try:
         return load(name)
     except BrdfkitError as error:
-        if Path(name).suffix or Path(name).exists():
+        if "/" in name or Path(name).suffix or Path(name).exists():
             raise
         models, materials = (", ".join(x) for x in (registry.models(), catalogue.materials()))
         raise BrdfkitError(

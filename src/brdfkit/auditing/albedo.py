@@ -30,8 +30,9 @@ class Albedo:
 def albedo(data, measured_to):
     """The `Albedo` of a `Measured`, ∫ f cos θo dωo, measured to θi = `measured_to` [degrees].
 
-    The integral runs over the half vector, dωo = 4 (wi·h) dωh, where a highlight is wide whatever
-    the incidence; it is divided by that of f = 1/π, so that white Lambertian has 1 exactly.
+    The integral runs over the half vector, dωo = 4 (wi·h) dωh, on the axes of a table: few points
+    are enough there, where `brdfkit.albedo`, for anything, refines for seconds. It is divided by
+    that of f = 1/π, so that a Lambertian surface has its reflectance exactly.
     """
     azimuths = np.arange(AZIMUTHS) / AZIMUTHS * np.pi if data.anisotropic else (0.0,)
     values = [
