@@ -27,7 +27,7 @@ class Audit:
     `theta_i`, `theta_o`: angles that were measured [degrees], or the least and the largest;
     `smallest` (above 0), `median`, `largest`: of the valid values [sr⁻¹]; `grazing`: the median
     beyond 80° over that between 60° and 70°; `retroreflection`: that near the light over that
-    near the mirror direction. NaN is what the measurement cannot tell.
+    elsewhere. NaN is what the measurement cannot tell.
     """
 
     name: str

@@ -8,6 +8,7 @@ from brdfkit.auditing.pairs import mirrored, relative
 
 TO_SIGMA = 1.4826  # standard deviation over median absolute deviation, of normal noise
 LEAST = 20  # differences, for an estimate
+EQUAL = 1e-6
 
 
 @dataclass(frozen=True)
@@ -29,14 +30,15 @@ def noise(data):
     if data.is_table:
         differences = _along_phi_d(data.table.values)
         return Noise(_each(differences, _sigma), "fourth differences along phi_d")
+    unknown = (np.nan,) * len(data.channels)
     rows = mirrored(data)
     if len(rows) < LEAST:
-        unknown = (np.nan,) * len(data.channels)
         return Noise(unknown, "not testable: nothing was measured twice or mirrored")
     differences = [relative(*values[rows, c].T) / np.sqrt(2) for c in range(values.shape[1])]
-    return Noise(
-        tuple(_sigma(d) for d in differences), "left against right of the plane of incidence"
-    )
+    sigmas = tuple(map(_sigma, differences))
+    if not max(sigmas) > EQUAL:
+        return Noise(unknown, "not testable: left and right are equal, made so by somebody")
+    return Noise(sigmas, "left against right of the plane of incidence")
 
 
 def _along_phi_d(f):

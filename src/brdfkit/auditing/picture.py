@@ -8,7 +8,7 @@ from brdfkit.auditing.coverage import is_near
 from brdfkit.colours import luminance
 from brdfkit.plotting import Plot, draw, usual_angles
 
-SIZE = 12.6, 6.3  # inches
+SIZE = 12.6, 6.8  # inches
 COLOURS = {"R": "#d55e00", "G": "#009e73", "B": "#0072b2", "Y": "black"}
 TICKS = np.array([0, 1, 5, 10, 20, 40, 60, 90])  # degrees of theta_h
 MOST = 4  # times the looked-up albedo, for an albedo of samples
@@ -20,7 +20,7 @@ def picture(audit):
     data = audit.data.rgb
     figure = Plot(figsize=SIZE, layout="constrained")
     figure.get_layout_engine().set(w_pad=0.1, h_pad=0.1)
-    above, below = figure.subfigures(2, 1, height_ratios=(1, 1))
+    above, below = figure.subfigures(2, 1, height_ratios=(1, 1.06))
     _title(figure, audit)
     slice_axes, albedo_axes = above.subplots(1, 2, width_ratios=(1.25, 1))
     _slice(above, slice_axes, data)

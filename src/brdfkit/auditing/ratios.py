@@ -2,9 +2,10 @@
 
 import numpy as np
 
-LEAST = 20  # samples on either side
+LEAST = 10  # samples on either side
 GRAZING, STEEP = 80, (60, 70)  # degrees
-NEAR, OBLIQUE = 5, 15  # degrees
+# degrees: from the light; away from it, from the mirror direction and from the horizon; incidence
+NEAR, FAR, OFF_MIRROR, TO_HORIZON, OBLIQUE = 5, 20, 30, 15, 29.5
 
 
 def grazing(data):
@@ -15,21 +16,28 @@ def grazing(data):
     """
     samples = data.samples
     cosine = np.minimum(samples.wi[:, 2], samples.wo[:, 2])
-    beyond, below, above = (np.cos(np.radians(angle)) for angle in (GRAZING, *STEEP))
+    beyond, below, above = map(_cos, (GRAZING, *STEEP))
     return _ratio(samples, cosine < beyond, (cosine < below) & (cosine > above))
 
 
 def retroreflection(data):
-    """The BRDF within 5° of the light over that within 5° of the mirror direction.
+    """The BRDF within 5° of the light over that away from it, from the mirror direction and from
+    the horizon, at incidences of 30° and more.
 
-    At incidences of 15° and more; NaN where not both are measured.
+    About 1 for what is diffuse, at most 2 for the roughest plaster, 30 for a reflective tape. NaN
+    where not both are measured.
     """
     samples = data.samples
-    oblique = samples.wi[:, 2] < np.cos(np.radians(OBLIQUE))
-    near = np.cos(np.radians(NEAR))
     to_light = np.einsum("nk,nk->n", samples.wi, samples.wo)
     to_mirror = 2 * samples.wi[:, 2] * samples.wo[:, 2] - to_light
-    return _ratio(samples, oblique & (to_light > near), oblique & (to_mirror > near))
+    away = (to_light < _cos(FAR)) & (to_mirror < _cos(OFF_MIRROR))
+    away &= samples.wo[:, 2] > _cos(90 - TO_HORIZON)
+    oblique = samples.wi[:, 2] < _cos(OBLIQUE)
+    return _ratio(samples, oblique & (to_light > _cos(NEAR)), oblique & away)
+
+
+def _cos(degrees):
+    return np.cos(np.radians(degrees))
 
 
 def _ratio(samples, these, those):

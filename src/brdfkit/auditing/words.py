@@ -6,7 +6,7 @@ RESULTS = 3  # spikes that are named
 SHARE = 0.01  # of negative or zero values, above which they are a finding
 NOT_RECIPROCAL, PAIRS = 0.1, 20
 BRIGHT = 1.001  # albedo; the quadrature is good to 10⁻³
-DARK_HORIZON, RETROREFLECTIVE = 0.5, 2
+DARK_HORIZON, RETROREFLECTIVE = 0.5, 5
 
 
 def rows(audit):
@@ -55,12 +55,12 @@ def findings(audit):
     if audit.grazing < DARK_HORIZON:
         found.append(
             f"falls towards the horizon: beyond 80° the median is {audit.grazing:.2g} of that at "
-            "60° to 70°, which no surface does; keep max_angle"
+            "60° to 70°, as few surfaces do; fit with a small max_angle"
         )
     if audit.retroreflection > RETROREFLECTIVE:
         found.append(
-            f"retroreflective: the median within 5° of the light is {audit.retroreflection:.2g} "
-            "times that in the mirror direction; none of the lobes of a mirror-like model can fit"
+            f"retroreflective: within 5° of the light the median is {audit.retroreflection:.2g} "
+            "times that elsewhere; no lobe about the mirror direction can fit it"
         )
     return tuple(found)
 
