@@ -196,9 +196,10 @@ class Measured:
         return replace(self, **changed)
 
     def audit(self):
-        """What the measurement reaches, how noisy it is and what is doubtful: prints well.
+        """How far the measurement reaches, how noisy it is and what is doubtful.
 
-        Returns an `brdfkit.auditing.Audit`, whose `picture()` is a matplotlib `Figure`.
+        Returns a `brdfkit.auditing.Audit`: it prints as text, and its `picture()` is a matplotlib
+        `Figure`.
 
         >>> print(load("copper.astm").audit())    # doctest: +SKIP
         """

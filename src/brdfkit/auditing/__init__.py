@@ -21,13 +21,12 @@ FEW = 10  # angles that are told each
 class Audit:
     """What is in a measurement; printed it says so in words. Made by `Measured.audit`.
 
-    `shape`: of a table, else None; `size`: cells or samples, of which `above` the horizon,
-    `valid`, and `used` by a fit as it
-    comes (angles below 80°); `negative`, `zero`: values of the valid ones, each channel counted;
-    `theta_i`, `theta_o`: angles that were measured [degrees], or the least and the largest;
-    `smallest` (above 0), `median`, `largest`: of the valid values [sr⁻¹]; `grazing`: the median
-    beyond 80° over that between 60° and 70°; `retroreflection`: that near the light over that
-    elsewhere. NaN is what the measurement cannot tell.
+    `shape`: of a table, else None; `size`: number of cells or samples, of which some are `above`
+    the horizon, `valid`, and `used` by a fit as it comes (both angles below 80°); `negative`,
+    `zero`: so many values of the valid ones, each channel counted; `theta_i`, `theta_o`: the
+    angles that were measured [degrees], or their ends; `smallest` (above 0), `median`, `largest`:
+    of the valid values [sr⁻¹]; `grazing`, `retroreflection`: see `ratios.py`. NaN is what the
+    measurement cannot tell.
     """
 
     name: str
@@ -57,7 +56,7 @@ class Audit:
 
     @property
     def kind(self):
-        """ "90×90×180 table" or "samples"."""
+        """In words: a 90×90×180 table, or samples."""
         return "×".join(map(str, self.shape)) + " table" if self.shape else "samples"
 
     def rows(self):

@@ -42,9 +42,9 @@ def albedo(data, measured_to):
     return Albedo(data.channels, DEGREES, np.array(values), measured_to)
 
 
-def _albedo(thing, wi):
+def _albedo(data, wi):
     wo, weight = _quadrature(wi)
-    values = thing.eval(np.broadcast_to(wi, wo.shape), wo)
+    values = data.eval(np.broadcast_to(wi, wo.shape), wo)
     return weight @ values * np.pi / weight.sum()
 
 

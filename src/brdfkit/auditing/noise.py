@@ -8,7 +8,7 @@ from brdfkit.auditing.pairs import mirrored, relative
 
 TO_SIGMA = 1.4826  # standard deviation over median absolute deviation, of normal noise
 LEAST = 20  # differences, for an estimate
-EQUAL = 1e-6
+EQUAL = 1e-6  # below it two measurements are one, written twice
 
 
 @dataclass(frozen=True)
@@ -32,11 +32,11 @@ def noise(data):
         return Noise(_each(differences, _sigma), "fourth differences along phi_d")
     unknown = (np.nan,) * len(data.channels)
     rows = mirrored(data)
-    if len(rows) < LEAST:
-        return Noise(unknown, "not testable: nothing was measured twice or mirrored")
     differences = [relative(*values[rows, c].T) / np.sqrt(2) for c in range(values.shape[1])]
     sigmas = tuple(map(_sigma, differences))
-    if not max(sigmas) > EQUAL:
+    if np.isnan(sigmas).all():
+        return Noise(unknown, "not testable: nothing was measured twice or mirrored")
+    if np.nanmax(sigmas) < EQUAL:
         return Noise(unknown, "not testable: left and right are equal, made so by somebody")
     return Noise(sigmas, "left against right of the plane of incidence")
 

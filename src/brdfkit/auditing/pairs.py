@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-SAME = np.radians(0.5)  # as near as two directions of a goniometer are taken for one
+SAME = np.radians(0.5)  # directions this near are taken for one
 
 
 @dataclass(frozen=True)

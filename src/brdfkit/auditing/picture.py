@@ -9,7 +9,7 @@ from brdfkit.colours import luminance
 from brdfkit.plotting import Plot, draw, usual_angles
 
 SIZE = 12.6, 6.8  # inches
-COLOURS = {"R": "#d55e00", "G": "#009e73", "B": "#0072b2", "Y": "black"}
+COLOURS = {"R": "#d55e00", "G": "#009e73", "B": "#0072b2"}  # and black for what has one channel
 TICKS = np.array([0, 1, 5, 10, 20, 40, 60, 90])  # degrees of theta_h
 MOST = 4  # times the looked-up albedo, for an albedo of samples
 FAINT = 0.35  # opacity of what was not measured
@@ -95,7 +95,7 @@ def _albedo(axes, audit):
     measured = albedo.theta_i <= albedo.measured_to + 1
     last = int(np.flatnonzero(measured)[-1])
     for channel, values in zip(albedo.channels, albedo.values.T, strict=True):
-        style = {"color": COLOURS[channel], "linewidth": 1.8}
+        style = {"color": COLOURS.get(channel, "black"), "linewidth": 1.8}
         axes.plot(albedo.theta_i[measured], values[measured], label=channel, **style)
         axes.plot(albedo.theta_i[last:], values[last:], linestyle=":", **style)
     top = 1.12 * albedo.values.max() or 1.0
@@ -118,7 +118,7 @@ def _albedo(axes, audit):
 def _circles(axes, samples, top):
     """The albedo of the samples; what is above the axes is a triangle at their edge."""
     for channel, values in zip(samples.channels, samples.values.T, strict=True):
-        style = {"linestyle": "", "color": COLOURS[channel]}
+        style = {"linestyle": "", "color": COLOURS.get(channel, "black")}
         inside = values <= top
         axes.plot(samples.theta_i[inside], values[inside], marker="o", mfc="none", **style)
         beyond = samples.theta_i[~inside]

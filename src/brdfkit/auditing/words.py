@@ -23,7 +23,7 @@ def rows(audit):
         "channels": _channels(audit.channels),
         "valid": f"{audit.valid:,} of {audit.above:,} {unit}, {missing:,} not measured{beneath}",
         "negative": f"{audit.negative:,} of {values:,} values; exactly 0: {audit.zero:,}",
-        "BRDF": f"{audit.smallest:.4g} to {audit.largest:.4g} sr⁻¹, median {audit.median:.4g}",
+        "BRDF": _range(audit),
         "angles": f"θi {_angles(audit.theta_i)}; θo {_angles(audit.theta_o)}",
         "coverage": f"{_percent(reach.measured)} {how}, {_percent(reach.between)} between, "
         f"{_percent(reach.beyond)} beyond (of all direction pairs, by solid angle)",
@@ -71,6 +71,12 @@ def _channels(names):
     return " ".join(names)
 
 
+def _range(audit):
+    if math.isnan(audit.smallest):
+        return "nowhere above 0"
+    return f"{audit.smallest:.4g} to {audit.largest:.4g} sr⁻¹, median {audit.median:.4g}"
+
+
 def _angles(angles):
     if len(angles) > 2:
         return ", ".join(f"{a:g}" for a in angles) + "°"
@@ -104,11 +110,8 @@ def _noise(noise):
     told = [n for n in noise.relative if not math.isnan(n)]
     if not told:
         return noise.method
-    low, high = min(told), max(told)
-    ends = (
-        _percent(low) if _percent(low) == _percent(high) else f"{_percent(low)} to {_percent(high)}"
-    )
-    return f"{ends} of a value, by {noise.method}"
+    ends = dict.fromkeys(map(_percent, (min(told), max(told))))
+    return f"{' to '.join(ends)} of a value, by {noise.method}"
 
 
 def _albedos(audit):

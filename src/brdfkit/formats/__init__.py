@@ -43,7 +43,7 @@ def load(path):
     gold-metallic-paint: 90×90×180 table, 1,048,000 of 1,458,000 valid, channels R G B
     """
     path, sample = _split(path)
-    if not path.is_file():
+    if not os.path.isfile(path):  # False, too, for what no path can be
         path = _known(path.as_posix()) or path
     source = Source(path, sample, contents(path))
     chosen = _recognised(source)
