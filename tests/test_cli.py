@@ -18,7 +18,7 @@ import brdfkit as bk
 from brdfkit import catalogue, registry
 from brdfkit.cli import main
 
-COMMANDS = ("models", "info", "fit", "render", "check")
+COMMANDS = ("models", "info", "data", "fit", "render", "check")
 SMALL = ("--size", "16", "--spp", "2")
 SHAPE = (6, 4, 8)
 CELLS = 3 * np.prod(SHAPE)
@@ -109,9 +109,20 @@ def test_info(cli):
     record = json.loads(cli("info", "paint.binary", "--json").stdout)
     data = bk.load("paint.binary")
     assert record["shape"] == list(SHAPE)
-    assert record["samples"] == np.prod(SHAPE)
+    assert record["size"] == np.prod(SHAPE)
     assert record["valid"] == data.samples.valid.sum()
-    assert record["brdf"]["max"] == data.values[data.samples.valid].max()
+    assert record["largest"] == data.values[data.samples.valid].max()
+    assert record["info"] == data.info
+
+
+@pytest.mark.quick
+def test_info_with_a_picture(cli):
+    result = cli("info", "paint.binary", "-o", "paint.png")
+    assert_fine(result)
+    assert result.stdout.endswith("written: paint.png\n")
+    assert Path("paint.png").read_bytes().startswith(b"\x89PNG")
+    assert_fine(cli("info", "paint.binary", "-o", "paint.svg", "-q"))
+    assert "<svg" in Path("paint.svg").read_text()
 
 
 def test_fit(cli):
@@ -258,6 +269,9 @@ TRAPS = [
     (["render", "unknown.xml"], ["nope"]),
     (["render", "bounds.xml"], ["ward: alpha_u = 7", "between 0.001 and 1"]),
     (["info", "fit.json"], ["fit.json"]),
+    (["info", "-o", "a.png"], ["name a FILE"]),
+    (["info", "paint.binary", "-o", "a.exr"], ["a.exr", ".png, .pdf, .svg"]),
+    (["info", "paint.binary", "-o", "no/a.png"], ["no/a.png", "create it"]),
     (["info", "missing.binary"], ["missing.binary", "no such file"]),
     (["info", "."], ["folder"]),
     (["render", "missing.xml"], ["missing.xml"]),

@@ -1,7 +1,8 @@
 """The known materials: where they come from, under which licence, and their files.
 
-`data/measured/index.toml` lists them. The wheel copies that folder into the package; in a
-checkout it lies at the top.
+`data/measured/index.toml` lists those that come with brdfkit, and public collections
+(`public_collections.py`). The wheel copies that folder into the package; in a checkout it lies at
+the top.
 """
 
 import hashlib
@@ -14,7 +15,7 @@ from brdfkit.errors import BrdfkitError
 
 @dataclass(frozen=True)
 class Material:
-    """An entry of the index.
+    """A material that comes with brdfkit.
 
     `name`: what `brdfkit.load` takes; `title`, `what`: for people; `source`: what it was made
     from, and by which command; `file`: in the index's folder; `sha256`: of that file.
@@ -33,18 +34,17 @@ class Material:
 
 
 def materials():
-    """The known materials by name.
+    """The materials that come with brdfkit, by name.
 
     >>> print(materials()["dusty_gold"].title)
     Dusty gold
     """
-    with (folder() / "index.toml").open("rb") as stream:
-        index = tomllib.load(stream)
-    return {name: Material(name, **entry) for name, entry in index.items()}
+    entries = index().items()
+    return {name: Material(name, **entry) for name, entry in entries if name != "collections"}
 
 
 def path(name):
-    """The file of a known material, once its checksum is right.
+    """The file of a material that comes with brdfkit, once its checksum is right.
 
     Raises `BrdfkitError` for an unknown name, and for a file that is missing or was changed.
 
@@ -57,7 +57,7 @@ def path(name):
     file = folder() / material.file
     if not file.is_file():
         raise BrdfkitError(f"{file}: the file of {name!r} is missing; install brdfkit again.")
-    if hashlib.sha256(file.read_bytes()).hexdigest() != material.sha256:
+    if sha256(file) != material.sha256:
         raise BrdfkitError(
             f"{file}: is not the {name!r} that brdfkit came with (its checksum differs); "
             "install brdfkit again."
@@ -70,3 +70,15 @@ def folder():
     installed = Path(__file__).with_name("data") / "measured"
     checkout = Path(__file__).resolve().parents[2] / "data" / "measured"
     return installed if installed.is_dir() else checkout
+
+
+def index():
+    """The index as it is written, TOML's tables as dictionaries."""
+    with (folder() / "index.toml").open("rb") as stream:
+        return tomllib.load(stream)
+
+
+def sha256(file):
+    """The SHA-256 of a file, in hexadecimal."""
+    with file.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()

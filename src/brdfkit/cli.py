@@ -15,6 +15,7 @@ def main():
     """Fit BRDF models to measured materials, and path-trace both.
 
     \b
+    brdfkit info copper.astm -o copper.png
     brdfkit fit copper.astm -m ward -m ggx --render -o copper
     brdfkit render car_paint -o paint.png
     """
@@ -35,18 +36,87 @@ def models(name, console):
 
 @main.command()
 @click.argument("file", required=False)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="Picture to write: a slice, the lobes and the albedo; .png, .pdf or .svg.",
+)
 @output_options
-def info(file, console):
-    """Show what is in a measured FILE. Without it, list the materials that brdfkit brings."""
-    from brdfkit import catalogue
-    from brdfkit.targets import measured
+def info(file, output, console):
+    """Audit a measured FILE: what it holds and what is doubtful.
 
+    How much of the hemisphere was measured, noise, reciprocity, albedo, spikes and more. Without
+    FILE, list the materials that brdfkit brings; `brdfkit data` lists public ones.
+    """
+    from brdfkit import catalogue
+    from brdfkit.targets import figure_file, measured, write_figure
+
+    if file is None and output:
+        raise BrdfkitError("A picture shows a measurement: name a FILE.")
     if file is None:
         console.materials(catalogue.materials())
-    else:
-        with console.progress(f"read {file}"):
-            material = measured(file)
-        console.measured(material)
+        return
+    output = output and figure_file(output)
+    with console.progress(f"read {file}"):
+        material = measured(file)
+    with console.progress("audit"):
+        audit = material.audit()
+    if output:
+        with console.progress("draw"):
+            write_figure(audit.picture(), output)
+    console.audit(audit, [output] if output else [])
+
+
+@main.group(invoke_without_command=True)
+@output_options
+@click.pass_context
+def data(context, console):
+    """List public measurements, and download them.
+
+    \b
+    brdfkit data                                the collections
+    brdfkit data list merl                      the materials of one
+    brdfkit data get merl/gold-metallic-paint   download a material
+    brdfkit fit merl/gold-metallic-paint        use it by its name
+
+    Files are kept in your cache folder. Nothing else downloads anything.
+    """
+    from brdfkit.catalogue import materials
+    from brdfkit.public_collections import cache, collections
+
+    if context.invoked_subcommand is None:
+        console.collections(collections(), materials(), cache())
+
+
+@data.command("list")
+@click.argument("collection")
+@output_options
+def data_list(collection, console):
+    """List the materials of a COLLECTION, and how to get each."""
+    from brdfkit import public_collections
+
+    console.collection(public_collections.collection(collection))
+
+
+@data.command("get")
+@click.argument("names", nargs=-1, required=True, metavar="NAME...")
+@output_options
+def data_get(names, console):
+    """Download materials, and check their checksums.
+
+    A NAME is as in merl/gold-metallic-paint. An interrupted download goes on where it stopped,
+    except that of a file out of an archive (merl).
+    """
+    from brdfkit.downloading import get
+    from brdfkit.public_collections import collection
+
+    collections = {c.name: c for c in map(collection, names)}
+    files = {}
+    for name in names:
+        with console.progress(f"download {name}") as progress:
+            files[name] = get(name, progress)
+    console.downloaded(files, collections.values())
 
 
 @main.command()

@@ -120,17 +120,64 @@ class Console:
         self.out.print("Use a name where a file is asked for: brdfkit fit NAME")
         return None
 
-    def measured(self, data):
-        """What is in a measured material."""
-        record = records.measured(data)
+    def collections(self, collections, materials, folder):
+        """The public collections, behind the `materials` that come with brdfkit."""
         if self.as_json:
-            return self.json(record)
+            return self.json({name: records.collection(c) for name, c in collections.items()})
+        table = self.table("collection", "what it is", ">here", ">to download", "licence")
+        licence = next(iter(materials.values())).licence
+        table.add_row("brdfkit's own", ", ".join(materials), str(len(materials)), "", licence)
+        for name, c in collections.items():
+            download = sum(bool(listed.url) for listed in c.files.values())
+            table.add_row(name, c.title, str(len(c.here())), str(download or "by hand"), c.licence)
+        self.out.print(table)
+        self.out.print("The materials of a collection: brdfkit data list NAME")
+        self.out.print(f"Downloaded files lie in {folder}")
+        return None
+
+    def collection(self, collection):
+        """The materials of a collection."""
+        if self.as_json:
+            return self.json(records.collection(collection))
+        files, here = collection.files, collection.here()
+        table = self.table("material", ">size [MB]", "")
+        for name in sorted({*files, *here}):
+            size = files[name].bytes if name in files else here[name].stat().st_size
+            state = "here" if name in here else "to download" if files[name].url else "by hand"
+            table.add_row(name, f"{size / 1e6:.1f}" if size else "", state)
+        if table.rows:
+            self.out.print(table)
+        self.out.print(str(collection))
+        if not any(listed.url for listed in files.values()):
+            self.out.print(f"To use one, {collection.by_hand()}.")
+        return None
+
+    def downloaded(self, files, collections):
+        """Where the files are, and the terms of those who published them."""
+        if self.as_json:
+            return self.json({"files": files, "terms": {c.name: c.terms for c in collections}})
+        for name, file in files.items():
+            self.out.print(f"{name}: {file}")
+        for collection in collections:
+            self.out.print(str(collection))
+        return None
+
+    def audit(self, found, written):
+        """What is in a measured material, and what is doubtful."""
+        if self.as_json:
+            return self.json(records.audit(found, written))
         table = self.table("", "")
         table.show_header = False
-        for key, value in records.described(record).items():
+        for key, value in found.rows().items():
+            table.add_row(key, value)
+        table.add_section()
+        for key, value in found.data.info.items():
             table.add_row(key.replace("_", " "), str(value))
-        self.out.print(data.name, style="bold")
+        self.out.print(found.name, style="bold")
         self.out.print(table)
+        for finding in found.findings():
+            self.out.print(f"! {finding}")
+        self.written(written)
         return None
 
     def fits(self, material, fits, comparison, psnr, written):

@@ -132,6 +132,11 @@ class Measured:
         """True when the measurement came as a table, False when as scattered samples."""
         return self._table is not None
 
+    @property
+    def has_lookup(self):
+        """True where the format itself defines the values between the samples."""
+        return self._lookup is not None
+
     @cached_property
     def samples(self):
         """The direction pairs and values; those of a table are its cell centres."""
@@ -196,6 +201,18 @@ class Measured:
         if self._lookup is not None:
             changed["_lookup"] = _Mixed(self._lookup, weights)
         return replace(self, **changed)
+
+    def audit(self):
+        """How far the measurement reaches, how noisy it is and what is doubtful.
+
+        Returns a `brdfkit.auditing.Audit`: it prints as text, and its `picture()` is a matplotlib
+        `Figure`.
+
+        >>> print(load("copper.astm").audit())    # doctest: +SKIP
+        """
+        from brdfkit.auditing import audit
+
+        return audit(self)
 
     def scene_dict(self):
         """The dictionary for `mitsuba.load_dict`, in the current variant: the table, looked up."""

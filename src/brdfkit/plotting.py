@@ -43,7 +43,7 @@ def plot(things, theta_i=None):
     >>> plot([paint, *fits]).savefig("paint.png")    # doctest: +SKIP
     """
     things = _things(things)
-    angles = _usual_angles(things) if theta_i is None else np.atleast_1d(theta_i).astype(float)
+    angles = usual_angles(things) if theta_i is None else np.atleast_1d(theta_i).astype(float)
     if angles.ndim != 1 or not angles.size or not np.all((angles >= 0) & (angles < 90)):
         raise BrdfkitError(f"plot: theta_i = {theta_i} should be angles from 0 to below 90°.")
     return _figure(things, angles)
@@ -89,7 +89,8 @@ def _things(things):
     return [thing.rgb if isinstance(thing, Measured) else thing for thing in things]
 
 
-def _usual_angles(things):
+def usual_angles(things):
+    """15°, 45° and 75° or, where there are scattered samples, the nearest angles of theirs."""
     usual = np.array([15.0, 45.0, 75.0])
     scattered = next((thing for thing in things if _scattered(thing)), None)
     if scattered is None:
@@ -131,17 +132,31 @@ def _was_measured(table, wi, wo):
 
 
 def _figure(things, angles):
-    rows = math.ceil(len(angles) / MOST_COLUMNS)
-    columns = math.ceil(len(angles) / rows)
+    rows, columns = _grid(angles)
     figure = Plot(figsize=(max(4.2 * columns, 6), 2.75 * rows + 0.35), layout="constrained")
     figure.get_layout_engine().set(h_pad=0.08)
+    draw(figure, things, angles)
+    return figure
+
+
+def _grid(angles):
+    """Rows and columns of the panels."""
+    rows = math.ceil(len(angles) / MOST_COLUMNS)
+    return rows, math.ceil(len(angles) / rows)
+
+
+def draw(figure, things, angles):
+    """Draw the panels and their legend into a matplotlib `Figure` or `SubFigure`.
+
+    `things` are achromatic or RGB, `angles` those of incidence [degrees].
+    """
+    rows, columns = _grid(angles)
     styles = _styles(things)
     for place, theta_i in enumerate(angles, 1):
         _panel(figure.add_subplot(rows, columns, place), theta_i, things, styles)
     handles, labels = figure.axes[0].get_legend_handles_labels()
     ncols = min(len(labels), columns + 2)
     figure.legend(handles, labels, loc="outside lower center", ncols=ncols, frameon=False)
-    return figure
 
 
 def _styles(things):

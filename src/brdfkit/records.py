@@ -1,12 +1,15 @@
 """Results as plain data, for `--json` and for the tables."""
 
 import math
+from dataclasses import fields, is_dataclass
 
 import numpy as np
 
 
 def plain(value):
     """`value` as JSON knows it: NumPy's numbers as Python's, null for what is not finite."""
+    if is_dataclass(value):
+        value = {f.name: getattr(value, f.name) for f in fields(value)}
     if isinstance(value, dict):
         return {str(key): plain(v) for key, v in value.items()}
     if isinstance(value, list | tuple):
@@ -51,38 +54,27 @@ def example(model, option):
     return f"{model.type_name()}:{option}={other}"
 
 
-def measured(data):
+def audit(found, written):
     """What is in a measured material."""
-    samples = data.samples
-    values = samples.values[samples.valid]
-    cosines = np.minimum(samples.wi[samples.valid, 2], samples.wo[samples.valid, 2])
     return {
-        "name": data.name,
-        "shape": data.table.shape if data.is_table else None,
-        "channels": data.channels,
-        "samples": len(samples.valid),
-        "valid": samples.valid.sum(),
-        "negative": (values < 0).any(axis=1).sum(),
-        "brdf": {"min": values.min(), "max": values.max(), "median": np.median(values)},
-        "max_angle": np.degrees(np.arccos(cosines.min())),
-        "info": data.info,
+        **{f.name: getattr(found, f.name) for f in fields(found) if f.name != "data"},
+        "findings": found.findings(),
+        "info": found.data.info,
+        "written": written,
     }
 
 
-def described(record):
-    """A measured material's record in words."""
-    channels, brdf = record["channels"], record["brdf"]
-    if len(channels) > 5:
-        channels = [f"{len(channels)} wavelengths, {channels[0]} to {channels[-1]}"]
-    return {
-        "kind": "×".join(map(str, record["shape"])) + " table" if record["shape"] else "samples",
-        "channels": " ".join(channels),
-        "valid": f"{record['valid']:,} of {record['samples']:,}",
-        "negative": f"{record['negative'] / record['valid']:.2%} of the valid",
-        "BRDF": f"{brdf['min']:.4g} to {brdf['max']:.4g}, median {brdf['median']:.4g} sr⁻¹",
-        "angles": f"to {record['max_angle']:.1f}°",
-        **record["info"],
+def collection(found):
+    """A public collection, with where its files lie or are to be had."""
+    here = found.here()
+    files = {
+        name: {"file": listed.file, "bytes": listed.bytes or None, "url": listed.url or None}
+        for name, listed in found.files.items()
     }
+    for name, file in here.items():
+        files.setdefault(name, {"file": file.name})["path"] = file
+    texts = {f.name: getattr(found, f.name) for f in fields(found) if f.name != "files"}
+    return {**texts, "folder": found.folder, "files": files}
 
 
 def fit(found, comparison, psnr):

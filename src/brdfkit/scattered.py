@@ -5,10 +5,10 @@ Shepard's inverse-distance mean of its logarithm over the nearest samples. So th
 positive, passes through the samples, has the guide's highlight where they are sparse, and beyond
 them continues as the guide does, Fresnel's rise at grazing angles and all.
 
-The space of an isotropic material is the half vector's angle and the folded difference vector:
-reciprocity and the mirror symmetry put the four equivalent pairs on one point. That of an
-anisotropic one is the half vector and the difference vector; each sample stands there twice, with
-its directions exchanged. A channel that is not positive counts as a thousandth of the median.
+The space of an isotropic material is θ_h, sin θ_d and |cos θ_i - cos θ_o|: reciprocity and the
+mirror symmetry put the four equivalent pairs on one point. That of an anisotropic one is the half
+vector and the difference vector; each sample stands there twice, with its directions exchanged. A
+channel that is not positive counts as a thousandth of the median.
 
 D. Shepard, "A two-dimensional interpolation function for irregularly-spaced data", ACM 1968.
 """
@@ -40,7 +40,7 @@ class Scattered:
         positive = samples.values[samples.values > 0]
         self.floor = 1e-3 * np.median(positive) if positive.size else 1e-12
         self.guide = _guide(samples, anisotropic)
-        self.coordinates = _anisotropic if anisotropic else _isotropic
+        self.coordinates = anisotropic_coordinates if anisotropic else isotropic_coordinates
         wi, wo = samples.wi, samples.wo
         ratios = self._logarithm(samples.values) - self._logarithm(self.guide(wi, wo))
         if anisotropic:
@@ -97,14 +97,16 @@ def _no_guide(wi, wo):
     return np.ones((len(wi), 1))
 
 
-def _isotropic(wi, wo):
+def isotropic_coordinates(wi, wo):
+    """Points (n, 3): the closer, the more alike is an isotropic BRDF."""
     theta_h, theta_d, _ = to_half_difference(wi, wo)
-    # 2 sinθ_h sinθ_d |cos φ_d|: at the mirror direction phi_d means nothing
+    # That is 2 sinθ_h sinθ_d |cos φ_d|: at the mirror direction phi_d means nothing
     apart = np.abs(wi[:, 2] - wo[:, 2])
     return np.stack([THETA_H_SCALE * theta_h, np.sin(theta_d), apart], axis=-1)
 
 
-def _anisotropic(wi, wo):
+def anisotropic_coordinates(wi, wo):
+    """Points (n, 4): the closer, the more alike is any BRDF."""
     theta_h, theta_d, phi_d = to_half_difference(wi, wo)
     phi_h = half_azimuth(wi, wo)
     radius = THETA_H_SCALE * theta_h

@@ -6,10 +6,12 @@ from pathlib import Path
 
 from brdfkit import catalogue, registry
 from brdfkit.errors import BrdfkitError
-from brdfkit.files import folder, require_writable
+from brdfkit.files import folder, require_writable, written
 from brdfkit.formats import load
 from brdfkit.measured import Measured
 from brdfkit.pictures import picture_suffix
+
+FIGURES = ".png", ".pdf", ".svg"
 
 
 def measured(name):
@@ -29,7 +31,7 @@ def material(name, settings=()):
     try:
         return load(name)
     except BrdfkitError as error:
-        if Path(name).suffix or Path(name).exists():
+        if "/" in name or Path(name).suffix or Path(name).exists():
             raise
         models, materials = (", ".join(x) for x in (registry.models(), catalogue.materials()))
         raise BrdfkitError(
@@ -84,6 +86,21 @@ def picture_file(name):
     require_writable(path)
     require_writable(path.with_suffix(".png"))
     return path
+
+
+def figure_file(name):
+    """The path of a matplotlib figure, once it is sure that it can be written."""
+    path = Path(name)
+    if path.suffix.lower() not in FIGURES:
+        raise BrdfkitError(f"{path}: this picture is written as {', '.join(FIGURES)}; name one.")
+    require_writable(path)
+    return path
+
+
+def write_figure(figure, path):
+    """Write a matplotlib `Figure` to `path`, whole or not at all."""
+    with written(path) as beside:
+        figure.savefig(beside, dpi=130)
 
 
 def fit_file(output, fit):

@@ -12,11 +12,16 @@ def selected(data, max_angle):
     """
     data = data.rgb
     samples = data.samples
-    cos_min = math.cos(math.radians(max_angle)) * (1 + 1e-12)
-    rows = samples.valid & (samples.wi[:, 2] > cos_min) & (samples.wo[:, 2] > cos_min)
+    rows = within(samples, max_angle)
     if not rows.any():
         raise BrdfkitError(
             f"{data.name}: no valid sample has both angles below {max_angle:g}°; "
             "give a larger max_angle."
         )
     return samples.at(rows)
+
+
+def within(samples, max_angle):
+    """Which of the `Samples` are valid, with both angles below `max_angle` [degrees]."""
+    cos_min = math.cos(math.radians(max_angle)) * (1 + 1e-12)
+    return samples.valid & (samples.wi[:, 2] > cos_min) & (samples.wo[:, 2] > cos_min)

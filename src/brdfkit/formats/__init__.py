@@ -21,7 +21,7 @@ from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
-from brdfkit import catalogue
+from brdfkit import catalogue, public_collections
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import COMPRESSED, GZIP, contents, written
 from brdfkit.formats._source import Source, format_suffix
@@ -34,16 +34,17 @@ def load(path):
 
     The content decides the format; the suffix decides between formats that all, or none,
     recognise it. ``.gz`` and ``.xz`` are unpacked. ``abrdf.dat#1`` names a sample of a file
-    that holds many. Where there is no such file, the name of a known material
-    (`brdfkit.catalogue`) stands for its file. Raises `BrdfkitError` with one sentence for every
-    file that cannot be read.
+    that holds many. Where there is no such file, the name of a known material stands for its
+    file: of one that comes with brdfkit, ``car_paint``, or of one in a public collection, as
+    ``merl/alum-bronze``, once `brdfkit data get` has downloaded it. Raises `BrdfkitError` with
+    one sentence for every file that cannot be read.
 
     >>> print(load("gold-metallic-paint.binary.xz"))  # doctest: +SKIP
     gold-metallic-paint: 90×90×180 table, 1,048,000 of 1,458,000 valid, channels R G B
     """
-    if str(path) in catalogue.materials() and not os.path.isfile(path):
-        path = catalogue.path(str(path))
     path, sample = _split(path)
+    if not os.path.isfile(path):  # False, too, for what no path can be
+        path = _known(path.as_posix()) or path
     source = Source(path, sample, contents(path))
     chosen = _recognised(source)
     if sample is not None and not getattr(chosen, "MANY", False):
@@ -69,6 +70,15 @@ def save(obj, path):
             chosen[0].write(obj, stream)
         except BrdfkitError as error:
             raise BrdfkitError(f"{path}: {error}") from error
+
+
+def _known(name):
+    """The file of a known material, None where the name is none."""
+    if name in catalogue.materials():
+        return catalogue.path(name)
+    if name.partition("/")[0] in catalogue.index()["collections"] and "/" in name:
+        return public_collections.path(name)
+    return None
 
 
 @cache

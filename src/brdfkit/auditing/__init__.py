@@ -1,0 +1,133 @@
+"""What a measurement holds, how far it reaches and where it is doubtful: `Measured.audit`."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from brdfkit.auditing.albedo import Albedo, albedo, albedo_of_samples
+from brdfkit.auditing.coverage import Coverage, coverage
+from brdfkit.auditing.noise import Noise, noise
+from brdfkit.auditing.pairs import Difference, by_mirror, by_reciprocity
+from brdfkit.auditing.ratios import grazing, retroreflection
+from brdfkit.auditing.spikes import Spike, spikes
+from brdfkit.fitting.selection import within
+
+MAX_ANGLE = 80.0  # degrees: what a fit uses by default
+FEW = 10  # angles that are told each
+
+
+@dataclass(frozen=True)
+class Audit:
+    """What is in a measurement; printed it says so in words. Made by `Measured.audit`.
+
+    `shape`: of a table, else None; `size`: number of cells or samples, of which some are `above`
+    the horizon, `valid`, and `used` by a fit as it comes (both angles below 80°); `negative`,
+    `zero`: so many values of the valid ones, each channel counted; `theta_i`, `theta_o`: the
+    angles that were measured [degrees], or their ends; `smallest` (above 0), `median`, `largest`:
+    of the valid values [sr⁻¹]; `grazing`, `retroreflection`: see `ratios.py`. NaN is what the
+    measurement cannot tell.
+    """
+
+    name: str
+    shape: tuple[int, ...] | None
+    channels: tuple[str, ...]
+    size: int
+    above: int
+    valid: int
+    used: int
+    negative: int
+    zero: int
+    theta_i: tuple[float, ...]
+    theta_o: tuple[float, ...]
+    smallest: float
+    median: float
+    largest: float
+    coverage: Coverage
+    reciprocity: Difference
+    mirror: Difference
+    noise: Noise
+    albedo: Albedo
+    albedo_of_samples: Albedo | None
+    grazing: float
+    retroreflection: float
+    spikes: tuple[Spike, ...]
+    data: Any = field(repr=False, compare=False)
+
+    @property
+    def kind(self):
+        """In words: a 90×90×180 table, or samples."""
+        return "×".join(map(str, self.shape)) + " table" if self.shape else "samples"
+
+    def rows(self):
+        """The audit in words, by heading."""
+        from brdfkit.auditing.words import rows
+
+        return rows(self)
+
+    def findings(self):
+        """Sentences on what is doubtful."""
+        from brdfkit.auditing.words import findings
+
+        return findings(self)
+
+    def picture(self):
+        """A slice of the BRDF, its lobes and its albedo, as a matplotlib `Figure`.
+
+        >>> load("paint.astm").audit().picture().savefig("paint.png")    # doctest: +SKIP
+        """
+        from brdfkit.auditing.picture import picture
+
+        return picture(self)
+
+    def __str__(self):
+        rows = self.rows()
+        width = max(map(len, rows))
+        lines = [f"  {heading:<{width}}  {text}" for heading, text in rows.items()]
+        lines += [f"  ! {finding}" for finding in self.findings()]
+        return "\n".join([self.name, *lines])
+
+
+def audit(data):
+    """The `Audit` of a `Measured`."""
+    samples = data.samples
+    above = (samples.wi[:, 2] > 0) & (samples.wo[:, 2] > 0)
+    values = samples.values[samples.valid]
+    positive = values[values > 0]
+    theta_i, theta_o = _angles(data, samples.wi), _angles(data, samples.wo)
+    return Audit(
+        name=data.name,
+        shape=data.table.shape if data.is_table else None,
+        channels=data.channels,
+        size=len(above),
+        above=int(above.sum()),
+        valid=len(values),
+        used=int(within(samples, MAX_ANGLE).sum()),
+        negative=int((values < 0).sum()),
+        zero=int((values == 0).sum()),
+        theta_i=theta_i,
+        theta_o=theta_o,
+        smallest=float(positive.min()) if positive.size else np.nan,
+        median=float(np.median(values)),
+        largest=float(values.max()),
+        coverage=coverage(data),
+        reciprocity=by_reciprocity(data),
+        mirror=by_mirror(data),
+        noise=noise(data),
+        albedo=albedo(data.rgb, theta_i[-1]),
+        albedo_of_samples=albedo_of_samples(data.rgb),
+        grazing=grazing(data),
+        retroreflection=retroreflection(data),
+        spikes=spikes(data),
+        data=data,
+    )
+
+
+def _angles(data, w):
+    """The angles to the normal [degrees] of the valid directions `w`; their ends for a table, and
+    where they are many."""
+    cosines = w[data.samples.valid, 2]
+    if data.is_table:
+        cosines = np.array([cosines.max(), cosines.min()])
+    angles = np.unique(np.degrees(np.arccos(np.clip(cosines, -1, 1))).round(1))
+    return tuple(float(a) for a in (angles if len(angles) <= FEW else angles[[0, -1]]))

@@ -1,0 +1,125 @@
+"""An `Audit` as a picture: a slice of the table, the lobes, the albedo."""
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from brdfkit.auditing.coverage import is_near
+from brdfkit.colours import luminance
+from brdfkit.plotting import Plot, draw, usual_angles
+
+SIZE = 12.6, 6.8  # inches
+COLOURS = {"R": "#d55e00", "G": "#009e73", "B": "#0072b2"}  # and black for what has one channel
+TICKS = np.array([0, 1, 5, 10, 20, 40, 60, 90])  # degrees of theta_h
+MOST = 4  # times the looked-up albedo, for an albedo of samples
+FAINT = 0.35  # opacity of what was not measured
+
+
+def picture(audit):
+    """The picture of an `Audit` as a matplotlib `Figure`."""
+    data = audit.data.rgb
+    figure = Plot(figsize=SIZE, layout="constrained")
+    figure.get_layout_engine().set(w_pad=0.1, h_pad=0.1)
+    above, below = figure.subfigures(2, 1, height_ratios=(1, 1.06))
+    _title(figure, audit)
+    slice_axes, albedo_axes = above.subplots(1, 2, width_ratios=(1.25, 1))
+    _slice(above, slice_axes, data)
+    _albedo(albedo_axes, audit)
+    things = [data]
+    if not data.is_table:
+        things.append(SimpleNamespace(name="interpolated", eval=data.eval))
+    draw(below, things, usual_angles(things))
+    return figure
+
+
+def _title(figure, audit):
+    covered = f"{audit.coverage.measured:.0%} of the direction pairs".replace("%", " %")
+    text = f"{audit.name}: {audit.kind}, {audit.valid:,} valid, {covered} measured"
+    figure.suptitle(text.replace("$", r"\$"), fontsize=12)  # $ begins a formula
+
+
+def _slice(figure, axes, data):
+    """The luminance over theta_h and theta_d; hatched and faint where nothing was measured."""
+    table = data.table
+    across = int(np.argmin(np.abs(table.centres[-1] - np.pi / 2)))
+    cells = (0,) * table.anisotropic + (slice(None), slice(None), across)
+    values = luminance(table.filled[cells])
+    known = _known(data, table, cells)
+    axes.patch.set(facecolor="0.92", hatch="////", edgecolor="0.75", linewidth=0)
+    norm = _norm(values[known] if known.any() else values)
+    shown = axes.imshow(
+        np.maximum(values, 0.99 * norm.vmin).T,  # the colour of what is below the scale
+        norm=norm,
+        alpha=np.where(known, 1, FAINT).T,
+        extent=(0, 1, 0, 90),
+        origin="lower",
+        aspect="auto",
+        interpolation="nearest",
+    )
+    axes.set_xticks(np.sqrt(TICKS / 90), [f"{t}°" for t in TICKS])
+    axes.set_yticks(range(0, 91, 30), [f"{t}°" for t in range(0, 91, 30)])
+    axes.set_xlabel(r"$\theta_h$")
+    axes.set_ylabel(r"$\theta_d$")
+    phi_d = np.degrees(table.centres[-1][across])
+    hatched = "" if known.all() else "; hatched: not measured"
+    axes.set_title(
+        rf"luminance of the BRDF [sr⁻¹] at $\phi_d$ = {phi_d:.0f}°{hatched}", fontsize=10
+    )
+    bar = figure.colorbar(shown, ax=axes, pad=0.02, extend="both")
+    bar.ax.yaxis.set_major_formatter("{x:g}")
+    if shown.norm.vmax < 10 * shown.norm.vmin:
+        bar.ax.yaxis.set_minor_formatter("{x:.2g}")
+
+
+def _known(data, table, cells):
+    """Which cells of a slice rest on a measurement."""
+    if data.is_table:
+        return np.isfinite(table.values[cells]).all(axis=-1)
+    wi, wo = (w[cells].reshape(-1, 3) for w in table.directions())
+    return is_near(data, wi, wo).reshape(table.values[cells].shape[:-1])
+
+
+def _norm(values):
+    from matplotlib.colors import LogNorm
+
+    positive = values[values > 0]
+    if not positive.size:
+        return LogNorm(0.1, 1)
+    lowest, highest = np.percentile(positive, (1, 99))
+    return LogNorm(min(lowest, highest / 2), highest)
+
+
+def _albedo(axes, audit):
+    """The albedo over incidence: dotted where extrapolated, circles for the samples alone."""
+    albedo, samples = audit.albedo, audit.albedo_of_samples
+    measured = albedo.theta_i <= albedo.measured_to + 1
+    last = int(np.flatnonzero(measured)[-1])
+    for channel, values in zip(albedo.channels, albedo.values.T, strict=True):
+        style = {"color": COLOURS.get(channel, "black"), "linewidth": 1.8}
+        axes.plot(albedo.theta_i[measured], values[measured], label=channel, **style)
+        axes.plot(albedo.theta_i[last:], values[last:], linestyle=":", **style)
+    top = 1.12 * albedo.values.max() or 1.0
+    if samples:
+        top = max(top, 1.12 * min(samples.values.max(), MOST * albedo.values.max()))
+        _circles(axes, samples, top)
+    if top > 0.9:
+        axes.axhline(1, color="0.6", linewidth=0.8, zorder=0)
+    axes.set(xlim=(0, 90), ylim=(0, top))
+    axes.set_xticks(range(0, 91, 15), [f"{t}°" for t in range(0, 91, 15)])
+    axes.set_xlabel(r"$\theta_i$")
+    axes.spines[["top", "right"]].set_visible(False)
+    told = ["dotted: extrapolated"] * (not measured.all())
+    told += ["circles: samples alone"] * (samples is not None)
+    axes.set_title("; ".join(["albedo", ", ".join(told)][: 1 + bool(told)]), fontsize=10)
+    if len(albedo.channels) > 1:
+        axes.legend(ncols=3, handlelength=1.2, columnspacing=1, framealpha=0.9, edgecolor="none")
+
+
+def _circles(axes, samples, top):
+    """The albedo of the samples; what is above the axes is a triangle at their edge."""
+    for channel, values in zip(samples.channels, samples.values.T, strict=True):
+        style = {"linestyle": "", "color": COLOURS.get(channel, "black")}
+        inside = values <= top
+        axes.plot(samples.theta_i[inside], values[inside], marker="o", mfc="none", **style)
+        beyond = samples.theta_i[~inside]
+        axes.plot(beyond, np.full(len(beyond), 0.97 * top), marker="^", **style)

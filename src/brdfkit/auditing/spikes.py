@@ -1,0 +1,82 @@
+"""Lone spikes: values far above all around them.
+
+What is compared is f cos θi cos θo: towards the horizon the facets of a smooth surface make f grow
+as 1 / (4 cos θi cos θo), which is no spike.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from brdfkit.directions import to_angles
+from brdfkit.scattered import anisotropic_coordinates, isotropic_coordinates
+
+FACTOR = 4  # above the neighbours; rough and smooth paints, cloth and stone stay below 3.4
+NEIGHBOURS = 6
+
+
+@dataclass(frozen=True)
+class Spike:
+    """A suspicious sample: its angles [degrees], 180 the mirror's azimuth, its mean over the
+    channels [sr⁻¹], and the `factor` by which f cos θi cos θo is above the largest around it."""
+
+    theta_i: float
+    theta_o: float
+    delta_phi: float
+    value: float
+    factor: float
+
+    def __str__(self):
+        return (
+            f"θi {self.theta_i:.1f}°, θo {self.theta_o:.1f}°, Δφ {self.delta_phi:.0f}°: "
+            f"{self.value:.4g} sr⁻¹, {self.factor:.1f} times what is around it"
+        )
+
+
+def spikes(data):
+    """The `Spike`s of a `Measured`, the worst first.
+
+    Brighter than the median, and more than 4 times the neighbours: of a table's cell those that
+    share a side, of a sample the 6 with the nearest half and difference vectors.
+    """
+    samples = data.samples
+    brightness = np.where(samples.valid, samples.values.mean(axis=1), np.nan)
+    projected = brightness * samples.wi[:, 2] * samples.wo[:, 2]
+    around = _around_cells(data.table, projected) if data.is_table else _around(data, projected)
+    around = np.maximum(around, 1e-3 * abs(np.nanmedian(projected)))  # clipped zeros
+    found = (projected > FACTOR * around) & (brightness > np.nanmedian(brightness))
+    worst = np.flatnonzero(found)
+    worst = worst[np.argsort(-projected[worst] / around[worst])]
+    (theta_i, phi_i), (theta_o, phi_o) = to_angles(samples.wi[worst]), to_angles(samples.wo[worst])
+    degrees = np.degrees([theta_i, theta_o, np.mod(phi_o - phi_i, 2 * np.pi)])
+    columns = *degrees, brightness[worst], projected[worst] / around[worst]
+    return tuple(Spike(*row) for row in np.transpose(columns).tolist())
+
+
+def _around_cells(table, values):
+    """The largest value in the cells that share a side; NaN without any."""
+    f = values.reshape(table.shape)
+    around = np.full(f.shape, np.nan)
+    for axis in range(f.ndim):
+        here, there = np.moveaxis(around, axis, 0), np.moveaxis(f, axis, 0)
+        np.fmax(here[1:], there[:-1], out=here[1:])
+        np.fmax(here[:-1], there[1:], out=here[:-1])
+        if axis not in (f.ndim - 3, f.ndim - 2):  # an azimuth: its ends are neighbours
+            np.fmax(here[0], there[-1], out=here[0])
+            np.fmax(here[-1], there[0], out=here[-1])
+    return around.reshape(-1)
+
+
+def _around(data, values):
+    """The largest value of the nearest samples; NaN where none is valid."""
+    from scipy.spatial import cKDTree
+
+    samples, valid = data.samples, np.flatnonzero(data.samples.valid)
+    coordinates = anisotropic_coordinates if data.anisotropic else isotropic_coordinates
+    here = coordinates(samples.wi[valid], samples.wo[valid])
+    around = np.full(len(values), np.nan)
+    if len(valid) > NEIGHBOURS:
+        _, nearest = cKDTree(here).query(here, k=NEIGHBOURS + 1)
+        itself = nearest == np.arange(len(valid))[:, None]
+        around[valid] = np.where(itself, -np.inf, values[valid][nearest]).max(axis=1)
+    return around

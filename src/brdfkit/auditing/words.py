@@ -1,0 +1,153 @@
+"""An `Audit` in words."""
+
+import math
+
+RESULTS = 3  # spikes that are named
+SHARE = 0.01  # of negative or zero values, above which they are a finding
+NOT_RECIPROCAL, PAIRS = 0.1, 20
+BRIGHT = 1.001  # albedo; the quadrature is good to 10⁻³
+DARK_HORIZON, RETROREFLECTIVE = 0.5, 5
+
+
+def rows(audit):
+    """What was measured and how well, by heading."""
+    unit = "cells" if audit.data.is_table else "samples"
+    below = audit.size - audit.above
+    beneath = f"; {below:,} at or below the horizon" if below else ""
+    values = audit.valid * len(audit.channels)
+    missing = audit.above - audit.valid
+    reach = audit.coverage
+    how = "in valid cells" if audit.data.is_table else "within 5° of a sample"
+    return {
+        "kind": audit.kind,
+        "channels": _channels(audit.channels),
+        "valid": f"{audit.valid:,} of {audit.above:,} {unit}, {missing:,} not measured{beneath}",
+        "negative": f"{audit.negative:,} of {values:,} values; exactly 0: {audit.zero:,}",
+        "BRDF": _range(audit),
+        "angles": f"θi {_angles(audit.theta_i)}; θo {_angles(audit.theta_o)}",
+        "coverage": f"{_percent(reach.measured)} {how}, {_percent(reach.between)} between, "
+        f"{_percent(reach.beyond)} beyond (of all direction pairs, by solid angle)",
+        "reciprocity": _reciprocity(audit),
+        "mirror": _difference(audit.mirror, "no mirrored pairs"),
+        "noise": _noise(audit.noise),
+        **_albedos(audit),
+        "a fit uses": f"{audit.used:,} {unit}, {_percent(audit.used / audit.valid)} of the valid: "
+        "both angles below 80°",
+    }
+
+
+def findings(audit):
+    """A sentence on each thing that is doubtful."""
+    found = [*_spikes(audit.spikes), *_energy(audit)]
+    values = audit.valid * len(audit.channels)
+    if audit.negative > SHARE * values:
+        found.append(
+            f"{_percent(audit.negative / values)} of the values are negative: the losses log and "
+            "cbrt take them as 0"
+        )
+    if audit.zero > SHARE * values:
+        found.append(f"{_percent(audit.zero / values)} of the values are exactly 0: clipped")
+    if audit.reciprocity.pairs >= PAIRS and audit.reciprocity.median > NOT_RECIPROCAL:
+        found.append(
+            f"not reciprocal: exchanging wi and wo changes the value by "
+            f"{_percent(audit.reciprocity.median)} in the median"
+        )
+    if audit.grazing < DARK_HORIZON:
+        found.append(
+            f"falls towards the horizon: beyond 80° the median is {audit.grazing:.2g} of that at "
+            "60° to 70°, as few surfaces do; fit with a small max_angle"
+        )
+    if audit.retroreflection > RETROREFLECTIVE:
+        found.append(
+            f"retroreflective: within 5° of the light the median is {audit.retroreflection:.2g} "
+            "times that elsewhere; no lobe about the mirror direction can fit it"
+        )
+    return tuple(found)
+
+
+def _channels(names):
+    if len(names) > 5:
+        return f"{len(names)} wavelengths, {names[0]} to {names[-1]}"
+    return " ".join(names)
+
+
+def _range(audit):
+    if math.isnan(audit.smallest):
+        return "nowhere above 0"
+    return f"{audit.smallest:.4g} to {audit.largest:.4g} sr⁻¹, median {audit.median:.4g}"
+
+
+def _angles(angles):
+    if len(angles) > 2:
+        return ", ".join(f"{a:g}" for a in angles) + "°"
+    return " to ".join(f"{a:g}°" for a in angles)
+
+
+def _percent(share):
+    """In percent, to two digits; what is above 0 does not read as 0."""
+    percent = 100 * share
+    if 0 < percent < 0.001:
+        return "< 0.001 %"
+    return f"{percent:.0f} %" if percent >= 9.95 or percent == 0 else f"{percent:.2g} %"
+
+
+def _reciprocity(audit):
+    if audit.data.is_table and not audit.reciprocity and audit.data.table.phi_d_period < 4:
+        return "by construction: the table holds each pair once"
+    return _difference(audit.reciprocity, "no pairs measured both ways")
+
+
+def _difference(found, without):
+    if not found:
+        return f"not testable: {without}"
+    return (
+        f"median {_percent(found.median)}, 95 % within {_percent(found.percentile_95)}, "
+        f"of {found.pairs:,} pairs of values"
+    )
+
+
+def _noise(noise):
+    told = [n for n in noise.relative if not math.isnan(n)]
+    if not told:
+        return noise.method
+    ends = dict.fromkeys(map(_percent, (min(told), max(told))))
+    return f"{' to '.join(ends)} of a value, by {noise.method}"
+
+
+def _albedos(audit):
+    rows = {"albedo": f"{_ends(audit.albedo)}, over θi 0° to {audit.albedo.theta_i[-1]:g}°"}
+    if audit.albedo_of_samples:
+        low, high = audit.albedo_of_samples.theta_i[[0, -1]]
+        ends = _ends(audit.albedo_of_samples)
+        rows["of samples"] = f"{ends}, over θi {low:g}° to {high:g}°, linear between the samples"
+    return rows
+
+
+def _ends(albedo):
+    columns = zip(albedo.channels, albedo.values.T, strict=True)
+    return ", ".join(f"{name} {a.min():.3f} to {a.max():.3f}" for name, a in columns)
+
+
+def _energy(audit):
+    """Where an albedo is above 1."""
+    found = []
+    for albedo, what in (
+        (audit.albedo, "albedo"),
+        (audit.albedo_of_samples, "albedo, linear between the samples,"),
+    ):
+        if albedo is None or albedo.values.max() <= BRIGHT:
+            continue
+        row, column = divmod(int(albedo.values.argmax()), albedo.values.shape[1])
+        theta_i, channel = albedo.theta_i[row], albedo.channels[column]
+        beyond = " (extrapolated)" if theta_i > albedo.measured_to + 1 else ""
+        found.append(
+            f"{what} {albedo.values[row, column]:.3f} at θi {theta_i:g}°{beyond}, channel "
+            f"{channel}: more light leaves than comes"
+        )
+    return found
+
+
+def _spikes(spikes):
+    named = [f"spike at {spike}" for spike in spikes[:RESULTS]]
+    rest = len(spikes) - RESULTS
+    return [*named, f"and {rest:,} more spikes"] if rest > 0 else named
