@@ -6,6 +6,7 @@ measured is negative. Four times as many phi_d as theta_d cells span the full ci
 that is not reciprocal), else they span half of it.
 """
 
+import functools
 import struct
 
 import numpy as np
@@ -35,15 +36,14 @@ def read(source):
     """
     shape = _shape(source)
     raw = np.frombuffer(source.data, "<f8", offset=HEADER).reshape(3, *shape)
-    finite = np.isfinite(raw)
-    if not finite.all():
-        first = HEADER + 8 * int(np.argmin(finite))
+    wrong = [np.flatnonzero(~np.isfinite(plane)) + k * plane.size for k, plane in enumerate(raw)]
+    if wrong := [int(i) for plane in wrong for i in plane]:
         raise source.error(
-            f"{(~finite).sum():,} values are not finite, the first at byte {first:,}; "
+            f"{len(wrong):,} values are not finite, the first at byte {HEADER + 8 * wrong[0]:,}; "
             "a MERL table holds none, so fetch the file again"
         )
     # before scaling: what is stored decides
-    unknown = (raw < 0).any(axis=0)
+    unknown = functools.reduce(np.logical_or, (plane < 0 for plane in raw))
     if unknown.all():
         raise source.error("every cell is marked as not measured; fetch the file again")
     values = np.multiply(np.moveaxis(raw, 0, -1), SCALE, order="C")
