@@ -361,7 +361,7 @@ def test_paths_that_are_no_file(tmp_path):
 
 def test_unknown_formats_are_told_the_known_ones(tmp_path):
     (tmp_path / "photo.jpg").write_bytes(b"\xff\xd8\xff\xe0 nothing measured")
-    refused(tmp_path / "photo.jpg", r"ASTM \(.astm\).*MERL \(.binary\), each also as .gz or .xz")
+    refused(tmp_path / "photo.jpg", r"ASTM \(.astm\).*MERL \(.binary\).*each also as .gz or .xz")
 
 
 def test_every_format_module_offers_the_protocol():
@@ -396,7 +396,7 @@ def test_saves_what_it_loads(tmp_path, suffix):
 
 def test_save_refuses_other_suffixes(tmp_path):
     material = load(place(tmp_path, "merl"))
-    for name in ("x.jpg", "x.brdf", "x", "x.gz"):
+    for name in ("x.jpg", "x", "x.gz"):
         with pytest.raises(BrdfkitError, match=rf"{name}: no format .* MERL \(.binary\)"):
             save(material, tmp_path / name)
     with pytest.raises(BrdfkitError, match=r"no folder .*; create it"):

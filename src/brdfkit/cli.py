@@ -233,6 +233,25 @@ def check(things, values, console):
     click.get_current_context().exit(0 if all(reports) else 1)
 
 
+@main.command()
+@click.argument("thing", metavar="FILE|NAME|FIT")
+@click.argument("output", type=click.Path(path_type=Path))
+@values_option
+@output_options
+def convert(thing, output, values, console):
+    """Write a material in the file format of OUTPUT's suffix.
+
+    Tells what that format cannot hold. A model or a fit is evaluated over the hemispheres.
+    """
+    from brdfkit.converting import convert as convert_thing
+    from brdfkit.targets import material, other_file
+
+    output = other_file(output, thing)
+    with console.progress(f"convert {thing}"):
+        done = convert_thing(material(thing, values), output)
+    console.conversion(done)
+
+
 def _render(things, output, spp, size, seed, console):
     from brdfkit.rendering import render as render_things
 

@@ -232,6 +232,13 @@ class Console:
             self.out.print(str(report))
         return None
 
+    def conversion(self, done):
+        """What was written, and what that changed."""
+        if self.as_json:
+            return self.json({"written": done.path, "changes": done.changes})
+        self.out.print(f"written: {done}")
+        return None
+
     def written(self, paths):
         for path in paths:
             self.out.print(f"written: {path}")

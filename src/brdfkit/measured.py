@@ -153,9 +153,9 @@ class Measured:
         """The table to look up in; that of samples has what lies between them, `scattered.py`."""
         if self._table is not None:
             return self._table
-        from brdfkit.scattered import sampled
+        from brdfkit.scattered import sampled, table_shape
 
-        return sampled(self._between, len(self.channels), self.anisotropic)
+        return sampled(self._between, len(self.channels), table_shape(self.anisotropic))
 
     @cached_property
     def _between(self):

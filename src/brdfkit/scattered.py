@@ -60,9 +60,13 @@ class Scattered:
         return np.log(np.maximum(values, self.floor))
 
 
-def sampled(brdf, channels, anisotropic=False):
-    """The `Table` of `brdf(wi, wo)` → (n, channels), NaN below the surface."""
-    shape = ANISOTROPIC_SHAPE if anisotropic else SHAPE
+def table_shape(anisotropic):
+    """The `shape` of the table that samples are interpolated to."""
+    return ANISOTROPIC_SHAPE if anisotropic else SHAPE
+
+
+def sampled(brdf, channels, shape):
+    """The `Table` of `brdf(wi, wo)` → (n, channels) in `shape` cells, NaN below the surface."""
     table = Table(np.full((*shape, channels), np.nan))
     wi, wo = table.directions()
     above = (wi[..., 2] > 0) & (wo[..., 2] > 0)

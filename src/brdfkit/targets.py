@@ -103,6 +103,14 @@ def write_figure(figure, path):
         figure.savefig(beside, dpi=130)
 
 
+def other_file(path, source):
+    """`path`, once it is sure that it can be written and is not the file `source` itself."""
+    require_writable(path)
+    if path.exists() and Path(source).exists() and path.samefile(source):
+        raise BrdfkitError(f"{path} is the file to read; name another to write.")
+    return path
+
+
 def fit_file(output, fit):
     """The file of a `Fit` in the folder `output`; a label's colon is not for every file system."""
     return Path(output) / f"{fit.name.replace(':', '-')}.json"

@@ -100,6 +100,8 @@ def _split(path):
 def _recognised(source):
     sniffed = [module for module in formats() if module.sniff(source.data[:HEAD])]
     named = [m for m in sniffed or formats() if source.suffix in m.SUFFIXES]
+    # two formats are called .dat: a sample that is named tells them apart
+    named.sort(key=lambda m: getattr(m, "MANY", False) != (source.sample is not None))
     if len(sniffed) == 1:
         return sniffed[0]
     if named:  # where none recognises it, its reader says what is wrong

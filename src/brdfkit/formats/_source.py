@@ -11,6 +11,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.files import COMPRESSED, contents
 from brdfkit.measured import RGB, Measured
 
+SPHERICAL = (np.pi / 2, 2 * np.pi, np.pi / 2, 2 * np.pi)  # limits of theta, phi, theta, phi
 ANGLE_TOLERANCE = 1e-3  # rad: files round 90° to 1.5708
 REMEDY = "mend the line or fetch the file again"
 
@@ -83,29 +84,50 @@ class Source:
                 f"line {line} has {wrong[:40]!r} where a number belongs; {REMEDY}"
             ) from None
 
-    def measured(self, lines, angles, values, valid=True, channels=RGB, name=None, info=None):
+    def measured(self, lines, angles, values, **details):
         """The `Measured` of `angles` (n, 4), theta_i phi_i theta_o phi_o [rad], and `values`.
 
-        `lines` (n,) are the lines they stood on. A value that is not finite was not measured.
+        `lines` (n,) are the lines they stood on; for the rest see `from_directions`.
         """
-        angles, values = np.array(angles, float), np.array(values, float)
-        self._require_radians(lines, angles)
+        angles = np.array(angles, float)
+        self.require_radians(lines, angles, SPHERICAL)
+        wi, wo = from_angles(*angles[:, :2].T), from_angles(*angles[:, 2:].T)
+        return self.from_directions(wi, wo, values, **details)
+
+    def from_directions(
+        self,
+        wi,
+        wo,
+        values,
+        valid=True,
+        channels=RGB,
+        name=None,
+        info=None,
+        standard_error=None,
+        **details,
+    ):
+        """`Measured.from_samples`, named after the file; a value not finite was not measured."""
+        values = np.array(values, float)
         finite = np.isfinite(values).all(axis=1)
-        info = dict(info or {})
+        if standard_error is not None:
+            finite &= np.isfinite(standard_error).all(axis=1)
+            details["standard_error"] = standard_error
+        info, name = dict(info or {}), name or self.name
         if not finite.all():
             info["not finite"] = f"{(~finite).sum()} of {len(finite)} rows, masked"
-        wi, wo = from_angles(*angles[:, :2].T), from_angles(*angles[:, 2:].T)
-        name = name or self.name
         try:
-            return Measured.from_samples(wi, wo, values, finite & valid, channels, name, info)
+            return Measured.from_samples(
+                wi, wo, values, finite & valid, channels, name, info, **details
+            )
         except BrdfkitError:
             raise self.error(
                 "no row is a valid measurement (masked, not finite or at the horizon); "
                 "fetch the file again"
             ) from None
 
-    def _require_radians(self, lines, angles):
-        limit = np.array([np.pi / 2, 2 * np.pi] * 2) + ANGLE_TOLERANCE
+    def require_radians(self, lines, angles, limits):
+        """Raise unless each column of `angles` (n, k) is at most its limit, up or down [rad]."""
+        limit = np.array(limits) + ANGLE_TOLERANCE
         wrong = ~(np.abs(angles) <= limit)  # NaN is wrong, too
         if wrong.any():
             row, column = np.argwhere(wrong)[0]

@@ -15,6 +15,9 @@ import re
 
 import numpy as np
 
+from brdfkit.formats._notes import lone_point
+from brdfkit.formats._writing import angles as angles_of
+from brdfkit.formats._writing import measured
 from brdfkit.measured import RGB
 
 NAME = "ASTM"
@@ -51,8 +54,22 @@ def read(source):
     if MINI_DIFF in header.get("SYSTEM_NAME", ""):
         valid = angles[:, 2] <= MINI_DIFF_LIMIT
         notes["masked"] = f"{(~valid).sum():,} rows beyond theta_s = 75°, not measured"
+    notes.update(lone_point(angles[valid], values[valid]))
     info = {"format": NAME, **header, **notes}
-    return source.measured(lines, angles, values, valid, channels, info=info)
+    return source.measured(lines, angles, values, valid=valid, channels=channels, info=info)
+
+
+def write(obj, stream):
+    """Write the valid samples of a `Measured`, in its own channels, to the last digit."""
+    obj = measured(obj, NAME)
+    samples, valid = obj.samples, obj.samples.valid
+    header = [
+        f"SAMPLE_NAME {' '.join(obj.name.split())}",
+        f"NUM_POINTS {valid.sum()}",
+        f"VARS {','.join((*ANGLES, *obj.channels))}",
+    ]
+    rows = np.concatenate([angles_of(samples.at(valid)), samples.values[valid].T])
+    np.savetxt(stream, rows.T, "%.17g", ",", header="\n".join(header), comments="")
 
 
 def _header(source):

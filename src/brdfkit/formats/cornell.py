@@ -7,12 +7,17 @@ at Δφ = 180°. https://www.graphics.cornell.edu/online/measurements/reflectanc
 
 import numpy as np
 
+from brdfkit.errors import BrdfkitError
+from brdfkit.formats._notes import lone_point, stopping_short
+from brdfkit.formats._writing import angles as angles_of
+from brdfkit.formats._writing import measured
+from brdfkit.spectra import wavelengths
+
 NAME = "Cornell"
 SUFFIXES = (".brdf",)
 
 MOST_WAVELENGTHS = 4096
 NANOMETRES = (100, 100_000)  # what a wavelength can be
-SUSPICIOUS = 5  # times the next largest value
 
 
 def sniff(head):
@@ -38,9 +43,33 @@ def read(source):
     data = np.array([source.numbers(n, line.split(), columns) for n, line in rows])
     angles, values = data[:, :4], data[:, 4:]
     lines = [n for n, _ in rows]
-    channels = tuple(f"{w:g}nm" for w in wavelengths)
-    info = {"format": NAME, **_description(source), **_clipped(values), **_spike(angles, values)}
+    channels = tuple(f"{w:.10g}nm" for w in wavelengths)
+    notes = {**_clipped(values), **lone_point(angles, values), **stopping_short(angles)}
+    info = {"format": NAME, **_description(source), **notes}
     return source.measured(lines, angles, values, channels=channels, info=info)
+
+
+def write(obj, stream):
+    """Write the valid samples of a spectral `Measured`, to the last digit."""
+    obj = measured(obj, NAME)
+    try:
+        nm = wavelengths(obj)
+    except BrdfkitError:
+        raise BrdfkitError(
+            f"the format {NAME} holds wavelengths, and {obj.name} has the channels "
+            f"{' '.join(obj.channels)[:80]}; choose another suffix, such as .astm."
+        ) from None
+    samples, valid = obj.samples, obj.samples.valid
+    header = [
+        f"# {' '.join(obj.name.split())}",
+        "# num wls",
+        f"{len(nm)}",
+        "# wls",
+        " ".join(f"{w:.10g}" for w in nm),
+        "# theta i  phi i  theta s  phi_s  spectral sample values",
+    ]
+    rows = np.concatenate([angles_of(samples.at(valid)), samples.values[valid].T])
+    np.savetxt(stream, rows.T, "%.17g", header="\n".join(header), comments="")
 
 
 def _wavelengths(source):
@@ -83,21 +112,6 @@ def _description(source):
 
 def _clipped(values):
     zeros = (values == 0).mean()
-    if not zeros:
+    if not zeros or (values < 0).any():
         return {}
     return {"clipped": f"{zeros:.1%} of the values are 0: negative ones were set to 0"}
-
-
-def _spike(angles, values):
-    """A note where the one sample near grazing mirror reflection stands out; it is kept."""
-    brightest = np.nan_to_num(values, nan=-np.inf).max(axis=1)
-    top = int(np.argmax(brightest))
-    theta_i, phi_i, theta_s, phi_s = np.degrees(angles[top])
-    others = np.delete(brightest, top)
-    near_grazing = theta_i > 79.5 and theta_s > 78.5 and abs(abs(phi_s - phi_i) - 180) < 0.5
-    if not near_grazing or not others.size or brightest[top] <= SUSPICIOUS * others.max():
-        return {}
-    return {
-        "suspicious": f"the sample at theta_i {theta_i:.0f}°, theta_s {theta_s:.0f}° in the "
-        f"mirror's azimuth is {brightest[top] / others.max():.1f} times the next largest"
-    }

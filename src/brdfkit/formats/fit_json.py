@@ -41,7 +41,7 @@ def write(fit, stream):
     """Write a `Fit` into a binary stream."""
     if not isinstance(fit, Fit):
         raise BrdfkitError(
-            f"a {type(fit).__name__} is no fit; give save a path with a suffix for it."
+            f"the format {NAME} holds a fit, not a {type(fit).__name__}; choose another suffix."
         )
     record = {
         KEY: brdfkit.__version__,

@@ -12,13 +12,16 @@ import struct
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.formats._writing import measured
 from brdfkit.measured import RGB, Measured
+from brdfkit.scattered import sampled
 
 NAME = "MERL"
 SUFFIXES = (".binary",)
 
 HEADER = 12  # bytes
 SCALE = np.array([1.0, 1.15, 1.66]) / 1500  # sr⁻¹ per stored unit of R, G, B
+SHAPE = (90, 90, 180)  # of the database's tables
 MOST_CELLS = 4096  # along one axis
 NOT_MEASURED = -1.0
 
@@ -55,14 +58,11 @@ def read(source):
 def write(obj, stream):
     """Write the table of a `Measured`, in linear sRGB; achromatic values stand in each plane.
 
+    Samples are interpolated to the database's 90×90×180 cells, which other programs insist on.
     Negative values, which the format takes for "not measured", are written as 0.
     """
-    if not isinstance(obj, Measured):
-        raise BrdfkitError(
-            f"a MERL table holds a measured material, not a {type(obj).__name__}; "
-            "choose another suffix."
-        )
-    table = obj.rgb.table
+    obj = measured(obj, NAME).rgb
+    table = obj.table if obj.is_table else sampled(obj.eval, len(obj.channels), SHAPE)
     if not _plausible(table.shape) or not np.isclose(
         table.phi_d_period, _phi_d_period(table.shape)
     ):

@@ -1,0 +1,92 @@
+"""`convert`: a material into another file format, and what of it that changed."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from brdfkit.formats import load, save
+from brdfkit.measured import Measured
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """The file written, and what it does not hold, or holds otherwise, in words."""
+
+    path: Path
+    changes: tuple[str, ...]
+
+    def __str__(self):
+        return f"{self.path} ({'; '.join(self.changes) or 'nothing lost'})"
+
+
+def convert(thing, path):
+    """Write a measured material, a fit or a model to `path`; returns a `Conversion`.
+
+    The file is read again and compared, so that no format need say what it leaves out.
+    Raises `BrdfkitError` where the format of the suffix cannot hold it.
+
+    >>> print(convert(load("cayman.brdf"), "cayman.npz"))  # doctest: +SKIP
+    cayman.npz (nothing lost)
+    """
+    if isinstance(thing, Measured):
+        save(thing, path)
+        return Conversion(Path(path), changes(thing, load(path)))
+    material = evaluated(thing)
+    save(material, path)
+    note = f"{thing.name} evaluated at {len(material.values):,} direction pairs"
+    return Conversion(Path(path), (note, *changes(material, load(path))))
+
+
+def evaluated(thing):
+    """A fit or a model as a `Measured`: evaluated where a table would be, exact in between."""
+    from brdfkit.scattered import sampled, table_shape
+
+    model = getattr(thing, "model", thing)
+    anisotropic = any(model.parameters[name].follows for name in model.free_values)
+    channels = thing.eval(*[[[0, 0, 1.0]]] * 2).shape[1]
+    table = sampled(thing.eval, channels, table_shape(anisotropic))
+    wi, wo = (w.reshape(-1, 3) for w in table.directions())
+    values = table.values.reshape(-1, channels)
+    above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
+    names = ("Y",) if channels == 1 else ("R", "G", "B")
+    return Measured.from_samples(
+        wi[above],
+        wo[above],
+        values[above],
+        channels=names,
+        name=thing.name,
+        info={"model": repr(model)},
+        anisotropic=anisotropic,
+        lookup=thing.eval,
+    )
+
+
+def changes(before, after):
+    """What differs in the measured material `after`, and which notes it lacks, in words."""
+    old, new = facts(before), facts(after)
+    told = [f"{what} {old[what]} → {new[what]}" for what in old if old[what] != new[what]]
+    lost = [key for key in before.info if key not in after.info]
+    return (*told, f"without {', '.join(lost)}") if lost else tuple(told)
+
+
+def facts(data):
+    """What is in a measured material apart from its notes, in words."""
+    samples, channels, errors = data.samples, data.channels, data.standard_error
+    values = samples.values[samples.valid]
+    cosine = min(w[samples.valid, 2].min() for w in (samples.wi, samples.wo))
+    many = f"{len(channels)} wavelengths, {channels[0]} to {channels[-1]}"
+    kind = "×".join(map(str, data.table.shape)) + " table" if data.is_table else "samples"
+    return {
+        "kind": f"{kind}, anisotropic" if data.anisotropic else kind,
+        "channels": many if len(channels) > 5 else " ".join(channels),
+        "valid": f"{samples.valid.sum():,} of {len(samples.valid):,}",
+        "angles": f"to {np.degrees(np.arccos(cosine)):.1f}°",
+        "negative": f"{(values < 0).mean():.2%} of the values",
+        "BRDF": f"{values.min():.4g} to {values.max():.4g}, median {np.median(values):.4g} sr⁻¹",
+        "standard error": "none" if errors is None else _median(errors[samples.valid]),
+    }
+
+
+def _median(errors):
+    return f"{np.median(errors):.3g} sr⁻¹ in the median"

@@ -1,0 +1,190 @@
+"""ALTA's text, `.dat`: a header of lines ``#KEY value``, then a row of numbers per sample.
+
+L. Belcour et al., "ALTA: a BRDF analysis library", MAM 2014; the keys as read by
+`sources/core/data_storage.cpp` and `params.cpp` of github.com/belcour/alta:
+
+- ``DIM``: how many coordinates and how many values a row has;
+- ``PARAM_IN``: what the coordinates are, L the light and V the view;
+- ``PARAM_OUT``: what the values are; INV_STERADIAN_COSINE_FACTOR is the BRDF times cos theta_v
+  (the real files become reciprocal by this division, not by theta_l's);
+- ``VS``: per value, 0, or 1 for a column behind the values that says ±, or 2 for two columns with
+  the ends of an interval. Half an interval is taken for the standard error; files do not state its
+  level. A single number speaks of the first value only.
+
+An isotropic material has three coordinates; one with four is anisotropic where their azimuth
+varies.
+"""
+
+import re
+
+import numpy as np
+
+from brdfkit.directions import from_angles, from_half_difference
+from brdfkit.formats._source import SPHERICAL
+from brdfkit.formats._writing import angles, measured
+from brdfkit.measured import RGB
+
+NAME = "ALTA"
+SUFFIXES = (".dat",)
+
+CHANNELS = {1: ("Y",), 3: RGB}
+COSINE = "INV_STERADIAN_COSINE_FACTOR"
+PLAIN = ("INV_STERADIAN", "RGB_COLOR")
+UNSTATED = (None, "UNKNOWN_OUTPUT")
+LEAST_COSINE = 1e-3  # below it, a BRDF times cosine does not tell the BRDF
+QUARTER, FULL = np.pi / 2, 2 * np.pi
+
+
+def _projected(theta_l, x, y):
+    return from_angles(theta_l, 0), from_angles(np.hypot(x, y), np.arctan2(y, x))
+
+
+def _spherical(theta_l, phi_l, theta_v, phi_v):
+    return from_angles(theta_l, phi_l), from_angles(theta_v, phi_v)
+
+
+def _half_difference(theta_h, phi_h, theta_d, phi_d):
+    view, light = from_half_difference(theta_h, theta_d, phi_d, phi_h)
+    return light, view
+
+
+PARAM_IN = {  # the coordinates' limits [rad], and the function from them to (wi, wo)
+    "SPHERICAL_TL_PL_TV_PV": (SPHERICAL, _spherical),
+    "ISOTROPIC_TL_TV_PROJ_DPHI": ((QUARTER,) * 3, _projected),
+    "ISOTROPIC_TV_TL_DPHI": (
+        (QUARTER, QUARTER, FULL),
+        lambda theta_v, theta_l, phi: _spherical(theta_l, phi, theta_v, 0),
+    ),
+    "RUSIN_TH_PH_TD_PD": (SPHERICAL, _half_difference),
+    "RUSIN_TH_TD_PD": (
+        (QUARTER, QUARTER, FULL),
+        lambda theta_h, theta_d, phi_d: _half_difference(theta_h, 0, theta_d, phi_d),
+    ),
+}
+
+
+def sniff(head):
+    """Whether a line of `head` gives the dimensions, as ``#DIM 3 1``."""
+    return re.search(rb"^#DIM\s+\d", head, re.MULTILINE) is not None
+
+
+def read(source):
+    """The samples as `Measured`, of one channel Y or of R, G, B.
+
+    Raises `BrdfkitError` for a binary file, a missing key, coordinates that do not give both
+    directions, values that are no BRDF, or a row that does not fit.
+    """
+    header = {}
+    for comment in source.comments:
+        key, _, text = comment.partition(" ")
+        header.setdefault(key, text.strip().strip('"'))
+    coordinates, channels = _dimensions(source, header)
+    intervals = _intervals(source, header.get("VS", "0"), len(channels))
+    limits, directions = PARAM_IN[header["PARAM_IN"]]
+    if not source.lines:
+        raise source.error("has no rows behind its header; fetch the file again")
+
+    columns = coordinates + len(channels) + sum(intervals)
+    data = np.array([source.numbers(n, line.split(), columns) for n, line in source.lines])
+    where, values, ends = np.split(data, [coordinates, coordinates + len(channels)], axis=1)
+    source.require_radians([n for n, _ in source.lines], where, limits)
+    wi, wo = directions(*where.T)
+    factor, valid, notes = _factor(source, header, wo)
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite will be masked
+        values = values / factor
+        errors = _half(ends / factor, intervals)
+    return source.from_directions(
+        wi,
+        wo,
+        values,
+        valid,
+        channels,
+        info={"format": NAME, **header, **notes},
+        anisotropic=coordinates == 4 and np.ptp(where[:, 1]) > 0,
+        standard_error=errors,
+    )
+
+
+def write(obj, stream):
+    """Write the valid samples of a `Measured`, in linear sRGB or achromatic, to the last digit."""
+    obj = measured(obj, NAME, anisotropic=True).rgb
+    samples, valid = obj.samples, obj.samples.valid
+    theta_l, phi_l, theta_v, phi_v = where = angles(samples.at(valid))
+    name = "SPHERICAL_TL_PL_TV_PV"
+    if not obj.anisotropic:
+        phi = phi_v - phi_l
+        name = "ISOTROPIC_TL_TV_PROJ_DPHI"
+        where = theta_l, theta_v * np.cos(phi), theta_v * np.sin(phi)
+    channels = len(obj.channels)
+    rows, interval = [*where, *samples.values[valid].T], "0"
+    if obj.standard_error is not None:
+        rows += [*obj.standard_error[valid].T]
+        interval = " ".join(["1"] * channels)
+    header = [
+        f"SAMPLE {' '.join(obj.name.split())}",
+        f"DIM {len(where)} {channels}",
+        f"VS {interval}",
+        f"PARAM_IN {name}",
+        f"PARAM_OUT {'INV_STERADIAN' if channels == 1 else 'RGB_COLOR'}",
+    ]
+    np.savetxt(stream, np.stack(rows, 1), "%.17g", header="\n".join(header), comments="#")
+
+
+def _dimensions(source, header):
+    """The number of coordinates, and the channels."""
+    if header.get("FORMAT") == "binary":
+        raise source.error("is ALTA's binary form; save it as text with ALTA's data2data")
+    dimensions = header.get("DIM", "").split()
+    if len(dimensions) != 2 or not all(re.fullmatch("[0-9]{1,4}", d) for d in dimensions):
+        raise source.error("has no line such as '#DIM 3 1', coordinates and values; add it")
+    coordinates, values = map(int, dimensions)
+    given = header.get("PARAM_IN")
+    if given not in PARAM_IN:
+        raise source.error(
+            f"PARAM_IN is {str(given)[:40]}, which does not tell both directions or is not read; "
+            f"convert it to one of {', '.join(PARAM_IN)}"
+        )
+    belong = len(PARAM_IN[given][0])
+    if coordinates != belong or values not in CHANNELS:
+        raise source.error(
+            f"DIM says {coordinates} coordinates and {values} values where {belong} belong to "
+            f"{given}, and 1 or 3 values; mend the line"
+        )
+    return coordinates, CHANNELS[values]
+
+
+def _intervals(source, text, channels):
+    """How many columns each channel has behind the values: 0, 1 or 2."""
+    kinds = text.split()
+    if len(kinds) > channels or not all(kind in ("0", "1", "2") for kind in kinds):
+        raise source.error(f"VS is {text[:40]!r} where 0, 1 or 2 per value belong; mend the line")
+    return [int(kind) for kind in kinds] + [0] * (channels - len(kinds))
+
+
+def _half(columns, intervals):
+    """Half of each interval, (n, channels); None unless every channel has one."""
+    if not all(intervals):
+        return None
+    each = np.split(columns, np.cumsum(intervals)[:-1], axis=1)
+    halves = [c[:, 0] if c.shape[1] == 1 else (c[:, 1] - c[:, 0]) / 2 for c in each]
+    return np.abs(np.stack(halves, axis=1))
+
+
+def _factor(source, header, wo):
+    """What the BRDF was multiplied by (n, 1), where that can be undone, and notes."""
+    stated = header.get("PARAM_OUT")
+    if stated == COSINE:
+        cosine = wo[:, 2]
+        low = cosine < LEAST_COSINE
+        notes = {"cosine": "the values were BRDF × cos theta_v and are divided by it"}
+        if low.any():
+            notes["masked"] = f"{low.sum():,} rows with the view at the horizon"
+        return np.where(low, 1, cosine)[:, None], ~low, notes
+    if stated in PLAIN:
+        return 1, True, {}
+    if stated in UNSTATED:
+        note = f"not stated; the values are taken for the BRDF: if they hold a cosine, add {COSINE}"
+        return 1, True, {"PARAM_OUT": note}
+    raise source.error(
+        f"PARAM_OUT is {stated[:40]}, which is no BRDF in sr⁻¹ or RGB; convert the values"
+    )

@@ -1,0 +1,108 @@
+"""UTIA BRDF database: `.bin`, anisotropic, over the angles of light and view.
+
+J. Filip, R. Vávra, "Template-based sampling of anisotropic BRDFs", CGF 33(7), 2014;
+http://btf.utia.cas.cz. Little-endian float64 and nothing else: the planes R, G, B, each
+288 × 288. A row is a light (theta_i, phi_i), a column a view (theta_v, phi_v); theta takes
+0°, 15°, ..., 75° and phi, which runs faster, 0°, 7.5°, ..., 352.5°. Order and lookup are those of
+J. Filip's own program, as published in github.com/belcour/alta (sources/plugins/data_io/utia.cpp)
+and github.com/asztr/UTIA-brdf: linear in the four angles, above 75° continued on the same line.
+
+The unit is not documented. Those programs take the stored numbers as they are, and so does this
+reader. Others do not: github.com/jdupuy/dj_brdf clamps negative numbers, divides by 140, undoes
+sRGB's gamma and multiplies by 100; A. Fichet's utia.py undoes the gamma alone.
+"""
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+
+from brdfkit.directions import from_angles, to_angles
+from brdfkit.formats._writing import measured
+
+NAME = "UTIA"
+SUFFIXES = (".bin",)
+
+SHAPE = (6, 48, 6, 48)  # theta_i, phi_i, theta_v, phi_v
+THETA, PHI = np.radians(15) * np.arange(6), np.radians(7.5) * np.arange(48)
+SIZE = 3 * 8 * 288 * 288  # bytes
+
+
+def sniff(head):
+    """Never: the file has no header, its suffix and its size decide."""
+    return False
+
+
+def read(source):
+    """The 82,944 samples as `Measured`, R, G, B as they are stored, negative values too.
+
+    Raises `BrdfkitError` for a file of another size or with values that are not finite.
+    """
+    if len(source.data) != SIZE:
+        raise source.error(
+            f"has {len(source.data):,} bytes where {SIZE:,} belong, 3 × 288 × 288 doubles; "
+            "fetch the file again or rename it, if it is of another format"
+        )
+    raw = np.frombuffer(source.data, "<f8").reshape(3, -1).T
+    finite = np.isfinite(raw).all(axis=1)
+    if not finite.all():
+        raise source.error(
+            f"{(~finite).sum():,} samples are not finite; a UTIA file holds none, so fetch it again"
+        )
+    info = {
+        "format": NAME,
+        "unit": "as stored, which UTIA does not document as sr⁻¹",
+        "negative": f"{(raw < 0).sum():,} values, kept",
+    }
+    wi, wo = directions()
+    return source.from_directions(
+        wi, wo, raw, info=info, anisotropic=True, lookup=Lookup(raw.reshape(*SHAPE, 3))
+    )
+
+
+def write(obj, stream):
+    """Write a `Measured`, in linear sRGB or achromatic in each plane.
+
+    Where it was measured in other directions, or in part of them, it is interpolated.
+    """
+    obj = measured(obj, NAME, anisotropic=True).rgb
+    wi, wo = directions()
+    samples = obj.samples
+    own = samples.wi.shape == wi.shape and samples.valid.all()
+    if own and np.allclose([samples.wi, samples.wo], [wi, wo], atol=1e-6):
+        values = samples.values
+    else:
+        values = obj.eval(wi, wo)
+    values = np.broadcast_to(values, (len(wi), 3))
+    stream.write(np.ascontiguousarray(values.T, "<f8").tobytes())
+
+
+def directions():
+    """(wi, wo) of the samples, each (82944, 3), in the order of the file."""
+    theta_i, phi_i, theta_v, phi_v = np.meshgrid(THETA, PHI, THETA, PHI, indexing="ij")
+    wi, wo = from_angles(theta_i, phi_i), from_angles(theta_v, phi_v)
+    return wi.reshape(-1, 3), wo.reshape(-1, 3)
+
+
+@dataclass(frozen=True, eq=False)
+class Lookup:
+    """Values (theta_i, phi_i, theta_v, phi_v, channels), linear between them in each angle."""
+
+    values: np.ndarray
+
+    def __call__(self, wi, wo):
+        axes = [part for w in (wi, wo) for part in _cells(*to_angles(w))]
+        result = 0.0
+        for corner in itertools.product((0, 1), repeat=4):
+            cells = tuple(axis[upper] for axis, upper in zip(axes, corner, strict=True))
+            parts = [t if upper else 1 - t for (*_, t), upper in zip(axes, corner, strict=True)]
+            result = result + np.prod(parts, axis=0)[..., None] * self.values[cells]
+        return result
+
+
+def _cells(theta, phi):
+    """Lower and upper index and the fraction between them, of theta and of phi."""
+    theta, phi = theta / THETA[1], np.mod(phi / PHI[1], len(PHI))
+    i = np.minimum(theta.astype(int), len(THETA) - 2)  # beyond 75° the fraction exceeds 1
+    j = np.minimum(phi.astype(int), len(PHI) - 1)
+    return (i, i + 1, theta - i), (j, (j + 1) % len(PHI), phi - j)
