@@ -1,10 +1,17 @@
 """A small valid file of each format, for the tests of the formats and for their fuzzing."""
 
+import io
 import struct
+from functools import cache
 
 import numpy as np
 
-from brdfkit.measured import Samples
+from brdfkit import registry
+from brdfkit.directions import from_angles
+from brdfkit.errors import BrdfkitError
+from brdfkit.fitting.result import Fit
+from brdfkit.formats import formats
+from brdfkit.measured import Measured, Samples
 
 MIRROR_PHI = 3.141593
 MERL_SHAPE = (3, 2, 4)
@@ -68,12 +75,80 @@ def curet_table(geometries=205):
     return "\r\n".join(rows).encode()
 
 
+def alta(parametrisation="ISOTROPIC_TL_TV_PROJ_DPHI", out="INV_STERADIAN", rows=None, vs="0"):
+    """ALTA text with one value; the first row is the brightest, 3 sr⁻¹ with the light at 0.5."""
+    if rows is None:
+        rows = [(0.5, -0.5, 0.0, 3.0), (0.5, 0.5, 0.0, 0.25), (1.0, 0.0, 0.25, 0.125)]
+    coordinates = len(rows[0]) - 1 - int(vs)
+    header = ["# a comment", '#SAMPLE "A paint"', f"#DIM {coordinates} 1", f"#VS {vs}"]
+    header += [f"#PARAM_IN {parametrisation}"] + ([f"#PARAM_OUT {out}"] if out else [])
+    return "\n".join([*header, *("\t".join(map(str, row)) for row in rows), ""]).encode()
+
+
+def utia():
+    """The 1.9 MB of a UTIA table: red grows with theta_i, green with theta_v, blue is 0.25."""
+    theta = np.linspace(0.25, 1.5, 6).repeat(48)
+    red, green = np.broadcast_to(theta[:, None], (288, 288)), np.broadcast_to(theta, (288, 288))
+    return np.stack([red, green, np.full((288, 288), 0.25)]).astype("<f8").tobytes()
+
+
+def table():
+    """An isotropic table."""
+    values = 1 + np.arange(72.0).reshape(*MERL_SHAPE, 3)
+    values[0, 0, 0] = np.nan
+    return Measured.from_table(values, name="paint", info={"note": "made up"})
+
+
+def spectrum(anisotropic=False):
+    """Samples of three wavelengths, one negative, one not valid."""
+    theta = np.linspace(0.1, 1.2, 12)
+    wi, wo = from_angles(theta, 0.3 * anisotropic * theta), from_angles(theta[::-1], 3 * theta)
+    values = np.random.default_rng(0).random((12, 3)) - 0.01
+    channels = tuple(f"{w}nm" for w in WAVELENGTHS)
+    valid, errors = theta > 0.15, 0.01 * np.abs(values)
+    rest = {"anisotropic": anisotropic, "standard_error": errors}
+    return Measured.from_samples(wi, wo, values, valid, channels, name="paint", **rest)
+
+
+def brushed():
+    """An anisotropic table."""
+    return Measured.from_table(1 + np.arange(96.0).reshape(4, 3, 2, 4, 1), channels=("Y",))
+
+
+def fit():
+    """A fit that nobody made."""
+    model = registry.model_with_values("ward", {"alpha_u": 0.1, "alpha_v": 0.4})
+    return Fit(model, "paint", "log", 0.1, 72, 9, 0.5, "converged")
+
+
+MATERIALS = {"table": table, "spectrum": spectrum, "brushed": brushed, "fit": fit}
+
+
+@cache
+def written():
+    """What each format that writes makes of the first of `MATERIALS` that it can hold, by name."""
+    found = {}
+    for module in filter(lambda m: hasattr(m, "write"), formats()):
+        name = module.__name__.rpartition(".")[2]
+        for make in MATERIALS.values():
+            stream = io.BytesIO()
+            try:
+                module.write(make(), stream)
+            except BrdfkitError:
+                continue
+            found[f"{name}, written"] = (f"paint{module.SUFFIXES[0]}", stream.getvalue())
+            break
+    return found
+
+
 FILES = {  # format or convention: (name, content)
     "merl": ("grey.binary", merl()),
     "cornell": ("paint.brdf", cornell()),
     "astm": ("paint.astm", astm()),
     "mini_diff": ("copper.astm", mini_diff()),
     "curet": ("abrdf.dat", curet()),
+    "alta": ("paint.dat", alta()),
+    "utia": ("paint.bin", utia()),
 }
 
 
@@ -82,7 +157,7 @@ def place(folder, kind, data=None, name=None):
 
     Returns the path to load.
     """
-    default, content = FILES[kind]
+    default, content = {**written(), **FILES}[kind]
     path = folder / (name or default)
     path.write_bytes(content if data is None else data)
     if kind != "curet":

@@ -58,7 +58,7 @@ def test_reads_plain_and_compressed(tmp_path, kind, suffix):
     assert packed.info["format"]
 
 
-@pytest.mark.parametrize("kind", FILES)
+@pytest.mark.parametrize("kind", sorted(FILES.keys() - {"utia"}))  # it has no header
 def test_content_decides_and_not_the_suffix(tmp_path, kind):
     right, wrong = place(tmp_path, kind), place(tmp_path, kind, name="misnamed.binary")
     assert_same(load(right).samples, load(wrong).samples)
@@ -141,7 +141,7 @@ def test_traps(tmp_path, kind, trap):
 @pytest.mark.parametrize("kind", FILES)
 def test_empty_and_blank(tmp_path, kind):
     refused(place(tmp_path, kind, b""), "is empty; fetch")
-    refused(place(tmp_path, kind, b"\n" * 5), "fetch|header|belong|VARS")
+    refused(place(tmp_path, kind, b"\n" * 5), "fetch|header|belong|VARS|#DIM")
 
 
 @pytest.mark.parametrize("suffix", [".gz", ".xz"])

@@ -1,77 +1,141 @@
-"""Damaged files: whatever the bytes, a `Measured` or a `BrdfkitError`, and no warning."""
+"""Damaged files: a sound `Measured` or `Fit`, or one sentence; no warning, little time and memory.
 
-import gzip
-import lzma
+Every small file × every mutation × a number of seeds, then hypothesis, which shrinks what it finds.
+"""
+
+import time
+import tracemalloc
 from functools import reduce
+from random import Random
 
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from small_files import FILES, place
+from mutations import EVERY, NUMBERS, WORDS
+from small_files import FILES, curet_table, place, written
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.formats import load
+from brdfkit.fitting.result import Fit
+from brdfkit.formats import formats, load
 from brdfkit.measured import Measured
 
 pytestmark = pytest.mark.quick
 
-TOKENS = [b"nan", b"inf", b"-1e999", b"1e308", b"-1", b"0", b",", b" ", b"\n", b"\r", b"#", b"_"]
-TOKENS += [b"\0", b"\xff\xfe", b"\xc3\xa4", "٣".encode(), b"VARS ", b"\x7f\xf0" * 4]
+CORPUS = {**FILES, **written(), "curet table": ("table.txt", curet_table())}
+LEAST_CASES = 20_000
+LONGEST = 2.0  # seconds a case
+MOST_MEMORY = 64e6  # bytes, of a file below 1 MB
+MEASURED_EVERY = 11  # cases; tracing slows them
+
+
+def cases(kind):
+    """How many seeds a small file gets with each mutation: a large one is read slowly."""
+    size = len(CORPUS[kind][1])
+    return 100 if size < 10_000 else 25 if size < 1_000_000 else 4
+
+
+def put(folder, kind, data):
+    """Write the damaged file; returns the path to load."""
+    if kind != "curet table":
+        return place(folder, kind, data)
+    path = place(folder, "curet")
+    (folder / "table.txt").write_bytes(data)
+    return path
+
+
+def load_or_sentence(path):
+    try:
+        found = load(path)
+    except BrdfkitError as error:
+        sentence = str(error)
+    else:
+        assert_sound(found)
+        return
+    assert sentence.endswith(".")
+    assert "\n" not in sentence
+    assert len(sentence) < len(str(path)) + 400
+    assert str(path).partition("#")[0] in sentence or "table.txt" in sentence
+
+
+def assert_sound(found):
+    assert str(found)
+    if isinstance(found, Fit):
+        assert np.isfinite(np.hstack(list(found.values.values()))).all()
+        return
+    assert isinstance(found, Measured)
+    samples = found.samples
+    valid = samples.at(samples.valid)
+    assert samples.valid.any()
+    assert samples.values.shape == (len(samples.valid), len(found.channels))
+    assert np.isfinite(valid.values).all()
+    for w in (valid.wi, valid.wo):
+        assert (w[:, 2] > 0).all()
+        np.testing.assert_allclose(np.linalg.norm(w, axis=1), 1, atol=1e-6)
+    if found.standard_error is not None:
+        assert np.isfinite(found.standard_error[samples.valid]).all()
+
+
+def within_limits(path, trace):
+    """`load_or_sentence` in little time and, where `trace` says so, in little memory."""
+    began = time.perf_counter()
+    if trace:
+        tracemalloc.start()
+    try:
+        load_or_sentence(path)
+        assert not trace or tracemalloc.get_traced_memory()[1] < MOST_MEMORY
+    finally:
+        tracemalloc.stop()
+    assert time.perf_counter() - began < LONGEST
+
+
+@pytest.mark.parametrize("mutation", EVERY, ids=lambda mutation: mutation.__name__)
+@pytest.mark.parametrize("kind", CORPUS)
+def test_damaged_files(tmp_path, kind, mutation):
+    for seed in range(cases(kind)):
+        data = mutation(Random(seed), CORPUS[kind][1])
+        path = put(tmp_path, kind, data)
+        try:
+            within_limits(path, trace=seed % MEASURED_EVERY == 0)
+        except Exception as error:
+            raise AssertionError(f"seed {seed}: {error!r}") from error
+
+
+def test_there_are_enough_cases(capsys):
+    total = sum(cases(kind) for kind in CORPUS) * len(EVERY)
+    with capsys.disabled():
+        print(f" {total:,} cases: {len(CORPUS)} files × {len(EVERY)} mutations × seeds", end=" ")
+    assert total >= LEAST_CASES
+
+
+# -- hypothesis -------------------------------------------------------------------------------
 
 # edits: where, as a share of the length; how many bytes go; what comes in their place
 place_in_file = st.one_of(st.floats(0, 1), st.floats(0, 0.02))
-insertion = st.one_of(st.sampled_from(TOKENS), st.binary(max_size=9))
+insertion = st.one_of(st.sampled_from(NUMBERS + WORDS), st.binary(max_size=9))
 edit = st.tuples(place_in_file, st.sampled_from([0, 1, 2, 8, 10**9]), insertion)
 fuzzing = settings(
-    deadline=None, max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 
 
-def damaged(content, edit):
+def edited(content, edit):
     where, removed, inserted = edit
     at = int(where * len(content))
     return content[:at] + inserted + content[at + removed :]
 
 
-def load_or_sentence(path):
-    try:
-        material = load(path)
-    except BrdfkitError as error:
-        sentence = str(error)
-    else:
-        assert_sound(material)
-        return
-    assert sentence.endswith(".")
-    assert "\n" not in sentence
-
-
-def assert_sound(material):
-    assert isinstance(material, Measured)
-    samples = material.samples
-    assert samples.valid.any()
-    assert samples.values.shape == (len(samples.valid), len(material.channels))
-    assert np.isfinite(samples.values[samples.valid]).all()
-    assert (samples.wi[samples.valid, 2] > 0).all()
-    assert str(material)
-
-
-@pytest.mark.parametrize("kind", FILES)
+@pytest.mark.parametrize("kind", CORPUS)
 @given(edits=st.lists(edit, min_size=1, max_size=4))
 @fuzzing
-def test_damaged_files(tmp_path, kind, edits):
-    load_or_sentence(place(tmp_path, kind, reduce(damaged, edits, FILES[kind][1])))
+def test_edited_files(tmp_path, kind, edits):
+    load_or_sentence(put(tmp_path, kind, reduce(edited, edits, CORPUS[kind][1])))
 
 
-@pytest.mark.parametrize("pack", [gzip.compress, lzma.compress])
-@given(edits=st.lists(edit, min_size=1, max_size=3))
-@fuzzing
-def test_damaged_compressed_files(tmp_path, pack, edits):
-    packed = pack(FILES["astm"][1])
-    load_or_sentence(place(tmp_path, "astm", reduce(damaged, edits, packed), "paint.astm.packed"))
+SUFFIXES = sorted({suffix for module in formats() for suffix in module.SUFFIXES})
 
 
-@given(data=st.binary(max_size=64), suffix=st.sampled_from([".binary", ".brdf", ".astm", ".dat"]))
+@given(data=st.binary(max_size=64), suffix=st.sampled_from(SUFFIXES))
 @fuzzing
 def test_any_bytes(tmp_path, data, suffix):
     load_or_sentence(place(tmp_path, "astm", data, "noise" + suffix))

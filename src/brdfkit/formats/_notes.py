@@ -2,36 +2,37 @@
 
 import numpy as np
 
+from brdfkit.formats._writing import angles
+
 SUSPICIOUS = 5  # times the next largest value
 
 
-def lone_point(angles, values):
+def lone_point(samples):
     """A note where the one sample near grazing mirror reflection stands out; it is kept.
 
-    Every file of Cornell's instrument has it. `angles` (n, 4): theta_i phi_i theta_s phi_s [rad].
+    Every file of Cornell's instrument has it.
     """
-    brightest = np.nan_to_num(values, nan=-np.inf).max(axis=1, initial=-np.inf)
-    if len(brightest) < 2:
-        return {}
+    samples = samples.at(samples.valid)
+    brightest = samples.values.max(axis=1)
     top = int(np.argmax(brightest))
-    theta_i, phi_i, theta_s, phi_s = np.degrees(angles[top])
-    next_largest = np.delete(brightest, top).max()
+    theta_i, phi_i, theta_s, phi_s = np.degrees(angles(samples))[:, top]
+    others = np.delete(brightest, top)
     near_grazing = theta_i > 79.5 and theta_s > 78.5 and abs(abs(phi_s - phi_i) - 180) < 0.5
-    if not near_grazing or brightest[top] <= SUSPICIOUS * next_largest:
+    if not near_grazing or not others.size or brightest[top] <= SUSPICIOUS * others.max():
         return {}
     return {
         "suspicious": f"the sample at theta_i {theta_i:.0f}°, theta_s {theta_s:.0f}° in the "
-        f"mirror's azimuth is {brightest[top] / next_largest:.1f} times the next largest"
+        f"mirror's azimuth is {brightest[top] / others.max():.1f} times the next largest"
     }
 
 
-def stopping_short(angles):
+def stopping_short(samples):
     """A note where rings of views, of one theta_i and one theta_s, leave out the mirror's azimuth.
 
     Cornell's instrument measured every ring up to Δφ = 180°, and its files are sorted so that
     whatever is cut off their end leaves such a ring.
     """
-    theta_i, phi_i, theta_s, phi_s = np.round(np.degrees(angles), 1).T
+    theta_i, phi_i, theta_s, phi_s = np.round(np.degrees(angles(samples)), 1)
     mirror = np.abs(np.mod(phi_s - phi_i, 360) - 180) < 0.5
     tilted = theta_s > 0.5
     rings = set(zip(theta_i[tilted], theta_s[tilted], strict=True))

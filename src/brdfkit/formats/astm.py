@@ -54,9 +54,10 @@ def read(source):
     if MINI_DIFF in header.get("SYSTEM_NAME", ""):
         valid = angles[:, 2] <= MINI_DIFF_LIMIT
         notes["masked"] = f"{(~valid).sum():,} rows beyond theta_s = 75°, not measured"
-    notes.update(lone_point(angles[valid], values[valid]))
     info = {"format": NAME, **header, **notes}
-    return source.measured(lines, angles, values, valid=valid, channels=channels, info=info)
+    found = source.measured(lines, angles, values, valid=valid, channels=channels, info=info)
+    found.info.update(lone_point(found.samples))
+    return found
 
 
 def write(obj, stream):
@@ -107,7 +108,7 @@ def _names(source, text, vars_line, rows):
         notes["columns"] = "VARS leaves out phi_s, which is the fourth column"
     if len(set(names)) != len(names) or not set(ANGLES) < set(names):
         raise source.error(
-            f"line {vars_line} names the columns {text[:80]!r}, but {', '.join(ANGLES)} and at "
+            f"line {vars_line} names the columns {repr(text)[:80]}, but {', '.join(ANGLES)} and at "
             "least one channel belong, each once; mend the line"
         )
     return names, notes

@@ -44,9 +44,10 @@ def read(source):
     angles, values = data[:, :4], data[:, 4:]
     lines = [n for n, _ in rows]
     channels = tuple(f"{w:.10g}nm" for w in wavelengths)
-    notes = {**_clipped(values), **lone_point(angles, values), **stopping_short(angles)}
-    info = {"format": NAME, **_description(source), **notes}
-    return source.measured(lines, angles, values, channels=channels, info=info)
+    info = {"format": NAME, **_description(source), **_clipped(values)}
+    found = source.measured(lines, angles, values, channels=channels, info=info)
+    found.info.update({**lone_point(found.samples), **stopping_short(found.samples)})
+    return found
 
 
 def write(obj, stream):

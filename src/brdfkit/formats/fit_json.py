@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import fields
+from typing import get_origin
 
 import brdfkit
 from brdfkit import registry
@@ -11,6 +12,7 @@ from brdfkit.fitting.result import Fit
 NAME = "brdfkit fit"
 SUFFIXES = (".json",)
 KEY = "brdfkit"
+FIELDS = [f for f in fields(Fit) if f.name != "model"]
 
 
 def sniff(head):
@@ -22,19 +24,15 @@ def read(source):
     """The `Fit` that `write` wrote."""
     try:
         record = json.loads(source.data)
-        model = record["model"]
-        found = record["fit"]
-        values = dict(record["parameters"])
-        known = {f.name for f in fields(Fit)} - {"model"}
-        rest = {name: found[name] for name in known if name in found}
+        label, values = str(record["model"]), dict(record["parameters"])
+        found = {f.name: _of_type(f.type, record["fit"][f.name]) for f in FIELDS}
     except (ValueError, KeyError, TypeError, RecursionError):
         raise source.error("is no fit that brdfkit saved, or is damaged; fit it again") from None
     try:
-        for name in ("at_bounds", "notes"):
-            rest[name] = tuple(rest.get(name, ()))
-        return Fit(model=registry.model_with_values(model, values), **rest)
+        return Fit(model=registry.model_with_values(label, values), **found)
     except (BrdfkitError, TypeError) as error:
-        raise source.error(f"cannot be restored ({str(error).rstrip('.')}); fit it again") from None
+        reason = str(error)[:200].rstrip(".")
+        raise source.error(f"cannot be restored ({reason}); fit it again") from None
 
 
 def write(fit, stream):
@@ -47,6 +45,16 @@ def write(fit, stream):
         KEY: brdfkit.__version__,
         "model": fit.model.label(),
         "parameters": fit.values,
-        "fit": {f.name: getattr(fit, f.name) for f in fields(fit) if f.name != "model"},
+        "fit": {f.name: getattr(fit, f.name) for f in FIELDS},
     }
     stream.write(json.dumps(record, indent=2).encode() + b"\n")
+
+
+def _of_type(kind, value):
+    """A value of JSON as the type that `Fit` declares, or a TypeError."""
+    kind = get_origin(kind) or kind
+    if isinstance(value, list) and kind is tuple:
+        return tuple(value)
+    if not isinstance(value, (int, float) if kind is float else kind):
+        raise TypeError
+    return value

@@ -7,7 +7,8 @@ phi_d_period), and either ``table`` ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, c
 
 How another format interpolates between its samples is a function, which no file holds. What it
 gives at the centres of a table's cells is stored beside the samples, as ``table``, and is the
-interpolation from then on: the samples stay what they are, between them it is as fine as the table.
+interpolation from then on: the samples stay what they are, between them it is as fine as the
+table, and reciprocal.
 
 The archive is not compressed inside, so that no small file asks for much memory; ``.npz.xz`` is
 compressed as a whole.

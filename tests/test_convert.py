@@ -1,0 +1,211 @@
+"""`brdfkit convert` and the writers: what is lost is told, and nothing is half-written."""
+
+import io
+import json
+import re
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from small_files import FILES, MATERIALS, brushed, fit, place, spectrum, table, written
+
+import brdfkit as bk
+from brdfkit import records
+from brdfkit.cli import main
+from brdfkit.converting import convert
+from brdfkit.errors import BrdfkitError
+from brdfkit.formats import HEAD, formats, load, save
+
+pytestmark = pytest.mark.quick
+WRITERS = {m.__name__.rpartition(".")[2]: m for m in formats() if hasattr(m, "write")}
+
+
+def run(*words):
+    return CliRunner().invoke(main, ["convert", *map(str, words)])
+
+
+# -- every writer -----------------------------------------------------------------------------
+
+
+def test_every_format_has_a_small_file():
+    """Else nothing would fuzz it: add it to FILES in small_files.py."""
+    recognised = [kind.partition(",")[0] for kind in {**FILES, **written()}]
+    missing = {m.__name__.rpartition(".")[2] for m in formats()} - set(recognised)
+    assert not missing
+
+
+@pytest.mark.parametrize("kind", {**FILES, **written()})
+def test_one_format_recognises_a_file_or_its_suffix_decides(kind):
+    name, data = {**FILES, **written()}[kind]
+    sniffed = [module for module in formats() if module.sniff(data[:HEAD])]
+    named = [m for m in formats() if any(name.endswith(s) for s in m.SUFFIXES)]
+    assert len(sniffed or named) == 1
+    assert (sniffed or named)[0] in named
+
+
+@pytest.mark.parametrize("kind", written())
+def test_what_is_written_is_read_and_written_alike(tmp_path, kind):
+    name, data = written()[kind]
+    (tmp_path / name).write_bytes(data)
+    save(load(tmp_path / name), tmp_path / f"again {name}")
+    again = (tmp_path / f"again {name}").read_bytes()
+    if "astm" in kind or "cornell" in kind or "alta" in kind:  # angles end in other last digits
+        load(tmp_path / f"again {name}")
+    else:
+        assert again == data
+
+
+@pytest.mark.parametrize("failure", [KeyboardInterrupt, MemoryError, OSError, BrdfkitError])
+@pytest.mark.parametrize("kind", WRITERS)
+def test_a_writer_that_fails_leaves_nothing_new(tmp_path, monkeypatch, kind, failure):
+    module = WRITERS[kind]
+    material = next(make() for make in MATERIALS.values() if writes(module, make()))
+    path = tmp_path / f"paint{module.SUFFIXES[0]}"
+    path.write_bytes(b"old")
+
+    class Broken:
+        def __init__(self, stream):
+            self.stream, self.room = stream, 100
+
+        def write(self, data):
+            self.stream.write(data[: self.room])
+            self.room -= len(data)
+            if self.room < 0:
+                raise failure("stop")
+
+    write = module.write
+    monkeypatch.setattr(module, "write", lambda obj, stream: write(obj, Broken(stream)))
+    expected = BrdfkitError if failure is OSError else failure
+    with pytest.raises(expected):
+        save(material, path)
+    assert [p.name for p in tmp_path.iterdir()] == [path.name]
+    assert path.read_bytes() == b"old"
+
+
+def writes(module, obj):
+    try:
+        module.write(obj, io.BytesIO())
+    except BrdfkitError:
+        return False
+    return True
+
+
+@pytest.mark.parametrize("kind", WRITERS)
+def test_a_writer_refuses_in_one_sentence(tmp_path, kind):
+    module = WRITERS[kind]
+    path = tmp_path / f"paint{module.SUFFIXES[0]}"
+    for obj in (table(), brushed(), fit(), {}):
+        if writes(module, obj):
+            continue
+        with pytest.raises(BrdfkitError, match=rf"^{path}: the format .* holds .*\.$"):
+            save(obj, path)
+    assert not any(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("suffix", [".brdf", ".astm"])
+def test_text_keeps_every_digit(tmp_path, suffix):
+    material = spectrum()
+    save(material, tmp_path / f"paint{suffix}")
+    back, valid = load(tmp_path / f"paint{suffix}"), material.samples.valid
+    assert back.channels == material.channels
+    np.testing.assert_array_equal(back.values, material.values[valid])
+    np.testing.assert_allclose(back.samples.wi, material.samples.wi[valid], atol=1e-15)
+    np.testing.assert_allclose(back.samples.wo, material.samples.wo[valid], atol=1e-15)
+
+
+# -- what is lost -----------------------------------------------------------------------------
+
+
+def test_nothing_lost(tmp_path):
+    for make in (table, spectrum):
+        assert str(convert(make(), tmp_path / "paint.npz")).endswith("paint.npz (nothing lost)")
+
+
+def test_what_is_lost_is_told(tmp_path):
+    told = convert(spectrum(), tmp_path / "paint.astm").changes
+    assert re.fullmatch(
+        r"valid 11 of 12 → 11 of 11; standard error 0\.\d+ sr⁻¹ in the median → none",
+        "; ".join(told),
+    )
+    told = "; ".join(convert(spectrum(), tmp_path / "paint.dat").changes)
+    assert "channels 450nm 550nm 650nm → R G B" in told
+    told = "; ".join(convert(table(), tmp_path / "paint.dat").changes)
+    assert "kind 3×2×4 table → samples" in told
+    assert "without note" in told
+    told = "; ".join(convert(spectrum(), tmp_path / "paint.bin").changes)
+    assert "kind samples → samples, anisotropic" in told
+    assert "valid 11 of 12 → 82,944 of 82,944" in told
+    assert "negative 9.09% of the valid → 0.00% of the valid" in told
+
+
+def test_every_fact_is_compared():
+    """A fact that `info` shows is one that `convert` compares."""
+    record = records.measured(spectrum(anisotropic=True))
+    other = {**record, "shape": (1, 1, 1), "anisotropic": False, "standard_error": None}
+    other |= {"channels": ("Y",), "samples": 1, "valid": 1, "negative": 0, "max_angle": 1}
+    other["brdf"] = dict.fromkeys(record["brdf"], 0)
+    before, after = records.facts(record), records.facts(other)
+    assert all(before[key] != after.get(key) for key in before)
+
+
+def test_a_model_is_evaluated(tmp_path):
+    ward = bk.models()["ward"](alpha_u=0.2, specular_reflectance=0.3)
+    done = convert(ward, tmp_path / "ward.npz")
+    assert done.changes == ("ward evaluated at 274,142 direction pairs",)
+    back = load(tmp_path / "ward.npz")
+    assert not back.anisotropic
+    np.testing.assert_allclose(back.values, ward.eval(back.samples.wi, back.samples.wo), rtol=1e-9)
+
+
+def test_an_anisotropic_model_stays_anisotropic(tmp_path):
+    ward = bk.models()["ward"](alpha_u=0.2, alpha_v=0.4)
+    convert(ward, tmp_path / "ward.bin")  # on UTIA's grid, without a table in between
+    back = load(tmp_path / "ward.bin")
+    expected = ward.eval(back.samples.wi, back.samples.wo)
+    np.testing.assert_allclose(back.values, np.tile(expected, 3), rtol=1e-12)
+    with pytest.raises(BrdfkitError, match="isotropic materials, and ward is anisotropic"):
+        convert(ward, tmp_path / "ward.binary")
+
+
+# -- the command ------------------------------------------------------------------------------
+
+
+def test_command(tmp_path):
+    path = place(tmp_path, "cornell")
+    done = run(path, tmp_path / "paint.npz")
+    assert done.exit_code == 0
+    assert done.output == f"written: {tmp_path}/paint.npz (nothing lost)\n"
+    done = run(path, tmp_path / "paint.dat", "--json")
+    told = json.loads(done.output)
+    assert told["written"] == f"{tmp_path}/paint.dat"
+    assert "channels 450nm 550nm 650nm → R G B" in told["changes"]
+    assert run(path, tmp_path / "paint.dat", "--quiet").output == ""
+
+
+def test_command_takes_models_with_parameters(tmp_path):
+    done = run("lambert", tmp_path / "grey.bin", "-p", "diffuse_reflectance=0.314159265")
+    assert done.exit_code == 0, done.output
+    np.testing.assert_allclose(load(tmp_path / "grey.bin").values, 0.1, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("source", "target", "match"),
+    [
+        ("paint.brdf", "paint.brdf", "is the file to read; name another to write"),
+        ("paint.brdf", "none/paint.npz", "there is no folder"),
+        ("paint.brdf", "paint.jpg", "no format with this suffix; written are ALTA"),
+        ("paint.brdf", "paint.json", "holds a fit, not a Measured"),
+        ("none.brdf", "paint.npz", "no such file"),
+        ("lambert", "paint.brdf", "lambert has the channels Y; choose another suffix"),
+    ],
+)
+def test_command_refuses(tmp_path, source, target, match):
+    place(tmp_path, "cornell")
+    before = {p.name: p.read_bytes() for p in tmp_path.iterdir()}
+    source = source if source == "lambert" else tmp_path / source
+    done = run(source, tmp_path / target)
+    assert done.exit_code == 2
+    assert re.search(match, done.output)
+    assert done.output.startswith("brdfkit: ")
+    assert done.output.count("\n") == 1
+    assert {p.name: p.read_bytes() for p in tmp_path.iterdir()} == before
