@@ -5,8 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
-from brdfkit.formats import load, save
+from brdfkit.directions import from_angles
+from brdfkit.files import contents
+from brdfkit.formats import HEAD, formats, load, save
 from brdfkit.measured import RGB
 
 DATA = Path(os.environ.get("BRDFKIT_DATA", "unset"))
@@ -14,6 +17,19 @@ pytestmark = pytest.mark.skipif(not DATA.is_dir(), reason="BRDFKIT_DATA names no
 
 CORNELL = sorted(DATA.glob("cornell/*.brdf")) + sorted(DATA.glob("cornell/*.astm"))
 MINI_DIFF = sorted(DATA.glob("minidiff_paints/*.astm*"))
+ALTA = sorted(DATA.glob("alta_retro/*.dat.xz"))
+SUFFIXES = {suffix for module in formats() for suffix in module.SUFFIXES}
+EVERY = [p for p in sorted(DATA.rglob("*.*")) if SUFFIXES & set(p.suffixes) and "npz" not in p.name]
+
+
+@pytest.mark.parametrize("path", EVERY, ids=lambda path: path.name)
+def test_every_file_is_read_by_one_format(path):
+    head = contents(path)[:HEAD]
+    assert sum(module.sniff(head) for module in formats()) == 1
+    material = load(f"{path}#1" if path.name == "abrdf.dat" else path)
+    valid = material.samples.at(material.samples.valid)
+    assert np.isfinite(valid.values).all()
+    assert valid.values.max() > 0
 
 
 def from_mirror(samples):
@@ -47,6 +63,23 @@ def test_cornell_notes(name, zeros, spike):
     assert float(material.info["clipped"].split("%")[0]) == pytest.approx(100 * zeros, abs=0.6)
     assert ("suspicious" in material.info) == spike
     assert material.channels == tuple(f"{nm}nm" for nm in range(400, 701, 10))
+
+
+def test_cornell_file_without_its_end_is_noted(tmp_path):
+    """Wherever it is cut, between two rows."""
+    lines = (DATA / "cornell" / "cayman.brdf").read_bytes().splitlines(keepends=True)
+    assert "incomplete" not in load(DATA / "cornell" / "cayman.brdf").info
+    first = len(lines) - 1439
+    for rows in (1, 2, 3, 300, 720, 1000, 1300, 1430, 1437, 1438):
+        (tmp_path / "cut.brdf").write_bytes(b"".join(lines[: first + rows]))
+        material = load(tmp_path / "cut.brdf")
+        assert len(material.values) == rows
+        assert "rings of views stop short of the mirror" in material.info["incomplete"]
+
+
+def test_cornell_rgb_file_has_the_lone_point_too():
+    info = load(DATA / "cornell" / "krylon_blue_RGB.astm").info
+    assert "theta_i 80°, theta_s 79° in the mirror's azimuth is 8.3 times" in info["suspicious"]
 
 
 def test_cornell_spectra_and_rgb_file_agree():
@@ -107,6 +140,49 @@ def test_curet_geometry():
     assert np.sin(theta_i[near]).sum() == pytest.approx(136.1973, abs=1e-3)
     assert np.degrees(theta_v).max() == pytest.approx(84, abs=0.5)  # the view goes lower
     assert np.degrees(theta_i).max() == pytest.approx(79, abs=0.5)
+
+
+@pytest.mark.parametrize("path", ALTA, ids=lambda path: path.name)
+def test_alta(path):
+    material = load(path)
+    samples = material.samples
+    assert material.channels == ("Y",)
+    assert not material.anisotropic
+    theta_l = np.degrees(np.arccos(samples.wi[:, 2]))
+    np.testing.assert_allclose(np.unique(theta_l.round(3)), [15, 30, 60])
+    # retroreflective: at 30° nothing is brighter than within 2° of the light
+    tilted = samples.at(samples.valid & (np.abs(theta_l - 30) < 1))
+    brightest = tilted.at([np.argmax(tilted.values[:, 0])])
+    assert np.sum(brightest.wi * brightest.wo) > np.cos(np.radians(2))
+
+
+def test_alta_cosine():
+    """Divided by cos theta_v, the values are reciprocal; so they would be in the other file."""
+    jaune, gray = (load(path) for path in ALTA)
+    assert "divided" in jaune.info["cosine"]
+    assert jaune.info["masked"].startswith("86 rows")
+    assert "not stated" in gray.info["PARAM_OUT"]
+    # 1 for a BRDF; 0.52, the cosines' ratio, for a BRDF × cos theta_v
+    assert np.median(exchanged(jaune)) == pytest.approx(1, abs=0.1)
+    assert np.median(exchanged(gray)) == pytest.approx(0.52, abs=0.1)
+
+
+def exchanged(material):
+    """f(15° → 60°) / f(60° → 15°) at azimuths all around, each from the nearest sample."""
+    phi = np.linspace(0, 2 * np.pi, 200)
+    a = from_angles(np.full(200, np.radians(15)), np.zeros(200))
+    b = from_angles(np.full(200, np.radians(60)), phi)
+    samples = material.samples
+
+    def nearest(wi_z, cosine, wo_z):
+        score = [samples.wi[:, 2], np.sum(samples.wi * samples.wo, axis=1), samples.wo[:, 2]]
+        points = np.stack([np.arccos(np.clip(s, -1, 1)) for s in score], axis=1)
+        wanted = [np.full(200, wi_z), cosine, np.full(200, wo_z)]
+        wanted = np.stack([np.arccos(w) for w in wanted], axis=1)
+        return samples.values[cKDTree(points).query(wanted)[1], 0]
+
+    cosine = np.sum(a * b, axis=1)
+    return nearest(a[0, 2], cosine, b[0, 2]) / nearest(b[0, 2], cosine, a[0, 2])
 
 
 def test_mini_diff_as_merl(tmp_path):
