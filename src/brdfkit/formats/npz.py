@@ -141,7 +141,7 @@ def _members(source):
         raise
     # a password, a version, a name or a number that zipfile cannot read
     except (zipfile.BadZipFile, RuntimeError, ValueError, EOFError, OSError, struct.error) as error:
-        raise source.error(f"is no whole zip archive ({error}); {REMEDY}") from error
+        raise source.error(f"is no whole zip archive ({str(error)[:100]}); {REMEDY}") from error
 
 
 def _array(source, name, data):
