@@ -192,6 +192,7 @@ def test_command_takes_models_with_parameters(tmp_path):
     ("source", "target", "match"),
     [
         ("paint.brdf", "paint.brdf", "is the file to read; name another to write"),
+        ("abrdf.dat#4", "abrdf.dat", "is the file to read"),
         ("paint.brdf", "none/paint.npz", "there is no folder"),
         ("paint.brdf", "paint.jpg", "no format with this suffix; written are ALTA"),
         ("paint.brdf", "paint.json", "holds a fit, not a Measured"),
@@ -201,6 +202,7 @@ def test_command_takes_models_with_parameters(tmp_path):
 )
 def test_command_refuses(tmp_path, source, target, match):
     place(tmp_path, "cornell")
+    place(tmp_path, "curet")
     before = {p.name: p.read_bytes() for p in tmp_path.iterdir()}
     source = source if source == "lambert" else tmp_path / source
     done = run(source, tmp_path / target)

@@ -122,6 +122,7 @@ TRAPS = {
     "period": (packed(table(), about=about(phi_d_period=float("nan"))), "phi_d_period is nan"),
     "huge": (packed(values=header((10**12, 3))), "member values is no whole array"),
     "overflowing": (packed(values=header((2**62, 2**62, 4))), "member values is no whole array"),
+    "two numbers in one": (packed(values=header("(3 6, 1)")), "member values is no whole array"),
     "empty": (packed(values=header((0, 3))), "member values is no whole array"),
     "objects": (packed(values=np.array([{}])), "member values is no whole array"),
     "complex": (packed(values=spectrum().values * 1j), "member values is no whole array"),

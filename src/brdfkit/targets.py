@@ -104,10 +104,11 @@ def write_figure(figure, path):
 
 
 def other_file(path, source):
-    """`path`, once it is sure that it can be written and is not the file `source` itself."""
+    """`path`, once it is sure that it can be written and is not the file that `source` names."""
     require_writable(path)
-    if path.exists() and Path(source).exists() and path.samefile(source):
-        raise BrdfkitError(f"{path} is the file to read; name another to write.")
+    for read in (source, source.rpartition("#")[0]):
+        if read and path.exists() and Path(read).exists() and path.samefile(read):
+            raise BrdfkitError(f"{path} is the file to read; name another to write.")
     return path
 
 

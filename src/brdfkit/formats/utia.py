@@ -52,7 +52,6 @@ def read(source):
     info = {
         "format": NAME,
         "unit": "as stored, which UTIA does not document as sr⁻¹",
-        "negative": f"{(raw < 0).sum():,} values, kept",
     }
     wi, wo = directions()
     return source.from_directions(
