@@ -44,15 +44,13 @@ def test_one_format_recognises_a_file_or_its_suffix_decides(kind):
 
 
 @pytest.mark.parametrize("kind", written())
-def test_what_is_written_is_read_and_written_alike(tmp_path, kind):
+def test_what_is_written_is_read_and_written_again(tmp_path, kind):
     name, data = written()[kind]
     (tmp_path / name).write_bytes(data)
     save(load(tmp_path / name), tmp_path / f"again {name}")
-    again = (tmp_path / f"again {name}").read_bytes()
-    if "astm" in kind or "cornell" in kind or "alta" in kind:  # angles end in other last digits
-        load(tmp_path / f"again {name}")
-    else:
-        assert again == data
+    load(tmp_path / f"again {name}")
+    if kind.partition(",")[0] in ("fit_json", "merl", "npz", "utia"):  # no directions to convert
+        assert (tmp_path / f"again {name}").read_bytes() == data
 
 
 @pytest.mark.parametrize("failure", [KeyboardInterrupt, MemoryError, OSError, BrdfkitError])
@@ -97,7 +95,7 @@ def test_a_writer_refuses_in_one_sentence(tmp_path, kind):
     for obj in (table(), brushed(), fit(), {}):
         if writes(module, obj):
             continue
-        with pytest.raises(BrdfkitError, match=rf"^{path}: the format .* holds .*\.$"):
+        with pytest.raises(BrdfkitError, match=rf"^{path}: [^\n]*\.$"):
             save(obj, path)
     assert not any(tmp_path.iterdir())
 
