@@ -154,7 +154,8 @@ def _array(source, name, data):
     array = np.frombuffer(data, dtype, offset=header.end()).reshape(shape)
     if dtype.kind == "b":
         return array.view(np.uint8) != 0
-    return array if dtype.kind == "u" else array.astype(float)
+    with np.errstate(invalid="ignore"):  # a NaN that signals
+        return array if dtype.kind == "u" else array.astype(float)
 
 
 def _archive(arrays):
