@@ -1,0 +1,123 @@
+"""Makes `docs/measured.md` and its sheet of balls: every measurement at hand, audited and rendered.
+
+BRDFKIT_DATA=FOLDER python docs/make_measured.py        # ten minutes
+
+The folder holds third-party files, which are shown and not shipped; brdfkit's own come first.
+"""
+
+import math
+import os
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+import brdfkit as bk
+from brdfkit import catalogue, scenes
+from brdfkit.checks.sampling import spread
+from brdfkit.checks.subject import INCIDENCES, Subject
+from brdfkit.directions import from_angles
+
+PAGE = Path(__file__).with_name("measured.md")
+SIZE, SPP, COLUMNS, CAPTION = 128, 121, 10, 18
+SAMPLES = 200_000
+TEXT = """# Measured materials
+
+Every measurement that was at hand when `docs/make_measured.py` ran, looked up and path-traced in
+the same light: brdfkit's own, then third-party files, which are shown here and not shipped.
+
+![A ball of each](measured.png)
+
+*std*: standard deviation of the weight of a sample over its mean, at 0, 30, 60, 75 and 85°; by a
+table of half vectors and a tenth of cosine samples. *albedo*: at 0 and 60°, mean of the channels.
+*open*: seconds from the file to a BSDF. *time*: of a picture, in units of
+an analytic Ward's. *doubts*: how many things `brdfkit info` finds to say.
+
+"""
+
+
+def files(folder):
+    """What `brdfkit.load` takes, of every measurement."""
+    names = list(catalogue.materials())
+    for path in sorted(p for p in Path(folder).rglob("*") if p.is_file()):
+        suffix = path.name.removesuffix(".xz").rpartition(".")[2]
+        if path.name == "abrdf.dat":
+            names += [f"{path}#{number}" for number in range(1, 62)]
+        elif suffix in ("astm", "brdf", "bsdf", "dat", "binary"):
+            names.append(str(path))
+    return names
+
+
+def pictured(bsdf):
+    """(linear picture, seconds) of a ball."""
+    import mitsuba as mi
+
+    scene = mi.load_dict(scenes.ball(bsdf, (SIZE, SIZE), SPP))
+    seconds = []
+    for seed in range(2):
+        began = time.perf_counter()
+        picture = np.array(scene.integrator().render(scene, seed=seed, spp=SPP))[..., :3]
+        seconds.append(time.perf_counter() - began)
+    return picture, min(seconds)
+
+
+def row(name, ward):
+    """(name, row of the page, picture) of a measurement; `ward`: seconds of a picture of Ward."""
+    began = time.perf_counter()
+    measured = bk.load(name)
+    material = measured.rgb
+    subject = Subject(material)
+    bsdf = subject.bsdf
+    seconds = time.perf_counter() - began
+    stds = " ".join(f"{spread(subject, d, SAMPLES):.2f}" for d in INCIDENCES)
+    albedos = [bk.albedo(material, from_angles(np.radians(d), 0.0)).mean() for d in (0, 60)]
+    picture, took = pictured(bsdf)
+    kind = "table" if measured.is_table else "samples"
+    doubts = len(measured.audit().findings())
+    cells = measured.name, kind, len(measured.channels), len(measured.values), stds
+    cells += (" ".join(f"{a:.2f}" for a in albedos), f"{seconds:.1f}", f"{took / ward:.1f}", doubts)
+    return measured.name, "| " + " | ".join(map(str, cells)) + " |", picture
+
+
+def sheet(pictures):
+    """One image of all pictures, with names."""
+    rows = math.ceil(len(pictures) / COLUMNS)
+    page = Image.new("RGB", (COLUMNS * SIZE, rows * (SIZE + CAPTION)), "white")
+    draw, font = ImageDraw.Draw(page), ImageFont.load_default(11)
+    for k, (name, picture) in enumerate(pictures.items()):
+        x, y = k % COLUMNS * SIZE, k // COLUMNS * (SIZE + CAPTION)
+        linear = np.clip(picture, 0, 1)
+        srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+        page.paste(Image.fromarray((srgb * 255 + 0.5).astype(np.uint8)), (x, y + CAPTION))
+        draw.text((x + 3, y + 3), name[:20], "black", font)
+    return page
+
+
+def main():
+    import mitsuba as mi
+
+    folder = os.environ.get("BRDFKIT_DATA")
+    if not folder:
+        print("BRDFKIT_DATA names no folder of measurements", file=sys.stderr)
+        return 2
+    mi.set_variant("llvm_ad_rgb")
+    _, ward = pictured(bk.models()["ward"]().scene_dict())
+    lines, pictures = [], {}
+    for name in files(folder):
+        title, line, picture = row(name, ward)
+        while title in pictures:  # one material, two files
+            title += "'"
+        lines.append(line)
+        pictures[title] = picture
+        print(line, flush=True)
+    heads = ["material", "kind", "channels", "values", "std", "albedo", "open [s]", "time", "doubts"]
+    table = ["| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads), *lines]
+    sheet(pictures).save(PAGE.with_suffix(".png"), optimize=True)
+    PAGE.write_text(TEXT + "\n".join(table) + "\n", encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
