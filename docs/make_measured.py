@@ -112,7 +112,17 @@ def main():
         lines.append(line)
         pictures[title] = picture
         print(line, flush=True)
-    heads = ["material", "kind", "channels", "values", "std", "albedo", "open [s]", "time", "doubts"]
+    heads = [
+        "material",
+        "kind",
+        "channels",
+        "values",
+        "std",
+        "albedo",
+        "open [s]",
+        "time",
+        "doubts",
+    ]
     table = ["| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads), *lines]
     sheet(pictures).save(PAGE.with_suffix(".png"), optimize=True)
     PAGE.write_text(TEXT + "\n".join(table) + "\n", encoding="utf-8")
