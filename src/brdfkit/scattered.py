@@ -2,8 +2,8 @@
 
 What is interpolated is the ratio of the samples to a guide, the `ggx` model that fits them best, by
 Shepard's inverse-distance mean of its logarithm over the nearest samples. So the result is
-positive, passes through the samples, has the guide's highlight where they are sparse, and beyond
-them continues as the guide does, Fresnel's rise at grazing angles and all.
+positive, passes through the samples, has the guide's highlight where they are sparse, and turns
+into the guide beyond them, Fresnel's rise at grazing angles and all.
 
 The space of an isotropic material is θ_h, sin θ_d and |cos θ_i - cos θ_o|: reciprocity and the
 mirror symmetry put the four equivalent pairs on one point. That of an anisotropic one is the half
@@ -13,6 +13,8 @@ channel that is not positive counts as a thousandth of the median.
 D. Shepard, "A two-dimensional interpolation function for irregularly-spaced data", ACM 1968.
 """
 
+import functools
+
 import numpy as np
 
 from brdfkit.directions import half_azimuth, to_half_difference
@@ -21,6 +23,8 @@ from brdfkit.table import Table
 SHAPE = (90, 45, 90)
 ANISOTROPIC_SHAPE = (36, 45, 23, 36)
 NEIGHBOURS = 12
+# So far from the samples the guide counts as much as one of them
+REACH = 0.3
 # Fewer samples determine no guide
 GUIDE, FEWEST = "ggx", 30
 # However white the diffuse term, a surface reflects this much more at the horizon
@@ -52,7 +56,7 @@ class Scattered:
         neighbours = np.arange(1, min(NEIGHBOURS, len(self.ratios)) + 1)
         distance, index = self.tree.query(self.coordinates(wi, wo), k=neighbours)
         weight = 1 / np.maximum(distance, 1e-6) ** 3
-        weight /= weight.sum(axis=1, keepdims=True)
+        weight /= weight.sum(axis=1, keepdims=True) + REACH**-3
         ratio = np.einsum("nk,nkc->nc", weight, self.ratios[index])
         return np.exp(ratio + self._logarithm(self.guide(wi, wo)))
 
@@ -75,14 +79,14 @@ def sampled(brdf, channels, shape):
 
 
 def _guide(samples, anisotropic):
-    """The BRDF (wi, wo) → (n, channels) of the model that fits `samples` best, or of none."""
+    """The BRDF (wi, wo) → (n, channels) of the model that fits `samples` best, or a constant."""
     from brdfkit.fitting import fit
     from brdfkit.fitting.loss import losses
     from brdfkit.fitting.problem import Problem
     from brdfkit.measured import Measured
 
     if len(samples.wi) < FEWEST or samples.values.max() <= 0:
-        return _no_guide
+        return functools.partial(_constant, np.median(samples.values, axis=0))
     grey = samples.values.mean(axis=1, keepdims=True)
     grey = Measured.from_samples(samples.wi, samples.wo, grey, channels=("Y",))
     options = {"starts": 1, "anisotropic": anisotropic, "max_angle": 90}
@@ -97,8 +101,8 @@ def _guide(samples, anisotropic):
     return type(found)(**shapes, **dict(zip(found.weights(), weights.T, strict=True))).eval
 
 
-def _no_guide(wi, wo):
-    return np.ones((len(wi), 1))
+def _constant(values, wi, wo):
+    return np.broadcast_to(values, (len(wi), len(values)))
 
 
 def isotropic_coordinates(wi, wo):
