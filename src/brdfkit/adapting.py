@@ -33,7 +33,7 @@ class Resolution:
     grid: int
 
 
-ISOTROPIC = Resolution(phi_i=0, theta_i=32, phi_m=1, theta_m=256, grid=96)
+ISOTROPIC = Resolution(phi_i=0, theta_i=40, phi_m=1, theta_m=256, grid=96)
 ANISOTROPIC = Resolution(phi_i=12, theta_i=20, phi_m=64, theta_m=128, grid=48)
 
 
@@ -86,7 +86,8 @@ def symmetry(f):
 
     def same(matrix):
         turned = _evaluated(f, wi @ matrix, wo @ matrix)
-        return np.allclose(turned, values, rtol=1e-4, atol=1e-6 * np.abs(values).max())
+        # nearly all: where scattered samples are as near as others, rounding chooses between them
+        return np.isclose(turned, values, rtol=1e-4).all(axis=1).mean() > 0.9
 
     if same(np.array([[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]])):
         return 0
