@@ -53,7 +53,9 @@ def load(path):
 
 
 def save(obj, path):
-    """Write a `Measured` or a `Fit` to `path` in the format of its suffix, whole or not at all.
+    """Write `obj` to `path` in the format of its suffix, whole or not at all.
+
+    `obj`: a `Measured`, a `Fit`, or for ``.bsdf`` also a model with values.
 
     ``.gz`` and ``.xz`` behind the suffix compress. Raises `BrdfkitError` when no format writes
     that suffix, the format cannot hold `obj`, or the folder cannot be written.

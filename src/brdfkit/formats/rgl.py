@@ -96,7 +96,8 @@ def write(obj, stream):
     """Write a `Measured`, or anything else with `.eval(wi, wo)`: a model, a fit.
 
     Wavelengths become the field `spectra`, all else `rgb`, where an achromatic material is grey.
-    Negative values, which `eval` does not give, are lost.
+    For Mitsuba's RGB variants save `Measured.rgb`. Negative values, which `eval` does not give,
+    are lost.
     """
     from brdfkit.adapting import adapted
 
@@ -146,12 +147,6 @@ def _checked(source, arrays, layout):
     """The arrays of `layout` in double precision, once they are possible."""
     sizes = {"1": 1, "c": 3} if "rgb" in layout else {"1": 1}
     found = {name: _shaped(source, arrays, name, layout[name], sizes) for name in layout}
-    for name, array in found.items():
-        if not np.isfinite(array).all():
-            raise source.error(
-                f"field {name!r} has {(~np.isfinite(array)).sum():,} values that are not finite; "
-                f"{REMEDY}"
-            )
     for name, (rule, holds) in RULES.items():
         if name in found and not holds(found[name]):
             raise source.error(f"field {name!r} should {rule}; {REMEDY}")
@@ -159,7 +154,7 @@ def _checked(source, arrays, layout):
 
 
 def _shaped(source, arrays, name, letters, sizes):
-    """An array whose dimensions agree with `sizes` by letter, to which it adds its own."""
+    """A finite array whose dimensions agree with `sizes` by letter, to which it adds its own."""
     if name not in arrays:
         raise source.error(f"has no field {name!r}, which an RGL file needs; {REMEDY}")
     array = arrays[name]
@@ -171,6 +166,11 @@ def _shaped(source, arrays, name, letters, sizes):
     if array.shape != belong:
         raise source.error(
             f"field {name!r} is {_times(array.shape)}, where {_times(belong)} belong; {REMEDY}"
+        )
+    finite = np.isfinite(array)
+    if not finite.all():
+        raise source.error(
+            f"field {name!r} has {(~finite).sum():,} values that are not finite; {REMEDY}"
         )
     return array.astype(float)
 
