@@ -167,7 +167,7 @@ def _shaped(source, arrays, name, letters, sizes):
         raise source.error(
             f"field {name!r} is {_times(array.shape)}, where {_times(belong)} belong; {REMEDY}"
         )
-    finite = np.isfinite(array)
+    finite = np.isfinite(array)  # before it is converted: a signalling NaN warns
     if not finite.all():
         raise source.error(
             f"field {name!r} has {(~finite).sum():,} values that are not finite; {REMEDY}"
