@@ -12,7 +12,8 @@ from brdfkit.directions import from_angles
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.result import Fit
 from brdfkit.formats import formats
-from brdfkit.measured import Measured, Samples
+from brdfkit.measured import Measured
+from brdfkit.samples import Samples
 
 MIRROR_PHI = 3.141593
 MERL_SHAPE = (3, 2, 4)

@@ -1,37 +1,16 @@
 """A measured material: a BRDF given by samples or by a table, with what is known of it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.samples import Samples, require_some
 from brdfkit.table import Table
 
 RGB = ("R", "G", "B")
-
-
-@dataclass(frozen=True, eq=False)
-class Samples:
-    """Direction pairs with their BRDF.
-
-    `wi`, `wo`: unit vectors (n, 3); `values`: (n, channels) in sr⁻¹, as measured, negative
-    ones too; `valid`: (n,), False where the reader or the format says that nothing was measured;
-    `weight`: (n,), how much each counts in a loss: 1 for a scattered sample, the width in
-    theta_h for a table's cell, so that a table counts evenly over Rusinkiewicz's angles however
-    finely it divides the highlight.
-    """
-
-    wi: np.ndarray
-    wo: np.ndarray
-    values: np.ndarray
-    valid: np.ndarray
-    weight: np.ndarray
-
-    def at(self, rows):
-        """These `rows` (mask or indices) only."""
-        return Samples(*(getattr(self, f.name)[rows] for f in fields(self)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,25 +57,13 @@ class Measured:
         (n, channels). `lookup(wi, wo)`: values between the samples, where the format defines
         them; without it `scattered.py` interpolates.
         """
-        wi, wo, values = (np.array(a, float, ndmin=2) for a in (wi, wo, values))
-        if wi.shape != wo.shape or wi.shape[1] != 3 or values.shape != (len(wi), len(channels)):
-            raise BrdfkitError(
-                f"{name}: wi {wi.shape} and wo {wo.shape} should be (n, 3), "
-                f"values {values.shape} should be (n, {len(channels)}) for the channels {channels}."
-            )
-        with np.errstate(invalid="ignore", divide="ignore"):
-            wi, wo = (w / np.linalg.norm(w, axis=1, keepdims=True) for w in (wi, wo))
-        seen = np.isfinite(values).all(axis=1) & (wi[:, 2] > 0) & (wo[:, 2] > 0)
-        if valid is not None:
-            seen &= np.asarray(valid, bool)
-        _require_some(seen, name)
-        samples = Samples(wi, wo, values, seen, np.ones(len(seen)))
+        samples = Samples.checked(wi, wo, values, valid, channels, name)
         return cls(
             name,
             tuple(channels),
             dict(info or {}),
             anisotropic,
-            _errors(standard_error, values, name),
+            _errors(standard_error, samples.values, name),
             _samples=samples,
             _lookup=lookup,
         )
@@ -122,7 +89,7 @@ class Measured:
                 f"{name}: a table of shape {values.shape} was given; it should be "
                 f"([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, {len(channels)})."
             )
-        _require_some(np.isfinite(values).all(axis=-1), name)
+        require_some(np.isfinite(values).all(axis=-1), name)
         table = Table(values, phi_d_period)
         errors = _errors(standard_error, values, name)
         return cls(name, tuple(channels), dict(info or {}), table.anisotropic, errors, _table=table)
@@ -142,11 +109,7 @@ class Measured:
         """The direction pairs and values; those of a table are its cell centres."""
         if self._samples is not None:
             return self._samples
-        wi, wo = (w.reshape(-1, 3) for w in self._table.directions())
-        values = self._table.values.reshape(-1, len(self.channels))
-        valid = np.isfinite(values).all(axis=1) & (wi[:, 2] > 0) & (wo[:, 2] > 0)
-        weight = np.broadcast_to(self._table.theta_h_widths, self._table.shape)
-        return Samples(wi, wo, values, valid, weight.reshape(-1))
+        return Samples.of_table(self._table)
 
     @cached_property
     def table(self):
@@ -263,10 +226,3 @@ def _errors(standard_error, values, name):
             "the values."
         )
     return errors.reshape(-1, values.shape[-1])
-
-
-def _require_some(valid, name):
-    if not valid.any():
-        raise BrdfkitError(
-            f"{name}: no valid measurement is left (all masked, not finite or below the surface)."
-        )

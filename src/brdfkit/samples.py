@@ -1,0 +1,69 @@
+"""Samples of a BRDF: direction pairs with what was measured there."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """Direction pairs with their BRDF.
+
+    `wi`, `wo`: unit vectors (n, 3); `values`: (n, channels) in sr⁻¹, as measured, negative
+    ones too; `valid`: (n,), False where the reader or the format says that nothing was measured;
+    `weight`: (n,), how much each counts in a loss: 1 for a scattered sample, the width in
+    theta_h for a table's cell, so that a table counts evenly over Rusinkiewicz's angles however
+    finely it divides the highlight.
+    """
+
+    wi: np.ndarray
+    wo: np.ndarray
+    values: np.ndarray
+    valid: np.ndarray
+    weight: np.ndarray
+
+    @classmethod
+    def checked(cls, wi, wo, values, valid, channels, name):
+        """Of any arrays: directions are normalised, and what cannot be is not `valid`.
+
+        Raises `BrdfkitError` for arrays that do not belong together, and where nothing is left.
+        """
+        wi, wo, values = (np.array(a, float, ndmin=2) for a in (wi, wo, values))
+        if wi.shape != wo.shape or wi.shape[1] != 3 or values.shape != (len(wi), len(channels)):
+            raise BrdfkitError(
+                f"{name}: wi {wi.shape} and wo {wo.shape} should be (n, 3), "
+                f"values {values.shape} should be (n, {len(channels)}) for the channels {channels}."
+            )
+        with np.errstate(invalid="ignore", divide="ignore"):
+            wi, wo = (w / np.linalg.norm(w, axis=1, keepdims=True) for w in (wi, wo))
+        seen = _seen(wi, wo, values)
+        if valid is not None:
+            seen &= np.asarray(valid, bool)
+        require_some(seen, name)
+        return cls(wi, wo, values, seen, np.ones(len(seen)))
+
+    @classmethod
+    def of_table(cls, table):
+        """A table's cells, at their centres."""
+        wi, wo = (w.reshape(-1, 3) for w in table.directions())
+        values = table.values.reshape(len(wi), -1)
+        weight = np.broadcast_to(table.theta_h_widths, table.shape).reshape(-1)
+        return cls(wi, wo, values, _seen(wi, wo, values), weight)
+
+    def at(self, rows):
+        """These `rows` (mask or indices) only."""
+        return Samples(*(getattr(self, f.name)[rows] for f in fields(self)))
+
+
+def require_some(valid, name):
+    """Raise `BrdfkitError` unless one is valid."""
+    if not valid.any():
+        raise BrdfkitError(
+            f"{name}: no valid measurement is left (all masked, not finite or below the surface)."
+        )
+
+
+def _seen(wi, wo, values):
+    return np.isfinite(values).all(axis=1) & (wi[:, 2] > 0) & (wo[:, 2] > 0)
