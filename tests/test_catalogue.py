@@ -14,6 +14,8 @@ from brdfkit.files import contents
 from brdfkit.formats import load
 
 NAMES = sorted(catalogue.materials())
+TABULATED = [n for n in NAMES if catalogue.materials()[n].file.endswith(".binary.xz")]
+MEASURED = [n for n in NAMES if n not in TABULATED]
 LIMIT = 400_000  # bytes: they are in the repository and in the wheel
 
 
@@ -60,12 +62,36 @@ def random_pairs(n, seed=0):
     return wi, wo
 
 
+def assert_same(values, errors, others, other_errors):
+    """Two measurements of the same values, in their green channel; the others are alike.
+
+    Every cell within 8 standard errors, which allows for the long tails of cells that few paths
+    reach; the means of all differences, and of their squares less the errors', within 4.5 of their
+    own errors, which chance exceeds once in 150,000 times. Both are relative to the values, not to
+    each cell's errors: a cell whose samples missed the rare bright paths is low, and sure of it.
+    """
+    known = np.isfinite(values[..., 1])
+    values, errors, others, other_errors = (
+        x[known, 1] for x in (values, errors, others, other_errors)
+    )
+    assert len(values) > 100
+    total = np.hypot(errors, other_errors)
+    # weighted by the errors, for then the difference of both does not depend on their mean
+    share = np.mean(errors**2) / np.mean(total**2)
+    mean = (1 - share) * values + share * others
+    difference = (values - others) / mean
+    assert (np.abs(values - others) < 8 * total).all()
+    for x in (difference, difference**2 - (total / mean) ** 2):
+        assert abs(x.mean()) < 4.5 * x.std() / np.sqrt(len(x))
+
+
 @pytest.mark.quick
 def test_index_and_files_are_one_to_one(make):
     files = {file.name for file in catalogue.folder().glob("*.xz")}
     entries = [material.file for material in catalogue.materials().values()]
     assert sorted(entries) == sorted(files)
-    assert sorted(make.MATERIALS) == NAMES
+    assert sorted(make.TABULATED) == TABULATED
+    assert sorted(make.MEASURED) == MEASURED
     readme = (catalogue.folder() / "README.md").read_text(encoding="utf-8")
     assert all(f"| `{name}` |" in readme for name in NAMES)
 
@@ -121,12 +147,35 @@ def test_all_above_the_surface_is_known_and_positive(measured, name):
 
 @pytest.mark.quick
 @pytest.mark.parametrize("name", NAMES)
-def test_reciprocal_and_mirror_symmetric(measured, name):
+def test_reciprocal(measured, name):
     wi, wo = random_pairs(5000)
+    assert np.allclose(measured[name].eval(wo, wi), measured[name].eval(wi, wo), rtol=1e-9)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", TABULATED)
+def test_mirror_symmetric(measured, name):
+    wi, wo = random_pairs(5000)
+    flip = np.array([1, -1, 1])
     values = measured[name].eval(wi, wo)
-    assert np.allclose(measured[name].eval(wo, wi), values, rtol=1e-9)
-    flip = [1, -1, 1]
     assert np.allclose(measured[name].eval(wi * flip, wo * flip), values, rtol=1e-3)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", MEASURED)
+def test_mirror_symmetric_within_the_errors(measured, name):
+    """Both halves of an isotropic table are independent measurements of the same values."""
+    material = measured[name]
+    values = material.table.values
+    errors = material.standard_error.reshape(values.shape)
+    assert np.array_equal(np.isnan(errors), np.isnan(values))
+    if not material.anisotropic:
+        half = values.shape[2] // 2
+        assert_same(
+            values[:, :, :half],
+            errors[:, :, :half],
+            *(x[:, :, : -half - 1 : -1] for x in (values, errors)),
+        )
 
 
 @pytest.mark.quick
@@ -149,7 +198,9 @@ def test_albedo_is_at_most_one(measured, name, theta_i):
 @pytest.mark.quick
 @pytest.mark.parametrize("name", NAMES)
 def test_encoded_again_the_content_is_the_same(measured, make, name):
-    assert make.encoded(measured[name].table.values) == contents(catalogue.path(name))
+    material = measured[name]
+    again = make.packed(material) if name in MEASURED else make.encoded(material.table.values)
+    assert again == contents(catalogue.path(name))
 
 
 @pytest.mark.quick
@@ -161,18 +212,32 @@ def test_rounding_is_as_fine_as_it_says(make):
     assert make.rounded(np.array([0.0, -1.0])).tolist() == [0, -1]
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", TABULATED)
 def test_the_program_makes_what_is_shipped(measured, make, variant, name):
     made, shipped = make.tabulate(name), measured[name].table.values
     assert np.array_equal(np.isnan(made), np.isnan(shipped))
     assert np.allclose(made, shipped, rtol=1e-4, equal_nan=True)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", MEASURED)
+def test_measured_again_the_values_agree(measured, make, variant, name):
+    """Other samples of the same specimen, at every third cell along each axis: of a third as many
+    cells, the centres are among the table's."""
+    shipped = measured[name].table
+    third = tuple(slice(1, None, 3) for _ in shipped.shape)
+    cells = ",".join(str(n // 3) for n in shipped.shape)
+    again = make.measured(name, "--cells", cells, "--seed", "1", "--error", "0.1", "--spp", "4096")
+    assert np.allclose(again.table.directions()[0], shipped.directions()[0][third], atol=1e-12)
+    errors = measured[name].standard_error.reshape(shipped.values.shape)[third]
+    other = again.standard_error.reshape(again.table.values.shape)
+    assert_same(shipped.values[third], errors, again.table.values, other)
+
+
+@pytest.mark.parametrize("name", TABULATED)
 def test_a_lookup_gives_the_bsdf_between_the_cells(measured, make, variant, name):
     wi, wo = random_pairs(20_000, seed=1)
     wi, wo = (w[to_half_difference(wi, wo)[1] < np.radians(75)] for w in (wi, wo))
-    bsdf = variant.load_dict(make.MATERIALS[name]())
+    bsdf = variant.load_dict(make.TABULATED[name]())
     error = np.abs(measured[name].eval(wi, wo) / make.evaluate(bsdf, wi, wo) - 1).max(axis=1)
     assert np.median(error) < 0.006
     assert np.percentile(error, 99) < 0.05

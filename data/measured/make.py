@@ -1,32 +1,41 @@
-"""Makes the tables of this folder: Mitsuba's own BSDFs, tabulated as a MERL file would hold them.
+"""Makes the materials of this folder, which are nobody else's, and so can be shipped.
 
-    python data/measured/make.py               # all of them
+    python data/measured/make.py               # all of them, in some ten minutes
     python data/measured/make.py car_paint     # one
 
-None of them is one of brdfkit's models, so a fit has something to miss; nobody but this project
-has a right in them, so they can be shipped and tested against. To add one, write a function like
-those below and an entry in `index.toml`.
+Those of `TABULATED` are Mitsuba's own BSDFs, tabulated as a MERL file would hold them. The average
+over both orders of the directions stands in a cell, as a MERL table is reciprocal and Mitsuba's
+BSDFs need not be. Those of `MEASURED` come from `brdfkit measure`, with their standard errors.
+None is one of brdfkit's models, so a fit has something to miss. To add one, write a function or a
+command line like those below, and an entry in `index.toml`.
 
-The average over both orders of the directions stands in a cell, as a MERL table is reciprocal
-and Mitsuba's BSDFs need not be. Values are rounded to 16 significant bits (relative error at
-most 1.6e-5), or they would not compress. Equal versions of Mitsuba and LLVM give equal bytes.
+Values are rounded, or they would not compress: tabulated ones to 16 significant bits (relative
+error at most 1.6e-5), measured ones to 11 bits (5e-4, far below their noise), their errors to 5.
+Equal versions of Mitsuba and LLVM give equal bytes, of measured ones on equal processors.
 """
 
 import hashlib
+import io
 import lzma
+import shlex
 import struct
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from brdfkit.cli import main
 from brdfkit.files import written
+from brdfkit.formats import load, npz
 from brdfkit.formats.merl import NOT_MEASURED, SCALE
+from brdfkit.measured import Measured
 from brdfkit.table import Table
 
 # Twice as many phi_d as theta_d cells: MERL's way to say that phi_d spans half a circle
 SHAPE = (72, 36, 72)
 BITS = 16
+MEASURED_BITS, ERROR_BITS = 11, 5
 # xz -9 for an array of doubles: differences of neighbours, aligned to 8 bytes
 FILTERS = [
     {"id": lzma.FILTER_DELTA, "dist": 8},
@@ -84,7 +93,18 @@ def dusty_gold():
     return blend(gold, dust, 0.35)
 
 
-MATERIALS = {make.__name__: make for make in (red_plastic, car_paint, dusty_gold)}
+TABULATED = {make.__name__: make for make in (red_plastic, car_paint, dusty_gold)}
+
+# What stands behind `brdfkit measure`
+MEASURED = {
+    "blasted_gold": "gaussian --slope 0.3 --facets Au --facet-alpha 0.15 --error 0.04",
+    "plaster": "gaussian --slope 0.8 --facets paint:0.85,0.8,0.7 --error 0.03",
+    "satin_plastic": "gaussian --slope 0.15 --facets plastic:0.02,0.25,0.2 --facet-alpha 0.1",
+    "brushed_aluminium": "brushed --slope 0.3 --stretch 10 --facets Al --facet-alpha 0.15 "
+    "--cells 24,15,12,18",
+    "gold_brocade": "woven --slope 0.2 --thickness 0.7 --facets plastic:0.35,0.02,0.06 --facets Au "
+    "--facet-alpha 0.15 --cells 24,15,12,18 --error 0.1",
+}
 
 
 def rgb(*values):
@@ -103,7 +123,7 @@ def tabulate(name):
     """
     import mitsuba as mi
 
-    bsdf = mi.load_dict(MATERIALS[name]())
+    bsdf = mi.load_dict(TABULATED[name]())
     values = np.full((*SHAPE, 3), np.nan)
     wi, wo = Table(values).directions()
     above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
@@ -129,19 +149,49 @@ def encoded(values):
     return struct.pack("<3i", *SHAPE) + planes.tobytes()
 
 
-def rounded(x):
-    """To `BITS` significant bits."""
+def measured(name, *more):
+    """What `brdfkit measure` finds, with `more` words on its command line."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder, f"{name}.npz")
+        words = ["measure", *shlex.split(MEASURED[name]), *more, "--quiet", "--output", str(path)]
+        main(words, standalone_mode=False)
+        return load(path)
+
+
+def packed(material):
+    """The bytes of a `.npz` file with the values and errors of a measurement, rounded."""
+    values = material.table.values
+    errors = material.standard_error.reshape(values.shape)
+    stream = io.BytesIO()
+    npz.write(
+        Measured.from_table(
+            rounded(values, MEASURED_BITS),
+            name=material.name,
+            info=material.info,
+            standard_error=rounded(errors, ERROR_BITS),
+        ),
+        stream,
+    )
+    return stream.getvalue()
+
+
+def rounded(x, bits=BITS):
+    """To significant bits."""
     mantissa, exponent = np.frexp(x)
-    return np.ldexp(np.round(np.ldexp(mantissa, BITS)), exponent - BITS)
+    return np.ldexp(np.round(np.ldexp(mantissa, bits)), exponent - bits)
 
 
 if __name__ == "__main__":
     import mitsuba as mi
 
     mi.set_variant("llvm_ad_rgb")
-    for name in sys.argv[1:] or MATERIALS:
-        path = Path(__file__).with_name(f"{name}.binary.xz")
+    for name in sys.argv[1:] or [*TABULATED, *MEASURED]:
+        if name in TABULATED:
+            suffix, data = ".binary.xz", encoded(tabulate(name))
+        else:
+            suffix, data = ".npz.xz", packed(measured(name))
+        path = Path(__file__).with_name(name + suffix)
         with written(path) as beside, lzma.open(beside, "wb", filters=FILTERS) as stream:
-            stream.write(encoded(tabulate(name)))
+            stream.write(data)
         checksum = hashlib.sha256(path.read_bytes()).hexdigest()
         print(f"{path.name}: {path.stat().st_size:,} bytes, sha256 {checksum}")
