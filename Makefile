@@ -14,7 +14,7 @@ $(VENV)/.ready: pyproject.toml
 	@touch $@
 
 demo: $(VENV)/.ready
-	$(RUN)/brdfkit fit car_paint -m ggx+ggx -m ggx -m ward_duer --render -o demo
+	$(RUN)/brdfkit fit brushed_aluminium -m ward_duer:form=bounded -m ashikhmin_shirley -m ggx --render -o demo
 	@echo "The pictures: demo/render.png (to look at), demo/render.exr (all parts, linear)"
 
 test: lint

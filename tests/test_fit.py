@@ -181,6 +181,20 @@ def test_anisotropy_comes_back_where_it_is_asked_for():
 
 
 @pytest.mark.quick
+def test_anisotropy_is_searched_where_it_was_measured():
+    """Grooves along x, ten times as steep across; the other material knows no azimuth."""
+    brushed = bk.load("brushed_aluminium")
+    found = bk.fit("ward_duer", brushed)
+    assert found.values["alpha_v"] > 2 * found.values["alpha_u"]
+    assert found.settings["anisotropic"]
+    tied = bk.fit("ward_duer", brushed, anisotropic=False)
+    assert tied.values["alpha_u"] == tied.values["alpha_v"]
+    assert found.loss < 0.5 * tied.loss
+    blasted = bk.fit("ward_duer", bk.load("blasted_gold"))
+    assert blasted.values["alpha_u"] == blasted.values["alpha_v"]
+
+
+@pytest.mark.quick
 @pytest.mark.parametrize(("c_x", "c_y"), [(0.5, 0.5), (-0.9, 0.4), (-0.6, -0.9)])
 def test_lafortunes_other_lobes_come_back(c_x, c_y):
     """Towards the light and across it, though the default looks the other way."""

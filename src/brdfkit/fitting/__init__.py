@@ -30,7 +30,7 @@ def fit(
     starts=16,
     bounds=None,
     fixed=None,
-    anisotropic=False,
+    anisotropic=None,
     max_angle=80.0,
     seed=0,
     progress=None,
@@ -44,8 +44,9 @@ def fit(
     ``"bisquare"``, by which outliers lose their say; `starts`: the default and points spread over
     the bounds; `bounds`: other bounds by name, ``{"alpha_u": (0.01, 0.5)}``; `fixed`: shape
     parameters held at a value, ``{"f0": 0.04}``; `anisotropic`: search ``alpha_v`` and its like
-    too, which otherwise follow ``alpha_u``; `max_angle`: samples with an angle at or beyond it
-    [degrees] are left out; `progress`: called with (done, total). Returns a `Fit`.
+    too, which otherwise follow ``alpha_u``: by default where the measurement is anisotropic;
+    `max_angle`: samples with an angle at or beyond it [degrees] are left out; `progress`: called
+    with (done, total). Returns a `Fit`.
 
     >>> print(fit("ward", load("paint.binary")))    # doctest: +SKIP
     """
@@ -56,6 +57,7 @@ def fit(
     samples = selected(data, max_angle)
     determined = model.determined(samples)
     given = {n: v for n, v in determined.items() if n not in (bounds or {})} | (fixed or {})
+    anisotropic = data.anisotropic if anisotropic is None else anisotropic
     space = _space(model, bounds or {}, given, anisotropic)
     if starts < 1 or seed < 0:
         raise BrdfkitError(f"starts = {starts} should be at least 1, seed = {seed} at least 0.")
