@@ -13,7 +13,8 @@ import numpy as np
 from PIL import Image
 
 import brdfkit as bk
-from brdfkit import records, registry
+from brdfkit import registry
+from brdfkit.commands.models import choices, example
 
 FOLDER = Path(__file__).with_name("models")
 SIZE, SPP = 320, 128
@@ -46,7 +47,7 @@ def pages():
     """File name → text of all pages."""
     rows = []
     for name, model in models().items():
-        options = "<br>".join(f"`{n}`: {records.choices(o)}" for n, o in model.options.items())
+        options = "<br>".join(f"`{n}`: {choices(o)}" for n, o in model.options.items())
         rows.append((f"[{name}]({name}.md)", docstring(model)[1], options, ball(model, SIZE // 2)))
     index = paragraphs("# The models", INDEX, table("model, what it is, options, defaults", rows))
     return {"README.md": index} | {f"{name}.md": page(m) for name, m in models().items()}
@@ -63,9 +64,7 @@ def page(model):
     name, (title, sentence, text), shown = model.type_name(), docstring(model), forms(model)
     balls = table(", ".join(f"`{f.label()}`" for f in shown), [[ball(f, SIZE) for f in shown]])
     parameters = [parameter(*item) for item in model.parameters.items()]
-    options = [
-        (f"`{n}`", o.default, records.choices(o), o.meaning) for n, o in model.options.items()
-    ]
+    options = [(f"`{n}`", o.default, choices(o), o.meaning) for n, o in model.options.items()]
     return paragraphs(
         *(f"# {title}", sentence, balls, text),
         table("parameter, default, bounds, meaning, per channel", parameters),
@@ -118,7 +117,7 @@ def picture(form):
 def use(model):
     """Examples, with the first option where there is one."""
     option = next(iter(model.options), None)
-    form = registry.model(records.example(model, option)) if option else model
+    form = registry.model(example(model, option)) if option else model
     entries = {"type": form.type_name()} | ({option: getattr(form, option)} if option else {})
     for name in [*form.weights()[:1], *form.shapes()[:1]]:
         entries[name] = form.parameters[name].default

@@ -19,10 +19,10 @@ from brdfkit.auditing.coverage import coverage, is_near
 from brdfkit.auditing.noise import noise
 from brdfkit.auditing.ratios import grazing, retroreflection
 from brdfkit.auditing.spikes import spikes
+from brdfkit.commands.info import record
 from brdfkit.directions import from_angles
 from brdfkit.formats import load
 from brdfkit.measured import Measured
-from brdfkit.records import audit as record
 from brdfkit.records import plain
 from brdfkit.table import Table
 

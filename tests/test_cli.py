@@ -18,7 +18,6 @@ import brdfkit as bk
 from brdfkit import catalogue, registry
 from brdfkit.cli import main
 
-COMMANDS = ("models", "info", "data", "fit", "render", "check")
 SMALL = ("--size", "16", "--spp", "2")
 SHAPE = (6, 4, 8)
 CELLS = 3 * np.prod(SHAPE)
@@ -427,7 +426,15 @@ def _used():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("words", [[], *([c] for c in COMMANDS)], ids=lambda w: w[0] if w else "")
+def test_a_command_is_a_file():
+    files = {file.stem for file in Path(bk.__file__).parent.glob("commands/[!_]*.py")}
+    assert set(main.commands) == files == {command.name for command in main.commands.values()}
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    "words", [[], *([c] for c in main.commands)], ids=lambda w: w[0] if w else ""
+)
 def test_help_imports_nothing_heavy(words):
     heavy = {"mitsuba", "drjit", "scipy", "numpy", "rich", "matplotlib"}
     code = f"""

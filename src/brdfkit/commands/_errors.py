@@ -1,6 +1,5 @@
-"""What the commands share: how errors are told, and options."""
+"""How the command line tells errors: in one sentence."""
 
-import functools
 import sys
 import warnings
 from contextlib import contextmanager, nullcontext
@@ -59,45 +58,3 @@ def say(message):
 
 def _say_warning(message, *_args, **_kwargs):
     say(message)
-
-
-def output_options(command):
-    """The options of every command that prints a result; it gets a `console`."""
-
-    @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-    @click.option("-q", "--quiet", is_flag=True, help="No progress, no tables: only errors.")
-    @functools.wraps(command)
-    def with_output(*args, as_json, quiet, **kwargs):
-        from brdfkit.console import Console
-
-        return command(*args, console=Console(as_json, quiet), **kwargs)
-
-    return with_output
-
-
-def render_options(command):
-    """The options of every command that renders."""
-    for name, default, least, meaning in (
-        ("--seed", 0, 0, "Seed of the samples."),
-        ("--size", 512, 1, "Side of a picture [pixels]."),
-        ("--spp", 64, 1, "Samples per pixel."),
-    ):
-        kind = click.IntRange(min=least)
-        option = click.option(
-            name, default=default, type=kind, metavar="N", show_default=True, help=meaning
-        )
-        command = option(command)
-    return command
-
-
-def values_option(command):
-    """The option that sets parameters of models."""
-    option = click.option(
-        "-p",
-        "--set",
-        "values",
-        multiple=True,
-        metavar="PARAMETER=VALUE",
-        help="A parameter of the models named, a number or R,G,B; repeat it.",
-    )
-    return option(command)

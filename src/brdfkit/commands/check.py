@@ -1,0 +1,38 @@
+"""`brdfkit check`: whether materials are what a renderer and a fit need."""
+
+import click
+
+from brdfkit.commands._options import output_options, values_option
+
+
+@click.command()
+@click.argument("things", nargs=-1, required=True, metavar="NAME|FILE.py|FIT|FILE...")
+@values_option
+@output_options
+def check(things, values, console):
+    """Check that models sample, conserve energy and differentiate."""
+    from brdfkit.checks import check as check_thing
+    from brdfkit.commands._targets import to_check
+
+    reports = []
+    for thing in [t for name in things for t in to_check(name, values)]:
+        with console.progress(f"check {thing.name}") as progress:
+            reports.append(check_thing(thing, progress=progress))
+    _print_reports(reports, console)
+    click.get_current_context().exit(0 if all(reports) else 1)
+
+
+def _print_reports(reports, console):
+    if console.as_json:
+        console.json([_record(report) for report in reports])
+        return
+    for report in reports:
+        console.out.print(str(report))
+
+
+def _record(report):
+    """What the checks of one material found, for JSON."""
+    findings = [
+        {"check": f.check, "passed": bool(f.passed), "figure": f.figure} for f in report.findings
+    ]
+    return {"name": report.name, "passed": bool(report), "findings": findings}

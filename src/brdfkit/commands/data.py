@@ -1,0 +1,116 @@
+"""`brdfkit data`: public measurements, and their way here."""
+
+from dataclasses import fields
+
+import click
+
+from brdfkit.commands._options import output_options
+
+
+@click.group(invoke_without_command=True)
+@output_options
+@click.pass_context
+def data(context, console):
+    """List public measurements, and download them.
+
+    \b
+    brdfkit data                                the collections
+    brdfkit data list merl                      the materials of one
+    brdfkit data get merl/gold-metallic-paint   download a material
+    brdfkit fit merl/gold-metallic-paint        use it by its name
+
+    Files are kept in your cache folder. Nothing else downloads anything.
+    """
+    from brdfkit.catalogue import materials
+    from brdfkit.public_collections import cache, collections
+
+    if context.invoked_subcommand is None:
+        _print_collections(collections(), materials(), cache(), console)
+
+
+@data.command("list")
+@click.argument("collection")
+@output_options
+def data_list(collection, console):
+    """List the materials of a COLLECTION, and how to get each."""
+    from brdfkit import public_collections
+
+    _print_collection(public_collections.collection(collection), console)
+
+
+@data.command("get")
+@click.argument("names", nargs=-1, required=True, metavar="NAME...")
+@output_options
+def data_get(names, console):
+    """Download materials, and check their checksums.
+
+    A NAME is as in merl/gold-metallic-paint. An interrupted download goes on where it stopped,
+    except that of a file out of an archive (merl).
+    """
+    from brdfkit.downloading import get
+    from brdfkit.public_collections import collection
+
+    collections = {c.name: c for c in map(collection, names)}
+    files = {}
+    for name in names:
+        with console.progress(f"download {name}") as progress:
+            files[name] = get(name, progress)
+    _print_files(files, collections.values(), console)
+
+
+def _print_collections(collections, materials, folder, console):
+    """The public collections, behind the `materials` that come with brdfkit."""
+    if console.as_json:
+        console.json({name: _record(c) for name, c in collections.items()})
+        return
+    table = console.table("collection", "what it is", ">here", ">to download", "licence")
+    licence = next(iter(materials.values())).licence
+    table.add_row("brdfkit's own", ", ".join(materials), str(len(materials)), "", licence)
+    for name, c in collections.items():
+        download = sum(bool(listed.url) for listed in c.files.values())
+        table.add_row(name, c.title, str(len(c.here())), str(download or "by hand"), c.licence)
+    console.out.print(table)
+    console.out.print("The materials of a collection: brdfkit data list NAME")
+    console.out.print(f"Downloaded files lie in {folder}")
+
+
+def _print_collection(collection, console):
+    """The materials of a collection."""
+    if console.as_json:
+        console.json(_record(collection))
+        return
+    files, here = collection.files, collection.here()
+    table = console.table("material", ">size [MB]", "")
+    for name in sorted({*files, *here}):
+        size = files[name].bytes if name in files else here[name].stat().st_size
+        state = "here" if name in here else "to download" if files[name].url else "by hand"
+        table.add_row(name, f"{size / 1e6:.1f}" if size else "", state)
+    if table.rows:
+        console.out.print(table)
+    console.out.print(str(collection))
+    if not any(listed.url for listed in files.values()):
+        console.out.print(f"To use one, {collection.by_hand()}.")
+
+
+def _print_files(files, collections, console):
+    """Where the downloaded files are, and the terms of those who published them."""
+    if console.as_json:
+        console.json({"files": files, "terms": {c.name: c.terms for c in collections}})
+        return
+    for name, file in files.items():
+        console.out.print(f"{name}: {file}")
+    for collection in collections:
+        console.out.print(str(collection))
+
+
+def _record(collection):
+    """A collection, with where its files lie or are to be had, for JSON."""
+    here = collection.here()
+    files = {
+        name: {"file": listed.file, "bytes": listed.bytes or None, "url": listed.url or None}
+        for name, listed in collection.files.items()
+    }
+    for name, file in here.items():
+        files.setdefault(name, {"file": file.name})["path"] = file
+    texts = {f.name: getattr(collection, f.name) for f in fields(collection) if f.name != "files"}
+    return {**texts, "folder": collection.folder, "files": files}

@@ -1,0 +1,109 @@
+"""`brdfkit fit`: models fitted to a measured material, and compared."""
+
+from pathlib import Path
+
+import click
+
+from brdfkit.commands._errors import say
+from brdfkit.commands._options import output_options, render_options
+from brdfkit.commands.render import path_trace
+
+
+@click.command()
+@click.argument("file")
+@click.option("-m", "--model", "names", multiple=True, help="A model; repeat it. Default: all.")
+@click.option("--loss", default="log", show_default=True, help="cosine, log, cbrt, plain.")
+@click.option("--robust", help="Weigh outliers down: bisquare, huber, cauchy ...")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results.")
+@click.option("--render", "rendered", is_flag=True, help="Path-trace the measurement and the fits.")
+@click.option("--max-angle", default=80.0, show_default=True, help="Use angles below [degrees].")
+@render_options
+@output_options
+def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed, console):
+    """Fit models to a measured FILE, or to a material of brdfkit's."""
+    from brdfkit import registry
+    from brdfkit.commands._targets import fit_file, measured, results
+    from brdfkit.comparing import compare
+
+    names = list(dict.fromkeys(names or registry.models()))
+    for name in names:
+        registry.model(name)
+    with console.progress(f"read {file}"):
+        material = measured(file)
+    if output is None and rendered:
+        output = Path(material.name)
+
+    how = {"loss": loss, "robust": robust, "max_angle": max_angle, "seed": seed}
+    psnr = {}
+    with results(output):
+        fits = _fit_each(names, material, how, output, console)
+        interrupted = len(fits) < len(names)
+        written = [fit_file(output, f) for f in fits] if output else []
+        if rendered and not interrupted:
+            picture = path_trace([material, *fits], output / "render.exr", spp, size, seed, console)
+            psnr = picture.psnr()
+            written += [output / "render.exr", output / "render.png"]
+    with console.progress("compare"):
+        comparison = compare(material, fits, max_angle)
+    _print_fits(material, fits, comparison, psnr, written, console)
+    if interrupted:
+        click.get_current_context().exit(130)
+
+
+def _fit_each(names, material, how, output, console):
+    """The fits, best first, each saved as soon as it is there; Ctrl-C leaves out the rest."""
+    from brdfkit.commands._targets import fit_file
+    from brdfkit.fitting import fit as fit_model
+    from brdfkit.formats import save
+
+    fits = []
+    try:
+        for number, name in enumerate(names, 1):
+            with console.progress(f"fit {name} ({number} of {len(names)})") as progress:
+                found = fit_model(name, material, **how, progress=progress)
+            if output is not None:
+                save(found, fit_file(output, found))
+            fits.append(found)
+    except KeyboardInterrupt:
+        if not fits:
+            raise
+        say(f"interrupted; {len(fits)} of {len(names)} fits are finished.")
+    return sorted(fits, key=lambda f: f.loss)
+
+
+def _print_fits(material, fits, comparison, psnr, written, console):
+    if console.as_json:
+        records = [_record(f, comparison, psnr) for f in fits]
+        console.json({"material": material.name, "fits": records, "written": written})
+        return
+    for found in fits:
+        console.out.print(str(found))
+        console.out.print()
+    losses = [f">{name}" for name in next(iter(comparison.errors.values()))]
+    image = [">PSNR [dB]"] if psnr else []
+    title = f"{material.name}: errors"
+    table = console.table("model", *losses, *image, ">time [s]", title=title)
+    for found in fits:
+        errors = [f"{e:.5f}" for e in comparison.errors[found.name].values()]
+        image = [f"{psnr[found.name]:.1f}"] if psnr else []
+        table.add_row(found.name, *errors, *image, f"{found.seconds:.2f}")
+    console.out.print(table)
+    console.written(written)
+
+
+def _record(found, comparison, psnr):
+    """A fit, with its errors under every loss and the PSNR of its picture, for JSON."""
+    return {
+        "model": found.name,
+        "parameters": found.values,
+        "loss": found.loss_name,
+        "error": found.loss,
+        "errors": comparison.errors[found.name],
+        "psnr": psnr.get(found.name),
+        "at_bounds": found.at_bounds,
+        "notes": found.notes,
+        "evaluations": found.evaluations,
+        "samples": found.samples,
+        "seconds": found.seconds,
+        "message": found.message,
+    }

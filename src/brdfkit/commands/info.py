@@ -1,0 +1,83 @@
+"""`brdfkit info`: the audit of a measured material."""
+
+from dataclasses import asdict, fields
+from pathlib import Path
+
+import click
+
+from brdfkit.commands._options import output_options
+from brdfkit.errors import BrdfkitError
+
+
+@click.command()
+@click.argument("file", required=False)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="Picture to write: a slice, the lobes and the albedo; .png, .pdf or .svg.",
+)
+@output_options
+def info(file, output, console):
+    """Audit a measured FILE: what it holds and what is doubtful.
+
+    How much of the hemisphere was measured, noise, reciprocity, albedo, spikes and more. Without
+    FILE, list the materials that brdfkit brings; `brdfkit data` lists public ones.
+    """
+    from brdfkit import catalogue
+    from brdfkit.commands._targets import figure_file, measured, write_figure
+
+    if file is None and output:
+        raise BrdfkitError("A picture shows a measurement: name a FILE.")
+    if file is None:
+        _print_materials(catalogue.materials(), console)
+        return
+    output = output and figure_file(output)
+    with console.progress(f"read {file}"):
+        material = measured(file)
+    with console.progress("audit"):
+        audit = material.audit()
+    if output:
+        with console.progress("draw"):
+            write_figure(audit.picture(), output)
+    print_audit(audit, [output] if output else [], console)
+
+
+def print_audit(found, written, console):
+    """What is in a measured material, and what is doubtful; then the files `written`."""
+    if console.as_json:
+        console.json(record(found, written))
+        return
+    table = console.table("", "")
+    table.show_header = False
+    for key, value in found.rows().items():
+        table.add_row(key, value)
+    table.add_section()
+    for key, value in found.data.info.items():
+        table.add_row(key.replace("_", " "), str(value))
+    console.out.print(found.name, style="bold")
+    console.out.print(table)
+    for finding in found.findings():
+        console.out.print(f"! {finding}")
+    console.written(written)
+
+
+def record(found, written):
+    """An audit, and the files `written`, for JSON."""
+    return {
+        **{f.name: getattr(found, f.name) for f in fields(found) if f.name != "data"},
+        "findings": found.findings(),
+        "info": found.data.info,
+        "written": written,
+    }
+
+
+def _print_materials(materials, console):
+    if console.as_json:
+        console.json({name: asdict(m) for name, m in materials.items()})
+        return
+    table = console.table("material", "what it is", "licence")
+    for name, m in materials.items():
+        table.add_row(name, m.title, m.licence)
+    console.out.print(table)
+    console.out.print("Use a name where a file is asked for: brdfkit fit NAME")

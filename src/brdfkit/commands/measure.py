@@ -1,0 +1,61 @@
+"""`brdfkit measure`: the virtual goniometer."""
+
+from pathlib import Path
+
+import click
+
+from brdfkit.commands._errors import say
+from brdfkit.commands._options import output_options
+from brdfkit.commands.info import print_audit
+
+
+@click.command()
+@click.argument("geometry", metavar="gaussian|brushed|woven")
+@click.option("--slope", default=0.3, show_default=True, help="Its root mean square.")
+@click.option("--stretch", type=float, help="brushed: length of a groove, in its width.")
+@click.option("--thickness", type=float, help="woven: of a yarn, in its width.")
+@click.option(
+    "--facets",
+    multiple=True,
+    default=["Au"],
+    show_default=True,
+    metavar="MATERIAL",
+    help="A metal, paint:R,G,B or plastic:R,G,B; for warp and weft give two.",
+)
+@click.option("--facet-alpha", default=0.2, show_default=True, help="Roughness of the facets.")
+@click.option("--specimen", default=0, show_default=True, help="Seed of the surface.")
+@click.option("--cells", metavar="N,N,N", help="Of theta_h, theta_d, phi_d; phi_h before them.")
+@click.option("--error", default=0.05, show_default=True, help="Relative standard error wanted.")
+@click.option("--spp", default=16384, show_default=True, help="Samples a cell at most.")
+@click.option("--seed", default=0, show_default=True, help="Seed of the samples.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Default: GEOMETRY.npz.")
+@output_options
+def measure(
+    geometry, facets, facet_alpha, specimen, cells, error, spp, seed, output, console, **relief
+):
+    """Measure the BRDF of a surface by tracing paths through its microgeometry.
+
+    A virtual goniometer. It writes a table with a standard error for every value. The defaults
+    measure rough gold, in about a minute. Ctrl-C ends it early, with larger errors.
+    """
+    from brdfkit.commands import _measuring as words
+    from brdfkit.formats import save
+    from brdfkit.goniometer import measure as measure_surface
+
+    # relief: slope, stretch, thickness
+    output = words.measurement_file(output or Path(f"{geometry}.npz"))
+    surface = words.surface(geometry, **relief, seed=specimen)
+    made_of, cells = words.facets(facets, facet_alpha), words.cells(cells)
+    context = click.get_current_context()
+    notes = {"command": words.command(context.params)}
+    with console.progress(f"measure {geometry}") as progress:
+        found = measure_surface(
+            surface, made_of, cells, error, spp, seed, output.stem, notes, progress
+        )
+    save(found, output)
+    with console.progress("audit"):
+        audit = found.audit()
+    print_audit(audit, [output], console)
+    if "interrupted" in found.info:
+        say(f"interrupted; measured with {found.info['interrupted']}.")
+        context.exit(130)

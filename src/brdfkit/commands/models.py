@@ -1,0 +1,95 @@
+"""`brdfkit models`: the list of models, and the page of one."""
+
+import inspect
+import math
+import sys
+
+import click
+
+from brdfkit.commands._options import output_options
+
+
+@click.command()
+@click.argument("name", required=False)
+@output_options
+def models(name, console):
+    """List the models, or show the page of one."""
+    from brdfkit import registry
+
+    if name is None:
+        _print_list(registry.models(), console)
+    else:
+        _print_page(registry.model(name), console)
+
+
+def _print_list(models, console):
+    if console.as_json:
+        console.json({name: _parameters(model) for name, model in models.items()})
+        return
+    table = console.table("model", "what it is", "parameters")
+    for name, model in models.items():
+        table.add_row(name, _page(model)[0].partition(": ")[2], ", ".join(model.parameters))
+    console.out.print(table)
+    console.out.print("One model's page: brdfkit models NAME")
+
+
+def _print_page(model, console):
+    if console.as_json:
+        console.json({model.type_name(): _parameters(model)})
+        return
+    console.out.print("\n".join(_page(model)))
+    table = console.table("parameter", ">default", ">from", ">to", "meaning")
+    for name, p in model.parameters.items():
+        low, high = ("" if math.isinf(v) else f"{v:g}" for v in p.bounds)
+        default = p.follows or f"{p.default:g}"
+        per_channel = " (per channel)" if p.linear else ""
+        table.add_row(name, default, low, high, p.meaning + per_channel)
+    console.out.print(table)
+    if model.options:
+        table = console.table("option", "default", "choices", "meaning")
+        for name, o in model.options.items():
+            table.add_row(name, str(o.default), choices(o), o.meaning)
+        console.out.print(table)
+        with_another = example(model, next(iter(model.options)))
+        console.out.print(f"With another choice: brdfkit fit FILE -m {with_another}")
+    console.out.print(
+        f'Mitsuba: {{"type": "{model.type_name()}", ...}}; every parameter may be a texture.'
+    )
+
+
+def _page(model):
+    """The lines of a model's page: its file's docstring."""
+    return inspect.cleandoc(sys.modules[model.__module__].__doc__ or model.__name__).splitlines()
+
+
+def _parameters(model):
+    """The parameters of a model by name, for JSON."""
+    return {
+        name: {
+            "default": p.default,
+            "bounds": p.bounds,
+            "follows": p.follows,
+            "linear": p.linear,
+            "meaning": p.meaning,
+        }
+        for name, p in model.parameters.items()
+    }
+
+
+def choices(option):
+    """The choices of an option in words."""
+    if option.choices is None:
+        return "any"
+    if isinstance(option.default, int):
+        return f"{min(option.choices)} to {max(option.choices)}"
+    return ", ".join(map(str, option.choices))
+
+
+def example(model, option):
+    """The label of a model with another choice."""
+    declared = model.options[option]
+    if declared.choices is None:
+        return declared.default
+    after = declared.choices.index(declared.default) + 1
+    other = declared.choices[after % len(declared.choices)]
+    return f"{model.type_name()}:{option}={other}"

@@ -1,0 +1,73 @@
+"""`brdfkit render`: path-traced pictures."""
+
+from pathlib import Path
+
+import click
+
+from brdfkit.commands._options import output_options, render_options, values_option
+from brdfkit.errors import BrdfkitError
+
+
+@click.command()
+@click.argument("things", nargs=-1, required=True, metavar="FIT|NAME|FILE|SCENE.xml...")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="Picture to write, .exr (with a .png beside it) or .png. Default: NAME.png.",
+)
+@values_option
+@render_options
+@output_options
+def render(things, output, values, spp, size, seed, console):
+    """Path-trace fits, models, measured files or a Mitsuba scene.
+
+    Several are rendered side by side; the first is the reference of the differences. A scene is
+    rendered alone, in its own size.
+    """
+    from brdfkit.commands._targets import material, picture_file
+    from brdfkit.rendering import render_scene
+
+    scenes = [t for t in things if t.lower().endswith(".xml")]
+    if scenes:
+        if len(things) > 1 or values:
+            raise BrdfkitError("A scene is rendered alone and as it is: name one SCENE.xml.")
+        output = picture_file(output or Path(scenes[0]).with_suffix(".png").name)
+        with console.progress("render") as progress:
+            picture = render_scene(scenes[0], spp=spp, seed=seed, progress=progress)
+        picture.write(output)
+    else:
+        found = [material(thing, values) for thing in things]
+        output = picture_file(output or f"{found[0].name}.png")
+        picture = path_trace(found, output, spp, size, seed, console)
+    _print_picture(picture, output, console)
+
+
+def path_trace(things, output, spp, size, seed, console):
+    """Render `things` side by side, and write the picture."""
+    from brdfkit.rendering import render as render_things
+
+    with console.progress("render") as progress:
+        picture = render_things(things, spp=spp, size=size, seed=seed, progress=progress)
+    picture.write(output)
+    return picture
+
+
+def _print_picture(picture, path, console):
+    """What was rendered, and where it is."""
+    written = [path]
+    if path.suffix.lower() == ".exr":
+        written += [path.with_suffix(".png")]
+    if console.as_json:
+        console.json(
+            {
+                "pictures": list(picture.pictures),
+                "psnr": picture.psnr(),
+                "spp": picture.spp,
+                "seconds": picture.seconds,
+                "written": written,
+            }
+        )
+        return
+    console.out.print(str(picture))
+    console.written(written)
