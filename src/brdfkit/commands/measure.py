@@ -33,7 +33,7 @@ from brdfkit.commands.info import print_audit
 def measure(
     geometry, facets, facet_alpha, specimen, cells, error, spp, seed, output, console, **relief
 ):
-    """Measure the BRDF of a surface by tracing paths through its microgeometry.
+    """Measure a surface's BRDF by path-tracing its microgeometry.
 
     A virtual goniometer. It writes a table with a standard error for every value. The defaults
     measure rough gold, in about a minute. Ctrl-C ends it early, with larger errors.
