@@ -59,7 +59,7 @@ class Console:
             print(json.dumps(plain(record), indent=2))
 
     def table(self, *columns, title=None):
-        """An empty table; a column whose name begins with ">" is flush right."""
+        """An empty table; a column whose name begins with ">" is flush right, for numbers."""
         from rich.box import SIMPLE_HEAD
         from rich.table import Table
         from rich.text import Text
@@ -67,9 +67,10 @@ class Console:
         title = title and Text(title)
         table = Table(box=SIMPLE_HEAD, title=title, title_justify="left", pad_edge=False)
         for column in columns:
-            side = "right" if column.startswith(">") else "left"
-            name = Text(column.removeprefix(">"))
-            table.add_column(name, justify=side, no_wrap=not table.columns)
+            number = column.startswith(">")
+            name = Text(column.removeprefix(">").replace(" [", "\n["))
+            side = "right" if number else "left"
+            table.add_column(name, justify=side, no_wrap=number or not table.columns)
         return table
 
     def written(self, paths):
