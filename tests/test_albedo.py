@@ -259,7 +259,6 @@ def file_of(name):
     return importlib.import_module(bk.models()[name].__module__)
 
 
-@pytest.mark.quick
 def test_constants_of_the_distributions():
     """Cook-Torrance's is 1, with the 1/π; Torrance-Sparrow's only for small m; the shifted gamma's
     is 1 up to the quadrature of its own constant."""
