@@ -26,7 +26,6 @@ from brdfkit.measured import Measured
 from brdfkit.records import plain
 from brdfkit.table import Table
 
-
 SHAPE = 45, 23, 36
 GGX = models()["ggx"](alpha_u=0.2, diffuse_reflectance=0.2, specular_reflectance=0.5)
 PAINTS = "minidiff_paints"

@@ -20,7 +20,6 @@ from brdfkit.fitting.result import Fit
 from brdfkit.formats import formats, load
 from brdfkit.measured import Measured
 
-
 CORPUS = {**FILES, **written(), "curet table": ("table.txt", curet_table())}
 LEAST_CASES = 20_000
 LONGEST = 2.0  # seconds of the processor, a case
