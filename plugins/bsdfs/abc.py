@@ -17,7 +17,7 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import v_groove
+from brdfkit.microfacet import Visible, v_groove
 from brdfkit.model import Model, shape, weight
 from brdfkit.numerics import expm1, log1p
 from brdfkit.vectors import dot, half_vector
@@ -86,4 +86,4 @@ class ABC(Model):
         def energy(wi):
             return 4 / dr.pi * facets.integral() * fresnel(self.ior, wi.z)
 
-        return lambertian(), Lobe(self.specular, HalfVector(facets), energy)
+        return lambertian(), Lobe(self.specular, HalfVector(Visible(facets)), energy)

@@ -15,7 +15,7 @@ only the product k_s F₀ is told by measurements.
 import drjit as dr
 
 from brdfkit.lobes import Cosine, HalfVector, Lobe, lambertian
-from brdfkit.microfacet import CosinePower, fifth_power, schlick
+from brdfkit.microfacet import CosinePower, Visible, fifth_power, schlick
 from brdfkit.model import Model, follows, option, shape, weight
 from brdfkit.vectors import dot, half_vector
 
@@ -41,7 +41,7 @@ class AshikhminShirley(Model):
         return power * schlick(self.f0, cos_d) / (4 * cos_d * dr.maximum(wi.z, wo.z))
 
     def lobes(self):
-        sampling = HalfVector(CosinePower(self.exponent_u, self.exponent_v))
+        sampling = HalfVector(Visible(CosinePower(self.exponent_u, self.exponent_v)))
         specular = Lobe(self.specular, sampling, lambda wi: schlick(self.f0, wi.z))
         if self.diffuse == "lambert":
             return lambertian(), specular

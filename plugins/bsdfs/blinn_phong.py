@@ -15,7 +15,7 @@ Shows plastics; no Fresnel effect, no retro-reflection.
 import drjit as dr
 
 from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import CosinePower
+from brdfkit.microfacet import CosinePower, Visible
 from brdfkit.model import Model, follows, option, shape, weight
 from brdfkit.vectors import half_vector
 
@@ -38,6 +38,6 @@ class BlinnPhong(Model):
         return self.constant() * facets.power(half_vector(wi, wo))
 
     def lobes(self):
-        sampling = HalfVector(CosinePower(self.exponent, self.exponent_v))
+        sampling = HalfVector(Visible(CosinePower(self.exponent, self.exponent_v)))
         brightest = 4 if self.normalisation == "printed" else 1
         return lambertian(), Lobe(self.specular, sampling, lambda wi: brightest * wi.z)

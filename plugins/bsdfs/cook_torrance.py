@@ -9,7 +9,7 @@ plastics of one roughness; no anisotropy.
 """
 
 from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import Beckmann, schlick, v_groove
+from brdfkit.microfacet import Beckmann, Visible, schlick, v_groove
 from brdfkit.model import Model, shape, weight
 from brdfkit.vectors import dot, half_vector
 
@@ -27,5 +27,5 @@ class CookTorrance(Model):
         return D * v_groove(wi, wo, h) * F / (wi.z * wo.z)
 
     def lobes(self):
-        sampling = HalfVector(Beckmann(self.alpha, self.alpha))
+        sampling = HalfVector(Visible(Beckmann(self.alpha, self.alpha)))
         return lambertian(), Lobe(self.specular, sampling, lambda wi: 4 * schlick(self.f0, wi.z))

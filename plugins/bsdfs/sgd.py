@@ -21,7 +21,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import schlick
+from brdfkit.microfacet import Visible, schlick
 from brdfkit.model import Model, shape, weight
 from brdfkit.numerics import expm1, log1p
 from brdfkit.vectors import dot, half_vector
@@ -112,7 +112,7 @@ class SGD(Model):
         return facets.D(h) * G * schlick(self.f0, dot(wi, h)) / (dr.pi * wi.z * wo.z)
 
     def lobes(self):
-        sampling = HalfVector(ShiftedGamma(self.alpha, self.p))
+        sampling = HalfVector(Visible(ShiftedGamma(self.alpha, self.p)))
         return lambertian(), Lobe(
             self.specular, sampling, lambda wi: 4 / dr.pi * schlick(self.f0, wi.z)
         )

@@ -16,7 +16,7 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import schlick, v_groove
+from brdfkit.microfacet import Visible, schlick, v_groove
 from brdfkit.model import Model, shape, weight
 from brdfkit.numerics import log1p
 from brdfkit.vectors import dot, half_vector
@@ -68,5 +68,5 @@ class TorranceSparrow(Model):
         return GaussianAngle(self.alpha).D(h) * v_groove(wi, wo, h) * F / (4 * wi.z * wo.z)
 
     def lobes(self):
-        sampling = HalfVector(GaussianAngle(self.alpha))
+        sampling = HalfVector(Visible(GaussianAngle(self.alpha)))
         return lambertian(), Lobe(self.specular, sampling, lambda wi: schlick(self.f0, wi.z))

@@ -11,7 +11,7 @@ Fresnel effect and no retro-reflection.
 import drjit as dr
 
 from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import Beckmann
+from brdfkit.microfacet import Beckmann, Visible
 from brdfkit.model import Model, follows, shape, weight
 from brdfkit.vectors import half_vector
 
@@ -27,5 +27,5 @@ class Ward(Model):
         return gauss / (4 * dr.pi * self.alpha_u * self.alpha_v * dr.sqrt(wi.z * wo.z))
 
     def lobes(self):
-        sampling = HalfVector(Beckmann(self.alpha_u, self.alpha_v))
+        sampling = HalfVector(Visible(Beckmann(self.alpha_u, self.alpha_v)))
         return lambertian(), Lobe(self.specular, sampling)

@@ -13,7 +13,7 @@ stays below 1.
 import drjit as dr
 
 from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import Beckmann
+from brdfkit.microfacet import Beckmann, Visible
 from brdfkit.model import Model, follows, option, shape, weight
 from brdfkit.vectors import dot, half_vector
 
@@ -34,5 +34,5 @@ class WardDuer(Model):
         return gauss * 2 * (1 + dot(wi, wo)) / (squared * squared)
 
     def lobes(self):
-        sampling = HalfVector(Beckmann(self.alpha_u, self.alpha_v))
+        sampling = HalfVector(Visible(Beckmann(self.alpha_u, self.alpha_v)))
         return lambertian(), Lobe(self.specular, sampling)

@@ -117,8 +117,10 @@ def define(mi, model):
                 if share is None:
                     continue
                 hit = (sample1 >= chosen_up_to) & (sample1 < chosen_up_to + share)
+                # what sample1 has not yet decided is as random as sample2
+                u = mi.Point3f(sample2.x, sample2.y, (sample1 - chosen_up_to) / share)
                 chosen_up_to += share
-                wo = dr.select(hit, self.sampling(k, lobes).sample(wi, sample2), wo)
+                wo = dr.select(hit, self.sampling(k, lobes).sample(wi, u), wo)
                 component = dr.select(hit, k, component)
 
             # Directions are drawn without derivatives, and so is their density in the weight

@@ -15,7 +15,7 @@ class Sampling(Protocol):
     """A way to draw the outgoing direction of a lobe."""
 
     def sample(self, wi, u):
-        """A unit vector wo for a point `u` (x, y) of the unit square.
+        """A unit vector wo for a point `u` (x, y, z) of the unit cube.
 
         It may lie below the surface: the adapter gives it weight 0.
         """

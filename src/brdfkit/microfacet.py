@@ -1,7 +1,8 @@
 """Distributions of microfacet normals, shadowing and Fresnel, shared by the models.
 
 A distribution answers `D(h)` [sr⁻¹, ∫ D cosθ_h dω = 1], `sample(wi, u)` → h and `pdf(wi, h)`
-per solid angle of h. `wi`, `h` are vectors with x, y, z in the local frame, z along the normal.
+per solid angle of h. `wi`, `h` are vectors with x, y, z in the local frame, z along the normal;
+`u` is a point (x, y, z) of the unit cube.
 """
 
 from dataclasses import dataclass
@@ -139,6 +140,28 @@ class CosinePower:
 
     def pdf(self, wi, h):
         return dr.sqrt((self.n_u + 1) * (self.n_v + 1)) / (2 * dr.pi) * self.power(h)
+
+
+@dataclass(frozen=True)
+class Visible:
+    """What wi sees of a `distribution` in V-grooves: of each pair of facets, h and its mirror image
+    about the normal, as much as is turned towards wi. A half turn should not change it.
+
+    E. Heitz & E. d'Eon, "Importance sampling microfacet-based BSDFs using the distribution of
+    visible normals", EGSR 2014: G1 (wi·h)⁺ D / cosθ_i, with the G1 of `v_groove`.
+    """
+
+    distribution: Any
+
+    def sample(self, wi, u):
+        h = self.distribution.sample(wi, u)
+        other = type(wi)(-h.x, -h.y, h.z)
+        seen, others = dr.maximum(dot(wi, h), 0), dr.maximum(dot(wi, other), 0)
+        return dr.select(u.z * (seen + others) < seen, h, other)
+
+    def pdf(self, wi, h):
+        seen = dot(wi, h) / (h.z * wi.z)
+        return self.distribution.pdf(wi, h) * dr.minimum(seen, 2)
 
 
 def _from_slope(vector, x, y):

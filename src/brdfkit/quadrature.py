@@ -1,11 +1,13 @@
 """Integrals over the hemisphere: `albedo`, the directional albedo of anything."""
 
+from functools import cache
+
 import numpy as np
 
 from brdfkit.directions import from_angles, normalize
 
-# Points on each of as many rings about the mirror direction, refined until the sum settles
-POINTS = (128, 256, 512, 1024)
+# Points on each of twice as many rings about the mirror direction, refined until the sum settles
+POINTS = (64, 128, 256, 512, 1024)
 TOLERANCE = 2e-4
 
 
@@ -13,9 +15,9 @@ def albedo(brdf, wi):
     """Directional albedo (channels,) ∫ f cosθ_o dω_o at an incidence `wi` (3,), a unit vector.
 
     `brdf`: a model with values, a fit or a measured material. Rings about the mirror direction
-    lie at γ = π t³, so that lobes from a thousandth of a radian to the whole hemisphere are seen;
-    they are doubled until the sum changes by less than 2e-4 of itself. A lobe that is a line, a
-    hundred times narrower one way than the other, is seen too faint.
+    close up towards it, so that lobes from a thousandth of a radian to the whole hemisphere are
+    seen; they are doubled until the sum changes by less than 2e-4 of itself. A lobe that is a line,
+    a hundred times narrower one way than the other, is seen too faint.
 
     >>> albedo(models()["lambert"](diffuse_reflectance=0.5), [0, 0, 1])    # doctest: +SKIP
     array([0.5])
@@ -30,18 +32,31 @@ def albedo(brdf, wi):
 
 
 def _sum(brdf, wi, points):
-    t = (np.arange(points) + 0.5) / points
-    gamma, width = np.pi * t**3, np.pi * 3 * t**2 / points
-    psi = t * 2 * np.pi
     mirror = wi * [-1, -1, 1]
-    across = normalize(np.cross([0, 1, 0] if abs(wi[1]) < 0.9 else [1, 0, 0], mirror))
-    ring = np.cos(psi)[:, None] * across + np.sin(psi)[:, None] * np.cross(mirror, across)
+    cos_theta, sin_theta = mirror[2], np.hypot(mirror[0], mirror[1])
+    # Rings are whole up to the horizon's nearest point, from there on arcs about their highest
+    t, weight = _gauss(points)
+    whole = np.arctan2(cos_theta, sin_theta)
+    gamma = np.concatenate([whole * t**3, whole + (np.pi - 2 * whole) * t**2])
+    width = np.concatenate([whole * 3 * t**2, (np.pi - 2 * whole) * 2 * t]) * np.tile(weight, 2)
+    highest = np.maximum(np.sin(gamma) * sin_theta, 1e-12)
+    half = np.arccos(np.clip(-np.cos(gamma) * cos_theta / highest, -1, 1))
+
+    psi = np.outer(half, 2 * t - 1)
+    up = normalize(np.cross(mirror, [-mirror[1], mirror[0], 0]) if sin_theta else [1.0, 0, 0])
+    ring = np.cos(psi)[..., None] * up + np.sin(psi)[..., None] * np.cross(mirror, up)
     wo = np.cos(gamma)[:, None, None] * mirror + np.sin(gamma)[:, None, None] * ring
-    wo = wo.reshape(-1, 3)
-    above = wo[:, 2] > 0
-    wo = wo[above]
-    solid_angle = np.repeat(np.sin(gamma) * width * 2 * np.pi / points, points)[above]
+    solid_angle = np.outer(np.sin(gamma) * width * 2 * half, weight)
+    above = (wo[..., 2] > 0) & (solid_angle > 0)
+    wo, solid_angle = wo[above], solid_angle[above]
     return (wo[:, 2] * solid_angle) @ brdf.eval(np.broadcast_to(wi, wo.shape), wo)
+
+
+@cache
+def _gauss(points):
+    """Gauss and Legendre's nodes and weights on the unit interval."""
+    nodes, weights = np.polynomial.legendre.leggauss(points)
+    return (nodes + 1) / 2, weights / 2
 
 
 def cosine_directions(n):
