@@ -91,7 +91,9 @@ def sheet(pictures):
         linear = np.clip(picture, 0, 1)
         srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
         page.paste(Image.fromarray((srgb * 255 + 0.5).astype(np.uint8)), (x, y + CAPTION))
-        draw.text((x + 3, y + 3), name[:20], "black", font)
+        while font.getlength(name) > SIZE - 6:
+            name = name[:-1]
+        draw.text((x + 3, y + 3), name, "black", font)
     return page
 
 

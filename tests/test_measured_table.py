@@ -161,15 +161,32 @@ def test_weights_of_samples_vary_little(name, llvm_variant):
 
 GLOSSY = ("minidiff_paints/C10_Copper.astm.xz", "minidiff_paints/C1_White.astm.xz")
 GLOSSY += ("minidiff_paints/C8_Silver.astm.xz", "cornell/cayman.brdf")
+RGL = tuple(
+    f"rgl/{name}_rgb.bsdf" for name in ("cc_ibiza_sunset", "satin_rosaline", "acrylic_felt_green")
+)
 
 
-@pytest.mark.parametrize("name", GLOSSY)
+@pytest.mark.parametrize("name", GLOSSY + RGL)
 def test_real_materials_are_sampled_well(name, measured_data, llvm_variant):
     subject = Subject(bk.load(measured_data / name).rgb)
     assert max(spread(subject, degrees) for degrees in INCIDENCES[:4]) <= 0.5
     for check in ("chi squared", "coverage"):
         passed, figure = checks[check](subject)
         assert passed, (check, figure)
+
+
+@pytest.mark.parametrize("name", RGL)
+def test_a_format_s_own_lookup_keeps_its_albedo(name, measured_data, llvm_variant):
+    """What is rendered and what `eval` looks up reflect the same light, near the horizon too.
+
+    Within a degree of the normal the table is coarse along theta_d.
+    """
+    material = bk.load(measured_data / name)
+    for degrees in (5, 30, 60, 75):
+        wi = from_angles(np.radians(degrees), 0.3)
+        np.testing.assert_allclose(
+            bk.albedo(material.table, wi), bk.albedo(material, wi), rtol=0.02, atol=1e-3
+        )
 
 
 # Scattered samples

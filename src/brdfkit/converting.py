@@ -40,7 +40,7 @@ def convert(thing, path):
 
 def evaluated(thing):
     """A fit or a model as a `Measured`: evaluated where a table would be, exact in between."""
-    from brdfkit.scattered import sampled, table_shape
+    from brdfkit.resampled import sampled, table_shape
 
     model = getattr(thing, "model", thing)
     anisotropic = any(model.parameters[name].follows for name in model.free_values)

@@ -54,8 +54,8 @@ class Measured:
 
         Directions need not be normalised. `valid` (n,) marks what was measured; without it
         everything finite above the surface is. `standard_error`: of the values, likewise
-        (n, channels). `lookup(wi, wo)`: values between the samples, where the format defines
-        them; without it `scattered.py` interpolates.
+        (n, channels). `lookup(wi, wo)`, which may be a `Table`: values between the samples, where
+        the format defines them; without it `scattered.py` interpolates.
         """
         samples = Samples.checked(wi, wo, values, valid, channels, name)
         return cls(
@@ -113,11 +113,15 @@ class Measured:
 
     @cached_property
     def table(self):
-        """The table to look up in; that of samples has what lies between them, `scattered.py`."""
+        """The table to look up in; that of samples has what lies between them."""
         if self._table is not None:
             return self._table
-        from brdfkit.scattered import sampled, table_shape
+        if isinstance(self._lookup, Table):
+            return self._lookup
+        from brdfkit.resampled import looked_up, sampled, table_shape
 
+        if self._lookup is not None:
+            return looked_up(self._lookup, len(self.channels), self.anisotropic)
         return sampled(self._between, len(self.channels), table_shape(self.anisotropic))
 
     @cached_property

@@ -18,10 +18,7 @@ import functools
 import numpy as np
 
 from brdfkit.directions import half_azimuth, to_half_difference
-from brdfkit.table import Table
 
-SHAPE = (90, 45, 90)
-ANISOTROPIC_SHAPE = (36, 45, 23, 36)
 NEIGHBOURS = 12
 # So far from the samples the guide counts as much as one of them
 REACH = 0.3
@@ -62,20 +59,6 @@ class Scattered:
 
     def _logarithm(self, values):
         return np.log(np.maximum(values, self.floor))
-
-
-def table_shape(anisotropic):
-    """The `shape` of the table that samples are interpolated to."""
-    return ANISOTROPIC_SHAPE if anisotropic else SHAPE
-
-
-def sampled(brdf, channels, shape):
-    """The `Table` of `brdf(wi, wo)` → (n, channels) in `shape` cells, NaN below the surface."""
-    table = Table(np.full((*shape, channels), np.nan))
-    wi, wo = table.directions()
-    above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
-    table.values[above] = brdf(wi[above], wo[above])
-    return table
 
 
 def _guide(samples, anisotropic):

@@ -99,6 +99,8 @@ class Table:
         above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
         return np.where(above[..., None], result, 0.0)
 
+    __call__ = eval
+
 
 def _clamped(position, n):
     """Lower cell, upper cell and fraction of a position counted in cells from the axis' start."""

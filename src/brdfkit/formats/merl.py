@@ -14,7 +14,7 @@ import numpy as np
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats._writing import measured
 from brdfkit.measured import RGB, Measured
-from brdfkit.scattered import sampled
+from brdfkit.resampled import sampled
 
 NAME = "MERL"
 SUFFIXES = (".binary",)

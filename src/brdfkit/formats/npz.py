@@ -110,7 +110,7 @@ def _from_samples(about, arrays, details, errors):
         raise ValueError("a direction is no unit vector")
     lookup = None
     if "table" in arrays:
-        lookup = Measured.from_table(arrays["table"], _period(about), **details).table.eval
+        lookup = Measured.from_table(arrays["table"], _period(about), **details).table
     rest = {"anisotropic": about["anisotropic"] is True, "standard_error": errors}
     found = Measured.from_samples(wi, wo, values, valid, **details, **rest, lookup=lookup)
     samples = found.samples

@@ -1,0 +1,55 @@
+"""From a BRDF that can be asked for any pair of directions to a `Table` of it."""
+
+import numpy as np
+
+from brdfkit.directions import from_angles
+from brdfkit.table import Table
+
+ISOTROPIC = (90, 45, 90)
+ANISOTROPIC = (36, 45, 23, 36)
+# A cell at the horizon stands for its neighbours, too
+LEAST_COSINE = 0.03
+
+
+def table_shape(anisotropic):
+    """Cells of a table, where the data do not ask for others."""
+    return ANISOTROPIC if anisotropic else ISOTROPIC
+
+
+def sampled(brdf, channels, shape, phi_d_period=np.pi):
+    """The `Table` of `brdf(wi, wo)` → (n, channels) in `shape` cells, NaN below the surface."""
+    table = Table(np.full((*shape, channels), np.nan), phi_d_period)
+    wi, wo = table.directions()
+    above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
+    table.values[above] = brdf(wi[above], wo[above])
+    return table
+
+
+def looked_up(lookup, channels, anisotropic):
+    """The `Table` of a format's own interpolation, which is as measured: need not be reciprocal.
+
+    Where it stores f cosθ_o, f has no bound at the horizon: the last 2° have the values before.
+    """
+    *others, n_phi_d = table_shape(anisotropic)
+
+    def off_horizon(wi, wo):
+        return lookup(_lifted(wi), _lifted(wo))
+
+    if _reciprocal(lookup):
+        return sampled(off_horizon, channels, (*others, n_phi_d))
+    return sampled(off_horizon, channels, (*others, 2 * n_phi_d), 2 * np.pi)
+
+
+def _reciprocal(brdf):
+    """Whether exchanged directions have the same values, by trial."""
+    u, v = np.random.default_rng(0).random((2, 2, 1000))
+    wi, wo = from_angles(np.arccos(0.1 + 0.9 * u), 2 * np.pi * v)
+    return np.allclose(brdf(wi, wo), brdf(wo, wi), rtol=1e-6)
+
+
+def _lifted(w):
+    """Directions (n, 3), those closer to the horizon than `LEAST_COSINE` moved up to it."""
+    z = np.maximum(w[:, 2], LEAST_COSINE)
+    shorter = np.sqrt((1 - z * z) / np.maximum(w[:, 0] ** 2 + w[:, 1] ** 2, 1e-12))
+    lifted = np.stack([w[:, 0] * shorter, w[:, 1] * shorter, z], axis=1)
+    return np.where(w[:, 2:] < LEAST_COSINE, lifted, w)
