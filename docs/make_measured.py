@@ -1,6 +1,6 @@
 """Makes `docs/measured.md` and its sheet of balls: every measurement at hand, audited and rendered.
 
-BRDFKIT_DATA=FOLDER python docs/make_measured.py        # ten minutes
+    BRDFKIT_DATA=FOLDER python docs/make_measured.py [FILE...]    # six seconds a material
 
 The folder holds third-party files, which are shown and not shipped; brdfkit's own come first.
 """
@@ -27,13 +27,16 @@ TEXT = """# Measured materials
 
 Every measurement that was at hand when `docs/make_measured.py` ran, looked up and path-traced in
 the same light: brdfkit's own, then third-party files, which are shown here and not shipped.
+What begins with *neural* is no measurement, but a neural reconstruction of one in MERL's or
+Nielsen's collection (A. Sztrajman et al., "Neural BRDF Representation and Importance Sampling",
+CGF 40(6), 2021).
 
-![A ball of each](measured.png)
+![A ball of each](measured.jpg)
 
 *std*: standard deviation of the weight of a sample over its mean, at 0, 30, 60, 75 and 85°; by a
 table of half vectors and a tenth of cosine samples. *albedo*: at 0 and 60°, mean of the channels.
-*open*: seconds from the file to a BSDF. *time*: of a picture, in units of
-an analytic Ward's. *doubts*: how many things `brdfkit info` finds to say.
+*open*: seconds from the file to a BSDF. *time*: of a picture, in units of an analytic Ward's.
+*doubts*: how many things `brdfkit info` finds to say.
 
 """
 
@@ -64,7 +67,7 @@ def pictured(bsdf):
 
 
 def row(name, ward):
-    """(name, row of the page, picture) of a measurement; `ward`: seconds of a picture of Ward."""
+    """(name, row of the page, picture) of a measurement; `ward`: what its time is compared to."""
     began = time.perf_counter()
     measured = bk.load(name)
     material = measured.rgb
@@ -74,10 +77,11 @@ def row(name, ward):
     stds = " ".join(f"{spread(subject, d, SAMPLES):.2f}" for d in INCIDENCES)
     albedos = [bk.albedo(material, from_angles(np.radians(d), 0.0)).mean() for d in (0, 60)]
     picture, took = pictured(bsdf)
+    _, unit = pictured(ward)  # anew: the machine may be busier than before
     kind = "table" if measured.is_table else "samples"
     doubts = len(measured.audit().findings())
     cells = measured.name, kind, len(measured.channels), len(measured.values), stds
-    cells += (" ".join(f"{a:.2f}" for a in albedos), f"{seconds:.1f}", f"{took / ward:.1f}", doubts)
+    cells += (" ".join(f"{a:.2f}" for a in albedos), f"{seconds:.1f}", f"{took / unit:.1f}", doubts)
     return measured.name, "| " + " | ".join(map(str, cells)) + " |", picture
 
 
@@ -105,9 +109,9 @@ def main():
         print("BRDFKIT_DATA names no folder of measurements", file=sys.stderr)
         return 2
     mi.set_variant("llvm_ad_rgb")
-    _, ward = pictured(bk.models()["ward"]().scene_dict())
+    ward = bk.models()["ward"]().scene_dict()
     lines, pictures = [], {}
-    for name in files(folder):
+    for name in [*files(folder), *sys.argv[1:]]:
         title, line, picture = row(name, ward)
         while title in pictures:  # one material, two files
             title += "'"
@@ -126,7 +130,7 @@ def main():
         "doubts",
     ]
     table = ["| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads), *lines]
-    sheet(pictures).save(PAGE.with_suffix(".png"), optimize=True)
+    sheet(pictures).save(PAGE.with_suffix(".jpg"), quality=90)
     PAGE.write_text(TEXT + "\n".join(table) + "\n", encoding="utf-8")
     return 0
 
