@@ -9,8 +9,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from brdfkit import models
 from brdfkit.directions import from_angles
 from brdfkit.errors import BrdfkitError
+from brdfkit.half_disc import Radius
 from brdfkit.measured import Measured
-from brdfkit.plotting import Plot, _Radius, lobe, luminance, plot
+from brdfkit.plotting import Plot, lobe, luminance, plot
 
 pytestmark = pytest.mark.quick
 
@@ -150,7 +151,7 @@ def test_nothing_overlaps(peak, theta_i):
 @pytest.mark.parametrize("peak", [1e-3, 0.32, 1, 2e3, 1e9])
 def test_the_scale_holds_the_largest_and_its_ticks(peak):
     values = np.geomspace(peak / 1e3, peak, 1000)
-    radius = _Radius([values, np.array([np.nan, 0, -1])])
+    radius = Radius([values, np.array([np.nan, 0, -1])])
     assert 0.95 < radius(peak) < 1
     assert np.all(np.diff(radius(values[30:])) > 0)
     assert radius(np.array([0.0, -1.0])).tolist() == [0, 0]

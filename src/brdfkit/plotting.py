@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from brdfkit.colours import luminance
 from brdfkit.directions import from_angles, to_angles
 from brdfkit.errors import BrdfkitError
+from brdfkit.half_disc import Radius, half_disc, xy
 from brdfkit.measured import Measured
 from brdfkit.names import unused
 from brdfkit.table import Table
@@ -21,9 +22,7 @@ BLACK, GREY = "black", "0.45"
 # Okabe and Ito's colours, which the colour-blind tell apart
 COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 DASHES = ("-", "--", "-.", ":")
-SMALL = {"size": 8, "color": "0.35"}
 MOST_COLUMNS = 3
-MOST_DECADES = 5
 
 
 def plot(things, theta_i=None):
@@ -180,60 +179,10 @@ def _styles(things):
 def _panel(axes, theta_i, things, styles):
     """Half a disc, the normal upwards: the lobes at one angle of incidence."""
     lobes = [lobe(thing, theta_i) for thing in things]
-    radius = _Radius([values for _, values in lobes])
-    _half_disc(axes, radius)
+    radius = Radius([values for _, values in lobes])
+    half_disc(axes, radius)
     axes.set_title(rf"$\theta_i$ = {theta_i:g}°", size=11)
     arrow = {"arrowstyle": "-|>", "color": GREY, "shrinkA": 0, "shrinkB": 0}
-    axes.annotate("", (0, 0), _xy(-theta_i, 1), arrowprops=arrow, zorder=1.5)
+    axes.annotate("", (0, 0), xy(-theta_i, 1), arrowprops=arrow, zorder=1.5)
     for (theta_o, values), style in zip(lobes, styles, strict=True):
-        axes.plot(*_xy(theta_o, radius(values)), **style)
-
-
-class _Radius:
-    """The radius of a BRDF value, 0 to 1: its logarithm between a power of ten and the largest."""
-
-    def __init__(self, curves):
-        shown = [values[values > 0] for values in curves]
-        shown = [values for values in shown if values.size] or [np.ones(1)]
-        highest = np.log10(max(values.max() for values in shown))
-        lowest = np.log10(min(np.percentile(values, 2) for values in shown))
-        self.lowest = math.floor(min(max(lowest, highest - MOST_DECADES), highest - 0.5))
-        self.decades = 1.03 * (highest - self.lowest)
-
-    def __call__(self, values):
-        floor = 10.0**self.lowest  # NaN, not measured, stays NaN
-        return (np.log10(np.maximum(values, floor)) - self.lowest) / self.decades
-
-    def ticks(self):
-        """Powers of ten from the centre to the rim, not so many that their labels would touch; in
-        less than two decades with what lies between."""
-        step = math.ceil(self.decades / 4.5)
-        powers = 10.0 ** np.arange(self.lowest, self.lowest + self.decades, step)
-        between = (1, 2, 5) if self.decades < 1.2 else (1, 3) if self.decades < 2 else (1,)
-        ticks = np.outer(powers, between).ravel()
-        return ticks[np.log10(ticks) - self.lowest < self.decades]
-
-
-def _half_disc(axes, radius):
-    """The axes and their labels; matplotlib's own half of a polar plot leaves half a page blank."""
-    axes.set(aspect="equal", xlim=(-1.2, 1.2), ylim=(-0.27, 1.13))
-    axes.set_axis_off()
-    half = np.arange(-90, 91)
-    rim = {"color": "0.3", "linewidth": 0.8, "zorder": 1.2}
-    grid = {"color": "0.87", "linewidth": 0.7, "zorder": 1}
-    axes.plot(*_xy(half, 1), **rim)
-    axes.plot([-1, 1], [0, 0], **rim)
-    for theta in range(-90, 91, 30):
-        axes.plot(*_xy(theta, np.array([0, 1])), **grid)
-        text = f"{theta}°".replace("-", "−")
-        va = "bottom" if abs(theta) == 90 else "center"  # above the numbers along the radius
-        axes.text(*_xy(theta, 1.1), text, ha="center", va=va, **SMALL)
-    for tick in radius.ticks():
-        axes.plot(*_xy(half, radius(tick)), **grid)
-        axes.text(radius(tick), -0.03, f"{tick:g}", ha="center", va="top", **SMALL)
-    axes.text(0, -0.17, "luminance of the BRDF [sr⁻¹], logarithmic", ha="center", va="top", **SMALL)
-
-
-def _xy(theta, radius):
-    """Where an angle to the normal [degrees], positive to the right, and a radius lie."""
-    return radius * np.sin(np.radians(theta)), radius * np.cos(np.radians(theta))
+        axes.plot(*xy(theta_o, radius(values)), **style)
