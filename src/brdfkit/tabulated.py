@@ -44,7 +44,7 @@ class Tabulated:
         self.edges = Rows(_versines(cells[0]))
 
     def sample(self, wi, u):
-        """A direction, possibly below the surface, for a point `u` of the unit square."""
+        """A direction, possibly below the surface, for a point `u`, of which x and y count."""
         n_h, n_p = self.cells
         incidence, x, y = self._chosen(wi, u)
         row, x = _drawn(self.rows, incidence * n_h, n_h, x)
