@@ -99,7 +99,7 @@ class Table:
         above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
         return np.where(above[..., None], result, 0.0)
 
-    __call__ = eval
+    __call__ = eval  # a table may be a measurement's lookup
 
 
 def _clamped(position, n):
