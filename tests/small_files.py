@@ -123,7 +123,7 @@ def fit():
     return Fit(model, "paint", "log", 0.1, 72, 9, 0.5, "converged")
 
 
-# of the tables in an RGL file, which has 7 MB otherwise
+# of the tables in an RGL file, which has 16 MB otherwise
 FEW_NODES = adapting.Resolution(phi_i=0, theta_i=3, phi_m=1, theta_m=8, grid=5)
 MATERIALS = {"table": table, "spectrum": spectrum, "brushed": brushed, "fit": fit}
 

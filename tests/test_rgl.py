@@ -437,6 +437,17 @@ def test_mitsuba_renders_what_was_written(llvm_variant, tmp_path, name):
         assert weight.std() < 0.15 * weight.mean()
 
 
+@pytest.mark.parametrize("name", ["blasted_gold", "plaster", "satin_plastic"])
+def test_a_noisy_table_is_rendered_between_its_cells_too(llvm_variant, tmp_path, name):
+    """3 to 5 % of noise in each cell, linear between them: the file's nodes are others."""
+    source, path = load(name), tmp_path / "written.bsdf"
+    save(source, path)
+    wi, wo = pairs()
+    differences = relative(Rendered(path, source).eval(wi, wo), source.eval(wi, wo))
+    assert np.median(differences) < 0.005
+    assert np.quantile(differences, 0.95) < 0.04
+
+
 @pytest.mark.parametrize("name", ["ggx", "anisotropic", "red_plastic"])
 def test_mitsuba_samples_what_was_written(llvm_variant, tmp_path, monkeypatch, name):
     monkeypatch.setattr(checks.sampling, "SUBCELLS", (24, 96))
@@ -471,13 +482,14 @@ def test_spectra(variant, tmp_path):
     assert np.median(relative(Rendered(path).eval(wi, wo), source.rgb.eval(wi, wo))) < 0.0025
 
 
-def test_achromatic_black_and_rewritten(llvm_variant, tmp_path, small_tables):
+def test_achromatic_black_and_rewritten(llvm_variant, tmp_path, monkeypatch):
+    monkeypatch.setattr(adapting, "ISOTROPIC", Resolution(0, 16, 1, 64, 48))
     wi, wo = pairs(1000)
     for reflectance in (0.3, 0.0):
         grey = Measured.from_table(np.full((4, 4, 8, 1), reflectance), channels=("Y",))
         back = saved(grey, tmp_path / "grey.bsdf")
         assert back.channels == ("R", "G", "B")
-        np.testing.assert_allclose(back.eval(wi, wo), np.full((1000, 3), reflectance), rtol=0.2)
+        np.testing.assert_allclose(back.eval(wi, wo), np.full((1000, 3), reflectance), rtol=0.05)
         again = saved(back, tmp_path / "again.bsdf")
         rewritten = Rendered(tmp_path / "again.bsdf").eval(wi, wo)
         np.testing.assert_allclose(rewritten, again.eval(wi, wo), rtol=1e-3, atol=1e-9)
