@@ -177,16 +177,28 @@ def test_real_materials_are_sampled_well(name, measured_data, llvm_variant):
 
 @pytest.mark.parametrize("name", RGL)
 def test_a_format_s_own_lookup_keeps_its_albedo(name, measured_data, llvm_variant):
-    """What is rendered and what `eval` looks up reflect the same light, near the horizon too.
-
-    Within a degree of the normal the table is coarse along theta_d.
-    """
+    """What is rendered and what `eval` looks up reflect the same light, near the horizon too."""
     material = bk.load(measured_data / name)
-    for degrees in (5, 30, 60, 75):
+    for degrees in (0.1, 5, 30, 60, 75):
         wi = from_angles(np.radians(degrees), 0.3)
         np.testing.assert_allclose(
             bk.albedo(material.table, wi), bk.albedo(material, wi), rtol=0.02, atol=1e-3
         )
+
+
+def test_at_normal_incidence_all_sides_count():
+    """An isotropic file may say there what depends on the azimuth: the mean is rendered."""
+
+    def uneven(wi, wo):
+        sine = np.hypot(wo[:, 0], wo[:, 1])
+        phi = np.arctan2(wo[:, 1], wo[:, 0]) - np.arctan2(wi[:, 1], wi[:, 0])
+        return (1 + 0.5 * sine * np.cos(2 * phi))[:, None] / np.pi
+
+    wi, wo = random_pairs(100, seed=4)
+    material = bk.Measured.from_samples(wi, wo, uneven(wi, wo), channels=("Y",), lookup=uneven)
+    for degrees in (0, 1, 2, 4, 45):
+        albedo = bk.albedo(material.table, from_angles(np.radians(degrees), 0.3))
+        assert albedo == pytest.approx(1, rel=0.03), degrees
 
 
 # Scattered samples

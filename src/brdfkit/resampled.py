@@ -2,13 +2,15 @@
 
 import numpy as np
 
-from brdfkit.directions import from_angles
+from brdfkit.directions import from_angles, normalize
 from brdfkit.table import Table
 
 ISOTROPIC = (90, 45, 90)
 ANISOTROPIC = (36, 45, 23, 36)
 # A cell at the horizon stands for its neighbours, too
 LEAST_COSINE = 0.03
+ABOUT_NORMAL = np.radians(3)  # one and a half cells
+SIDES = np.arange(16) / 16 * 2 * np.pi
 
 
 def table_shape(anisotropic):
@@ -37,7 +39,8 @@ def looked_up(lookup, channels, anisotropic):
 
     if _reciprocal(lookup):
         return sampled(off_horizon, channels, (*others, n_phi_d))
-    return sampled(off_horizon, channels, (*others, 2 * n_phi_d), 2 * np.pi)
+    brdf = off_horizon if anisotropic else _same_from_all_sides(off_horizon)
+    return sampled(brdf, channels, (*others, 2 * n_phi_d), 2 * np.pi)
 
 
 def _reciprocal(brdf):
@@ -45,6 +48,26 @@ def _reciprocal(brdf):
     u, v = np.random.default_rng(0).random((2, 2, 1000))
     wi, wo = from_angles(np.arccos(0.1 + 0.9 * u), 2 * np.pi * v)
     return np.allclose(brdf(wi, wo), brdf(wo, wi), rtol=1e-6)
+
+
+def _same_from_all_sides(brdf):
+    """The BRDF of an isotropic material, whose azimuth ceases to count at normal incidence.
+
+    A file may differ there from side to side, and the cells about the normal hold but one of them.
+    """
+
+    def same(wi, wo):
+        values = brdf(wi, wo)
+        theta_i = np.arccos(np.minimum(wi[:, 2], 1))
+        near = theta_i < ABOUT_NORMAL
+        theta_h = np.arccos(normalize(wi[near] + wo[near])[:, 2])
+        normal = np.broadcast_to([0.0, 0.0, 1.0], (len(theta_h), 3))
+        mean = np.mean([brdf(normal, from_angles(2 * theta_h, phi)) for phi in SIDES], axis=0)
+        share = np.clip(2 * theta_i[near] / ABOUT_NORMAL - 1, 0, 1)[:, None]
+        values[near] = share * values[near] + (1 - share) * mean
+        return values
+
+    return same
 
 
 def _lifted(w):
