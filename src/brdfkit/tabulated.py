@@ -141,12 +141,14 @@ def _differences(sums):
 
 def _drawn(sums, start, n, x):
     """The cell whose cumulative share `x` falls into, among `n` from `start`, and where in it."""
-    cell = 0
+    cell, low, high = 0, 0, 1  # shares up to the cell, and with it
     for step in 2 ** np.arange(int(n - 1).bit_length())[::-1]:
         there = dr.minimum(cell + int(step), n)
-        cell = dr.select((there < n) & (sums.at(start + there - 1) <= x), there, cell)
-    low = dr.select(cell > 0, sums.at(start + dr.maximum(cell, 1) - 1), 0)
-    return cell, dr.clip((x - low) / (sums.at(start + cell) - low), 0, 1)
+        share = sums.at(start + there - 1)
+        beyond = (there < n) & (share <= x)
+        cell = dr.select(beyond, there, cell)
+        low, high = dr.select(beyond, share, low), dr.select(beyond, high, share)
+    return cell, dr.clip((x - low) / (high - low), 0, 1)
 
 
 def _cell(position, n):
