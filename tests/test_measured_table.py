@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit import catalogue
+from brdfkit import catalogue, registry
 from brdfkit.checks import checks
 from brdfkit.checks.sampling import spread
 from brdfkit.checks.subject import INCIDENCES, Subject, incidences, random_pairs
@@ -203,6 +203,17 @@ def test_at_normal_incidence_all_sides_count():
 
 # Scattered samples
 
+# back to the light, and a highlight
+BACK_AND_FORTH = {
+    "diffuse_reflectance": 0.1,
+    "specular_reflectance": 0.4,
+    "c_x": 0.7,
+    "c_z": 0.7,
+    "exponent": 300.0,
+    "specular_reflectance_2": 0.05,
+    "exponent_2": 20.0,
+}
+
 
 @pytest.fixture(scope="module")
 def goniometer():
@@ -225,6 +236,25 @@ def test_between_and_beyond_samples(name, goniometer):
         np.testing.assert_allclose(
             bk.albedo(found, wi).mean(), bk.albedo(truth, wi).mean(), rtol=tolerance
         )
+
+
+@pytest.mark.parametrize("paint", ["C1_White", "C2_Black", "C3_Red", "C6_Green", "C7_Brown"])
+def test_beyond_measured_angles_no_more_light_leaves_than_comes(paint, measured_data):
+    """Their ratio to the guide rises towards 60°, from where on nothing was measured."""
+    found = bk.load(measured_data / "minidiff_paints" / f"{paint}.astm.xz")
+    for degrees in (75, 85, 89):
+        assert (bk.albedo(found, from_angles(np.radians(degrees), 0.0)) < 1.01).all(), degrees
+    wi, wo = random_pairs(5000, seed=7)
+    np.testing.assert_allclose(found.eval(wi, wo), found.eval(wo, wi), rtol=1e-9)
+
+
+def test_a_retroreflective_peak_stays_where_it_was_measured(goniometer):
+    """Its neighbours at the same theta_h, a few degrees of theta_d away, are not in it."""
+    truth = registry.model_with_values("lafortune:lobe_count=2", BACK_AND_FORTH)
+    found = bk.Measured.from_samples(*goniometer, truth.eval(*goniometer), channels=("Y",))
+    for degrees in (20, 40, 60):
+        wi = from_angles(np.radians(degrees), 0.0)
+        np.testing.assert_allclose(bk.albedo(found, wi), bk.albedo(truth, wi), rtol=0.2)
 
 
 @pytest.mark.quick
