@@ -72,11 +72,19 @@ def test_a_mixture_is_plain_data(tmp_path):
 
 
 @pytest.mark.quick
+def test_a_sum_may_be_named_as_the_option_it_is():
+    assert registry.model("mixture:models=ggx+ward") is registry.model("ggx+ward")
+
+
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("label", "words"),
     [
         ("ggx+nothing", ["'nothing'"]),
         ("ggx+lambert", ["lambert", "first"]),
+        ("mixture:models=ggx", ["models = ggx", "two or more"]),
+        ("mixture:models=", ["two or more"]),
+        ("ggx+mixture:models=ward", ["models = ward", "two or more"]),
         ("ggx:colour=red", ["ggx", "'colour'"]),
         ("koenderink:order", ["'order'", "OPTION=VALUE"]),
         ("koenderink:order=99", ["order = 99", "0 or 1"]),

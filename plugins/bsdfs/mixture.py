@@ -29,8 +29,12 @@ class Mixture(Model):
     @classmethod
     def parts(cls):
         """(prefix, model, names of the weights that it brings) of every part."""
-        parts = []
-        for number, label in enumerate(cls.models.split("+"), 1):
+        labels, parts = cls.models.split("+"), []
+        if len(labels) < 2:
+            raise BrdfkitError(
+                f"mixture: models = {cls.models} should name two or more, joined by +, as ggx+ward."
+            )
+        for number, label in enumerate(labels, 1):
             model = registry.model(label)
             diffuse = [name for name, lobe in model().terms() if lobe.diffuse]
             brought = [n for n in model.weights() if number == 1 or n not in diffuse]

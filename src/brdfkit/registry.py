@@ -33,8 +33,9 @@ def model(label):
 
     `BrdfkitError` lists the models there are.
     """
-    if "+" in label:
-        return model("mixture").configured(models=label)
+    parts = label.removeprefix("mixture:models=")
+    if "+" in parts or parts != label:
+        return model("mixture").configured(models=parts)
     name, _, settings = label.partition(":")
     found = model_in(plugin_files()[name]) if name in plugin_files() else None
     if found is None:
