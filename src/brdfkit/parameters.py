@@ -8,6 +8,8 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 
+NOT_NEGATIVE, SIGNED = (0.0, math.inf), (-math.inf, math.inf)
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -21,8 +23,21 @@ class Parameter:
     follows: str | None = None
 
     def __post_init__(self):
-        if self.log and self.bounds[0] <= 0:
+        low, high = self.bounds
+        if self.linear and (low, high) not in (NOT_NEGATIVE, SIGNED):
+            raise BrdfkitError(
+                f"{self.meaning!r}: a weight is solved for, at least 0 or of any sign; leave its "
+                "bounds out, or give (-math.inf, math.inf)."
+            )
+        if not self.linear and not -math.inf < low < high < math.inf:
+            raise BrdfkitError(
+                f"{self.meaning!r}: a fit searches between the bounds {low:g} and {high:g}; give "
+                "two finite ones, the lower first."
+            )
+        if self.log and low <= 0:
             raise BrdfkitError(f"{self.meaning!r}: log=True needs bounds above 0.")
+        if self.default is not None and (problem := self.problem_with(self.default)):
+            raise BrdfkitError(f"{self.meaning!r}: the default {problem}.")
 
     def problem_with(self, value):
         """What is wrong with `value` (one number or several), None if it is within the bounds."""
@@ -34,13 +49,17 @@ class Parameter:
         return f"{value} is out of bounds: it should be {limits}"
 
 
-def weight(default, meaning, bounds=(0.0, math.inf)):
-    """A linear parameter: the strength of one lobe, per colour channel."""
+def weight(default, meaning, bounds=NOT_NEGATIVE):
+    """A linear parameter: the strength of one lobe, per colour channel.
+
+    `bounds`: ``(0, math.inf)``, or ``(-math.inf, math.inf)`` where it may be negative.
+    """
     return Parameter(default, bounds, meaning, linear=True)
 
 
 def shape(default, bounds, meaning, log=False):
-    """A nonlinear parameter within `bounds`; `log` where its magnitude counts, as of a width."""
+    """A nonlinear parameter within `bounds` (low, high), both finite; `log` where its magnitude
+    counts, as of a width."""
     return Parameter(default, bounds, meaning, log=log)
 
 

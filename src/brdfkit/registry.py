@@ -151,7 +151,7 @@ def _executed(path, _changed):
         spec.loader.exec_module(module)
     except Exception as error:
         del sys.modules[name]
-        raise BrdfkitError(f"{path} cannot be imported: {error}.") from error
+        raise BrdfkitError(f"{path} cannot be imported: {str(error).rstrip('.')}.") from error
     return module
 
 
