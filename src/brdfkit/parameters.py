@@ -13,7 +13,10 @@ NOT_NEGATIVE, SIGNED = (0.0, math.inf), (-math.inf, math.inf)
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a model: its default, its bounds and what it means."""
+    """A parameter of a model: its default, its bounds and what it means.
+
+    `width`: the power of it that a lobe's width goes with, 0 where that does not depend on it.
+    """
 
     default: float | None
     bounds: tuple[float, float]
@@ -21,6 +24,7 @@ class Parameter:
     linear: bool = False
     log: bool = False
     follows: str | None = None
+    width: float = 0.0
 
     def __post_init__(self):
         low, high = self.bounds
@@ -57,10 +61,13 @@ def weight(default, meaning, bounds=NOT_NEGATIVE):
     return Parameter(default, bounds, meaning, linear=True)
 
 
-def shape(default, bounds, meaning, log=False):
-    """A nonlinear parameter within `bounds` (low, high), both finite; `log` where its magnitude
-    counts, as of a width."""
-    return Parameter(default, bounds, meaning, log=log)
+def shape(default, bounds, meaning, log=False, width=0.0):
+    """A nonlinear parameter within `bounds` (low, high), both finite.
+
+    `log`: where its magnitude counts, as of a width; `width`: 1 if it is the width of a lobe, -0.5
+    if it is an exponent n, whose lobe is about as wide as 1/√n: by it lobes begin apart in a sum.
+    """
+    return Parameter(default, bounds, meaning, log=log, width=width)
 
 
 def follows(other, parameter, meaning):
