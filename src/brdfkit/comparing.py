@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from brdfkit.errors import BrdfkitError
 from brdfkit.names import unused
 
 
@@ -35,9 +36,15 @@ def compare(data, things, max_angle=80.0):
     >>> print(compare(paint, [fit("ward", paint), fit("ggx", paint)]))    # doctest: +SKIP
     """
     from brdfkit.fitting import losses
+    from brdfkit.materials import require_material, require_measured
     from brdfkit.metrics import error
 
+    require_measured(data)
     things = list(things) if isinstance(things, list | tuple) else [things]
+    if not things:
+        raise BrdfkitError("There is nothing to compare; give at least one material.")
+    for thing in things:
+        require_material(thing)
     errors = {}
     for thing in things:
         errors[unused(thing.name, errors)] = {

@@ -29,10 +29,11 @@ def models():
 
 def model(label):
     """The model of a label: its name, with options ``"lafortune:lobe_count=2"``, or a sum of
-    labels, ``"ggx+ward"``: one diffuse term and the other terms of each.
+    labels, ``"ggx+ward"``: one diffuse term and the other terms of each. Its class means it too.
 
     `BrdfkitError` lists the models there are.
     """
+    label = _label(label)
     parts = label.removeprefix("mixture:models=")
     if "+" in parts or parts != label:
         return model("mixture").configured(models=parts)
@@ -48,6 +49,22 @@ def model(label):
             raise BrdfkitError(f"{label}: {setting!r} should read OPTION=VALUE.")
         options[key] = value
     return found.configured(**options)
+
+
+def _label(model):
+    """The label of what stands for a model: of a class too, if it comes back by that label."""
+    if isinstance(model, type) and hasattr(model, "label"):
+        if model.type_name() not in plugin_files():
+            raise BrdfkitError(
+                f"{model.__name__} is in no file of models; write it into one and load that, "
+                'as by brdfkit.load_models("my_model.py").'
+            )
+        return model.label()
+    if not isinstance(model, str):
+        raise BrdfkitError(
+            f"A {type(model).__name__} names no model; give one of {', '.join(models())}."
+        )
+    return model
 
 
 def is_label(word):

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from brdfkit import llvm
 from brdfkit.checks.subject import Finding, Subject, checks
 from brdfkit.errors import BrdfkitError
+from brdfkit.materials import require_material
 
 for _module in pkgutil.iter_modules(__path__):
     importlib.import_module(f"{__name__}.{_module.name}")
@@ -45,6 +46,7 @@ def check(thing, only=None, progress=None):
 
     >>> print(check(models()["ward"](alpha_u=0.1)))    # doctest: +SKIP
     """
+    require_material(thing)
     if llvm.use_variant().startswith("scalar"):
         raise BrdfkitError(f"check needs an LLVM or CUDA variant of Mitsuba; {llvm.REMEDY}.")
     subject = Subject(thing)

@@ -8,6 +8,7 @@ import numpy as np
 from brdfkit import registry
 from brdfkit.errors import BrdfkitError
 from brdfkit.evaluating import clamped_share
+from brdfkit.fitting.arguments import by_name, pair, whole_number
 from brdfkit.fitting.loss import losses as losses
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.result import Fit as Fit
@@ -54,13 +55,14 @@ def fit(
     model, loss = registry.model(name), _loss(loss)
     if robust not in (None, *WEIGHTS):
         raise BrdfkitError(f"There is no robust weight {robust!r}; there are {', '.join(WEIGHTS)}.")
+    starts, seed = whole_number("starts", starts, least=1), whole_number("seed", seed, least=0)
+    bounds, fixed = by_name("bounds", bounds), by_name("fixed", fixed)
+    bounds = {n: pair(f"{model.type_name()}: the bounds of {n}", v) for n, v in bounds.items()}
     samples = selected(data, max_angle)
     determined = model.determined(samples)
-    given = {n: v for n, v in determined.items() if n not in (bounds or {})} | (fixed or {})
+    given = {n: v for n, v in determined.items() if n not in bounds} | fixed
     anisotropic = data.anisotropic if anisotropic is None else anisotropic
-    space = _space(model, bounds or {}, given, anisotropic)
-    if starts < 1 or seed < 0:
-        raise BrdfkitError(f"starts = {starts} should be at least 1, seed = {seed} at least 0.")
+    space = _space(model, bounds, given, anisotropic)
     default = space.coordinates(model().values)
 
     rng = np.random.default_rng(seed)
@@ -104,11 +106,11 @@ def fit(
         notes=(*notes, *_notes(samples, loss, fitted)),
         settings={
             "robust": robust,
-            "max_angle": max_angle,
+            "max_angle": float(max_angle),
             "seed": seed,
             "starts": starts,
-            "bounds": dict(bounds or {}),
-            "fixed": dict(fixed or {}),
+            "bounds": bounds,
+            "fixed": fixed,
             "anisotropic": anisotropic,
         },
     )
@@ -133,7 +135,7 @@ def _search(problem, space, default, count, seed, report) -> tuple[Outcome, int]
 
 
 def _loss(name):
-    if name not in losses:
+    if not isinstance(name, str) or name not in losses:
         raise BrdfkitError(f"There is no loss {name!r}; there are {', '.join(losses)}.")
     return losses[name]
 
@@ -157,6 +159,8 @@ def _space(model, bounds, fixed, anisotropic):
                 f"{model.type_name()}: the bounds {low:g}..{high:g} of {name} should lie "
                 f"within {allowed[0]:g}..{allowed[1]:g}."
             )
+    if unknown := [name for name, value in fixed.items() if value is None]:
+        raise BrdfkitError(f"{model.type_name()}: {unknown[0]} is fixed at None; give a number.")
     model(**fixed)  # within the bounds
     names = tuple(name for name in shapes if name not in fixed)
     limits = np.array([bounds.get(n, model.parameters[n].bounds) for n in names]).reshape(-1, 2)
@@ -178,4 +182,4 @@ def _notes(samples, loss, fitted):
 def _at_bounds(space, u, model, weights):
     shapes = [n for n, v in zip(space.names, u, strict=True) if min(v, 1 - v) < 1e-6]
     black = [n for n, w in zip(model.weights(), weights.T, strict=True) if (w == 0).all()]
-    return tuple(black + shapes)
+    return (*(n for n in black if model.parameters[n].bounds[0] == 0), *shapes)

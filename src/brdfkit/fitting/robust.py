@@ -84,8 +84,8 @@ def _require_more(samples, rank):
     """An error where every sample can be met: no residual then tells of the scale."""
     if samples <= rank:
         raise BrdfkitError(
-            f"{samples} samples for {rank} parameters: a robust fit needs more samples; give more, "
-            "choose a simpler model, or fit without robust."
+            f"A robust fit needs more samples than parameters; here are {samples} and {rank}: "
+            "give more samples, a simpler model, or no robust."
         )
 
 
