@@ -9,6 +9,7 @@ import pkgutil
 from dataclasses import dataclass
 
 from brdfkit import llvm
+from brdfkit.checks.failure import described
 from brdfkit.checks.subject import Finding, Subject, checks
 from brdfkit.errors import BrdfkitError
 from brdfkit.materials import require_material
@@ -55,7 +56,19 @@ def check(thing, only=None, progress=None):
         raise BrdfkitError(f"There is no check {unknown.pop()!r}; there are {', '.join(checks)}.")
     findings = []
     for name in names:
-        findings.append(Finding(name, *checks[name](subject)))
+        findings.append(Finding(name, *_found(name, subject)))
         if progress:
             progress(len(findings), len(names))
     return Report(thing.name, tuple(findings))
+
+
+def _found(name, subject):
+    """(passed, figure) of a check; a model whose lines raise an error has failed it."""
+    try:
+        return checks[name](subject)
+    except BrdfkitError:
+        raise
+    except Exception as error:
+        if subject.model is None:
+            raise
+        return False, described(error, subject.model)
