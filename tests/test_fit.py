@@ -214,6 +214,21 @@ def test_a_black_material_is_fitted():
 
 
 @pytest.mark.quick
+def test_one_sample_is_fitted():
+    """At normal incidence, where the cosine loss, weighted by sin θ_i, has nothing to say."""
+    up = np.array([[0.0, 0.0, 1.0]])
+    data = bk.Measured.from_samples(up, up, [[0.1, 0.2, 0.3]])
+    found = bk.fit("lambert", data)
+    np.testing.assert_allclose(found.values["diffuse_reflectance"], np.pi * data.values[0])
+    compared = bk.compare(data, found)
+    assert np.isnan(compared.errors["lambert"].pop("cosine"))
+    assert max(compared.errors["lambert"].values()) < 1e-9
+    assert str(bk.compare(data, found)).split()[6:8] == ["-", "0.00000"]
+    with pytest.raises(BrdfkitError, match="cosine loss weighs no sample"):
+        bk.fit("lambert", data, "cosine")
+
+
+@pytest.mark.quick
 def test_fixed_parameter_stays():
     data = synthetic(bk.models()["ggx"](f0=0.2))
     found = bk.fit("ggx", data, fixed={"f0": 0.04})

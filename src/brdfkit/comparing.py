@@ -1,5 +1,6 @@
 """`compare`: how well models describe a measured material, as a table."""
 
+import math
 from dataclasses import dataclass
 
 from brdfkit.errors import BrdfkitError
@@ -26,8 +27,13 @@ class Comparison:
         width = max(map(len, [self.material, *self.errors]))
         lines = [f"{self.material:<{width}}" + "".join(f"{n:>12}" for n in names)]
         for name, row in self.errors.items():
-            lines.append(f"{name:<{width}}" + "".join(f"{row[n]:12.5f}" for n in names))
+            lines.append(f"{name:<{width}}" + "".join(f"{figure(row[n]):>12}" for n in names))
         return "\n".join(lines)
+
+
+def figure(error):
+    """An error in print, a dash where there is none."""
+    return "-" if math.isnan(error) else f"{error:.5f}"
 
 
 def compare(data, things, max_angle=80.0):

@@ -78,6 +78,8 @@ def _fit_each(names, material, how, output, console):
 
 
 def _print_fits(material, fits, comparison, psnr, written, console):
+    from brdfkit.comparing import figure
+
     if console.as_json:
         records = [_record(f, comparison, psnr) for f in fits]
         console.json({"material": material.name, "fits": records, "written": written})
@@ -90,7 +92,7 @@ def _print_fits(material, fits, comparison, psnr, written, console):
     title = f"{material.name}: errors"
     table = console.table("model", *losses, *image, ">time [s]", title=title)
     for found in fits:
-        errors = [f"{e:.5f}" for e in comparison.errors[found.name].values()]
+        errors = [figure(e) for e in comparison.errors[found.name].values()]
         image = [f"{psnr[found.name]:.1f}"] if psnr else []
         table.add_row(found.name, *errors, *image, f"{found.seconds:.2f}")
     console.out.print(table)
