@@ -11,7 +11,8 @@ from brdfkit.names import unused
 class Comparison:
     """Errors of several BRDFs against one measured material, under every loss.
 
-    `errors`: name → loss → E, the best by the log loss first.
+    `errors`: name → loss → E (its units: `brdfkit.losses`), the best by the log loss first; nan
+    where a loss weighs no sample.
     """
 
     material: str
@@ -38,6 +39,11 @@ def figure(error):
 
 def compare(data, things, max_angle=80.0):
     """Compare fits, models or other materials to a `Measured`; returns a `Comparison`.
+
+    `things`: one material or a list of them; `max_angle`: samples with an angle at or beyond it
+    [degrees, above 0 to 90] are left out, as in `fit`. The result has them in the order of their
+    log loss, the best first; equal names are numbered. Raises `BrdfkitError` where `data` was not
+    measured, one of `things` is no material, or no sample is left.
 
     >>> print(compare(paint, [fit("ward", paint), fit("ggx", paint)]))    # doctest: +SKIP
     """

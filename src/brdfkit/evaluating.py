@@ -9,7 +9,9 @@ def evaluate(brdf, wi, wo):
     """BRDF (n, channels) in sr⁻¹, without cosine, of direction pairs `wi`, `wo` (n, 3).
 
     `brdf`: a model with values, a fit or a measured material. Directions are unit vectors in
-    the local frame; where one is not above the surface the BRDF is 0.
+    the local frame; where one is not above the surface the BRDF is 0. Of no directions the result
+    is empty. Raises `BrdfkitError` for what is no material, other shapes, and directions whose
+    length is not 1 (to 1e-4).
 
     >>> evaluate(models()["lambert"](), [[0, 0, 1]], [[0.6, 0, 0.8]])
     array([[0.15915494]])

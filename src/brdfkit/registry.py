@@ -18,10 +18,10 @@ _registered: set[tuple[str, str]] = set()
 
 
 def models():
-    """The models there are, by name: ``{"blinn_phong": BlinnPhong, ...}``.
+    """The models there are, by name: ``{"abc": ABC, ...}``, brdfkit's and those that were loaded.
 
     >>> sorted(models())[0]
-    'blinn_phong'
+    'abc'
     """
     found = {name: model_in(path) for name, path in plugin_files().items()}
     return {name: model for name, model in found.items() if model is not None}

@@ -36,18 +36,23 @@ def fit(
     seed=0,
     progress=None,
 ):
-    """Fit the model `name` to a measured material, in double precision.
+    """Fit the model `name`, a label as ``"ggx+ward"`` or a class, to a measured material.
 
-    SQP over the shape parameters from several starts; the weights are solved inside, per
-    channel, not negative. Spectral data is fitted as linear sRGB.
+    SQP over the shape parameters from several starts, in double precision; the weights are solved
+    inside, per channel, not negative. Spectral data is fitted as linear sRGB.
 
     `data`: a `Measured`; `loss`: a name in `losses`; `robust`: a name in `fitting.robust.WEIGHTS`,
     ``"bisquare"``, by which outliers lose their say; `starts`: the default and points spread over
     the bounds; `bounds`: other bounds by name, ``{"alpha_u": (0.01, 0.5)}``; `fixed`: shape
     parameters held at a value, ``{"f0": 0.04}``; `anisotropic`: search ``alpha_v`` and its like
     too, which otherwise follow ``alpha_u``: by default where the measurement is anisotropic;
-    `max_angle`: samples with an angle at or beyond it [degrees] are left out; `progress`: called
-    with (done, total). Returns a `Fit`.
+    `max_angle`: samples with an angle at or beyond it [degrees, above 0 to 90] are left out;
+    `seed`: of the starts, and of the part of a large table by which they are compared: equal seeds
+    give equal fits; `progress`: called with (done, total). Returns a `Fit`.
+
+    Raises `BrdfkitError` for an unknown model, loss or robust weight; for a parameter that is not
+    searched, or bounds and values beyond the model's; where `data` was not measured or no sample
+    is left; and for a robust fit without more samples than parameters.
 
     >>> print(fit("ward", load("paint.binary")))    # doctest: +SKIP
     """
