@@ -182,6 +182,12 @@ def test_a_model_that_raises_has_failed(lines, said, tmp_path, monkeypatch):
 
 
 @pytest.mark.quick
+def test_a_model_in_no_file_is_refused():
+    with pytest.raises(bk.BrdfkitError, match=r"Right is in no file.*load_models"):
+        bk.check(Right())
+
+
+@pytest.mark.quick
 @pytest.mark.parametrize("unused", ["k", "k_v"])
 def test_a_parameter_without_effect_is_named(unused, monkeypatch):
     class Unused(Right):

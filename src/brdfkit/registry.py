@@ -54,17 +54,22 @@ def model(label):
 def _label(model):
     """The label of what stands for a model: of a class too, if it comes back by that label."""
     if isinstance(model, type) and hasattr(model, "label"):
-        if model.type_name() not in plugin_files():
-            raise BrdfkitError(
-                f"{model.__name__} is in no file of models; write it into one and load that, "
-                'as by brdfkit.load_models("my_model.py").'
-            )
+        require_file(model)
         return model.label()
     if not isinstance(model, str):
         raise BrdfkitError(
             f"A {type(model).__name__} names no model; give one of {', '.join(models())}."
         )
     return model
+
+
+def require_file(model):
+    """An error where the class lies in no file, by which Mitsuba and a saved fit find it."""
+    if model.type_name() not in plugin_files():
+        raise BrdfkitError(
+            f"{model.__name__} is in no file of models; write it into one and load that, as by "
+            'brdfkit.load_models("my_model.py").'
+        )
 
 
 def is_label(word):
