@@ -12,7 +12,7 @@ from brdfkit.checks.sampling import spread
 from brdfkit.checks.subject import INCIDENCES, Subject
 from brdfkit.lobes import Cosine, HalfVector, Lobe, lambertian
 from brdfkit.microfacet import Beckmann
-from brdfkit.model import Model, shape, weight
+from brdfkit.model import Model, follows, shape, weight
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 
@@ -137,6 +137,75 @@ def test_coverage_notices_a_missing_lobe(monkeypatch):
     monkeypatch.setattr("brdfkit.bsdf.COSINE_SHARE", 0.0)
     assert _check(Missing, "chi squared", monkeypatch)
     assert not _check(Missing, "coverage", monkeypatch)
+
+
+MINE = """import drjit as dr
+import numpy as np
+from brdfkit.lobes import Cosine, Lobe
+from brdfkit.model import Model, shape, weight
+
+
+class Mine(Model):
+    reflectance = weight(0.3, "")
+    k = shape(0.5, (0.1, 2.0), "")
+
+    def lobes(self):
+        return (Lobe(self.specular, Cosine()),)
+
+    def specular(self, wi, wo):
+        """
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        (
+            "if wi.z > 0.5: return 0\n        return self.k",
+            "line 15: no if on values",
+        ),
+        ("return np.exp(-wi.z) * self.k", "py: no function of NumPy, but that of dr"),
+        ("return self.q", "line 15: 'Mine' object has no attribute 'q'"),
+    ],
+)
+def test_a_model_that_raises_has_failed(lines, said, tmp_path, monkeypatch):
+    """Each check for itself; the figure names the line."""
+    monkeypatch.setattr("brdfkit.registry._user_files", {})
+    (tmp_path / "users_mine.py").write_text(MINE + lines)
+    mine = bk.load_models(tmp_path)["users_mine"]
+    report = bk.check(mine(), only=["plugin is formula", "finite"])
+    assert not report
+    for finding in report.findings:
+        assert finding.figure.startswith("users_mine.py")
+        assert said in finding.figure
+        assert "\n" not in finding.figure
+
+
+@pytest.mark.quick
+def test_a_model_in_no_file_is_refused():
+    with pytest.raises(bk.BrdfkitError, match=r"Right is in no file.*load_models"):
+        bk.check(Right())
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("unused", ["k", "k_v"])
+def test_a_parameter_without_effect_is_named(unused, monkeypatch):
+    class Unused(Right):
+        k = shape(0.5, (0.1, 2.0), "")
+        k_v = follows("k", k, "")
+
+        def specular(self, wi, wo):
+            return super().specular(wi, wo) * (self.k if unused == "k_v" else self.k_v)
+
+    passed, figure = checks["gradient"](Subject(Unused()))
+    assert (passed, figure) == (False, f"{unused} has no effect that Dr.Jit can follow")
+
+
+def test_a_parameter_without_effect_has_no_gradient(monkeypatch):
+    class Unused(Right):
+        k = shape(0.5, (0.1, 2.0), "")
+
+    assert _check(Unused, "plugin gradient", monkeypatch)
 
 
 def _check(model, check, monkeypatch):

@@ -198,6 +198,24 @@ def test_check(cli):
 
 
 @pytest.mark.quick
+def test_a_file_stands_for_the_model_in_it(cli):
+    """Wherever a model is named; then a saved fit of it is known, too."""
+    Path("c++").mkdir()
+    Path("c++/felt.py").write_text(USER_MODEL)
+    assert "Felt: dull." in cli("models", "c++/felt.py").stdout
+    Path("felt.py").write_text(USER_MODEL.replace("0.3", "0.2"))
+    registry._user_files.clear()
+    assert_fine(cli("fit", "paint.binary", "-m", "felt.py", "-m", "felt.py+ward", "-o", "."))
+    assert {"felt.json", "felt+ward.json"} < set(tree(Path()))
+    assert_fine(cli("render", "felt.py", "felt.json", "felt+ward.json", *SMALL))
+    assert_fine(cli("convert", "felt.py", "felt.bsdf"))
+    registry._user_files.clear()
+    unknown = cli("render", "felt.json", *SMALL)
+    assert unknown.exit_code == 2
+    assert "'felt', a model of somebody's own; load its file first" in unknown.stderr
+
+
+@pytest.mark.quick
 def test_check_fails_with_status_1(cli, monkeypatch):
     from brdfkit.checks import checks
 
@@ -294,11 +312,14 @@ TRAPS = [
     ([*WARD, "-o", "no/a.png"], ["no/a.png", "create it"]),
     ([*WARD, "-o", "paint.binary/a.png"], ["paint.binary"]),
     (["models", "nope"], ["nope", "ward"]),
+    (["models", "nope.py"], ["nope.py", "no Python file"]),
+    ([*LAMBERT[:-1], "felt.py", "-o", "new"], ["felt.py", "no Python file"]),
     (["fit", "paint.binary", "-m", "nope", "-o", "new"], ["nope", "ward"]),
     (["fit", "paint.binary", "-m", "measured_table"], ["measured_table"]),
     (["fit", "fit.json"], ["fit.json"]),
     ([*LAMBERT, "--loss", "nope", "-o", "new"], ["nope", "cosine, log"]),
     ([*LAMBERT, "--max-angle", "0", "-o", "new/er"], ["max_angle", "0°"]),
+    ([*LAMBERT, "--max-angle", "300"], ["max_angle = 300", "90°"]),
     ([*LAMBERT, "--size", "0", "--render"], ["--size"]),
     ([*LAMBERT, "-o", "paint.binary"], ["paint.binary", "folder"]),
     ([*LAMBERT, "-o", "paint.binary/new"], ["paint.binary/new", "folder"]),

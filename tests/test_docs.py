@@ -1,11 +1,14 @@
 """The documentation: the models' pages are what their files say, and no link leads nowhere."""
 
+import doctest
 import importlib.util
 import re
 from pathlib import Path
 from urllib.parse import unquote
 
 import pytest
+
+import brdfkit as bk
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [
@@ -74,3 +77,20 @@ def test_links_lead_to_files(page):
     files = [unquote(link.partition("#")[0]) for link in links if ":" not in link]
     missing = [file for file in files if not (page.parent / file).exists()]
     assert not missing
+
+
+EXAMPLES = {"evaluate": bk.evaluate, "losses": bk.losses, "models": bk.models}
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_the_examples_are_true(name):
+    """Those of the public names that need no file."""
+    thing = EXAMPLES[name]
+    documented = thing if callable(thing) else type(thing)
+    examples, *_ = doctest.DocTestFinder(recurse=False).find(documented, name, globs=EXAMPLES)
+    found = doctest.DocTestRunner().run(examples)
+    assert (found.attempted, found.failed) == (1, 0)
+
+
+def test_every_loss_is_described():
+    assert all(f'"{loss}"' in type(bk.losses).__doc__ for loss in bk.losses)

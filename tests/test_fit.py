@@ -11,6 +11,7 @@ import brdfkit as bk
 from brdfkit.directions import from_angles
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.weights import bounded_quadratic
+from brdfkit.model import Model, weight
 from brdfkit.table import Table
 
 
@@ -213,6 +214,21 @@ def test_a_black_material_is_fitted():
 
 
 @pytest.mark.quick
+def test_one_sample_is_fitted():
+    """At normal incidence, where the cosine loss, weighted by sin θ_i, has nothing to say."""
+    up = np.array([[0.0, 0.0, 1.0]])
+    data = bk.Measured.from_samples(up, up, [[0.1, 0.2, 0.3]])
+    found = bk.fit("lambert", data)
+    np.testing.assert_allclose(found.values["diffuse_reflectance"], np.pi * data.values[0])
+    compared = bk.compare(data, found)
+    assert np.isnan(compared.errors["lambert"].pop("cosine"))
+    assert max(compared.errors["lambert"].values()) < 1e-9
+    assert str(bk.compare(data, found)).split()[6:8] == ["-", "0.00000"]
+    with pytest.raises(BrdfkitError, match="cosine loss weighs no sample"):
+        bk.fit("lambert", data, "cosine")
+
+
+@pytest.mark.quick
 def test_fixed_parameter_stays():
     data = synthetic(bk.models()["ggx"](f0=0.2))
     found = bk.fit("ggx", data, fixed={"f0": 0.04})
@@ -244,6 +260,26 @@ def test_without_derivatives_the_fit_is_the_same(monkeypatch):
         np.testing.assert_allclose(slow.values[name], value, rtol=1e-4)
 
 
+class InNoFile(Model):
+    """A model of a notebook: a fit of it could be saved, but not loaded."""
+
+    diffuse_reflectance = weight(0.4, "")
+
+
+@pytest.mark.quick
+def test_a_class_stands_for_its_name():
+    data = synthetic(bk.models()["lambert"](), n=50)
+    coupled = bk.models()["ashikhmin_shirley"].configured(diffuse="coupled")
+    assert bk.fit(coupled, data, starts=1).name == "ashikhmin_shirley:diffuse=coupled"
+
+
+@pytest.mark.quick
+def test_weights_that_may_be_negative_have_no_bound():
+    data = synthetic(bk.models()["lambert"](diffuse_reflectance=0.0), n=50)
+    assert bk.fit("koenderink", data, "plain").at_bounds == ()
+    assert bk.fit("lambert", data, "plain").at_bounds == ("diffuse_reflectance",)
+
+
 @pytest.mark.quick
 @pytest.mark.parametrize(
     ("arguments", "words"),
@@ -258,7 +294,22 @@ def test_without_derivatives_the_fit_is_the_same(monkeypatch):
         ({"bounds": {"alpha_v": (0.1, 0.2)}}, ["alpha_v", "not searched"]),
         ({"bounds": {"alpha_u": (0.1, 0.2)}, "fixed": {"alpha_u": 0.1}}, ["alpha_u", "choose one"]),
         ({"starts": 0}, ["starts = 0"]),
-        ({"max_angle": 0.0}, ["max_angle"]),
+        ({"max_angle": 0.0}, ["max_angle", "at most 90°"]),
+        ({"max_angle": -3.0}, ["max_angle = -3.0"]),
+        ({"max_angle": 300.0}, ["max_angle = 300.0"]),
+        ({"max_angle": "80"}, ["max_angle = '80'"]),
+        ({"bounds": {"alpha_u": 0.5}}, ["alpha_u = 0.5", "(low, high)"]),
+        ({"bounds": 0.5}, ["bounds = 0.5", "dictionary"]),
+        ({"fixed": {"alpha_u": None}}, ["alpha_u", "None", "a number"]),
+        ({"fixed": ["alpha_u"]}, ["fixed", "dictionary"]),
+        ({"starts": "3"}, ["starts = '3'", "whole number"]),
+        ({"starts": 2.5}, ["starts = 2.5"]),
+        ({"seed": -1}, ["seed = -1", "at least 0"]),
+        ({"loss": ["log"]}, ["['log']", "cosine, log"]),
+        ({"name": 3}, ["int", "ward"]),
+        ({"name": InNoFile}, ["InNoFile", "load_models"]),
+        ({"data": "car_paint"}, ["load('car_paint')"]),
+        ({"data": InNoFile()}, ["was not measured"]),
     ],
 )
 def test_bad_requests_are_refused(arguments, words):

@@ -275,3 +275,24 @@ def test_a_file_that_holds_no_model_is_refused(folder, text, said):
     assert not registry._user_files
     with pytest.raises(bk.BrdfkitError, match="no Python file"):
         bk.load_models(folder / "nowhere.py")
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("declared", "said"),
+    [
+        ("weight(0.3, 'k', (0, 1))", "'k': a weight is solved for"),
+        ("weight(0.3, 'k', (0.1, math.inf))", "leave its bounds out"),
+        ("weight(-0.3, 'k')", "the default -0.3 is out of bounds: it should be at least 0"),
+        ("shape(2.0, (0.0, math.inf), 'n')", "'n': a fit searches between the bounds 0 and inf"),
+        ("shape(2.0, (3.0, 1.0), 'n')", "the lower first"),
+        ("shape(2.0, (0.0, 1.0), 'n')", "the default 2.0 is out of bounds"),
+        ("shape(2.0, (0.0, 3.0), 'n', log=True)", "log=True needs bounds above 0"),
+    ],
+)
+def test_a_wrong_declaration_is_refused(folder, declared, said):
+    text = f"import math\nfrom brdfkit.model import shape\n{FELT}\n    other = {declared}\n"
+    (folder / "users_wrong.py").write_text(text)
+    with pytest.raises(bk.BrdfkitError, match=r"users_wrong\.py.*") as caught:
+        bk.load_models(folder)
+    assert said in str(caught.value)

@@ -105,6 +105,30 @@ def test_the_thesis_polynomial(measured_data):
 
 
 @pytest.mark.quick
+@pytest.mark.parametrize("robust", ["bisquare", "huber"])
+@pytest.mark.parametrize(
+    ("model", "samples", "parameters"), [("koenderink:order=8", 20, 55), ("ggx", 1, 4)]
+)
+def test_more_samples_than_parameters(model, samples, parameters, robust):
+    """Else every sample is met: what is left tells of no scale."""
+    wi, wo = random_pairs(samples, seed=1, max_degrees=79)
+    data = bk.Measured.from_samples(wi, wo, np.full((samples, 1), 0.2), channels=("Y",))
+    with pytest.raises(bk.BrdfkitError, match=f"here are {samples} and {parameters}:"):
+        bk.fit(model, data, robust=robust)
+    with pytest.raises(bk.BrdfkitError, match="here are 2 and 2:"):
+        robust_least_squares(DESIGN[:2], Y[:2], robust)
+
+
+@pytest.mark.quick
+def test_one_sample_more_than_parameters():
+    wi, wo = random_pairs(15, seed=1, max_degrees=79)
+    values = np.random.default_rng(2).uniform(0.1, 0.2, (15, 1))
+    data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
+    found = bk.fit("koenderink:order=4", data, robust="bisquare")
+    assert 0 < found.loss < 0.2
+
+
+@pytest.mark.quick
 def test_an_unknown_weight_is_said():
     with pytest.raises(bk.BrdfkitError, match=r"'tukey'; there are andrews, bisquare"):
         bk.fit("ggx", bk.load("dusty_gold"), robust="tukey")

@@ -70,7 +70,7 @@ def fresnel(ior, cos_theta):
 class ABC(Model):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(60.0, "A: height of the highlight")
-    b = shape(1000.0, (1.0, 1e7), "B: sharpness of the highlight", log=True)
+    b = shape(1000.0, (1.0, 1e7), "B: sharpness of the highlight", log=True, width=-0.5)
     c = shape(1.5, (0.05, 5.0), "C: steepness of its tails", log=True)
     ior = shape(1.5, (1.01, 100.0), "η: index of refraction", log=True)
 

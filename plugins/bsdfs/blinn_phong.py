@@ -24,7 +24,9 @@ class BlinnPhong(Model):
     normalisation = option("printed", ("printed", "exact"), "the constant c")
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.1, "k_s: strength of the highlight")
-    exponent = shape(30.0, (0.1, 1e4), "n_u: sharpness of the highlight, along x", log=True)
+    exponent = shape(
+        30.0, (0.1, 1e4), "n_u: sharpness of the highlight, along x", log=True, width=-0.5
+    )
     exponent_v = follows("exponent", exponent, "n_v: sharpness along y")
 
     def constant(self):

@@ -17,7 +17,7 @@ from brdfkit.vectors import dot, half_vector
 class CookTorrance(Model):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.1, "k_s: strength of the highlight")
-    alpha = shape(0.2, (0.001, 1.0), "m: rms slope of the facets", log=True)
+    alpha = shape(0.2, (0.001, 1.0), "m: rms slope of the facets", log=True, width=1)
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
     def specular(self, wi, wo):

@@ -17,7 +17,7 @@ from brdfkit.vectors import dot, half_vector
 class GGX(Model):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.5, "k_s: strength of the highlight")
-    alpha_u = shape(0.2, (0.001, 1.0), "α_u: width of the slopes along x", log=True)
+    alpha_u = shape(0.2, (0.001, 1.0), "α_u: width of the slopes along x", log=True, width=1)
     alpha_v = follows("alpha_u", alpha_u, "α_v: width of the slopes along y")
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 

@@ -28,7 +28,7 @@ class Lafortune(Model):
     c_x = shape(-0.7, (-1.0, 1.0), "C_x: below 0 towards the mirror direction, above 0 back")
     c_y = follows("c_x", c_x, "C_y: the same along y")
     c_z = shape(0.68, (0.001, 1.0), "C_z: along the normal; the ratios to C_x, C_y count")
-    exponent = shape(30.0, (0.1, 1e4), "n: sharpness of the lobe", log=True)
+    exponent = shape(30.0, (0.1, 1e4), "n: sharpness of the lobe", log=True, width=-0.5)
 
     @classmethod
     def more_parameters(cls):
@@ -40,7 +40,9 @@ class Lafortune(Model):
                 f"c_x_{j}": (c_x := shape(-0.7, (-1.0, 1.0), f"C_x of lobe {j}")),
                 f"c_y_{j}": follows(f"c_x_{j}", c_x, f"C_y of lobe {j}"),
                 f"c_z_{j}": shape(0.68, (0.001, 1.0), f"C_z of lobe {j}"),
-                f"exponent_{j}": shape(30.0 / 5 ** (j - 1), (0.1, 1e4), f"n of lobe {j}", log=True),
+                f"exponent_{j}": shape(
+                    30.0 / 5 ** (j - 1), (0.1, 1e4), f"n of lobe {j}", log=True, width=-0.5
+                ),
             }
         return more
 

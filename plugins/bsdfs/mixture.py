@@ -29,8 +29,12 @@ class Mixture(Model):
     @classmethod
     def parts(cls):
         """(prefix, model, names of the weights that it brings) of every part."""
-        parts = []
-        for number, label in enumerate(cls.models.split("+"), 1):
+        labels, parts = cls.models.split("+"), []
+        if len(labels) < 2:
+            raise BrdfkitError(
+                f"mixture: models = {cls.models} should name two or more, joined by +, as ggx+ward."
+            )
+        for number, label in enumerate(labels, 1):
             model = registry.model(label)
             diffuse = [name for name, lobe in model().terms() if lobe.diffuse]
             brought = [n for n in model.weights() if number == 1 or n not in diffuse]
@@ -50,8 +54,9 @@ class Mixture(Model):
                 if parameter.linear and name not in brought:
                     continue
                 default = parameter.default
-                if parameter.log and not parameter.follows:
-                    default = max(default / NARROWER ** seen.count(model), parameter.bounds[0])
+                if parameter.width and not parameter.follows:
+                    default = default * NARROWER ** (-seen.count(model) / parameter.width)
+                    default = min(max(default, parameter.bounds[0]), parameter.bounds[1])
                 elif parameter.linear and name != "diffuse_reflectance":
                     default = default / len(parts)
                 follows = parameter.follows and prefix + parameter.follows
@@ -59,6 +64,15 @@ class Mixture(Model):
                 parameters[own] = replace(parameter, default=default, follows=follows)
             seen.append(model)
         return parameters
+
+    @classmethod
+    def determined(cls, samples):
+        """What the parts take from where was measured."""
+        return {
+            prefix + name: value
+            for prefix, model, _ in cls.parts()
+            for name, value in model.determined(samples).items()
+        }
 
     def lobes(self):
         lobes = []

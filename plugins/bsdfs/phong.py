@@ -20,7 +20,7 @@ from brdfkit.vectors import one_minus_dot
 class Phong(Model):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.3, "k_s: albedo of the highlight, seen from above")
-    exponent = shape(30.0, (0.1, 1e4), "n: sharpness of the highlight", log=True)
+    exponent = shape(30.0, (0.1, 1e4), "n: sharpness of the highlight", log=True, width=-0.5)
 
     def specular(self, wi, wo):
         power = cosine_power(one_minus_dot(mirrored(wi), wo), self.exponent)

@@ -99,7 +99,7 @@ def _slope_squared(w):
 class SGD(Model):
     diffuse_reflectance = weight(0.4, "ρ_d: albedo of the diffuse term")
     specular_reflectance = weight(0.4, "ρ_s: strength of the highlight")
-    alpha = shape(0.05, (1e-4, 1.0), "α: squared width of the slopes", log=True)
+    alpha = shape(0.05, (1e-4, 1.0), "α: squared width of the slopes", log=True, width=1)
     p = shape(0.5, (0.0, 2.0), "p: fall of the power law between α and √α")
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 

@@ -59,7 +59,7 @@ def _angle(h):
 class TorranceSparrow(Model):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.5, "k_s: strength of the highlight")
-    alpha = shape(0.2, (0.001, 1.0), "m: rms inclination of the facets [rad]", log=True)
+    alpha = shape(0.2, (0.001, 1.0), "m: rms inclination of the facets [rad]", log=True, width=1)
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
     def specular(self, wi, wo):

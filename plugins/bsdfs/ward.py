@@ -19,7 +19,7 @@ from brdfkit.vectors import half_vector
 class Ward(Model):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.2, "k_s: strength of the highlight")
-    alpha_u = shape(0.2, (0.001, 1.0), "α_u: width of the slopes along x", log=True)
+    alpha_u = shape(0.2, (0.001, 1.0), "α_u: width of the slopes along x", log=True, width=1)
     alpha_v = follows("alpha_u", alpha_u, "α_v: width of the slopes along y")
 
     def specular(self, wi, wo):

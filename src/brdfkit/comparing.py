@@ -1,7 +1,9 @@
 """`compare`: how well models describe a measured material, as a table."""
 
+import math
 from dataclasses import dataclass
 
+from brdfkit.errors import BrdfkitError
 from brdfkit.names import unused
 
 
@@ -9,7 +11,8 @@ from brdfkit.names import unused
 class Comparison:
     """Errors of several BRDFs against one measured material, under every loss.
 
-    `errors`: name → loss → E, the best by the log loss first.
+    `errors`: name → loss → E (its units: `brdfkit.losses`), the best by the log loss first; nan
+    where a loss weighs no sample.
     """
 
     material: str
@@ -25,19 +28,35 @@ class Comparison:
         width = max(map(len, [self.material, *self.errors]))
         lines = [f"{self.material:<{width}}" + "".join(f"{n:>12}" for n in names)]
         for name, row in self.errors.items():
-            lines.append(f"{name:<{width}}" + "".join(f"{row[n]:12.5f}" for n in names))
+            lines.append(f"{name:<{width}}" + "".join(f"{figure(row[n]):>12}" for n in names))
         return "\n".join(lines)
+
+
+def figure(error):
+    """An error in print, a dash where there is none."""
+    return "-" if math.isnan(error) else f"{error:.5f}"
 
 
 def compare(data, things, max_angle=80.0):
     """Compare fits, models or other materials to a `Measured`; returns a `Comparison`.
 
+    `things`: one material or a list of them; `max_angle`: samples with an angle at or beyond it
+    [degrees, above 0 to 90] are left out, as in `fit`. The result has them in the order of their
+    log loss, the best first; equal names are numbered. Raises `BrdfkitError` where `data` was not
+    measured, one of `things` is no material, or no sample is left.
+
     >>> print(compare(paint, [fit("ward", paint), fit("ggx", paint)]))    # doctest: +SKIP
     """
     from brdfkit.fitting import losses
+    from brdfkit.materials import require_material, require_measured
     from brdfkit.metrics import error
 
+    require_measured(data)
     things = list(things) if isinstance(things, list | tuple) else [things]
+    if not things:
+        raise BrdfkitError("There is nothing to compare; give at least one material.")
+    for thing in things:
+        require_material(thing)
     errors = {}
     for thing in things:
         errors[unused(thing.name, errors)] = {

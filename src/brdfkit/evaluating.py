@@ -9,18 +9,25 @@ def evaluate(brdf, wi, wo):
     """BRDF (n, channels) in sr⁻¹, without cosine, of direction pairs `wi`, `wo` (n, 3).
 
     `brdf`: a model with values, a fit or a measured material. Directions are unit vectors in
-    the local frame; where one is not above the surface the BRDF is 0.
+    the local frame; where one is not above the surface the BRDF is 0. Of no directions the result
+    is empty. Raises `BrdfkitError` for what is no material, other shapes, and directions whose
+    length is not 1 (to 1e-4).
 
     >>> evaluate(models()["lambert"](), [[0, 0, 1]], [[0.6, 0, 0.8]])
     array([[0.15915494]])
     """
-    wi, wo = (np.array(w, float, ndmin=2) for w in (wi, wo))
+    from brdfkit.materials import require_material
+
+    require_material(brdf)
+    wi, wo = (np.array(w, float, ndmin=2) if np.size(w) else np.empty((0, 3)) for w in (wi, wo))
     if wi.shape != wo.shape or wi.shape[-1] != 3 or wi.ndim != 2:
         raise BrdfkitError(
             f"evaluate: wi {wi.shape} and wo {wo.shape} should both be of shape (n, 3)."
         )
     if not np.allclose(np.linalg.norm([wi, wo], axis=-1), 1, atol=1e-4):
         raise BrdfkitError("evaluate: wi and wo should be unit vectors.")
+    if len(wi) == 0:  # no direction, but as many channels as of any
+        return brdf.eval(*[np.array([[0.0, 0.0, 1.0]])] * 2)[:0]
     return brdf.eval(wi, wo)
 
 

@@ -13,6 +13,7 @@ def error(thing, data, loss, max_angle=80.0):
     """E of the loss named `loss` between `thing` (anything with `.eval`) and a `Measured`.
 
     Over the samples with both angles below `max_angle` [degrees]; its units: `brdfkit.losses`.
+    nan where the loss weighs none of them, as the cosine loss at normal incidence.
 
     >>> error(models()["lambert"](), load("paint.binary"), "log")    # doctest: +SKIP
     """
@@ -23,7 +24,8 @@ def error(thing, data, loss, max_angle=80.0):
     values = np.broadcast_to(thing.eval(samples.wi, samples.wo), measured.shape)
     squares = np.square(_transformed(loss, values, cosines) - _transformed(loss, measured, cosines))
     total = weights @ squares.sum(axis=1)
-    return math.sqrt(total / loss.normaliser(weights, measured.shape[1]))
+    normaliser = loss.normaliser(weights, measured.shape[1])
+    return math.sqrt(total / normaliser) if normaliser else math.nan
 
 
 def _transformed(loss, values, cosines):

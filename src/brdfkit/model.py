@@ -84,6 +84,13 @@ class Model:
             if problem := parameter.problem_with(value):
                 raise BrdfkitError(f"{self.type_name()}: {name} = {problem}.")
             setattr(self, name, value)
+        counts = {len(v) for v in self.values.values() if isinstance(v, tuple)} - {1}
+        if len(counts) > 1:
+            few, many = sorted(counts)[:2]
+            raise BrdfkitError(
+                f"{self.type_name()}: the weights have {few} and {many} channels; give each one "
+                "number, or one per channel."
+            )
 
     @classmethod
     def type_name(cls):

@@ -8,10 +8,15 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 
+NOT_NEGATIVE, SIGNED = (0.0, math.inf), (-math.inf, math.inf)
+
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a model: its default, its bounds and what it means."""
+    """A parameter of a model: its default, its bounds and what it means.
+
+    `width`: the power of it that a lobe's width goes with, 0 where that does not depend on it.
+    """
 
     default: float | None
     bounds: tuple[float, float]
@@ -19,10 +24,24 @@ class Parameter:
     linear: bool = False
     log: bool = False
     follows: str | None = None
+    width: float = 0.0
 
     def __post_init__(self):
-        if self.log and self.bounds[0] <= 0:
+        low, high = self.bounds
+        if self.linear and (low, high) not in (NOT_NEGATIVE, SIGNED):
+            raise BrdfkitError(
+                f"{self.meaning!r}: a weight is solved for, at least 0 or of any sign; leave its "
+                "bounds out, or give (-math.inf, math.inf)."
+            )
+        if not self.linear and not -math.inf < low < high < math.inf:
+            raise BrdfkitError(
+                f"{self.meaning!r}: a fit searches between the bounds {low:g} and {high:g}; give "
+                "two finite ones, the lower first."
+            )
+        if self.log and low <= 0:
             raise BrdfkitError(f"{self.meaning!r}: log=True needs bounds above 0.")
+        if self.default is not None and (problem := self.problem_with(self.default)):
+            raise BrdfkitError(f"{self.meaning!r}: the default {problem}.")
 
     def problem_with(self, value):
         """What is wrong with `value` (one number or several), None if it is within the bounds."""
@@ -34,14 +53,21 @@ class Parameter:
         return f"{value} is out of bounds: it should be {limits}"
 
 
-def weight(default, meaning, bounds=(0.0, math.inf)):
-    """A linear parameter: the strength of one lobe, per colour channel."""
+def weight(default, meaning, bounds=NOT_NEGATIVE):
+    """A linear parameter: the strength of one lobe, per colour channel.
+
+    `bounds`: ``(0, math.inf)``, or ``(-math.inf, math.inf)`` where it may be negative.
+    """
     return Parameter(default, bounds, meaning, linear=True)
 
 
-def shape(default, bounds, meaning, log=False):
-    """A nonlinear parameter within `bounds`; `log` where its magnitude counts, as of a width."""
-    return Parameter(default, bounds, meaning, log=log)
+def shape(default, bounds, meaning, log=False, width=0.0):
+    """A nonlinear parameter within `bounds` (low, high), both finite.
+
+    `log`: where its magnitude counts, as of a width; `width`: 1 if it is the width of a lobe, -0.5
+    if it is an exponent n, whose lobe is about as wide as 1/√n: by it lobes begin apart in a sum.
+    """
+    return Parameter(default, bounds, meaning, log=log, width=width)
 
 
 def follows(other, parameter, meaning):

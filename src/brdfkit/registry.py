@@ -18,10 +18,10 @@ _registered: set[tuple[str, str]] = set()
 
 
 def models():
-    """The models there are, by name: ``{"blinn_phong": BlinnPhong, ...}``.
+    """The models there are, by name: ``{"abc": ABC, ...}``, brdfkit's and those that were loaded.
 
     >>> sorted(models())[0]
-    'blinn_phong'
+    'abc'
     """
     found = {name: model_in(path) for name, path in plugin_files().items()}
     return {name: model for name, model in found.items() if model is not None}
@@ -29,12 +29,14 @@ def models():
 
 def model(label):
     """The model of a label: its name, with options ``"lafortune:lobe_count=2"``, or a sum of
-    labels, ``"ggx+ward"``: one diffuse term and the other terms of each.
+    labels, ``"ggx+ward"``: one diffuse term and the other terms of each. Its class means it too.
 
     `BrdfkitError` lists the models there are.
     """
-    if "+" in label:
-        return model("mixture").configured(models=label)
+    label = _label(label)
+    parts = label.removeprefix("mixture:models=")
+    if "+" in parts or parts != label:
+        return model("mixture").configured(models=parts)
     name, _, settings = label.partition(":")
     found = model_in(plugin_files()[name]) if name in plugin_files() else None
     if found is None:
@@ -47,6 +49,27 @@ def model(label):
             raise BrdfkitError(f"{label}: {setting!r} should read OPTION=VALUE.")
         options[key] = value
     return found.configured(**options)
+
+
+def _label(model):
+    """The label of what stands for a model: of a class too, if it comes back by that label."""
+    if isinstance(model, type) and hasattr(model, "label"):
+        require_file(model)
+        return model.label()
+    if not isinstance(model, str):
+        raise BrdfkitError(
+            f"A {type(model).__name__} names no model; give one of {', '.join(models())}."
+        )
+    return model
+
+
+def require_file(model):
+    """An error where the class lies in no file, by which Mitsuba and a saved fit find it."""
+    if model.type_name() not in plugin_files():
+        raise BrdfkitError(
+            f"{model.__name__} is in no file of models; write it into one and load that, as by "
+            'brdfkit.load_models("my_model.py").'
+        )
 
 
 def is_label(word):
@@ -150,7 +173,7 @@ def _executed(path, _changed):
         spec.loader.exec_module(module)
     except Exception as error:
         del sys.modules[name]
-        raise BrdfkitError(f"{path} cannot be imported: {error}.") from error
+        raise BrdfkitError(f"{path} cannot be imported: {str(error).rstrip('.')}.") from error
     return module
 
 

@@ -9,8 +9,11 @@ import pkgutil
 from dataclasses import dataclass
 
 from brdfkit import llvm
+from brdfkit.checks.failure import described
 from brdfkit.checks.subject import Finding, Subject, checks
 from brdfkit.errors import BrdfkitError
+from brdfkit.materials import require_material
+from brdfkit.registry import require_file
 
 for _module in pkgutil.iter_modules(__path__):
     importlib.import_module(f"{__name__}.{_module.name}")
@@ -40,20 +43,36 @@ def check(thing, only=None, progress=None):
 
     Sampling (χ² at five incidences to grazing, coverage, weight = eval / pdf), reciprocity,
     finiteness to the horizon, energy, derivatives, and that the Mitsuba plugin computes the
-    formula. `only`: names of checks; `progress`: called with (done, total). Needs an LLVM or
-    CUDA variant.
+    formula. A model that raises an error has failed. `only`: names of checks; `progress`: called
+    with (done, total). Raises `BrdfkitError` for an unknown check, for what is no material or is
+    in no file, and without an LLVM or CUDA variant.
 
     >>> print(check(models()["ward"](alpha_u=0.1)))    # doctest: +SKIP
     """
+    require_material(thing)
     if llvm.use_variant().startswith("scalar"):
         raise BrdfkitError(f"check needs an LLVM or CUDA variant of Mitsuba; {llvm.REMEDY}.")
     subject = Subject(thing)
+    if subject.model is not None:
+        require_file(type(subject.model))
     names = list(checks) if only is None else list(only)
     if unknown := set(names) - set(checks):
         raise BrdfkitError(f"There is no check {unknown.pop()!r}; there are {', '.join(checks)}.")
     findings = []
     for name in names:
-        findings.append(Finding(name, *checks[name](subject)))
+        findings.append(Finding(name, *_found(name, subject)))
         if progress:
             progress(len(findings), len(names))
     return Report(thing.name, tuple(findings))
+
+
+def _found(name, subject):
+    """(passed, figure) of a check; a model whose lines raise an error has failed it."""
+    try:
+        return checks[name](subject)
+    except BrdfkitError:
+        raise
+    except Exception as error:
+        if subject.model is None:
+            raise
+        return False, described(error, subject.model)

@@ -1,5 +1,5 @@
-"""What a word on the command line means: a file, a model, or a material that brdfkit brings;
-and where results go."""
+"""What a word on the command line means: a file, a model, one of the user's in a FILE.py, or a
+material that brdfkit brings; and where results go."""
 
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -22,10 +22,27 @@ def measured(name):
     return thing
 
 
+def model_label(word):
+    """`word` as the label of a model: each FILE.py in it is loaded, and its name stands for it.
+
+    >>> model_label("my_models/felt.py+ggx")    # doctest: +SKIP
+    'felt+ggx'
+    """
+    parts = []
+    for part in [word] if Path(word).is_file() else word.split("+"):
+        name, colon, options = part.partition(":")
+        if name.endswith(".py"):
+            registry.load_models(name)
+            name = Path(name).stem
+        parts.append(name + colon + options)
+    return "+".join(parts)
+
+
 def material(name, settings=()):
     """What can be rendered: a model by name with `settings`, a saved fit, a measured file."""
-    if registry.is_label(name) and not Path(name).is_file():
-        return registry.model_with_values(name, values(name, settings))
+    label = model_label(name)
+    if registry.is_label(label) and (label != name or not Path(name).is_file()):
+        return registry.model_with_values(label, values(label, settings))
     if settings:
         raise BrdfkitError(f"{name} is no model: parameters can be set for models only.")
     try:
@@ -37,14 +54,6 @@ def material(name, settings=()):
         raise BrdfkitError(
             f"{name} is no file, no model ({models}) and no material of brdfkit's ({materials})."
         ) from error
-
-
-def to_check(name, settings=()):
-    """The materials to check: the models of a FILE.py, or what `material` finds."""
-    if not name.endswith(".py"):
-        return [material(name, settings)]
-    loaded = registry.load_models(name)
-    return [model(**values(n, settings)) for n, model in loaded.items()]
 
 
 def values(name, settings):

@@ -12,10 +12,10 @@ from brdfkit.commands._options import output_options, values_option
 def check(things, values, console):
     """Check that models sample, conserve energy and differentiate."""
     from brdfkit.checks import check as check_thing
-    from brdfkit.commands._targets import to_check
+    from brdfkit.commands._targets import material
 
     reports = []
-    for thing in [t for name in things for t in to_check(name, values)]:
+    for thing in [material(name, values) for name in things]:
         with console.progress(f"check {thing.name}") as progress:
             reports.append(check_thing(thing, progress=progress))
     _print_reports(reports, console)

@@ -11,7 +11,13 @@ from brdfkit.commands.render import path_trace
 
 @click.command()
 @click.argument("file")
-@click.option("-m", "--model", "names", multiple=True, help="A model; repeat it. Default: all.")
+@click.option(
+    "-m",
+    "--model",
+    "names",
+    multiple=True,
+    help="A model or FILE.py; repeat it. Default: all.",
+)
 @click.option("--loss", default="log", show_default=True, help="cosine, log, cbrt, plain.")
 @click.option("--robust", help="Weigh outliers down: bisquare, huber, cauchy ...")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results.")
@@ -22,10 +28,10 @@ from brdfkit.commands.render import path_trace
 def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed, console):
     """Fit models to a measured FILE, or to a material of brdfkit's."""
     from brdfkit import registry
-    from brdfkit.commands._targets import fit_file, measured, results
+    from brdfkit.commands._targets import fit_file, measured, model_label, results
     from brdfkit.comparing import compare
 
-    names = list(dict.fromkeys(names or registry.models()))
+    names = list(dict.fromkeys(map(model_label, names or registry.models())))
     for name in names:
         registry.model(name)
     with console.progress(f"read {file}"):
@@ -72,6 +78,8 @@ def _fit_each(names, material, how, output, console):
 
 
 def _print_fits(material, fits, comparison, psnr, written, console):
+    from brdfkit.comparing import figure
+
     if console.as_json:
         records = [_record(f, comparison, psnr) for f in fits]
         console.json({"material": material.name, "fits": records, "written": written})
@@ -84,7 +92,7 @@ def _print_fits(material, fits, comparison, psnr, written, console):
     title = f"{material.name}: errors"
     table = console.table("model", *losses, *image, ">time [s]", title=title)
     for found in fits:
-        errors = [f"{e:.5f}" for e in comparison.errors[found.name].values()]
+        errors = [figure(e) for e in comparison.errors[found.name].values()]
         image = [f"{psnr[found.name]:.1f}"] if psnr else []
         table.add_row(found.name, *errors, *image, f"{found.seconds:.2f}")
     console.out.print(table)

@@ -10,16 +10,17 @@ from brdfkit.commands._options import output_options
 
 
 @click.command()
-@click.argument("name", required=False)
+@click.argument("name", required=False, metavar="[NAME|FILE.py]")
 @output_options
 def models(name, console):
     """List the models, or show the page of one."""
     from brdfkit import registry
+    from brdfkit.commands._targets import model_label
 
     if name is None:
         _print_list(registry.models(), console)
     else:
-        _print_page(registry.model(name), console)
+        _print_page(registry.model(model_label(name)), console)
 
 
 def _print_list(models, console):

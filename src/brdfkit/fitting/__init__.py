@@ -8,6 +8,7 @@ import numpy as np
 from brdfkit import registry
 from brdfkit.errors import BrdfkitError
 from brdfkit.evaluating import clamped_share
+from brdfkit.fitting.arguments import by_name, pair, whole_number
 from brdfkit.fitting.loss import losses as losses
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.result import Fit as Fit
@@ -35,18 +36,23 @@ def fit(
     seed=0,
     progress=None,
 ):
-    """Fit the model `name` to a measured material, in double precision.
+    """Fit the model `name`, a label as ``"ggx+ward"`` or a class, to a measured material.
 
-    SQP over the shape parameters from several starts; the weights are solved inside, per
-    channel, not negative. Spectral data is fitted as linear sRGB.
+    SQP over the shape parameters from several starts, in double precision; the weights are solved
+    inside, per channel, not negative. Spectral data is fitted as linear sRGB.
 
     `data`: a `Measured`; `loss`: a name in `losses`; `robust`: a name in `fitting.robust.WEIGHTS`,
     ``"bisquare"``, by which outliers lose their say; `starts`: the default and points spread over
     the bounds; `bounds`: other bounds by name, ``{"alpha_u": (0.01, 0.5)}``; `fixed`: shape
     parameters held at a value, ``{"f0": 0.04}``; `anisotropic`: search ``alpha_v`` and its like
     too, which otherwise follow ``alpha_u``: by default where the measurement is anisotropic;
-    `max_angle`: samples with an angle at or beyond it [degrees] are left out; `progress`: called
-    with (done, total). Returns a `Fit`.
+    `max_angle`: samples with an angle at or beyond it [degrees, above 0 to 90] are left out;
+    `seed`: of the starts, and of the part of a large table by which they are compared: equal seeds
+    give equal fits; `progress`: called with (done, total). Returns a `Fit`.
+
+    Raises `BrdfkitError` for an unknown model, loss or robust weight; for a parameter that is not
+    searched, or bounds and values beyond the model's; where `data` was not measured or no sample
+    is left; and for a robust fit without more samples than parameters.
 
     >>> print(fit("ward", load("paint.binary")))    # doctest: +SKIP
     """
@@ -54,13 +60,14 @@ def fit(
     model, loss = registry.model(name), _loss(loss)
     if robust not in (None, *WEIGHTS):
         raise BrdfkitError(f"There is no robust weight {robust!r}; there are {', '.join(WEIGHTS)}.")
+    starts, seed = whole_number("starts", starts, least=1), whole_number("seed", seed, least=0)
+    bounds, fixed = by_name("bounds", bounds), by_name("fixed", fixed)
+    bounds = {n: pair(f"{model.type_name()}: the bounds of {n}", v) for n, v in bounds.items()}
     samples = selected(data, max_angle)
     determined = model.determined(samples)
-    given = {n: v for n, v in determined.items() if n not in (bounds or {})} | (fixed or {})
+    given = {n: v for n, v in determined.items() if n not in bounds} | fixed
     anisotropic = data.anisotropic if anisotropic is None else anisotropic
-    space = _space(model, bounds or {}, given, anisotropic)
-    if starts < 1 or seed < 0:
-        raise BrdfkitError(f"starts = {starts} should be at least 1, seed = {seed} at least 0.")
+    space = _space(model, bounds, given, anisotropic)
     default = space.coordinates(model().values)
 
     rng = np.random.default_rng(seed)
@@ -104,11 +111,11 @@ def fit(
         notes=(*notes, *_notes(samples, loss, fitted)),
         settings={
             "robust": robust,
-            "max_angle": max_angle,
+            "max_angle": float(max_angle),
             "seed": seed,
             "starts": starts,
-            "bounds": dict(bounds or {}),
-            "fixed": dict(fixed or {}),
+            "bounds": bounds,
+            "fixed": fixed,
             "anisotropic": anisotropic,
         },
     )
@@ -133,7 +140,7 @@ def _search(problem, space, default, count, seed, report) -> tuple[Outcome, int]
 
 
 def _loss(name):
-    if name not in losses:
+    if not isinstance(name, str) or name not in losses:
         raise BrdfkitError(f"There is no loss {name!r}; there are {', '.join(losses)}.")
     return losses[name]
 
@@ -157,6 +164,8 @@ def _space(model, bounds, fixed, anisotropic):
                 f"{model.type_name()}: the bounds {low:g}..{high:g} of {name} should lie "
                 f"within {allowed[0]:g}..{allowed[1]:g}."
             )
+    if unknown := [name for name, value in fixed.items() if value is None]:
+        raise BrdfkitError(f"{model.type_name()}: {unknown[0]} is fixed at None; give a number.")
     model(**fixed)  # within the bounds
     names = tuple(name for name in shapes if name not in fixed)
     limits = np.array([bounds.get(n, model.parameters[n].bounds) for n in names]).reshape(-1, 2)
@@ -178,4 +187,4 @@ def _notes(samples, loss, fitted):
 def _at_bounds(space, u, model, weights):
     shapes = [n for n, v in zip(space.names, u, strict=True) if min(v, 1 - v) < 1e-6]
     black = [n for n, w in zip(model.weights(), weights.T, strict=True) if (w == 0).all()]
-    return tuple(black + shapes)
+    return (*(n for n in black if model.parameters[n].bounds[0] == 0), *shapes)

@@ -11,6 +11,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit import backend
+from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.weights import bounded_quadratic, weighted_gram
 
 
@@ -29,7 +30,13 @@ class Problem:
         self.targets = [loss.g(Float64(m)) for m in self.measured]
 
         # The loss itself is scale · √E²
-        importance = importance / loss.normaliser(importance, self.channels)
+        normaliser = loss.normaliser(importance, self.channels)
+        if normaliser == 0:
+            raise BrdfkitError(
+                f"The {loss.name} loss weighs no sample, for all are seen at normal incidence; "
+                "choose another loss."
+            )
+        importance = importance / normaliser
         black = loss.g(Float64(0.0))
         squares = sum(_sum(Float64(importance) * dr.square(black - t)) for t in self.targets)
         self.scale = squares**0.5 or 1.0

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.search import slsqp
 
 PASSES = 50
@@ -79,6 +80,15 @@ def sample_weights(residuals, name, rank, least, tune=None):
     return function(residuals / (scale * (tune or usual)))
 
 
+def _require_more(samples, rank):
+    """An error where every sample can be met: no residual then tells of the scale."""
+    if samples <= rank:
+        raise BrdfkitError(
+            f"A robust fit needs more samples than parameters; here are {samples} and {rank}: "
+            "give more samples, a simpler model, or no robust."
+        )
+
+
 def least_scale(values):
     """1e-6 of the spread of the `values` that are fitted."""
     return 1e-6 * np.std(values, ddof=1) or 1.0
@@ -94,13 +104,14 @@ def robust_least_squares(design, values, name="bisquare", tune=None):
     """The `Reweighted` that fits `design` (n, parameters) · solution to `values` (n,).
 
     A constant column is not added. Converged is False after 50 passes: the bisquare may go round
-    in circles.
+    in circles. Raises `BrdfkitError` unless there are more values than parameters.
 
     >>> x = np.arange(5.0)
     >>> robust_least_squares(np.stack([np.ones(5), x], 1), 2 * x).solution.round(6)
     array([-0.,  2.])
     """
     design, values = np.asarray(design, float), np.asarray(values, float)
+    _require_more(*design.shape)
     lever = np.sqrt(1 - leverages(design.T))
     rank, least = np.linalg.matrix_rank(design), least_scale(values)
 
@@ -131,11 +142,11 @@ def robust_search(problem, space, u, name, report):
     def solved(problem, u):
         return np.concatenate([u, problem.solve(space.values(u) | space.fixed).ravel()])
 
-    start = solved(problem, u)
-    levers = [np.sqrt(1 - leverages(columns)) for columns in at(start)[1]]
-    root = np.sqrt(problem.importance)
-    least = [least_scale(root * np.asarray(target)) for target in problem.targets]
+    start, root = solved(problem, u), np.sqrt(problem.importance)
     rank = len(start) // problem.channels
+    _require_more(len(root), rank)
+    levers = [np.sqrt(1 - leverages(columns)) for columns in at(start)[1]]
+    least = [least_scale(root * np.asarray(target)) for target in problem.targets]
     passes = iter(range(1, PASSES + 1))
 
     def weigh(solution):

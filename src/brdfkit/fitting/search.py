@@ -73,7 +73,7 @@ def slsqp(problem, space, u):
     from scipy.optimize import minimize
 
     if not space.names:
-        return Outcome(u, evaluate(problem, space, u), 1, "nothing to search: the model is linear")
+        return Outcome(u, evaluate(problem, space, u), 1, "nothing to search: weights alone")
     best = Outcome(u, np.inf, 0, "")
     evaluations = 0
 

@@ -31,6 +31,11 @@ def read(source):
     try:
         return Fit(model=registry.model_with_values(label, values), **found)
     except (BrdfkitError, TypeError) as error:
+        if not registry.is_label(label):
+            raise source.error(
+                f"is a fit of {label!r}, a model of somebody's own; load its file first, "
+                'brdfkit.load_models("FILE.py"), or name it before the fit'
+            ) from None
         reason = str(error)[:200].rstrip(".")
         raise source.error(f"cannot be restored ({reason}); fit it again") from None
 

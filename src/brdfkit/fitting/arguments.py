@@ -1,0 +1,30 @@
+"""What `fit` is given, or an error that names it."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+
+
+def whole_number(what, value, least):
+    """`value` as an int of at least `least`."""
+    if not isinstance(value, int | np.integer) or value < least:
+        raise BrdfkitError(f"{what} = {value!r} should be a whole number, at least {least}.")
+    return int(value)
+
+
+def by_name(what, given):
+    """`given` as a dictionary, empty for None."""
+    if not isinstance(given, Mapping | None):
+        raise BrdfkitError(f"{what} = {given!r} should be a dictionary by parameter.")
+    return dict(given or {})
+
+
+def pair(what, given):
+    """`given` as two floats."""
+    try:
+        low, high = map(float, given)
+    except (TypeError, ValueError):
+        raise BrdfkitError(f"{what} = {given!r} should be two numbers, (low, high).") from None
+    return low, high
