@@ -12,8 +12,11 @@ from small_files import FILES, MATERIALS, brushed, fit, place, spectrum, table, 
 import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.converting import convert
+from brdfkit.directions import from_angles
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats import HEAD, formats, load, save
+from brdfkit.measured import Measured
+from brdfkit.quadrature import albedo
 
 pytestmark = pytest.mark.quick
 WRITERS = {m.__name__.rpartition(".")[2]: m for m in formats() if hasattr(m, "write")}
@@ -108,6 +111,36 @@ def test_text_keeps_every_digit(tmp_path, suffix):
     np.testing.assert_array_equal(back.values, material.values[valid])
     np.testing.assert_allclose(back.samples.wi, material.samples.wi[valid], atol=1e-15)
     np.testing.assert_allclose(back.samples.wo, material.samples.wo[valid], atol=1e-15)
+
+
+def times_cosine(wi, wo):
+    """f cosθ_o = 0.1 for every pair, as an RGL file may store it: its f has no bound."""
+    return 0.1 / wo[:, 2:] * [1, 0.5, 0]
+
+
+def test_merl_has_the_albedo_of_a_lookup_to_the_horizon(tmp_path):
+    wi, wo = from_angles(np.radians([[10], [40]]), 0.0)
+    material = Measured.from_samples(wi, wo, times_cosine(wi, wo), lookup=times_cosine)
+    save(material, tmp_path / "paint.binary")
+    back = load(tmp_path / "paint.binary")
+    assert np.nanmax(back.table.values) < 0.1 / np.cos(np.radians(88.4))
+    for theta in (85, 88, 89.9):
+        w = from_angles(np.radians(theta), 0.3)
+        # wo below wi has the value of the exchanged pair: f cosθ_o falls to 0 there
+        expected = 0.2 * np.pi * (1 - np.cos(np.radians(theta)) / 2)
+        assert albedo(back, w) == pytest.approx([expected, expected / 2, 0], rel=0.03)
+    wi, wo = from_angles(np.radians([[80, 10, 50], [20, 75, 50]]), [0, 1, 3])
+    np.testing.assert_allclose(back.eval(wi, wo), back.eval(wo, wi), rtol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["acrylic_felt_green", "paper_white"])
+def test_merl_of_an_rgl_file(tmp_path, measured_data, name):
+    material = load(measured_data / "rgl" / f"{name}_rgb.bsdf")
+    save(material, tmp_path / "it.binary")
+    back = load(tmp_path / "it.binary")
+    for theta in (85, 88, 89.5):
+        w = from_angles(np.radians(theta), 0.3)
+        assert albedo(back, w) == pytest.approx(albedo(material, w), rel=0.03)
 
 
 # -- what is lost -----------------------------------------------------------------------------

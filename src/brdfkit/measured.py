@@ -118,11 +118,27 @@ class Measured:
             return self._table
         if isinstance(self._lookup, Table):
             return self._lookup
-        from brdfkit.resampled import looked_up, sampled, table_shape
+        from brdfkit.resampled import looked_up, table_shape
 
         if self._lookup is not None:
             return looked_up(self._lookup, len(self.channels), self.anisotropic)
-        return sampled(self._between, len(self.channels), table_shape(self.anisotropic))
+        return self.resampled(table_shape(self.anisotropic))
+
+    def resampled(self, shape):
+        """The BRDF in a reciprocal `Table` of `shape` ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d).
+
+        Of a table or of samples it is what `eval` gives; of a format's own interpolation, what
+        `table` has where the lower direction is wi.
+
+        >>> load("paint.bsdf").resampled((90, 90, 180)).shape    # doctest: +SKIP
+        (90, 90, 180)
+        """
+        from brdfkit.resampled import reciprocal, sampled, steady
+
+        brdf = self.eval
+        if self.has_lookup and not isinstance(self._lookup, Table):
+            brdf = reciprocal(steady(self._lookup, self.anisotropic))
+        return sampled(brdf, len(self.channels), shape)
 
     @cached_property
     def _between(self):
