@@ -3,13 +3,15 @@
 import io
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from small_files import FILES, MATERIALS, brushed, fit, place, spectrum, table, written
+from small_files import FEW_NODES, FILES, MATERIALS, brushed, fit, place, spectrum, table, written
 
 import brdfkit as bk
+from brdfkit import adapting
 from brdfkit.cli import main
 from brdfkit.converting import convert
 from brdfkit.directions import from_angles
@@ -20,6 +22,12 @@ from brdfkit.quadrature import albedo
 
 pytestmark = pytest.mark.quick
 WRITERS = {m.__name__.rpartition(".")[2]: m for m in formats() if hasattr(m, "write")}
+
+
+@pytest.fixture
+def small_tables(monkeypatch):
+    """RGL files of few nodes, written at once."""
+    monkeypatch.setattr(adapting, "ISOTROPIC", FEW_NODES)
 
 
 def run(*words):
@@ -100,6 +108,17 @@ def test_a_writer_refuses_in_one_sentence(tmp_path, kind):
         with pytest.raises(BrdfkitError, match=rf"^{path}: [^\n]*\.$"):
             save(obj, path)
     assert not any(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["Lack, grün", "漆", "caf\udce9"])  # the last: latin-1 on disk
+@pytest.mark.parametrize("suffix", [".brdf", ".astm", ".dat", ".npz", ".bsdf"])
+def test_any_name_can_be_written(tmp_path, small_tables, suffix, name):
+    material = replace(spectrum(), name=name)
+    save(material, tmp_path / f"it{suffix}")
+    assert len(load(tmp_path / f"it{suffix}").values)
+    if suffix != ".npz":
+        told = name.encode(errors="replace")
+        assert told in (tmp_path / f"it{suffix}").read_bytes()
 
 
 @pytest.mark.parametrize("suffix", [".brdf", ".astm"])

@@ -17,7 +17,7 @@ import numpy as np
 
 from brdfkit.formats._notes import lone_point
 from brdfkit.formats._writing import angles as angles_of
-from brdfkit.formats._writing import measured
+from brdfkit.formats._writing import measured, write_rows
 from brdfkit.measured import RGB
 
 NAME = "ASTM"
@@ -69,8 +69,8 @@ def write(obj, stream):
         f"NUM_POINTS {valid.sum()}",
         f"VARS {','.join((*ANGLES, *obj.channels))}",
     ]
-    rows = np.concatenate([angles_of(samples.at(valid)), samples.values[valid].T])
-    np.savetxt(stream, rows.T, "%.17g", ",", header="\n".join(header), comments="")
+    columns = [*angles_of(samples.at(valid)), *samples.values[valid].T]
+    write_rows(stream, header, columns, ",")
 
 
 def _header(source):

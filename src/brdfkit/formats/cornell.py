@@ -10,7 +10,7 @@ import numpy as np
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats._notes import lone_point, stopping_short
 from brdfkit.formats._writing import angles as angles_of
-from brdfkit.formats._writing import measured
+from brdfkit.formats._writing import measured, write_rows
 from brdfkit.spectra import wavelengths
 
 NAME = "Cornell"
@@ -69,8 +69,7 @@ def write(obj, stream):
         " ".join(f"{w:.10g}" for w in nm),
         "# theta i  phi i  theta s  phi_s  spectral sample values",
     ]
-    rows = np.concatenate([angles_of(samples.at(valid)), samples.values[valid].T])
-    np.savetxt(stream, rows.T, "%.17g", header="\n".join(header), comments="")
+    write_rows(stream, header, [*angles_of(samples.at(valid)), *samples.values[valid].T])
 
 
 def _wavelengths(source):
