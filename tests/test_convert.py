@@ -162,6 +162,68 @@ def test_merl_of_an_rgl_file(tmp_path, measured_data, name):
         assert albedo(back, w) == pytest.approx(albedo(material, w), rel=0.03)
 
 
+def named(*channels):
+    """Samples with these channels."""
+    n = len(channels)
+    return replace(spectrum(), channels=channels, standard_error=None).mixed(
+        np.ones((3, n)), channels
+    )
+
+
+UNREADABLE = [
+    (".astm", ("A", "B", "C"), "holds R,G,B or wavelengths .* and paint has the channels A B C"),
+    (".astm", ("R", "R", "B"), "holds R,G,B or wavelengths"),
+    (".astm", ("450nm", "550nm", "450nm"), "holds R,G,B or wavelengths"),
+    (".astm", ("theta_i",), "holds R,G,B or wavelengths"),
+    (".astm", ("a,b",), "holds R,G,B or wavelengths"),
+    (".astm", ("a b",), "holds R,G,B or wavelengths"),
+    (".astm", ("",), "holds R,G,B or wavelengths"),
+    (".brdf", ("450nm", "550nm", "450nm"), "each once"),
+    (".brdf", ("1nm", "550nm", "600nm"), "of 100 to 100,000 nm"),
+    (".bsdf", ("450nm", "550nm", "450nm"), "repeat or are not above 0 nm"),
+    (".bsdf", ("0nm", "550nm"), "repeat or are not above 0 nm"),
+]
+
+
+@pytest.mark.parametrize(("suffix", "channels", "match"), UNREADABLE)
+def test_channels_that_could_not_be_read_again(tmp_path, small_tables, suffix, channels, match):
+    path = tmp_path / f"paint{suffix}"
+    for write in (save, lambda obj, path: convert(obj, path)):
+        with pytest.raises(BrdfkitError, match=rf"^{path}: .*{match}.*\.$"):
+            write(named(*channels), path)
+    assert not any(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("channels", [("B", "G", "R"), ("Y",), ("450nm",), ("450nm", "550.5nm")])
+def test_channels_that_astm_knows(tmp_path, channels):
+    save(named(*channels), tmp_path / "paint.astm")
+    assert set(load(tmp_path / "paint.astm").channels) == set(channels)
+
+
+def test_convert_writes_nothing_that_cannot_be_read_again(tmp_path, monkeypatch):
+    write = WRITERS["astm"].write
+    monkeypatch.setattr(
+        WRITERS["astm"], "write", lambda obj, stream: [write(obj, stream), stream.write(b"dark\n")]
+    )
+    path = tmp_path / "paint.astm.gz"
+    path.write_bytes(b"old")
+    with pytest.raises(BrdfkitError) as caught:
+        convert(spectrum(), path)
+    assert re.fullmatch(
+        rf"{path}: the file could not be read again \(NUM_POINTS announces .*\)\.",
+        str(caught.value),
+    )
+    assert [p.name for p in tmp_path.iterdir()] == ["paint.astm.gz"]
+    assert path.read_bytes() == b"old"
+
+
+def test_errors_that_are_not_known_do_not_mask_the_values(tmp_path):
+    material = spectrum()
+    errors = np.full_like(material.values, np.nan)
+    done = convert(replace(material, standard_error=errors), tmp_path / "paint.dat")
+    assert len(load(done.path).values) == material.samples.valid.sum()
+
+
 # -- what is lost -----------------------------------------------------------------------------
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from brdfkit.formats import load, save
+from brdfkit.formats import saved
 from brdfkit.measured import Measured
 
 
@@ -24,18 +24,16 @@ def convert(thing, path):
     """Write a measured material, a fit or a model to `path`; returns a `Conversion`.
 
     The file is read again and compared, so that no format need say what it leaves out.
-    Raises `BrdfkitError` where the format of the suffix cannot hold it.
+    Raises `BrdfkitError`, and writes nothing, where the format of the suffix cannot hold it.
 
     >>> print(convert(load("cayman.brdf"), "cayman.npz"))  # doctest: +SKIP
     cayman.npz (nothing lost)
     """
     if isinstance(thing, Measured):
-        save(thing, path)
-        return Conversion(Path(path), changes(thing, load(path)))
+        return Conversion(Path(path), changes(thing, saved(thing, path)))
     material = evaluated(thing)
-    save(material, path)
     note = f"{thing.name} evaluated at {len(material.values):,} direction pairs"
-    return Conversion(Path(path), (note, *changes(material, load(path))))
+    return Conversion(Path(path), (note, *changes(material, saved(material, path))))
 
 
 def evaluated(thing):

@@ -89,6 +89,11 @@ class Measured:
                 f"{name}: a table of shape {values.shape} was given; it should be "
                 f"([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, {len(channels)})."
             )
+        if not 0 < phi_d_period < 7:
+            raise BrdfkitError(
+                f"{name}: phi_d_period is {phi_d_period:g}; give π or, for a table that is not "
+                "reciprocal, 2π."
+            )
         require_some(np.isfinite(values).all(axis=-1), name)
         table = Table(values, phi_d_period)
         errors = _errors(standard_error, values, name)

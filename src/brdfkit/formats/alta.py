@@ -117,8 +117,9 @@ def write(obj, stream):
         where = theta_l, theta_v * np.cos(phi), theta_v * np.sin(phi)
     channels = len(obj.channels)
     columns, interval = [*where, *samples.values[valid].T], "0"
-    if obj.standard_error is not None:
-        columns += [*obj.standard_error[valid].T]
+    errors = None if obj.standard_error is None else obj.standard_error[valid]
+    if errors is not None and np.isfinite(errors).all():  # else its reader masks the values, too
+        columns += [*errors.T]
         interval = " ".join(["1"] * channels)
     header = [
         f"SAMPLE {' '.join(obj.name.split())}",

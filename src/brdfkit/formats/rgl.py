@@ -127,6 +127,10 @@ def _values(obj, values):
             "model with one or three numbers per weight."
         )
     nanometres = wavelengths(obj)
+    if len(set(nanometres.astype(np.float32))) != len(nanometres) or nanometres.min() <= 0:
+        raise BrdfkitError(
+            f"the wavelengths of {obj.name} repeat or are not above 0 nm; mend them."
+        )
     order = np.argsort(nanometres)
     return {"wavelengths": nanometres[order], "spectra": values[:, :, order]}
 
