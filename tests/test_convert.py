@@ -249,10 +249,37 @@ def test_what_is_lost_is_told(tmp_path):
     assert "negative 3.03% of the values → 0.00% of the values" in told
 
 
+def waves(wi, wo):
+    """A lookup too wild for a table."""
+    return (1.1 + np.sin(60 * wi[:, 2:]) * np.sin(60 * wo[:, 2:])) * [1, 1, 1]
+
+
+def test_another_interpolation_is_told(tmp_path):
+    wi, wo = from_angles(np.radians([[10], [40]]), 0.0)
+    material = Measured.from_samples(wi, wo, waves(wi, wo), lookup=waves)
+    (told,) = convert(material, tmp_path / "paint.npz").changes
+    number = r"(\d+\.\d)%"
+    median, most = re.fullmatch(
+        f"between the samples: {number} in the median, 95 of 100 within {number}", told
+    ).groups()
+    back = load(tmp_path / "paint.npz")
+    theta, phi = np.radians(np.random.default_rng(9).uniform(0, [[[80]], [[360]]], (2, 2, 2000)))
+    pairs = from_angles(theta, phi)
+    apart = 1 - np.minimum(*(values := [waves(*pairs), back.eval(*pairs)])) / np.maximum(*values)
+    # shares of 4,000 and of 2,000 pairs: at the quantiles 50 % and 95 %, 4.5 standard deviations
+    for said, share in ((median, 0.5), (most, 0.95)):
+        bound = 4.5 * np.sqrt(share * (1 - share) * (1 / 4000 + 1 / 2000))
+        low, high = np.quantile(apart, np.clip([share - bound, share + bound], 0, 1))
+        assert low - 5e-4 <= float(said) / 100 <= high + 5e-4
+
+
 def test_a_model_is_evaluated(tmp_path):
     ward = bk.models()["ward"](alpha_u=0.2, specular_reflectance=0.3)
     done = convert(ward, tmp_path / "ward.npz")
-    assert done.changes == ("ward evaluated at 274,142 direction pairs",)
+    assert done.changes == (
+        "ward evaluated at 274,142 direction pairs",
+        "between the samples: 0.0% in the median, 95 of 100 within 0.2%",
+    )
     back = load(tmp_path / "ward.npz")
     assert not back.anisotropic
     np.testing.assert_allclose(back.values, ward.eval(back.samples.wi, back.samples.wo), rtol=1e-9)
