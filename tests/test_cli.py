@@ -7,6 +7,7 @@ import resource
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -235,6 +236,50 @@ def test_a_name_is_no_markup(cli):
         result = cli("info", name)
         assert_fine(result)
         assert Path(name).stem in result.stdout
+
+
+# names that a file may bring, and the name of what is made of it
+NAMES = {
+    "../evil": "-evil",
+    "/no/evil": "-no-evil",
+    "..": "material",
+    "": "material",
+    "a/b\\c:d": "a-b-c-d",
+    "red\x1b]0;evil\x07\x9b2J": "red]0;evil2J",
+    "null\0": "null",
+    "x" * 300: "x" * 100,
+    "漆" * 100: "漆" * 33,
+    "Lack, grün (2)": "Lack, grün (2)",
+}
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", NAMES)
+def test_a_name_from_a_file_stays_here_and_off_the_terminal(cli, here, name):
+    """As it comes out of a file: nothing of brdfkit's would write such a name."""
+    notes = {"made\x1b[2J by": "a\x1b[2J\nb"}
+    material = replace(bk.load("paint.binary"), name=name, info=notes)
+    Path("in").mkdir()
+    bk.save(material, "in/it.npz")
+    before = tree(here.parent)
+    shown, rendered = cli("info", "in/it.npz"), cli("render", "in/it.npz", *SMALL)
+    fitted = cli("fit", "in/it.npz", "-m", "lambert", "--render", *SMALL)
+    for result in (shown, rendered, fitted):
+        assert_fine(result)
+        assert not re.search(r"[^\n -~\xa0-\U0010ffff]", result.stdout)
+    made = {f"{NAMES[name]}.png", *(f"{NAMES[name]}/{f}" for f in FITTED), NAMES[name]}
+    assert set(tree(here.parent)) - set(before) == {f"{here.name}/{file}" for file in made}
+
+
+FITTED = "lambert.json", "render.exr", "render.png"
+
+
+@pytest.mark.quick
+def test_an_error_is_printed_without_control_characters(cli):
+    Path("a.astm").write_text("VARS theta_i,phi_i,theta_s,phi_s,\x1b[2J,B\n1,0,1,0,1,1\n")
+    result = cli("info", "a.astm")
+    assert result.exit_code == 2
+    assert "names the channels [2J, B" in result.stderr
 
 
 # What does not work: one sentence that names the culprit, status 2, nothing left behind

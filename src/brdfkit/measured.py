@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.names import printable
 from brdfkit.samples import Samples, require_some
 from brdfkit.table import Table
 
@@ -57,11 +58,12 @@ class Measured:
         (n, channels). `lookup(wi, wo)`, which may be a `Table`: values between the samples, where
         the format defines them; without it `scattered.py` interpolates.
         """
+        name, channels, info = _words(name, channels, info)
         samples = Samples.checked(wi, wo, values, valid, channels, name)
         return cls(
             name,
-            tuple(channels),
-            dict(info or {}),
+            channels,
+            info,
             anisotropic,
             _errors(standard_error, samples.values, name),
             _samples=samples,
@@ -83,6 +85,7 @@ class Measured:
         Its axes are those of `brdfkit.table.Table`; an anisotropic one has n_phi_h before them.
         `standard_error`: of the values, in the same shape.
         """
+        name, channels, info = _words(name, channels, info)
         values = np.asarray(values, float)
         if values.ndim not in (4, 5) or values.shape[-1] != len(channels) or 0 in values.shape:
             raise BrdfkitError(
@@ -97,7 +100,7 @@ class Measured:
         require_some(np.isfinite(values).all(axis=-1), name)
         table = Table(values, phi_d_period)
         errors = _errors(standard_error, values, name)
-        return cls(name, tuple(channels), dict(info or {}), table.anisotropic, errors, _table=table)
+        return cls(name, channels, info, table.anisotropic, errors, _table=table)
 
     @property
     def is_table(self):
@@ -238,6 +241,12 @@ class _Mixed:
 
     def __call__(self, wi, wo):
         return self.lookup(wi, wo) @ self.weights
+
+
+def _words(name, channels, info):
+    """A name, channels and notes as text that may be printed, whatever file it comes from."""
+    notes = {printable(key): printable(note, keep="\n\t") for key, note in (info or {}).items()}
+    return printable(name), tuple(map(printable, channels)), notes
 
 
 def _errors(standard_error, values, name):

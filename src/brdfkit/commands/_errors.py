@@ -7,6 +7,7 @@ from contextlib import contextmanager, nullcontext
 import click
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.names import printable
 
 
 class Group(click.Group):
@@ -53,7 +54,7 @@ def told():
 
 def say(message):
     """One sentence for people, on stderr."""
-    click.echo(f"brdfkit: {' '.join(str(message).split())}", err=True)
+    click.echo(f"brdfkit: {printable(' '.join(str(message).split()))}", err=True)
 
 
 def _say_warning(message, *_args, **_kwargs):

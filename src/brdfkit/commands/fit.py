@@ -24,6 +24,7 @@ def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed,
     from brdfkit import registry
     from brdfkit.commands._targets import fit_file, measured, results
     from brdfkit.comparing import compare
+    from brdfkit.names import slug
 
     names = list(dict.fromkeys(names or registry.models()))
     for name in names:
@@ -31,7 +32,7 @@ def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed,
     with console.progress(f"read {file}"):
         material = measured(file)
     if output is None and rendered:
-        output = Path(material.name)
+        output = Path(slug(material.name))
 
     how = {"loss": loss, "robust": robust, "max_angle": max_angle, "seed": seed}
     psnr = {}

@@ -26,6 +26,7 @@ def render(things, output, values, spp, size, seed, console):
     rendered alone, in its own size.
     """
     from brdfkit.commands._targets import material, picture_file
+    from brdfkit.names import slug
     from brdfkit.rendering import render_scene
 
     scenes = [t for t in things if t.lower().endswith(".xml")]
@@ -38,7 +39,7 @@ def render(things, output, values, spp, size, seed, console):
         picture.write(output)
     else:
         found = [material(thing, values) for thing in things]
-        output = picture_file(output or f"{found[0].name}.png")
+        output = picture_file(output or f"{slug(found[0].name)}.png")
         picture = path_trace(found, output, spp, size, seed, console)
     _print_picture(picture, output, console)
 
