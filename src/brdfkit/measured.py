@@ -83,6 +83,7 @@ class Measured:
         """From a table (n_theta_h, n_theta_d, n_phi_d, channels) in sr⁻¹, NaN = not measured.
 
         Its axes are those of `brdfkit.table.Table`; an anisotropic one has n_phi_h before them.
+        An infinite value was not measured, either.
         `standard_error`: of the values, in the same shape.
         """
         name, channels, info = _words(name, channels, info)
@@ -98,6 +99,8 @@ class Measured:
                 "reciprocal, 2π."
             )
         require_some(np.isfinite(values).all(axis=-1), name)
+        if np.isinf(values).any():
+            values = np.where(np.isinf(values), np.nan, values)
         table = Table(values, phi_d_period)
         errors = _errors(standard_error, values, name)
         return cls(name, channels, info, table.anisotropic, errors, _table=table)
