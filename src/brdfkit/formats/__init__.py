@@ -115,6 +115,11 @@ def formats():
     return tuple(importlib.import_module(f"{__name__}.{name}") for name in names)
 
 
+def has_format(path):
+    """Whether the suffix of a `Path` is that of a format."""
+    return any(format_suffix(path) in module.SUFFIXES for module in formats())
+
+
 def _split(path):
     """The path and the sample named behind its last '#', unless that is part of the name."""
     path = Path(path)
