@@ -7,6 +7,7 @@ import resource
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -396,6 +397,35 @@ def test_ctrl_c_keeps_the_finished_fits(cli, monkeypatch):
     assert not Path("new").exists()
 
 
+@pytest.mark.quick
+def test_ctrl_c_keeps_the_passes_of_a_picture_and_says_so(cli, monkeypatch):
+    monkeypatch.setattr("brdfkit.tracing.PASS", 1)
+    monkeypatch.setattr("brdfkit.console.Console.progress", interrupting)
+    said = "brdfkit: interrupted; rendered with 2 of 5 samples per pixel.\n"
+    Path("room.xml").write_text(SCENE.format(alpha=0.3))
+    for words in (["ward", "--size", "8"], ["room.xml"]):
+        result = cli("render", *words, "--spp", "5", "-o", "it.png")
+        assert (result.exit_code, result.stderr) == (130, said)
+        assert "2 spp" in result.stdout
+        assert "written: it.png" in result.stdout
+    words = "--render", "--size", "8", "--spp", "5", "-o", "out"
+    monkeypatch.setattr("brdfkit.tracing.PASS", 2)  # two materials: every pass counts twice
+    result = cli("fit", "paint.binary", "-m", "lambert", *words)
+    assert (result.exit_code, result.stderr) == (130, said)
+    assert "written: out/render.png" in result.stdout
+
+
+@contextmanager
+def interrupting(console, what):
+    """A progress that types Ctrl-C once two passes are done."""
+
+    def progress(done, total):
+        if what == "render" and done == 2:
+            raise KeyboardInterrupt
+
+    yield progress
+
+
 # The bar
 
 
@@ -502,4 +532,34 @@ def test_program(tmp_path):
     wrong = run("info", "missing.binary", cwd=tmp_path)
     assert (wrong.returncode, wrong.stdout) == (2, "")
     assert wrong.stderr.startswith("brdfkit: missing.binary: ")
+    loop = tmp_path / "loop.png"
+    loop.symlink_to(loop)
+    wrong = run("render", "ward", "-o", "loop.png", cwd=tmp_path)
+    assert (wrong.returncode, wrong.stdout) == (2, "")
+    assert wrong.stderr.startswith("brdfkit: loop.png: is a link that leads to itself")
     assert run("--version").stdout.strip() == f"brdfkit, version {bk.__version__}"
+
+
+@pytest.mark.quick
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full")
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("words", [["models"], ["models", "--json"], ["--help"]], ids=" ".join)
+def test_a_disk_that_is_full_is_one_sentence(words, unbuffered):
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "brdfkit", *words],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "PYTHONUNBUFFERED": unbuffered},
+        )
+    assert done.returncode == 2
+    assert re.fullmatch(r"brdfkit: the output cannot be written \(.*\); make room\.\n", done.stderr)
+
+
+@pytest.mark.quick
+def test_python_knows_the_command_line(tmp_path):
+    words = sys.executable, "-m", "brdfkit", "models", "nope"
+    done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("brdfkit: There is no model 'nope'")

@@ -42,7 +42,7 @@ def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed,
         written = [fit_file(output, f) for f in fits] if output else []
         if rendered and not interrupted:
             picture = path_trace([material, *fits], output / "render.exr", spp, size, seed, console)
-            psnr = picture.psnr()
+            psnr, interrupted = picture.psnr(), picture.spp < spp
             written += [output / "render.exr", output / "render.png"]
     with console.progress("compare"):
         comparison = compare(material, fits, max_angle)
