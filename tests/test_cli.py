@@ -7,6 +7,8 @@ import resource
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -255,6 +257,50 @@ def test_a_name_is_no_markup(cli):
         assert Path(name).stem in result.stdout
 
 
+# names that a file may bring, and the name of what is made of it
+NAMES = {
+    "../evil": "-evil",
+    "/no/evil": "-no-evil",
+    "..": "material",
+    "": "material",
+    "a/b\\c:d": "a-b-c-d",
+    "red\x1b]0;evil\x07\x9b2J": "red]0;evil2J",
+    "null\0": "null",
+    "x" * 300: "x" * 100,
+    "漆" * 100: "漆" * 33,
+    "Lack, grün (2)": "Lack, grün (2)",
+}
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", NAMES)
+def test_a_name_from_a_file_stays_here_and_off_the_terminal(cli, here, name):
+    """As it comes out of a file: nothing of brdfkit's would write such a name."""
+    notes = {"made\x1b[2J by": "a\x1b[2J\nb"}
+    material = replace(bk.load("paint.binary"), name=name, info=notes)
+    Path("in").mkdir()
+    bk.save(material, "in/it.npz")
+    before = tree(here.parent)
+    shown, rendered = cli("info", "in/it.npz"), cli("render", "in/it.npz", *SMALL)
+    fitted = cli("fit", "in/it.npz", "-m", "lambert", "--render", *SMALL)
+    for result in (shown, rendered, fitted):
+        assert_fine(result)
+        assert not re.search(r"[^\n -~\xa0-\U0010ffff]", result.stdout)
+    made = {f"{NAMES[name]}.png", *(f"{NAMES[name]}/{f}" for f in FITTED), NAMES[name]}
+    assert set(tree(here.parent)) - set(before) == {f"{here.name}/{file}" for file in made}
+
+
+FITTED = "lambert.json", "render.exr", "render.png"
+
+
+@pytest.mark.quick
+def test_an_error_is_printed_without_control_characters(cli):
+    Path("a.astm").write_text("VARS theta_i,phi_i,theta_s,phi_s,\x1b[2J,B\n1,0,1,0,1,1\n")
+    result = cli("info", "a.astm")
+    assert result.exit_code == 2
+    assert "names the channels [2J, B" in result.stderr
+
+
 # What does not work: one sentence that names the culprit, status 2, nothing left behind
 
 FILES = {
@@ -372,6 +418,35 @@ def test_ctrl_c_keeps_the_finished_fits(cli, monkeypatch):
     assert not Path("new").exists()
 
 
+@pytest.mark.quick
+def test_ctrl_c_keeps_the_passes_of_a_picture_and_says_so(cli, monkeypatch):
+    monkeypatch.setattr("brdfkit.tracing.PASS", 1)
+    monkeypatch.setattr("brdfkit.console.Console.progress", interrupting)
+    said = "brdfkit: interrupted; rendered with 2 of 5 samples per pixel.\n"
+    Path("room.xml").write_text(SCENE.format(alpha=0.3))
+    for words in (["ward", "--size", "8"], ["room.xml"]):
+        result = cli("render", *words, "--spp", "5", "-o", "it.png")
+        assert (result.exit_code, result.stderr) == (130, said)
+        assert "2 spp" in result.stdout
+        assert "written: it.png" in result.stdout
+    words = "--render", "--size", "8", "--spp", "5", "-o", "out"
+    monkeypatch.setattr("brdfkit.tracing.PASS", 2)  # two materials: every pass counts twice
+    result = cli("fit", "paint.binary", "-m", "lambert", *words)
+    assert (result.exit_code, result.stderr) == (130, said)
+    assert "written: out/render.png" in result.stdout
+
+
+@contextmanager
+def interrupting(console, what):
+    """A progress that types Ctrl-C once two passes are done."""
+
+    def progress(done, total):
+        if what == "render" and done == 2:
+            raise KeyboardInterrupt
+
+    yield progress
+
+
 # The bar
 
 
@@ -478,4 +553,34 @@ def test_program(tmp_path):
     wrong = run("info", "missing.binary", cwd=tmp_path)
     assert (wrong.returncode, wrong.stdout) == (2, "")
     assert wrong.stderr.startswith("brdfkit: missing.binary: ")
+    loop = tmp_path / "loop.png"
+    loop.symlink_to(loop)
+    wrong = run("render", "ward", "-o", "loop.png", cwd=tmp_path)
+    assert (wrong.returncode, wrong.stdout) == (2, "")
+    assert wrong.stderr.startswith("brdfkit: loop.png: is a link that leads to itself")
     assert run("--version").stdout.strip() == f"brdfkit, version {bk.__version__}"
+
+
+@pytest.mark.quick
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full")
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("words", [["models"], ["models", "--json"], ["--help"]], ids=" ".join)
+def test_a_disk_that_is_full_is_one_sentence(words, unbuffered):
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "brdfkit", *words],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "PYTHONUNBUFFERED": unbuffered},
+        )
+    assert done.returncode == 2
+    assert re.fullmatch(r"brdfkit: the output cannot be written \(.*\); make room\.\n", done.stderr)
+
+
+@pytest.mark.quick
+def test_python_knows_the_command_line(tmp_path):
+    words = sys.executable, "-m", "brdfkit", "models", "nope"
+    done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("brdfkit: There is no model 'nope'")

@@ -309,6 +309,8 @@ def test_files_that_the_index_does_not_know(lab, cache):
     assert "lab/mine: is not here; fetch its file from" in fails("lab/mine", load)
     (cache / "lab").mkdir(parents=True)
     (cache / "lab" / "mine.binary").write_bytes(TABLE)
+    for name in (".DS_Store", "notes.txt", "SHA256SUMS", "._mine.binary", "half.binary.part"):
+        (cache / "lab" / name).write_bytes(TABLE)
     assert load("lab/mine").name == "mine"
     assert list(public_collections.collection("lab").here()) == ["lab/mine"]
 

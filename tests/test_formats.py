@@ -444,6 +444,18 @@ def test_written_replaces_and_follows_links(tmp_path):
     assert link.read_text() == "new"
 
 
+def test_links_in_a_circle(tmp_path):
+    (tmp_path / "a.txt").symlink_to(tmp_path / "b.txt")
+    (tmp_path / "b.txt").symlink_to(tmp_path / "a.txt")
+    for path in (tmp_path / "a.txt", tmp_path / "a.txt" / "c.txt"):
+        for check in (files.require_writable, lambda path: files.written(path).__enter__()):
+            with pytest.raises(
+                BrdfkitError, match=rf"{path.name}: (is a link that leads|there is no)"
+            ):
+                check(path)
+    refused(tmp_path / "a.txt", "no such file")
+
+
 def test_disk_that_is_full_is_one_sentence(tmp_path):
     def fill():
         with files.written(tmp_path / "x.txt"):
@@ -466,6 +478,29 @@ def test_protected_files(tmp_path):
     ):
         pass
     tmp_path.chmod(0o700)
+
+
+# -- arrays ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("valid", [np.ones(2, bool), np.ones((3, 1), bool), True])
+def test_valid_is_one_for_each_sample(valid):
+    w = from_angles(np.array([0.1, 0.2, 0.3]), 0.0)
+    with pytest.raises(BrdfkitError, match=r"grey: valid \(.*\) should be \(3,\)"):
+        Measured.from_samples(w, w, np.ones((3, 3)), valid, name="grey")
+
+
+def test_what_is_infinite_was_not_measured():
+    values = np.ones((3, 2, 4, 3))
+    values[1, 1, 2, 0], values[2, 0, 1, 2] = np.inf, -np.inf
+    before = values.copy()
+    material = Measured.from_table(values)
+    np.testing.assert_array_equal(values, before)
+    assert not material.samples.valid.reshape(3, 2, 4)[[1, 2], [1, 0], [2, 1]].any()
+    w = from_angles(np.linspace(0.1, 1.5, 50), np.linspace(0, 6, 50))
+    np.testing.assert_allclose(material.eval(w, w[::-1]), 1)
+    with pytest.raises(BrdfkitError, match="no valid measurement"):
+        Measured.from_table(np.full((3, 2, 4, 3), np.inf))
 
 
 # -- spectra --------------------------------------------------------------------------------

@@ -6,12 +6,13 @@ errors unless said otherwise, which chance exceeds once in 150,000 comparisons.
 """
 
 import functools
+import tracemalloc
 
 import numpy as np
 import pytest
 from scipy import stats
 
-from brdfkit import microgeometry
+from brdfkit import goniometer, microgeometry
 from brdfkit.directions import from_angles
 from brdfkit.errors import BrdfkitError
 from brdfkit.goniometer import Tally, measure
@@ -337,6 +338,49 @@ def test_equal_seeds_give_equal_values():
     assert not np.array_equal(first.values, other.values, equal_nan=True)
 
 
+class Recorder:
+    """A specimen of one value, which keeps what it was asked for."""
+
+    def __init__(self):
+        self.pairs, self.seeds = [], []
+
+    def samples(self, light, eye, pair, seed):
+        self.pairs.append(pair)
+        self.seeds.append(seed)
+        return np.ones((len(pair), 3))
+
+
+@pytest.mark.quick
+def test_the_order_of_the_samples_is_that_of_the_cells(monkeypatch):
+    """The shipped tables come from it."""
+    monkeypatch.setattr(goniometer, "BATCH", 7)
+    counts, recorder = np.array([3, 0, 9, 1, 1, 8, 0]), Recorder()
+    tally = Tally(len(counts))
+    goniometer._trace(recorder, None, None, counts, np.random.default_rng(5), tally)
+    assert [len(pair) for pair in recorder.pairs] == [7, 7, 7, 1]
+    assert np.array_equal(np.concatenate(recorder.pairs), np.repeat(np.arange(7), counts))
+    random = np.random.default_rng(5)
+    assert recorder.seeds == [int(random.integers(2**32)) for _ in range(4)]
+    assert np.array_equal(tally.n, counts)
+
+
+@pytest.mark.quick
+def test_many_samples_need_the_memory_of_one_batch(monkeypatch):
+    monkeypatch.setattr(goniometer, "BATCH", 100)
+    tally, counts = Tally(3), np.full(3, 10**7)
+
+    def stop(done, total):
+        raise KeyboardInterrupt
+
+    tracemalloc.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            goniometer._trace(Recorder(), None, None, counts, np.random.default_rng(), tally, stop)
+        assert tracemalloc.get_traced_memory()[1] < 10**6
+    finally:
+        tracemalloc.stop()
+
+
 # Interrupted; wrong
 
 
@@ -374,7 +418,11 @@ def test_ctrl_c_keeps_what_there_is(monkeypatch):
         ("3 numbers", {"shape": (4, 4, 0)}),
         ("error = 0", {"error": 0}),
         ("error = nan", {"error": np.nan}),
-        ("spp = 1", {"spp": 1}),
+        ("error = 1e-200", {"error": 1e-200}),
+        ("above 4,194,304 cells", {"shape": (10**5,) * 3}),
+        ("above 4,194,304 cells", {"shape": (2**32,) * 3}),
+        ("spp = 1 ", {"spp": 1}),
+        ("from 2 to 1,000,000,000", {"spp": 10**20}),
         ("seed = -1", {"seed": -1}),
         ("max_bounces = 0", {"max_bounces": 0}),
         ("3 materials", {"facets": [GREY] * 3}),
@@ -394,6 +442,8 @@ def test_what_cannot_be_measured(said, options):
     [
         ("gaussian, brushed", "bumpy", {}),
         ("slope = 0", "gaussian", {"slope": 0}),
+        ("seed -1", "gaussian", {"seed": -1}),
+        ("seed -1", "woven", {"seed": -1}),
         ("slope = nan", "brushed", {"slope": np.nan}),
         ("stretch = 0.5", "brushed", {"stretch": 0.5}),
         ("thickness = 2", "woven", {"thickness": 2}),

@@ -67,6 +67,25 @@ def test_lossless_and_the_same_each_time(tmp_path, name):
     np.testing.assert_array_equal(back.standard_error, material.standard_error)
 
 
+def test_notes_and_names_become_text(tmp_path):
+    some = spectrum().samples
+    info = {"T": 21, 7: None, "at": np.arange(3)}
+    material = Measured.from_samples(
+        some.wi, some.wo, some.values, name=tmp_path / "a", info=info, channels=np.array([*"RGB"])
+    )
+    save(material, tmp_path / "paint.npz")
+    back = load(tmp_path / "paint.npz")
+    assert back.info == {"T": "21", "7": "None", "at": "[0 1 2]"}
+    assert back.name == str(tmp_path / "a")
+    assert back.channels == ("R", "G", "B")
+
+
+@pytest.mark.parametrize("period", [0, -1, 10, np.nan])
+def test_no_table_has_such_a_period(period):
+    with pytest.raises(BrdfkitError, match=r"grey: phi_d_period is .*; give π"):
+        Measured.from_table(np.ones((2, 2, 2, 3)), period, name="grey")
+
+
 def test_numpy_opens_it(tmp_path):
     save(table(), tmp_path / "paint.npz")
     with np.load(tmp_path / "paint.npz") as arrays:

@@ -5,8 +5,13 @@ from pathlib import Path
 
 import numpy as np
 
-from brdfkit.formats import load, save
+from brdfkit.directions import from_angles
+from brdfkit.formats import saved
 from brdfkit.measured import Measured
+
+# Direction pairs where two materials are compared, up to so far from the normal
+PAIRS, STEEPEST = 4000, np.radians(80)
+EQUAL = 5e-4  # relative: below, it would read 0.0 %
 
 
 @dataclass(frozen=True)
@@ -24,18 +29,16 @@ def convert(thing, path):
     """Write a measured material, a fit or a model to `path`; returns a `Conversion`.
 
     The file is read again and compared, so that no format need say what it leaves out.
-    Raises `BrdfkitError` where the format of the suffix cannot hold it.
+    Raises `BrdfkitError`, and writes nothing, where the format of the suffix cannot hold it.
 
     >>> print(convert(load("cayman.brdf"), "cayman.npz"))  # doctest: +SKIP
     cayman.npz (nothing lost)
     """
     if isinstance(thing, Measured):
-        save(thing, path)
-        return Conversion(Path(path), changes(thing, load(path)))
+        return Conversion(Path(path), changes(thing, saved(thing, path)))
     material = evaluated(thing)
-    save(material, path)
     note = f"{thing.name} evaluated at {len(material.values):,} direction pairs"
-    return Conversion(Path(path), (note, *changes(material, load(path))))
+    return Conversion(Path(path), (note, *changes(material, saved(material, path))))
 
 
 def evaluated(thing):
@@ -66,8 +69,27 @@ def changes(before, after):
     """What differs in the measured material `after`, and which notes it lacks, in words."""
     old, new = facts(before), facts(after)
     told = [f"{what} {old[what]} → {new[what]}" for what in old if old[what] != new[what]]
-    lost = [key for key in before.info if key not in after.info]
-    return (*told, f"without {', '.join(lost)}") if lost else tuple(told)
+    if difference := between(before, after):
+        told.append(f"between the samples: {difference}")
+    if lost := [key for key in before.info if key not in after.info]:
+        told.append(f"without {', '.join(lost)}")
+    return tuple(told)
+
+
+def between(before, after):
+    """How far `eval` of the one is from the other's, in words; "" where they are equal."""
+    if not any(data.is_table or data.has_lookup for data in (before, after)):
+        return ""  # samples alone are interpolated in one and the same way
+    if before.channels != after.channels:
+        before, after = before.rgb, after.rgb
+    random = np.random.default_rng(0)
+    theta, phi = random.uniform(0, STEEPEST, (2, PAIRS)), random.uniform(0, 2 * np.pi, (2, PAIRS))
+    pairs = from_angles(theta, phi)
+    old, new = np.broadcast_arrays(before.eval(*pairs), after.eval(*pairs))
+    larger = np.maximum(old, new)
+    apart = np.divide(np.abs(new - old), larger, out=np.zeros(old.shape), where=larger > 0)
+    median, most = np.percentile(apart, (50, 95))
+    return f"{median:.1%} in the median, 95 of 100 within {most:.1%}" if most >= EQUAL else ""
 
 
 def facts(data):

@@ -28,8 +28,7 @@ def written(path):
     >>> with written("copper.json") as beside:  # doctest: +SKIP
     ...     beside.write_text("{}")
     """
-    target = Path(path).resolve()  # a link is written through, not replaced
-    _require_writable(target, path)
+    target = require_writable(path)
     beside = target.with_name(f".brdfkit-{secrets.token_hex(4)}{target.suffix}")
     try:
         beside.touch(exist_ok=False)
@@ -60,12 +59,14 @@ def folder(path):
 
 
 def require_writable(path):
-    """Raise now what `written` would raise after the work, as far as it can be known."""
-    _require_writable(Path(path).resolve(), path)
+    """Raise now what `written` would raise after the work, as far as it can be known.
 
-
-def _require_writable(target, path):
+    Returns the file that it will write: a link is written through, not replaced.
+    """
     try:
+        target = Path(os.path.realpath(path))
+        if target.is_symlink():
+            raise BrdfkitError(f"{path}: is a link that leads to itself; choose another name.")
         if not target.parent.is_dir():
             raise BrdfkitError(f"{path}: there is no folder {target.parent}; create it first.")
         if target.exists() and not target.is_file():
@@ -76,6 +77,7 @@ def _require_writable(target, path):
         raise BrdfkitError(
             f"{path}: cannot be written ({_reason(error)}); choose another folder or name."
         ) from error
+    return target
 
 
 def contents(path):

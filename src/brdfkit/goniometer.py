@@ -9,6 +9,8 @@ By reciprocity the light may stand in either direction. It takes the steeper one
 reaches most of what is seen from the other, and fewer samples are 0.
 """
 
+import math
+
 import numpy as np
 
 from brdfkit import __version__
@@ -23,6 +25,8 @@ PILOT = 64  # samples a cell
 LEAST = 256  # samples a cell: of fewer, the standard error itself is not known well
 PASSES = 8  # over all cells: when interrupted, each has its share
 BATCH = 2**20  # paths at once: bounds the memory
+MOST_CELLS = 2**22  # likewise: 1 GB; three times the cells of a MERL table
+MOST_SPP, LEAST_ERROR = 10**9, 1e-5  # weeks a cell
 
 
 def measure(
@@ -142,9 +146,10 @@ def _needed(pilot, above, error, spp):
 
 def _trace(specimen, light, eye, counts, rng, tally, progress=None, total=None):
     """Adds `counts` (m,) samples of each pair of directions to the tally."""
-    pair = np.repeat(np.arange(len(counts)), counts)
-    for first in range(0, len(pair), BATCH):
-        batch = pair[first : first + BATCH]
+    ends = np.cumsum(counts)
+    for first in range(0, ends[-1], BATCH):
+        numbers = np.arange(first, min(first + BATCH, ends[-1]))
+        batch = np.searchsorted(ends, numbers, side="right")
         tally.add(batch, specimen.samples(light, eye, batch, int(rng.integers(2**32))))
         if progress:
             progress(tally.n.sum(), total)
@@ -167,8 +172,13 @@ def _require_valid(surface, shape, error, spp, seed):
     dimensions = 3 if surface.isotropic else 4
     if len(shape) != dimensions or min(shape) < 1:
         raise BrdfkitError(f"The table's shape {shape} should be {dimensions} numbers above 0.")
-    for name, value, least in (("spp", spp, 2), ("seed", seed, 0)):
-        if value < least:
-            raise BrdfkitError(f"{name} = {value} is out of bounds; give at least {least}.")
-    if not 0 < error < 1:
-        raise BrdfkitError(f"error = {error:g} is out of bounds; give one between 0 and 1.")
+    if math.prod(shape) > MOST_CELLS:
+        raise BrdfkitError(f"The table's shape {shape} is above {MOST_CELLS:,} cells; give fewer.")
+    if not 2 <= spp <= MOST_SPP:
+        raise BrdfkitError(f"spp = {spp} is out of bounds; give one from 2 to {MOST_SPP:,}.")
+    if seed < 0:
+        raise BrdfkitError(f"seed = {seed} is out of bounds; give at least 0.")
+    if not LEAST_ERROR <= error < 1:
+        raise BrdfkitError(
+            f"error = {error:g} is out of bounds; give one from {LEAST_ERROR:g} to below 1."
+        )

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.names import printable
 from brdfkit.samples import Samples, require_some
 from brdfkit.table import Table
 
@@ -57,11 +58,12 @@ class Measured:
         (n, channels). `lookup(wi, wo)`, which may be a `Table`: values between the samples, where
         the format defines them; without it `scattered.py` interpolates.
         """
+        name, channels, info = _words(name, channels, info)
         samples = Samples.checked(wi, wo, values, valid, channels, name)
         return cls(
             name,
-            tuple(channels),
-            dict(info or {}),
+            channels,
+            info,
             anisotropic,
             _errors(standard_error, samples.values, name),
             _samples=samples,
@@ -81,18 +83,27 @@ class Measured:
         """From a table (n_theta_h, n_theta_d, n_phi_d, channels) in sr⁻¹, NaN = not measured.
 
         Its axes are those of `brdfkit.table.Table`; an anisotropic one has n_phi_h before them.
+        An infinite value was not measured, either.
         `standard_error`: of the values, in the same shape.
         """
+        name, channels, info = _words(name, channels, info)
         values = np.asarray(values, float)
         if values.ndim not in (4, 5) or values.shape[-1] != len(channels) or 0 in values.shape:
             raise BrdfkitError(
                 f"{name}: a table of shape {values.shape} was given; it should be "
                 f"([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, {len(channels)})."
             )
+        if not 0 < phi_d_period < 7:
+            raise BrdfkitError(
+                f"{name}: phi_d_period is {phi_d_period:g}; give π or, for a table that is not "
+                "reciprocal, 2π."
+            )
         require_some(np.isfinite(values).all(axis=-1), name)
+        if np.isinf(values).any():
+            values = np.where(np.isinf(values), np.nan, values)
         table = Table(values, phi_d_period)
         errors = _errors(standard_error, values, name)
-        return cls(name, tuple(channels), dict(info or {}), table.anisotropic, errors, _table=table)
+        return cls(name, channels, info, table.anisotropic, errors, _table=table)
 
     @property
     def is_table(self):
@@ -118,11 +129,27 @@ class Measured:
             return self._table
         if isinstance(self._lookup, Table):
             return self._lookup
-        from brdfkit.resampled import looked_up, sampled, table_shape
+        from brdfkit.resampled import looked_up, table_shape
 
         if self._lookup is not None:
             return looked_up(self._lookup, len(self.channels), self.anisotropic)
-        return sampled(self._between, len(self.channels), table_shape(self.anisotropic))
+        return self.resampled(table_shape(self.anisotropic))
+
+    def resampled(self, shape):
+        """The BRDF in a reciprocal `Table` of `shape` ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d).
+
+        Of a table or of samples it is what `eval` gives; of a format's own interpolation, what
+        `table` has where the lower direction is wi.
+
+        >>> load("paint.bsdf").resampled((90, 90, 180)).shape    # doctest: +SKIP
+        (90, 90, 180)
+        """
+        from brdfkit.resampled import reciprocal, sampled, steady
+
+        brdf = self.eval
+        if self.has_lookup and not isinstance(self._lookup, Table):
+            brdf = reciprocal(steady(self._lookup, self.anisotropic))
+        return sampled(brdf, len(self.channels), shape)
 
     @cached_property
     def _between(self):
@@ -217,6 +244,12 @@ class _Mixed:
 
     def __call__(self, wi, wo):
         return self.lookup(wi, wo) @ self.weights
+
+
+def _words(name, channels, info):
+    """A name, channels and notes as text that may be printed, whatever file it comes from."""
+    notes = {printable(key): printable(note, keep="\n\t") for key, note in (info or {}).items()}
+    return printable(name), tuple(map(printable, channels)), notes
 
 
 def _errors(standard_error, values, name):

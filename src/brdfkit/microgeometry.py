@@ -127,6 +127,8 @@ def _gaussian(slope, length_x, length_y, seed):
     """
     if not 0 < slope <= 2:
         raise BrdfkitError(f"slope = {slope:g} is out of bounds; give one above 0, at most 2.")
+    if seed < 0:
+        raise BrdfkitError(f"The surface's seed {seed} is out of bounds; give at least 0.")
     noise = np.fft.fft2(np.random.default_rng(seed).standard_normal((SIZE, SIZE)))
     k = 2 * np.pi * np.fft.fftfreq(SIZE)
     x, y = np.meshgrid(length_x * k, length_y * k, indexing="ij")

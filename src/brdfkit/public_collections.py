@@ -59,9 +59,9 @@ class Collection:
 
     def here(self):
         """The files that lie there by the names of their materials, with those that the index
-        does not know: a person may put more into the folder."""
+        does not know: a person may put more into the folder. Other files are no materials."""
         there = sorted(self.folder.iterdir()) if self.folder.is_dir() else []
-        return {_named(self.name, f.name): f for f in there if f.is_file() and f.suffix != PART}
+        return {_named(self.name, f.name): f for f in there if f.is_file() and _is_material(f)}
 
     def by_hand(self, file=""):
         """Which file to fetch from which page, and where to put it: the end of a sentence."""
@@ -120,6 +120,12 @@ def cache():
     import pooch
 
     return Path(pooch.os_cache("brdfkit"))
+
+
+def _is_material(file):
+    from brdfkit.formats import has_format  # which looks for materials here
+
+    return has_format(file) and not file.name.startswith(".")
 
 
 def _named(collection, file):

@@ -28,22 +28,43 @@ def sampled(brdf, channels, shape, phi_d_period=np.pi):
 
 
 def looked_up(lookup, channels, anisotropic):
-    """The `Table` of a format's own interpolation, which is as measured: need not be reciprocal.
+    """The `Table` of a format's own interpolation, which is as measured: need not be reciprocal."""
+    *others, n_phi_d = table_shape(anisotropic)
+    brdf = steady(lookup, anisotropic)
+    if _is_reciprocal(lookup):
+        return sampled(brdf, channels, (*others, n_phi_d))
+    return sampled(brdf, channels, (*others, 2 * n_phi_d), 2 * np.pi)
+
+
+def steady(lookup, anisotropic):
+    """A format's own interpolation as a table can hold it: a function (wi, wo) → (n, channels).
 
     Where it stores f cosθ_o, f has no bound at the horizon: the last 2° have the values before.
+    At normal incidence an isotropic material has one value on all sides.
     """
-    *others, n_phi_d = table_shape(anisotropic)
 
     def off_horizon(wi, wo):
         return lookup(_lifted(wi), _lifted(wo))
 
-    if _reciprocal(lookup):
-        return sampled(off_horizon, channels, (*others, n_phi_d))
-    brdf = off_horizon if anisotropic else _same_from_all_sides(off_horizon)
-    return sampled(brdf, channels, (*others, 2 * n_phi_d), 2 * np.pi)
+    if anisotropic or _is_reciprocal(lookup):
+        return off_horizon
+    return _same_from_all_sides(off_horizon)
 
 
-def _reciprocal(brdf):
+def reciprocal(brdf):
+    """`brdf(wi, wo)` with the lower of the two directions as wi, whichever it is.
+
+    What stores f cosθ_o has then been divided by the larger cosine.
+    """
+
+    def exchanged(wi, wo):
+        lower = wi[:, 2:] < wo[:, 2:]
+        return brdf(np.where(lower, wi, wo), np.where(lower, wo, wi))
+
+    return exchanged
+
+
+def _is_reciprocal(brdf):
     """Whether exchanged directions have the same values, by trial."""
     u, v = np.random.default_rng(0).random((2, 2, 1000))
     wi, wo = from_angles(np.arccos(0.1 + 0.9 * u), 2 * np.pi * v)

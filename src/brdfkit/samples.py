@@ -40,7 +40,7 @@ class Samples:
             wi, wo = (w / np.linalg.norm(w, axis=1, keepdims=True) for w in (wi, wo))
         seen = _seen(wi, wo, values)
         if valid is not None:
-            seen &= np.asarray(valid, bool)
+            seen &= _mask(valid, len(wi), name)
         require_some(seen, name)
         return cls(wi, wo, values, seen, np.ones(len(seen)))
 
@@ -63,6 +63,15 @@ def require_some(valid, name):
         raise BrdfkitError(
             f"{name}: no valid measurement is left (all masked, not finite or below the surface)."
         )
+
+
+def _mask(valid, n, name):
+    valid = np.asarray(valid, bool)
+    if valid.shape != (n,):
+        raise BrdfkitError(
+            f"{name}: valid {valid.shape} should be ({n},), one for each of the samples."
+        )
+    return valid
 
 
 def _seen(wi, wo, values):

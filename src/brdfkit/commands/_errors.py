@@ -1,5 +1,7 @@
 """How the command line tells errors: in one sentence."""
 
+import errno
+import os
 import sys
 import warnings
 from contextlib import contextmanager, nullcontext
@@ -7,6 +9,9 @@ from contextlib import contextmanager, nullcontext
 import click
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.names import printable
+
+NO_ROOM = errno.ENOSPC, errno.EDQUOT, errno.EIO  # where standard output is a file
 
 
 class Group(click.Group):
@@ -22,7 +27,10 @@ class Group(click.Group):
                 stream.reconfigure(errors="replace")
         with told(), warnings.catch_warnings():
             warnings.showwarning = _say_warning
-            return super().invoke(ctx)
+            try:
+                return super().invoke(ctx)
+            finally:
+                _flush()
 
 
 class Told(click.ClickException):
@@ -38,7 +46,7 @@ class Told(click.ClickException):
 
 @contextmanager
 def told():
-    """Turns errors for people, those of click too, and Ctrl-C into `Told`."""
+    """Turns errors for people, those of click too, a lost output and Ctrl-C into `Told`."""
     try:
         yield
     except BrdfkitError as error:
@@ -47,13 +55,28 @@ def told():
         command = error.ctx.command_path if error.ctx else "brdfkit"
         message = error.format_message().rstrip(".")
         raise Told(f"{message}; see {command} --help.") from error
+    except OSError as error:
+        if error.errno not in NO_ROOM or error.filename:
+            raise
+        _drop_output()
+        raise Told(f"the output cannot be written ({error.strerror}); make room.") from error
     except KeyboardInterrupt as error:
         raise Told("interrupted.", 130) from error
 
 
+def _flush():
+    if sys.stdout:  # None, where it was closed
+        sys.stdout.flush()
+
+
+def _drop_output():
+    """What could not be printed: or Python would try once more as it ends."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def say(message):
     """One sentence for people, on stderr."""
-    click.echo(f"brdfkit: {' '.join(str(message).split())}", err=True)
+    click.echo(f"brdfkit: {printable(' '.join(str(message).split()))}", err=True)
 
 
 def _say_warning(message, *_args, **_kwargs):

@@ -30,6 +30,7 @@ def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed,
     from brdfkit import registry
     from brdfkit.commands._targets import fit_file, measured, model_label, results
     from brdfkit.comparing import compare
+    from brdfkit.names import slug
 
     names = list(dict.fromkeys(map(model_label, names or registry.models())))
     for name in names:
@@ -37,7 +38,7 @@ def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed,
     with console.progress(f"read {file}"):
         material = measured(file)
     if output is None and rendered:
-        output = Path(material.name)
+        output = Path(slug(material.name))
 
     how = {"loss": loss, "robust": robust, "max_angle": max_angle, "seed": seed}
     psnr = {}
@@ -47,7 +48,7 @@ def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed,
         written = [fit_file(output, f) for f in fits] if output else []
         if rendered and not interrupted:
             picture = path_trace([material, *fits], output / "render.exr", spp, size, seed, console)
-            psnr = picture.psnr()
+            psnr, interrupted = picture.psnr(), picture.spp < spp
             written += [output / "render.exr", output / "render.png"]
     with console.progress("compare"):
         comparison = compare(material, fits, max_angle)

@@ -23,7 +23,14 @@ from brdfkit.commands.info import print_audit
     help="A metal, paint:R,G,B or plastic:R,G,B; for warp and weft give two.",
 )
 @click.option("--facet-alpha", default=0.2, show_default=True, help="Roughness of the facets.")
-@click.option("--specimen", default=0, show_default=True, help="Seed of the surface.")
+@click.option(
+    "--specimen",
+    default=0,
+    type=click.IntRange(min=0),
+    metavar="N",
+    show_default=True,
+    help="Seed of the surface.",
+)
 @click.option("--cells", metavar="N,N,N", help="Of theta_h, theta_d, phi_d; phi_h before them.")
 @click.option("--error", default=0.05, show_default=True, help="Relative standard error wanted.")
 @click.option("--spp", default=16384, show_default=True, help="Samples a cell at most.")

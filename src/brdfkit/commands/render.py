@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from brdfkit.commands._errors import say
 from brdfkit.commands._options import output_options, render_options, values_option
 from brdfkit.errors import BrdfkitError
 
@@ -26,6 +27,7 @@ def render(things, output, values, spp, size, seed, console):
     rendered alone, in its own size.
     """
     from brdfkit.commands._targets import material, picture_file
+    from brdfkit.names import slug
     from brdfkit.rendering import render_scene
 
     scenes = [t for t in things if t.lower().endswith(".xml")]
@@ -35,22 +37,30 @@ def render(things, output, values, spp, size, seed, console):
         output = picture_file(output or Path(scenes[0]).with_suffix(".png").name)
         with console.progress("render") as progress:
             picture = render_scene(scenes[0], spp=spp, seed=seed, progress=progress)
-        picture.write(output)
+        _write(picture, output, spp)
     else:
         found = [material(thing, values) for thing in things]
-        output = picture_file(output or f"{found[0].name}.png")
+        output = picture_file(output or f"{slug(found[0].name)}.png")
         picture = path_trace(found, output, spp, size, seed, console)
     _print_picture(picture, output, console)
+    if picture.spp < spp:
+        click.get_current_context().exit(130)
 
 
 def path_trace(things, output, spp, size, seed, console):
-    """Render `things` side by side, and write the picture."""
+    """Render `things` side by side, and write the picture; after Ctrl-C it has fewer spp."""
     from brdfkit.rendering import render as render_things
 
     with console.progress("render") as progress:
         picture = render_things(things, spp=spp, size=size, seed=seed, progress=progress)
-    picture.write(output)
+    _write(picture, output, spp)
     return picture
+
+
+def _write(picture, output, spp):
+    picture.write(output)
+    if picture.spp < spp:
+        say(f"interrupted; rendered with {picture.spp} of {spp} samples per pixel.")
 
 
 def _print_picture(picture, path, console):

@@ -45,11 +45,7 @@ def load(path):
     path, sample = _split(path)
     if not os.path.isfile(path):  # False, too, for what no path can be
         path = _known(path.as_posix()) or path
-    source = Source(path, sample, contents(path))
-    chosen = _recognised(source)
-    if sample is not None and not getattr(chosen, "MANY", False):
-        raise source.error(f"holds one material; leave '#{sample}' off the path")
-    return chosen.read(source)
+    return _read(Source(path, sample, contents(path)))
 
 
 def save(obj, path):
@@ -62,16 +58,45 @@ def save(obj, path):
 
     >>> save(load("copper.astm"), "copper.binary.xz")  # doctest: +SKIP
     """
-    path = Path(path)
+    with written(path) as beside:
+        _write(obj, Path(path), beside)
+
+
+def saved(obj, path):
+    """`save`, and what the file holds: nothing is written that could not be read again.
+
+    >>> saved(load("copper.astm"), "copper.npz").name  # doctest: +SKIP
+    'copper'
+    """
+    with written(path) as beside:
+        _write(obj, Path(path), beside)
+        try:
+            return _read(Source(Path(path), None, contents(beside)))
+        except BrdfkitError as error:
+            reason = str(error).removeprefix(f"{beside}: ").removeprefix(f"{path}: ")
+            raise BrdfkitError(
+                f"{path}: the file could not be read again ({reason.rstrip('.')})."
+            ) from error
+
+
+def _write(obj, path, beside):
+    """Writes into the file `beside` what is to stand at `path`."""
     writers = [module for module in formats() if hasattr(module, "write")]
     chosen = [module for module in writers if format_suffix(path) in module.SUFFIXES]
     if not chosen:
         raise BrdfkitError(f"{path}: no format with this suffix; written are {_listed(writers)}.")
-    with written(path) as beside, _compressing(beside) as stream:
+    with _compressing(beside) as stream:
         try:
             chosen[0].write(obj, stream)
         except BrdfkitError as error:
             raise BrdfkitError(f"{path}: {error}") from error
+
+
+def _read(source):
+    chosen = _recognised(source)
+    if source.sample is not None and not getattr(chosen, "MANY", False):
+        raise source.error(f"holds one material; leave '#{source.sample}' off the path")
+    return chosen.read(source)
 
 
 def _known(name):
@@ -88,6 +113,11 @@ def formats():
     """The format modules of this folder, in alphabetical order."""
     names = sorted(m.name for m in pkgutil.iter_modules(__path__) if not m.name.startswith("_"))
     return tuple(importlib.import_module(f"{__name__}.{name}") for name in names)
+
+
+def has_format(path):
+    """Whether the suffix of a `Path` is that of a format."""
+    return any(format_suffix(path) in module.SUFFIXES for module in formats())
 
 
 def _split(path):

@@ -28,3 +28,13 @@ def measured(obj, name, anisotropic=False):
 def angles(samples):
     """theta_i, phi_i, theta_o, phi_o [rad] of `samples`, (4, n)."""
     return np.stack([*to_angles(samples.wi), *to_angles(samples.wo)])
+
+
+def write_rows(stream, header, columns, delimiter=" "):
+    """Text in UTF-8: the lines of `header`, then a row per number of the `columns`, every digit.
+
+    A surrogate, which Python makes of a byte of a file's name that is no UTF-8, becomes "?".
+    """
+    lines = "".join(f"{line}\n" for line in header)
+    stream.write(lines.encode(errors="replace"))
+    np.savetxt(stream, np.stack(columns, axis=1), "%.17g", delimiter)

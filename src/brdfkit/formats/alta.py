@@ -21,7 +21,7 @@ import numpy as np
 
 from brdfkit.directions import from_angles, from_half_difference
 from brdfkit.formats._source import SPHERICAL
-from brdfkit.formats._writing import angles, measured
+from brdfkit.formats._writing import angles, measured, write_rows
 from brdfkit.measured import RGB
 
 NAME = "ALTA"
@@ -116,9 +116,10 @@ def write(obj, stream):
         name = "ISOTROPIC_TL_TV_PROJ_DPHI"
         where = theta_l, theta_v * np.cos(phi), theta_v * np.sin(phi)
     channels = len(obj.channels)
-    rows, interval = [*where, *samples.values[valid].T], "0"
-    if obj.standard_error is not None:
-        rows += [*obj.standard_error[valid].T]
+    columns, interval = [*where, *samples.values[valid].T], "0"
+    errors = None if obj.standard_error is None else obj.standard_error[valid]
+    if errors is not None and np.isfinite(errors).all():  # else its reader masks the values, too
+        columns += [*errors.T]
         interval = " ".join(["1"] * channels)
     header = [
         f"SAMPLE {' '.join(obj.name.split())}",
@@ -127,7 +128,7 @@ def write(obj, stream):
         f"PARAM_IN {name}",
         f"PARAM_OUT {'INV_STERADIAN' if channels == 1 else 'RGB_COLOR'}",
     ]
-    np.savetxt(stream, np.stack(rows, 1), "%.17g", header="\n".join(header), comments="#")
+    write_rows(stream, [f"#{line}" for line in header], columns)
 
 
 def _dimensions(source, header):

@@ -15,15 +15,17 @@ import re
 
 import numpy as np
 
+from brdfkit.errors import BrdfkitError
 from brdfkit.formats._notes import lone_point
 from brdfkit.formats._writing import angles as angles_of
-from brdfkit.formats._writing import measured
+from brdfkit.formats._writing import measured, write_rows
 from brdfkit.measured import RGB
 
 NAME = "ASTM"
 SUFFIXES = (".astm",)
 
 ANGLES = ("theta_i", "phi_i", "theta_s", "phi_s")
+KNOWN = "R,G,B or wavelengths such as 550nm, or a single channel"
 MINI_DIFF = "Mini-Diff"
 MINI_DIFF_CHANNELS = ("630nm", "525nm", "465nm")  # as R, G, B
 MINI_DIFF_LIMIT = np.radians(75) + 1e-6
@@ -44,7 +46,14 @@ def read(source):
     lines = [n for n, _ in rows]
     names, notes = _names(source, header["VARS"], vars_line, rows)
     data = np.array([source.numbers(n, line.split(","), len(names)) for n, line in rows])
-    channels, columns, note = _channels(source, names, vars_line)
+    named = tuple(name for name in names if name not in ANGLES)
+    known = _channels(named)
+    if known is None:
+        raise source.error(
+            f"line {vars_line} names the channels {', '.join(named)[:80]}, but {KNOWN} belong; "
+            "mend the line"
+        )
+    channels, columns, note = known
     notes.update(note)
 
     column = dict(zip(names, data.T, strict=True))
@@ -63,14 +72,19 @@ def read(source):
 def write(obj, stream):
     """Write the valid samples of a `Measured`, in its own channels, to the last digit."""
     obj = measured(obj, NAME)
+    if not _writable(obj.channels):
+        raise BrdfkitError(
+            f"the format {NAME} holds {KNOWN}, and {obj.name} has the channels "
+            f"{' '.join(obj.channels)[:80]}; choose another suffix, such as .npz."
+        )
     samples, valid = obj.samples, obj.samples.valid
     header = [
         f"SAMPLE_NAME {' '.join(obj.name.split())}",
         f"NUM_POINTS {valid.sum()}",
         f"VARS {','.join((*ANGLES, *obj.channels))}",
     ]
-    rows = np.concatenate([angles_of(samples.at(valid)), samples.values[valid].T])
-    np.savetxt(stream, rows.T, "%.17g", ",", header="\n".join(header), comments="")
+    columns = [*angles_of(samples.at(valid)), *samples.values[valid].T]
+    write_rows(stream, header, columns, ",")
 
 
 def _header(source):
@@ -114,9 +128,11 @@ def _names(source, text, vars_line, rows):
     return names, notes
 
 
-def _channels(source, names, vars_line):
-    """The channels' names, the columns they are taken from, and a note where those differ."""
-    columns = tuple(name for name in names if name not in ANGLES)
+def _channels(columns):
+    """The channels' names, the columns they are taken from, and a note where those differ.
+
+    None for columns that are no channels.
+    """
     if set(columns) == set(RGB):
         return RGB, RGB, {}
     if set(columns) == set(MINI_DIFF_CHANNELS):
@@ -126,7 +142,11 @@ def _channels(source, names, vars_line):
         return columns, columns, {}
     if len(columns) == 1:
         return ("Y",), columns, {"channels": f"Y is the column {columns[0]}"}
-    raise source.error(
-        f"line {vars_line} names the channels {', '.join(columns)[:80]}, but R,G,B or wavelengths "
-        "such as 550nm, or a single one belong; mend the line"
-    )
+    return None
+
+
+def _writable(channels):
+    """Whether VARS can name `channels` so that they are found again."""
+    words = all(re.fullmatch(r"[^\s,]+", name) for name in channels)
+    distinct = len({*ANGLES, *channels}) == len(ANGLES) + len(channels)
+    return words and distinct and _channels(channels) is not None

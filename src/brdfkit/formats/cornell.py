@@ -10,7 +10,7 @@ import numpy as np
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats._notes import lone_point, stopping_short
 from brdfkit.formats._writing import angles as angles_of
-from brdfkit.formats._writing import measured
+from brdfkit.formats._writing import measured, write_rows
 from brdfkit.spectra import wavelengths
 
 NAME = "Cornell"
@@ -60,6 +60,11 @@ def write(obj, stream):
             f"the format {NAME} holds wavelengths, and {obj.name} has the channels "
             f"{' '.join(obj.channels)[:80]}; choose another suffix, such as .astm."
         ) from None
+    if not _possible(nm):
+        raise BrdfkitError(
+            f"the format {NAME} holds up to {MOST_WAVELENGTHS} wavelengths of {NANOMETRES[0]} to "
+            f"{NANOMETRES[1]:,} nm, each once, not those of {obj.name}; choose another suffix."
+        )
     samples, valid = obj.samples, obj.samples.valid
     header = [
         f"# {' '.join(obj.name.split())}",
@@ -69,8 +74,7 @@ def write(obj, stream):
         " ".join(f"{w:.10g}" for w in nm),
         "# theta i  phi i  theta s  phi_s  spectral sample values",
     ]
-    rows = np.concatenate([angles_of(samples.at(valid)), samples.values[valid].T])
-    np.savetxt(stream, rows.T, "%.17g", header="\n".join(header), comments="")
+    write_rows(stream, header, [*angles_of(samples.at(valid)), *samples.values[valid].T])
 
 
 def _wavelengths(source):
@@ -94,11 +98,17 @@ def _wavelengths(source):
             f"line {first} announces {count} wavelengths, but the next lines list {len(found)}; "
             "mend the number or fetch the file again"
         )
-    if len(set(found)) != count or not all(map(_plausible, found)):
+    if not _possible(found):
         raise source.error(
             f"the wavelengths behind line {first} repeat or are not in nm; mend them"
         )
     return found, source.lines[used:]
+
+
+def _possible(wavelengths):
+    """Whether a file may list these."""
+    distinct = len({f"{w:.10g}" for w in wavelengths}) == len(wavelengths) <= MOST_WAVELENGTHS
+    return distinct and all(map(_plausible, wavelengths))
 
 
 def _plausible(wavelength):

@@ -14,7 +14,6 @@ import numpy as np
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats._writing import measured
 from brdfkit.measured import RGB, Measured
-from brdfkit.resampled import sampled
 
 NAME = "MERL"
 SUFFIXES = (".binary",)
@@ -62,7 +61,7 @@ def write(obj, stream):
     Negative values, which the format takes for "not measured", are written as 0.
     """
     obj = measured(obj, NAME).rgb
-    table = obj.table if obj.is_table else sampled(obj.eval, len(obj.channels), SHAPE)
+    table = obj.table if obj.is_table else obj.resampled(SHAPE)
     if not _plausible(table.shape) or not np.isclose(
         table.phi_d_period, _phi_d_period(table.shape)
     ):

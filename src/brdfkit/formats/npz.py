@@ -73,9 +73,9 @@ def write(obj, stream):
     obj = measured(obj, NAME, anisotropic=True)
     about = {
         "brdfkit": brdfkit.__version__,
-        "name": obj.name,
-        "channels": obj.channels,
-        "info": obj.info,
+        "name": str(obj.name),
+        "channels": [str(channel) for channel in obj.channels],
+        "info": {str(key): str(note) for key, note in obj.info.items()},
         "anisotropic": bool(obj.anisotropic),
     }
     arrays = {}
@@ -101,7 +101,9 @@ def _measured(about, arrays):
         return _from_samples(about, arrays, details, errors)
     if errors is not None:
         errors = errors.reshape(arrays["table"].shape)
-    return Measured.from_table(arrays["table"], _period(about), **details, standard_error=errors)
+    return Measured.from_table(
+        arrays["table"], float(about["phi_d_period"]), **details, standard_error=errors
+    )
 
 
 def _from_samples(about, arrays, details, errors):
@@ -110,7 +112,7 @@ def _from_samples(about, arrays, details, errors):
         raise ValueError("a direction is no unit vector")
     lookup = None
     if "table" in arrays:
-        lookup = Measured.from_table(arrays["table"], _period(about), **details).table
+        lookup = Measured.from_table(arrays["table"], float(about["phi_d_period"]), **details).table
     rest = {"anisotropic": about["anisotropic"] is True, "standard_error": errors}
     found = Measured.from_samples(wi, wo, values, valid, **details, **rest, lookup=lookup)
     samples = found.samples
@@ -118,13 +120,6 @@ def _from_samples(about, arrays, details, errors):
         if not np.allclose(given[samples.valid], unit[samples.valid], atol=1e-6):
             raise ValueError("a direction is no unit vector")
     return replace(found, _samples=replace(samples, wi=wi, wo=wo))
-
-
-def _period(about):
-    period = float(about["phi_d_period"])
-    if not 0 < period < 7:
-        raise ValueError(f"phi_d_period is {period}")
-    return period
 
 
 def _members(source):

@@ -110,7 +110,7 @@ def write(obj, stream):
     arrays |= {"luminance": luminance, **_values(obj, np.moveaxis(brdf.values, -1, 2))}
     arrays = {name: array.astype(np.float32) for name, array in arrays.items()}
     arrays["jacobian"] = np.ones(1, np.uint8)
-    arrays["description"] = np.frombuffer(_description(obj).encode(), np.uint8)
+    arrays["description"] = np.frombuffer(_description(obj).encode(errors="replace"), np.uint8)
     _tensor_file.write(stream, arrays)
 
 
@@ -127,6 +127,10 @@ def _values(obj, values):
             "model with one or three numbers per weight."
         )
     nanometres = wavelengths(obj)
+    if len(set(nanometres.astype(np.float32))) != len(nanometres) or nanometres.min() <= 0:
+        raise BrdfkitError(
+            f"the wavelengths of {obj.name} repeat or are not above 0 nm; mend them."
+        )
     order = np.argsort(nanometres)
     return {"wavelengths": nanometres[order], "spectra": values[:, :, order]}
 

@@ -1,0 +1,5 @@
+"""`python -m brdfkit`: the command line, where its program is not on the path."""
+
+from brdfkit.cli import main
+
+main(prog_name="python -m brdfkit")
