@@ -70,7 +70,8 @@ class Rendering:
 
         The EXR has one named part a picture and one a difference ("difference: NAME"), each
         with R, G, B float32 and, in its header, spp, seed, brdfkit (the version) and parameters
-        (JSON). The PNG shows the pictures side by side, captioned, over their differences.
+        (JSON). A difference is picture minus reference, linear. The PNG shows the pictures side
+        by side, captioned, over their differences in colour (CIEDE2000).
         Raises `BrdfkitError` for another suffix or where it cannot write; no half-written file.
         """
         path = Path(path)
