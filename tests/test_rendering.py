@@ -185,6 +185,9 @@ def test_what_cannot_be_written_leaves_nothing(pair, tmp_path, path):
     [
         ({"things": []}, "nothing to render"),
         ({"things": 5}, "5 cannot be rendered"),
+        ({"things": "car_paint"}, "^'car_paint' cannot be rendered; give .* `load` reads"),
+        ({"things": ["car_paint"]}, "^'car_paint' cannot be rendered"),
+        ({"things": bk.models()["ward"]}, "Ward'> cannot be rendered; give .* with values"),
         ({"things": {"type": "no_such_bsdf"}}, "no_such_bsdf: Mitsuba cannot load it"),
         ({"things": WHITE, "spp": 0}, "0 spp"),
         ({"things": WHITE, "size": 0}, "size above 0"),

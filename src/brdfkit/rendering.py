@@ -127,7 +127,7 @@ def render(
     size = (size, size) if np.ndim(size) == 0 else tuple(size)
     if min(size) < 1:
         raise BrdfkitError(f"{size} pixels make no picture; give a size above 0.")
-    if _is_pair(things) or isinstance(things, dict) or not hasattr(things, "__iter__"):
+    if _is_pair(things) or isinstance(things, dict | str) or not hasattr(things, "__iter__"):
         things = [things]
     mi = _mitsuba()
     materials, parameters = {}, {}
@@ -180,15 +180,15 @@ def _material(thing):
     """(name, BSDF dictionary, parameters' values by name) of whatever `render` takes."""
     if _is_pair(thing):
         return thing[0], *_material(thing[1])[1:]
-    if hasattr(thing, "scene_dict"):
+    if hasattr(thing, "scene_dict") and not isinstance(thing, type):
         values = thing.values if isinstance(thing, Model | Fit) else {}
         return str(thing.name), thing.scene_dict(), dict(values)
     if isinstance(thing, dict) and "type" in thing:
         bsdf = dict(thing)
         return str(bsdf.pop("name", bsdf["type"])), bsdf, {}
     raise BrdfkitError(
-        f"{thing!r} cannot be rendered; give a measured material, a fit, a model or a BSDF's "
-        'dictionary with a "type".'
+        f"{thing!r} cannot be rendered; give a measured material, which `load` reads, a fit, a "
+        'model with values or a BSDF\'s dictionary with a "type".'
     )
 
 
