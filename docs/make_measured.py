@@ -8,6 +8,7 @@ The folder holds third-party files, which are shown and not shipped; brdfkit's o
 import math
 import os
 import sys
+import textwrap
 import time
 from pathlib import Path
 
@@ -21,7 +22,8 @@ from brdfkit.checks.subject import INCIDENCES, Subject
 from brdfkit.directions import from_angles
 
 PAGE = Path(__file__).with_name("measured.md")
-SIZE, SPP, COLUMNS, CAPTION = 128, 121, 10, 18
+SIZE, SPP, COLUMNS = 128, 121, 10
+CAPTION, FONT, LETTERS = 32, 11, 18  # heights [pixels] of the label and its font; a line's length
 SAMPLES = 200_000
 TEXT = """# Measured materials
 
@@ -89,16 +91,19 @@ def sheet(pictures):
     """One image of all pictures, with names."""
     rows = math.ceil(len(pictures) / COLUMNS)
     page = Image.new("RGB", (COLUMNS * SIZE, rows * (SIZE + CAPTION)), "white")
-    draw, font = ImageDraw.Draw(page), ImageFont.load_default(11)
+    draw, font = ImageDraw.Draw(page), ImageFont.load_default(FONT)
     for k, (name, picture) in enumerate(pictures.items()):
         x, y = k % COLUMNS * SIZE, k // COLUMNS * (SIZE + CAPTION)
         linear = np.clip(picture, 0, 1)
         srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
         page.paste(Image.fromarray((srgb * 255 + 0.5).astype(np.uint8)), (x, y + CAPTION))
-        while font.getlength(name) > SIZE - 6:
-            name = name[:-1]
-        draw.text((x + 3, y + 3), name, "black", font)
+        draw.text((x + 3, y + 3), label(name), "black", font)
     return page
+
+
+def label(name):
+    """The whole name, in two lines where it is long: most names differ at their ends."""
+    return "\n".join(textwrap.wrap(name, LETTERS))
 
 
 def main():

@@ -14,7 +14,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 import brdfkit as bk
 from brdfkit import models
 from brdfkit.auditing import pairs
-from brdfkit.auditing.albedo import albedo_of_samples
+from brdfkit.auditing.albedo import Albedo, albedo_of_samples
 from brdfkit.auditing.coverage import coverage, is_near
 from brdfkit.auditing.noise import noise
 from brdfkit.auditing.ratios import grazing, retroreflection
@@ -437,6 +437,26 @@ def test_nothing_in_the_picture_overlaps(data):
         assert not a.overlaps(b), (one, other)
     page = figure.bbox.padded(1)
     assert all(page.contains(*box.min) and page.contains(*box.max) for _, box in boxes)
+
+
+def test_albedos_out_of_range_stand_side_by_side_and_beside_the_legend():
+    beyond = Albedo(("R", "G", "B"), np.array([40, 80]), np.array([[-1, -1, 0.4], [9, 8, 7]]), 80)
+    figure = replace(spectral().audit(), albedo_of_samples=beyond).picture()
+    FigureCanvasAgg(figure).draw()
+    axes = next(axes for axes in figure.axes if axes.get_title() == "albedo")
+    legend = axes.get_legend()
+    explained = {text.get_text() for text in legend.get_texts()}
+    assert {"R", "G", "B", "samples alone", "out of range"} <= explained
+    assert not legend.get_window_extent().overlaps(axes.bbox)
+    low, high = axes.get_ylim()
+    triangles = [line for line in axes.lines if line.get_marker() in ("^", "v")]
+    places = [place for line in triangles for place in line.get_xydata()]
+    assert len(places) == 5
+    assert all(low < y < high for _, y in places)
+    pixels = axes.transData.transform(places)
+    width = max(line.get_markersize() for line in triangles) * figure.dpi / 72
+    for one, other in itertools.combinations(pixels, 2):
+        assert np.linalg.norm(one - other) > width
 
 
 def drawn(axis, labels, coordinate):

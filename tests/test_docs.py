@@ -7,6 +7,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 import pytest
+from PIL import Image, ImageDraw, ImageFont
 
 import brdfkit as bk
 
@@ -22,13 +23,18 @@ LINK = re.compile(r'\]\(([^)\s]+)\)|(?:src|href)="([^"]+)"')
 pytestmark = pytest.mark.quick
 
 
-@pytest.fixture(scope="module")
-def make():
-    """The program that makes the models' pages, as a module."""
-    path = ROOT / "docs" / "make_models.py"
-    spec = importlib.util.spec_from_file_location("make_models", path)
+def program(name):
+    """A program in `docs/`, as a module."""
+    spec = importlib.util.spec_from_file_location(name, ROOT / "docs" / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def make():
+    """The program that makes the models' pages."""
+    module = program("make_models")
     new = [name for name in module.models() if not (module.FOLDER / f"{name}.md").exists()]
     if new:  # a model is one file: its page is made of it when it is to be published
         pytest.skip(f"no page yet of {', '.join(new)}: make docs")
@@ -94,3 +100,28 @@ def test_the_examples_are_true(name):
 
 def test_every_loss_is_described():
     assert all(f'"{loss}"' in type(bk.losses).__doc__ for loss in bk.losses)
+
+
+@pytest.fixture(scope="module")
+def measured():
+    """The names in the table of `docs/measured.md`."""
+    text = (ROOT / "docs" / "measured.md").read_text(encoding="utf-8")
+    return re.findall(r"^\| (?!material |---)(.+?) \|", text, flags=re.MULTILINE)
+
+
+def test_the_readme_counts_the_measured_materials(measured):
+    neural = sum(name.startswith("neural ") for name in measured)
+    counted = f"{len(measured) - neural} measurements and {neural} neural reconstructions"
+    assert counted in (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def test_every_measured_material_has_its_whole_name_above_its_ball(measured):
+    make = program("make_measured")
+    font = ImageFont.load_default(make.FONT)
+    draw = ImageDraw.Draw(Image.new("RGB", (1, 1)))
+    for name in measured:
+        label = make.label(name)
+        assert re.sub(r"\s", "", label) == re.sub(r"\s", "", name)
+        _, _, right, bottom = draw.multiline_textbbox((3, 3), label, font)
+        assert right <= make.SIZE, name
+        assert bottom <= make.CAPTION, name

@@ -194,7 +194,17 @@ def test_angles_out_of_range(theta_i):
         plot(Constant(1), theta_i)
 
 
-@pytest.mark.parametrize("things", [[], "ggx", 3, None, [Constant(1), 3], Constant])
-def test_what_cannot_be_plotted(things):
-    with pytest.raises(BrdfkitError, match="give a measured material, a fit or a model"):
+@pytest.mark.parametrize(
+    ("things", "named"),
+    [
+        ([], "'nothing'"),
+        ("car_paint", "'car_paint'"),
+        (3, "3"),
+        (None, "None"),
+        ([Constant(1), 3], "3"),
+        (Constant, "<class"),
+    ],
+)
+def test_what_cannot_be_plotted(things, named):
+    with pytest.raises(BrdfkitError, match=f"^plot: {named}.* cannot be plotted; give .* `load`"):
         plot(things)

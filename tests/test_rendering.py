@@ -7,7 +7,7 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.errors import BrdfkitError
-from brdfkit.pictures import montage
+from brdfkit.pictures import colour_differences, montage
 from brdfkit.rendering import Rendering, render, render_scene
 from brdfkit.scenes import ball, ball_mask
 from brdfkit.tracing import passes_of
@@ -185,6 +185,9 @@ def test_what_cannot_be_written_leaves_nothing(pair, tmp_path, path):
     [
         ({"things": []}, "nothing to render"),
         ({"things": 5}, "5 cannot be rendered"),
+        ({"things": "car_paint"}, "^'car_paint' cannot be rendered; give .* `load` reads"),
+        ({"things": ["car_paint"]}, "^'car_paint' cannot be rendered"),
+        ({"things": bk.models()["ward"]}, "Ward'> cannot be rendered; give .* with values"),
         ({"things": {"type": "no_such_bsdf"}}, "no_such_bsdf: Mitsuba cannot load it"),
         ({"things": WHITE, "spp": 0}, "0 spp"),
         ({"things": WHITE, "size": 0}, "size above 0"),
@@ -210,6 +213,33 @@ def test_a_montage_holds_every_picture(pair, tmp_path):
         page = montage(Rendering(pictures, spp=1, seconds=0.0))
         assert page.width < 5 * 400
         assert 600 * rows < page.height < 900 * rows
+
+
+@pytest.mark.quick
+def test_differences_are_of_colour():
+    """Lab and CIEDE2000 as published: G. Sharma, W. Wu and E. N. Dalal, "The CIEDE2000
+    color-difference formula", Color Research and Application 30(1), 2005, Table 1, 1 and 25."""
+    import colour
+
+    lab = [
+        [(50, 2.6772, -79.7751), (60.2574, -34.0099, 36.2677), (100, 0, 0), (50, 0, 0)],
+        [(50, 0, -82.7485), (60.4626, -34.1751, 39.4387), (0, 0, 0), (50, 0, 0)],
+    ]
+    to_rgb = np.linalg.inv(colour.RGB_COLOURSPACES["sRGB"].matrix_RGB_to_XYZ)
+    first, other = (colour.Lab_to_XYZ([row]) @ to_rgb.T for row in lab)
+    found = colour_differences(Rendering({"a": first, "b": other}, spp=1, seconds=0.0))
+    np.testing.assert_allclose(found["b"], [[2.0425, 1.2644, 100, 0]], atol=1e-4)
+
+
+@pytest.mark.quick
+def test_what_is_as_light_and_red_is_not_green():
+    red = np.broadcast_to([0.4, 0.0, 0.0], (8, 8, 3))
+    green = np.broadcast_to([0.0, 0.4 * 0.2126 / 0.7152, 0.0], (8, 8, 3))
+    page = np.asarray(montage(Rendering({"red": red, "green": green, "too": red}, 1, 0.0)), int)
+    below = page[-100]  # the last pictures are the differences
+    third = page.shape[1] // 3
+    assert below[third + third // 2].sum() > 600  # of 765: as bright as they get
+    assert below[2 * third + third // 2].sum() < 20
 
 
 @pytest.mark.quick

@@ -1,12 +1,11 @@
 """A rendering as files: everything as a multi-part OpenEXR, for people as a montage."""
 
 import json
-from math import ceil, floor, inf, log10
+from math import ceil
 from pathlib import Path
 
 import numpy as np
 
-from brdfkit.colours import luminance
 from brdfkit.errors import BrdfkitError
 from brdfkit.records import plain
 
@@ -14,7 +13,7 @@ COLUMNS = 4
 TILE = 320  # narrower pictures are enlarged to this width [pixels], so that captions fit
 GAP = 20
 INK, FAINT, PAPER = (26, 26, 26), (105, 105, 105), (255, 255, 255)
-DIVERGING = "RdBu_r"  # blue: darker than the reference, red: brighter
+MOST = 20  # ΔE of the brightest false colour, the same in all pictures: they can be compared
 
 
 def picture_suffix(path):
@@ -58,12 +57,11 @@ def _version():
 def montage(rendering):
     """The pictures with captions as a `PIL.Image`, rows of up to four, differences below each.
 
-    Differences are of lightness, in false colour, all on one scale that a legend states.
+    Differences are of colour, CIEDE2000, in false colours that a legend states.
     """
     from PIL import Image, ImageDraw
 
-    captions, differences = rendering.captions, _lightness_differences(rendering)
-    limit = _round_up(max((_percentile(d) for d in differences.values()), default=0))
+    captions, differences = rendering.captions, colour_differences(rendering)
     names = list(rendering.pictures)
     zoom = ceil(TILE / rendering.pictures[names[0]].shape[1])
     height, width = (zoom * n for n in rendering.pictures[names[0]].shape[:2])
@@ -79,10 +77,10 @@ def montage(rendering):
         page.paste(_image(_srgb(rendering.pictures[name]), zoom), (x, y + caption))
         y += caption + height + GAP
         if name in differences:
-            page.paste(_image(_false_colour(differences[name], limit), zoom), (x, y))
+            page.paste(_image(_false_colour(differences[name]), zoom), (x, y))
             draw.rectangle((x, y, x + width - 1, y + height - 1), outline=(200, 200, 200))
         elif differences:
-            _legend(page, draw, (x, y, width, height), limit, text)
+            _legend(page, draw, (x, y, width, height), text)
     return page
 
 
@@ -101,38 +99,30 @@ def _srgb(linear):
     return np.where(np.isfinite(linear).all(axis=-1, keepdims=True), x, (1, 0, 1))
 
 
-def _lightness_differences(rendering):
-    """Name → (height, width) of CIE L* minus that of the reference.
+def colour_differences(rendering):
+    """Name → (height, width) ΔE of every other picture to the reference, by CIEDE2000.
 
-    Not luminance: a highlight would drown what is seen as well elsewhere. Not clipped at 100.
+    1 is about what is just seen, black to white is 100. Not clipped: highlights count as well.
+    M. R. Luo, G. Cui and B. Rigg, "The development of the CIE 2000 colour-difference formula:
+    CIEDE2000", Color Research and Application 26(5), 2001.
     """
-    lightness = {n: _lightness(p) for n, p in rendering.pictures.items()}
-    first = lightness.pop(rendering.reference)
-    return {n: value - first for n, value in lightness.items()}
+    names = rendering.differences
+    if not names:
+        return {}
+    import colour
+
+    to_xyz = colour.RGB_COLOURSPACES["sRGB"].matrix_RGB_to_XYZ
+    with np.errstate(invalid="ignore"):  # of what is not finite nothing becomes a number
+        lab = {n: colour.XYZ_to_Lab(p @ to_xyz.T) for n, p in rendering.pictures.items()}
+        reference = lab[rendering.reference]
+        return {n: colour.delta_E(reference, lab[n], method="CIE 2000") for n in names}
 
 
-def _lightness(linear):
-    y = np.maximum(luminance(linear), 0)
-    return np.where(y > 216 / 24389, 116 * np.cbrt(y) - 16, y * 24389 / 27)
-
-
-def _false_colour(difference, limit):
+def _false_colour(difference):
     import matplotlib as mpl
 
-    return mpl.colormaps[DIVERGING]((difference / limit + 1) / 2)[..., :3]
-
-
-def _percentile(difference):
-    finite = np.abs(difference[np.isfinite(difference)])
-    return np.percentile(finite, 99) if finite.size else 0
-
-
-def _round_up(value):
-    """The next of 1, 2, 5, 10, 20 ... × 10^k; 1 for 0, where any scale does."""
-    if not 0 < value < inf:
-        return 1.0
-    unit = 10.0 ** floor(log10(value))
-    return next(unit * step for step in (1, 2, 5, 10) if value <= unit * step * (1 + 1e-9))
+    colours = mpl.colormaps["magma"].with_extremes(bad="magenta")  # not finite: as in `_srgb`
+    return colours(difference / MOST)[..., :3]
 
 
 def _font(size, bold=False):
@@ -155,20 +145,20 @@ def _caption(draw, corner, name, below, width, size):
     draw.text((x, y + round(1.4 * size)), below, FAINT, _font(size))
 
 
-def _legend(page, draw, box, limit, size):
+def _legend(page, draw, box, size):
     """What the colours of the differences mean, in the empty place below the reference."""
     x, y, width, height = box
     font, small = _font(size), _font(round(0.85 * size))
     middle = y + height // 2
-    draw.text((x, middle - 3 * size), "difference in lightness L*", INK, font)
-    draw.text((x, middle - round(1.6 * size)), "picture minus reference, white = 100", FAINT, small)
-    bar = np.broadcast_to(np.linspace(-limit, limit, width), (size, width))
-    page.paste(_image(_false_colour(bar, limit), 1), (x, middle))
+    draw.text((x, middle - 3 * size), "difference in colour ΔE", INK, font)
+    draw.text((x, middle - round(1.6 * size)), "CIEDE2000; 1 is just seen", FAINT, small)
+    bar = np.broadcast_to(np.linspace(0, MOST, width), (size, width))
+    page.paste(_image(_false_colour(bar), 1), (x, middle))
     draw.rectangle((x, middle, x + width - 1, middle + size - 1), outline=(200, 200, 200))
     below = middle + round(1.35 * size)
     for place, anchor, label in (
-        (0, "la", f"−{limit:g}"),
-        (width / 2, "ma", "0"),
-        (width, "ra", f"+{limit:g}"),
+        (0, "la", "0"),
+        (width / 2, "ma", f"{MOST / 2:g}"),
+        (width, "ra", f"{MOST} and more"),
     ):
         draw.text((x + place, below), label, INK, small, anchor=anchor)

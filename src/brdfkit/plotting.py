@@ -79,11 +79,12 @@ def lobe(thing, theta_i):
 
 
 def _things(things):
-    things = list(things) if np.iterable(things) else [things]
+    things = list(things) if np.iterable(things) and not isinstance(things, str) else [things]
     for thing in things or ["nothing"]:
         if isinstance(thing, type) or not hasattr(thing, "eval"):
             raise BrdfkitError(
-                f"plot: {thing!r} cannot be plotted; give a measured material, a fit or a model."
+                f"plot: {thing!r} cannot be plotted; give a measured material, which `load` "
+                "reads, a fit or a model with values."
             )
     return [thing.rgb if isinstance(thing, Measured) else thing for thing in things]
 

@@ -70,7 +70,8 @@ class Rendering:
 
         The EXR has one named part a picture and one a difference ("difference: NAME"), each
         with R, G, B float32 and, in its header, spp, seed, brdfkit (the version) and parameters
-        (JSON). The PNG shows the pictures side by side, captioned, over their differences.
+        (JSON). A difference is picture minus reference, linear. The PNG shows the pictures side
+        by side, captioned, over their differences in colour (CIEDE2000).
         Raises `BrdfkitError` for another suffix or where it cannot write; no half-written file.
         """
         path = Path(path)
@@ -126,7 +127,7 @@ def render(
     size = (size, size) if np.ndim(size) == 0 else tuple(size)
     if min(size) < 1:
         raise BrdfkitError(f"{size} pixels make no picture; give a size above 0.")
-    if _is_pair(things) or isinstance(things, dict) or not hasattr(things, "__iter__"):
+    if _is_pair(things) or isinstance(things, dict | str) or not hasattr(things, "__iter__"):
         things = [things]
     mi = _mitsuba()
     materials, parameters = {}, {}
@@ -179,15 +180,15 @@ def _material(thing):
     """(name, BSDF dictionary, parameters' values by name) of whatever `render` takes."""
     if _is_pair(thing):
         return thing[0], *_material(thing[1])[1:]
-    if hasattr(thing, "scene_dict"):
+    if hasattr(thing, "scene_dict") and not isinstance(thing, type):
         values = thing.values if isinstance(thing, Model | Fit) else {}
         return str(thing.name), thing.scene_dict(), dict(values)
     if isinstance(thing, dict) and "type" in thing:
         bsdf = dict(thing)
         return str(bsdf.pop("name", bsdf["type"])), bsdf, {}
     raise BrdfkitError(
-        f"{thing!r} cannot be rendered; give a measured material, a fit, a model or a BSDF's "
-        'dictionary with a "type".'
+        f"{thing!r} cannot be rendered; give a measured material, which `load` reads, a fit, a "
+        'model with values or a BSDF\'s dictionary with a "type".'
     )
 
 

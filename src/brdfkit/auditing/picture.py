@@ -9,6 +9,7 @@ from brdfkit.colours import luminance
 from brdfkit.plotting import Plot, draw, usual_angles
 
 SIZE = 12.6, 6.8  # inches
+GREY = "0.45"  # of the legend, where it means all channels
 COLOURS = {"R": "#d55e00", "G": "#009e73", "B": "#0072b2"}  # and black for what has one channel
 TICKS = np.array([0, 1, 5, 10, 20, 40, 60, 90])  # degrees of theta_h
 MOST = 4  # times the looked-up albedo, for an albedo of samples
@@ -90,36 +91,45 @@ def _norm(values):
 
 
 def _albedo(axes, audit):
-    """The albedo over incidence: dotted where extrapolated, circles for the samples alone."""
+    """The albedo over incidence, of the table and of the samples alone."""
     albedo, samples = audit.albedo, audit.albedo_of_samples
     measured = albedo.theta_i <= albedo.measured_to + 1
     last = int(np.flatnonzero(measured)[-1])
     for channel, values in zip(albedo.channels, albedo.values.T, strict=True):
         style = {"color": COLOURS.get(channel, "black"), "linewidth": 1.8}
-        axes.plot(albedo.theta_i[measured], values[measured], label=channel, **style)
+        label = channel if len(albedo.channels) > 1 else None
+        axes.plot(albedo.theta_i[measured], values[measured], label=label, **style)
         axes.plot(albedo.theta_i[last:], values[last:], linestyle=":", **style)
+    if not measured.all():
+        axes.plot([], ":", color=GREY, linewidth=1.8, label="extrapolated")
     top = 1.12 * albedo.values.max() or 1.0
     if samples:
         top = max(top, 1.12 * min(samples.values.max(), MOST * albedo.values.max()))
-        _circles(axes, samples, top)
+        _of_samples(axes, samples, top)
     if top > 0.9:
         axes.axhline(1, color="0.6", linewidth=0.8, zorder=0)
     axes.set(xlim=(0, 90), ylim=(0, top))
     axes.set_xticks(range(0, 91, 15), [f"{t}°" for t in range(0, 91, 15)])
     axes.set_xlabel(r"$\theta_i$")
     axes.spines[["top", "right"]].set_visible(False)
-    told = ["dotted: extrapolated"] * (not measured.all())
-    told += ["circles: samples alone"] * (samples is not None)
-    axes.set_title("; ".join(["albedo", ", ".join(told)][: 1 + bool(told)]), fontsize=10)
-    if len(albedo.channels) > 1:
-        axes.legend(ncols=3, handlelength=1.2, columnspacing=1, framealpha=0.9, edgecolor="none")
+    axes.set_title("albedo", fontsize=10)
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(loc="upper left", bbox_to_anchor=(1, 1), frameon=False, handlelength=1.2)
 
 
-def _circles(axes, samples, top):
-    """The albedo of the samples; what is above the axes is a triangle at their edge."""
-    for channel, values in zip(samples.channels, samples.values.T, strict=True):
+def _of_samples(axes, samples, top):
+    """Circles at the albedo of the samples; what is out of range is a triangle at that edge.
+
+    Triangles stand side by side, as those of all channels may be out of range together.
+    """
+    beside = 2.0 * (np.arange(len(samples.channels)) - (len(samples.channels) - 1) / 2)  # degrees
+    for channel, values, aside in zip(samples.channels, samples.values.T, beside, strict=True):
         style = {"linestyle": "", "color": COLOURS.get(channel, "black")}
-        inside = values <= top
+        for marker, shown in (("^", values > top), ("v", values < 0)):
+            edge = np.full(shown.sum(), (0.97 if marker == "^" else 0.03) * top)
+            axes.plot(samples.theta_i[shown] + aside, edge, marker=marker, **style)
+        inside = (values >= 0) & (values <= top)
         axes.plot(samples.theta_i[inside], values[inside], marker="o", mfc="none", **style)
-        beyond = samples.theta_i[~inside]
-        axes.plot(beyond, np.full(len(beyond), 0.97 * top), marker="^", **style)
+    axes.plot([], "o", color=GREY, mfc="none", label="samples alone")
+    if np.any((samples.values > top) | (samples.values < 0)):
+        axes.plot([], "^", color=GREY, label="out of range")

@@ -1,0 +1,82 @@
+"""What the README and the goniometer's page say to type works as it stands there, in its order."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+import small_files
+from click.testing import CliRunner
+from test_cli import USER_MODEL
+
+import brdfkit as bk
+from brdfkit import registry
+from brdfkit.checks.subject import random_pairs
+from brdfkit.cli import main
+from brdfkit.measured import Measured
+
+ROOT = Path(__file__).resolve().parents[1]
+SMALL_PICTURE = ("--spp", "1", "--size", "16")
+SMALL = {  # command: what makes it answer at once
+    "fit": SMALL_PICTURE,
+    "render": SMALL_PICTURE,
+    "measure": ("--spp", "128", "--cells", "3,2,4"),
+}
+
+
+def text(page):
+    return (ROOT / page).read_text(encoding="utf-8")
+
+
+def block(page, before):
+    """The lines of the first indented block behind `before`."""
+    behind = text(page)[text(page).index(before) :]
+    found = re.search(r"\n\n((?: {4}\S.*\n)+)", behind)
+    return [line.strip() for line in found[1].splitlines()]
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch, llvm_variant):
+    """A current folder with small files of the names that the pages use."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(registry, "_user_files", {})
+    wi, wo = random_pairs(300, seed=0, max_degrees=75)
+    copper = bk.models()["ggx"](alpha_u=0.3, specular_reflectance=(0.9, 0.6, 0.4))
+    bk.save(Measured.from_samples(wi, wo, copper.eval(wi, wo)), "copper.astm")
+    Path("cayman.brdf").write_bytes(small_files.cornell())
+    Path("gold-metallic-paint.binary").write_bytes(small_files.merl())
+    Path("my_model.py").write_text(USER_MODEL, encoding="utf-8")
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("page", "before", "written"),
+    [
+        (
+            "README.md",
+            "## On the command line",
+            {"copper.png", "copper/ggx+ggx.json", "ggx.png", "cayman.binary", "au.npz"},
+        ),
+        (
+            "docs/goniometer.md",
+            "# The virtual goniometer",
+            {"rough_gold.npz", "brushed.npz", "woven.npz"},
+        ),
+    ],
+)
+def test_the_commands_run(page, before, written, here):
+    for line in block(page, before):
+        program, command, *words = shlex.split(line, comments=True)
+        small = list(SMALL.get(command, ()))
+        if "brushed" in words or "woven" in words:  # anisotropic tables have a fourth axis
+            small[-1] = "2,3,2,4"
+        result = CliRunner().invoke(main, [command, *words, *small])
+        assert (program, result.exit_code) == ("brdfkit", 0), f"{line}\n{result.output}"
+    assert written <= {str(file.relative_to(here)) for file in here.rglob("*")}
+
+
+def test_the_python_runs(here):
+    for code in re.findall(r"```python\n(.*?)```", text("README.md"), flags=re.DOTALL):
+        code = code.replace("car_paint", "copper.astm").replace("spp=256", "spp=1, size=16")
+        exec(code, {})
+    assert {"paint.json", "paint.bsdf", "paint.exr"} <= {file.name for file in here.iterdir()}
