@@ -24,6 +24,7 @@ from small_files import (
 )
 
 from brdfkit import files
+from brdfkit.colours import colour_science
 from brdfkit.directions import from_angles
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats import formats, load, save
@@ -531,7 +532,7 @@ def test_order_of_wavelengths_does_not_matter():
 
 
 def test_colour_agrees_with_integration_by_colour_science():
-    import colour
+    colour = colour_science()
 
     nm = np.arange(400, 701, 10)
     reflectance = 0.4 + 0.3 * np.sin(nm / 40)

@@ -11,6 +11,7 @@ from brdfkit import catalogue, registry
 from brdfkit.checks import checks
 from brdfkit.checks.sampling import spread
 from brdfkit.checks.subject import INCIDENCES, Subject, incidences, random_pairs
+from brdfkit.colours import colour_science
 from brdfkit.directions import from_angles
 from brdfkit.table import Table
 
@@ -101,7 +102,7 @@ def test_in_every_variant(name, label, variant):
 
 def colour_of(spectrum):
     """Linear sRGB under D65 of a reflectance, `spectrum` of four wavelengths at a time."""
-    import colour
+    colour = colour_science()
 
     nm = np.arange(380.0, 780.0, 5.0)
     values = np.concatenate([spectrum(list(map(float, four))) for four in nm.reshape(-1, 4)])

@@ -7,7 +7,7 @@ wavelengths of the rays.
 import numpy as np
 
 from brdfkit.arrays import Rows, bracket
-from brdfkit.colours import luminance
+from brdfkit.colours import colour_science, luminance
 
 
 def channels(values, wavelengths=None):
@@ -52,7 +52,7 @@ class SpectralColours(Colours):
     """
 
     def __init__(self, values):
-        import colour
+        colour = colour_science()
 
         super().__init__(values)
         basis = colour.recovery.MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019

@@ -19,3 +19,10 @@ def luminance(values):
             f"Values with {channels} channels have no luminance; convert them to RGB first."
         )
     return values[..., 0] if channels == 1 else values @ LUMINANCE
+
+
+def colour_science():
+    """The package `colour`, whose import alone would change how NumPy prints arrays."""
+    with np.printoptions():
+        import colour
+    return colour

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from brdfkit.colours import colour_science
 from brdfkit.errors import BrdfkitError
 from brdfkit.records import plain
 
@@ -109,7 +110,7 @@ def colour_differences(rendering):
     names = rendering.differences
     if not names:
         return {}
-    import colour
+    colour = colour_science()
 
     to_xyz = colour.RGB_COLOURSPACES["sRGB"].matrix_RGB_to_XYZ
     with np.errstate(invalid="ignore"):  # of what is not finite nothing becomes a number

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 
+from brdfkit.colours import colour_science
 from brdfkit.errors import BrdfkitError
 from brdfkit.measured import RGB
 
@@ -47,7 +48,7 @@ def wavelengths(measured):
 
 def _weights(wavelengths):
     """What each wavelength's reflectance adds to linear R, G, B: (n, 3), summing to 1."""
-    import colour
+    colour = colour_science()
 
     observer = colour.MSDS_CMFS[OBSERVER]
     light = np.interp(
