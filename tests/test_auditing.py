@@ -19,6 +19,7 @@ from brdfkit.auditing.coverage import coverage, is_near
 from brdfkit.auditing.noise import noise
 from brdfkit.auditing.ratios import grazing, retroreflection
 from brdfkit.auditing.spikes import spikes
+from brdfkit.checks.subject import random_pairs
 from brdfkit.commands.info import record
 from brdfkit.directions import from_angles
 from brdfkit.formats import load
@@ -302,6 +303,27 @@ def test_albedo_as_by_rings_about_the_mirror_direction(name):
         np.testing.assert_allclose(found.values[row], expected, rtol=1e-3)
 
 
+def test_the_brightest_side_of_an_anisotropic_material_counts():
+    """f = (1 + 0.9 cos φ_h)/4: the mean over the azimuths of incidence is π/4 at every angle."""
+    phi_h = Table(np.empty((24, 15, 15, 24, 1))).centres[0]
+    uneven = 0.25 * (1 + 0.9 * np.cos(phi_h))[:, None, None, None, None]
+    data = Measured.from_table(np.tile(uneven, (1, 15, 15, 24, 1)), channels=("Y",))
+    audit = data.audit()
+    np.testing.assert_allclose(audit.albedo.values, np.pi / 4, rtol=1e-3)
+    (finding,) = audit.findings()
+    assert "from the brightest side, 0.785 in the mean" in finding
+
+
+def test_what_gives_no_colour_is_audited_by_its_mean():
+    wi, wo = random_pairs(200, seed=1, max_degrees=80)
+    values = np.full((200, 2), 0.1) * [1, 2]
+    audit = Measured.from_samples(wi, wo, values, channels=("900nm", "1600nm")).audit()
+    assert audit.channels == ("900nm", "1600nm")
+    assert audit.albedo.channels == ("mean",)
+    np.testing.assert_allclose(audit.albedo.values, 0.15 * np.pi, rtol=1e-6)
+    audit.picture()
+
+
 def test_too_much_light_is_told():
     bright = tabulated(lambert(1.0))
     bright[..., 1] *= 1.25
@@ -440,7 +462,8 @@ def test_nothing_in_the_picture_overlaps(data):
 
 
 def test_albedos_out_of_range_stand_side_by_side_and_beside_the_legend():
-    beyond = Albedo(("R", "G", "B"), np.array([40, 80]), np.array([[-1, -1, 0.4], [9, 8, 7]]), 80)
+    values = np.array([[-1, -1, 0.4], [9, 8, 7]])
+    beyond = Albedo(("R", "G", "B"), np.array([40, 80]), values, 80, values)
     figure = replace(spectral().audit(), albedo_of_samples=beyond).picture()
     FigureCanvasAgg(figure).draw()
     axes = next(axes for axes in figure.axes if axes.get_title() == "albedo")

@@ -12,6 +12,7 @@ from brdfkit.tabulated import Tabulated
 # Polynomials are smooth
 ISOTROPIC = {"azimuths": 1, "angles": 32, "cells": (24, 20), "points": 2}
 ANISOTROPIC = {"azimuths": 12, "angles": 16, "cells": (24, 20), "points": 1}
+BATCH = 8192  # directions at once: a model may have a thousand lobes
 # Points along each side of a texture
 TEXELS = 8
 WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)  # [nm]
@@ -20,9 +21,15 @@ WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)  # [nm]
 def tabulated(model, lobes):
     """The `Tabulated` of the sum over the indices `lobes` of a model with values."""
 
+    weights = weight_matrix(model)[lobes]
+
     def f(wi, wo):
-        plain, _ = lobe_values(model, wi, wo)
-        return np.maximum(plain[:, lobes] @ weight_matrix(model)[lobes], 0)
+        values = np.empty((len(wi), weights.shape[1]))
+        for start in range(0, len(wi), BATCH):
+            rows = slice(start, start + BATCH)
+            plain, _ = lobe_values(model, wi[rows], wo[rows])
+            values[rows] = plain[:, lobes] @ weights
+        return np.maximum(values, 0)
 
     return Tabulated(f, **(ANISOTROPIC if model.anisotropic() else ISOTROPIC))
 

@@ -64,12 +64,15 @@ def weight_matrix(model):
 def lobe_values(model, wi, wo):
     """Lobes (n, lobes) in sr⁻¹ of directions (n, 3) above the surface, and those of the weights'
     squares, likewise."""
+    import drjit as dr
+
     from brdfkit import backend
 
     terms = model.bind(backend.shapes(model)).terms()
     wi, wo = backend.vector(wi), backend.vector(wo)
     plain = [lobe.eval(wi, wo) for _, lobe in terms]
     squared = [lobe.quadratic(wi, wo) if lobe.quadratic else 0.0 for _, lobe in terms]
+    dr.eval(plain, squared)  # together: a kernel for each takes six times as long
     shape = len(wi.x), len(terms)
     return [
         np.stack([np.broadcast_to(np.asarray(c), shape[0]) for c in columns], axis=1)

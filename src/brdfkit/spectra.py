@@ -35,6 +35,15 @@ def to_rgb(measured):
     return measured.mixed(_weights(known), RGB, rgb=note)
 
 
+def rgb_or_mean(data):
+    """A `Measured` in linear sRGB, or the mean of its channels where they give no colour."""
+    try:
+        return data.rgb
+    except BrdfkitError:
+        n = len(data.channels)
+        return data.mixed(np.full((n, 1), 1 / n), ("mean",))
+
+
 def wavelengths(measured):
     """The channels of a `Measured` as wavelengths [nm]; `BrdfkitError` if they are none."""
     found = [re.fullmatch(r"(\d+(?:\.\d+)?)nm", channel) for channel in measured.channels]

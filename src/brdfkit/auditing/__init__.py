@@ -12,6 +12,7 @@ from brdfkit.auditing.pairs import Difference, by_mirror, by_reciprocity
 from brdfkit.auditing.ratios import grazing, retroreflection
 from brdfkit.auditing.spikes import Spike, spikes
 from brdfkit.fitting.selection import within
+from brdfkit.spectra import rgb_or_mean
 
 MAX_ANGLE = 80.0  # degrees: what a fit uses by default
 FEW = 10  # angles that are told each
@@ -95,6 +96,7 @@ def audit(data):
     values = samples.values[samples.valid]
     positive = values[values > 0]
     theta_i, theta_o = _angles(data, samples.wi), _angles(data, samples.wo)
+    seen = rgb_or_mean(data)
     return Audit(
         name=data.name,
         shape=data.table.shape if data.is_table else None,
@@ -114,8 +116,8 @@ def audit(data):
         reciprocity=by_reciprocity(data),
         mirror=by_mirror(data),
         noise=noise(data),
-        albedo=albedo(data.rgb, theta_i[-1]),
-        albedo_of_samples=albedo_of_samples(data.rgb),
+        albedo=albedo(seen, theta_i[-1]),
+        albedo_of_samples=albedo_of_samples(seen),
         grazing=grazing(data),
         retroreflection=retroreflection(data),
         spikes=spikes(data),

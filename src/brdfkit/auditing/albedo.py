@@ -9,7 +9,7 @@ from brdfkit.directions import from_angles, to_angles
 DEGREES = np.arange(0, 90, 5)  # of incidence
 # Points of the half vector: its polar angle, spaced as a table's, and its azimuth
 N_THETA, N_PHI = 180, 72
-AZIMUTHS = 4  # of incidence, over which the albedo of an anisotropic material is averaged
+AZIMUTHS = 8  # of incidence, over which the albedo of an anisotropic material is averaged
 MOST_OF = 0.75  # of the disc of directions, for an albedo of samples
 
 
@@ -17,14 +17,16 @@ MOST_OF = 0.75  # of the disc of directions, for an albedo of samples
 class Albedo:
     """Reflected over incident light, of `channels`, at angles of incidence.
 
-    `theta_i`: degrees (n,); `values`: (n, channels); `measured_to`: the largest angle of
-    incidence [degrees] that was measured, behind it the values are extrapolated.
+    `theta_i`: degrees (n,); `values`: (n, channels), over all azimuths; `measured_to`: the largest
+    angle of incidence [degrees] that was measured, behind it the values are extrapolated;
+    `brightest`: (n, channels), from the azimuth of incidence that reflects most.
     """
 
     channels: tuple[str, ...]
     theta_i: np.ndarray
     values: np.ndarray
     measured_to: float
+    brightest: np.ndarray
 
 
 def albedo(data, measured_to):
@@ -34,12 +36,14 @@ def albedo(data, measured_to):
     are enough there, where `brdfkit.albedo`, for anything, refines for seconds. It is divided by
     that of f = 1/π, so that a Lambertian surface has its reflectance exactly.
     """
-    azimuths = np.arange(AZIMUTHS) / AZIMUTHS * np.pi if data.anisotropic else (0.0,)
-    values = [
-        np.mean([_albedo(data, from_angles(theta, phi)) for phi in azimuths], axis=0)
-        for theta in np.radians(DEGREES)
-    ]
-    return Albedo(data.channels, DEGREES, np.array(values), measured_to)
+    azimuths = np.arange(AZIMUTHS) / AZIMUTHS * 2 * np.pi if data.anisotropic else (0.0,)
+    values = np.array(
+        [
+            [_albedo(data, from_angles(theta, phi)) for phi in azimuths]
+            for theta in np.radians(DEGREES)
+        ]
+    )
+    return Albedo(data.channels, DEGREES, values.mean(axis=1), measured_to, values.max(axis=1))
 
 
 def _albedo(data, wi):
@@ -78,7 +82,8 @@ def albedo_of_samples(data):
             found[float(angle)] = value
     if not found:
         return None
-    return Albedo(data.channels, np.array(list(found)), np.array(list(found.values())), max(found))
+    values = np.array(list(found.values()))
+    return Albedo(data.channels, np.array(list(found)), values, max(found), values)
 
 
 def _of_disc(samples):

@@ -6,7 +6,9 @@ import numpy as np
 
 from brdfkit.auditing.coverage import is_near
 from brdfkit.colours import luminance
+from brdfkit.measured import RGB
 from brdfkit.plotting import Plot, draw, usual_angles
+from brdfkit.spectra import rgb_or_mean
 
 SIZE = 12.6, 6.8  # inches
 GREY = "0.45"  # of the legend, where it means all channels
@@ -18,7 +20,7 @@ FAINT = 0.35  # opacity of what was not measured
 
 def picture(audit):
     """The picture of an `Audit` as a matplotlib `Figure`."""
-    data = audit.data.rgb
+    data = rgb_or_mean(audit.data)
     figure = Plot(figsize=SIZE, layout="constrained")
     figure.get_layout_engine().set(w_pad=0.1, h_pad=0.1)
     above, below = figure.subfigures(2, 1, height_ratios=(1, 1.06))
@@ -63,9 +65,8 @@ def _slice(figure, axes, data):
     axes.set_ylabel(r"$\theta_d$")
     phi_d = np.degrees(table.centres[-1][across])
     hatched = "" if known.all() else "; hatched: not measured"
-    axes.set_title(
-        rf"luminance of the BRDF [sr⁻¹] at $\phi_d$ = {phi_d:.0f}°{hatched}", fontsize=10
-    )
+    what = "luminance" if data.channels in (RGB, ("Y",)) else "mean"
+    axes.set_title(rf"{what} of the BRDF [sr⁻¹] at $\phi_d$ = {phi_d:.0f}°{hatched}", fontsize=10)
     bar = figure.colorbar(shown, ax=axes, pad=0.02, extend="both")
     bar.ax.yaxis.set_major_formatter("{x:g}")
     if shown.norm.vmax < 10 * shown.norm.vmin:

@@ -132,16 +132,18 @@ def _energy(audit):
     """Where an albedo is above 1."""
     found = []
     for albedo, what in (
-        (audit.albedo, "albedo"),
+        (audit.albedo, "albedo, interpolated," if audit.albedo_of_samples else "albedo"),
         (audit.albedo_of_samples, "albedo, linear between the samples,"),
     ):
-        if albedo is None or albedo.values.max() <= BRIGHT:
+        if albedo is None or albedo.brightest.max() <= BRIGHT:
             continue
-        row, column = divmod(int(albedo.values.argmax()), albedo.values.shape[1])
+        row, column = divmod(int(albedo.brightest.argmax()), albedo.brightest.shape[1])
         theta_i, channel = albedo.theta_i[row], albedo.channels[column]
+        most, mean = albedo.brightest[row, column], albedo.values[row, column]
+        side = f" from the brightest side, {mean:.3f} in the mean" if most > 1.01 * mean else ""
         beyond = " (extrapolated)" if theta_i > albedo.measured_to + 1 else ""
         found.append(
-            f"{what} {albedo.values[row, column]:.3f} at θi {theta_i:g}°{beyond}, channel "
+            f"{what} {most:.3f} at θi {theta_i:g}°{beyond}{side}, channel "
             f"{channel}: more light leaves than comes"
         )
     return found
