@@ -39,7 +39,19 @@ def brushed(channels=("R", "G", "B"), shape=(24, 40, 24, 36)):
     return bk.Measured.from_table(values, channels=channels, name="brushed"), model
 
 
-MATERIALS = {"dusty_gold": lambda: bk.load("dusty_gold"), "brushed": lambda: brushed()[0]}
+@cache
+def below_zero(channels=("R", "G", "B")):
+    """A highlight, and around it values below 0, as an instrument's zero or a gamut gives them."""
+    values = np.full((30, 30, 60, 3), -0.01)
+    values[:8] = [0.3, 0.2, 0.1]
+    return bk.Measured.from_table(values, channels=channels, name="below zero")
+
+
+MATERIALS = {
+    "dusty_gold": lambda: bk.load("dusty_gold"),
+    "brushed": lambda: brushed()[0],
+    "below_zero": below_zero,
+}
 
 
 def seen(mi, bsdf, wi, wo, wavelengths=None):
@@ -87,7 +99,7 @@ def test_in_every_variant(name, label, variant):
     import mitsuba as mi
 
     material = MATERIALS[name]()
-    wi, wo = from_angles(0.6, 0.3), from_angles(0.5, 3.3)
+    wi, wo = from_angles(0.6, 0.3), from_angles(0.37, 3.4)  # at the edge of a highlight
     rgb = material.eval(wi[None], wo[None])[0]
     variant(label)
     bsdf = mi.load_dict(material.scene_dict())
@@ -114,14 +126,15 @@ def colour_of(spectrum):
 
 
 @pytest.mark.parametrize("label", ["llvm_ad_spectral", "scalar_spectral"])
-def test_measured_wavelengths_stay(label, variant):
+@pytest.mark.parametrize("make", [lambda nodes: brushed(nodes)[0], below_zero])
+def test_measured_wavelengths_stay(label, make, variant):
     """Between the wavelengths the BRDF is linear, beyond them constant."""
     import mitsuba as mi
 
     variant(label)
-    material, _ = brushed(tuple(f"{nm:.0f}nm" for nm in NODES))
+    material = make(tuple(f"{nm:.0f}nm" for nm in NODES))
     bsdf = mi.load_dict(material.scene_dict())
-    wi, wo = from_angles(0.6, 0.3), from_angles(0.5, 3.3)
+    wi, wo = from_angles(0.6, 0.3), from_angles(0.37, 3.4)
     at = material.eval(wi[None], wo[None])[0]
     np.testing.assert_allclose(seen(mi, bsdf, wi, wo, [*NODES, 500.0])[:3], at, rtol=1e-4)
     between = seen(mi, bsdf, wi, wo, [500.0, 625.0, 380.0, 800.0])

@@ -36,16 +36,19 @@ def define(mi):
             super().__init__(props)
             self.table, wavelengths = _table(props)
             filled = self.table.filled
-            values = np.maximum(filled.reshape(-1, filled.shape[-1]), 0)
-            self.values = channels(values, wavelengths)
+            self.values = channels(filled.reshape(-1, filled.shape[-1]), wavelengths)
             size = ANISOTROPIC if self.table.anisotropic else {}
-            self.sampling = Tabulated(self.table.eval, **size)
+            self.sampling = Tabulated(self.brdf, **size)
             self.albedo = channels(self.sampling.albedo, wavelengths)
 
             flags = mi.BSDFFlags
             anisotropic = flags.Anisotropic if self.table.anisotropic else flags.Empty
             self.m_components = [flags.GlossyReflection | flags.FrontSide | anisotropic]
             self.m_flags = self.m_components[0]
+
+        def brdf(self, wi, wo):
+            """What `eval` looks up, in NumPy: negative cells count, a negative sum is 0."""
+            return np.maximum(self.table.eval(wi, wo), 0)
 
         def sample(self, ctx, si, sample1, sample2, active=True):
             wi, active = above_horizon(si.wi, active)
