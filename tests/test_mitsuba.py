@@ -4,6 +4,7 @@ and attributes, contexts that ask for one component, and every kind of colour.
 All is compared with something found another way: differences, mixtures by hand, cosine samples.
 """
 
+import itertools
 import math
 
 import drjit as dr
@@ -478,6 +479,31 @@ def test_scalar_is_llvm(variant, name):
     z = z_of(scalar, expected)
     assert z < HIGHEST_Z
     assert scalar.std(ddof=1) / math.sqrt(12) < 0.05 * expected
+
+
+@pytest.mark.parametrize("label", ["scalar_rgb", "scalar_spectral"])
+@pytest.mark.parametrize("name", [*bk.models(), "dusty_gold"])
+def test_scalar_renders(variant, label, name):
+    """A picture, and samples at the ends of the incidences: there numbers are Python's, which
+    raise where an array would hold an unused infinity."""
+    import mitsuba as mi
+
+    variant(label)
+    material = bk.models()[name]() if name in bk.models() else bk.load(name)
+    entries = material.scene_dict()
+    image = np.array(mi.render(mi.load_dict(scene(ball(entries), size=4)), spp=4, seed=1))
+    assert np.isfinite(image).all()
+    assert image.max() > 0
+    bsdf = mi.load_dict(entries)
+    almost_1 = float(np.nextafter(np.float32(1), np.float32(0)))
+    for degrees, u in itertools.product((0, 89.99), (0.0, 0.5, almost_1)):
+        si = dr.zeros(mi.SurfaceInteraction3f)
+        si.wi = mi.Vector3f(*map(float, from_angles(math.radians(degrees), 0.3)))
+        for u_component in (0.05, 0.5, almost_1):
+            drawn, weight = bsdf.sample(mi.BSDFContext(), si, u_component, mi.Point2f(u, u))
+            assert np.isfinite([drawn.pdf, *np.ravel(weight)]).all()
+        mirrored = mi.Vector3f(-si.wi.x, -si.wi.y, si.wi.z)
+        assert bsdf.pdf(mi.BSDFContext(), si, mirrored) > 0
 
 
 @pytest.mark.quick

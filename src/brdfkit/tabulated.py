@@ -92,7 +92,8 @@ class Tabulated:
         incidence, left = 0, [u.x, u.y]
         for k, (lower, upper, t) in enumerate(self._brackets(wi)):
             up = left[k] < t
-            left[k] = dr.select(up, left[k] / t, (left[k] - t) / (1 - t))
+            # one division, by what is not 0: a scalar variant would raise at the other branch
+            left[k] = dr.select(up, left[k], left[k] - t) / dr.select(up, t, 1 - t)
             incidence = incidence * self.angles + dr.select(up, upper, lower)
         return incidence, *left
 
