@@ -15,7 +15,7 @@ import brdfkit as bk
 from brdfkit.checks.sampling import uniform
 from brdfkit.checks.subject import random_pairs
 from brdfkit.clamped import tabulated
-from brdfkit.directions import from_angles
+from brdfkit.directions import from_angles, normalize
 from brdfkit.lobes import components_of
 
 # All z-scores of this file, some 30: a right renderer exceeds this once in 5,000 files
@@ -366,6 +366,28 @@ def test_attributes(model, llvm_variant):
         else:
             assert float(bsdf.eval_attribute_1(name, si)[0]) == pytest.approx(value, rel=1e-6)
     assert not dr.any(bsdf.has_attribute("no_such_parameter"))
+
+
+# Precision
+
+
+@pytest.mark.quick
+def test_mirror_directions_near_the_horizon(configured, llvm_variant):
+    """There wo ≈ -wi, and single precision still has the formula's value and a density.
+
+    Its value at the rounded directions: at 89.999° rounding turns the half vector by 0.1°.
+    """
+    mi = llvm_variant
+    rng = np.random.default_rng(8)
+    theta = np.radians(np.repeat([89.9, 89.97, 89.99, 89.999], 500))
+    phi = rng.uniform(-np.pi, np.pi, len(theta))
+    beside, above = rng.uniform(-1e-3, 1e-3, (2, len(theta)))
+    wi = np.float32(from_angles(theta, phi))
+    wo = np.float32(from_angles(theta - np.abs(above), phi + np.pi + beside))
+    value, pdf = evaluated(mi, mi.load_dict(configured().scene_dict()), wi, wo)
+    expected = configured().eval(normalize(wi.astype(float)), normalize(wo.astype(float)))
+    np.testing.assert_allclose(value / wo[:, 2:], np.broadcast_to(expected, value.shape), rtol=5e-3)
+    assert (pdf > 0).all()
 
 
 # Contexts
