@@ -503,7 +503,45 @@ def test_scalar_is_llvm(variant, name):
     assert scalar.std(ddof=1) / math.sqrt(12) < 0.05 * expected
 
 
-@pytest.mark.parametrize("label", ["scalar_rgb", "scalar_spectral"])
+@pytest.mark.parametrize("label", ["llvm_ad_mono", "llvm_ad_spectral", "scalar_spectral"])
+@pytest.mark.parametrize("name", ["lambert", "ward", "oren_nayar", "koenderink", "dusty_gold"])
+def test_polarized_is_depolarized(variant, label, name):
+    """The light of the variant without polarisation, and none polarised: as Mitsuba's diffuse."""
+    import mitsuba as mi
+
+    unpolarized = said(mi, variant, label, name)
+    matrices = said(mi, variant, f"{label}_polarized", name)
+    for matrix, light in zip(matrices, unpolarized, strict=True):
+        assert matrix.shape == (4, 4, len(light))
+        np.testing.assert_allclose(matrix[0, 0], light, rtol=1e-5)
+    diffuse = said(mi, variant, f"{label}_polarized", "diffuse")
+    for matrix, expected in zip(matrices, diffuse, strict=True):
+        np.testing.assert_array_equal(matrix == 0, expected == 0)
+
+
+def said(mi, variant, label, name):
+    """What `eval`, `eval_pdf`, `sample` and `eval_diffuse_reflectance` say in a variant."""
+    variant(label)
+    if name == "diffuse":
+        entries = {"type": "diffuse", "reflectance": 0.5}
+    else:
+        entries = (bk.models()[name]() if name in bk.models() else bk.load(name)).scene_dict()
+    bsdf, ctx, si = mi.load_dict(entries), mi.BSDFContext(), dr.zeros(mi.SurfaceInteraction3f)
+    si.wi = mi.Vector3f(*map(float, from_angles(0.4, 0.3)))
+    if mi.is_spectral:
+        si.wavelengths = [450.0, 500.0, 550.0, 600.0]
+    wo = mi.Vector3f(*map(float, from_angles(0.6, 3.0)))
+    values = (
+        bsdf.eval(ctx, si, wo),
+        bsdf.eval_pdf(ctx, si, wo)[0],
+        bsdf.sample(ctx, si, 0.5, mi.Point2f(0.4, 0.3))[1],
+        bsdf.eval_diffuse_reflectance(si),
+    )
+    channels = 4 if mi.is_spectral else 1
+    return [np.array(v).reshape(*(4, 4) * mi.is_polarized, channels) for v in values]
+
+
+@pytest.mark.parametrize("label", ["scalar_rgb", "scalar_spectral", "scalar_spectral_polarized"])
 @pytest.mark.parametrize("name", [*bk.models(), "dusty_gold"])
 def test_scalar_renders(variant, label, name):
     """A picture, and samples at the ends of the incidences: there numbers are Python's, which
@@ -523,7 +561,7 @@ def test_scalar_renders(variant, label, name):
         si.wi = mi.Vector3f(*map(float, from_angles(math.radians(degrees), 0.3)))
         for u_component in (0.05, 0.5, almost_1):
             drawn, weight = bsdf.sample(mi.BSDFContext(), si, u_component, mi.Point2f(u, u))
-            assert np.isfinite([drawn.pdf, *np.ravel(weight)]).all()
+            assert np.isfinite([drawn.pdf, *np.ravel(np.array(weight))]).all()
         mirrored = mi.Vector3f(-si.wi.x, -si.wi.y, si.wi.z)
         assert bsdf.pdf(mi.BSDFContext(), si, mirrored) > 0
 

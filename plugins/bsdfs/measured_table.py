@@ -57,7 +57,7 @@ def define(mi):
                 COSINE.sample(wi, sample2),
                 self.sampling.sample(wi, sample2),
             )
-            value, pdf = self.eval_pdf(ctx, si, wo, active)
+            value, pdf = self.value(ctx, si, wo, active), self.pdf(ctx, si, wo, active)
             active &= pdf > 0
 
             sample = dr.zeros(mi.BSDFSample3f)
@@ -65,9 +65,14 @@ def define(mi):
             sample.pdf = dr.select(active, pdf, 0)
             sample.eta = 1.0
             sample.sampled_type = int(mi.BSDFFlags.GlossyReflection)
-            return sample, dr.select(active, value / dr.select(active, pdf, 1), 0)
+            weight = dr.select(active, value / dr.select(active, pdf, 1), 0)
+            return sample, mi.depolarizer(weight)
 
         def eval(self, ctx, si, wo, active=True):
+            return mi.depolarizer(self.value(ctx, si, wo, active))
+
+        def value(self, ctx, si, wo, active):
+            """BRDF times cosine, unpolarised."""
             active &= ctx.is_enabled(mi.BSDFFlags.GlossyReflection, 0)
             wi, active = above_horizon(si.wi, active)
             wo, active = above_horizon(wo, active)
@@ -87,7 +92,8 @@ def define(mi):
 
         def eval_diffuse_reflectance(self, si, active=True):
             wi, active = above_horizon(si.wi, active)
-            return dr.select(active, self.albedo.mean(self.sampling.mixed(wi), si), 0)
+            albedo = self.albedo.mean(self.sampling.mixed(wi), si)
+            return mi.Spectrum(dr.select(active, albedo, 0))
 
         def to_string(self):
             return f"MeasuredTable[shape = {self.table.shape}]"

@@ -135,7 +135,8 @@ def define(mi, model):
             sample.sampled_component = component
             sample.sampled_type = kind_of(component)
             pdf = dr.select(active, pdf, 1)
-            return sample, dr.select(active, value / dr.detach(pdf), 0)
+            weight = dr.select(active, value / dr.detach(pdf), 0)
+            return sample, mi.depolarizer(weight)
 
         def eval(self, ctx, si, wo, active=True):
             return self.eval_pdf(ctx, si, wo, active)[0]
@@ -149,17 +150,17 @@ def define(mi, model):
             weights, lobes = self.terms(si, active)
             shares = self.shares(ctx, wi, weights, lobes)
             value, pdf = self.value_and_pdf(ctx, weights, lobes, shares, wi, wo)
-            return dr.select(active, value, 0), dr.select(active, pdf, 0)
+            return mi.depolarizer(dr.select(active, value, 0)), dr.select(active, pdf, 0)
 
         def eval_diffuse_reflectance(self, si, active=True):
             """Albedo of the diffuse lobes seen along the normal, by quadrature."""
             weights, lobes = self.terms(si, active)
             diffuse = [i for i, lobe in enumerate(lobes) if lobe.diffuse]
-            total = mi.Spectrum(0)
+            total = mi.UnpolarizedSpectrum(0)
             for direction in FROM_ABOVE:
                 wo = mi.Vector3f(*map(float, direction))
                 total += dr.pi * self.value(weights, lobes, diffuse, mi.Vector3f(0, 0, 1), wo)
-            return dr.select(active, total / len(FROM_ABOVE), 0)
+            return mi.Spectrum(dr.select(active, total / len(FROM_ABOVE), 0))
 
         def has_attribute(self, name, active=True):
             return super().has_attribute(self.attribute(name), active)
@@ -209,7 +210,7 @@ def define(mi, model):
 
         def value(self, weights, lobes, chosen, wi, wo):
             """BRDF, the sum of the `chosen` lobes."""
-            value = mi.Spectrum(0)
+            value = mi.UnpolarizedSpectrum(0)
             for i in chosen:
                 value += weights[i] * lobes[i].eval(wi, wo)
                 if lobes[i].quadratic is not None:

@@ -66,7 +66,7 @@ class SpectralColours(Colours):
         import drjit as dr
         import mitsuba as mi
 
-        rgb, spectrum = super().mean(corners, si), mi.Spectrum(0)
+        rgb, spectrum = super().mean(corners, si), mi.UnpolarizedSpectrum(0)
         for k, wavelength in enumerate(si.wavelengths):
             lower, upper, t = bracket((wavelength - self.first) / self.step, self.count)
             basis = [self.basis.at(node, mi.Color3f) for node in (lower, upper)]
@@ -87,7 +87,7 @@ class Wavelengths:
         import drjit as dr
         import mitsuba as mi
 
-        corners, spectrum = list(corners), mi.Spectrum(0)
+        corners, spectrum = list(corners), mi.UnpolarizedSpectrum(0)
         for k, wavelength in enumerate(si.wavelengths):
             position = self._position(wavelength)
             *nodes, t = bracket(position, self.count)
