@@ -368,6 +368,25 @@ def test_attributes(model, llvm_variant):
     assert not dr.any(bsdf.has_attribute("no_such_parameter"))
 
 
+@pytest.mark.quick
+def test_a_texture_is_held_to_the_bounds(model, llvm_variant):
+    """A texture may hold anything; beyond a bound of its parameter it counts as the bound."""
+    mi = llvm_variant
+    wi, wo = random_pairs(200, seed=9, max_degrees=80)
+    entries = coloured(model).scene_dict()
+    for name, parameter in model.parameters.items():
+        for bound, beyond in zip(parameter.bounds, (-3.0, 3.0), strict=True):
+            if math.isinf(bound):
+                continue
+            texture = {"type": "uniform", "value": bound + beyond}
+            found, expected = (
+                evaluated(mi, mi.load_dict({**entries, name: value}), wi, wo)
+                for value in (texture, bound)
+            )
+            np.testing.assert_array_equal(found[0], expected[0], err_msg=name)
+            np.testing.assert_array_equal(found[1], expected[1], err_msg=name)
+
+
 # Precision
 
 
@@ -564,6 +583,19 @@ def test_scalar_renders(variant, label, name):
             assert np.isfinite([drawn.pdf, *np.ravel(np.array(weight))]).all()
         mirrored = mi.Vector3f(-si.wi.x, -si.wi.y, si.wi.z)
         assert bsdf.pdf(mi.BSDFContext(), si, mirrored) > 0
+
+
+@pytest.mark.quick
+def test_a_colour_above_1_is_an_attribute_in_a_spectral_variant(variant):
+    """Of no spectrum Mitsuba can make; brdfkit scales one."""
+    import mitsuba as mi
+
+    variant("llvm_ad_spectral")
+    bsdf = mi.load_dict({"type": "ward", "specular_reflectance": {"type": "rgb", "value": 3.0}})
+    si = dr.zeros(mi.SurfaceInteraction3f)
+    si.wavelengths = [450.0, 500.0, 550.0, 600.0]
+    found = bsdf.eval_attribute("specular_reflectance", si)
+    np.testing.assert_allclose(np.array(found).ravel(), 3, rtol=1e-3)
 
 
 @pytest.mark.quick

@@ -6,6 +6,7 @@ the weight of a sample where the BRDF itself is bounded.
 """
 
 import functools
+import math
 import operator
 
 import numpy as np
@@ -58,7 +59,9 @@ def define(mi, model):
     def within(value, parameter):
         # A texture may hold anything. Not dr.clip: on a bound it has half the derivative
         low, high = parameter.bounds
-        return dr.select(value < low, low, dr.select(value > high, high, value))
+        held = value if low == -math.inf else dr.select(value < low, low, value)
+        held = held if high == math.inf else dr.select(held > high, high, held)
+        return type(value)(held)  # of a spectrum, select makes a plain array
 
     class Plugin(mi.BSDF):
         def __init__(self, props):
@@ -165,17 +168,28 @@ def define(mi, model):
         def has_attribute(self, name, active=True):
             return super().has_attribute(self.attribute(name), active)
 
+        # Mitsuba's own methods call these again: they are only for what is no parameter
+
         def eval_attribute(self, name, si, active=True):
-            return super().eval_attribute(self.attribute(name), si, active)
+            key = self.attribute(name)
+            if key not in self.textures:
+                return super().eval_attribute(name, si, active)
+            return self.textures[key].eval(si, active) * self.scale(key)
 
         def eval_attribute_1(self, name, si, active=True):
-            return super().eval_attribute_1(self.attribute(name), si, active)
+            key = self.attribute(name)
+            if key not in self.textures:
+                return super().eval_attribute_1(name, si, active)
+            return self.textures[key].eval_1(si, active) * self.scale(key)
 
         def eval_attribute_3(self, name, si, active=True):
-            return super().eval_attribute_3(self.attribute(name), si, active)
+            key = self.attribute(name)
+            if key not in self.textures:
+                return super().eval_attribute_3(name, si, active)
+            return self.textures[key].eval_3(si, active) * self.scale(key)
 
         def attribute(self, name):
-            """The texture behind a parameter: that of another one which it follows."""
+            """The name of the texture behind a parameter: that of another one which it follows."""
             follows = name in model.parameters and name not in self.textures
             return model.parameters[name].follows if follows else name
 
@@ -183,10 +197,9 @@ def define(mi, model):
             """Weights and lobes at a surface point."""
             values = {}
             for name, texture in self.textures.items():
-                if model.parameters[name].linear:
-                    values[name] = texture.eval(si, active) * self.scale(name)
-                else:
-                    values[name] = within(texture.eval_1(si, active), model.parameters[name])
+                parameter = model.parameters[name]
+                value = (texture.eval if parameter.linear else texture.eval_1)(si, active)
+                values[name] = within(value * self.scale(name), parameter)
             return [values[name] for name in model.weights()], model.bind(values).lobes()
 
         def shares(self, ctx, wi, weights, lobes):
