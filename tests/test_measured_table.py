@@ -5,6 +5,7 @@ from functools import cache
 import drjit as dr
 import numpy as np
 import pytest
+from small_files import place
 
 import brdfkit as bk
 from brdfkit import catalogue, registry
@@ -140,6 +141,23 @@ def test_measured_wavelengths_stay(label, make, variant):
     between = seen(mi, bsdf, wi, wo, [500.0, 625.0, 380.0, 800.0])
     expected = [at[:2].mean(), 0.25 * at[1] + 0.75 * at[2], at[0], at[2]]
     np.testing.assert_allclose(between, expected, rtol=1e-4)
+
+
+SCENE = """<scene version="3.0.0"><shape type="sphere"><bsdf type="measured_table">
+<string name="filename" value="{}"/></bsdf></shape></scene>"""
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_a_file_lies_beside_its_scene(parallel, tmp_path, monkeypatch, llvm_variant):
+    """As Mitsuba finds bitmaps, and not from where the program runs; a sample of it, too."""
+    (scenes := tmp_path / "scenes").mkdir()
+    bk.save(below_zero(), scenes / "below_zero.npz")
+    place(scenes, "curet")
+    monkeypatch.chdir(tmp_path)
+    for name in ("below_zero.npz", "abrdf.dat#2", "dusty_gold"):
+        (scenes / "scene.xml").write_text(SCENE.format(name))
+        scene = llvm_variant.load_file("scenes/scene.xml", parallel=parallel)
+        assert "MeasuredTable" in str(scene.shapes()[0].bsdf())
 
 
 @pytest.mark.parametrize("name", MATERIALS)

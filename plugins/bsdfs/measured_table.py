@@ -2,14 +2,17 @@
 
     {"type": "measured_table", "filename": "gold-metallic-paint.binary"}
 
-takes any file that `brdfkit.load` reads; `Measured.scene_dict()` hands over its table directly.
-Multilinear between the cells' centres, the azimuths wrap; isotropic, or with the azimuth phi_h.
+takes any file that `brdfkit.load` reads, looked for beside the scene's own as a bitmap is;
+`Measured.scene_dict()` hands over its table directly. Multilinear between the cells' centres, the
+azimuths wrap; isotropic, or with the azimuth phi_h.
 In spectral variants measured wavelengths stay what they are, and colours become smooth spectra.
 
 Sampled by a table of the half vectors that the material itself has, and a share of cosine. The
 diffuse reflectance (as in an albedo image) is the albedo at the incidence: nobody can tell which
 part of a measurement is diffuse.
 """
+
+import os
 
 import numpy as np
 
@@ -103,11 +106,20 @@ def define(mi):
         if "filename" in props:
             from brdfkit.formats import load
 
-            props = load(props["filename"]).scene_dict()
+            props = load(_located(props["filename"])).scene_dict()
         if "table" not in props:
             raise BrdfkitError("measured_table needs a filename (or the tensor table).")
         period = props.get("phi_d_period", np.pi)
         wavelengths = np.array(props["wavelengths"]) if "wavelengths" in props else None
         return Table(np.array(props["table"], float), float(period)), wavelengths
+
+    def _located(name):
+        """The file of that name as the scene finds it, beside its own; other names as they are."""
+        file, hash_sign, sample = name.rpartition("#")
+        for path, rest in ((name, ""), (file, hash_sign + sample)):
+            found = str(mi.file_resolver().resolve(path))
+            if os.path.isfile(found):
+                return found + rest
+        return name
 
     return MeasuredTable
