@@ -143,6 +143,22 @@ def test_measured_wavelengths_stay(label, make, variant):
     np.testing.assert_allclose(between, expected, rtol=1e-4)
 
 
+@pytest.mark.quick
+@pytest.mark.parametrize("shape", [(5, 4, 8), (6, 4, 3, 8), (7, 4, 3, 9)])
+def test_an_unknown_cell_takes_the_nearest(shape):
+    """The azimuths wrap; found by looking at all known cells."""
+    values = np.full((np.prod(shape), 1), np.nan)
+    known = np.random.default_rng(9).choice(len(values), 4, replace=False)
+    values[known, 0] = np.arange(4)
+    cells = np.indices(shape).reshape(len(shape), -1).T
+    apart = np.abs(cells[:, None] - cells[known])
+    for azimuth in (2,) if len(shape) == 3 else (0, 3):
+        apart[..., azimuth] = np.minimum(apart, shape[azimuth] - apart)[..., azimuth]
+    distance = np.linalg.norm(apart, axis=-1)
+    taken = Table(values.reshape(*shape, 1)).filled.astype(int).reshape(-1, 1)
+    np.testing.assert_array_equal(np.take_along_axis(distance, taken, 1)[:, 0], distance.min(1))
+
+
 SCENE = """<scene version="3.0.0"><shape type="sphere"><bsdf type="measured_table">
 <string name="filename" value="{}"/></bsdf></shape></scene>"""
 
