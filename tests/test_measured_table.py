@@ -5,6 +5,7 @@ from functools import cache
 import drjit as dr
 import numpy as np
 import pytest
+from small_files import place
 
 import brdfkit as bk
 from brdfkit import catalogue, registry
@@ -40,7 +41,19 @@ def brushed(channels=("R", "G", "B"), shape=(24, 40, 24, 36)):
     return bk.Measured.from_table(values, channels=channels, name="brushed"), model
 
 
-MATERIALS = {"dusty_gold": lambda: bk.load("dusty_gold"), "brushed": lambda: brushed()[0]}
+@cache
+def below_zero(channels=("R", "G", "B")):
+    """A highlight, and around it values below 0, as an instrument's zero or a gamut gives them."""
+    values = np.full((30, 30, 60, 3), -0.01)
+    values[:8] = [0.3, 0.2, 0.1]
+    return bk.Measured.from_table(values, channels=channels, name="below zero")
+
+
+MATERIALS = {
+    "dusty_gold": lambda: bk.load("dusty_gold"),
+    "brushed": lambda: brushed()[0],
+    "below_zero": below_zero,
+}
 
 
 def seen(mi, bsdf, wi, wo, wavelengths=None):
@@ -88,7 +101,7 @@ def test_in_every_variant(name, label, variant):
     import mitsuba as mi
 
     material = MATERIALS[name]()
-    wi, wo = from_angles(0.6, 0.3), from_angles(0.5, 3.3)
+    wi, wo = from_angles(0.6, 0.3), from_angles(0.37, 3.4)  # at the edge of a highlight
     rgb = material.eval(wi[None], wo[None])[0]
     variant(label)
     bsdf = mi.load_dict(material.scene_dict())
@@ -115,19 +128,53 @@ def colour_of(spectrum):
 
 
 @pytest.mark.parametrize("label", ["llvm_ad_spectral", "scalar_spectral"])
-def test_measured_wavelengths_stay(label, variant):
+@pytest.mark.parametrize("make", [lambda nodes: brushed(nodes)[0], below_zero])
+def test_measured_wavelengths_stay(label, make, variant):
     """Between the wavelengths the BRDF is linear, beyond them constant."""
     import mitsuba as mi
 
     variant(label)
-    material, _ = brushed(tuple(f"{nm:.0f}nm" for nm in NODES))
+    material = make(tuple(f"{nm:.0f}nm" for nm in NODES))
     bsdf = mi.load_dict(material.scene_dict())
-    wi, wo = from_angles(0.6, 0.3), from_angles(0.5, 3.3)
+    wi, wo = from_angles(0.6, 0.3), from_angles(0.37, 3.4)
     at = material.eval(wi[None], wo[None])[0]
     np.testing.assert_allclose(seen(mi, bsdf, wi, wo, [*NODES, 500.0])[:3], at, rtol=1e-4)
     between = seen(mi, bsdf, wi, wo, [500.0, 625.0, 380.0, 800.0])
     expected = [at[:2].mean(), 0.25 * at[1] + 0.75 * at[2], at[0], at[2]]
     np.testing.assert_allclose(between, expected, rtol=1e-4)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("shape", [(5, 4, 8), (6, 4, 3, 8), (7, 4, 3, 9)])
+def test_an_unknown_cell_takes_the_nearest(shape):
+    """The azimuths wrap; found by looking at all known cells."""
+    values = np.full((np.prod(shape), 1), np.nan)
+    known = np.random.default_rng(9).choice(len(values), 4, replace=False)
+    values[known, 0] = np.arange(4)
+    cells = np.indices(shape).reshape(len(shape), -1).T
+    apart = np.abs(cells[:, None] - cells[known])
+    for azimuth in (2,) if len(shape) == 3 else (0, 3):
+        apart[..., azimuth] = np.minimum(apart, shape[azimuth] - apart)[..., azimuth]
+    distance = np.linalg.norm(apart, axis=-1)
+    taken = Table(values.reshape(*shape, 1)).filled.astype(int).reshape(-1, 1)
+    np.testing.assert_array_equal(np.take_along_axis(distance, taken, 1)[:, 0], distance.min(1))
+
+
+SCENE = """<scene version="3.0.0"><shape type="sphere"><bsdf type="measured_table">
+<string name="filename" value="{}"/></bsdf></shape></scene>"""
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_a_file_lies_beside_its_scene(parallel, tmp_path, monkeypatch, llvm_variant):
+    """As Mitsuba finds bitmaps, and not from where the program runs; a sample of it, too."""
+    (scenes := tmp_path / "scenes").mkdir()
+    bk.save(below_zero(), scenes / "below_zero.npz")
+    place(scenes, "curet")
+    monkeypatch.chdir(tmp_path)
+    for name in ("below_zero.npz", "abrdf.dat#2", "dusty_gold"):
+        (scenes / "scene.xml").write_text(SCENE.format(name))
+        scene = llvm_variant.load_file("scenes/scene.xml", parallel=parallel)
+        assert "MeasuredTable" in str(scene.shapes()[0].bsdf())
 
 
 @pytest.mark.parametrize("name", MATERIALS)

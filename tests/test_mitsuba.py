@@ -4,6 +4,7 @@ and attributes, contexts that ask for one component, and every kind of colour.
 All is compared with something found another way: differences, mixtures by hand, cosine samples.
 """
 
+import itertools
 import math
 
 import drjit as dr
@@ -14,7 +15,7 @@ import brdfkit as bk
 from brdfkit.checks.sampling import uniform
 from brdfkit.checks.subject import random_pairs
 from brdfkit.clamped import tabulated
-from brdfkit.directions import from_angles
+from brdfkit.directions import from_angles, normalize
 from brdfkit.lobes import components_of
 
 # All z-scores of this file, some 30: a right renderer exceeds this once in 5,000 files
@@ -367,6 +368,47 @@ def test_attributes(model, llvm_variant):
     assert not dr.any(bsdf.has_attribute("no_such_parameter"))
 
 
+@pytest.mark.quick
+def test_a_texture_is_held_to_the_bounds(model, llvm_variant):
+    """A texture may hold anything; beyond a bound of its parameter it counts as the bound."""
+    mi = llvm_variant
+    wi, wo = random_pairs(200, seed=9, max_degrees=80)
+    entries = coloured(model).scene_dict()
+    for name, parameter in model.parameters.items():
+        for bound, beyond in zip(parameter.bounds, (-3.0, 3.0), strict=True):
+            if math.isinf(bound):
+                continue
+            texture = {"type": "uniform", "value": bound + beyond}
+            found, expected = (
+                evaluated(mi, mi.load_dict({**entries, name: value}), wi, wo)
+                for value in (texture, bound)
+            )
+            np.testing.assert_array_equal(found[0], expected[0], err_msg=name)
+            np.testing.assert_array_equal(found[1], expected[1], err_msg=name)
+
+
+# Precision
+
+
+@pytest.mark.quick
+def test_mirror_directions_near_the_horizon(configured, llvm_variant):
+    """There wo ≈ -wi, and single precision still has the formula's value and a density.
+
+    Its value at the rounded directions: at 89.999° rounding turns the half vector by 0.1°.
+    """
+    mi = llvm_variant
+    rng = np.random.default_rng(8)
+    theta = np.radians(np.repeat([89.9, 89.97, 89.99, 89.999], 500))
+    phi = rng.uniform(-np.pi, np.pi, len(theta))
+    beside, above = rng.uniform(-1e-3, 1e-3, (2, len(theta)))
+    wi = np.float32(from_angles(theta, phi))
+    wo = np.float32(from_angles(theta - np.abs(above), phi + np.pi + beside))
+    value, pdf = evaluated(mi, mi.load_dict(configured().scene_dict()), wi, wo)
+    expected = configured().eval(normalize(wi.astype(float)), normalize(wo.astype(float)))
+    np.testing.assert_allclose(value / wo[:, 2:], np.broadcast_to(expected, value.shape), rtol=5e-3)
+    assert (pdf > 0).all()
+
+
 # Contexts
 
 
@@ -478,6 +520,82 @@ def test_scalar_is_llvm(variant, name):
     z = z_of(scalar, expected)
     assert z < HIGHEST_Z
     assert scalar.std(ddof=1) / math.sqrt(12) < 0.05 * expected
+
+
+@pytest.mark.parametrize("label", ["llvm_ad_mono", "llvm_ad_spectral", "scalar_spectral"])
+@pytest.mark.parametrize("name", ["lambert", "ward", "oren_nayar", "koenderink", "dusty_gold"])
+def test_polarized_is_depolarized(variant, label, name):
+    """The light of the variant without polarisation, and none polarised: as Mitsuba's diffuse."""
+    import mitsuba as mi
+
+    unpolarized = said(mi, variant, label, name)
+    matrices = said(mi, variant, f"{label}_polarized", name)
+    for matrix, light in zip(matrices, unpolarized, strict=True):
+        assert matrix.shape == (4, 4, len(light))
+        np.testing.assert_allclose(matrix[0, 0], light, rtol=1e-5)
+    diffuse = said(mi, variant, f"{label}_polarized", "diffuse")
+    for matrix, expected in zip(matrices, diffuse, strict=True):
+        np.testing.assert_array_equal(matrix == 0, expected == 0)
+
+
+def said(mi, variant, label, name):
+    """What `eval`, `eval_pdf`, `sample` and `eval_diffuse_reflectance` say in a variant."""
+    variant(label)
+    if name == "diffuse":
+        entries = {"type": "diffuse", "reflectance": 0.5}
+    else:
+        entries = (bk.models()[name]() if name in bk.models() else bk.load(name)).scene_dict()
+    bsdf, ctx, si = mi.load_dict(entries), mi.BSDFContext(), dr.zeros(mi.SurfaceInteraction3f)
+    si.wi = mi.Vector3f(*map(float, from_angles(0.4, 0.3)))
+    if mi.is_spectral:
+        si.wavelengths = [450.0, 500.0, 550.0, 600.0]
+    wo = mi.Vector3f(*map(float, from_angles(0.6, 3.0)))
+    values = (
+        bsdf.eval(ctx, si, wo),
+        bsdf.eval_pdf(ctx, si, wo)[0],
+        bsdf.sample(ctx, si, 0.5, mi.Point2f(0.4, 0.3))[1],
+        bsdf.eval_diffuse_reflectance(si),
+    )
+    channels = 4 if mi.is_spectral else 1
+    return [np.array(v).reshape(*(4, 4) * mi.is_polarized, channels) for v in values]
+
+
+@pytest.mark.parametrize("label", ["scalar_rgb", "scalar_spectral", "scalar_spectral_polarized"])
+@pytest.mark.parametrize("name", [*bk.models(), "dusty_gold"])
+def test_scalar_renders(variant, label, name):
+    """A picture, and samples at the ends of the incidences: there numbers are Python's, which
+    raise where an array would hold an unused infinity."""
+    import mitsuba as mi
+
+    variant(label)
+    material = bk.models()[name]() if name in bk.models() else bk.load(name)
+    entries = material.scene_dict()
+    image = np.array(mi.render(mi.load_dict(scene(ball(entries), size=4)), spp=4, seed=1))
+    assert np.isfinite(image).all()
+    assert image.max() > 0
+    bsdf = mi.load_dict(entries)
+    almost_1 = float(np.nextafter(np.float32(1), np.float32(0)))
+    for degrees, u in itertools.product((0, 89.99), (0.0, 0.5, almost_1)):
+        si = dr.zeros(mi.SurfaceInteraction3f)
+        si.wi = mi.Vector3f(*map(float, from_angles(math.radians(degrees), 0.3)))
+        for u_component in (0.05, 0.5, almost_1):
+            drawn, weight = bsdf.sample(mi.BSDFContext(), si, u_component, mi.Point2f(u, u))
+            assert np.isfinite([drawn.pdf, *np.ravel(np.array(weight))]).all()
+        mirrored = mi.Vector3f(-si.wi.x, -si.wi.y, si.wi.z)
+        assert bsdf.pdf(mi.BSDFContext(), si, mirrored) > 0
+
+
+@pytest.mark.quick
+def test_a_colour_above_1_is_an_attribute_in_a_spectral_variant(variant):
+    """Of no spectrum Mitsuba can make; brdfkit scales one."""
+    import mitsuba as mi
+
+    variant("llvm_ad_spectral")
+    bsdf = mi.load_dict({"type": "ward", "specular_reflectance": {"type": "rgb", "value": 3.0}})
+    si = dr.zeros(mi.SurfaceInteraction3f)
+    si.wavelengths = [450.0, 500.0, 550.0, 600.0]
+    found = bsdf.eval_attribute("specular_reflectance", si)
+    np.testing.assert_allclose(np.array(found).ravel(), 3, rtol=1e-3)
 
 
 @pytest.mark.quick

@@ -20,7 +20,7 @@ from brdfkit.lobes import HalfVector, Lobe, lambertian
 from brdfkit.microfacet import Visible, v_groove
 from brdfkit.model import Model, shape, weight
 from brdfkit.numerics import expm1, log1p
-from brdfkit.vectors import dot, half_vector
+from brdfkit.vectors import cos_theta_d, half_vector
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class PowerOfHeight:
         sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.y)
         return type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, 1 - complement)
 
-    def pdf(self, wi, h):
+    def pdf(self, wi, h, cos_d):
         return dr.exp((self._q() - 1) * self._log(h)) / self.integral()
 
     def integral(self):
@@ -77,7 +77,7 @@ class ABC(Model):
     def specular(self, wi, wo):
         h = half_vector(wi, wo)
         D = PowerOfHeight(self.b, self.c).power(h)
-        F = fresnel(self.ior, dot(wi, h))
+        F = fresnel(self.ior, cos_theta_d(wi, wo))
         return D * v_groove(wi, wo, h) * F / (dr.pi * wi.z * wo.z)
 
     def lobes(self):

@@ -17,7 +17,7 @@ import drjit as dr
 from brdfkit.lobes import Cosine, HalfVector, Lobe, lambertian
 from brdfkit.microfacet import CosinePower, Visible, fifth_power, schlick
 from brdfkit.model import Model, follows, option, shape, weight
-from brdfkit.vectors import dot, half_vector
+from brdfkit.vectors import cos_theta_d, half_vector
 
 
 class AshikhminShirley(Model):
@@ -38,8 +38,8 @@ class AshikhminShirley(Model):
 
     def specular(self, wi, wo):
         h = half_vector(wi, wo)
-        cos_d = dot(wi, h)
-        power = CosinePower(self.exponent_u, self.exponent_v).pdf(wi, h)
+        cos_d = cos_theta_d(wi, wo)
+        power = CosinePower(self.exponent_u, self.exponent_v).pdf(wi, h, cos_d)
         return power * schlick(self.f0, cos_d) / (4 * cos_d * dr.maximum(wi.z, wo.z))
 
     def lobes(self):

@@ -11,7 +11,7 @@ plastics of one roughness; no anisotropy.
 from brdfkit.lobes import HalfVector, Lobe, lambertian
 from brdfkit.microfacet import Beckmann, Visible, schlick, v_groove
 from brdfkit.model import Model, shape, weight
-from brdfkit.vectors import dot, half_vector
+from brdfkit.vectors import cos_theta_d, half_vector
 
 
 class CookTorrance(Model):
@@ -23,7 +23,7 @@ class CookTorrance(Model):
     def specular(self, wi, wo):
         h = half_vector(wi, wo)
         D = Beckmann(self.alpha, self.alpha).D(h)  # holds the 1/π of (3.28)
-        F = schlick(self.f0, dot(wi, h))
+        F = schlick(self.f0, cos_theta_d(wi, wo))
         return D * v_groove(wi, wo, h) * F / (wi.z * wo.z)
 
     def lobes(self):

@@ -11,7 +11,7 @@ no scattering between facets.
 from brdfkit.lobes import HalfVector, Lobe, lambertian
 from brdfkit.microfacet import TrowbridgeReitz, schlick
 from brdfkit.model import Model, follows, shape, weight
-from brdfkit.vectors import dot, half_vector
+from brdfkit.vectors import cos_theta_d, half_vector
 
 
 class GGX(Model):
@@ -24,7 +24,7 @@ class GGX(Model):
     def specular(self, wi, wo):
         facets = TrowbridgeReitz(self.alpha_u, self.alpha_v)
         h = half_vector(wi, wo)
-        F = schlick(self.f0, dot(wi, h))
+        F = schlick(self.f0, cos_theta_d(wi, wo))
         return facets.D(h) * facets.G2(wi, wo) * F / (4 * wi.z * wo.z)
 
     def lobes(self):

@@ -24,7 +24,7 @@ from brdfkit.lobes import HalfVector, Lobe, lambertian
 from brdfkit.microfacet import Visible, schlick
 from brdfkit.model import Model, shape, weight
 from brdfkit.numerics import expm1, log1p
-from brdfkit.vectors import dot, half_vector
+from brdfkit.vectors import cos_theta_d, half_vector
 
 # Gauss-Legendre; the integrals over slopes end where the Gaussian has fallen to exp(-END)
 POINTS, GAUSS = np.polynomial.legendre.leggauss(12)
@@ -73,7 +73,7 @@ class ShiftedGamma:
         sin_theta = tangent * cos_theta
         return type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
 
-    def pdf(self, wi, h):
+    def pdf(self, wi, h, cos_d):
         s, share, q = _slope_squared(h), self._share(), self._q()
         alpha_2, end = self.alpha * self.alpha, log1p(1 / self.alpha)
         near = dr.exp((q - 1) * log1p(s / alpha_2)) * q / (alpha_2 * expm1(q * end))
@@ -109,7 +109,7 @@ class SGD(Model):
         facets = ShiftedGamma(self.alpha * one, self.p * one)
         h = half_vector(wi, wo)
         G = facets.G1(wi) * facets.G1(wo)
-        return facets.D(h) * G * schlick(self.f0, dot(wi, h)) / (dr.pi * wi.z * wo.z)
+        return facets.D(h) * G * schlick(self.f0, cos_theta_d(wi, wo)) / (dr.pi * wi.z * wo.z)
 
     def lobes(self):
         sampling = HalfVector(Visible(ShiftedGamma(self.alpha, self.p)))

@@ -19,7 +19,7 @@ from brdfkit.lobes import HalfVector, Lobe, lambertian
 from brdfkit.microfacet import Visible, schlick, v_groove
 from brdfkit.model import Model, shape, weight
 from brdfkit.numerics import log1p
-from brdfkit.vectors import dot, half_vector
+from brdfkit.vectors import cos_theta_d, half_vector
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class GaussianAngle:
         sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.y)
         return type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
 
-    def pdf(self, wi, h):
+    def pdf(self, wi, h, cos_d):
         # D θ/sinθ, and θ/sinθ = 1 at the normal
         return self.D(h) * _angle(h) / (_sine(h) * self._share())
 
@@ -64,7 +64,7 @@ class TorranceSparrow(Model):
 
     def specular(self, wi, wo):
         h = half_vector(wi, wo)
-        F = schlick(self.f0, dot(wi, h))
+        F = schlick(self.f0, cos_theta_d(wi, wo))
         return GaussianAngle(self.alpha).D(h) * v_groove(wi, wo, h) * F / (4 * wi.z * wo.z)
 
     def lobes(self):

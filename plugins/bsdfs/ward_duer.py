@@ -15,7 +15,7 @@ import drjit as dr
 from brdfkit.lobes import HalfVector, Lobe, lambertian
 from brdfkit.microfacet import Beckmann, Visible
 from brdfkit.model import Model, follows, option, shape, weight
-from brdfkit.vectors import dot, half_vector
+from brdfkit.vectors import cos_theta_d, half_vector
 
 
 class WardDuer(Model):
@@ -30,8 +30,9 @@ class WardDuer(Model):
         gauss = gauss / (dr.pi * self.alpha_u * self.alpha_v)
         if self.form == "printed":
             return gauss / (4 * wi.z * wo.z)
-        squared = (wi.z + wo.z) * (wi.z + wo.z)
-        return gauss * 2 * (1 + dot(wi, wo)) / (squared * squared)
+        # 1 + L·V = 2 cos²θ_d, which does not cancel
+        ratio = 2 * cos_theta_d(wi, wo) / dr.square(wi.z + wo.z)
+        return gauss * dr.square(ratio)
 
     def lobes(self):
         sampling = HalfVector(Visible(Beckmann(self.alpha_u, self.alpha_v)))

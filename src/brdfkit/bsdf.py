@@ -6,6 +6,7 @@ the weight of a sample where the BRDF itself is bounded.
 """
 
 import functools
+import math
 import operator
 
 import numpy as np
@@ -58,7 +59,9 @@ def define(mi, model):
     def within(value, parameter):
         # A texture may hold anything. Not dr.clip: on a bound it has half the derivative
         low, high = parameter.bounds
-        return dr.select(value < low, low, dr.select(value > high, high, value))
+        held = value if low == -math.inf else dr.select(value < low, low, value)
+        held = held if high == math.inf else dr.select(held > high, high, held)
+        return type(value)(held)  # of a spectrum, select makes a plain array
 
     class Plugin(mi.BSDF):
         def __init__(self, props):
@@ -135,7 +138,8 @@ def define(mi, model):
             sample.sampled_component = component
             sample.sampled_type = kind_of(component)
             pdf = dr.select(active, pdf, 1)
-            return sample, dr.select(active, value / dr.detach(pdf), 0)
+            weight = dr.select(active, value / dr.detach(pdf), 0)
+            return sample, mi.depolarizer(weight)
 
         def eval(self, ctx, si, wo, active=True):
             return self.eval_pdf(ctx, si, wo, active)[0]
@@ -149,32 +153,43 @@ def define(mi, model):
             weights, lobes = self.terms(si, active)
             shares = self.shares(ctx, wi, weights, lobes)
             value, pdf = self.value_and_pdf(ctx, weights, lobes, shares, wi, wo)
-            return dr.select(active, value, 0), dr.select(active, pdf, 0)
+            return mi.depolarizer(dr.select(active, value, 0)), dr.select(active, pdf, 0)
 
         def eval_diffuse_reflectance(self, si, active=True):
             """Albedo of the diffuse lobes seen along the normal, by quadrature."""
             weights, lobes = self.terms(si, active)
             diffuse = [i for i, lobe in enumerate(lobes) if lobe.diffuse]
-            total = mi.Spectrum(0)
+            total = mi.UnpolarizedSpectrum(0)
             for direction in FROM_ABOVE:
                 wo = mi.Vector3f(*map(float, direction))
                 total += dr.pi * self.value(weights, lobes, diffuse, mi.Vector3f(0, 0, 1), wo)
-            return dr.select(active, total / len(FROM_ABOVE), 0)
+            return mi.Spectrum(dr.select(active, total / len(FROM_ABOVE), 0))
 
         def has_attribute(self, name, active=True):
             return super().has_attribute(self.attribute(name), active)
 
+        # Mitsuba's own methods call these again: they are only for what is no parameter
+
         def eval_attribute(self, name, si, active=True):
-            return super().eval_attribute(self.attribute(name), si, active)
+            key = self.attribute(name)
+            if key not in self.textures:
+                return super().eval_attribute(name, si, active)
+            return self.textures[key].eval(si, active) * self.scale(key)
 
         def eval_attribute_1(self, name, si, active=True):
-            return super().eval_attribute_1(self.attribute(name), si, active)
+            key = self.attribute(name)
+            if key not in self.textures:
+                return super().eval_attribute_1(name, si, active)
+            return self.textures[key].eval_1(si, active) * self.scale(key)
 
         def eval_attribute_3(self, name, si, active=True):
-            return super().eval_attribute_3(self.attribute(name), si, active)
+            key = self.attribute(name)
+            if key not in self.textures:
+                return super().eval_attribute_3(name, si, active)
+            return self.textures[key].eval_3(si, active) * self.scale(key)
 
         def attribute(self, name):
-            """The texture behind a parameter: that of another one which it follows."""
+            """The name of the texture behind a parameter: that of another one which it follows."""
             follows = name in model.parameters and name not in self.textures
             return model.parameters[name].follows if follows else name
 
@@ -182,10 +197,9 @@ def define(mi, model):
             """Weights and lobes at a surface point."""
             values = {}
             for name, texture in self.textures.items():
-                if model.parameters[name].linear:
-                    values[name] = texture.eval(si, active) * self.scale(name)
-                else:
-                    values[name] = within(texture.eval_1(si, active), model.parameters[name])
+                parameter = model.parameters[name]
+                value = (texture.eval if parameter.linear else texture.eval_1)(si, active)
+                values[name] = within(value * self.scale(name), parameter)
             return [values[name] for name in model.weights()], model.bind(values).lobes()
 
         def shares(self, ctx, wi, weights, lobes):
@@ -209,7 +223,7 @@ def define(mi, model):
 
         def value(self, weights, lobes, chosen, wi, wo):
             """BRDF, the sum of the `chosen` lobes."""
-            value = mi.Spectrum(0)
+            value = mi.UnpolarizedSpectrum(0)
             for i in chosen:
                 value += weights[i] * lobes[i].eval(wi, wo)
                 if lobes[i].quadratic is not None:

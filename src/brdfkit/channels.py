@@ -1,13 +1,14 @@
 """Values per colour channel or wavelength, as the spectrum type of the current variant.
 
 A class here answers `mean(corners, si)`: the weighted mean of rows, given as (row, share), at the
-wavelengths of the rays.
+wavelengths of the rays. Rows keep their sign, so that noise about 0 averages out; a mean below 0
+counts as 0, as in `Measured.eval`.
 """
 
 import numpy as np
 
 from brdfkit.arrays import Rows, bracket
-from brdfkit.colours import colour_science, luminance
+from brdfkit.colours import LUMINANCE, colour_science
 
 
 def channels(values, wavelengths=None):
@@ -16,9 +17,9 @@ def channels(values, wavelengths=None):
 
     if wavelengths is not None:
         return Wavelengths(values, wavelengths)
-    if mi.is_monochromatic:
-        return Luminances(luminance(values)[:, None])
     colours = np.broadcast_to(values, (len(values), 3))
+    if mi.is_monochromatic:
+        return Luminances(colours)
     return SpectralColours(colours) if mi.is_spectral else Colours(colours)
 
 
@@ -29,18 +30,20 @@ class Colours:
         self.rows = Rows(values)
 
     def mean(self, corners, si):
+        import drjit as dr
         import mitsuba as mi
 
-        return sum(share * self.rows.at(row, mi.Color3f) for row, share in corners)
+        return dr.maximum(sum(share * self.rows.at(row, mi.Color3f) for row, share in corners), 0)
 
 
 class Luminances(Colours):
-    """In a variant with one channel."""
+    """The luminance of linear sRGB, in a variant with one channel."""
 
     def mean(self, corners, si):
+        import drjit as dr
         import mitsuba as mi
 
-        return sum(share * self.rows.at(row, mi.Color1f) for row, share in corners)
+        return mi.Color1f(dr.dot(super().mean(corners, si), mi.Color3f(LUMINANCE.tolist())))
 
 
 class SpectralColours(Colours):
@@ -63,7 +66,7 @@ class SpectralColours(Colours):
         import drjit as dr
         import mitsuba as mi
 
-        rgb, spectrum = super().mean(corners, si), mi.Spectrum(0)
+        rgb, spectrum = super().mean(corners, si), mi.UnpolarizedSpectrum(0)
         for k, wavelength in enumerate(si.wavelengths):
             lower, upper, t = bracket((wavelength - self.first) / self.step, self.count)
             basis = [self.basis.at(node, mi.Color3f) for node in (lower, upper)]
@@ -84,20 +87,20 @@ class Wavelengths:
         import drjit as dr
         import mitsuba as mi
 
-        corners, spectrum = list(corners), mi.Spectrum(0)
+        corners, spectrum = list(corners), mi.UnpolarizedSpectrum(0)
         for k, wavelength in enumerate(si.wavelengths):
             position = self._position(wavelength)
-            lower, upper, t = bracket(position, self.count)
-            spectrum[k] = sum(
-                share
-                * dr.lerp(
-                    self.values.at(row * self.count + lower),
-                    self.values.at(row * self.count + upper),
-                    t,
-                )
-                for row, share in corners
-            )
+            *nodes, t = bracket(position, self.count)
+            means = [self._mean(corners, node) for node in nodes]
+            spectrum[k] = dr.lerp(*means, t)
         return spectrum
+
+    def _mean(self, corners, node):
+        """At one of the measured wavelengths."""
+        import drjit as dr
+
+        values = (share * self.values.at(row * self.count + node) for row, share in corners)
+        return dr.maximum(sum(values), 0)
 
     def _position(self, wavelength):
         """Where among the nodes, which need not be even: how many of the gaps lie below."""

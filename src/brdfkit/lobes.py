@@ -8,7 +8,7 @@ import drjit as dr
 
 from brdfkit.microfacet import CosinePower
 from brdfkit.numerics import cosine_power
-from brdfkit.vectors import dot, half_vector, one_minus_dot, reflect
+from brdfkit.vectors import cos_theta_d, half_vector, one_minus_dot, reflect
 
 
 class Sampling(Protocol):
@@ -80,8 +80,8 @@ class HalfVector:
         return reflect(wi, self.distribution.sample(wi, u))
 
     def pdf(self, wi, wo):
-        h = half_vector(wi, wo)
-        return self.distribution.pdf(wi, h) / (4 * dot(wi, h))
+        cos_d = cos_theta_d(wi, wo)
+        return self.distribution.pdf(wi, half_vector(wi, wo), cos_d) / (4 * cos_d)
 
 
 @dataclass(frozen=True)

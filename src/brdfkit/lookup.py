@@ -34,7 +34,8 @@ def half_difference(wi, wo):
     sin_h = dr.safe_sqrt(h.x * h.x + h.y * h.y)
     # wi in the frame of the half vector; at h = n any azimuth will do
     off = sin_h > 1e-7
-    cos_p, sin_p = dr.select(off, h.x / sin_h, 1), dr.select(off, h.y / sin_h, 0)
+    inverse = 1 / dr.select(off, sin_h, 1)
+    cos_p, sin_p = dr.select(off, h.x * inverse, 1), h.y * inverse
     x, y = cos_p * wi.x + sin_p * wi.y, cos_p * wi.y - sin_p * wi.x
     d = type(wi)(h.z * x - sin_h * wi.z, y, sin_h * x + h.z * wi.z)
     return angle(h), angle(d), azimuth(d), azimuth(h)

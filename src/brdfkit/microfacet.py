@@ -1,8 +1,9 @@
 """Distributions of microfacet normals, shadowing and Fresnel, shared by the models.
 
-A distribution answers `D(h)` [sr⁻¹, ∫ D cosθ_h dω = 1], `sample(wi, u)` → h and `pdf(wi, h)`
-per solid angle of h. `wi`, `h` are vectors with x, y, z in the local frame, z along the normal;
-`u` is a point (x, y, z) of the unit cube.
+A distribution answers `D(h)` [sr⁻¹, ∫ D cosθ_h dω = 1], `sample(wi, u)` → h and
+`pdf(wi, h, cos_d)` per solid angle of h, where cos_d = wi·h (see `cos_theta_d`). `wi`, `h` are
+vectors with x, y, z in the local frame, z along the normal; `u` is a point (x, y, z) of the unit
+cube.
 """
 
 from dataclasses import dataclass
@@ -11,7 +12,7 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.numerics import cosine_power, expm1
-from brdfkit.vectors import dot
+from brdfkit.vectors import cos_theta_d, dot
 
 
 def schlick(f0, cos_theta):
@@ -27,7 +28,7 @@ def fifth_power(x):
 
 def v_groove(wi, wo, h):
     """Shadowing and masking in V-grooves: Torrance & Sparrow 1967; Kurt 2007, eq. 3.27."""
-    s = 2 * h.z / dot(wi, h)
+    s = 2 * h.z / cos_theta_d(wi, wo)
     return dr.minimum(1, s * dr.minimum(wi.z, wo.z))
 
 
@@ -67,7 +68,7 @@ class Beckmann:
             type(wi), radius * self.alpha_u * cos_phi, radius * self.alpha_v * sin_phi
         )
 
-    def pdf(self, wi, h):
+    def pdf(self, wi, h, cos_d):
         return self.D(h) * h.z
 
 
@@ -110,9 +111,9 @@ class TrowbridgeReitz:
         inverse = dr.rsqrt(x * x + y * y + z * z)
         return type(wi)(x * inverse, y * inverse, z * inverse)
 
-    def pdf(self, wi, h):
+    def pdf(self, wi, h, cos_d):
         G1 = 1 / (1 + self.Lambda(wi))
-        return G1 * dr.maximum(dot(wi, h), 0) * self.D(h) / wi.z
+        return G1 * cos_d * self.D(h) / wi.z
 
 
 @dataclass(frozen=True)
@@ -138,7 +139,7 @@ class CosinePower:
         sin_theta = dr.sqrt(complement * (2 - complement))
         return type(wi)(sin_theta * x, sin_theta * y, 1 - complement)
 
-    def pdf(self, wi, h):
+    def pdf(self, wi, h, cos_d):
         return dr.sqrt((self.n_u + 1) * (self.n_v + 1)) / (2 * dr.pi) * self.power(h)
 
 
@@ -159,9 +160,9 @@ class Visible:
         seen, others = dr.maximum(dot(wi, h), 0), dr.maximum(dot(wi, other), 0)
         return dr.select(u.z * (seen + others) < seen, h, other)
 
-    def pdf(self, wi, h):
-        seen = dot(wi, h) / (h.z * wi.z)
-        return self.distribution.pdf(wi, h) * dr.minimum(seen, 2)
+    def pdf(self, wi, h, cos_d):
+        seen = cos_d / (h.z * wi.z)
+        return self.distribution.pdf(wi, h, cos_d) * dr.minimum(seen, 2)
 
 
 def _from_slope(vector, x, y):

@@ -65,14 +65,24 @@ class Table:
 
     @cached_property
     def filled(self):
-        """The values with each unknown cell taken from the nearest known one (in cells)."""
+        """The values with each unknown cell taken from the nearest known one (in cells).
+
+        Both azimuths wrap: phi_d, too, where its period is π.
+        """
         unknown = np.isnan(self.values).any(axis=-1)
         if not unknown.any():
             return self.values
         from scipy.ndimage import distance_transform_edt
 
-        nearest = distance_transform_edt(unknown, return_distances=False, return_indices=True)
-        return self.values[tuple(nearest)]
+        # Around the azimuths as many cells of the other side as may be nearest
+        farthest = int(np.ceil(distance_transform_edt(unknown).max()))
+        azimuths = (0, 3) if self.anisotropic else (2,)
+        added = [min(farthest, n // 2) * (k in azimuths) for k, n in enumerate(self.shape)]
+        wrapped = np.pad(unknown, [(a, a) for a in added], mode="wrap")
+        nearest = distance_transform_edt(wrapped, return_distances=False, return_indices=True)
+        own = tuple(slice(a, a + n) for a, n in zip(added, self.shape, strict=True))
+        cells = [(i[own] - a) % n for i, a, n in zip(nearest, added, self.shape, strict=True)]
+        return self.values[tuple(cells)]
 
     def eval(self, wi, wo):
         """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3): multilinear between cell centres.

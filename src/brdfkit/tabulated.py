@@ -14,7 +14,7 @@ import numpy as np
 
 from brdfkit.arrays import Rows, bracket, periodic_bracket
 from brdfkit.directions import from_angles
-from brdfkit.vectors import angle, azimuth, dot, half_vector, reflect
+from brdfkit.vectors import angle, azimuth, cos_theta_d, half_vector, reflect
 
 
 class Tabulated:
@@ -65,7 +65,7 @@ class Tabulated:
         density = 0
         for incidence, share in self.mixed(wi):
             density += share * self.density.at(incidence * (n_h * n_p) + cell)
-        return density / (4 * dot(wi, h))
+        return density / (4 * cos_theta_d(wi, wo))
 
     def _brackets(self, wi):
         """(lower, upper, share of the upper) among the azimuths, if any, and among the angles."""
@@ -92,7 +92,8 @@ class Tabulated:
         incidence, left = 0, [u.x, u.y]
         for k, (lower, upper, t) in enumerate(self._brackets(wi)):
             up = left[k] < t
-            left[k] = dr.select(up, left[k] / t, (left[k] - t) / (1 - t))
+            # one division, by what is not 0: a scalar variant would raise at the other branch
+            left[k] = dr.select(up, left[k], left[k] - t) / dr.select(up, t, 1 - t)
             incidence = incidence * self.angles + dr.select(up, upper, lower)
         return incidence, *left
 

@@ -23,6 +23,12 @@ def half_vector(wi, wo):
     return s * dr.rsqrt(dot(s, s))
 
 
+def cos_theta_d(wi, wo):
+    """Cosine of the difference angle, wi·h; as a dot product its terms cancel where wo ≈ -wi."""
+    s = wi + wo
+    return 0.5 * dr.sqrt(dot(s, s))
+
+
 def reflect(wi, h):
     """Mirror image of `wi` about `h`."""
     return 2 * dot(wi, h) * h - wi
