@@ -85,7 +85,8 @@ def test_a_distance_is_about_the_angle(theta_i, theta_o, phi, part, direction):
     chords = np.sum((wi - wi_2) ** 2, axis=1) + np.sum((wo - wo_2) ** 2, axis=1)
     angle = np.sqrt(chords.min())
     distance = np.linalg.norm(pairs.points(wi, wo) - pairs.points(wi_2[:1], wo_2[:1]))
-    assert 0.95 * angle - 2e-3 <= distance <= 1.5 * angle + 2e-3
+    # near the normal, where azimuths mean little, it is off most
+    assert angle / np.sqrt(2) - 2e-3 <= distance <= 1.5 * angle + 2e-3
 
 
 # Counts, coverage

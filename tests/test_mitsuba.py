@@ -613,3 +613,17 @@ def test_a_negative_colour_is_refused_where_it_has_no_spectrum():
             mi.load_dict({"type": "koenderink", "a_2_2_2": colour})
     finally:
         mi.set_variant(before or "llvm_ad_rgb")
+
+
+@pytest.mark.parametrize("label", ["scalar_rgb", "llvm_ad_rgb"])
+def test_an_attribute_of_a_mesh_needs_no_mesh_to_load(label, variant):
+    """The sampling of signed weights takes their default instead: it shows no surface."""
+    import mitsuba as mi
+
+    variant(label)
+    colour = {"type": "mesh_attribute", "name": "vertex_color"}
+    bsdf, plain = (
+        mi.load_dict({"type": "koenderink", **given}) for given in ({"a_0_0_0": colour}, {})
+    )
+    (found,), (expected,) = bsdf.tables.values(), plain.tables.values()
+    np.testing.assert_array_equal(found.density.values, expected.density.values)

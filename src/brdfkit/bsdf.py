@@ -94,8 +94,9 @@ def define(mi, model):
             if signed:
                 means = {}
                 for name, texture in self.textures.items():
-                    parameter, mean = model.parameters[name], texture_mean(texture)
-                    mean = np.clip(mean * self.scale(name), *parameter.bounds)
+                    parameter = model.parameters[name]
+                    mean = texture_mean(texture, getattr(defaults, name)) * self.scale(name)
+                    mean = np.clip(mean, *parameter.bounds)
                     means[name] = mean if parameter.linear else mean[0]
                 self.tables = {k: tabulated(model(**means), groups[k]) for k in signed}
 

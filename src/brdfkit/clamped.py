@@ -34,11 +34,16 @@ def tabulated(model, lobes):
     return Tabulated(f, **(ANISOTROPIC if model.anisotropic() else ISOTROPIC))
 
 
-def texture_mean(texture):
-    """Mean of a texture (channels,), over its unit square where it varies."""
+def texture_mean(texture, default):
+    """Mean of a texture (channels,), over its unit square where it varies.
+
+    `default` for an attribute of a mesh: only its surface knows it.
+    """
     import drjit as dr
     import mitsuba as mi
 
+    if texture.class_name() == "MeshAttribute":
+        return np.atleast_1d(default)
     n = TEXELS if texture.is_spatially_varying() else 1
     x = (np.arange(n) + 0.5) / n
     points = [(float(u), float(v)) for u in x for v in x]
