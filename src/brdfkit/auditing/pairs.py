@@ -1,9 +1,9 @@
 """Direction pairs as points: how near two are, and which are the same by a symmetry.
 
-The distance of two pairs is about the angle [rad] by which their directions differ, from 1/√2 of it
-to 3/2. Of an
-isotropic material only the azimuth between the directions counts: the common rotation that
-brings two pairs nearest leaves sin θi sin θo / √(sin² θi + sin² θo) of their azimuths' difference.
+The distance of two pairs is about the angle [rad] by which their directions differ, from 1/√2 of
+it to 3/2. Of an isotropic material only the azimuth between the directions counts: the common
+rotation that brings two pairs nearest leaves sin θi sin θo / √(sin² θi + sin² θo) of their
+azimuths' difference.
 """
 
 from dataclasses import dataclass
