@@ -24,7 +24,7 @@ def read(source):
     """The `Fit` that `write` wrote."""
     try:
         record = json.loads(source.data)
-        label, values = str(record["model"]), dict(record["parameters"])
+        label, values = _of_type(str, record["model"]), dict(record["parameters"])
         found = {f.name: _of_type(f.type, record["fit"][f.name]) for f in FIELDS}
     except (ValueError, KeyError, TypeError, RecursionError):
         raise source.error("is no fit that brdfkit saved, or is damaged; fit it again") from None
@@ -33,7 +33,7 @@ def read(source):
     except (BrdfkitError, TypeError) as error:
         if not registry.is_label(label):
             raise source.error(
-                f"is a fit of {label!r}, a model of somebody's own; load its file first, "
+                f"is a fit of {label[:80]!r}, a model of somebody's own; load its file first, "
                 'brdfkit.load_models("FILE.py"), or name it before the fit'
             ) from None
         reason = str(error)[:200].rstrip(".")
