@@ -125,6 +125,7 @@ def fit():
 
 # of the tables in an RGL file, which has 16 MB otherwise
 FEW_NODES = adapting.Resolution(phi_i=0, theta_i=3, phi_m=1, theta_m=8, grid=5)
+FEW_ALL_AROUND = adapting.Resolution(phi_i=2, theta_i=3, phi_m=8, theta_m=8, grid=5)
 MATERIALS = {"table": table, "spectrum": spectrum, "brushed": brushed, "fit": fit}
 
 

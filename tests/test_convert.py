@@ -8,7 +8,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from small_files import FEW_NODES, FILES, MATERIALS, brushed, fit, place, spectrum, table, written
+from small_files import (
+    FEW_ALL_AROUND,
+    FEW_NODES,
+    FILES,
+    MATERIALS,
+    brushed,
+    fit,
+    place,
+    spectrum,
+    table,
+    written,
+)
 
 import brdfkit as bk
 from brdfkit import adapting
@@ -20,7 +31,7 @@ from brdfkit.formats import HEAD, formats, load, save
 from brdfkit.measured import Measured
 from brdfkit.quadrature import albedo
 
-pytestmark = pytest.mark.quick
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("small_tables")]
 WRITERS = {m.__name__.rpartition(".")[2]: m for m in formats() if hasattr(m, "write")}
 
 
@@ -28,6 +39,7 @@ WRITERS = {m.__name__.rpartition(".")[2]: m for m in formats() if hasattr(m, "wr
 def small_tables(monkeypatch):
     """RGL files of few nodes, written at once."""
     monkeypatch.setattr(adapting, "ISOTROPIC", FEW_NODES)
+    monkeypatch.setattr(adapting, "ANISOTROPIC", FEW_ALL_AROUND)
 
 
 def run(*words):
@@ -112,7 +124,7 @@ def test_a_writer_refuses_in_one_sentence(tmp_path, kind):
 
 @pytest.mark.parametrize("name", ["Lack, grün", "漆", "caf\udce9"])  # the last: latin-1 on disk
 @pytest.mark.parametrize("suffix", [".brdf", ".astm", ".dat", ".npz", ".bsdf"])
-def test_any_name_can_be_written(tmp_path, small_tables, suffix, name):
+def test_any_name_can_be_written(tmp_path, suffix, name):
     material = replace(spectrum(), name=name)
     save(material, tmp_path / f"it{suffix}")
     assert len(load(tmp_path / f"it{suffix}").values)
@@ -186,7 +198,7 @@ UNREADABLE = [
 
 
 @pytest.mark.parametrize(("suffix", "channels", "match"), UNREADABLE)
-def test_channels_that_could_not_be_read_again(tmp_path, small_tables, suffix, channels, match):
+def test_channels_that_could_not_be_read_again(tmp_path, suffix, channels, match):
     path = tmp_path / f"paint{suffix}"
     for write in (save, lambda obj, path: convert(obj, path)):
         with pytest.raises(BrdfkitError, match=rf"^{path}: .*{match}.*\.$"):
