@@ -199,7 +199,6 @@ def test_check(cli):
     assert all(f["passed"] is True for r in reports for f in r["findings"])
 
 
-@pytest.mark.quick
 def test_a_file_stands_for_the_model_in_it(cli):
     """Wherever a model is named; then a saved fit of it is known, too."""
     Path("c++").mkdir()
@@ -272,7 +271,6 @@ NAMES = {
 }
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("name", NAMES)
 def test_a_name_from_a_file_stays_here_and_off_the_terminal(cli, here, name):
     """As it comes out of a file: nothing of brdfkit's would write such a name."""
@@ -418,7 +416,6 @@ def test_ctrl_c_keeps_the_finished_fits(cli, monkeypatch):
     assert not Path("new").exists()
 
 
-@pytest.mark.quick
 def test_ctrl_c_keeps_the_passes_of_a_picture_and_says_so(cli, monkeypatch):
     monkeypatch.setattr("brdfkit.tracing.PASS", 1)
     monkeypatch.setattr("brdfkit.console.Console.progress", interrupting)

@@ -71,7 +71,6 @@ def test_known_parameters_come_back(model, loss, starts):
     assert found.loss < 1e-5
 
 
-@pytest.mark.quick
 def test_known_parameters_come_back_from_a_table(model):
     truth = isotropic(model)
     table = Table(np.full((24, 12, 24, 3), np.nan))
