@@ -169,25 +169,22 @@ def define(mi, model):
         def has_attribute(self, name, active=True):
             return super().has_attribute(self.attribute(name), active)
 
-        # Mitsuba's own methods call these again: they are only for what is no parameter
-
         def eval_attribute(self, name, si, active=True):
-            key = self.attribute(name)
-            if key not in self.textures:
-                return super().eval_attribute(name, si, active)
-            return self.textures[key].eval(si, active) * self.scale(key)
+            return self.attribute_by("eval", super().eval_attribute, name, si, active)
 
         def eval_attribute_1(self, name, si, active=True):
-            key = self.attribute(name)
-            if key not in self.textures:
-                return super().eval_attribute_1(name, si, active)
-            return self.textures[key].eval_1(si, active) * self.scale(key)
+            return self.attribute_by("eval_1", super().eval_attribute_1, name, si, active)
 
         def eval_attribute_3(self, name, si, active=True):
+            return self.attribute_by("eval_3", super().eval_attribute_3, name, si, active)
+
+        def attribute_by(self, method, inherited, name, si, active):
+            """A parameter by a method of its texture; Mitsuba's own calls this one again, and is
+            only for what is no parameter."""
             key = self.attribute(name)
             if key not in self.textures:
-                return super().eval_attribute_3(name, si, active)
-            return self.textures[key].eval_3(si, active) * self.scale(key)
+                return inherited(name, si, active)
+            return getattr(self.textures[key], method)(si, active) * self.scale(key)
 
         def attribute(self, name):
             """The name of the texture behind a parameter: that of another one which it follows."""

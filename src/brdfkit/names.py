@@ -1,6 +1,6 @@
 """Names: apart from each other, fit to be printed, fit for a file."""
 
-CONTROL = dict.fromkeys([*range(32), *range(127, 160)])  # ASCII's, ISO 6429's: a terminal obeys
+CONTROL = {chr(c) for c in (*range(32), *range(127, 160))}  # ASCII's, ISO 6429's: a terminal obeys
 RESERVED = '/\\:*?"<>|'  # no part of a file's name, here or on another system
 LONGEST = 100  # bytes: a file system takes 255, with suffix and all
 
@@ -24,7 +24,7 @@ def printable(text, keep=""):
     >>> printable("gold\\x1b[2J")
     'gold[2J'
     """
-    return str(text).translate({c: None for c in CONTROL if chr(c) not in keep})
+    return "".join(c for c in str(text) if c in keep or c not in CONTROL)
 
 
 def slug(name):
