@@ -16,10 +16,11 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 import brdfkit as bk
-from brdfkit import catalogue, scenes
+from brdfkit.catalogue import shipped
 from brdfkit.checks.sampling import spread
 from brdfkit.checks.subject import INCIDENCES, Subject
-from brdfkit.directions import from_angles
+from brdfkit.geometry.directions import from_angles
+from brdfkit.rendering import scenes
 
 PAGE = Path(__file__).with_name("measured.md")
 SIZE, SPP, COLUMNS = 128, 121, 10
@@ -45,7 +46,7 @@ table of half vectors and a tenth of cosine samples. *albedo*: at 0 and 60°, me
 
 def files(folder):
     """What `brdfkit.load` takes, of every measurement."""
-    names = list(catalogue.materials())
+    names = list(shipped.materials())
     for path in sorted(p for p in Path(folder).rglob("*") if p.is_file()):
         suffix = path.name.removesuffix(".xz").rpartition(".")[2]
         if path.name == "abrdf.dat":

@@ -13,8 +13,8 @@ import numpy as np
 from PIL import Image
 
 import brdfkit as bk
-from brdfkit import registry
 from brdfkit.commands.models import choices, example
+from brdfkit.model import labels
 
 FOLDER = Path(__file__).with_name("models")
 SIZE, SPP = 320, 128
@@ -117,7 +117,7 @@ def picture(form):
 def use(model):
     """Examples, with the first option where there is one."""
     option = next(iter(model.options), None)
-    form = registry.model(example(model, option)) if option else model
+    form = labels.model(example(model, option)) if option else model
     entries = {"type": form.type_name()} | ({option: getattr(form, option)} if option else {})
     for name in [*form.weights()[:1], *form.shapes()[:1]]:
         entries[name] = form.parameters[name].default

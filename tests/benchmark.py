@@ -17,7 +17,7 @@ import brdfkit as bk
 from brdfkit import llvm
 from brdfkit.checks.sampling import spread
 from brdfkit.checks.subject import INCIDENCES, Subject, incidences
-from brdfkit.table import Table
+from brdfkit.samples import Table
 
 MERL = (90, 90, 180)
 ROUNDS = 5
@@ -45,7 +45,7 @@ def render_seconds(materials):
     """Least seconds of a warm rendering by material."""
     import mitsuba as mi
 
-    from brdfkit.scenes import ball
+    from brdfkit.rendering.scenes import ball
 
     scenes = {name: mi.load_dict(ball(m, (SIZE, SIZE), SPP)) for name, m in materials.items()}
     best = dict.fromkeys(scenes, np.inf)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import brdfkit as bk
-from brdfkit import registry
+from brdfkit.model import labels
 
 
 @pytest.fixture
@@ -50,7 +50,7 @@ def forms():
 @pytest.fixture
 def configured(form):
     """A model with its options."""
-    return registry.model(form)
+    return labels.model(form)
 
 
 @pytest.fixture

@@ -7,12 +7,13 @@ from unittest import mock
 
 import numpy as np
 
-from brdfkit import adapting, registry
-from brdfkit.directions import from_angles
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.result import Fit
 from brdfkit.formats import formats
+from brdfkit.formats.rgl import encoding
+from brdfkit.geometry.directions import from_angles
 from brdfkit.measured import Measured
+from brdfkit.model import labels
 from brdfkit.samples import Samples
 
 MIRROR_PHI = 3.141593
@@ -119,13 +120,13 @@ def brushed():
 
 def fit():
     """A fit that nobody made."""
-    model = registry.model_with_values("ward", {"alpha_u": 0.1, "alpha_v": 0.4})
+    model = labels.model_with_values("ward", {"alpha_u": 0.1, "alpha_v": 0.4})
     return Fit(model, "paint", "log", 0.1, 72, 9, 0.5, "converged")
 
 
 # of the tables in an RGL file, which has 16 MB otherwise
-FEW_NODES = adapting.Resolution(phi_i=0, theta_i=3, phi_m=1, theta_m=8, grid=5)
-FEW_ALL_AROUND = adapting.Resolution(phi_i=2, theta_i=3, phi_m=8, theta_m=8, grid=5)
+FEW_NODES = encoding.Resolution(phi_i=0, theta_i=3, phi_m=1, theta_m=8, grid=5)
+FEW_ALL_AROUND = encoding.Resolution(phi_i=2, theta_i=3, phi_m=8, theta_m=8, grid=5)
 MATERIALS = {"table": table, "spectrum": spectrum, "brushed": brushed, "fit": fit}
 
 
@@ -138,7 +139,7 @@ def written():
         for make in MATERIALS.values():
             stream = io.BytesIO()
             try:
-                with mock.patch.object(adapting, "ISOTROPIC", FEW_NODES):
+                with mock.patch.object(encoding, "ISOTROPIC", FEW_NODES):
                     module.write(make(), stream)
             except BrdfkitError:
                 continue

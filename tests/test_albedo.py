@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit import backend, registry
 from brdfkit.checks.subject import random_pairs
-from brdfkit.directions import from_angles
 from brdfkit.errors import BrdfkitError
-from brdfkit.microfacet import Beckmann
+from brdfkit.geometry.directions import from_angles
+from brdfkit.model import double_precision, labels
+from brdfkit.model.microfacet import Beckmann
 
 DEGREES = (0, 30, 60, 75, 85)
 # (model, shape parameters): albedo at each of DEGREES
@@ -60,7 +60,7 @@ def albedo(model, degrees, n_theta=400, n_phi=720):
 @pytest.mark.parametrize(("name", "shape"), ALBEDOS)
 def test_specular_albedo(name, shape):
     values = {k: float(v) for k, v in (pair.split("=") for pair in shape.split())}
-    model = registry.model(name)(diffuse_reflectance=0, specular_reflectance=1, **values)
+    model = labels.model(name)(diffuse_reflectance=0, specular_reflectance=1, **values)
     found = [albedo(model, degrees) for degrees in DEGREES]
     np.testing.assert_allclose(found, ALBEDOS[name, shape], atol=1e-3)
 
@@ -68,7 +68,7 @@ def test_specular_albedo(name, shape):
 @pytest.mark.quick
 @pytest.mark.parametrize("exponent", [1, 10, 100])
 def test_exact_blinn_phong_reflects_all_at_normal_incidence(exponent):
-    model = registry.model("blinn_phong:normalisation=exact")
+    model = labels.model("blinn_phong:normalisation=exact")
     model = model(diffuse_reflectance=0, specular_reflectance=1, exponent=exponent)
     assert albedo(model, 0) == pytest.approx(1, abs=5e-4)
 
@@ -84,7 +84,7 @@ FULL_OREN_NAYAR = {
 @pytest.mark.quick
 @pytest.mark.parametrize("sigma", FULL_OREN_NAYAR)
 def test_full_oren_nayar(sigma):
-    model = registry.model("oren_nayar:form=full")(diffuse_reflectance=1, sigma=sigma)
+    model = labels.model("oren_nayar:form=full")(diffuse_reflectance=1, sigma=sigma)
     found = [albedo(model, degrees) for degrees in DEGREES]
     np.testing.assert_allclose(found, FULL_OREN_NAYAR[sigma], atol=1e-3)
 
@@ -218,7 +218,7 @@ def test_lafortune_knows_only_ratios():
 def test_lafortunes_lobes_add_up():
     """As printed, with the C of each lobe its own."""
     wi, wo = random_pairs(1_000, seed=0)
-    one, two = bk.models()["lafortune"], registry.model("lafortune:lobe_count=2")
+    one, two = bk.models()["lafortune"], labels.model("lafortune:lobe_count=2")
     first = {"specular_reflectance": 0.3, "c_x": -0.9, "c_z": 0.5, "exponent": 40.0}
     second = {"specular_reflectance": 0.2, "c_x": 0.4, "c_z": 0.8, "exponent": 3.0}
     both = two(diffuse_reflectance=0.1, **first, **{f"{k}_2": v for k, v in second.items()})
@@ -241,7 +241,7 @@ def test_lafortunes_lobes_add_up():
 def test_ashikhmin_shirleys_diffuse_term():
     """From above 0.96875, from everywhere 0.82143, and none where F₀ is 1."""
     values = {"diffuse_reflectance": 1, "specular_reflectance": 0}
-    coupled = registry.model("ashikhmin_shirley:diffuse=coupled")
+    coupled = labels.model("ashikhmin_shirley:diffuse=coupled")
     model = coupled(**values, f0=0)
     found = [albedo(model, degrees) for degrees in DEGREES]
     np.testing.assert_allclose(found, (0.9688, 0.9414, 0.7627, 0.4999, 0.1997), atol=1e-4)
@@ -296,7 +296,7 @@ def projected(D):
     x, w = np.polynomial.legendre.leggauss(2000)
     low, high = np.log(1e-9), np.log(np.pi / 2)
     theta, w = np.exp(low + (x + 1) / 2 * (high - low)), w * (high - low) / 2
-    values = np.array(D(backend.vector(from_angles(theta, 0.0))))
+    values = np.array(D(double_precision.vector(from_angles(theta, 0.0))))
     return np.sum(2 * np.pi * values * np.cos(theta) * np.sin(theta) * theta * w)
 
 
@@ -310,13 +310,13 @@ def test_constants_of_the_distributions():
     for m, expected in zip(
         (0.1, 0.2, 0.3, 0.6, 1.0), (0.9934, 0.9738, 0.9421, 0.7913, 0.5477), strict=True
     ):
-        width = backend.scalar(m)
+        width = double_precision.scalar(m)
         assert projected(Beckmann(width, width).D) == pytest.approx(1, abs=1e-6)
         gaussian = file_of("torrance_sparrow").GaussianAngle(width)
         assert projected(gaussian.D) == pytest.approx(expected, abs=1e-3)
     for alpha in (1e-4, 1.0):
         for p in (0.0, 1.0, 2.0):
-            facets = file_of("sgd").ShiftedGamma(*map(backend.scalar, (alpha, p)))
+            facets = file_of("sgd").ShiftedGamma(*map(double_precision.scalar, (alpha, p)))
             assert projected(facets.D) == pytest.approx(1, abs=2e-3)
 
 
@@ -327,13 +327,13 @@ def test_shifted_gamma_is_the_published_one():
         (0.0171547, 0.769726, 25.8231, 1.20095, 1.02768e-07, 51.5975, 0.218049),
         (0.678586, 1.2402, 3.91532, 2.09871, 0.0378525, 6.8689, 0.166634),
     ):
-        facets = file_of("sgd").ShiftedGamma(*map(backend.scalar, (alpha, p)))
-        normal = backend.vector(from_angles([0.0], [0.0]))
+        facets = file_of("sgd").ShiftedGamma(*map(double_precision.scalar, (alpha, p)))
+        normal = double_precision.vector(from_angles([0.0], [0.0]))
         published = K * np.exp(-alpha) / alpha**p / np.pi
         assert np.array(facets.D(normal))[0] == pytest.approx(published, rel=1e-3)
         theta = np.radians([0, 30, 50, 70, 80, 85, 88])
         G1 = 1 + Lambda * (1 - np.exp(c * np.maximum(theta - theta_0, 0) ** k))
-        found = np.array(facets.G1(backend.vector(from_angles(theta, 0.0))))
+        found = np.array(facets.G1(double_precision.vector(from_angles(theta, 0.0))))
         np.testing.assert_allclose(found, G1, atol=3e-3)
 
 

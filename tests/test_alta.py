@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from small_files import alta, place, spectrum
 
+from brdfkit.colours import RGB
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats import load, save
-from brdfkit.measured import RGB
 
 pytestmark = pytest.mark.quick
 

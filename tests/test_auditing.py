@@ -21,11 +21,11 @@ from brdfkit.auditing.ratios import grazing, retroreflection
 from brdfkit.auditing.spikes import spikes
 from brdfkit.checks.subject import random_pairs
 from brdfkit.commands.info import record
-from brdfkit.directions import from_angles
 from brdfkit.formats import load
+from brdfkit.geometry.directions import from_angles
 from brdfkit.measured import Measured
 from brdfkit.records import plain
-from brdfkit.table import Table
+from brdfkit.samples import Table
 
 SHAPE = 45, 23, 36
 GGX = models()["ggx"](alpha_u=0.2, diffuse_reflectance=0.2, specular_reflectance=0.5)

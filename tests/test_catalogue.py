@@ -7,27 +7,27 @@ import shutil
 import numpy as np
 import pytest
 
-from brdfkit import catalogue
-from brdfkit.directions import from_angles, to_half_difference
+from brdfkit.catalogue import shipped
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import contents
 from brdfkit.formats import load
+from brdfkit.geometry.directions import from_angles, to_half_difference
 
-NAMES = sorted(catalogue.materials())
-TABULATED = [n for n in NAMES if catalogue.materials()[n].file.endswith(".binary.xz")]
+NAMES = sorted(shipped.materials())
+TABULATED = [n for n in NAMES if shipped.materials()[n].file.endswith(".binary.xz")]
 MEASURED = [n for n in NAMES if n not in TABULATED]
 LIMIT = 400_000  # bytes: they are in the repository and in the wheel
 
 
 @pytest.fixture(scope="module")
 def measured():
-    return {name: load(catalogue.path(name)) for name in NAMES}
+    return {name: load(shipped.path(name)) for name in NAMES}
 
 
 @pytest.fixture(scope="module")
 def make():
     """The program that made the tables, as a module."""
-    spec = importlib.util.spec_from_file_location("make", catalogue.folder() / "make.py")
+    spec = importlib.util.spec_from_file_location("make", shipped.folder() / "make.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -47,8 +47,8 @@ def variant():
 def copy(tmp_path, monkeypatch):
     """A copy of the folder, to spoil."""
     folder = tmp_path / "measured"
-    shutil.copytree(catalogue.folder(), folder)
-    monkeypatch.setattr(catalogue, "folder", lambda: folder)
+    shutil.copytree(shipped.folder(), folder)
+    monkeypatch.setattr(shipped, "folder", lambda: folder)
     return folder
 
 
@@ -87,24 +87,24 @@ def assert_same(values, errors, others, other_errors):
 
 @pytest.mark.quick
 def test_index_and_files_are_one_to_one(make):
-    files = {file.name for file in catalogue.folder().glob("*.xz")}
-    entries = [material.file for material in catalogue.materials().values()]
+    files = {file.name for file in shipped.folder().glob("*.xz")}
+    entries = [material.file for material in shipped.materials().values()]
     assert sorted(entries) == sorted(files)
     assert sorted(make.TABULATED) == TABULATED
     assert sorted(make.MEASURED) == MEASURED
-    readme = (catalogue.folder() / "README.md").read_text(encoding="utf-8")
+    readme = (shipped.folder() / "README.md").read_text(encoding="utf-8")
     assert all(f"| `{name}` |" in readme for name in NAMES)
 
 
 @pytest.mark.quick
 @pytest.mark.parametrize("name", NAMES)
 def test_entries_say_all_and_checksums_are_right(name):
-    material = catalogue.materials()[name]
+    material = shipped.materials()[name]
     assert material.name == name == material.file.split(".")[0]
     assert material.licence == "BSD-3-Clause"
     assert material.source.endswith(f"make.py {name}")
     assert all(text in str(material) for text in (name, material.title, material.what))
-    file = catalogue.path(name)
+    file = shipped.path(name)
     assert hashlib.sha256(file.read_bytes()).hexdigest() == material.sha256
     assert file.stat().st_size <= LIMIT
 
@@ -112,22 +112,22 @@ def test_entries_say_all_and_checksums_are_right(name):
 @pytest.mark.quick
 def test_a_name_that_is_none():
     with pytest.raises(BrdfkitError, match=r"no material 'gold'; there are .*dusty_gold"):
-        catalogue.path("gold")
+        shipped.path("gold")
 
 
 @pytest.mark.quick
 def test_a_changed_or_missing_file_is_refused(copy):
-    file = catalogue.path("car_paint")
+    file = shipped.path("car_paint")
     assert file.parent == copy
     spoilt = bytearray(file.read_bytes())
     spoilt[len(spoilt) // 2] ^= 1
     file.write_bytes(spoilt)
     with pytest.raises(BrdfkitError, match=r"checksum differs.*install brdfkit again\.$"):
-        catalogue.path("car_paint")
+        shipped.path("car_paint")
     file.unlink()
     with pytest.raises(BrdfkitError, match=r"'car_paint' is missing"):
-        catalogue.path("car_paint")
-    assert catalogue.path("dusty_gold").exists()
+        shipped.path("car_paint")
+    assert shipped.path("dusty_gold").exists()
 
 
 @pytest.mark.quick
@@ -200,7 +200,7 @@ def test_albedo_is_at_most_one(measured, name, theta_i):
 def test_encoded_again_the_content_is_the_same(measured, make, name):
     material = measured[name]
     again = make.packed(material) if name in MEASURED else make.encoded(material.table.values)
-    assert again == contents(catalogue.path(name))
+    assert again == contents(shipped.path(name))
 
 
 @pytest.mark.quick

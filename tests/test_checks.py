@@ -10,9 +10,9 @@ import brdfkit as bk
 from brdfkit.checks import checks
 from brdfkit.checks.sampling import spread
 from brdfkit.checks.subject import INCIDENCES, Subject
-from brdfkit.lobes import Cosine, HalfVector, Lobe, lambertian
-from brdfkit.microfacet import Beckmann
 from brdfkit.model import Model, follows, shape, weight
+from brdfkit.model.lobes import Cosine, HalfVector, Lobe, lambertian
+from brdfkit.model.microfacet import Beckmann
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 
@@ -134,14 +134,14 @@ def test_coverage_notices_a_missing_lobe(monkeypatch):
             facets = Narrow(HalfVector(Beckmann(self.alpha, self.alpha)))
             return Lobe(lambda wi, wo: 1 / dr.pi, facets), Lobe(self.specular, facets)
 
-    monkeypatch.setattr("brdfkit.bsdf.COSINE_SHARE", 0.0)
+    monkeypatch.setattr("brdfkit.host.bsdf.COSINE_SHARE", 0.0)
     assert _check(Missing, "chi squared", monkeypatch)
     assert not _check(Missing, "coverage", monkeypatch)
 
 
 MINE = """import drjit as dr
 import numpy as np
-from brdfkit.lobes import Cosine, Lobe
+from brdfkit.model.lobes import Cosine, Lobe
 from brdfkit.model import Model, shape, weight
 
 
@@ -170,7 +170,7 @@ class Mine(Model):
 )
 def test_a_model_that_raises_has_failed(lines, said, tmp_path, monkeypatch):
     """Each check for itself; the figure names the line."""
-    monkeypatch.setattr("brdfkit.registry._user_files", {})
+    monkeypatch.setattr("brdfkit.model.labels._user_files", {})
     (tmp_path / "users_mine.py").write_text(MINE + lines)
     mine = bk.load_models(tmp_path)["users_mine"]
     report = bk.check(mine(), only=["plugin is formula", "finite"])
@@ -212,7 +212,7 @@ def _check(model, check, monkeypatch):
     """The report of a model that lies in no file."""
     import mitsuba as mi
 
-    from brdfkit import bsdf
+    from brdfkit.host import bsdf
 
     class Bsdf(bsdf.define(mi, model)):
         def __init__(self):

@@ -17,8 +17,9 @@ from click.testing import CliRunner
 from small_files import merl
 
 import brdfkit as bk
-from brdfkit import catalogue, registry
+from brdfkit.catalogue import shipped
 from brdfkit.cli import main
+from brdfkit.model import labels
 
 SMALL = ("--size", "16", "--spp", "2")
 SHAPE = (6, 4, 8)
@@ -37,7 +38,7 @@ SCENE = """<scene version="3.0.0">
 </scene>"""
 USER_MODEL = '''"""Felt: dull."""
 
-from brdfkit.lobes import lambertian
+from brdfkit.model.lobes import lambertian
 from brdfkit.model import Model, weight
 
 
@@ -53,7 +54,7 @@ class Felt(Model):
 def here(tmp_path, monkeypatch):
     """An empty current folder with a measured file in it."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(registry, "_user_files", {})
+    monkeypatch.setattr(labels, "_user_files", {})
     Path("paint.binary").write_bytes(merl(SHAPE))
     return tmp_path
 
@@ -103,7 +104,7 @@ def test_page_of_a_model(cli, model):
 def test_info(cli):
     listed = cli("info")
     assert_fine(listed)
-    assert all(name in listed.stdout for name in catalogue.materials())
+    assert all(name in listed.stdout for name in shipped.materials())
     shown = cli("info", "paint.binary")
     assert_fine(shown)
     assert "6×4×8 table" in shown.stdout
@@ -151,7 +152,7 @@ def test_fit_and_render(cli):
 @pytest.mark.quick
 def test_a_folder_may_have_the_name_of_a_material(cli):
     """`fit car_paint --render` makes such a folder; the next `fit car_paint` reads the table."""
-    name = next(iter(catalogue.materials()))
+    name = next(iter(shipped.materials()))
     Path(name).mkdir()
     Path("ward").mkdir()
     assert_fine(cli("info", name))
@@ -205,12 +206,12 @@ def test_a_file_stands_for_the_model_in_it(cli):
     Path("c++/felt.py").write_text(USER_MODEL)
     assert "Felt: dull." in cli("models", "c++/felt.py").stdout
     Path("felt.py").write_text(USER_MODEL.replace("0.3", "0.2"))
-    registry._user_files.clear()
+    labels._user_files.clear()
     assert_fine(cli("fit", "paint.binary", "-m", "felt.py", "-m", "felt.py+ward", "-o", "."))
     assert {"felt.json", "felt+ward.json"} < set(tree(Path()))
     assert_fine(cli("render", "felt.py", "felt.json", "felt+ward.json", *SMALL))
     assert_fine(cli("convert", "felt.py", "felt.bsdf"))
-    registry._user_files.clear()
+    labels._user_files.clear()
     unknown = cli("render", "felt.json", *SMALL)
     assert unknown.exit_code == 2
     assert "'felt', a model of somebody's own; load its file first" in unknown.stderr
@@ -417,8 +418,8 @@ def test_ctrl_c_keeps_the_finished_fits(cli, monkeypatch):
 
 
 def test_ctrl_c_keeps_the_passes_of_a_picture_and_says_so(cli, monkeypatch):
-    monkeypatch.setattr("brdfkit.tracing.PASS", 1)
-    monkeypatch.setattr("brdfkit.console.Console.progress", interrupting)
+    monkeypatch.setattr("brdfkit.rendering.tracing.PASS", 1)
+    monkeypatch.setattr("brdfkit.commands._console.Console.progress", interrupting)
     said = "brdfkit: interrupted; rendered with 2 of 5 samples per pixel.\n"
     Path("room.xml").write_text(SCENE.format(alpha=0.3))
     for words in (["ward", "--size", "8"], ["room.xml"]):
@@ -427,7 +428,9 @@ def test_ctrl_c_keeps_the_passes_of_a_picture_and_says_so(cli, monkeypatch):
         assert "2 spp" in result.stdout
         assert "written: it.png" in result.stdout
     words = "--render", "--size", "8", "--spp", "5", "-o", "out"
-    monkeypatch.setattr("brdfkit.tracing.PASS", 2)  # two materials: every pass counts twice
+    monkeypatch.setattr(
+        "brdfkit.rendering.tracing.PASS", 2
+    )  # two materials: every pass counts twice
     result = cli("fit", "paint.binary", "-m", "lambert", *words)
     assert (result.exit_code, result.stderr) == (130, said)
     assert "written: out/render.png" in result.stdout
@@ -468,12 +471,12 @@ class Terminal:
 @pytest.mark.quick
 @pytest.mark.parametrize(("patience", "quiet"), [(0.01, False), (0.01, True), (60, False)])
 def test_progress_shows_after_a_second_and_goes_away(monkeypatch, patience, quiet):
-    from brdfkit.console import Console
+    from brdfkit.commands._console import Console
 
     terminal = Terminal()
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setattr("sys.stderr", terminal)
-    monkeypatch.setattr("brdfkit.console.PATIENCE", patience)
+    monkeypatch.setattr("brdfkit.commands._console.PATIENCE", patience)
     with Console(quiet=quiet).progress("fit [ward]") as report:
         time.sleep(0.1)
         report(1, 4)

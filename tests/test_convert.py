@@ -22,14 +22,14 @@ from small_files import (
 )
 
 import brdfkit as bk
-from brdfkit import adapting
 from brdfkit.cli import main
 from brdfkit.converting import convert
-from brdfkit.directions import from_angles
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats import HEAD, formats, load, save
+from brdfkit.formats.rgl import encoding
+from brdfkit.geometry.directions import from_angles
+from brdfkit.geometry.quadrature import albedo
 from brdfkit.measured import Measured
-from brdfkit.quadrature import albedo
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("small_tables")]
 WRITERS = {m.__name__.rpartition(".")[2]: m for m in formats() if hasattr(m, "write")}
@@ -38,8 +38,8 @@ WRITERS = {m.__name__.rpartition(".")[2]: m for m in formats() if hasattr(m, "wr
 @pytest.fixture
 def small_tables(monkeypatch):
     """RGL files of few nodes, written at once."""
-    monkeypatch.setattr(adapting, "ISOTROPIC", FEW_NODES)
-    monkeypatch.setattr(adapting, "ANISOTROPIC", FEW_ALL_AROUND)
+    monkeypatch.setattr(encoding, "ISOTROPIC", FEW_NODES)
+    monkeypatch.setattr(encoding, "ANISOTROPIC", FEW_ALL_AROUND)
 
 
 def run(*words):

@@ -13,9 +13,9 @@ import pytest
 from click.testing import CliRunner
 from small_files import curet, curet_table, merl
 
-from brdfkit import catalogue, public_collections
+from brdfkit.catalogue import public, shipped
+from brdfkit.catalogue.downloading import get
 from brdfkit.cli import main
-from brdfkit.downloading import get
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats import load
 
@@ -73,14 +73,14 @@ def server():
 @pytest.fixture
 def cache(tmp_path, monkeypatch):
     """An empty cache folder, not yet made."""
-    monkeypatch.setattr(public_collections, "cache", lambda: tmp_path / "cache")
+    monkeypatch.setattr(public, "cache", lambda: tmp_path / "cache")
     return tmp_path / "cache"
 
 
 @pytest.fixture
 def lab(server, cache, monkeypatch):
     """A function that makes `lab` the only collection, with one file, which is on the server."""
-    own = catalogue.index()
+    own = shipped.index()
 
     def put(file="grey.binary", data=TABLE, **entry):
         url = f"http://127.0.0.1:{server.server_port}/{{file}}"
@@ -95,7 +95,7 @@ def lab(server, cache, monkeypatch):
             "files": [row],
         }
         index = own | {"collections": {"lab": collection | entry}}
-        monkeypatch.setattr(catalogue, "index", lambda: copy.deepcopy(index))
+        monkeypatch.setattr(shipped, "index", lambda: copy.deepcopy(index))
         return cache / "lab" / file
 
     return put
@@ -144,7 +144,7 @@ def test_interrupted_then_resumed(server, lab):
     part = place.with_name("grey.binary.part")
     assert files(place.parent) == [part.name]
     assert "is not here" in fails(call=load)
-    assert not public_collections.collection("lab").here()
+    assert not public.collection("lab").here()
     have = part.stat().st_size
     assert 0 < have <= server.breaks
     server.breaks = None
@@ -312,7 +312,7 @@ def test_files_that_the_index_does_not_know(lab, cache):
     for name in (".DS_Store", "notes.txt", "SHA256SUMS", "._mine.binary", "half.binary.part"):
         (cache / "lab" / name).write_bytes(TABLE)
     assert load("lab/mine").name == "mine"
-    assert list(public_collections.collection("lab").here()) == ["lab/mine"]
+    assert list(public.collection("lab").here()) == ["lab/mine"]
 
 
 def test_a_sample_of_a_file_with_many(lab, cache):
@@ -387,7 +387,7 @@ def test_wrong_words(lab, cache, words, said):
 
 
 def test_the_index_is_complete():
-    found = public_collections.collections()
+    found = public.collections()
     assert {name: len(c.files) for name, c in found.items()} == {
         "merl": 100, "rgl": 62, "cornell": 6, "curet": 1, "utia": 0,
     }  # fmt: skip
@@ -408,9 +408,9 @@ def test_the_index_is_complete():
 
 @pytest.mark.parametrize("folder", ["rgl", "cornell", "curet"])
 def test_checksums_are_those_of_real_files(measured_data, folder):
-    known = {listed.file: listed for listed in public_collections.collection(folder).files.values()}
+    known = {listed.file: listed for listed in public.collection(folder).files.values()}
     there = [f for f in (measured_data / folder).iterdir() if known.get(f.name)]
     assert there
     for file in there:
-        assert catalogue.sha256(file) == known[file.name].sha256
+        assert shipped.sha256(file) == known[file.name].sha256
         assert file.stat().st_size == known[file.name].bytes

@@ -8,11 +8,11 @@ import pytest
 from random_models import random_model
 
 import brdfkit as bk
-from brdfkit.directions import from_angles
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.weights import bounded_quadratic
+from brdfkit.geometry.directions import from_angles
 from brdfkit.model import Model, weight
-from brdfkit.table import Table
+from brdfkit.samples import Table
 
 
 def synthetic(model, n=3000, seed=0):
@@ -248,12 +248,12 @@ def test_without_derivatives_the_fit_is_the_same(monkeypatch):
     """The fallback without LLVM: scalar arrays and finite differences."""
     import drjit as dr
 
-    from brdfkit import backend
+    from brdfkit.model import double_precision
 
     data = synthetic(bk.models()["cook_torrance"](alpha=0.3, f0=0.2), n=500)
     exact = bk.fit("cook_torrance", data)
-    monkeypatch.setattr(backend, "float64", lambda: dr.scalar.ArrayXf64)
-    assert not backend.differentiable()
+    monkeypatch.setattr(double_precision, "float64", lambda: dr.scalar.ArrayXf64)
+    assert not double_precision.differentiable()
     slow = bk.fit("cook_torrance", data)
     for name, value in exact.values.items():
         np.testing.assert_allclose(slow.values[name], value, rtol=1e-4)

@@ -24,11 +24,11 @@ from small_files import (
 )
 
 from brdfkit import files
-from brdfkit.colours import colour_science
-from brdfkit.directions import from_angles
+from brdfkit.colours import RGB, colour_science
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats import formats, load, save
-from brdfkit.measured import RGB, Measured
+from brdfkit.geometry.directions import from_angles
+from brdfkit.measured import Measured
 
 pytestmark = pytest.mark.quick
 PACKED = {"": bytes, ".gz": gzip.compress, ".xz": lzma.compress}

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from brdfkit.directions import from_angles
+from brdfkit.colours import RGB
 from brdfkit.files import contents
 from brdfkit.formats import HEAD, formats, load, save
-from brdfkit.measured import RGB
+from brdfkit.geometry.directions import from_angles
 
 DATA = Path(os.environ.get("BRDFKIT_DATA", "unset"))
 pytestmark = pytest.mark.skipif(not DATA.is_dir(), reason="BRDFKIT_DATA names no folder")

@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from brdfkit import goniometer, microgeometry
-from brdfkit.directions import from_angles
 from brdfkit.errors import BrdfkitError
-from brdfkit.goniometer import Tally, measure
-from brdfkit.microgeometry import HeightField, brushed, gaussian, make, woven
-from brdfkit.specimen import Specimen
+from brdfkit.geometry.directions import from_angles
+from brdfkit.goniometer import measure, measuring, microgeometry
+from brdfkit.goniometer.measuring import Tally
+from brdfkit.goniometer.microgeometry import HeightField, brushed, gaussian, make, woven
+from brdfkit.goniometer.specimen import Specimen
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 
@@ -353,10 +353,10 @@ class Recorder:
 @pytest.mark.quick
 def test_the_order_of_the_samples_is_that_of_the_cells(monkeypatch):
     """The shipped tables come from it."""
-    monkeypatch.setattr(goniometer, "BATCH", 7)
+    monkeypatch.setattr(measuring, "BATCH", 7)
     counts, recorder = np.array([3, 0, 9, 1, 1, 8, 0]), Recorder()
     tally = Tally(len(counts))
-    goniometer._trace(recorder, None, None, counts, np.random.default_rng(5), tally)
+    measuring._trace(recorder, None, None, counts, np.random.default_rng(5), tally)
     assert [len(pair) for pair in recorder.pairs] == [7, 7, 7, 1]
     assert np.array_equal(np.concatenate(recorder.pairs), np.repeat(np.arange(7), counts))
     random = np.random.default_rng(5)
@@ -366,7 +366,7 @@ def test_the_order_of_the_samples_is_that_of_the_cells(monkeypatch):
 
 @pytest.mark.quick
 def test_many_samples_need_the_memory_of_one_batch(monkeypatch):
-    monkeypatch.setattr(goniometer, "BATCH", 100)
+    monkeypatch.setattr(measuring, "BATCH", 100)
     tally, counts = Tally(3), np.full(3, 10**7)
 
     def stop(done, total):
@@ -375,7 +375,7 @@ def test_many_samples_need_the_memory_of_one_batch(monkeypatch):
     tracemalloc.start()
     try:
         with pytest.raises(KeyboardInterrupt):
-            goniometer._trace(Recorder(), None, None, counts, np.random.default_rng(), tally, stop)
+            measuring._trace(Recorder(), None, None, counts, np.random.default_rng(), tally, stop)
         assert tracemalloc.get_traced_memory()[1] < 10**6
     finally:
         tracemalloc.stop()
@@ -398,7 +398,7 @@ class Interrupt:
 
 @pytest.mark.quick
 def test_ctrl_c_keeps_what_there_is(monkeypatch):
-    monkeypatch.setattr("brdfkit.goniometer.BATCH", 5_000)
+    monkeypatch.setattr("brdfkit.goniometer.measuring.BATCH", 5_000)
     options = {"surface": tile("gaussian"), "facets": GREY, "shape": (5, 5, 5), "error": 0.02}
     whole, part = measure(**options), measure(**options, progress=Interrupt(after=30))
     assert "interrupted" in part.info

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit import registry
-from brdfkit.directions import from_angles
 from brdfkit.evaluating import lobe_values
 from brdfkit.fitting.selection import selected
+from brdfkit.geometry.directions import from_angles
+from brdfkit.model import labels
 
 
 def hemisphere(n_theta, n_phi):
@@ -25,7 +25,7 @@ def hemisphere(n_theta, n_phi):
 @pytest.mark.quick
 def test_lobes_are_evaluated_together():
     """In one kernel, not in one for each of 120: a thousand of them took half a minute."""
-    model = registry.model("koenderink:order=4,symmetry=anisotropic")()
+    model = labels.model("koenderink:order=4,symmetry=anisotropic")()
     directions, _ = hemisphere(4, 8)
     with dr.scoped_set_flag(dr.JitFlag.KernelHistory):
         dr.kernel_history_clear()
@@ -46,16 +46,16 @@ def test_lobes_are_evaluated_together():
 )
 def test_counts_of_weights(order, isotropic, anisotropic):
     """Kurt 2007 prints 14, 55 and 295 anisotropic ones, which is no truncation of the basis."""
-    assert len(registry.model(f"koenderink:order={order}").weights()) == isotropic
+    assert len(labels.model(f"koenderink:order={order}").weights()) == isotropic
     if anisotropic:
         label = f"koenderink:order={order},symmetry=anisotropic"
-        assert len(registry.model(label).weights()) == anisotropic
+        assert len(labels.model(label).weights()) == anisotropic
 
 
 @pytest.mark.parametrize("label", ["koenderink:order=8", "koenderink:symmetry=anisotropic"])
 def test_basis_is_orthonormal(label):
     """∫∫ I_a I_b dω_i dω_r = δ_ab, by a quadrature that is exact for the polynomials."""
-    model = registry.model(label)()
+    model = labels.model(label)()
     isotropic = "8" in label
     wo, weight_o = hemisphere(9, 18)
     if isotropic:  # only Δφ counts: one azimuth of wi stands for all
@@ -71,7 +71,7 @@ def test_basis_is_orthonormal(label):
 
 @pytest.mark.quick
 def test_order_0_is_lambert():
-    koenderink = registry.model("koenderink:order=0")(a_0_0_0=0.6)
+    koenderink = labels.model("koenderink:order=0")(a_0_0_0=0.6)
     wi, wo = from_angles([0.3], [0.1]), from_angles([1.2], [2.0])
     assert koenderink.eval(wi, wo) == pytest.approx(0.3 / np.pi, rel=1e-12)
 
@@ -80,9 +80,9 @@ def test_order_0_is_lambert():
 def test_counts_of_the_polynomial():
     """2p + 1 weights and one angle, which stands for the 4 entries of U; anisotropic 3p + 1."""
     for degree in (1, 2, 7):
-        model = registry.model(f"pca_polynomial:degree={degree}")
+        model = labels.model(f"pca_polynomial:degree={degree}")
         assert (len(model.weights()), len(model.shapes())) == (2 * degree + 1, 1)
-        model = registry.model(f"pca_polynomial:degree={degree},symmetry=anisotropic")
+        model = labels.model(f"pca_polynomial:degree={degree},symmetry=anisotropic")
         assert (len(model.weights()), len(model.shapes())) == (3 * degree + 1, 3)
 
 
@@ -90,7 +90,7 @@ def test_counts_of_the_polynomial():
 def test_turned_by_its_angles_data_has_its_principal_axes():
     rng = np.random.default_rng(1)
     data = rng.normal(size=(500, 3)) @ rng.normal(size=(3, 3))
-    model = registry.model("pca_polynomial")
+    model = labels.model("pca_polynomial")
     module = sys.modules[model.__module__]
     _, axes = np.linalg.eigh(np.cov(data.T))
     import drjit as dr
@@ -104,11 +104,11 @@ def test_turned_by_its_angles_data_has_its_principal_axes():
 def test_principal_axes_of_curet(measured_data):
     """Kurt 2007: the first axis at -1.80°, by the 189 geometries below 80°."""
     samples = selected(bk.load(measured_data / "curet" / "abrdf.dat#1"), 80.0)
-    angles = registry.model("pca_polynomial").determined(samples)
+    angles = labels.model("pca_polynomial").determined(samples)
     assert np.degrees(angles["angle_1_2"]) == pytest.approx(-1.80, abs=5e-3)
     # All 205 geometries: -0.92°
     samples = selected(bk.load(measured_data / "curet" / "abrdf.dat#1"), 89.0)
-    angles = registry.model("pca_polynomial").determined(samples)
+    angles = labels.model("pca_polynomial").determined(samples)
     assert np.degrees(angles["angle_1_2"]) == pytest.approx(-0.92, abs=5e-3)
 
 
@@ -133,7 +133,7 @@ def test_optima_on_curet(sample, label, measured_data):
 
 @pytest.mark.quick
 def test_what_is_clamped_is_said():
-    dark = registry.model("koenderink")(a_0_0_0=0.1, a_2_2_0=0.2)
+    dark = labels.model("koenderink")(a_0_0_0=0.1, a_2_2_0=0.2)
     wi, wo = (from_angles(np.full(50, 0.4), np.zeros(50)), from_angles(np.linspace(0, 1.5, 50), 2))
     assert (dark.eval(wi, wo) >= 0).all()
     assert (dark.eval(wi, wo) == 0).any()

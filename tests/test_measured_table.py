@@ -8,13 +8,14 @@ import pytest
 from small_files import place
 
 import brdfkit as bk
-from brdfkit import catalogue, registry
+from brdfkit.catalogue import shipped
 from brdfkit.checks import checks
 from brdfkit.checks.sampling import spread
 from brdfkit.checks.subject import INCIDENCES, Subject, incidences, random_pairs
 from brdfkit.colours import colour_science
-from brdfkit.directions import from_angles
-from brdfkit.table import Table
+from brdfkit.geometry.directions import from_angles
+from brdfkit.model import labels
+from brdfkit.samples import Table
 
 VARIANTS = ("llvm_ad_rgb", "llvm_ad_mono", "llvm_ad_spectral", "scalar_rgb", "scalar_spectral")
 NODES = (450.0, 550.0, 650.0)  # nm
@@ -196,7 +197,7 @@ def cosine_spread(material, degrees):
     return weights.std() / weights.mean()
 
 
-@pytest.mark.parametrize("name", [*catalogue.materials(), "brushed"])
+@pytest.mark.parametrize("name", [*shipped.materials(), "brushed"])
 def test_weights_of_samples_vary_little(name, llvm_variant):
     """Standard deviation ≤ 0.5 of the mean at every incidence, and never worse than by cosine."""
     material = MATERIALS.get(name, lambda: bk.load(name))()
@@ -298,7 +299,7 @@ def test_beyond_measured_angles_no_more_light_leaves_than_comes(paint, measured_
 
 def test_a_retroreflective_peak_stays_where_it_was_measured(goniometer):
     """Its neighbours at the same theta_h, a few degrees of theta_d away, are not in it."""
-    truth = registry.model_with_values("lafortune:lobe_count=2", BACK_AND_FORTH)
+    truth = labels.model_with_values("lafortune:lobe_count=2", BACK_AND_FORTH)
     found = bk.Measured.from_samples(*goniometer, truth.eval(*goniometer), channels=("Y",))
     for degrees in (20, 40, 60):
         wi = from_angles(np.radians(degrees), 0.0)

@@ -14,9 +14,9 @@ import pytest
 import brdfkit as bk
 from brdfkit.checks.sampling import uniform
 from brdfkit.checks.subject import random_pairs
-from brdfkit.clamped import tabulated
-from brdfkit.directions import from_angles, normalize
-from brdfkit.lobes import components_of
+from brdfkit.geometry.directions import from_angles, normalize
+from brdfkit.host.signed_sum import tabulated
+from brdfkit.model.lobes import components_of
 
 # All z-scores of this file, some 30: a right renderer exceeds this once in 5,000 files
 HIGHEST_Z = 4.5
@@ -124,7 +124,7 @@ def test_gradient_of_a_picture(model, llvm_variant, monkeypatch):
     mi = llvm_variant
     tables = {}  # a table drawn from moves with the weights, and the directions would with it
     monkeypatch.setattr(
-        "brdfkit.bsdf.tabulated",
+        "brdfkit.host.bsdf.tabulated",
         lambda model, lobes: tables.setdefault(tuple(lobes), tabulated(model, lobes)),
     )
     integrator = {"type": "prb", "max_depth": 2}

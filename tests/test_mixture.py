@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit import registry
 from brdfkit.checks.subject import random_pairs
-from brdfkit.directions import from_angles
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.selection import selected
+from brdfkit.geometry.directions import from_angles
+from brdfkit.model import labels
 
 
 @pytest.mark.quick
 def test_a_mixture_is_the_sum_of_its_parts():
     ggx, ward = bk.models()["ggx"], bk.models()["ward"]
-    both = registry.model("ggx+ward")(
+    both = labels.model("ggx+ward")(
         diffuse_reflectance=0.3,
         ggx_1_specular_reflectance=0.4,
         ggx_1_alpha_u=0.3,
@@ -34,12 +34,12 @@ def test_a_mixture_is_the_sum_of_its_parts():
 
 @pytest.mark.parametrize("label", ["lambert+blinn_phong+ggx", "ggx+ward_duer", "ward+ward+ward"])
 def test_any_sum_passes_the_checks(label, llvm_variant):
-    report = bk.check(registry.model(label)())
+    report = bk.check(labels.model(label)())
     assert report, str(report)
 
 
 def test_two_lobes_come_back():
-    truth = registry.model("ggx+ggx")(
+    truth = labels.model("ggx+ggx")(
         diffuse_reflectance=(0.1, 0.2, 0.3),
         ggx_1_specular_reflectance=(0.4, 0.3, 0.2),
         ggx_1_alpha_u=0.4,
@@ -61,7 +61,7 @@ def test_a_second_lobe_fits_better():
 
 @pytest.mark.quick
 def test_a_mixture_is_plain_data(tmp_path):
-    model = registry.model("lambert+ward")(ward_2_alpha_u=0.1)
+    model = labels.model("lambert+ward")(ward_2_alpha_u=0.1)
     copy = pickle.loads(pickle.dumps(model))
     assert copy.name == "lambert+ward"
     assert copy.values == model.values
@@ -79,7 +79,7 @@ def test_a_second_lobe_of_the_same_model_begins_narrower(model):
     name = model.type_name()
     if name == "mixture" or all(lobe.diffuse for lobe in model().lobes()):
         pytest.skip("has several lobes, or none")
-    both = registry.model(f"{name}+{name}")
+    both = labels.model(f"{name}+{name}")
     halves = []
     for number in (1, 2):
         own = f"{name}_{number}_specular_reflectance"
@@ -96,7 +96,7 @@ def test_a_second_lobe_of_the_same_model_begins_narrower(model):
 @pytest.mark.quick
 def test_what_a_part_takes_from_the_geometry_is_no_search():
     data = bk.load("dusty_gold")
-    angles = registry.model("pca_polynomial").determined(selected(data, 80.0))
+    angles = labels.model("pca_polynomial").determined(selected(data, 80.0))
     found = bk.fit("pca_polynomial+ward", data, starts=1)
     for name, value in angles.items():
         assert found.values[f"pca_polynomial_1_{name}"] == value
@@ -104,7 +104,7 @@ def test_what_a_part_takes_from_the_geometry_is_no_search():
 
 @pytest.mark.quick
 def test_a_sum_may_be_named_as_the_option_it_is():
-    assert registry.model("mixture:models=ggx+ward") is registry.model("ggx+ward")
+    assert labels.model("mixture:models=ggx+ward") is labels.model("ggx+ward")
 
 
 @pytest.mark.quick
@@ -124,7 +124,7 @@ def test_a_sum_may_be_named_as_the_option_it_is():
 )
 def test_bad_labels_are_refused(label, words):
     with pytest.raises(BrdfkitError) as caught:
-        registry.model(label)
+        labels.model(label)
     for word in words:
         assert word in str(caught.value)
 

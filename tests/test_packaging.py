@@ -74,8 +74,9 @@ def test_works_without_the_checkout(installed, tmp_path):
 
     where = """
 import brdfkit
-from brdfkit import catalogue, registry
-for path in (brdfkit.__file__, catalogue.folder(), *registry.plugin_files().values()):
+from brdfkit.catalogue import shipped
+from brdfkit.model import labels
+for path in (brdfkit.__file__, shipped.folder(), *labels.plugin_files().values()):
     print(path)
 """
     places = python("-c", where).split()

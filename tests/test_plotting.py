@@ -7,11 +7,12 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from brdfkit import models
-from brdfkit.directions import from_angles
 from brdfkit.errors import BrdfkitError
-from brdfkit.half_disc import Radius
+from brdfkit.geometry.directions import from_angles
 from brdfkit.measured import Measured
-from brdfkit.plotting import Plot, lobe, luminance, plot
+from brdfkit.plotting import Plot, plot
+from brdfkit.plotting.half_disc import Radius
+from brdfkit.plotting.lobe_plots import lobe, luminance
 
 pytestmark = pytest.mark.quick
 

@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit import llvm, registry
+from brdfkit import llvm
+from brdfkit.model import labels
 
 VARIANTS = ("llvm_ad_rgb", "llvm_ad_mono", "llvm_ad_spectral", "scalar_rgb", "scalar_spectral")
 WO_Z = math.sqrt(1 - 0.34)
-FELT = """from brdfkit.lobes import lambertian
+FELT = """from brdfkit.model.lobes import lambertian
 from brdfkit.model import Model, weight
 
 
@@ -115,7 +116,7 @@ def test_no_name_is_a_built_in_plugin():
 
     built_in = {file.stem for file in Path(mi.__file__).with_name("plugins").iterdir()}
     assert {"diffuse", "roughconductor", "path"} < built_in
-    assert not built_in & set(registry.plugin_files())
+    assert not built_in & set(labels.plugin_files())
 
 
 # Parameters
@@ -208,7 +209,7 @@ def test_errors_name_the_parameter(model, variant, name):
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    monkeypatch.setattr(registry, "_user_files", {})
+    monkeypatch.setattr(labels, "_user_files", {})
     return tmp_path
 
 
@@ -245,7 +246,7 @@ def test_a_taken_name_is_refused(folder, name):
     (folder / f"{name}.py").write_text(FELT)
     with pytest.raises(bk.BrdfkitError, match=f"plugin '{name}'; rename the file"):
         bk.load_models(folder)
-    assert not registry._user_files
+    assert not labels._user_files
 
 
 @pytest.mark.quick
@@ -272,7 +273,7 @@ def test_a_file_that_holds_no_model_is_refused(folder, text, said):
     (folder / "users_wrong.py").write_text(text)
     with pytest.raises(bk.BrdfkitError, match=rf"users_wrong\.py.*{said}"):
         bk.load_models(folder)
-    assert not registry._user_files
+    assert not labels._user_files
     with pytest.raises(bk.BrdfkitError, match="no Python file"):
         bk.load_models(folder / "nowhere.py")
 

@@ -8,10 +8,10 @@ import pytest
 import brdfkit as bk
 from brdfkit.colours import colour_science
 from brdfkit.errors import BrdfkitError
-from brdfkit.pictures import colour_differences, montage
 from brdfkit.rendering import Rendering, render, render_scene
-from brdfkit.scenes import ball, ball_mask
-from brdfkit.tracing import passes_of
+from brdfkit.rendering.montage import colour_differences, montage
+from brdfkit.rendering.scenes import ball, ball_mask
+from brdfkit.rendering.tracing import passes_of
 
 WHITE = {"name": "white", "type": "diffuse", "reflectance": 0.8}
 GREY = {"name": "grey", "type": "diffuse", "reflectance": 0.2}

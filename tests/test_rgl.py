@@ -9,17 +9,18 @@ import pytest
 from small_files import written
 
 import brdfkit as bk
-from brdfkit import adapting, checks
-from brdfkit.adapting import Resolution
+from brdfkit import checks
 from brdfkit.checks.sampling import uniform
 from brdfkit.checks.subject import Subject, incidences, random_pairs
-from brdfkit.directions import from_angles
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit
-from brdfkit.formats import _tensor_file, load, save
+from brdfkit.formats import load, save
+from brdfkit.formats.rgl import encoding, tensor_file
+from brdfkit.formats.rgl.encoding import Resolution
+from brdfkit.formats.rgl.normals import Hemisphere, power_iteration
+from brdfkit.formats.rgl.warp import Warp, between, even_grid
+from brdfkit.geometry.directions import from_angles
 from brdfkit.measured import Measured
-from brdfkit.retroreflection import Hemisphere, power_iteration
-from brdfkit.warp import Warp, between, even_grid
 
 DATABASE = (
     "acrylic_felt_green",
@@ -40,8 +41,8 @@ def rgl():
 @pytest.fixture
 def small_tables(monkeypatch):
     """Files of few nodes, written at once."""
-    monkeypatch.setattr(adapting, "ISOTROPIC", Resolution(0, 6, 1, 32, 16))
-    monkeypatch.setattr(adapting, "ANISOTROPIC", Resolution(3, 5, 16, 32, 12))
+    monkeypatch.setattr(encoding, "ISOTROPIC", Resolution(0, 6, 1, 32, 16))
+    monkeypatch.setattr(encoding, "ANISOTROPIC", Resolution(3, 5, 16, 32, 12))
 
 
 @pytest.fixture
@@ -89,12 +90,12 @@ class Above:
 def unpacked(data):
     """The fields of a file's bytes, writable."""
     source = SimpleNamespace(data=data, error=BrdfkitError)
-    return {name: array.copy() for name, array in _tensor_file.read(source).items()}
+    return {name: array.copy() for name, array in tensor_file.read(source).items()}
 
 
 def packed(fields):
     stream = io.BytesIO()
-    _tensor_file.write(stream, fields)
+    tensor_file.write(stream, fields)
     return stream.getvalue()
 
 
@@ -256,7 +257,7 @@ SYMMETRIES = {
 def test_every_symmetry_is_found_written_and_looked_up(llvm_variant, tmp_path, small_tables, kind):
     make, quarters = SYMMETRIES[kind]
     brdf = make()
-    assert adapting.symmetry(brdf.eval) == quarters
+    assert encoding.symmetry(brdf.eval) == quarters
     material = saved(brdf, tmp_path / "surface.bsdf")
     assert material.anisotropic == (quarters > 0)
     wi, wo = random_pairs(5000, seed=4)
@@ -485,7 +486,7 @@ def test_spectra(variant, tmp_path):
 
 
 def test_achromatic_black_and_rewritten(llvm_variant, tmp_path, monkeypatch):
-    monkeypatch.setattr(adapting, "ISOTROPIC", Resolution(0, 16, 1, 64, 48))
+    monkeypatch.setattr(encoding, "ISOTROPIC", Resolution(0, 16, 1, 64, 48))
     wi, wo = pairs(1000)
     for reflectance in (0.3, 0.0):
         grey = Measured.from_table(np.full((4, 4, 8, 1), reflectance), channels=("Y",))

@@ -14,12 +14,12 @@ import pytest
 from random_models import random_model
 
 import brdfkit as bk
-from brdfkit import backend
-from brdfkit.directions import from_angles
 from brdfkit.fitting.loss import losses
 from brdfkit.fitting.selection import selected
-from brdfkit.lobes import HalfVector
-from brdfkit.microfacet import Beckmann
+from brdfkit.geometry.directions import from_angles
+from brdfkit.model import double_precision
+from brdfkit.model.lobes import HalfVector
+from brdfkit.model.microfacet import Beckmann
 
 # The thesis's p₀, p₁, p₂ by the names of ours
 SHAPES = {
@@ -110,8 +110,8 @@ def row_of(line, data):
 
 def lobes_at(name, shapes, wi, wo):
     """Lobes (lobes, n), unchecked: the thesis lets exponents be 0, which our bounds do not."""
-    bound = bk.models()[name].bind({n: backend.scalar(v) for n, v in shapes.items()})
-    wi, wo = backend.vector(wi), backend.vector(wo)
+    bound = bk.models()[name].bind({n: double_precision.scalar(v) for n, v in shapes.items()})
+    wi, wo = double_precision.vector(wi), double_precision.vector(wo)
     values = [np.asarray(lobe.eval(wi, wo)) for _, lobe in bound.terms()]
     return np.stack([np.broadcast_to(v, len(np.asarray(wi.x))) for v in values])
 

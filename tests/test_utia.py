@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from small_files import place, spectrum, table, utia
 
-from brdfkit.directions import from_angles
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats import load, save
+from brdfkit.geometry.directions import from_angles
 from brdfkit.measured import Measured
 
 pytestmark = pytest.mark.quick

@@ -30,7 +30,7 @@ from brdfkit.files import written
 from brdfkit.formats import load, npz
 from brdfkit.formats.merl import NOT_MEASURED, SCALE
 from brdfkit.measured import Measured
-from brdfkit.table import Table
+from brdfkit.samples import Table
 
 # Twice as many phi_d as theta_d cells: MERL's way to say that phi_d spans half a circle
 SHAPE = (72, 36, 72)

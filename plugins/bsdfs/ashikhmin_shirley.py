@@ -14,10 +14,10 @@ only the product k_s F₀ is told by measurements.
 
 import drjit as dr
 
-from brdfkit.lobes import Cosine, HalfVector, Lobe, lambertian
-from brdfkit.microfacet import CosinePower, Visible, fifth_power, schlick
+from brdfkit.geometry.vectors import cos_theta_d, half_vector
 from brdfkit.model import Model, follows, option, shape, weight
-from brdfkit.vectors import cos_theta_d, half_vector
+from brdfkit.model.lobes import Cosine, HalfVector, Lobe, lambertian
+from brdfkit.model.microfacet import CosinePower, Visible, fifth_power, schlick
 
 
 class AshikhminShirley(Model):

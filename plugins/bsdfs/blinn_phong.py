@@ -14,10 +14,10 @@ Shows plastics; no Fresnel effect, no retro-reflection.
 
 import drjit as dr
 
-from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import CosinePower, Visible
+from brdfkit.geometry.vectors import half_vector
 from brdfkit.model import Model, follows, option, shape, weight
-from brdfkit.vectors import half_vector
+from brdfkit.model.lobes import HalfVector, Lobe, lambertian
+from brdfkit.model.microfacet import CosinePower, Visible
 
 
 class BlinnPhong(Model):

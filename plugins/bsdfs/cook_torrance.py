@@ -8,10 +8,10 @@ D G F / 4(N·L)(N·V): energy is conserved only for about k_d + 4 k_s ≤ 1. Sho
 plastics of one roughness; no anisotropy.
 """
 
-from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import Beckmann, Visible, schlick, v_groove
+from brdfkit.geometry.vectors import cos_theta_d, half_vector
 from brdfkit.model import Model, shape, weight
-from brdfkit.vectors import cos_theta_d, half_vector
+from brdfkit.model.lobes import HalfVector, Lobe, lambertian
+from brdfkit.model.microfacet import Beckmann, Visible, schlick, v_groove
 
 
 class CookTorrance(Model):

@@ -8,10 +8,10 @@ E. Heitz, "Understanding the masking-shadowing function in microfacet-based BRDF
 no scattering between facets.
 """
 
-from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import TrowbridgeReitz, schlick
+from brdfkit.geometry.vectors import cos_theta_d, half_vector
 from brdfkit.model import Model, follows, shape, weight
-from brdfkit.vectors import cos_theta_d, half_vector
+from brdfkit.model.lobes import HalfVector, Lobe, lambertian
+from brdfkit.model.microfacet import TrowbridgeReitz, schlick
 
 
 class GGX(Model):

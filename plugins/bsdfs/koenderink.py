@@ -23,8 +23,8 @@ from math import factorial
 
 import drjit as dr
 
-from brdfkit.lobes import Cosine, Lobe
 from brdfkit.model import Model, option, weight
+from brdfkit.model.lobes import Cosine, Lobe
 
 
 def isotropic_term(n, m, l, wi, wo):

@@ -13,10 +13,10 @@ are round, never elliptic, and there is no Fresnel effect.
 
 import drjit as dr
 
-from brdfkit.lobes import Lobe, PowerLobe, lambertian
+from brdfkit.geometry.vectors import dot
 from brdfkit.model import Model, follows, option, shape, weight
-from brdfkit.numerics import cosine_power
-from brdfkit.vectors import dot
+from brdfkit.model.lobes import Lobe, PowerLobe, lambertian
+from brdfkit.model.numerics import cosine_power
 
 
 class Lafortune(Model):

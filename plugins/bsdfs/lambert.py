@@ -6,8 +6,8 @@ J. H. Lambert, "Photometria", 1760; Kurt 2007, eq. 3.1. Shows chalk and matte pa
 that depends on the view.
 """
 
-from brdfkit.lobes import lambertian
 from brdfkit.model import Model, weight
+from brdfkit.model.lobes import lambertian
 
 
 class Lambert(Model):

@@ -24,13 +24,13 @@ def define(mi):
     """The class of `mi.BSDF` for the current variant."""
     import drjit as dr
 
-    from brdfkit import lookup
-    from brdfkit.channels import channels
     from brdfkit.errors import BrdfkitError
-    from brdfkit.lobes import Cosine
-    from brdfkit.table import Table
-    from brdfkit.tabulated import Tabulated
-    from brdfkit.vectors import above_horizon
+    from brdfkit.geometry.vectors import above_horizon
+    from brdfkit.host import table_lookup
+    from brdfkit.host.channels import channels
+    from brdfkit.host.half_vector_table import Tabulated
+    from brdfkit.model.lobes import Cosine
+    from brdfkit.samples import Table
 
     COSINE, COSINE_SHARE = Cosine(), 0.1
 
@@ -79,7 +79,7 @@ def define(mi):
             active &= ctx.is_enabled(mi.BSDFFlags.GlossyReflection, 0)
             wi, active = above_horizon(si.wi, active)
             wo, active = above_horizon(wo, active)
-            value = self.values.mean(lookup.corners(self.table, wi, wo), si)
+            value = self.values.mean(table_lookup.corners(self.table, wi, wo), si)
             return dr.select(active, value * wo.z, 0)
 
         def pdf(self, ctx, si, wo, active=True):

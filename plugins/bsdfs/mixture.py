@@ -11,9 +11,8 @@ BRDF models", EGSR 2005; Kurt 2007, eqs. 3.12, 3.30.
 
 from dataclasses import replace
 
-from brdfkit import registry
 from brdfkit.errors import BrdfkitError
-from brdfkit.model import Model, option
+from brdfkit.model import Model, labels, option
 
 # A lobe of the same model begins this much narrower: two alike are a saddle of the fit
 NARROWER = 3.0
@@ -29,13 +28,13 @@ class Mixture(Model):
     @classmethod
     def parts(cls):
         """(prefix, model, names of the weights that it brings) of every part."""
-        labels, parts = cls.models.split("+"), []
-        if len(labels) < 2:
+        named, parts = cls.models.split("+"), []
+        if len(named) < 2:
             raise BrdfkitError(
                 f"mixture: models = {cls.models} should name two or more, joined by +, as ggx+ward."
             )
-        for number, label in enumerate(labels, 1):
-            model = registry.model(label)
+        for number, label in enumerate(named, 1):
+            model = labels.model(label)
             diffuse = [name for name, lobe in model().terms() if lobe.diffuse]
             brought = [n for n in model.weights() if number == 1 or n not in diffuse]
             if not brought:

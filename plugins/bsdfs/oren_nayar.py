@@ -16,8 +16,8 @@ gloss. With k_d = 1 the full form reflects up to 5 % more than it receives at gr
 
 import drjit as dr
 
-from brdfkit.lobes import Cosine, Lobe
 from brdfkit.model import Model, option, shape, weight
+from brdfkit.model.lobes import Cosine, Lobe
 
 
 class OrenNayar(Model):

@@ -20,8 +20,8 @@ import math
 import drjit as dr
 import numpy as np
 
-from brdfkit.lobes import Cosine, Lobe
 from brdfkit.model import Model, option, shape, weight
+from brdfkit.model.lobes import Cosine, Lobe
 
 # The planes that the angles turn, one after the other: of two components, of three
 PLANES = {2: ((0, 1),), 3: ((0, 1), (0, 2), (1, 2))}

@@ -11,10 +11,10 @@ materials grow long and bright; no retro-reflection.
 
 import drjit as dr
 
-from brdfkit.lobes import Lobe, PowerLobe, lambertian
+from brdfkit.geometry.vectors import one_minus_dot
 from brdfkit.model import Model, shape, weight
-from brdfkit.numerics import cosine_power
-from brdfkit.vectors import one_minus_dot
+from brdfkit.model.lobes import Lobe, PowerLobe, lambertian
+from brdfkit.model.numerics import cosine_power
 
 
 class Phong(Model):

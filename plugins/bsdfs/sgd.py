@@ -20,11 +20,11 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import Visible, schlick
+from brdfkit.geometry.vectors import cos_theta_d, half_vector
 from brdfkit.model import Model, shape, weight
-from brdfkit.numerics import expm1, log1p
-from brdfkit.vectors import cos_theta_d, half_vector
+from brdfkit.model.lobes import HalfVector, Lobe, lambertian
+from brdfkit.model.microfacet import Visible, schlick
+from brdfkit.model.numerics import expm1, log1p
 
 # Gauss-Legendre; the integrals over slopes end where the Gaussian has fallen to exp(-END)
 POINTS, GAUSS = np.polynomial.legendre.leggauss(12)

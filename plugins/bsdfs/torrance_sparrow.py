@@ -15,11 +15,11 @@ from typing import Any
 
 import drjit as dr
 
-from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import Visible, schlick, v_groove
+from brdfkit.geometry.vectors import cos_theta_d, half_vector
 from brdfkit.model import Model, shape, weight
-from brdfkit.numerics import log1p
-from brdfkit.vectors import cos_theta_d, half_vector
+from brdfkit.model.lobes import HalfVector, Lobe, lambertian
+from brdfkit.model.microfacet import Visible, schlick, v_groove
+from brdfkit.model.numerics import log1p
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,10 @@ Fresnel effect and no retro-reflection.
 
 import drjit as dr
 
-from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import Beckmann, Visible
+from brdfkit.geometry.vectors import half_vector
 from brdfkit.model import Model, follows, shape, weight
-from brdfkit.vectors import half_vector
+from brdfkit.model.lobes import HalfVector, Lobe, lambertian
+from brdfkit.model.microfacet import Beckmann, Visible
 
 
 class Ward(Model):

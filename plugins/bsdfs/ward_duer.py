@@ -12,10 +12,10 @@ stays below 1.
 
 import drjit as dr
 
-from brdfkit.lobes import HalfVector, Lobe, lambertian
-from brdfkit.microfacet import Beckmann, Visible
+from brdfkit.geometry.vectors import cos_theta_d, half_vector
 from brdfkit.model import Model, follows, option, shape, weight
-from brdfkit.vectors import cos_theta_d, half_vector
+from brdfkit.model.lobes import HalfVector, Lobe, lambertian
+from brdfkit.model.microfacet import Beckmann, Visible
 
 
 class WardDuer(Model):

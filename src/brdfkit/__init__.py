@@ -11,11 +11,12 @@ BSDF plugins in every variant, and chooses the LLVM that Dr.Jit loads (`brdfkit.
 
 import lazy_loader
 
-from brdfkit import llvm, mitsuba_hook
+from brdfkit import llvm
+from brdfkit.host import hook
 
 # The public names are listed in __init__.pyi alone, and imported when used
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 __version__ = "0.1.0"
 
 llvm.prepare()
-mitsuba_hook.install()
+hook.install()

@@ -7,12 +7,12 @@ from .fitting import fit as fit
 from .fitting import losses as losses
 from .formats import load as load
 from .formats import save as save
+from .geometry.quadrature import albedo as albedo
 from .measured import Measured as Measured
 from .model import Model as Model
+from .model.labels import load_models as load_models
+from .model.labels import models as models
 from .plotting import plot as plot
-from .quadrature import albedo as albedo
-from .registry import load_models as load_models
-from .registry import models as models
 from .rendering import Rendering as Rendering
 from .rendering import render as render
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 
+RGB = ("R", "G", "B")  # names of the channels
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from brdfkit.directions import from_angles
 from brdfkit.formats import saved
+from brdfkit.geometry.directions import from_angles
 from brdfkit.measured import Measured
 
 # Direction pairs where two materials are compared, up to so far from the normal
@@ -43,7 +43,7 @@ def convert(thing, path):
 
 def evaluated(thing):
     """A fit or a model as a `Measured`: evaluated where a table would be, exact in between."""
-    from brdfkit.resampled import sampled, table_shape
+    from brdfkit.measured.tabulation import sampled, table_shape
 
     model = getattr(thing, "model", thing)
     anisotropic = any(model.parameters[name].follows for name in model.free_values)

@@ -66,10 +66,10 @@ def lobe_values(model, wi, wo):
     squares, likewise."""
     import drjit as dr
 
-    from brdfkit import backend
+    from brdfkit.model import double_precision
 
-    terms = model.bind(backend.shapes(model)).terms()
-    wi, wo = backend.vector(wi), backend.vector(wo)
+    terms = model.bind(double_precision.shapes(model)).terms()
+    wi, wo = double_precision.vector(wi), double_precision.vector(wo)
     plain = [lobe.eval(wi, wo) for _, lobe in terms]
     squared = [lobe.quadratic(wi, wo) if lobe.quadratic else 0.0 for _, lobe in terms]
     dr.eval(plain, squared)  # together: a kernel for each takes six times as long

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from brdfkit import registry
 from brdfkit.errors import BrdfkitError
 from brdfkit.measured import Measured
+from brdfkit.model import labels
 
 ATTRIBUTES = "name", "eval", "scene_dict"
 
@@ -16,7 +16,7 @@ def require_material(thing):
         raise BrdfkitError(f"{name} is a model without values; call it: {name}().")
     if isinstance(thing, str | Path):
         name = str(thing)
-        made = f"models()[{name!r}]()" if registry.is_label(name) else f"load({name!r})"
+        made = f"models()[{name!r}]()" if labels.is_label(name) else f"load({name!r})"
         raise BrdfkitError(f"{name!r} is a name, no material; give brdfkit.{made}.")
     if not all(hasattr(thing, attribute) for attribute in ATTRIBUTES):
         raise BrdfkitError(

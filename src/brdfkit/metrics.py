@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from brdfkit import backend
 from brdfkit.fitting.loss import losses
 from brdfkit.fitting.selection import selected
+from brdfkit.model import double_precision
 
 
 def error(thing, data, loss, max_angle=80.0):
@@ -29,6 +29,6 @@ def error(thing, data, loss, max_angle=80.0):
 
 
 def _transformed(loss, values, cosines):
-    Float64 = backend.float64()
+    Float64 = double_precision.float64()
     columns = [loss.g(Float64(np.ascontiguousarray(v * cosines))) for v in values.T]
     return np.stack([np.asarray(c) for c in columns], axis=1)

@@ -12,7 +12,7 @@ from brdfkit.auditing.pairs import Difference, by_mirror, by_reciprocity
 from brdfkit.auditing.ratios import grazing, retroreflection
 from brdfkit.auditing.spikes import Spike, spikes
 from brdfkit.fitting.selection import within
-from brdfkit.spectra import rgb_or_mean
+from brdfkit.measured.spectra import rgb_or_mean
 
 MAX_ANGLE = 80.0  # degrees: what a fit uses by default
 FEW = 10  # angles that are told each

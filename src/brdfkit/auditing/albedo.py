@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.directions import from_angles, to_angles
+from brdfkit.geometry.directions import from_angles, to_angles
 
 DEGREES = np.arange(0, 90, 5)  # of incidence
 # Points of the half vector: its polar angle, spaced as a table's, and its azimuth

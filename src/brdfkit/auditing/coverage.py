@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.auditing.pairs import points
-from brdfkit.directions import from_angles
+from brdfkit.geometry.directions import from_angles
 
 NEAR = np.radians(5)  # a pair this near to a sample counts as measured
 PAIRS = 20_000  # the shares are good to 0.4 %

@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 
 from brdfkit.auditing.coverage import is_near
-from brdfkit.colours import luminance
-from brdfkit.measured import RGB
-from brdfkit.plotting import Plot, draw, usual_angles
-from brdfkit.spectra import rgb_or_mean
+from brdfkit.colours import RGB, luminance
+from brdfkit.measured.spectra import rgb_or_mean
+from brdfkit.plotting import Plot
+from brdfkit.plotting.lobe_plots import draw, usual_angles
 
 SIZE = 12.6, 6.8  # inches
 GREY = "0.45"  # of the legend, where it means all channels

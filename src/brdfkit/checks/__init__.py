@@ -13,7 +13,7 @@ from brdfkit.checks.failure import described
 from brdfkit.checks.subject import Finding, Subject, checks
 from brdfkit.errors import BrdfkitError
 from brdfkit.materials import require_material
-from brdfkit.registry import require_file
+from brdfkit.model.labels import require_file
 
 for _module in pkgutil.iter_modules(__path__):
     importlib.import_module(f"{__name__}.{_module.name}")

@@ -116,11 +116,11 @@ def _has_effect(model, name):
     """Whether a lobe is computed from the parameter."""
     import drjit as dr
 
-    from brdfkit import backend
+    from brdfkit.model import double_precision
 
-    values = {n: backend.scalar(getattr(model, n)) for n in model.shapes(anisotropic=True)}
+    values = {n: double_precision.scalar(getattr(model, n)) for n in model.shapes(anisotropic=True)}
     dr.enable_grad(values[name])
-    wi, wo = (backend.vector(w) for w in random_pairs(2, seed=6))
+    wi, wo = (double_precision.vector(w) for w in random_pairs(2, seed=6))
     lobes = [lobe for _, lobe in model.bind(values).terms()]
     terms = [lobe.eval(wi, wo) for lobe in lobes]
     terms += [lobe.quadratic(wi, wo) for lobe in lobes if lobe.quadratic]
@@ -154,12 +154,12 @@ def _derivative(model, name, wi, wo):
     """
     import drjit as dr
 
-    from brdfkit import backend
+    from brdfkit.model import double_precision
 
-    values = backend.shapes(model)
+    values = double_precision.shapes(model)
     dr.enable_grad(values[name])
-    directions = backend.vector(wi), backend.vector(wo)
-    Float64 = backend.float64()
+    directions = double_precision.vector(wi), double_precision.vector(wo)
+    Float64 = double_precision.float64()
     terms = model.bind(values).terms()
     plain = [Float64(lobe.eval(*directions)) for _, lobe in terms]
     squared = [Float64(lobe.quadratic(*directions) if lobe.quadratic else 0) for _, lobe in terms]

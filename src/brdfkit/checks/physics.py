@@ -3,8 +3,8 @@
 import numpy as np
 
 from brdfkit.checks.subject import checked, incidences, random_pairs
-from brdfkit.directions import from_angles
-from brdfkit.quadrature import TOLERANCE, albedo
+from brdfkit.geometry.directions import from_angles
+from brdfkit.geometry.quadrature import TOLERANCE, albedo
 
 
 @checked

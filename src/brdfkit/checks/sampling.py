@@ -3,7 +3,7 @@
 import numpy as np
 
 from brdfkit.checks.subject import INCIDENCES, checked, incidences
-from brdfkit.quadrature import TOLERANCE, albedo
+from brdfkit.geometry.quadrature import TOLERANCE, albedo
 
 # All tests of one check together reject a right sampler once in a hundred runs; seeds are
 # fixed, so a check that passed goes on to pass.

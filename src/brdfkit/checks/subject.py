@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.directions import from_angles
+from brdfkit.geometry.directions import from_angles
 from brdfkit.measured import Measured
 from brdfkit.model import Model
 

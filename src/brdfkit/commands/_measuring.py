@@ -2,9 +2,9 @@
 
 import shlex
 
-from brdfkit import microgeometry
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import require_writable
+from brdfkit.goniometer import microgeometry
 
 
 def surface(geometry, **parameters):

@@ -12,7 +12,7 @@ def output_options(command):
     @click.option("-q", "--quiet", is_flag=True, help="No progress, no tables: only errors.")
     @functools.wraps(command)
     def with_output(*args, as_json, quiet, **kwargs):
-        from brdfkit.console import Console
+        from brdfkit.commands._console import Console
 
         return command(*args, console=Console(as_json, quiet), **kwargs)
 

@@ -4,12 +4,13 @@ material that brdfkit brings; and where results go."""
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from brdfkit import catalogue, registry
+from brdfkit.catalogue import shipped
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import folder, require_writable, written
 from brdfkit.formats import load
 from brdfkit.measured import Measured
-from brdfkit.pictures import picture_suffix
+from brdfkit.model import labels
+from brdfkit.rendering.montage import picture_suffix
 
 FIGURES = ".png", ".pdf", ".svg"
 
@@ -32,7 +33,7 @@ def model_label(word):
     for part in [word] if Path(word).is_file() else word.split("+"):
         name, colon, options = part.partition(":")
         if name.endswith(".py"):
-            registry.load_models(name)
+            labels.load_models(name)
             name = Path(name).stem
         parts.append(name + colon + options)
     return "+".join(parts)
@@ -41,8 +42,8 @@ def model_label(word):
 def material(name, settings=()):
     """What can be rendered: a model by name with `settings`, a saved fit, a measured file."""
     label = model_label(name)
-    if registry.is_label(label) and (label != name or not Path(name).is_file()):
-        return registry.model_with_values(label, values(label, settings))
+    if labels.is_label(label) and (label != name or not Path(name).is_file()):
+        return labels.model_with_values(label, values(label, settings))
     if settings:
         raise BrdfkitError(f"{name} is no model: parameters can be set for models only.")
     try:
@@ -50,7 +51,7 @@ def material(name, settings=()):
     except BrdfkitError as error:
         if "/" in name or Path(name).suffix or Path(name).exists():
             raise
-        models, materials = (", ".join(x) for x in (registry.models(), catalogue.materials()))
+        models, materials = (", ".join(x) for x in (labels.models(), shipped.materials()))
         raise BrdfkitError(
             f"{name} is no file, no model ({models}) and no material of brdfkit's ({materials})."
         ) from error
@@ -61,7 +62,7 @@ def values(name, settings):
     parsed = {}
     for setting in settings:
         parameter, equals, text = setting.partition("=")
-        registry.model(name).parameter(parameter)
+        labels.model(name).parameter(parameter)
         try:
             numbers = [float(part) for part in text.split(",")]
         except ValueError:

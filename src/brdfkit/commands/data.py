@@ -21,8 +21,8 @@ def data(context, console):
 
     Files are kept in your cache folder. Nothing else downloads anything.
     """
-    from brdfkit.catalogue import materials
-    from brdfkit.public_collections import cache, collections
+    from brdfkit.catalogue.public import cache, collections
+    from brdfkit.catalogue.shipped import materials
 
     if context.invoked_subcommand is None:
         _print_collections(collections(), materials(), cache(), console)
@@ -33,9 +33,9 @@ def data(context, console):
 @output_options
 def data_list(collection, console):
     """List the materials of a COLLECTION, and how to get each."""
-    from brdfkit import public_collections
+    from brdfkit.catalogue import public
 
-    _print_collection(public_collections.collection(collection), console)
+    _print_collection(public.collection(collection), console)
 
 
 @data.command("get")
@@ -47,8 +47,8 @@ def data_get(names, console):
     A NAME is as in merl/gold-metallic-paint. An interrupted download goes on where it stopped,
     except that of a file out of an archive (merl).
     """
-    from brdfkit.downloading import get
-    from brdfkit.public_collections import collection
+    from brdfkit.catalogue.downloading import get
+    from brdfkit.catalogue.public import collection
 
     collections = {c.name: c for c in map(collection, names)}
     files = {}

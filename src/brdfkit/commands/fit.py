@@ -27,14 +27,14 @@ from brdfkit.commands.render import path_trace
 @output_options
 def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed, console):
     """Fit models to a measured FILE, or to a material of brdfkit's."""
-    from brdfkit import registry
     from brdfkit.commands._targets import fit_file, measured, model_label, results
     from brdfkit.comparing import compare
+    from brdfkit.model import labels
     from brdfkit.names import slug
 
-    names = list(dict.fromkeys(map(model_label, names or registry.models())))
+    names = list(dict.fromkeys(map(model_label, names or labels.models())))
     for name in names:
-        registry.model(name)
+        labels.model(name)
     with console.progress(f"read {file}"):
         material = measured(file)
     if output is None and rendered:

@@ -24,13 +24,13 @@ def info(file, output, console):
     How much of the hemisphere was measured, noise, reciprocity, albedo, spikes and more. Without
     FILE, list the materials that brdfkit brings; `brdfkit data` lists public ones.
     """
-    from brdfkit import catalogue
+    from brdfkit.catalogue import shipped
     from brdfkit.commands._targets import figure_file, measured, write_figure
 
     if file is None and output:
         raise BrdfkitError("A picture shows a measurement: name a FILE.")
     if file is None:
-        _print_materials(catalogue.materials(), console)
+        _print_materials(shipped.materials(), console)
         return
     output = output and figure_file(output)
     with console.progress(f"read {file}"):

@@ -47,7 +47,7 @@ def measure(
     """
     from brdfkit.commands import _measuring as words
     from brdfkit.formats import save
-    from brdfkit.goniometer import measure as measure_surface
+    from brdfkit.goniometer.measuring import measure as measure_surface
 
     # relief: slope, stretch, thickness
     output = words.measurement_file(output or Path(f"{geometry}.npz"))

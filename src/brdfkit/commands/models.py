@@ -14,13 +14,13 @@ from brdfkit.commands._options import output_options
 @output_options
 def models(name, console):
     """List the models, or show the page of one."""
-    from brdfkit import registry
     from brdfkit.commands._targets import model_label
+    from brdfkit.model import labels
 
     if name is None:
-        _print_list(registry.models(), console)
+        _print_list(labels.models(), console)
     else:
-        _print_page(registry.model(model_label(name)), console)
+        _print_page(labels.model(model_label(name)), console)
 
 
 def _print_list(models, console):

@@ -49,7 +49,7 @@ def render(things, output, values, spp, size, seed, console):
 
 def path_trace(things, output, spp, size, seed, console):
     """Render `things` side by side, and write the picture; after Ctrl-C it has fewer spp."""
-    from brdfkit.rendering import render as render_things
+    from brdfkit.rendering.rendering import render as render_things
 
     with console.progress("render") as progress:
         picture = render_things(things, spp=spp, size=size, seed=seed, progress=progress)

@@ -5,7 +5,6 @@ import time
 
 import numpy as np
 
-from brdfkit import registry
 from brdfkit.errors import BrdfkitError
 from brdfkit.evaluating import clamped_share
 from brdfkit.fitting.arguments import by_name, pair, whole_number
@@ -15,6 +14,7 @@ from brdfkit.fitting.result import Fit as Fit
 from brdfkit.fitting.robust import WEIGHTS, robust_search
 from brdfkit.fitting.search import Outcome, Space, evaluate, slsqp, start_points
 from brdfkit.fitting.selection import selected
+from brdfkit.model import labels
 
 # The starts are compared on a random part of a large table, the best goes on with all of it
 PART = 20_000
@@ -57,7 +57,7 @@ def fit(
     >>> print(fit("ward", load("paint.binary")))    # doctest: +SKIP
     """
     began = time.perf_counter()
-    model, loss = registry.model(name), _loss(loss)
+    model, loss = labels.model(name), _loss(loss)
     if robust not in (None, *WEIGHTS):
         raise BrdfkitError(f"There is no robust weight {robust!r}; there are {', '.join(WEIGHTS)}.")
     starts, seed = whole_number("starts", starts, least=1), whole_number("seed", seed, least=0)

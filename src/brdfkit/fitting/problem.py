@@ -10,9 +10,9 @@ import copy
 import drjit as dr
 import numpy as np
 
-from brdfkit import backend
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.weights import bounded_quadratic, weighted_gram
+from brdfkit.model import double_precision
 
 
 class Problem:
@@ -20,10 +20,10 @@ class Problem:
 
     def __init__(self, model, samples, loss):
         cosines, importance = loss.geometry(samples)
-        Float64 = backend.float64()
+        Float64 = double_precision.float64()
         self.model, self.loss = model, loss
         self.bounded = np.array([model.parameters[n].bounds[0] >= 0 for n in model.weights()])
-        self.wi, self.wo = backend.vector(samples.wi), backend.vector(samples.wo)
+        self.wi, self.wo = double_precision.vector(samples.wi), double_precision.vector(samples.wo)
         self.cosines = Float64(cosines)
         self.measured = np.ascontiguousarray((loss.target(samples.values) * cosines[:, None]).T)
         self.channels = len(self.measured)
@@ -47,7 +47,7 @@ class Problem:
     def reweighted(self, weights):
         """The same problem with each sample counting `weights` (channels, n) times as much."""
         other = copy.copy(self)
-        other.importances = [backend.float64()(self.importance * w) for w in weights]
+        other.importances = [double_precision.float64()(self.importance * w) for w in weights]
         return other
 
     def lobes(self, values):
@@ -68,7 +68,9 @@ class Problem:
 
     def columns(self, values):
         """`lobes` at numbers, as NumPy (lobes, n); None if no weight has a square."""
-        plain, squared = self.lobes({name: backend.scalar(v) for name, v in values.items()})
+        plain, squared = self.lobes(
+            {name: double_precision.scalar(v) for name, v in values.items()}
+        )
         dr.eval(plain, squared)
         plain = np.stack([np.asarray(lobe) for lobe in plain])
         if all(lobe is None for lobe in squared):
@@ -92,7 +94,7 @@ class Problem:
     def _solve_channel(self, plain, squared, c):
         # Linearised about the data: exact where g is the identity, else the start of Newton's
         measured = self.measured[c]
-        slope = self.loss.dg(backend.float64()(measured))
+        slope = self.loss.dg(double_precision.float64()(measured))
         weight = np.asarray(self.importances[c] * slope * slope)
         gram, moment = weighted_gram(plain, weight), plain @ (weight * measured)
         start = bounded_quadratic(gram, moment, self.bounded)
@@ -141,20 +143,22 @@ class Problem:
         if squared is not None:
             columns = plain + 2 * weights[:, None] * squared
             mixture = mixture + weights**2 @ squared
-        model = backend.float64()(mixture)
+        model = double_precision.float64()(mixture)
         # A trial step of free weights may leave the domain of g
         return model if self.loss.linear else dr.maximum(model, 0), columns
 
     def error(self, values, weights):
         """E² at `values` of the shape parameters and `weights` (channels, lobes)."""
-        return _sum(self._error({n: backend.scalar(v) for n, v in values.items()}, weights))
+        return _sum(
+            self._error({n: double_precision.scalar(v) for n, v in values.items()}, weights)
+        )
 
     def error_and_gradient(self, values, fixed, weights):
         """E² and its derivatives by `values`, with `fixed` and the weights held."""
-        if not backend.differentiable():
+        if not double_precision.differentiable():
             gradient = self._differences(values, fixed, weights)
             return self.error(values | fixed, weights), gradient
-        bound = {name: backend.scalar(v) for name, v in (values | fixed).items()}
+        bound = {name: double_precision.scalar(v) for name, v in (values | fixed).items()}
         for name in values:
             dr.enable_grad(bound[name])
         total = dr.sum(self._error(bound, weights))
@@ -167,7 +171,7 @@ class Problem:
         for c in range(self.channels):
             model = 0
             for a, lobe, quadratic in zip(weights[c], plain, squared, strict=True):
-                a = backend.scalar(a)
+                a = double_precision.scalar(a)
                 model = model + a * lobe + (0 if quadratic is None else a * a * quadratic)
             if not self.loss.linear:
                 model = dr.maximum(model, 0)

@@ -21,7 +21,7 @@ from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
-from brdfkit import catalogue, public_collections
+from brdfkit.catalogue import public, shipped
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import COMPRESSED, GZIP, contents, written
 from brdfkit.formats._source import Source, format_suffix
@@ -101,10 +101,10 @@ def _read(source):
 
 def _known(name):
     """The file of a known material, None where the name is none."""
-    if name in catalogue.materials():
-        return catalogue.path(name)
-    if name.partition("/")[0] in catalogue.index()["collections"] and "/" in name:
-        return public_collections.path(name)
+    if name in shipped.materials():
+        return shipped.path(name)
+    if name.partition("/")[0] in shipped.index()["collections"] and "/" in name:
+        return public.path(name)
     return None
 
 

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from brdfkit.directions import from_angles
+from brdfkit.colours import RGB
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import COMPRESSED, contents
-from brdfkit.measured import RGB, Measured
+from brdfkit.geometry.directions import from_angles
+from brdfkit.measured import Measured
 
 SPHERICAL = (np.pi / 2, 2 * np.pi, np.pi / 2, 2 * np.pi)  # limits of theta, phi, theta, phi
 ANGLE_TOLERANCE = 1e-3  # rad: files round 90° to 1.5708

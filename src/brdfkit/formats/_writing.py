@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from brdfkit.directions import to_angles
 from brdfkit.errors import BrdfkitError
+from brdfkit.geometry.directions import to_angles
 from brdfkit.measured import Measured
 
 

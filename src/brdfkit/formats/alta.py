@@ -19,10 +19,10 @@ import re
 
 import numpy as np
 
-from brdfkit.directions import from_angles, from_half_difference
+from brdfkit.colours import RGB
 from brdfkit.formats._source import SPHERICAL
 from brdfkit.formats._writing import angles, measured, write_rows
-from brdfkit.measured import RGB
+from brdfkit.geometry.directions import from_angles, from_half_difference
 
 NAME = "ALTA"
 SUFFIXES = (".dat",)

@@ -15,11 +15,11 @@ import re
 
 import numpy as np
 
+from brdfkit.colours import RGB
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats._notes import lone_point
 from brdfkit.formats._writing import angles as angles_of
 from brdfkit.formats._writing import measured, write_rows
-from brdfkit.measured import RGB
 
 NAME = "ASTM"
 SUFFIXES = (".astm",)

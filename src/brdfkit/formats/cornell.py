@@ -11,7 +11,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.formats._notes import lone_point, stopping_short
 from brdfkit.formats._writing import angles as angles_of
 from brdfkit.formats._writing import measured, write_rows
-from brdfkit.spectra import wavelengths
+from brdfkit.measured.spectra import wavelengths
 
 NAME = "Cornell"
 SUFFIXES = (".brdf",)

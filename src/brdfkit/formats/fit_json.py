@@ -5,9 +5,9 @@ from dataclasses import fields
 from typing import get_origin
 
 import brdfkit
-from brdfkit import registry
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.result import Fit
+from brdfkit.model import labels
 
 NAME = "brdfkit fit"
 SUFFIXES = (".json",)
@@ -29,9 +29,9 @@ def read(source):
     except (ValueError, KeyError, TypeError, RecursionError):
         raise source.error("is no fit that brdfkit saved, or is damaged; fit it again") from None
     try:
-        return Fit(model=registry.model_with_values(label, values), **found)
+        return Fit(model=labels.model_with_values(label, values), **found)
     except (BrdfkitError, TypeError) as error:
-        if not registry.is_label(label):
+        if not labels.is_label(label):
             raise source.error(
                 f"is a fit of {label[:80]!r}, a model of somebody's own; load its file first, "
                 'brdfkit.load_models("FILE.py"), or name it before the fit'

@@ -11,9 +11,10 @@ import struct
 
 import numpy as np
 
+from brdfkit.colours import RGB
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats._writing import measured
-from brdfkit.measured import RGB, Measured
+from brdfkit.measured import Measured
 
 NAME = "MERL"
 SUFFIXES = (".binary",)

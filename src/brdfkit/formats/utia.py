@@ -17,8 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.directions import from_angles, to_angles
 from brdfkit.formats._writing import measured
+from brdfkit.geometry.directions import from_angles, to_angles
 
 NAME = "UTIA"
 SUFFIXES = (".bin",)

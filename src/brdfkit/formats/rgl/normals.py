@@ -1,0 +1,79 @@
+"""The microfacets of a BRDF, from the light it sends back to where it came from.
+
+Where wi = wo = w, a surface of microfacets has
+
+    f(w, w) = F(0) D(w) / (4 cosθ σ(w)),    σ(w) = ∫ D(m) max(0, w·m) dm.
+
+So D is an eigenvector of D → f(w, w) cosθ σ(w): the one without a negative entry, to which
+repeated application leads.
+
+J. Dupuy, E. Heitz, J.-C. Iehl, P. Poulin & V. Ostromoukhov, "Extracting microfacet-based BRDF
+parameters from arbitrary materials with power iterations", EGSR 2015.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from brdfkit.geometry.directions import from_angles
+
+MOST_ITERATIONS = 200
+TOLERANCE = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Hemisphere:
+    """A grid of directions: `theta` (n_theta,) [rad] from 0 to π/2, and `n_phi` azimuths evenly
+    from -π on, one for what does not depend on them."""
+
+    theta: np.ndarray
+    n_phi: int
+
+    @property
+    def directions(self):
+        """Unit vectors (n_phi, n_theta, 3)."""
+        phi = -np.pi + 2 * np.pi * np.arange(self.n_phi) / self.n_phi
+        return from_angles(self.theta, phi[:, None])
+
+    @cached_property
+    def solid_angles(self):
+        """Of all azimuths at each theta (n_theta,), by the trapezoidal rule [sr]."""
+        steps = np.diff(self.theta, prepend=self.theta[0], append=self.theta[-1])
+        return 2 * np.pi * np.sin(self.theta) * (steps[1:] + steps[:-1]) / 2
+
+    def area(self, D):
+        """∫ D cosθ dm of D (n_phi, n_theta)."""
+        return D.mean(axis=0) @ (self.solid_angles * np.cos(self.theta))
+
+    def projected(self, D):
+        """σ (n_phi, n_theta) of D (n_phi, n_theta)."""
+        coefficients = np.fft.rfft(D * self.solid_angles, axis=0)
+        projected = np.einsum("ijk,kj->ki", self._kernel, coefficients)
+        return np.fft.irfft(projected, self.n_phi, axis=0)
+
+    @cached_property
+    def _kernel(self):
+        """Fourier coefficients (n_theta, n_theta', k) over Δφ of max(0, w·m) = max(0, a + b cosΔφ).
+
+        With a = cosθ cosθ', b = sinθ sinθ' and φ₀ = arccos(-a/b), beyond which it is 0, they are
+        (φ₀/π) (a s_k + b (s_{k-1} + s_{k+1}) / 2), where s_k = sin(k φ₀) / (k φ₀).
+        """
+        a, b = (np.multiply.outer(x, x) for x in (np.cos(self.theta), np.sin(self.theta)))
+        a, b = a[..., None], b[..., None]
+        phi_0 = np.arccos(-np.divide(a, b, out=np.ones_like(a), where=b > a))
+        k = np.arange(self.n_phi // 2 + 1)
+        before, here, after = (np.sinc((k + step) * phi_0 / np.pi) for step in (-1, 0, 1))
+        return phi_0 / np.pi * (a * here + b * (before + after) / 2)
+
+
+def power_iteration(retro, hemisphere):
+    """D (n_phi, n_theta) [sr⁻¹], ∫ D cosθ dm = 1, of f(w, w), `retro` (n_phi, n_theta) ≥ 0."""
+    gain = retro * np.cos(hemisphere.theta)
+    D = np.ones_like(gain)
+    for _ in range(MOST_ITERATIONS):
+        previous, D = D, gain * hemisphere.projected(D)
+        D = D / hemisphere.area(D)
+        if np.abs(D - previous).max() < TOLERANCE * D.max():
+            break
+    return D

@@ -1,0 +1,1 @@
+"""Directions and integrals over them; nothing here knows what a BRDF is."""

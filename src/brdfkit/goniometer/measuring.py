@@ -1,0 +1,184 @@
+"""A virtual goniometer: measures the BRDF of microgeometry by tracing paths.
+
+A cell of the table holds the mean of its samples at the directions of its centre (`specimen.py`
+has the geometry and the normalisation), and that mean's standard error, from the samples'
+variance. A pilot tells how many samples each cell needs; its own are thrown away, for a mean of
+samples that also decided when to stop is biased.
+
+By reciprocity the light may stand in either direction. It takes the steeper one: from there it
+reaches most of what is seen from the other, and fewer samples are 0.
+"""
+
+import math
+
+import numpy as np
+
+from brdfkit import __version__
+from brdfkit.errors import BrdfkitError
+from brdfkit.goniometer.specimen import Specimen
+from brdfkit.measured import Measured
+from brdfkit.samples import Table
+
+ISOTROPIC = (30, 30, 60)
+ANISOTROPIC = (16, 20, 12, 24)
+PILOT = 64  # samples a cell
+LEAST = 256  # samples a cell: of fewer, the standard error itself is not known well
+PASSES = 8  # over all cells: when interrupted, each has its share
+BATCH = 2**20  # paths at once: bounds the memory
+MOST_CELLS = 2**22  # likewise: 1 GB; three times the cells of a MERL table
+MOST_SPP, LEAST_ERROR = 10**9, 1e-5  # weeks a cell
+
+
+def measure(
+    surface,
+    facets,
+    shape=None,
+    error=0.05,
+    spp=16384,
+    seed=0,
+    name="specimen",
+    info=None,
+    progress=None,
+    max_bounces=8,
+) -> Measured:
+    """Measure a table of a surface's BRDF, with the standard error of every cell.
+
+    `surface`: a `brdfkit.microgeometry.HeightField`; `facets`: the dictionary of a Mitsuba BSDF,
+    or one for each part of the surface: reciprocal, opaque and no mirror; `shape`: cells of the
+    table, by default 30×30×60 (theta_h, theta_d, phi_d) where the surface is isotropic, else
+    16×20×12×24 (phi_h first); `error`: the relative standard error, of the channels together,
+    that a cell is to reach, with `spp` samples at most; `seed`: of the samples; `info`: notes to
+    add; `progress`: called with (done, total) paths; `max_bounces`: light that needs more is lost.
+
+    Channels are R, G, B. Cells with a direction below the plane are NaN. Ctrl-C ends it early,
+    with larger errors; before every cell has its share it is raised. Equal seeds give equal
+    values on one machine. Raises `BrdfkitError` for arguments out of bounds and for facets that
+    cannot be measured.
+
+    >>> measure(gaussian(slope=0.3), {"type": "diffuse"}).standard_error.shape  # doctest: +SKIP
+    (54000, 3)
+    """
+    shape = tuple(shape or (ISOTROPIC if surface.isotropic else ANISOTROPIC))
+    _require_valid(surface, shape, error, spp, seed)
+    specimen = Specimen(surface, facets, max_bounces)
+    above, light, eye = _positions(shape)
+    rng = np.random.default_rng(seed)
+
+    pilot = Tally(len(light))
+    _trace(specimen, light, eye, np.full(len(light), PILOT), rng, pilot)
+    share = -(-_needed(pilot, above, error, spp) // PASSES)
+    tally, total = Tally(len(light)), PASSES * share.sum()
+    try:
+        for _ in range(PASSES):
+            _trace(specimen, light, eye, share, rng, tally, progress, total)
+    except KeyboardInterrupt:
+        if (tally.n < share).any():
+            raise
+
+    values, errors = np.full((2, *shape, 3), np.nan)
+    values[above], errors[above] = tally.mean, tally.standard_error
+    notes = _notes(tally, total) | (info or {})
+    return Measured.from_table(values, name=name, info=notes, standard_error=errors)
+
+
+class Tally:
+    """Number (m,), sums and sums of squares (m, 3) of the samples of m pairs of directions."""
+
+    def __init__(self, pairs):
+        self.n = np.zeros(pairs, int)
+        self.sums, self.squares = np.zeros((2, pairs, 3))
+
+    def add(self, pair, samples):
+        """Counts `samples` (n, 3), one for each entry of `pair` (n,), indices that ascend."""
+        first = np.flatnonzero(np.diff(pair, prepend=-1))
+        rows = pair[first]
+        self.n[rows] += np.diff(first, append=len(pair))
+        self.sums[rows] += np.add.reduceat(samples, first)
+        self.squares[rows] += np.add.reduceat(samples**2, first)
+
+    @property
+    def mean(self):
+        return self.sums / self.n[:, None]
+
+    @property
+    def standard_error(self):
+        """Of the mean, (m, 3)."""
+        n = self.n[:, None]
+        variance = np.maximum(self.squares / n - self.mean**2, 0) * n / (n - 1)
+        return np.sqrt(variance / n)
+
+    @property
+    def relative_error(self):
+        """Of the channels' sum, (m,); infinite where that is 0."""
+        errors, means = self.standard_error.sum(axis=1), self.mean.sum(axis=1)
+        return np.divide(errors, means, out=np.full(len(means), np.inf), where=means > 0)
+
+
+def _positions(shape):
+    """The mask of a table's cells above the plane, and there the light and the eye (m, 3)."""
+    wi, wo = Table(np.empty((*shape, 0))).directions()
+    above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
+    wi, wo = wi[above], wo[above]
+    steeper = wi[:, 2:] > wo[:, 2:]
+    return above, np.where(steeper, wi, wo), np.where(steeper, wo, wi)
+
+
+def _needed(pilot, above, error, spp):
+    """Samples (m,) that each cell needs for the relative standard error.
+
+    Of a quantity that is now and then large, a cell's few samples often show too little: the
+    cells around it are asked, too.
+    """
+    from scipy.ndimage import uniform_filter
+
+    def pooled(values):
+        grid = np.zeros(above.shape)
+        grid[above] = values
+        return uniform_filter(grid, 3)[above]
+
+    share, mean = pooled(1.0), pooled(pilot.mean.sum(axis=1))
+    # the channels rise and fall together: their errors add, not the errors' squares
+    variance = share * pooled(pilot.standard_error.sum(axis=1) ** 2)
+    around = np.divide(variance, mean**2, out=np.ones_like(mean), where=mean > 0)
+    squares = np.maximum(around, np.minimum(pilot.relative_error, 1) ** 2)
+    return np.ceil(np.clip(PILOT * squares / error**2, min(LEAST, spp), spp)).astype(int)
+
+
+def _trace(specimen, light, eye, counts, rng, tally, progress=None, total=None):
+    """Adds `counts` (m,) samples of each pair of directions to the tally."""
+    ends = np.cumsum(counts)
+    for first in range(0, ends[-1], BATCH):
+        numbers = np.arange(first, min(first + BATCH, ends[-1]))
+        batch = np.searchsorted(ends, numbers, side="right")
+        tally.add(batch, specimen.samples(light, eye, batch, int(rng.integers(2**32))))
+        if progress:
+            progress(tally.n.sum(), total)
+
+
+def _notes(tally, total):
+    """What there is to say of a measurement that was to have `total` samples."""
+    median, most = np.percentile(tally.relative_error, (50, 95))
+    notes = {
+        "made by": f"brdfkit {__version__}, virtual goniometer",
+        "samples a cell": f"{tally.n.min():,} to {tally.n.max():,}",
+        "relative error": f"{median:.1%} in the median, {most:.1%} or less in 95 of 100 cells",
+    }
+    if tally.n.sum() < total:
+        notes["interrupted"] = f"{tally.n.sum() / total:.0%} of the samples"
+    return notes
+
+
+def _require_valid(surface, shape, error, spp, seed):
+    dimensions = 3 if surface.isotropic else 4
+    if len(shape) != dimensions or min(shape) < 1:
+        raise BrdfkitError(f"The table's shape {shape} should be {dimensions} numbers above 0.")
+    if math.prod(shape) > MOST_CELLS:
+        raise BrdfkitError(f"The table's shape {shape} is above {MOST_CELLS:,} cells; give fewer.")
+    if not 2 <= spp <= MOST_SPP:
+        raise BrdfkitError(f"spp = {spp} is out of bounds; give one from 2 to {MOST_SPP:,}.")
+    if seed < 0:
+        raise BrdfkitError(f"seed = {seed} is out of bounds; give at least 0.")
+    if not LEAST_ERROR <= error < 1:
+        raise BrdfkitError(
+            f"error = {error:g} is out of bounds; give one from {LEAST_ERROR:g} to below 1."
+        )

@@ -1,0 +1,1 @@
+"""brdfkit inside Mitsuba: adapters and tables that exist only in a variant of it."""

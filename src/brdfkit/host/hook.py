@@ -1,0 +1,85 @@
+"""Makes the plugins known to Mitsuba, whenever and by whomever it is imported.
+
+`import brdfkit` must stay light (the command line's `--help`), yet after it a scene with
+`<bsdf type="ward">` should simply load. So a finder waits for the import of Mitsuba; and for
+that of Dr.Jit, which looks for LLVM.
+"""
+
+import importlib.util
+import os
+import sys
+from contextlib import contextmanager
+
+from brdfkit import llvm
+from brdfkit.errors import BrdfkitError
+
+
+def install():
+    """Register the plugins now, if Mitsuba is there already, or once it gets imported."""
+    sys.meta_path.insert(0, _After("drjit", lambda: None))
+    if "mitsuba" in sys.modules:
+        _connect()
+    else:
+        sys.meta_path.insert(0, _After("mitsuba", _connect))
+
+
+class _After:
+    """A finder that finds `module` as everybody would, and calls `then` when it is loaded."""
+
+    def __init__(self, module, then):
+        self.module, self.then = module, then
+
+    def find_spec(self, name, path=None, target=None):
+        if name != self.module:
+            return None
+        sys.meta_path.remove(self)
+        try:
+            spec = importlib.util.find_spec(name)
+        finally:
+            sys.meta_path.insert(0, self)
+        if spec is not None and spec.loader is not None:
+            load = spec.loader.exec_module
+
+            def exec_module(module):
+                sys.meta_path.remove(self)  # not before: somebody may only ask where it is
+                with _without_llvm_noise():
+                    load(module)
+                self.then()
+
+            spec.loader.exec_module = exec_module
+        return spec
+
+
+def _connect():
+    import mitsuba as mi
+
+    from brdfkit.model import labels
+
+    def on_variant(before=None, variant=None):
+        try:
+            llvm.refuse_bad_choice(variant)
+        except BrdfkitError:
+            mi.set_variant("scalar_rgb")  # the refused one would still be in place
+            raise
+        labels.register_in_mitsuba()
+
+    mi.detail.add_variant_callback(on_variant)
+    if mi.variant() is not None:
+        labels.register_in_mitsuba()
+
+
+@contextmanager
+def _without_llvm_noise():
+    """Dr.Jit prints to stderr that it found no LLVM; brdfkit says so itself, when it matters."""
+    if os.environ.get(llvm.VARIABLE) != llvm.NO_LIBRARY:
+        yield
+        return
+    stderr = os.dup(2)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 2)
+    try:
+        yield
+    finally:
+        os.dup2(stderr, 2)
+        os.close(stderr)
+        os.close(nowhere)

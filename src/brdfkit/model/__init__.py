@@ -1,0 +1,13 @@
+"""What a BRDF model is made of: all that the author of a model reads.
+
+`model.py`: the class `Model`; `parameters.py`: what it declares; `lobes.py`: its terms and how
+they are drawn; `microfacet.py`: distributions of normals; `numerics.py`: accurate functions.
+"""
+
+from brdfkit.model.model import Model as Model
+from brdfkit.model.parameters import Option as Option
+from brdfkit.model.parameters import Parameter as Parameter
+from brdfkit.model.parameters import follows as follows
+from brdfkit.model.parameters import option as option
+from brdfkit.model.parameters import shape as shape
+from brdfkit.model.parameters import weight as weight

@@ -1,0 +1,170 @@
+"""Distributions of microfacet normals, shadowing and Fresnel, shared by the models.
+
+A distribution answers `D(h)` [sr⁻¹, ∫ D cosθ_h dω = 1], `sample(wi, u)` → h and
+`pdf(wi, h, cos_d)` per solid angle of h, where cos_d = wi·h (see `cos_theta_d`). `wi`, `h` are
+vectors with x, y, z in the local frame, z along the normal; `u` is a point (x, y, z) of the unit
+cube.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import drjit as dr
+
+from brdfkit.geometry.vectors import cos_theta_d, dot
+from brdfkit.model.numerics import cosine_power, expm1
+
+
+def schlick(f0, cos_theta):
+    """Fresnel reflectance: C. Schlick, "An inexpensive BRDF model", 1994; Kurt 2007, eq. 3.16."""
+    return f0 + (1 - f0) * fifth_power(1 - cos_theta)
+
+
+def fifth_power(x):
+    """x⁵ with an exact derivative at 0."""
+    squared = x * x
+    return squared * squared * x
+
+
+def v_groove(wi, wo, h):
+    """Shadowing and masking in V-grooves: Torrance & Sparrow 1967; Kurt 2007, eq. 3.27."""
+    s = 2 * h.z / cos_theta_d(wi, wo)
+    return dr.minimum(1, s * dr.minimum(wi.z, wo.z))
+
+
+def _slope_exponent(h, alpha_u, alpha_v):
+    # tan²θ_h (cos²φ_h/α_u² + sin²φ_h/α_v²), without a trigonometric function
+    x, y = h.x / alpha_u, h.y / alpha_v
+    return (x * x + y * y) / cos_squared(h)
+
+
+def cos_squared(h):
+    """cos²θ_h, kept off 0: its powers divide, and their derivatives in single precision."""
+    return dr.maximum(h.z * h.z, 1e-6)
+
+
+@dataclass(frozen=True)
+class Beckmann:
+    """Gaussian slopes of width `alpha_u` along x, `alpha_v` along y.
+
+    P. Beckmann & A. Spizzichino 1963; sampling: Kurt 2007, eqs. 4.23-4.25.
+    """
+
+    alpha_u: Any
+    alpha_v: Any
+
+    def gauss(self, h):
+        """exp(-tan²θ_h/α²), the part of D that Ward's models share."""
+        return dr.exp(-_slope_exponent(h, self.alpha_u, self.alpha_v))
+
+    def D(self, h):
+        cos_2 = cos_squared(h)
+        return self.gauss(h) / (dr.pi * self.alpha_u * self.alpha_v * cos_2 * cos_2)
+
+    def sample(self, wi, u):
+        sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.y)
+        radius = dr.sqrt(-dr.log(dr.maximum(1 - u.x, 1e-12)))
+        return _from_slope(
+            type(wi), radius * self.alpha_u * cos_phi, radius * self.alpha_v * sin_phi
+        )
+
+    def pdf(self, wi, h, cos_d):
+        return self.D(h) * h.z
+
+
+@dataclass(frozen=True)
+class TrowbridgeReitz:
+    """Slopes with long tails, of width `alpha_u` along x, `alpha_v` along y: "GGX".
+
+    B. Walter et al. 2007; E. Heitz, "Understanding the masking-shadowing function", JCGT 2014.
+    """
+
+    alpha_u: Any
+    alpha_v: Any
+
+    def D(self, h):
+        x, y = h.x / self.alpha_u, h.y / self.alpha_v
+        s = x * x + y * y + h.z * h.z
+        return 1 / (dr.pi * self.alpha_u * self.alpha_v * s * s)
+
+    def Lambda(self, w):
+        """Smith's auxiliary function (Heitz 2014, eq. 72)."""
+        x, y = self.alpha_u * w.x, self.alpha_v * w.y
+        return 0.5 * (dr.sqrt(1 + (x * x + y * y) / (w.z * w.z)) - 1)
+
+    def G2(self, wi, wo):
+        """Height-correlated shadowing and masking (Heitz 2014, eq. 99)."""
+        return 1 / (1 + self.Lambda(wi) + self.Lambda(wo))
+
+    def sample(self, wi, u):
+        """Visible normals: J. Dupuy & A. Benyoub, "Sampling visible GGX normals with spherical
+        caps", HPG 2023."""
+        x, y = self.alpha_u * wi.x, self.alpha_v * wi.y
+        inverse = dr.rsqrt(x * x + y * y + wi.z * wi.z)
+        x, y, z = x * inverse, y * inverse, wi.z * inverse
+        # a cap of the unit sphere, seen from the stretched direction
+        cos_theta = (1 - u.y) * (1 + z) - z
+        sin_theta = dr.sqrt(dr.maximum(1 - cos_theta * cos_theta, 0))
+        sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.x)
+        x, y, z = x + sin_theta * cos_phi, y + sin_theta * sin_phi, z + cos_theta
+        x, y, z = self.alpha_u * x, self.alpha_v * y, dr.maximum(z, 1e-7)
+        inverse = dr.rsqrt(x * x + y * y + z * z)
+        return type(wi)(x * inverse, y * inverse, z * inverse)
+
+    def pdf(self, wi, h, cos_d):
+        G1 = 1 / (1 + self.Lambda(wi))
+        return G1 * cos_d * self.D(h) / wi.z
+
+
+@dataclass(frozen=True)
+class CosinePower:
+    """(N·H)^(n_u cos²φ_h + n_v sin²φ_h): J. Blinn 1977, M. Ashikhmin & P. Shirley 2000."""
+
+    n_u: Any
+    n_v: Any
+
+    def power(self, h):
+        x, y = h.x * h.x, h.y * h.y
+        exponent = (self.n_u * x + self.n_v * y) / dr.maximum(x + y, 1e-20)
+        return cosine_power((x + y) / (1 + h.z), exponent)
+
+    def sample(self, wi, u):
+        sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.y)
+        x, y = cos_phi * dr.sqrt(self.n_v + 1), sin_phi * dr.sqrt(self.n_u + 1)
+        inverse = dr.rsqrt(x * x + y * y)
+        x, y = x * inverse, y * inverse
+        exponent = self.n_u * x * x + self.n_v * y * y
+        # 1 - cosθ, of which cosθ in single precision knows too little
+        complement = -expm1(dr.log(dr.maximum(1 - u.x, 1e-12)) / (exponent + 1))
+        sin_theta = dr.sqrt(complement * (2 - complement))
+        return type(wi)(sin_theta * x, sin_theta * y, 1 - complement)
+
+    def pdf(self, wi, h, cos_d):
+        return dr.sqrt((self.n_u + 1) * (self.n_v + 1)) / (2 * dr.pi) * self.power(h)
+
+
+@dataclass(frozen=True)
+class Visible:
+    """What wi sees of a `distribution` in V-grooves: of each pair of facets, h and its mirror image
+    about the normal, as much as is turned towards wi. A half turn should not change it.
+
+    E. Heitz & E. d'Eon, "Importance sampling microfacet-based BSDFs using the distribution of
+    visible normals", EGSR 2014: G1 (wi·h)⁺ D / cosθ_i, with the G1 of `v_groove`.
+    """
+
+    distribution: Any
+
+    def sample(self, wi, u):
+        h = self.distribution.sample(wi, u)
+        other = type(wi)(-h.x, -h.y, h.z)
+        seen, others = dr.maximum(dot(wi, h), 0), dr.maximum(dot(wi, other), 0)
+        return dr.select(u.z * (seen + others) < seen, h, other)
+
+    def pdf(self, wi, h, cos_d):
+        seen = cos_d / (h.z * wi.z)
+        return self.distribution.pdf(wi, h, cos_d) * dr.minimum(seen, 2)
+
+
+def _from_slope(vector, x, y):
+    inverse = dr.rsqrt(1 + x * x + y * y)
+    return vector(x * inverse, y * inverse, inverse)

@@ -1,0 +1,4 @@
+"""Plots of BRDFs with matplotlib."""
+
+from brdfkit.plotting.lobe_plots import Plot as Plot
+from brdfkit.plotting.lobe_plots import plot as plot

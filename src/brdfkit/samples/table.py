@@ -1,0 +1,125 @@
+"""A table over half/difference coordinates: the cells of MERL, and their multilinear lookup.
+
+W. Matusik et al., "A data-driven reflectance model", SIGGRAPH 2003. theta_h is square-root
+spaced, so that cells are small where highlights are; theta_d and phi_d are evenly spaced.
+An anisotropic table has the azimuth phi_h of the half vector as its first axis, evenly spaced
+over the full circle. A value stands at the centre of its cell.
+"""
+
+import itertools
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from brdfkit.geometry.directions import from_half_difference, half_azimuth, to_half_difference
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """BRDF values ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, channels) in sr⁻¹, NaN = unknown.
+
+    `phi_d_period` is π for a reciprocal table (half of the azimuths suffice), else 2π.
+
+    >>> Table(np.full((9, 9, 18, 1), 1 / np.pi)).eval([[0, 0, 1.0]], [[0, 0, 1.0]])
+    array([[0.31830989]])
+    """
+
+    values: np.ndarray
+    phi_d_period: float = np.pi
+
+    @property
+    def anisotropic(self):
+        """Whether the surface's own azimuth counts."""
+        return self.values.ndim == 5
+
+    @property
+    def shape(self):
+        """Number of cells ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d)."""
+        return self.values.shape[:-1]
+
+    @cached_property
+    def centres(self):
+        """Centres of the cells along each axis, ([phi_h,] theta_h, theta_d, phi_d) [rad]."""
+        n_h, n_d, n_p = self.shape[-3:]
+        centres = (
+            ((np.arange(n_h) + 0.5) / n_h) ** 2 * np.pi / 2,
+            (np.arange(n_d) + 0.5) / n_d * np.pi / 2,
+            (np.arange(n_p) + 0.5) / n_p * self.phi_d_period,
+        )
+        if not self.anisotropic:
+            return centres
+        n_a = self.shape[0]
+        return (np.arange(n_a) + 0.5) / n_a * 2 * np.pi, *centres
+
+    @property
+    def theta_h_widths(self):
+        """Widths of the theta_h cells (n_theta_h, 1, 1), 1 in the mean; for every `shape`."""
+        n_h = self.shape[-3]
+        return ((2 * np.arange(n_h) + 1) / n_h)[:, None, None]
+
+    def directions(self):
+        """(wi, wo) at the centre of every cell, each (*shape, 3); z < 0 below the surface."""
+        *phi_h, theta_h, theta_d, phi_d = np.meshgrid(*self.centres, indexing="ij")
+        return from_half_difference(theta_h, theta_d, phi_d, *phi_h)
+
+    @cached_property
+    def filled(self):
+        """The values with each unknown cell taken from the nearest known one (in cells).
+
+        Both azimuths wrap: phi_d, too, where its period is π.
+        """
+        unknown = np.isnan(self.values).any(axis=-1)
+        if not unknown.any():
+            return self.values
+        from scipy.ndimage import distance_transform_edt
+
+        # Around the azimuths as many cells of the other side as may be nearest
+        farthest = int(np.ceil(distance_transform_edt(unknown).max()))
+        azimuths = (0, 3) if self.anisotropic else (2,)
+        added = [min(farthest, n // 2) * (k in azimuths) for k, n in enumerate(self.shape)]
+        wrapped = np.pad(unknown, [(a, a) for a in added], mode="wrap")
+        nearest = distance_transform_edt(wrapped, return_distances=False, return_indices=True)
+        own = tuple(slice(a, a + n) for a, n in zip(added, self.shape, strict=True))
+        cells = [(i[own] - a) % n for i, a, n in zip(nearest, added, self.shape, strict=True)]
+        return self.values[tuple(cells)]
+
+    def eval(self, wi, wo):
+        """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3): multilinear between cell centres.
+
+        Clamped at the ends of theta_h and theta_d, periodic in the azimuths; 0 below the surface.
+        """
+        wi, wo = np.asarray(wi, float), np.asarray(wo, float)
+        theta_h, theta_d, phi_d = to_half_difference(wi, wo)
+        n_h, n_d, n_p = self.shape[-3:]
+        axes = [
+            _clamped(np.sqrt(theta_h / (np.pi / 2)) * n_h, n_h),
+            _clamped(theta_d / (np.pi / 2) * n_d, n_d),
+            _periodic(phi_d / self.phi_d_period * n_p, n_p),
+        ]
+        if self.anisotropic:
+            n_a = self.shape[0]
+            axes.insert(0, _periodic(half_azimuth(wi, wo) / (2 * np.pi) * n_a, n_a))
+
+        result = np.zeros((*theta_h.shape, self.values.shape[-1]))
+        for corner in itertools.product((0, 1), repeat=len(axes)):
+            cells = tuple(axis[upper] for axis, upper in zip(axes, corner, strict=True))
+            parts = [t if upper else 1 - t for (*_, t), upper in zip(axes, corner, strict=True)]
+            result += np.prod(parts, axis=0)[..., None] * self.filled[cells]
+        above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
+        return np.where(above[..., None], result, 0.0)
+
+    __call__ = eval  # a table may be a measurement's lookup
+
+
+def _clamped(position, n):
+    """Lower cell, upper cell and fraction of a position counted in cells from the axis' start."""
+    x = np.clip(position - 0.5, 0, n - 1)
+    lower = np.minimum(x.astype(int), max(n - 2, 0))
+    return lower, np.minimum(lower + 1, n - 1), x - lower
+
+
+def _periodic(position, n):
+    x = np.mod(position - 0.5, n)
+    lower = np.minimum(x.astype(int), n - 1)
+    return lower, (lower + 1) % n, x - lower
