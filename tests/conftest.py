@@ -7,6 +7,7 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.model import labels
+from brdfkit.plugins import discovery
 
 
 @pytest.fixture
@@ -16,6 +17,12 @@ def llvm_variant():
 
     mi.set_variant("llvm_ad_rgb")
     return mi
+
+
+@pytest.fixture
+def no_user_plugins(monkeypatch):
+    """No plugin of a user's is known, and what a test adds is forgotten."""
+    monkeypatch.setattr(discovery, "_users", {})
 
 
 @pytest.fixture

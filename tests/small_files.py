@@ -120,7 +120,7 @@ def brushed():
 
 def fit():
     """A fit that nobody made."""
-    model = labels.model_with_values("ward", {"alpha_u": 0.1, "alpha_v": 0.4})
+    model = labels.model("ward")(alpha_u=0.1, alpha_v=0.4)
     return Fit(model, "paint", "log", 0.1, 72, 9, 0.5, "converged")
 
 

@@ -8,7 +8,7 @@ from small_files import alta, place, spectrum
 
 from brdfkit.colours import RGB
 from brdfkit.errors import BrdfkitError
-from brdfkit.formats import load, save
+from brdfkit.loading import load, save
 
 pytestmark = pytest.mark.quick
 

@@ -14,15 +14,15 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 import brdfkit as bk
 from brdfkit import models
 from brdfkit.auditing import pairs
-from brdfkit.auditing.albedo import Albedo, albedo_of_samples
+from brdfkit.auditing.albedos import Albedo, albedo_of_samples
 from brdfkit.auditing.coverage import coverage, is_near
 from brdfkit.auditing.noise import noise
 from brdfkit.auditing.ratios import grazing, retroreflection
 from brdfkit.auditing.spikes import spikes
 from brdfkit.checks.subject import random_pairs
 from brdfkit.commands.info import record
-from brdfkit.formats import load
 from brdfkit.geometry.directions import from_angles
+from brdfkit.loading import load
 from brdfkit.measured import Measured
 from brdfkit.records import plain
 from brdfkit.samples import Table

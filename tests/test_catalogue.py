@@ -7,11 +7,11 @@ import shutil
 import numpy as np
 import pytest
 
-from brdfkit.catalogue import shipped
+from brdfkit.catalogue import index, shipped
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import contents
-from brdfkit.formats import load
 from brdfkit.geometry.directions import from_angles, to_half_difference
+from brdfkit.loading import load
 
 NAMES = sorted(shipped.materials())
 TABULATED = [n for n in NAMES if shipped.materials()[n].file.endswith(".binary.xz")]
@@ -27,7 +27,7 @@ def measured():
 @pytest.fixture(scope="module")
 def make():
     """The program that made the tables, as a module."""
-    spec = importlib.util.spec_from_file_location("make", shipped.folder() / "make.py")
+    spec = importlib.util.spec_from_file_location("make", index.folder() / "make.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -47,8 +47,8 @@ def variant():
 def copy(tmp_path, monkeypatch):
     """A copy of the folder, to spoil."""
     folder = tmp_path / "measured"
-    shutil.copytree(shipped.folder(), folder)
-    monkeypatch.setattr(shipped, "folder", lambda: folder)
+    shutil.copytree(index.folder(), folder)
+    monkeypatch.setattr(index, "folder", lambda: folder)
     return folder
 
 
@@ -87,12 +87,12 @@ def assert_same(values, errors, others, other_errors):
 
 @pytest.mark.quick
 def test_index_and_files_are_one_to_one(make):
-    files = {file.name for file in shipped.folder().glob("*.xz")}
+    files = {file.name for file in index.folder().glob("*.xz")}
     entries = [material.file for material in shipped.materials().values()]
     assert sorted(entries) == sorted(files)
     assert sorted(make.TABULATED) == TABULATED
     assert sorted(make.MEASURED) == MEASURED
-    readme = (shipped.folder() / "README.md").read_text(encoding="utf-8")
+    readme = (index.folder() / "README.md").read_text(encoding="utf-8")
     assert all(f"| `{name}` |" in readme for name in NAMES)
 
 

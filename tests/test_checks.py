@@ -170,7 +170,7 @@ class Mine(Model):
 )
 def test_a_model_that_raises_has_failed(lines, said, tmp_path, monkeypatch):
     """Each check for itself; the figure names the line."""
-    monkeypatch.setattr("brdfkit.model.labels._user_files", {})
+    monkeypatch.setattr("brdfkit.plugins.discovery._users", {})
     (tmp_path / "users_mine.py").write_text(MINE + lines)
     mine = bk.load_models(tmp_path)["users_mine"]
     report = bk.check(mine(), only=["plugin is formula", "finite"])
@@ -179,12 +179,6 @@ def test_a_model_that_raises_has_failed(lines, said, tmp_path, monkeypatch):
         assert finding.figure.startswith("users_mine.py")
         assert said in finding.figure
         assert "\n" not in finding.figure
-
-
-@pytest.mark.quick
-def test_a_model_in_no_file_is_refused():
-    with pytest.raises(bk.BrdfkitError, match=r"Right is in no file.*load_models"):
-        bk.check(Right())
 
 
 @pytest.mark.quick

@@ -19,7 +19,7 @@ from small_files import merl
 import brdfkit as bk
 from brdfkit.catalogue import shipped
 from brdfkit.cli import main
-from brdfkit.model import labels
+from brdfkit.plugins import discovery
 
 SMALL = ("--size", "16", "--spp", "2")
 SHAPE = (6, 4, 8)
@@ -54,7 +54,7 @@ class Felt(Model):
 def here(tmp_path, monkeypatch):
     """An empty current folder with a measured file in it."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(labels, "_user_files", {})
+    monkeypatch.setattr(discovery, "_users", {})
     Path("paint.binary").write_bytes(merl(SHAPE))
     return tmp_path
 
@@ -206,12 +206,12 @@ def test_a_file_stands_for_the_model_in_it(cli):
     Path("c++/felt.py").write_text(USER_MODEL)
     assert "Felt: dull." in cli("models", "c++/felt.py").stdout
     Path("felt.py").write_text(USER_MODEL.replace("0.3", "0.2"))
-    labels._user_files.clear()
+    discovery._users.clear()
     assert_fine(cli("fit", "paint.binary", "-m", "felt.py", "-m", "felt.py+ward", "-o", "."))
     assert {"felt.json", "felt+ward.json"} < set(tree(Path()))
     assert_fine(cli("render", "felt.py", "felt.json", "felt+ward.json", *SMALL))
     assert_fine(cli("convert", "felt.py", "felt.bsdf"))
-    labels._user_files.clear()
+    discovery._users.clear()
     unknown = cli("render", "felt.json", *SMALL)
     assert unknown.exit_code == 2
     assert "'felt', a model of somebody's own; load its file first" in unknown.stderr

@@ -25,10 +25,11 @@ import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.converting import convert
 from brdfkit.errors import BrdfkitError
-from brdfkit.formats import HEAD, formats, load, save
+from brdfkit.evaluating import albedo
+from brdfkit.formats import HEAD, formats
 from brdfkit.formats.rgl import encoding
 from brdfkit.geometry.directions import from_angles
-from brdfkit.geometry.quadrature import albedo
+from brdfkit.loading import load, save
 from brdfkit.measured import Measured
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("small_tables")]

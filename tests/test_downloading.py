@@ -13,11 +13,12 @@ import pytest
 from click.testing import CliRunner
 from small_files import curet, curet_table, merl
 
-from brdfkit.catalogue import public, shipped
+from brdfkit.catalogue import index, public
 from brdfkit.catalogue.downloading import get
 from brdfkit.cli import main
 from brdfkit.errors import BrdfkitError
-from brdfkit.formats import load
+from brdfkit.files import sha256
+from brdfkit.loading import load
 
 pytestmark = pytest.mark.quick
 
@@ -80,7 +81,7 @@ def cache(tmp_path, monkeypatch):
 @pytest.fixture
 def lab(server, cache, monkeypatch):
     """A function that makes `lab` the only collection, with one file, which is on the server."""
-    own = shipped.index()
+    own = index.entries()
 
     def put(file="grey.binary", data=TABLE, **entry):
         url = f"http://127.0.0.1:{server.server_port}/{{file}}"
@@ -94,8 +95,8 @@ def lab(server, cache, monkeypatch):
             "url": url,
             "files": [row],
         }
-        index = own | {"collections": {"lab": collection | entry}}
-        monkeypatch.setattr(shipped, "index", lambda: copy.deepcopy(index))
+        entries = own | {"collections": {"lab": collection | entry}}
+        monkeypatch.setattr(index, "entries", lambda: copy.deepcopy(entries))
         return cache / "lab" / file
 
     return put
@@ -326,7 +327,7 @@ def test_a_sample_of_a_file_with_many(lab, cache):
 def test_names_that_are_none(lab, tmp_path, monkeypatch):
     lab()
     assert "'brdfkit data list lab' names what is known" in fails("lab/nope", load)
-    assert "there is no such collection; there are lab" in fails("nope/grey")
+    assert "nope/grey: there is no collection 'nope'; there are lab" in fails("nope/grey")
     assert "there is no such file" in fails("nope/grey", load)
     monkeypatch.chdir(tmp_path)
     (tmp_path / "lab").mkdir()
@@ -412,5 +413,5 @@ def test_checksums_are_those_of_real_files(measured_data, folder):
     there = [f for f in (measured_data / folder).iterdir() if known.get(f.name)]
     assert there
     for file in there:
-        assert shipped.sha256(file) == known[file.name].sha256
+        assert sha256(file) == known[file.name].sha256
         assert file.stat().st_size == known[file.name].bytes

@@ -12,6 +12,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.weights import bounded_quadratic
 from brdfkit.geometry.directions import from_angles
 from brdfkit.model import Model, weight
+from brdfkit.model.lobes import lambertian
 from brdfkit.samples import Table
 
 
@@ -260,9 +261,12 @@ def test_without_derivatives_the_fit_is_the_same(monkeypatch):
 
 
 class InNoFile(Model):
-    """A model of a notebook: a fit of it could be saved, but not loaded."""
+    """A model of a notebook's cell."""
 
     diffuse_reflectance = weight(0.4, "")
+
+    def lobes(self):
+        return (lambertian(),)
 
 
 @pytest.mark.quick
@@ -270,6 +274,21 @@ def test_a_class_stands_for_its_name():
     data = synthetic(bk.models()["lambert"](), n=50)
     coupled = bk.models()["ashikhmin_shirley"].configured(diffuse="coupled")
     assert bk.fit(coupled, data, starts=1).name == "ashikhmin_shirley:diffuse=coupled"
+
+
+@pytest.mark.quick
+def test_a_class_in_no_file_is_a_model(no_user_plugins, llvm_variant):
+    """It is fitted, summed, checked, rendered and pickled; its name is that of the class."""
+    data = synthetic(bk.models()["lambert"](), n=200)
+    found = bk.fit(InNoFile, data, starts=1)
+    assert found.name == "in_no_file"
+    lambert = bk.fit("lambert", data)
+    assert found.values["diffuse_reflectance"] == lambert.values["diffuse_reflectance"]
+    assert "in_no_file" in bk.models()
+    assert bk.fit("in_no_file+ward", data, starts=1).name == "in_no_file+ward"
+    assert bk.check(found, only=["plugin is formula"])
+    assert bk.render(found, spp=1, size=4).pictures["in_no_file"].max() > 0
+    assert pickle.loads(pickle.dumps(found)) == found
 
 
 @pytest.mark.quick
@@ -306,8 +325,8 @@ def test_weights_that_may_be_negative_have_no_bound():
         ({"seed": -1}, ["seed = -1", "at least 0"]),
         ({"loss": ["log"]}, ["['log']", "cosine, log"]),
         ({"name": 3}, ["int", "ward"]),
-        ({"name": InNoFile}, ["InNoFile", "load_models"]),
-        ({"data": "car_paint"}, ["load('car_paint')"]),
+        ({"name": "wrad"}, ["'wrad'", "did you mean ward?"]),
+        ({"data": "car_pant"}, ["'car_pant'", "did you mean car_paint?"]),
         ({"data": InNoFile()}, ["was not measured"]),
     ],
 )

@@ -26,8 +26,9 @@ from small_files import (
 from brdfkit import files
 from brdfkit.colours import RGB, colour_science
 from brdfkit.errors import BrdfkitError
-from brdfkit.formats import formats, load, save
+from brdfkit.formats import formats
 from brdfkit.geometry.directions import from_angles
+from brdfkit.loading import load, save
 from brdfkit.measured import Measured
 
 pytestmark = pytest.mark.quick

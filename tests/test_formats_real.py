@@ -9,8 +9,9 @@ from scipy.spatial import cKDTree
 
 from brdfkit.colours import RGB
 from brdfkit.files import contents
-from brdfkit.formats import HEAD, formats, load, save
+from brdfkit.formats import HEAD, formats
 from brdfkit.geometry.directions import from_angles
+from brdfkit.loading import load, save
 
 DATA = Path(os.environ.get("BRDFKIT_DATA", "unset"))
 pytestmark = pytest.mark.skipif(not DATA.is_dir(), reason="BRDFKIT_DATA names no folder")

@@ -17,7 +17,8 @@ from small_files import FILES, curet_table, place, written
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.result import Fit
-from brdfkit.formats import formats, load
+from brdfkit.formats import formats
+from brdfkit.loading import load
 from brdfkit.measured import Measured
 
 CORPUS = {**FILES, **written(), "curet table": ("table.txt", curet_table())}

@@ -447,7 +447,11 @@ def test_what_cannot_be_measured(said, options):
         ("slope = nan", "brushed", {"slope": np.nan}),
         ("stretch = 0.5", "brushed", {"stretch": 0.5}),
         ("thickness = 2", "woven", {"thickness": 2}),
-        ("gaussian has no stretch", "gaussian", {"stretch": 2}),
+        (
+            "gaussian: there is no parameter 'stretch'; there are slope, seed",
+            "gaussian",
+            {"stretch": 2},
+        ),
     ],
 )
 def test_surfaces_that_cannot_be(said, name, parameters):

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.evaluating import lobe_values
-from brdfkit.fitting.selection import selected
 from brdfkit.geometry.directions import from_angles
+from brdfkit.measured.selection import selected
 from brdfkit.model import labels
+from brdfkit.model.evaluation import lobe_values
 
 
 def hemisphere(n_theta, n_phi):

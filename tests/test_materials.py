@@ -1,20 +1,31 @@
 """Whatever takes a material takes all of them, and says what to give in place of anything else."""
 
+import shutil
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import brdfkit as bk
+from brdfkit.catalogue import shipped
 
 UP = np.array([[0.0, 0.0, 1.0]])
 WARD = bk.models()["ward"]
 
 TAKERS = {
+    "albedo": lambda thing: bk.albedo(thing, UP[0]),
+    "audit": lambda thing: bk.audit(thing),
+    "convert": lambda thing: bk.convert(thing, "never.npz"),
+    "plot": lambda thing: bk.plot([WARD(), thing]),
+    "render": lambda thing: bk.render([WARD(), thing], spp=1, size=4),
     "evaluate": lambda thing: bk.evaluate(thing, UP, UP),
     "compare": lambda thing: bk.compare(bk.load("dusty_gold"), [WARD(), thing]),
     "compare to": lambda thing: bk.compare(thing, WARD()),
     "check": lambda thing: bk.check(thing, only=["reciprocity"]),
-    "fit": lambda thing: bk.fit("ward", thing),
+    "fit": lambda thing: bk.fit("lambert", thing),
 }
+# The others take only what was measured
+OF_MODELS = TAKERS.keys() - {"audit", "compare to", "fit"}
 
 
 @pytest.mark.quick
@@ -22,17 +33,30 @@ TAKERS = {
 @pytest.mark.parametrize(
     ("thing", "said"),
     [
-        ("car_paint", r"'car_paint' is a name, .* brdfkit\.load\('car_paint'\)"),
-        ("ward", r"'ward' is a name, .* brdfkit\.models\(\)\['ward'\]\(\)"),
+        ("wrad", r"no file, model or material 'wrad'; did you mean ward\? There are abc, .*gold"),
+        ("car_pant", r"did you mean car_paint\?"),
+        ("ward+wrad", r"no file, model or material 'ward\+wrad'"),
+        ("car_paint.astm", r"car_paint\.astm: there is no such file"),
+        ("", "The path is empty"),
         (WARD, r"Ward is a model without values; call it: Ward\(\)"),
-        (UP, "A ndarray is no material"),
-        (None, "A NoneType is no material"),
+        (UP, r"^array\(\[\[0\., 0\., 1\.\]\]\) \(ndarray\) is no material"),
+        (None, r"^None \(NoneType\) is no material"),
     ],
     ids=str,
 )
 def test_what_is_no_material_is_refused(taker, thing, said, llvm_variant):
     with pytest.raises(bk.BrdfkitError, match=said):
         TAKERS[taker](thing)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("taker", TAKERS)
+def test_a_name_stands_for_its_material(taker, llvm_variant, tmp_path, monkeypatch):
+    """That of a model, of a material that comes with brdfkit, or a path, as on the command line."""
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(shipped.path("red_plastic"), "mine.binary.xz")
+    for name in ("red_plastic", Path("mine.binary.xz"), *(["ward"] if taker in OF_MODELS else [])):
+        TAKERS[taker](name)
 
 
 @pytest.mark.quick
@@ -58,5 +82,8 @@ def test_no_directions_have_no_values(directions):
 @pytest.mark.quick
 def test_weights_have_as_many_channels():
     assert bk.evaluate(WARD(diffuse_reflectance=[0.1, 0.2, 0.3]), UP, UP).shape == (1, 3)
-    with pytest.raises(bk.BrdfkitError, match="ward: the weights have 2 and 3 channels"):
-        WARD(diffuse_reflectance=[0.1, 0.2], specular_reflectance=[0.1, 0.2, 0.3])
+    for weight in ([0.1, 0.2], [0.1] * 4, []):
+        with pytest.raises(
+            bk.BrdfkitError, match=r"ward: specular_reflectance = \[.*three for R, G"
+        ):
+            WARD(specular_reflectance=weight)

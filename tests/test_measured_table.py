@@ -299,7 +299,7 @@ def test_beyond_measured_angles_no_more_light_leaves_than_comes(paint, measured_
 
 def test_a_retroreflective_peak_stays_where_it_was_measured(goniometer):
     """Its neighbours at the same theta_h, a few degrees of theta_d away, are not in it."""
-    truth = labels.model_with_values("lafortune:lobe_count=2", BACK_AND_FORTH)
+    truth = labels.model("lafortune:lobe_count=2")(**BACK_AND_FORTH)
     found = bk.Measured.from_samples(*goniometer, truth.eval(*goniometer), channels=("Y",))
     for degrees in (20, 40, 60):
         wi = from_angles(np.radians(degrees), 0.0)

@@ -8,8 +8,8 @@ import pytest
 import brdfkit as bk
 from brdfkit.checks.subject import random_pairs
 from brdfkit.errors import BrdfkitError
-from brdfkit.fitting.selection import selected
 from brdfkit.geometry.directions import from_angles
+from brdfkit.measured.selection import selected
 from brdfkit.model import labels
 
 

@@ -10,7 +10,8 @@ import pytest
 from small_files import MATERIALS, assert_same, brushed, place, spectrum, table
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.formats import load, npz, save
+from brdfkit.formats import npz
+from brdfkit.loading import load, save
 from brdfkit.measured import Measured
 
 pytestmark = pytest.mark.quick

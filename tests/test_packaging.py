@@ -74,9 +74,9 @@ def test_works_without_the_checkout(installed, tmp_path):
 
     where = """
 import brdfkit
-from brdfkit.catalogue import shipped
-from brdfkit.model import labels
-for path in (brdfkit.__file__, shipped.folder(), *labels.plugin_files().values()):
+from brdfkit.catalogue import index
+from brdfkit.plugins import discovery
+for path in (brdfkit.__file__, index.folder(), *discovery.sources('bsdfs').values()):
     print(path)
 """
     places = python("-c", where).split()

@@ -198,14 +198,13 @@ def test_angles_out_of_range(theta_i):
 @pytest.mark.parametrize(
     ("things", "named"),
     [
-        ([], "'nothing'"),
-        ("car_paint", "'car_paint'"),
-        (3, "3"),
+        ([], "There is no material here"),
+        (3, r"3 \(int\) is no material"),
         (None, "None"),
         ([Constant(1), 3], "3"),
         (Constant, "<class"),
     ],
 )
 def test_what_cannot_be_plotted(things, named):
-    with pytest.raises(BrdfkitError, match=f"^plot: {named}.* cannot be plotted; give .* `load`"):
+    with pytest.raises(BrdfkitError, match=f"^{named}.*; give "):
         plot(things)

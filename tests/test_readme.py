@@ -13,7 +13,7 @@ import brdfkit as bk
 from brdfkit.checks.subject import random_pairs
 from brdfkit.cli import main
 from brdfkit.measured import Measured
-from brdfkit.model import labels
+from brdfkit.plugins import discovery
 
 ROOT = Path(__file__).resolve().parents[1]
 SMALL_PICTURE = ("--spp", "1", "--size", "16")
@@ -39,7 +39,7 @@ def block(page, before):
 def here(tmp_path, monkeypatch, llvm_variant):
     """A current folder with small files of the names that the pages use."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(labels, "_user_files", {})
+    monkeypatch.setattr(discovery, "_users", {})
     wi, wo = random_pairs(300, seed=0, max_degrees=75)
     copper = bk.models()["ggx"](alpha_u=0.3, specular_reflectance=(0.9, 0.6, 0.4))
     bk.save(Measured.from_samples(wi, wo, copper.eval(wi, wo)), "copper.astm")

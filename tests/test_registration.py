@@ -13,7 +13,7 @@ import pytest
 
 import brdfkit as bk
 from brdfkit import llvm
-from brdfkit.model import labels
+from brdfkit.plugins import discovery
 
 VARIANTS = ("llvm_ad_rgb", "llvm_ad_mono", "llvm_ad_spectral", "scalar_rgb", "scalar_spectral")
 WO_Z = math.sqrt(1 - 0.34)
@@ -116,7 +116,7 @@ def test_no_name_is_a_built_in_plugin():
 
     built_in = {file.stem for file in Path(mi.__file__).with_name("plugins").iterdir()}
     assert {"diffuse", "roughconductor", "path"} < built_in
-    assert not built_in & set(labels.plugin_files())
+    assert not built_in & {name for kind in discovery.KINDS for name in discovery.sources(kind)}
 
 
 # Parameters
@@ -209,7 +209,7 @@ def test_errors_name_the_parameter(model, variant, name):
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    monkeypatch.setattr(labels, "_user_files", {})
+    monkeypatch.setattr(discovery, "_users", {})
     return tmp_path
 
 
@@ -246,7 +246,7 @@ def test_a_taken_name_is_refused(folder, name):
     (folder / f"{name}.py").write_text(FELT)
     with pytest.raises(bk.BrdfkitError, match=f"plugin '{name}'; rename the file"):
         bk.load_models(folder)
-    assert not labels._user_files
+    assert not discovery._users
 
 
 @pytest.mark.quick
@@ -273,7 +273,7 @@ def test_a_file_that_holds_no_model_is_refused(folder, text, said):
     (folder / "users_wrong.py").write_text(text)
     with pytest.raises(bk.BrdfkitError, match=rf"users_wrong\.py.*{said}"):
         bk.load_models(folder)
-    assert not labels._user_files
+    assert not discovery._users
     with pytest.raises(bk.BrdfkitError, match="no Python file"):
         bk.load_models(folder / "nowhere.py")
 

@@ -14,12 +14,12 @@ from brdfkit.checks.sampling import uniform
 from brdfkit.checks.subject import Subject, incidences, random_pairs
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit
-from brdfkit.formats import load, save
 from brdfkit.formats.rgl import encoding, tensor_file
 from brdfkit.formats.rgl.encoding import Resolution
 from brdfkit.formats.rgl.normals import Hemisphere, power_iteration
 from brdfkit.formats.rgl.warp import Warp, between, even_grid
 from brdfkit.geometry.directions import from_angles
+from brdfkit.loading import load, save
 from brdfkit.measured import Measured
 
 DATABASE = (

@@ -8,7 +8,7 @@ from brdfkit.checks.subject import random_pairs
 from brdfkit.fitting.loss import losses
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.robust import WEIGHTS, robust_least_squares
-from brdfkit.fitting.selection import selected
+from brdfkit.measured.selection import selected
 
 # y = 10 - 2x + e with the last one set to 0; MATLAB's robustfit (Kurt 2007, digest 6.5)
 NOISE = [0.5377, 1.8339, -2.2588, 0.8622, 0.3188, -1.3077, -0.4336, 0.3426, 3.5784, 2.7694]

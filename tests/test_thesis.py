@@ -15,8 +15,8 @@ from random_models import random_model
 
 import brdfkit as bk
 from brdfkit.fitting.loss import losses
-from brdfkit.fitting.selection import selected
 from brdfkit.geometry.directions import from_angles
+from brdfkit.measured.selection import selected
 from brdfkit.model import double_precision
 from brdfkit.model.lobes import HalfVector
 from brdfkit.model.microfacet import Beckmann

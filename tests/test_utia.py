@@ -7,8 +7,8 @@ import pytest
 from small_files import place, spectrum, table, utia
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.formats import load, save
 from brdfkit.geometry.directions import from_angles
+from brdfkit.loading import load, save
 from brdfkit.measured import Measured
 
 pytestmark = pytest.mark.quick

@@ -27,8 +27,9 @@ import numpy as np
 
 from brdfkit.cli import main
 from brdfkit.files import written
-from brdfkit.formats import load, npz
+from brdfkit.formats import npz
 from brdfkit.formats.merl import NOT_MEASURED, SCALE
+from brdfkit.loading import load
 from brdfkit.measured import Measured
 from brdfkit.samples import Table
 

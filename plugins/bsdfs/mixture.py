@@ -45,6 +45,10 @@ class Mixture(Model):
         return parts
 
     @classmethod
+    def made_of(cls):
+        return (Mixture, *(part for _, model, _ in cls.parts() for part in model.made_of()))
+
+    @classmethod
     def more_parameters(cls):
         parameters, seen = {}, []
         parts = cls.parts()

@@ -13,10 +13,10 @@ import lazy_loader
 
 from brdfkit import llvm
 from brdfkit.host import hook
+from brdfkit.version import __version__ as __version__
 
 # The public names are listed in __init__.pyi alone, and imported when used
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
-__version__ = "0.1.0"
 
 llvm.prepare()
 hook.install()

@@ -3,7 +3,12 @@
 import math
 from dataclasses import dataclass
 
-from brdfkit.errors import BrdfkitError
+import numpy as np
+
+from brdfkit.fitting import losses
+from brdfkit.materials import materials, measured
+from brdfkit.measured.selection import selected
+from brdfkit.model import double_precision
 from brdfkit.names import unused
 
 
@@ -47,19 +52,35 @@ def compare(data, things, max_angle=80.0):
 
     >>> print(compare(paint, [fit("ward", paint), fit("ggx", paint)]))    # doctest: +SKIP
     """
-    from brdfkit.fitting import losses
-    from brdfkit.materials import require_material, require_measured
-    from brdfkit.metrics import error
-
-    require_measured(data)
-    things = list(things) if isinstance(things, list | tuple) else [things]
-    if not things:
-        raise BrdfkitError("There is nothing to compare; give at least one material.")
-    for thing in things:
-        require_material(thing)
+    data, things = measured(data), materials(things)
     errors = {}
     for thing in things:
         errors[unused(thing.name, errors)] = {
             loss: error(thing, data, loss, max_angle) for loss in losses
         }
     return Comparison(data.name, dict(sorted(errors.items(), key=lambda item: item[1]["log"])))
+
+
+def error(thing, data, loss, max_angle=80.0):
+    """E of the loss named `loss` between `thing` (anything with `.eval`) and a `Measured`.
+
+    Over the samples with both angles below `max_angle` [degrees]; its units: `brdfkit.losses`.
+    nan where the loss weighs none of them, as the cosine loss at normal incidence.
+
+    >>> error(models()["lambert"](), load("paint.binary"), "log")    # doctest: +SKIP
+    """
+    loss = losses[loss]
+    samples = selected(data, max_angle)
+    cosines, weights = loss.geometry(samples)
+    target = loss.target(samples.values)
+    values = np.broadcast_to(thing.eval(samples.wi, samples.wo), target.shape)
+    squares = np.square(_transformed(loss, values, cosines) - _transformed(loss, target, cosines))
+    total = weights @ squares.sum(axis=1)
+    normaliser = loss.normaliser(weights, target.shape[1])
+    return math.sqrt(total / normaliser) if normaliser else math.nan
+
+
+def _transformed(loss, values, cosines):
+    Float64 = double_precision.float64()
+    columns = [loss.g(Float64(np.ascontiguousarray(v * cosines))) for v in values.T]
+    return np.stack([np.asarray(c) for c in columns], axis=1)

@@ -5,9 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from brdfkit.formats import saved
 from brdfkit.geometry.directions import from_angles
+from brdfkit.loading import save_and_read
+from brdfkit.materials import material
 from brdfkit.measured import Measured
+from brdfkit.measured.tabulation import sampled, table_shape
 
 # Direction pairs where two materials are compared, up to so far from the normal
 PAIRS, STEEPEST = 4000, np.radians(80)
@@ -34,17 +36,16 @@ def convert(thing, path):
     >>> print(convert(load("cayman.brdf"), "cayman.npz"))  # doctest: +SKIP
     cayman.npz (nothing lost)
     """
+    thing = material(thing)
     if isinstance(thing, Measured):
-        return Conversion(Path(path), changes(thing, saved(thing, path)))
-    material = evaluated(thing)
-    note = f"{thing.name} evaluated at {len(material.values):,} direction pairs"
-    return Conversion(Path(path), (note, *changes(material, saved(material, path))))
+        return Conversion(Path(path), changes(thing, save_and_read(thing, path)))
+    table = evaluated(thing)
+    note = f"{thing.name} evaluated at {len(table.values):,} direction pairs"
+    return Conversion(Path(path), (note, *changes(table, save_and_read(table, path))))
 
 
 def evaluated(thing):
     """A fit or a model as a `Measured`: evaluated where a table would be, exact in between."""
-    from brdfkit.measured.tabulation import sampled, table_shape
-
     model = getattr(thing, "model", thing)
     anisotropic = any(model.parameters[name].follows for name in model.free_values)
     channels = thing.eval(*[[[0, 0, 1.0]]] * 2).shape[1]

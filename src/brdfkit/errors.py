@@ -6,3 +6,23 @@ class BrdfkitError(ValueError):
 
     The command line prints it and leaves with status 2; nothing was half-written.
     """
+
+
+def no_such(what, name, known, where=""):
+    """The error for a `name` that is none of the `known`; it proposes the nearest of them.
+
+    >>> no_such("model", "wrad", ["ggx", "ward"])
+    BrdfkitError("There is no model 'wrad'; did you mean ward? There are ggx, ward.")
+    """
+    known = list(known)
+    place = f"{where}: there" if where else "There"
+    near = nearest(name, known)
+    guess = f"did you mean {near}? There are" if near else "there are"
+    return BrdfkitError(f"{place} is no {what} {name!r}; {guess} {', '.join(known) or 'none'}.")
+
+
+def nearest(name, known):
+    """The one of the `known` names that is nearly `name`, None where none is."""
+    import difflib  # only here: `--help` should be instant
+
+    return next(iter(difflib.get_close_matches(str(name), known, n=1)), None)

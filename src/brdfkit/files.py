@@ -1,6 +1,7 @@
 """Files, safely: written whole or not at all, read within a limit, compressed or not."""
 
 import gzip
+import hashlib
 import lzma
 import os
 import secrets
@@ -8,7 +9,7 @@ import zlib
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from brdfkit.errors import BrdfkitError
+from brdfkit.errors import BrdfkitError, nearest
 
 LIMIT = 2**30  # bytes, decompressed; the largest MERL table has 70 MB
 CHUNK = 2**20  # bytes
@@ -107,6 +108,12 @@ def contents(path):
     return data
 
 
+def sha256(file):
+    """The SHA-256 of a file (`Path`), in hexadecimal."""
+    with file.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
 def _require_file(path):
     if path.is_dir():
         raise BrdfkitError(f"{path}: is a folder; name a file in it.")
@@ -114,7 +121,10 @@ def _require_file(path):
         return
     if path.exists():
         raise BrdfkitError(f"{path}: is no regular file; name one.")
-    raise BrdfkitError(f"{path}: there is no such file; check the path.")
+    beside = {file.name for file in path.parent.glob("*")} if path.parent.is_dir() else set()
+    near = nearest(path.name, sorted(beside - {path.name}))
+    remedy = f"did you mean {path.with_name(near)}? Else check" if near else "check"
+    raise BrdfkitError(f"{path}: there is no such file; {remedy} the path.")
 
 
 def _read(path):

@@ -1,17 +1,17 @@
-"""What a measurement holds, how far it reaches and where it is doubtful: `Measured.audit`."""
+"""What a measurement holds, how far it reaches and where it is doubtful: `audit`."""
 
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from brdfkit.auditing.albedo import Albedo, albedo, albedo_of_samples
+from brdfkit.auditing.albedos import Albedo, albedo, albedo_of_samples
 from brdfkit.auditing.coverage import Coverage, coverage
 from brdfkit.auditing.noise import Noise, noise
 from brdfkit.auditing.pairs import Difference, by_mirror, by_reciprocity
 from brdfkit.auditing.ratios import grazing, retroreflection
 from brdfkit.auditing.spikes import Spike, spikes
-from brdfkit.fitting.selection import within
+from brdfkit.materials import measured
 from brdfkit.measured.spectra import rgb_or_mean
 
 MAX_ANGLE = 80.0  # degrees: what a fit uses by default
@@ -20,7 +20,7 @@ FEW = 10  # angles that are told each
 
 @dataclass(frozen=True)
 class Audit:
-    """What is in a measurement; printed it says so in words. Made by `Measured.audit`.
+    """What is in a measurement; printed it says so in words. Made by `audit`.
 
     `shape`: of a table, else None; `size`: number of cells or samples, of which some are `above`
     the horizon, `valid`, and `used` by a fit as it comes (both angles below 80°); `negative`,
@@ -90,7 +90,14 @@ class Audit:
 
 
 def audit(data):
-    """The `Audit` of a `Measured`."""
+    """How far a measurement reaches, how noisy it is and what is doubtful: its `Audit`.
+
+    `data`: a measured material, or the name or path of one. The result prints as text, and its
+    `picture()` is a matplotlib `Figure`. Raises `BrdfkitError` for what was not measured.
+
+    >>> print(audit("copper.astm"))    # doctest: +SKIP
+    """
+    data = measured(data)
     samples = data.samples
     above = (samples.wi[:, 2] > 0) & (samples.wo[:, 2] > 0)
     values = samples.values[samples.valid]
@@ -104,7 +111,7 @@ def audit(data):
         size=len(above),
         above=int(above.sum()),
         valid=len(values),
-        used=int(within(samples, MAX_ANGLE).sum()),
+        used=int(samples.within(MAX_ANGLE).sum()),
         negative=int((values < 0).sum()),
         zero=int((values == 0).sum()),
         theta_i=theta_i,

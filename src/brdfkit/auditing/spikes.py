@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.geometry.directions import to_angles
-from brdfkit.measured.interpolation import anisotropic_coordinates, isotropic_coordinates
+from brdfkit.samples.coordinates import anisotropic_coordinates, isotropic_coordinates
 
 FACTOR = 4  # above the neighbours; rough and smooth paints, cloth and stone stay below 3.4
 NEIGHBOURS = 6

@@ -1,15 +1,17 @@
 """Public collections of measurements: who published them where, and their files.
 
-brdfkit brings none of them. `data/measured/index.toml` knows names, checksums and addresses; the
-files lie in the user's cache folder, where `downloading.py` or the user put them.
+brdfkit brings none of them. The index knows names, checksums and addresses; the files lie in the
+user's cache folder, where `downloading.py` or the user put them.
 """
 
 import csv
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from brdfkit.catalogue import shipped
-from brdfkit.errors import BrdfkitError
+from brdfkit import formats
+from brdfkit.catalogue import index
+from brdfkit.errors import BrdfkitError, no_such
+from brdfkit.files import sha256
 
 PART = ".part"  # the suffix of a file that is not all here
 
@@ -78,7 +80,7 @@ def collections():
     >>> collections()["merl"].files["merl/alum-bronze"].file
     'alum-bronze.binary'
     """
-    entries = shipped.index()["collections"]
+    entries = index.entries()["collections"]
     return {name: _collection(name, entry) for name, entry in entries.items()}
 
 
@@ -86,9 +88,7 @@ def collection(name):
     """The `Collection` of that name, or that of a material, ``merl`` or ``merl/alum-bronze``."""
     first = name.partition("/")[0]
     if first not in collections():
-        raise BrdfkitError(
-            f"{name}: there is no such collection; there are {', '.join(collections())}."
-        )
+        raise no_such("collection", first, collections(), where=name)
     return collections()[first]
 
 
@@ -107,7 +107,7 @@ def path(name):
     remedy = f"run 'brdfkit data get {name}'" if listed.url else owner.by_hand(listed.file)
     if not listed.path.is_file():
         raise BrdfkitError(f"{name}: is not here; {remedy}.")
-    if listed.sha256 and shipped.sha256(listed.path) != listed.sha256:
+    if listed.sha256 and sha256(listed.path) != listed.sha256:
         raise BrdfkitError(
             f"{listed.path}: is not the {name} that was published (its checksum differs); "
             f"delete it and {remedy}."
@@ -123,9 +123,7 @@ def cache():
 
 
 def _is_material(file):
-    from brdfkit.formats import has_format  # which looks for materials here
-
-    return has_format(file) and not file.name.startswith(".")
+    return formats.has_format(file) and not file.name.startswith(".")
 
 
 def _named(collection, file):
@@ -135,7 +133,7 @@ def _named(collection, file):
 def _collection(name, entry):
     rows, url = entry.pop("files"), entry.pop("url", "")
     if isinstance(rows, str):
-        with (shipped.folder() / rows).open(encoding="utf-8", newline="") as stream:
+        with (index.folder() / rows).open(encoding="utf-8", newline="") as stream:
             rows = list(csv.DictReader(stream, delimiter="\t"))
     listed = [_listed(name, url=row.get("url", url), row=row) for row in rows]
     return Collection(name, **entry, files={found.name: found for found in listed})

@@ -1,16 +1,10 @@
-"""The known materials: where they come from, under which licence, and their files.
+"""The materials that come with brdfkit: what they were made from, their licence, their files."""
 
-`data/measured/index.toml` lists those that come with brdfkit, and public collections
-(`public_collections.py`). The wheel copies that folder into the package; in a checkout it lies at
-the top.
-"""
-
-import hashlib
-import tomllib
 from dataclasses import dataclass
-from pathlib import Path
 
-from brdfkit.errors import BrdfkitError
+from brdfkit.catalogue import index
+from brdfkit.errors import BrdfkitError, no_such
+from brdfkit.files import sha256
 
 
 @dataclass(frozen=True)
@@ -39,7 +33,7 @@ def materials():
     >>> print(materials()["dusty_gold"].title)
     Dusty gold
     """
-    entries = index().items()
+    entries = index.entries().items()
     return {name: Material(name, **entry) for name, entry in entries if name != "collections"}
 
 
@@ -52,9 +46,9 @@ def path(name):
     'dusty_gold.binary.xz'
     """
     if name not in materials():
-        raise BrdfkitError(f"There is no material {name!r}; there are {', '.join(materials())}.")
+        raise no_such("material", name, materials())
     material = materials()[name]
-    file = folder() / material.file
+    file = index.folder() / material.file
     if not file.is_file():
         raise BrdfkitError(f"{file}: the file of {name!r} is missing; install brdfkit again.")
     if sha256(file) != material.sha256:
@@ -63,22 +57,3 @@ def path(name):
             "install brdfkit again."
         )
     return file
-
-
-def folder():
-    """The folder of the index: within the installed package, else that of the checkout."""
-    package = Path(__file__).resolve().parents[1]
-    installed, checkout = package / "data" / "measured", package.parents[1] / "data" / "measured"
-    return installed if installed.is_dir() else checkout
-
-
-def index():
-    """The index as it is written, TOML's tables as dictionaries."""
-    with (folder() / "index.toml").open("rb") as stream:
-        return tomllib.load(stream)
-
-
-def sha256(file):
-    """The SHA-256 of a file, in hexadecimal."""
-    with file.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()

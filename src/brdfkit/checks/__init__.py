@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from brdfkit import llvm
 from brdfkit.checks.failure import described
 from brdfkit.checks.subject import Finding, Subject, checks
-from brdfkit.errors import BrdfkitError
-from brdfkit.materials import require_material
-from brdfkit.model.labels import require_file
+from brdfkit.errors import BrdfkitError, no_such
+from brdfkit.materials import material
 
 for _module in pkgutil.iter_modules(__path__):
     importlib.import_module(f"{__name__}.{_module.name}")
@@ -44,20 +43,19 @@ def check(thing, only=None, progress=None):
     Sampling (χ² at five incidences to grazing, coverage, weight = eval / pdf), reciprocity,
     finiteness to the horizon, energy, derivatives, and that the Mitsuba plugin computes the
     formula. A model that raises an error has failed. `only`: names of checks; `progress`: called
-    with (done, total). Raises `BrdfkitError` for an unknown check, for what is no material or is
-    in no file, and without an LLVM or CUDA variant.
+    with (done, total). Raises `BrdfkitError` for an unknown check, for what is no material, and
+    without an LLVM or CUDA variant.
 
     >>> print(check(models()["ward"](alpha_u=0.1)))    # doctest: +SKIP
     """
-    require_material(thing)
+    thing = material(thing)
     if llvm.use_variant().startswith("scalar"):
         raise BrdfkitError(f"check needs an LLVM or CUDA variant of Mitsuba; {llvm.REMEDY}.")
     subject = Subject(thing)
-    if subject.model is not None:
-        require_file(type(subject.model))
     names = list(checks) if only is None else list(only)
-    if unknown := set(names) - set(checks):
-        raise BrdfkitError(f"There is no check {unknown.pop()!r}; there are {', '.join(checks)}.")
+    for name in names:
+        if name not in checks:
+            raise no_such("check", name, checks)
     findings = []
     for name in names:
         findings.append(Finding(name, *_found(name, subject)))

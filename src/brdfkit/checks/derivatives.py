@@ -6,7 +6,8 @@ import numpy as np
 
 from brdfkit.checks.sampling import uniform
 from brdfkit.checks.subject import checked, incidences, random_pairs
-from brdfkit.evaluating import lobe_values, weight_matrix
+from brdfkit.model import double_precision
+from brdfkit.model.evaluation import lobe_values, weight_matrix
 
 
 @checked
@@ -116,8 +117,6 @@ def _has_effect(model, name):
     """Whether a lobe is computed from the parameter."""
     import drjit as dr
 
-    from brdfkit.model import double_precision
-
     values = {n: double_precision.scalar(getattr(model, n)) for n in model.shapes(anisotropic=True)}
     dr.enable_grad(values[name])
     wi, wo = (double_precision.vector(w) for w in random_pairs(2, seed=6))
@@ -153,8 +152,6 @@ def _derivative(model, name, wi, wo):
     A parameter that follows `name` moves with it.
     """
     import drjit as dr
-
-    from brdfkit.model import double_precision
 
     values = double_precision.shapes(model)
     dr.enable_grad(values[name])

@@ -4,7 +4,7 @@ import numpy as np
 
 from brdfkit.checks.subject import checked, incidences, random_pairs
 from brdfkit.geometry.directions import from_angles
-from brdfkit.geometry.quadrature import TOLERANCE, albedo
+from brdfkit.geometry.quadrature import TOLERANCE, directional_albedo
 
 
 @checked
@@ -36,7 +36,8 @@ def finite(subject):
 @checked
 def energy(subject):
     """No more light is reflected than came: albedo ≤ 1 at every incidence to 85°."""
-    figures = {degrees: albedo(subject.formula, wi).max() for degrees, wi in incidences()}
+    f = subject.formula.eval
+    figures = {degrees: directional_albedo(f, wi).max() for degrees, wi in incidences()}
     degrees = max(figures, key=lambda d: figures[d])
     value = figures[degrees]
     return bool(value <= 1 + TOLERANCE), f"albedo at most {value:.4f}, at {degrees}°"

@@ -1,68 +1,33 @@
-"""What a word on the command line means: a file, a model, one of the user's in a FILE.py, or a
-material that brdfkit brings; and where results go."""
+"""What a word on the command line means beyond what it means in Python; and where results go."""
 
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from brdfkit.catalogue import shipped
+from brdfkit import materials
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import folder, require_writable, written
-from brdfkit.formats import load
-from brdfkit.measured import Measured
 from brdfkit.model import labels
 from brdfkit.rendering.montage import picture_suffix
 
 FIGURES = ".png", ".pdf", ".svg"
 
 
-def measured(name):
-    """The measured material in a file, or the one of that name that brdfkit brings."""
-    thing = load(name)
-    if not isinstance(thing, Measured):
-        raise BrdfkitError(f"{name} is a saved fit; name a measured file.")
-    return thing
-
-
-def model_label(word):
-    """`word` as the label of a model: each FILE.py in it is loaded, and its name stands for it.
-
-    >>> model_label("my_models/felt.py+ggx")    # doctest: +SKIP
-    'felt+ggx'
-    """
-    parts = []
-    for part in [word] if Path(word).is_file() else word.split("+"):
-        name, colon, options = part.partition(":")
-        if name.endswith(".py"):
-            labels.load_models(name)
-            name = Path(name).stem
-        parts.append(name + colon + options)
-    return "+".join(parts)
-
-
 def material(name, settings=()):
     """What can be rendered: a model by name with `settings`, a saved fit, a measured file."""
-    label = model_label(name)
-    if labels.is_label(label) and (label != name or not Path(name).is_file()):
-        return labels.model_with_values(label, values(label, settings))
-    if settings:
+    if not settings:
+        return materials.material(name)
+    label = labels.read_files(name)
+    if not labels.is_label(label):
         raise BrdfkitError(f"{name} is no model: parameters can be set for models only.")
-    try:
-        return load(name)
-    except BrdfkitError as error:
-        if "/" in name or Path(name).suffix or Path(name).exists():
-            raise
-        models, materials = (", ".join(x) for x in (labels.models(), shipped.materials()))
-        raise BrdfkitError(
-            f"{name} is no file, no model ({models}) and no material of brdfkit's ({materials})."
-        ) from error
+    return labels.model(label)(**values(label, settings))
 
 
 def values(name, settings):
     """Parameter values of ``PARAMETER=VALUE`` settings, VALUE a number or r,g,b."""
-    parsed = {}
+    parsed, model = {}, labels.model(name)
     for setting in settings:
         parameter, equals, text = setting.partition("=")
-        labels.model(name).parameter(parameter)
+        model.parameter(parameter)
         try:
             numbers = [float(part) for part in text.split(",")]
         except ValueError:

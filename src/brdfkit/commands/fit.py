@@ -27,12 +27,13 @@ from brdfkit.commands.render import path_trace
 @output_options
 def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed, console):
     """Fit models to a measured FILE, or to a material of brdfkit's."""
-    from brdfkit.commands._targets import fit_file, measured, model_label, results
+    from brdfkit.commands._targets import fit_file, results
     from brdfkit.comparing import compare
+    from brdfkit.materials import measured
     from brdfkit.model import labels
     from brdfkit.names import slug
 
-    names = list(dict.fromkeys(map(model_label, names or labels.models())))
+    names = list(dict.fromkeys(map(labels.read_files, names or labels.models())))
     for name in names:
         labels.model(name)
     with console.progress(f"read {file}"):
@@ -60,8 +61,8 @@ def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed,
 def _fit_each(names, material, how, output, console):
     """The fits, best first, each saved as soon as it is there; Ctrl-C leaves out the rest."""
     from brdfkit.commands._targets import fit_file
-    from brdfkit.fitting import fit as fit_model
-    from brdfkit.formats import save
+    from brdfkit.fits import fit as fit_model
+    from brdfkit.loading import save
 
     fits = []
     try:

@@ -24,8 +24,10 @@ def info(file, output, console):
     How much of the hemisphere was measured, noise, reciprocity, albedo, spikes and more. Without
     FILE, list the materials that brdfkit brings; `brdfkit data` lists public ones.
     """
+    from brdfkit.auditing import audit
     from brdfkit.catalogue import shipped
-    from brdfkit.commands._targets import figure_file, measured, write_figure
+    from brdfkit.commands._targets import figure_file, write_figure
+    from brdfkit.materials import measured
 
     if file is None and output:
         raise BrdfkitError("A picture shows a measurement: name a FILE.")
@@ -36,11 +38,11 @@ def info(file, output, console):
     with console.progress(f"read {file}"):
         material = measured(file)
     with console.progress("audit"):
-        audit = material.audit()
+        found = audit(material)
     if output:
         with console.progress("draw"):
-            write_figure(audit.picture(), output)
-    print_audit(audit, [output] if output else [], console)
+            write_figure(found.picture(), output)
+    print_audit(found, [output] if output else [], console)
 
 
 def print_audit(found, written, console):

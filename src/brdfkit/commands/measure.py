@@ -45,9 +45,10 @@ def measure(
     A virtual goniometer. It writes a table with a standard error for every value. The defaults
     measure rough gold, in about a minute. Ctrl-C ends it early, with larger errors.
     """
+    from brdfkit.auditing import audit
     from brdfkit.commands import _measuring as words
-    from brdfkit.formats import save
-    from brdfkit.goniometer.measuring import measure as measure_surface
+    from brdfkit.goniometer import measure as measure_surface
+    from brdfkit.loading import save
 
     # relief: slope, stretch, thickness
     output = words.measurement_file(output or Path(f"{geometry}.npz"))
@@ -61,8 +62,8 @@ def measure(
         )
     save(found, output)
     with console.progress("audit"):
-        audit = found.audit()
-    print_audit(audit, [output], console)
+        audited = audit(found)
+    print_audit(audited, [output], console)
     if "interrupted" in found.info:
         say(f"interrupted; measured with {found.info['interrupted']}.")
         context.exit(130)

@@ -14,13 +14,12 @@ from brdfkit.commands._options import output_options
 @output_options
 def models(name, console):
     """List the models, or show the page of one."""
-    from brdfkit.commands._targets import model_label
     from brdfkit.model import labels
 
     if name is None:
         _print_list(labels.models(), console)
     else:
-        _print_page(labels.model(model_label(name)), console)
+        _print_page(labels.model(name), console)
 
 
 def _print_list(models, console):

@@ -21,11 +21,11 @@ class Fit:
     loss: float
     samples: int
     evaluations: int
-    seconds: float
+    seconds: float = field(compare=False)
     message: str
     at_bounds: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
-    settings: dict[str, Any] = field(default_factory=dict)
+    settings: dict[str, Any] = field(default_factory=dict, hash=False)
 
     @property
     def name(self):

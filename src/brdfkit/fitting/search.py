@@ -1,45 +1,8 @@
-"""The search for the shape parameters: several starts, then sequential quadratic programming.
-
-Coordinates run from 0 to 1 between the bounds, logarithmically where the parameter says so.
-"""
+"""The search for the shape parameters from one start: sequential quadratic programming."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
-
-
-@dataclass(frozen=True)
-class Space:
-    """The shape parameters that are searched, with bounds (low, high) each, and the fixed ones."""
-
-    names: tuple[str, ...]
-    low: np.ndarray
-    high: np.ndarray
-    log: np.ndarray
-    fixed: dict[str, float]
-
-    def values(self, u):
-        """Parameters by name at coordinates `u` in [0, 1]."""
-        linear = self.low + u * (self.high - self.low)
-        return dict(zip(self.names, np.where(self.log, self._geometric(u), linear), strict=True))
-
-    def coordinates(self, values):
-        """Coordinates in [0, 1] of parameters by name."""
-        x = np.array([values[name] for name in self.names])
-        linear = (x - self.low) / (self.high - self.low)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            log = np.log(x / self.low) / np.log(self.high / self.low)
-        return np.clip(np.where(self.log, log, linear), 0, 1)
-
-    def slopes(self, u):
-        """d parameter / d coordinate."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            log = self._geometric(u) * np.log(self.high / self.low)
-        return np.where(self.log, log, self.high - self.low)
-
-    def _geometric(self, u):
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return self.low * (self.high / self.low) ** u
 
 
 @dataclass(frozen=True)
@@ -50,16 +13,6 @@ class Outcome:
     error: float
     evaluations: int
     message: str
-
-
-def start_points(space, default, count, seed):
-    """The default and `count - 1` points spread over the bounds, (count, parameters)."""
-    if count == 1:
-        return default[None, :]
-    from scipy.stats import qmc
-
-    spread = qmc.Halton(len(default), rng=seed).random(count - 1)
-    return np.vstack([default, spread])
 
 
 def evaluate(problem, space, u):

@@ -1,4 +1,4 @@
-"""The file formats: one file of this folder each; `load` and `save` find them by being there.
+"""The file formats: one file of this folder each, found by being there.
 
 A format module offers
 
@@ -9,103 +9,22 @@ A format module offers
   cannot hold, and `save` puts the path before it;
 - ``MANY = True``, where one file holds many samples and ``source.sample`` names one.
 
-A module whose name begins with an underscore is no format.
+What several share is in `_writing.py` and `_notes.py`, what `read` is given in `_source.py`.
 """
 
 import gzip
 import importlib
 import lzma
-import os
 import pkgutil
 from contextlib import contextmanager
 from functools import cache
-from pathlib import Path
 
-from brdfkit.catalogue import public, shipped
 from brdfkit.errors import BrdfkitError
-from brdfkit.files import COMPRESSED, GZIP, contents, written
-from brdfkit.formats._source import Source, format_suffix
+from brdfkit.files import COMPRESSED, GZIP
+from brdfkit.formats._source import Source as Source
+from brdfkit.formats._source import format_suffix
 
 HEAD = 4096  # bytes that a format's `sniff` sees
-
-
-def load(path):
-    """What the file at `path` (str or Path) holds: a `Measured` or a saved `Fit`.
-
-    The content decides the format; the suffix decides between formats that all, or none,
-    recognise it. ``.gz`` and ``.xz`` are unpacked. ``abrdf.dat#1`` names a sample of a file
-    that holds many. Where there is no such file, the name of a known material stands for its
-    file: of one that comes with brdfkit, ``car_paint``, or of one in a public collection, as
-    ``merl/alum-bronze``, once `brdfkit data get` has downloaded it. Raises `BrdfkitError` with
-    one sentence for every file that cannot be read.
-
-    >>> print(load("gold-metallic-paint.binary.xz"))  # doctest: +SKIP
-    gold-metallic-paint: 90×90×180 table, 1,048,000 of 1,458,000 valid, channels R G B
-    """
-    path, sample = _split(path)
-    if not os.path.isfile(path):  # False, too, for what no path can be
-        path = _known(path.as_posix()) or path
-    return _read(Source(path, sample, contents(path)))
-
-
-def save(obj, path):
-    """Write `obj` to `path` in the format of its suffix, whole or not at all.
-
-    `obj`: a `Measured`, a `Fit`, or for ``.bsdf`` also a model with values.
-
-    ``.gz`` and ``.xz`` behind the suffix compress. Raises `BrdfkitError` when no format writes
-    that suffix, the format cannot hold `obj`, or the folder cannot be written.
-
-    >>> save(load("copper.astm"), "copper.binary.xz")  # doctest: +SKIP
-    """
-    with written(path) as beside:
-        _write(obj, Path(path), beside)
-
-
-def saved(obj, path):
-    """`save`, and what the file holds: nothing is written that could not be read again.
-
-    >>> saved(load("copper.astm"), "copper.npz").name  # doctest: +SKIP
-    'copper'
-    """
-    with written(path) as beside:
-        _write(obj, Path(path), beside)
-        try:
-            return _read(Source(Path(path), None, contents(beside)))
-        except BrdfkitError as error:
-            reason = str(error).removeprefix(f"{beside}: ").removeprefix(f"{path}: ")
-            raise BrdfkitError(
-                f"{path}: the file could not be read again ({reason.rstrip('.')})."
-            ) from error
-
-
-def _write(obj, path, beside):
-    """Writes into the file `beside` what is to stand at `path`."""
-    writers = [module for module in formats() if hasattr(module, "write")]
-    chosen = [module for module in writers if format_suffix(path) in module.SUFFIXES]
-    if not chosen:
-        raise BrdfkitError(f"{path}: no format with this suffix; written are {_listed(writers)}.")
-    with _compressing(beside) as stream:
-        try:
-            chosen[0].write(obj, stream)
-        except BrdfkitError as error:
-            raise BrdfkitError(f"{path}: {error}") from error
-
-
-def _read(source):
-    chosen = _recognised(source)
-    if source.sample is not None and not getattr(chosen, "MANY", False):
-        raise source.error(f"holds one material; leave '#{source.sample}' off the path")
-    return chosen.read(source)
-
-
-def _known(name):
-    """The file of a known material, None where the name is none."""
-    if name in shipped.materials():
-        return shipped.path(name)
-    if name.partition("/")[0] in shipped.index()["collections"] and "/" in name:
-        return public.path(name)
-    return None
 
 
 @cache
@@ -120,13 +39,25 @@ def has_format(path):
     return any(format_suffix(path) in module.SUFFIXES for module in formats())
 
 
-def _split(path):
-    """The path and the sample named behind its last '#', unless that is part of the name."""
-    path = Path(path)
-    name, hash_sign, sample = path.name.rpartition("#")
-    if not hash_sign or not name or os.path.exists(path):
-        return path, None
-    return path.with_name(name), sample
+def write(obj, path, beside):
+    """Write `obj` in the format of `path`, but into the file `beside` it (both `Path`)."""
+    writers = [module for module in formats() if hasattr(module, "write")]
+    chosen = [module for module in writers if format_suffix(path) in module.SUFFIXES]
+    if not chosen:
+        raise BrdfkitError(f"{path}: no format with this suffix; written are {_listed(writers)}.")
+    with _compressing(beside) as stream:
+        try:
+            chosen[0].write(obj, stream)
+        except BrdfkitError as error:
+            raise BrdfkitError(f"{path}: {error}") from error
+
+
+def read(source):
+    """What a `Source` holds, by the format that recognises it."""
+    chosen = _recognised(source)
+    if source.sample is not None and not getattr(chosen, "MANY", False):
+        raise source.error(f"holds one material; leave '#{source.sample}' off the path")
+    return chosen.read(source)
 
 
 def _recognised(source):

@@ -4,10 +4,10 @@ import json
 from dataclasses import fields
 from typing import get_origin
 
-import brdfkit
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.result import Fit
 from brdfkit.model import labels
+from brdfkit.version import __version__
 
 NAME = "brdfkit fit"
 SUFFIXES = (".json",)
@@ -29,7 +29,7 @@ def read(source):
     except (ValueError, KeyError, TypeError, RecursionError):
         raise source.error("is no fit that brdfkit saved, or is damaged; fit it again") from None
     try:
-        return Fit(model=labels.model_with_values(label, values), **found)
+        return Fit(model=labels.model(label)(**values), **found)
     except (BrdfkitError, TypeError) as error:
         if not labels.is_label(label):
             raise source.error(
@@ -47,7 +47,7 @@ def write(fit, stream):
             f"the format {NAME} holds a fit, not a {type(fit).__name__}; choose another suffix."
         )
     record = {
-        KEY: brdfkit.__version__,
+        KEY: __version__,
         "model": fit.model.label(),
         "parameters": fit.values,
         "fit": {f.name: getattr(fit, f.name) for f in FIELDS},

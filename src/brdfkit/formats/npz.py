@@ -24,10 +24,10 @@ from dataclasses import replace
 
 import numpy as np
 
-import brdfkit
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats._writing import measured
 from brdfkit.measured import Measured
+from brdfkit.version import __version__
 
 NAME = "brdfkit"
 SUFFIXES = (".npz",)
@@ -72,7 +72,7 @@ def write(obj, stream):
     """Write a `Measured`."""
     obj = measured(obj, NAME, anisotropic=True)
     about = {
-        "brdfkit": brdfkit.__version__,
+        "brdfkit": __version__,
         "name": str(obj.name),
         "channels": [str(channel) for channel in obj.channels],
         "info": {str(key): str(note) for key, note in obj.info.items()},

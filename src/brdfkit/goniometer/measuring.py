@@ -13,11 +13,11 @@ import math
 
 import numpy as np
 
-from brdfkit import __version__
 from brdfkit.errors import BrdfkitError
 from brdfkit.goniometer.specimen import Specimen
 from brdfkit.measured import Measured
 from brdfkit.samples import Table
+from brdfkit.version import __version__
 
 ISOTROPIC = (30, 30, 60)
 ANISOTROPIC = (16, 20, 12, 24)

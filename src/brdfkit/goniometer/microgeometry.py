@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
+from brdfkit.errors import BrdfkitError, no_such
 
 SIZE = 512  # grid cells along a side of the tile
 
@@ -112,10 +112,10 @@ def make(name, **parameters):
     True
     """
     if name not in GEOMETRIES:
-        raise BrdfkitError(f"There is no geometry {name!r}; there are {', '.join(GEOMETRIES)}.")
+        raise no_such("geometry", name, GEOMETRIES)
     known = inspect.signature(GEOMETRIES[name]).parameters
     for parameter in parameters.keys() - known.keys():
-        raise BrdfkitError(f"{name} has no {parameter}; it has {', '.join(known)}.")
+        raise no_such("parameter", parameter, known, where=name)
     return GEOMETRIES[name](**parameters)
 
 

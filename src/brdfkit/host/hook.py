@@ -53,7 +53,8 @@ class _After:
 def _connect():
     import mitsuba as mi
 
-    from brdfkit.model import labels
+    from brdfkit.host.registration import register_all
+    from brdfkit.plugins import discovery
 
     def on_variant(before=None, variant=None):
         try:
@@ -61,11 +62,11 @@ def _connect():
         except BrdfkitError:
             mi.set_variant("scalar_rgb")  # the refused one would still be in place
             raise
-        labels.register_in_mitsuba()
+        register_all()
 
     mi.detail.add_variant_callback(on_variant)
-    if mi.variant() is not None:
-        labels.register_in_mitsuba()
+    discovery.on_added(register_all)
+    register_all()
 
 
 @contextmanager

@@ -1,21 +1,8 @@
-"""The properties of a model's plugin: written for a scene, and checked when one is loaded."""
+"""The properties that a plugin is given in a scene: checked, and brought to what Mitsuba holds."""
 
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-
-
-def scene_dict(model):
-    """The dictionary for `mitsuba.load_dict` of a model with values."""
-    entries = {"type": model.type_name(), **model.chosen()}
-    for name, value in model.free_values.items():
-        entries[name] = _rgb(value) if isinstance(value, tuple) else value
-    return entries
-
-
-def _rgb(value):
-    value = value * 3 if len(value) == 1 else value
-    return {"type": "rgb", "value": list(value)}
 
 
 def require_within_bounds(props, model, name):

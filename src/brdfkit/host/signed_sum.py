@@ -6,8 +6,8 @@ mean of each texture.
 
 import numpy as np
 
-from brdfkit.evaluating import lobe_values, weight_matrix
 from brdfkit.host.half_vector_table import Tabulated
+from brdfkit.model.evaluation import lobe_values
 
 # Polynomials are smooth
 ISOTROPIC = {"azimuths": 1, "angles": 32, "cells": (24, 20), "points": 2}
@@ -18,10 +18,10 @@ TEXELS = 8
 WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)  # [nm]
 
 
-def tabulated(model, lobes):
-    """The `Tabulated` of the sum over the indices `lobes` of a model with values."""
-
-    weights = weight_matrix(model)[lobes]
+def tabulated(model, weights, lobes):
+    """The `Tabulated` of the sum over the indices `lobes` of a model with shape parameters, its
+    `weights` (all lobes, channels)."""
+    weights = weights[lobes]
 
     def f(wi, wo):
         values = np.empty((len(wi), weights.shape[1]))

@@ -16,10 +16,21 @@ sets of scattered data", IJNME 15, 1980.
 """
 
 import functools
+from dataclasses import replace
 
 import numpy as np
 
-from brdfkit.geometry.directions import half_azimuth, to_half_difference
+from brdfkit.fitting import losses, regress
+from brdfkit.fitting.problem import Problem
+from brdfkit.geometry.directions import to_half_difference
+from brdfkit.model import labels
+from brdfkit.model.evaluation import lobe_values
+from brdfkit.samples.coordinates import (
+    HIGHLIGHT,
+    RETROREFLECTION,
+    anisotropic_coordinates,
+    isotropic_coordinates,
+)
 
 NEIGHBOURS = 12
 # So far from the samples the guide counts as much as one of them
@@ -28,11 +39,9 @@ REACH = 0.4
 FADING = np.radians(20)
 # Fewer samples determine no guide
 GUIDE, FEWEST = "ggx", 30
+MAX_ANGLE = 90  # degrees: all samples but those at the horizon
 # However white the diffuse term, a surface reflects this much more at the horizon
 LEAST_LEFT = 0.05
-# What a unit of theta_h, sinθ_d and the third coordinate counts. A highlight is narrow along
-# theta_h and changes slowly with theta_d; retroreflection, at theta_d = 0, is narrow along both.
-HIGHLIGHT, RETROREFLECTION = (8.0, 1.0, 1.0), (4.0, 4.0, 4.0)
 # Retroreflection is looked for at theta_d below the one, theta_h above the other
 BACK, APART = np.radians(5), np.radians(20)
 
@@ -110,37 +119,31 @@ def _angles(wi, wo):
 
 def _guide(samples, anisotropic):
     """The BRDF (wi, wo) → (n, channels) of the model that fits `samples` best, or a constant."""
-    from brdfkit.fitting import fit
-    from brdfkit.fitting.loss import losses
-    from brdfkit.fitting.problem import Problem
-    from brdfkit.measured.measured import Measured
-
     if len(samples.wi) < FEWEST or samples.values.max() <= 0:
         return functools.partial(_constant, np.median(samples.values, axis=0))
-    grey = samples.values.mean(axis=1, keepdims=True)
-    grey = Measured.from_samples(samples.wi, samples.wo, grey, channels=("Y",))
-
-    options = {"starts": 1, "anisotropic": anisotropic, "max_angle": 90}
-    found = fit(GUIDE, grey, "log", **options).model
-    specular, left = found.specular_reflectance[0], _left(found.diffuse_reflectance[0])
-    too_bright = specular > left
+    grey = replace(samples, values=samples.values.mean(axis=1, keepdims=True))
+    model, how = labels.model(GUIDE), {"starts": 1, "anisotropic": anisotropic}
+    inside = grey.at(grey.within(MAX_ANGLE))
+    found = regress(model, inside, losses["log"], **how)
+    (diffuse, specular), f0 = found.weights[0], found.shapes["f0"]
+    too_bright = specular > _left(diffuse)
     if too_bright:
         # Fresnel's rise was not measured: no more than all light is reflected at the horizon
-        f0 = min(found.f0 * specular / left, 1.0)
-        found = fit(GUIDE, grey, "log", **options, fixed={"f0": f0}).model
-    shapes = {name: getattr(found, name) for name in found.shapes(anisotropic=True)}
-    diffuse, specular = Problem(type(found), samples, losses["log"]).solve(shapes).T
+        f0 = min(f0 * specular / _left(diffuse), 1.0)
+        found = regress(model, inside, losses["log"], **how, fixed={"f0": f0})
+    shapes = model(**found.shapes).values
+    diffuse, specular = (
+        Problem(model, samples, losses["log"])
+        .solve({name: shapes[name] for name in model.shapes(anisotropic=True)})
+        .T
+    )
     # Nor in any channel, whose highlights need not be equally bright: all of them rise to the rest
-    steady = np.minimum(found.f0 * specular, _left(diffuse))
-    rise = np.inf if too_bright else (1 - found.f0) * specular
+    steady = np.minimum(f0 * specular, _left(diffuse))
+    rise = np.inf if too_bright else (1 - f0) * specular
     rise = np.minimum(rise, _left(diffuse) - steady)
-    guides = [
-        type(found)(
-            **shapes | {"f0": 1.0}, diffuse_reflectance=diffuse, specular_reflectance=steady
-        ),
-        type(found)(**shapes | {"f0": 0.0}, diffuse_reflectance=0.0, specular_reflectance=rise),
-    ]
-    return functools.partial(_sum, guides)
+    mirror, facets = model(**found.shapes | {"f0": 1.0}), model(**found.shapes | {"f0": 0.0})
+    none = np.zeros_like(rise)
+    return functools.partial(_sum, ((mirror, [diffuse, steady]), (facets, [none, rise])))
 
 
 def _left(diffuse):
@@ -148,35 +151,10 @@ def _left(diffuse):
     return np.maximum(1 - diffuse, LEAST_LEFT)
 
 
-def _sum(brdfs, wi, wo):
-    return sum(brdf.eval(wi, wo) for brdf in brdfs)
+def _sum(terms, wi, wo):
+    """Σ lobes · weights, (n, channels), of models with weights (lobes, channels) each."""
+    return sum(lobe_values(model, wi, wo)[0] @ np.array(weights) for model, weights in terms)
 
 
 def _constant(values, wi, wo):
     return np.broadcast_to(values, (len(wi), len(values)))
-
-
-def isotropic_coordinates(wi, wo, scales=HIGHLIGHT):
-    """Points (n, 3): the closer, the more alike is an isotropic BRDF."""
-    theta_h, theta_d, _ = to_half_difference(wi, wo)
-    # That is 2 sinθ_h sinθ_d |cos φ_d|: at the mirror direction phi_d means nothing
-    apart = np.abs(wi[:, 2] - wo[:, 2])
-    return np.stack([theta_h, np.sin(theta_d), apart], axis=-1) * scales
-
-
-def anisotropic_coordinates(wi, wo):
-    """Points (n, 4): the closer, the more alike is any BRDF."""
-    theta_h, theta_d, phi_d = to_half_difference(wi, wo)
-    phi_h = half_azimuth(wi, wo)
-    radius = HIGHLIGHT[0] * theta_h
-    # The difference vector in the surface's frame: phi_d alone turns with phi_h at the normal
-    azimuth = phi_d + phi_h
-    return np.stack(
-        [
-            radius * np.cos(phi_h),
-            radius * np.sin(phi_h),
-            np.sin(theta_d) * np.cos(azimuth),
-            np.sin(theta_d) * np.sin(azimuth),
-        ],
-        axis=-1,
-    )

@@ -8,6 +8,9 @@ import numpy as np
 
 from brdfkit.colours import RGB
 from brdfkit.errors import BrdfkitError
+from brdfkit.measured.interpolation import Scattered
+from brdfkit.measured.spectra import to_rgb, wavelengths
+from brdfkit.measured.tabulation import looked_up, reciprocal, sampled, steady, table_shape
 from brdfkit.names import printable
 from brdfkit.samples import Samples, Table
 from brdfkit.samples.samples import require_some
@@ -55,7 +58,7 @@ class Measured:
         Directions need not be normalised. `valid` (n,) marks what was measured; without it
         everything finite above the surface is. `standard_error`: of the values, likewise
         (n, channels). `lookup(wi, wo)`, which may be a `Table`: values between the samples, where
-        the format defines them; without it `scattered.py` interpolates.
+        the format defines them; without it `interpolation.py` interpolates.
         """
         name, channels, info = _words(name, channels, info)
         samples = Samples.checked(wi, wo, values, valid, channels, name)
@@ -128,8 +131,6 @@ class Measured:
             return self._table
         if isinstance(self._lookup, Table):
             return self._lookup
-        from brdfkit.measured.tabulation import looked_up, table_shape
-
         if self._lookup is not None:
             return looked_up(self._lookup, len(self.channels), self.anisotropic)
         return self.resampled(table_shape(self.anisotropic))
@@ -143,8 +144,6 @@ class Measured:
         >>> load("paint.bsdf").resampled((90, 90, 180)).shape    # doctest: +SKIP
         (90, 90, 180)
         """
-        from brdfkit.measured.tabulation import reciprocal, sampled, steady
-
         brdf = self.eval
         if self.has_lookup and not isinstance(self._lookup, Table):
             brdf = reciprocal(steady(self._lookup, self.anisotropic))
@@ -153,8 +152,6 @@ class Measured:
     @cached_property
     def _between(self):
         """The BRDF (wi, wo) → (n, channels) between the samples."""
-        from brdfkit.measured.interpolation import Scattered
-
         return self._lookup or Scattered(self.samples, self.anisotropic)
 
     @property
@@ -177,8 +174,6 @@ class Measured:
         """The same material in linear sRGB, or itself where it is RGB or achromatic already."""
         if self.channels == RGB or len(self.channels) == 1:
             return self
-        from brdfkit.measured.spectra import to_rgb
-
         return to_rgb(self)
 
     def mixed(self, weights, channels, **info):
@@ -198,20 +193,17 @@ class Measured:
     def audit(self):
         """How far the measurement reaches, how noisy it is and what is doubtful.
 
-        Returns a `brdfkit.auditing.Audit`: it prints as text, and its `picture()` is a matplotlib
-        `Figure`.
+        `brdfkit.audit` of this material.
 
         >>> print(load("copper.astm").audit())    # doctest: +SKIP
         """
-        from brdfkit.auditing import audit
+        import brdfkit  # its face: an audit sees everything, a measurement knows no audit
 
-        return audit(self)
+        return brdfkit.audit(self)
 
     def scene_dict(self):
         """The dictionary for `mitsuba.load_dict`, in the current variant: the table, looked up."""
         import mitsuba as mi
-
-        from brdfkit.measured.spectra import wavelengths
 
         spectral = mi.is_spectral and len(self.channels) > 1 and self.channels != RGB
         material = self if spectral else self.rgb

@@ -13,61 +13,30 @@ What is no number to fit, a form or an order, is an `option`: a plain Python val
 class for each (`Model.configured`). Where the parameters depend on it, `more_parameters` adds them.
 """
 
-from functools import cache
-
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.model.declaration import Declared
+from brdfkit.model.evaluation import evaluate_model
 from brdfkit.model.lobes import Lobe
-from brdfkit.model.parameters import Option, Parameter
-from brdfkit.model.parameters import follows as follows
-from brdfkit.model.parameters import option as option
-from brdfkit.model.parameters import shape as shape
-from brdfkit.model.parameters import weight as weight
+from brdfkit.model.pickling import reduced
+
+CHANNELS = 1, 3  # that a weight may have: achromatic, linear sRGB
 
 
-class Model:
-    """A BRDF model with values. Its attributes are the parameters.
+class Model(Declared):
+    """A BRDF model with values. Its attributes are the parameters; they do not change.
 
     >>> ward = models()["ward"](alpha_u=0.1, specular_reflectance=[0.3, 0.2, 0.1])
     >>> ward.alpha_v
     0.1
     """
 
-    parameters: dict[str, Parameter] = {}  # noqa: RUF012  filled by __init_subclass__
-    options: dict[str, Option] = {}  # noqa: RUF012
-
     def __init_subclass__(cls):
-        own = {k: v for k, v in vars(cls).items() if isinstance(v, Parameter | Option)}
-        for name in own:
+        super().__init_subclass__()
+        for name in (*cls.parameters, *cls.options):
             if hasattr(Model, name):
                 raise BrdfkitError(f"{cls.__name__}: no parameter can be named {name!r}.")
-        options = {name: o for name, o in own.items() if isinstance(o, Option)}
-        for name, declared in options.items():
-            setattr(cls, name, declared.default)
-        cls.options = {**cls.options, **options}
-        declared = {name: p for name, p in own.items() if isinstance(p, Parameter)}
-        cls._declared = {**getattr(cls, "_declared", {}), **declared}
-        cls.parameters = {**cls._declared, **cls.more_parameters()}
-
-    @classmethod
-    def more_parameters(cls) -> dict[str, Parameter]:
-        """Parameters by name that depend on the options, which are attributes of `cls`."""
-        return {}
-
-    @classmethod
-    def configured(cls, **options):
-        """The model with other options, a class like this one.
-
-        >>> models()["ashikhmin_shirley"].configured(diffuse="coupled")    # doctest: +SKIP
-        """
-        for name, given in options.items():
-            if name not in cls.options:
-                known = ", ".join(cls.options) or "none"
-                raise BrdfkitError(f"{cls.type_name()} has no option {name!r}; it has {known}.")
-            options[name] = cls.options[name].read(given, f"{cls.type_name()}: {name}")
-        changed = {n: v for n, v in options.items() if v != getattr(cls, n)}
-        return _configured(cls, tuple(sorted(changed.items()))) if changed else cls
 
     def __init__(self, **values):
         """Values by name; what is not given has its default. Weights: one number or one per
@@ -83,67 +52,21 @@ class Model:
             value = _number(value, parameter.linear, f"{self.type_name()}: {name}")
             if problem := parameter.problem_with(value):
                 raise BrdfkitError(f"{self.type_name()}: {name} = {problem}.")
-            setattr(self, name, value)
-        counts = {len(v) for v in self.values.values() if isinstance(v, tuple)} - {1}
-        if len(counts) > 1:
-            few, many = sorted(counts)[:2]
-            raise BrdfkitError(
-                f"{self.type_name()}: the weights have {few} and {many} channels; give each one "
-                "number, or one per channel."
-            )
+            self.__dict__[name] = value
 
-    @classmethod
-    def type_name(cls):
-        """The plugin's type: the name of the model's file."""
-        return cls.__module__.rpartition(".")[2]
+    def changed(self, **values):
+        """The model with other values; what follows another parameter goes on to follow it.
 
-    @classmethod
-    def chosen(cls):
-        """The options that are not the default, by name."""
-        values = {name: getattr(cls, name) for name in cls.options}
-        return {name: v for name, v in values.items() if v != cls.options[name].default}
+        >>> models()["ward"](alpha_u=0.1).changed(alpha_u=0.2).alpha_v
+        0.2
+        """
+        return type(self)(**{**self.free_values, **values})
 
-    @classmethod
-    def label(cls):
-        """The type with the options that are not the default: ``"lafortune:lobe_count=2"``."""
-        options = ",".join(f"{name}={value}" for name, value in cls.chosen().items())
-        return f"{cls.type_name()}:{options}" if options else cls.type_name()
-
-    @classmethod
-    def parameter(cls, name):
-        """The parameter of that name, or an error that lists those there are."""
-        if name in cls.options:
-            raise BrdfkitError(
-                f"{cls.type_name()}: {name} is an option; write {cls.type_name()}:{name}=VALUE."
-            )
-        if name not in cls.parameters:
-            known = ", ".join(cls.parameters)
-            raise BrdfkitError(f"{cls.type_name()} has no parameter {name!r}; it has {known}.")
-        return cls.parameters[name]
-
-    @classmethod
-    def weights(cls):
-        """Names of the linear parameters, in the order of the lobes."""
-        return [name for name, p in cls.parameters.items() if p.linear]
-
-    @classmethod
-    def shapes(cls, anisotropic=False):
-        """Names of the nonlinear parameters; those that follow another if `anisotropic`."""
-        return [
-            name
-            for name, p in cls.parameters.items()
-            if not p.linear and (anisotropic or not p.follows)
-        ]
-
-    @classmethod
-    def anisotropic(cls):
-        """True where the surface's azimuth may count: a parameter for each of its directions."""
-        return any(p.follows for p in cls.parameters.values())
-
-    @classmethod
-    def signed(cls):
-        """True where a weight may be negative: then the sum is clamped at 0."""
-        return any(p.linear and p.bounds[0] < 0 for p in cls.parameters.values())
+    def __setattr__(self, name, value):
+        raise BrdfkitError(
+            f"{self.type_name()}: a model's values do not change; make another one, as by "
+            f".changed({name}={value!r})."
+        )
 
     @classmethod
     def determined(cls, samples):
@@ -193,20 +116,24 @@ class Model:
 
     def eval(self, wi, wo):
         """BRDF (n, channels) in sr⁻¹ of NumPy direction pairs (n, 3); 0 below the surface."""
-        from brdfkit.evaluating import evaluate_model
-
         return evaluate_model(self, wi, wo)
 
     def scene_dict(self):
         """The dictionary for `mitsuba.load_dict`."""
-        from brdfkit.host.properties import scene_dict
+        self.make_known()
+        entries = {"type": self.type_name(), **self.chosen()}
+        for name, value in self.free_values.items():
+            entries[name] = _rgb(value) if isinstance(value, tuple) else value
+        return entries
 
-        return scene_dict(self)
+    def __eq__(self, other):
+        return type(self) is type(other) and self.values == other.values
+
+    def __hash__(self):
+        return hash((type(self), *self.values.values()))
 
     def __reduce__(self):
-        from brdfkit.model import labels
-
-        return labels.model_with_values, (self.label(), self.values)
+        return reduced(self)
 
     def __repr__(self):
         values = ", ".join(f"{name}={_short(value)}" for name, value in self.values.items())
@@ -217,21 +144,19 @@ def _number(value, per_channel, what):
     try:
         if np.ndim(value) == 0:
             return float(value)
-        if per_channel and np.ndim(value) == 1 and len(value) > 0:
+        if per_channel and np.ndim(value) == 1 and len(value) in CHANNELS:
             return tuple(float(v) for v in value)
     except (TypeError, ValueError):
         pass
-    expected = "a number or one per channel" if per_channel else "a number"
+    expected = "a number, or three for R, G, B" if per_channel else "a number"
     raise BrdfkitError(f"{what} = {value!r} should be {expected}.")
+
+
+def _rgb(value):
+    return {"type": "rgb", "value": list(value * 3 if len(value) == 1 else value)}
 
 
 def _short(value):
     if isinstance(value, tuple):
         return "[" + ", ".join(f"{v:.4g}" for v in value) + "]"
     return f"{value:.4g}"
-
-
-@cache
-def _configured(cls, options):
-    attributes = dict(options) | {"__module__": cls.__module__, "__doc__": cls.__doc__}
-    return type(cls.__name__, (cls,), attributes)

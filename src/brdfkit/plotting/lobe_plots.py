@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from brdfkit.colours import luminance
 from brdfkit.errors import BrdfkitError
 from brdfkit.geometry.directions import from_angles, to_angles
+from brdfkit.materials import materials
 from brdfkit.measured import Measured
 from brdfkit.names import unused
 from brdfkit.plotting.half_disc import Radius, half_disc, xy
@@ -79,14 +80,8 @@ def lobe(thing, theta_i):
 
 
 def _things(things):
-    things = list(things) if np.iterable(things) and not isinstance(things, str) else [things]
-    for thing in things or ["nothing"]:
-        if isinstance(thing, type) or not hasattr(thing, "eval"):
-            raise BrdfkitError(
-                f"plot: {thing!r} cannot be plotted; give a measured material, which `load` "
-                "reads, a fit or a model with values."
-            )
-    return [thing.rgb if isinstance(thing, Measured) else thing for thing in things]
+    found = materials(things, needed=("name", "eval"))
+    return [thing.rgb if isinstance(thing, Measured) else thing for thing in found]
 
 
 def usual_angles(things):

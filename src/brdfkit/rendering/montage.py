@@ -9,6 +9,7 @@ import numpy as np
 from brdfkit.colours import colour_science
 from brdfkit.errors import BrdfkitError
 from brdfkit.records import plain
+from brdfkit.version import __version__
 
 COLUMNS = 4
 TILE = 320  # narrower pictures are enlarged to this width [pixels], so that captions fit
@@ -38,7 +39,7 @@ def write_exr(rendering, path):
             "compression": OpenEXR.ZIP_COMPRESSION,
             "spp": rendering.spp,
             "seed": rendering.seed,
-            "brdfkit": _version(),
+            "brdfkit": __version__,
             "parameters": json.dumps(plain(rendering.parameters.get(name, {}))),
         }
         channels = {c: np.ascontiguousarray(picture[..., i]) for i, c in enumerate("RGB")}
@@ -47,12 +48,6 @@ def write_exr(rendering, path):
         OpenEXR.File(parts).write(str(path))
     except RuntimeError as error:  # a full disk, for instance
         raise OSError(str(error)) from error
-
-
-def _version():
-    import brdfkit
-
-    return brdfkit.__version__
 
 
 def montage(rendering):

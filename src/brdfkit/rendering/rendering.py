@@ -14,7 +14,9 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import written
-from brdfkit.fitting.result import Fit
+from brdfkit.fitting import Fit
+from brdfkit.llvm import use_variant
+from brdfkit.materials import material
 from brdfkit.model import Model
 from brdfkit.names import unused
 from brdfkit.rendering import scenes
@@ -166,8 +168,6 @@ def _mitsuba():
     """Mitsuba with a variant set."""
     import mitsuba as mi
 
-    from brdfkit.llvm import use_variant
-
     use_variant()
     return mi
 
@@ -180,16 +180,14 @@ def _material(thing):
     """(name, BSDF dictionary, parameters' values by name) of whatever `render` takes."""
     if _is_pair(thing):
         return thing[0], *_material(thing[1])[1:]
-    if hasattr(thing, "scene_dict") and not isinstance(thing, type):
-        values = thing.values if isinstance(thing, Model | Fit) else {}
-        return str(thing.name), thing.scene_dict(), dict(values)
-    if isinstance(thing, dict) and "type" in thing:
+    if isinstance(thing, dict):
+        if "type" not in thing:
+            raise BrdfkitError(f'{thing!r} is the dictionary of no BSDF: it has no "type".')
         bsdf = dict(thing)
         return str(bsdf.pop("name", bsdf["type"])), bsdf, {}
-    raise BrdfkitError(
-        f"{thing!r} cannot be rendered; give a measured material, which `load` reads, a fit, a "
-        'model with values or a BSDF\'s dictionary with a "type".'
-    )
+    found = material(thing)
+    values = found.values if isinstance(found, Model | Fit) else {}
+    return str(found.name), found.scene_dict(), dict(values)
 
 
 def _load(load, source, name):

@@ -1,5 +1,6 @@
 """Samples of a BRDF: direction pairs with what was measured there."""
 
+import math
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -51,6 +52,11 @@ class Samples:
         values = table.values.reshape(len(wi), -1)
         weight = np.broadcast_to(table.theta_h_widths, table.shape).reshape(-1)
         return cls(wi, wo, values, _seen(wi, wo, values), weight)
+
+    def within(self, max_angle):
+        """Which are valid, with both angles below `max_angle` [degrees] (n,)."""
+        cos_min = math.cos(math.radians(max_angle)) * (1 + 1e-12)
+        return self.valid & (self.wi[:, 2] > cos_min) & (self.wo[:, 2] > cos_min)
 
     def at(self, rows):
         """These `rows` (mask or indices) only."""

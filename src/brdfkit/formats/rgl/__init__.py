@@ -12,13 +12,13 @@ from dataclasses import fields
 
 import numpy as np
 
-import brdfkit
 from brdfkit.colours import RGB
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats.rgl import tensor_file
 from brdfkit.formats.rgl.parameterisation import Adaptive, Parameterisation
 from brdfkit.measured import Measured
 from brdfkit.measured.spectra import wavelengths
+from brdfkit.version import __version__
 
 NAME = "RGL"
 SUFFIXES = (".bsdf",)
@@ -141,7 +141,7 @@ def _description(obj):
         what = obj.info.get("description") or obj.name
     else:
         what = repr(getattr(obj, "model", obj))
-    return f"{what}; written by brdfkit {brdfkit.__version__}"
+    return f"{what}; written by brdfkit {__version__}"
 
 
 def _channel(wavelength):

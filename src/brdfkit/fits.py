@@ -1,0 +1,89 @@
+"""`fit`: a model fitted to a measured material."""
+
+import time
+
+from brdfkit.errors import no_such
+from brdfkit.fitting import Fit, losses, regress
+from brdfkit.fitting.arguments import by_name, pair, whole_number
+from brdfkit.fitting.robust import WEIGHTS
+from brdfkit.materials import measured
+from brdfkit.measured.selection import selected
+from brdfkit.model import labels
+from brdfkit.model.evaluation import clamped_share
+
+
+def fit(
+    name,
+    data,
+    loss="log",
+    *,
+    robust=None,
+    starts=16,
+    bounds=None,
+    fixed=None,
+    anisotropic=None,
+    max_angle=80.0,
+    seed=0,
+    progress=None,
+):
+    """Fit the model `name`, a label as ``"ggx+ward"`` or a class, to a measured material.
+
+    SQP over the shape parameters from several starts, in double precision; the weights are solved
+    inside, per channel, not negative. Spectral data is fitted as linear sRGB.
+
+    `data`: a `Measured`; `loss`: a name in `losses`; `robust`: a name in `fitting.robust.WEIGHTS`,
+    ``"bisquare"``, by which outliers lose their say; `starts`: the default and points spread over
+    the bounds; `bounds`: other bounds by name, ``{"alpha_u": (0.01, 0.5)}``; `fixed`: shape
+    parameters held at a value, ``{"f0": 0.04}``; `anisotropic`: search ``alpha_v`` and its like
+    too, which otherwise follow ``alpha_u``: by default where the measurement is anisotropic;
+    `max_angle`: samples with an angle at or beyond it [degrees, above 0 to 90] are left out;
+    `seed`: of the starts, and of the part of a large table by which they are compared: equal seeds
+    give equal fits; `progress`: called with (done, total). Returns a `Fit`.
+
+    Raises `BrdfkitError` for an unknown model, loss or robust weight; for a parameter that is not
+    searched, or bounds and values beyond the model's; where `data` was not measured or no sample
+    is left; and for a robust fit without more samples than parameters.
+
+    >>> print(fit("ward", load("paint.binary")))    # doctest: +SKIP
+    """
+    began = time.perf_counter()
+    model, data = labels.model(name), measured(data)
+    if not isinstance(loss, str) or loss not in losses:
+        raise no_such("loss", loss, losses)
+    if robust not in (None, *WEIGHTS):
+        raise no_such("robust weight", robust, WEIGHTS)
+    starts, seed = whole_number("starts", starts, least=1), whole_number("seed", seed, least=0)
+    bounds, fixed = by_name("bounds", bounds), by_name("fixed", fixed)
+    bounds = {n: pair(f"{model.type_name()}: the bounds of {n}", v) for n, v in bounds.items()}
+    anisotropic = data.anisotropic if anisotropic is None else anisotropic
+    samples = selected(data, max_angle)
+    how = {"seed": seed, "starts": starts, "bounds": bounds, "fixed": fixed}
+    how["anisotropic"] = anisotropic
+
+    found = regress(model, samples, losses[loss], robust=robust, **how, report=progress)
+    weights = dict(zip(model.weights(), map(tuple, found.weights.T), strict=True))
+    fitted = model(**found.shapes, **weights)
+    return Fit(
+        model=fitted,
+        data=data.name,
+        loss_name=loss,
+        loss=found.loss,
+        samples=len(samples.wi),
+        evaluations=found.evaluations,
+        seconds=time.perf_counter() - began,
+        message=found.message,
+        at_bounds=found.at_bounds,
+        notes=(*found.notes, *_notes(samples, losses[loss], fitted)),
+        settings={"robust": robust, "max_angle": float(max_angle), **how},
+    )
+
+
+def _notes(samples, loss, fitted):
+    notes = []
+    negative = (samples.values < 0).mean()
+    if negative and not loss.linear:
+        notes.append(f"{negative:.1%} of the measured values are negative and count as 0")
+    if fitted.signed():
+        clamped = clamped_share(fitted)
+        notes.append(f"{clamped:.1%} of the hemisphere's direction pairs are clamped at 0")
+    return tuple(notes)

@@ -1,0 +1,90 @@
+"""The space that a fit searches: the shape parameters within their bounds, and where it begins.
+
+Coordinates run from 0 to 1 between the bounds, logarithmically where the parameter says so.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+
+
+@dataclass(frozen=True)
+class Space:
+    """The shape parameters that are searched, with bounds (low, high) each, and the fixed ones."""
+
+    names: tuple[str, ...]
+    low: np.ndarray
+    high: np.ndarray
+    log: np.ndarray
+    fixed: dict[str, float]
+
+    @classmethod
+    def of(cls, model, bounds, fixed, anisotropic):
+        """The shape parameters of `model` to search, within its bounds or narrower ones.
+
+        Raises `BrdfkitError` for a parameter that is not searched, and bounds beyond the model's.
+        """
+        shapes = model.shapes(anisotropic)
+        for name in (*bounds, *fixed):
+            if name not in shapes:
+                model.parameter(name)
+                raise BrdfkitError(
+                    f"{model.type_name()}: {name} is not searched, so it can be neither bounded "
+                    f"nor fixed; searched are {', '.join(shapes) or 'none'}."
+                )
+        if both := set(bounds) & set(fixed):
+            raise BrdfkitError(
+                f"{model.type_name()}: {both.pop()} is bounded and fixed; choose one."
+            )
+        for name, (low, high) in bounds.items():
+            allowed = model.parameters[name].bounds
+            if not allowed[0] <= low < high <= allowed[1]:
+                raise BrdfkitError(
+                    f"{model.type_name()}: the bounds {low:g}..{high:g} of {name} should lie "
+                    f"within {allowed[0]:g}..{allowed[1]:g}."
+                )
+        if unknown := [name for name, value in fixed.items() if value is None]:
+            raise BrdfkitError(
+                f"{model.type_name()}: {unknown[0]} is fixed at None; give a number."
+            )
+        model(**fixed)  # within the bounds
+        names = tuple(name for name in shapes if name not in fixed)
+        limits = [bounds.get(n, model.parameters[n].bounds) for n in names]
+        low, high = np.array(limits).reshape(-1, 2).T
+        log = np.array([model.parameters[n].log for n in names], bool)
+        return cls(names, low, high, log, {k: float(v) for k, v in fixed.items()})
+
+    def values(self, u):
+        """Parameters by name at coordinates `u` in [0, 1]."""
+        linear = self.low + u * (self.high - self.low)
+        return dict(zip(self.names, np.where(self.log, self._geometric(u), linear), strict=True))
+
+    def coordinates(self, values):
+        """Coordinates in [0, 1] of parameters by name."""
+        x = np.array([values[name] for name in self.names])
+        linear = (x - self.low) / (self.high - self.low)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            log = np.log(x / self.low) / np.log(self.high / self.low)
+        return np.clip(np.where(self.log, log, linear), 0, 1)
+
+    def slopes(self, u):
+        """d parameter / d coordinate."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            log = self._geometric(u) * np.log(self.high / self.low)
+        return np.where(self.log, log, self.high - self.low)
+
+    def _geometric(self, u):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return self.low * (self.high / self.low) ** u
+
+
+def start_points(space, default, count, seed):
+    """The default and `count - 1` points spread over the bounds, (count, parameters)."""
+    if count == 1:
+        return default[None, :]
+    from scipy.stats import qmc
+
+    spread = qmc.Halton(len(default), rng=seed).random(count - 1)
+    return np.vstack([default, spread])

@@ -1,0 +1,83 @@
+"""A model's BSDF at a point of a surface, seen from one direction: how the frame asks it."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import drjit as dr
+
+from brdfkit.host import frame
+from brdfkit.model.lobes import Lobe
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """The lobes of a model with their values at a point, `wi` being where light comes from.
+
+    `mi`: Mitsuba; `weights`, `lobes`: one another's; `signed`: whether the sum is clamped at 0;
+    `groups`: the indices of each component's lobes; `samplings`: how each component is drawn;
+    `enabled`: whether the context asks for it.
+    """
+
+    mi: Any
+    wi: Any
+    weights: list[Any]
+    lobes: tuple[Lobe, ...]
+    signed: bool
+    groups: list[list[int]]
+    samplings: list[Any]
+    enabled: list[bool]
+
+    @cached_property
+    def shares(self):
+        """Probability of each component by its energy, None where the context leaves it out."""
+        energies = []
+        for group, enabled in zip(self.groups, self.enabled, strict=True):
+            parts = (
+                dr.mean(dr.abs(self.weights[i])) * self.lobes[i].energy(self.wi) for i in group
+            )
+            energies.append(dr.detach(sum(parts)) + 1e-8 if enabled else None)
+        total = sum(e for e in energies if e is not None)
+        rest = 1 - frame.COSINE_SHARE
+        return [None if e is None else rest * e / total for e in energies]
+
+    def draw(self, sample1, sample2):
+        """An outgoing direction, by one of the components or the cosine, and the component."""
+        wo = frame.COSINE.sample(self.wi, sample2)
+        first = next((k for k, enabled in enumerate(self.enabled) if enabled), 0)
+        component = self.mi.UInt32(first)
+        chosen_up_to = self.mi.Float(frame.COSINE_SHARE)
+        for k, share in enumerate(self.shares):
+            if share is None:
+                continue
+            hit = (sample1 >= chosen_up_to) & (sample1 < chosen_up_to + share)
+            # what sample1 has not yet decided is as random as sample2
+            u = self.mi.Point3f(sample2.x, sample2.y, (sample1 - chosen_up_to) / share)
+            chosen_up_to += share
+            wo = dr.select(hit, self.samplings[k].sample(self.wi, u), wo)
+            component = dr.select(hit, k, component)
+        return wo, component
+
+    def pdf(self, wo):
+        """Density of `draw` per solid angle."""
+        cosine = frame.COSINE_SHARE * frame.COSINE.pdf(self.wi, wo)
+        pdf = self.mi.Float(cosine if any(self.enabled) else 0)
+        for share, sampling in zip(self.shares, self.samplings, strict=True):
+            if share is not None:
+                pdf += share * sampling.pdf(self.wi, wo)
+        return pdf
+
+    def value(self, wo):
+        """BRDF of the enabled components."""
+        groups = zip(self.groups, self.enabled, strict=True)
+        return self.sum_of([i for group, enabled in groups if enabled for i in group], wo)
+
+    def sum_of(self, chosen, wo):
+        """BRDF, the sum of the lobes of these indices."""
+        value = self.mi.UnpolarizedSpectrum(0)
+        for i in chosen:
+            weight, lobe = self.weights[i], self.lobes[i]
+            value += weight * lobe.eval(self.wi, wo)
+            if lobe.quadratic is not None:
+                value += weight * weight * lobe.quadratic(self.wi, wo)
+        return dr.maximum(value, 0) if self.signed else value

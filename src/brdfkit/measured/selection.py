@@ -1,0 +1,25 @@
+"""Which samples of a measured material a fit, and its errors, are about."""
+
+from numbers import Real
+
+from brdfkit.errors import BrdfkitError
+
+
+def selected(data, max_angle):
+    """The valid `Samples` of a `Measured` with both angles below `max_angle` [degrees].
+
+    Spectral data comes as linear sRGB. Raises `BrdfkitError` where the angle is not above 0° and at
+    most 90°, or no sample is left.
+    """
+    if not isinstance(max_angle, Real) or not 0 < max_angle <= 90:
+        raise BrdfkitError(
+            f"max_angle = {max_angle!r} should be an angle above 0° and at most 90°."
+        )
+    data = data.rgb
+    rows = data.samples.within(max_angle)
+    if not rows.any():
+        raise BrdfkitError(
+            f"{data.name}: no valid sample has both angles below {max_angle:g}°; "
+            "give a larger max_angle."
+        )
+    return data.samples.at(rows)

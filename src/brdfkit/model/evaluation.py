@@ -1,0 +1,54 @@
+"""The numbers of a model in double precision: its lobes over directions, times its weights."""
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.model import double_precision
+
+
+def evaluate_model(model, wi, wo):
+    """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3): Σ weight · lobe + weight² · quadratic.
+
+    0 where a direction is not above the surface; a sum of signed weights is clamped at 0.
+    """
+    wi, wo = np.asarray(wi, float), np.asarray(wo, float)
+    above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
+    up = np.array([0.0, 0.0, 1.0])
+    wi, wo = np.where(above[:, None], wi, up), np.where(above[:, None], wo, up)
+    plain, squared = lobe_values(model, wi, wo)
+    weights = weight_matrix(model)
+    values = plain @ weights + squared @ weights**2
+    return np.where(above[:, None], np.maximum(values, 0) if model.signed() else values, 0.0)
+
+
+def clamped_share(model, n=20_000):
+    """Share of direction pairs, even in solid angle, where a channel of a signed model is below 0
+    and clamped."""
+    z, phi = np.random.default_rng(0).random((2, 2, n))
+    sine, phi = np.sqrt(1 - z * z), 2 * np.pi * phi
+    wi, wo = np.stack([sine * np.cos(phi), sine * np.sin(phi), z], axis=-1)
+    plain, squared = lobe_values(model, wi, wo)
+    weights = weight_matrix(model)
+    return float((plain @ weights + squared @ weights**2 < 0).any(axis=1).mean())
+
+
+def weight_matrix(model):
+    """Weights (lobes, channels) of a model."""
+    weights = [np.atleast_1d(getattr(model, name)) for name in model.weights()]
+    channels = max(len(w) for w in weights)
+    return np.array([np.broadcast_to(w, channels) for w in weights])
+
+
+def lobe_values(model, wi, wo):
+    """Lobes (n, lobes) in sr⁻¹ of directions (n, 3) above the surface, and those of the weights'
+    squares, likewise."""
+    terms = model.bind(double_precision.shapes(model)).terms()
+    wi, wo = double_precision.vector(wi), double_precision.vector(wo)
+    plain = [lobe.eval(wi, wo) for _, lobe in terms]
+    squared = [lobe.quadratic(wi, wo) if lobe.quadratic else 0.0 for _, lobe in terms]
+    dr.eval(plain, squared)  # together: a kernel for each takes six times as long
+    shape = len(wi.x), len(terms)
+    return [
+        np.stack([np.broadcast_to(np.asarray(c), shape[0]) for c in columns], axis=1)
+        for columns in (plain, squared)
+    ]
