@@ -513,7 +513,7 @@ def test_equal_bytes_and_a_description(tmp_path, small_tables):
 def test_refuses_what_it_cannot_hold(tmp_path, small_tables):
     nowhere = Measured.from_table(np.ones((2, 2, 4, 2)), channels=("left", "right"))
     endless = SimpleNamespace(eval=lambda wi, wo: np.full((len(wi), 3), np.inf))
-    many = bk.models()["lambert"](diffuse_reflectance=[0.1] * 31)
+    many = SimpleNamespace(eval=lambda wi, wo: np.full((len(wi), 31), 0.1))
     refused = {"left, right": nowhere, "not finite at theta_i": endless, "31 channels": many}
     for match, thing in (refused | {"a dict has no BRDF": {}}).items():
         with pytest.raises(BrdfkitError, match=f"x.bsdf: .*{match}"):

@@ -42,7 +42,7 @@ def albedo(brdf, wi):
     >>> albedo(models()["lambert"](diffuse_reflectance=0.5), [0, 0, 1])    # doctest: +SKIP
     array([0.5])
     """
-    return directional_albedo(material(brdf).eval, _incidence(wi))
+    return directional_albedo(material(brdf, needed=("eval",)).eval, _incidence(wi))
 
 
 def _incidence(wi):

@@ -12,13 +12,13 @@ reader. Others do not: github.com/jdupuy/dj_brdf clamps negative numbers, divide
 sRGB's gamma and multiplies by 100; A. Fichet's utia.py undoes the gamma alone.
 """
 
-import itertools
 from dataclasses import dataclass
 
 import numpy as np
 
 from brdfkit.formats._writing import measured
 from brdfkit.geometry.directions import from_angles, to_angles
+from brdfkit.geometry.multilinear import corners, periodic
 
 NAME = "UTIA"
 SUFFIXES = (".bin",)
@@ -92,16 +92,14 @@ class Lookup:
     def __call__(self, wi, wo):
         axes = [part for w in (wi, wo) for part in _cells(*to_angles(w))]
         result = 0.0
-        for corner in itertools.product((0, 1), repeat=4):
-            cells = tuple(axis[upper] for axis, upper in zip(axes, corner, strict=True))
-            parts = [t if upper else 1 - t for (*_, t), upper in zip(axes, corner, strict=True)]
-            result = result + np.prod(parts, axis=0)[..., None] * self.values[cells]
+        for cells, share in corners(axes):
+            result = result + share[..., None] * self.values[cells]
         return result
 
 
 def _cells(theta, phi):
-    """Lower and upper index and the fraction between them, of theta and of phi."""
-    theta, phi = theta / THETA[1], np.mod(phi / PHI[1], len(PHI))
-    i = np.minimum(theta.astype(int), len(THETA) - 2)  # beyond 75° the fraction exceeds 1
-    j = np.minimum(phi.astype(int), len(PHI) - 1)
-    return (i, i + 1, theta - i), (j, (j + 1) % len(PHI), phi - j)
+    """The brackets of theta and of phi among the stored angles."""
+    theta = theta / THETA[1]
+    i = np.minimum(theta.astype(int), len(THETA) - 2)
+    # beyond 75° the share exceeds 1: the line goes on
+    return (i, i + 1, theta - i), periodic(phi / PHI[1], len(PHI))

@@ -7,12 +7,11 @@ the highlight at grazing angles, which those of an image of outgoing directions 
 A density p_h of half vectors is p_h / (4 wi·h) of the directions that they mirror wi to.
 """
 
-import itertools
-
 import drjit as dr
 import numpy as np
 
 from brdfkit.geometry.directions import from_angles
+from brdfkit.geometry.multilinear import corners, flat
 from brdfkit.geometry.vectors import angle, azimuth, cos_theta_d, half_vector, reflect
 from brdfkit.host.arrays import Rows, bracket, periodic_bracket
 
@@ -78,14 +77,8 @@ class Tabulated:
     def mixed(self, wi):
         """(incidence, its share) of those around `wi`."""
         brackets = self._brackets(wi)
-        mixed = []
-        for corner in itertools.product((0, 1), repeat=len(brackets)):
-            share, incidence = 1, 0
-            for (*nodes, t), upper in zip(brackets, corner, strict=True):
-                share = share * (t if upper else 1 - t)
-                incidence = incidence * self.angles + nodes[upper]
-            mixed.append((incidence, share))
-        return mixed
+        shape = (self.azimuths, self.angles)[-len(brackets) :]
+        return [(flat(nodes, shape), share) for nodes, share in corners(brackets)]
 
     def _chosen(self, wi, u):
         """One of them by its share, and what is left of the random numbers."""

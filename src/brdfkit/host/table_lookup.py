@@ -1,9 +1,8 @@
 """`Table.eval` in the renderer: the cells around a pair of directions, and their shares."""
 
-import itertools
-
 import drjit as dr
 
+from brdfkit.geometry import multilinear
 from brdfkit.geometry.vectors import angle, azimuth, half_vector
 from brdfkit.host.arrays import bracket, periodic_bracket
 
@@ -20,12 +19,8 @@ def corners(table, wi, wo):
     if table.anisotropic:
         n_a = table.shape[0]
         axes.insert(0, periodic_bracket(phi_h / (2 * dr.pi) * n_a - 0.5, n_a))
-    for corner in itertools.product((0, 1), repeat=len(axes)):
-        index, share = 0, 1.0
-        for n, (*cells, t), upper in zip(table.shape, axes, corner, strict=True):
-            index = index * n + cells[upper]
-            share = share * (t if upper else 1 - t)
-        yield index, share
+    for cells, share in multilinear.corners(axes):
+        yield multilinear.flat(cells, table.shape), share
 
 
 def half_difference(wi, wo):

@@ -16,7 +16,6 @@ sets of scattered data", IJNME 15, 1980.
 """
 
 import functools
-from dataclasses import replace
 
 import numpy as np
 
@@ -25,6 +24,7 @@ from brdfkit.fitting.problem import Problem
 from brdfkit.geometry.directions import to_half_difference
 from brdfkit.model import labels
 from brdfkit.model.evaluation import lobe_values
+from brdfkit.samples import Samples
 from brdfkit.samples.coordinates import (
     HIGHLIGHT,
     RETROREFLECTION,
@@ -121,7 +121,8 @@ def _guide(samples, anisotropic):
     """The BRDF (wi, wo) → (n, channels) of the model that fits `samples` best, or a constant."""
     if len(samples.wi) < FEWEST or samples.values.max() <= 0:
         return functools.partial(_constant, np.median(samples.values, axis=0))
-    grey = replace(samples, values=samples.values.mean(axis=1, keepdims=True))
+    grey = samples.values.mean(axis=1, keepdims=True)
+    grey = Samples.checked(samples.wi, samples.wo, grey, None, ("Y",), "grey")
     model, how = labels.model(GUIDE), {"starts": 1, "anisotropic": anisotropic}
     inside = grey.at(grey.within(MAX_ANGLE))
     found = regress(model, inside, losses["log"], **how)

@@ -6,13 +6,13 @@ An anisotropic table has the azimuth phi_h of the half vector as its first axis,
 over the full circle. A value stands at the centre of its cell.
 """
 
-import itertools
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from brdfkit.geometry.directions import from_half_difference, half_azimuth, to_half_difference
+from brdfkit.geometry.multilinear import clamped, corners, periodic
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,33 +93,18 @@ class Table:
         theta_h, theta_d, phi_d = to_half_difference(wi, wo)
         n_h, n_d, n_p = self.shape[-3:]
         axes = [
-            _clamped(np.sqrt(theta_h / (np.pi / 2)) * n_h, n_h),
-            _clamped(theta_d / (np.pi / 2) * n_d, n_d),
-            _periodic(phi_d / self.phi_d_period * n_p, n_p),
+            clamped(np.sqrt(theta_h / (np.pi / 2)) * n_h - 0.5, n_h),
+            clamped(theta_d / (np.pi / 2) * n_d - 0.5, n_d),
+            periodic(phi_d / self.phi_d_period * n_p - 0.5, n_p),
         ]
         if self.anisotropic:
             n_a = self.shape[0]
-            axes.insert(0, _periodic(half_azimuth(wi, wo) / (2 * np.pi) * n_a, n_a))
+            axes.insert(0, periodic(half_azimuth(wi, wo) / (2 * np.pi) * n_a - 0.5, n_a))
 
         result = np.zeros((*theta_h.shape, self.values.shape[-1]))
-        for corner in itertools.product((0, 1), repeat=len(axes)):
-            cells = tuple(axis[upper] for axis, upper in zip(axes, corner, strict=True))
-            parts = [t if upper else 1 - t for (*_, t), upper in zip(axes, corner, strict=True)]
-            result += np.prod(parts, axis=0)[..., None] * self.filled[cells]
+        for cells, share in corners(axes):
+            result += share[..., None] * self.filled[cells]
         above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
         return np.where(above[..., None], result, 0.0)
 
     __call__ = eval  # a table may be a measurement's lookup
-
-
-def _clamped(position, n):
-    """Lower cell, upper cell and fraction of a position counted in cells from the axis' start."""
-    x = np.clip(position - 0.5, 0, n - 1)
-    lower = np.minimum(x.astype(int), max(n - 2, 0))
-    return lower, np.minimum(lower + 1, n - 1), x - lower
-
-
-def _periodic(position, n):
-    x = np.mod(position - 0.5, n)
-    lower = np.minimum(x.astype(int), n - 1)
-    return lower, (lower + 1) % n, x - lower

@@ -124,8 +124,8 @@ def _values(obj, values):
         return {"rgb": values}
     if channels == RGB:
         raise BrdfkitError(
-            f"{values.shape[2]} channels without wavelengths; save the measured spectra, or a "
-            "model with one or three numbers per weight."
+            f"{values.shape[2]} channels without wavelengths, where one or three belong; save the "
+            "measured spectra."
         )
     nanometres = wavelengths(obj)
     if len(set(nanometres.astype(np.float32))) != len(nanometres) or nanometres.min() <= 0:

@@ -12,6 +12,8 @@ from functools import cached_property
 
 import numpy as np
 
+from brdfkit.geometry.multilinear import clamped, corners, flat
+
 
 def even_grid(n):
     """n × n points (n², 2), (x, y), of the unit square, from edge to edge, x running fastest."""
@@ -25,30 +27,25 @@ def between(nodes, values):
     `nodes`: one increasing array per parameter, `values`: (n,) for each, held at the ends. The
     slices are numbered with the last parameter running fastest.
     """
-    found = [(np.zeros(np.shape(values[0]), int), 1.0)]
+    brackets, shape = [], []
     for axis, x in zip(nodes, values, strict=True):
-        if len(axis) == 1:
-            continue
-        lower = np.clip(np.searchsorted(axis, x) - 1, 0, len(axis) - 2)
-        t = np.clip((x - axis[lower]) / (axis[lower + 1] - axis[lower]), 0, 1)
-        found = [
-            (at * len(axis) + lower + upper, weight * (t if upper else 1 - t))
-            for at, weight in found
-            for upper in (0, 1)
-        ]
-    return found
+        if len(axis) > 1:
+            lower = np.clip(np.searchsorted(axis, x) - 1, 0, len(axis) - 2)
+            t = np.clip((x - axis[lower]) / (axis[lower + 1] - axis[lower]), 0, 1)
+            brackets.append((lower, lower + 1, t))
+            shape.append(len(axis))
+    first = np.zeros(np.shape(values[0]), int)
+    return [(first + flat(at, shape), weight) for at, weight in corners(brackets)]
 
 
 def interpolated(table, u, slices=((0, 1.0),)):
     """Values (n, ...) at the points `u` (n, 2), (x, y), of a `table` (slices, ny, nx, ...)."""
     _, ny, nx, *rest = table.shape
-    (x, tx), (y, ty) = _cell(u[:, 0], nx), _cell(u[:, 1], ny)
+    cells = [_bracket(u[:, 0], nx), _bracket(u[:, 1], ny)]
     result = 0.0
     for at, weight in slices:
-        for dx, wx in ((0, 1 - tx), (1, tx)):
-            for dy, wy in ((0, 1 - ty), (1, ty)):
-                part = (weight * wx * wy).reshape(-1, *[1] * len(rest))
-                result = result + part * table[at, y + dy, x + dx]
+        for (x, y), share in corners(cells):
+            result = result + (weight * share).reshape(-1, *[1] * len(rest)) * table[at, y, x]
     return result
 
 
@@ -92,7 +89,8 @@ class Warp:
     def invert(self, u, slices):
         """Where `sample` takes the points `u` (n, 2) from; `slices` as `between` gives them."""
         density, along, rows = self._tables
-        (x, tx), (y, ty) = _cell(u[:, 0], density.shape[2]), _cell(u[:, 1], density.shape[1])
+        x, _, tx = _bracket(u[:, 0], density.shape[2])
+        y, _, ty = _bracket(u[:, 1], density.shape[1])
 
         def at(table, *index):
             return sum(weight * table[(slice_, *index)] for slice_, weight in slices)
@@ -107,11 +105,9 @@ class Warp:
         return np.stack([x, at(rows, y) + _mass(lower, upper, ty)], axis=1)
 
 
-def _cell(u, n):
-    """The cell of each coordinate in an even grid of `n` nodes, and the place in it."""
-    position = np.clip(u, 0, 1) * (n - 1)
-    cell = np.minimum(position.astype(int), n - 2)
-    return cell, position - cell
+def _bracket(u, n):
+    """Of a coordinate of the unit square among `n` nodes from edge to edge."""
+    return clamped(u * (n - 1), n)
 
 
 def _cumulative(values):
