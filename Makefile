@@ -26,6 +26,7 @@ quick: $(VENV)/.ready
 lint: $(VENV)/.ready
 	$(RUN)/ruff check
 	$(RUN)/ruff format --check
+	$(RUN)/lint-imports --no-logo --no-cache
 
 bench: $(VENV)/.ready
 	DRJIT_CACHE_DIR=$$(mktemp -d) $(RUN)/python tests/benchmark.py

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from brdfkit.auditing import words
 from brdfkit.auditing.albedos import Albedo, albedo, albedo_of_samples
 from brdfkit.auditing.coverage import Coverage, coverage
 from brdfkit.auditing.noise import Noise, noise
@@ -62,22 +63,18 @@ class Audit:
 
     def rows(self):
         """The audit in words, by heading."""
-        from brdfkit.auditing.words import rows
-
-        return rows(self)
+        return words.rows(self)
 
     def findings(self):
         """Sentences on what is doubtful."""
-        from brdfkit.auditing.words import findings
-
-        return findings(self)
+        return words.findings(self)
 
     def picture(self):
         """A slice of the BRDF, its lobes and its albedo, as a matplotlib `Figure`.
 
         >>> load("paint.astm").audit().picture().savefig("paint.png")    # doctest: +SKIP
         """
-        from brdfkit.auditing.picture import picture
+        from brdfkit.auditing.picture import picture  # only here: matplotlib is slow to load
 
         return picture(self)
 

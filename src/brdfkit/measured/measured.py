@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+import brdfkit  # the public face, for what sees more than a measurement does
 from brdfkit.colours import RGB
 from brdfkit.errors import BrdfkitError
 from brdfkit.measured.interpolation import Scattered
@@ -197,8 +198,6 @@ class Measured:
 
         >>> print(load("copper.astm").audit())    # doctest: +SKIP
         """
-        import brdfkit  # its face: an audit sees everything, a measurement knows no audit
-
         return brdfkit.audit(self)
 
     def scene_dict(self):

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from brdfkit import llvm
+
 
 @dataclass(frozen=True)
 class Vector:
@@ -38,8 +40,6 @@ class Vector:
 def float64():
     """The array type: Dr.Jit's `Float64` of the LLVM or CUDA backend, else `ArrayXf64`."""
     import drjit as dr
-
-    from brdfkit import llvm
 
     if llvm.loaded_version() >= llvm.OLDEST:
         return dr.llvm.ad.Float64

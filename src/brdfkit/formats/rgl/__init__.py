@@ -15,6 +15,7 @@ import numpy as np
 from brdfkit.colours import RGB
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats.rgl import tensor_file
+from brdfkit.formats.rgl.encoding import adapted
 from brdfkit.formats.rgl.parameterisation import Adaptive, Parameterisation
 from brdfkit.measured import Measured
 from brdfkit.measured.spectra import wavelengths
@@ -100,8 +101,6 @@ def write(obj, stream):
     For Mitsuba's RGB variants save `Measured.rgb`. Negative values, which `eval` does not give,
     are lost.
     """
-    from brdfkit.formats.rgl.encoding import adapted
-
     if not callable(getattr(obj, "eval", None)):
         raise BrdfkitError(
             f"a {type(obj).__name__} has no BRDF; save a measured material, a model or a fit."
