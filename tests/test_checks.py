@@ -7,17 +7,18 @@ import pytest
 from random_models import random_model
 
 import brdfkit as bk
-from brdfkit.checks import checks
+from brdfkit.checks.registry import checks
 from brdfkit.checks.sampling import spread
 from brdfkit.checks.subject import INCIDENCES, Subject
 from brdfkit.model import Model, follows, shape, weight
 from brdfkit.model.lobes import Cosine, HalfVector, Lobe, lambertian
 from brdfkit.model.microfacet import Beckmann
+from brdfkit.plugins.discovery import MODELS
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 
 
-@pytest.mark.parametrize("check", checks)
+@pytest.mark.parametrize("check", checks[MODELS])
 def test_default_model(configured, check):
     report = bk.check(configured(), only=[check])
     assert report, str(report)
@@ -26,7 +27,7 @@ def test_default_model(configured, check):
 @pytest.mark.parametrize("seed", range(3))
 def test_random_model(configured, seed):
     # Beyond 80° Ward-Dür gains energy by its formula, which is what `energy` would find
-    report = bk.check(random_model(configured, seed), only=set(checks) - {"energy"})
+    report = bk.check(random_model(configured, seed), only=set(checks[MODELS]) - {"energy"})
     assert report, str(report)
 
 
@@ -43,7 +44,7 @@ def test_weights_of_samples_vary_little(configured):
 
 @pytest.mark.quick
 def test_measured_table_passes_the_checks():
-    report = bk.check(bk.load("red_plastic"), only=set(checks) - {"reciprocity"})
+    report = bk.check(bk.load("red_plastic"), only=set(checks[MODELS]) - {"reciprocity"})
     assert report, str(report)
 
 
@@ -134,7 +135,7 @@ def test_coverage_notices_a_missing_lobe(monkeypatch):
             facets = Narrow(HalfVector(Beckmann(self.alpha, self.alpha)))
             return Lobe(lambda wi, wo: 1 / dr.pi, facets), Lobe(self.specular, facets)
 
-    monkeypatch.setattr("brdfkit.host.bsdf.COSINE_SHARE", 0.0)
+    monkeypatch.setattr("brdfkit.host.frame.COSINE_SHARE", 0.0)
     assert _check(Missing, "chi squared", monkeypatch)
     assert not _check(Missing, "coverage", monkeypatch)
 
@@ -191,7 +192,7 @@ def test_a_parameter_without_effect_is_named(unused, monkeypatch):
         def specular(self, wi, wo):
             return super().specular(wi, wo) * (self.k if unused == "k_v" else self.k_v)
 
-    passed, figure = checks["gradient"](Subject(Unused()))
+    passed, figure = checks[MODELS]["gradient"](Subject(Unused()))
     assert (passed, figure) == (False, f"{unused} has no effect that Dr.Jit can follow")
 
 
@@ -214,6 +215,6 @@ def _check(model, check, monkeypatch):
 
     subject = Subject(model())
     monkeypatch.setitem(subject.__dict__, "bsdf", Bsdf())
-    passed, figure = checks[check](subject)
+    passed, figure = checks[MODELS][check](subject)
     assert np.isscalar(passed) or isinstance(passed, bool | np.bool_), figure
     return passed

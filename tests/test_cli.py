@@ -219,9 +219,9 @@ def test_a_file_stands_for_the_model_in_it(cli):
 
 @pytest.mark.quick
 def test_check_fails_with_status_1(cli, monkeypatch):
-    from brdfkit.checks import checks
+    from brdfkit.checks.registry import checks
 
-    monkeypatch.setattr("brdfkit.checks.checks", {"energy": lambda subject: (np.False_, "all")})
+    monkeypatch.setitem(checks, "bsdfs", {"energy": lambda subject: (np.False_, "all")})
     result = cli("check", "lambert")
     assert result.exit_code == 1
     assert "FAIL" in result.stdout
@@ -405,7 +405,7 @@ def test_ctrl_c_keeps_the_finished_fits(cli, monkeypatch):
             raise KeyboardInterrupt
         return fitted(name, *args, **options)
 
-    monkeypatch.setattr("brdfkit.fitting.fit", interrupted)
+    monkeypatch.setattr("brdfkit.fits.fit", interrupted)
     words = "fit", "paint.binary", "-m", "lambert", "-m", "ward", "-o", "out", "--render"
     result = cli(*words)
     assert result.exit_code == 130

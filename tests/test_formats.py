@@ -1,6 +1,7 @@
 """Formats × traps: what is read, and the sentence where it cannot be."""
 
 import gzip
+import json
 import lzma
 import os
 import tempfile
@@ -23,6 +24,7 @@ from small_files import (
     place,
 )
 
+import brdfkit as bk
 from brdfkit import files
 from brdfkit.colours import RGB, colour_science
 from brdfkit.errors import BrdfkitError
@@ -561,3 +563,19 @@ def test_channels_without_colour(channels, match):
     material = Measured.from_samples(up, up, [[1.0, 1.0]], channels=channels)
     with pytest.raises(BrdfkitError, match=match):
         _ = material.rgb
+
+
+@pytest.mark.quick
+def test_a_saved_fit_runs_no_program(tmp_path):
+    """The label in a file is the name of a model, never a Python file to load."""
+    evil = tmp_path / "evil.py"
+    evil.write_text(f"open({str(tmp_path / 'done')!r}, 'w')")
+    wi, wo = np.array([[[0.0, 0.0, 1.0]]] * 2)
+    data = bk.Measured.from_samples(wi, wo, [[0.2]], channels=("Y",))
+    save(bk.fit("lambert", data), tmp_path / "fit.json")
+    for label in (str(evil), f"{evil}+ward", "mixture:models=" + str(evil) + "+ward"):
+        text = (tmp_path / "fit.json").read_text().replace('"lambert"', json.dumps(label))
+        (tmp_path / "other.json").write_text(text)
+        with pytest.raises(BrdfkitError, match="somebody's own|no model"):
+            load(tmp_path / "other.json")
+    assert not (tmp_path / "done").exists()

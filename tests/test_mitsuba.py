@@ -125,7 +125,9 @@ def test_gradient_of_a_picture(model, llvm_variant, monkeypatch):
     tables = {}  # a table drawn from moves with the weights, and the directions would with it
     monkeypatch.setattr(
         "brdfkit.host.bsdf.tabulated",
-        lambda model, lobes: tables.setdefault(tuple(lobes), tabulated(model, lobes)),
+        lambda model, weights, lobes: tables.setdefault(
+            tuple(lobes), tabulated(model, weights, lobes)
+        ),
     )
     integrator = {"type": "prb", "max_depth": 2}
     loaded = mi.load_dict(scene(ball(coloured(model).scene_dict()), integrator))

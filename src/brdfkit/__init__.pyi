@@ -12,6 +12,7 @@ from .fits import fit as fit
 from .fitting import Fit as Fit
 from .fitting import losses as losses
 from .goniometer import measure as measure
+from .host.users_plugins import load_plugins as load_plugins
 from .loading import load as load
 from .loading import save as save
 from .measured import Measured as Measured

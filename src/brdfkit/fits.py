@@ -47,7 +47,7 @@ def fit(
     >>> print(fit("ward", load("paint.binary")))    # doctest: +SKIP
     """
     began = time.perf_counter()
-    model, data = labels.model(name), measured(data)
+    model, data = labels.model(labels.read_files(name)), measured(data)
     if not isinstance(loss, str) or loss not in losses:
         raise no_such("loss", loss, losses)
     if robust not in (None, *WEIGHTS):

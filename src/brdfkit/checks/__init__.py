@@ -1,7 +1,8 @@
-"""What every material must fulfil: `check`. The test-suite runs the same over every model.
+"""What every material and every plugin must fulfil: `check`. The tests run the same over all.
 
-A check is a function `(subject) -> (passed, figure)` with the decorator `checked`, in a module
-of this folder.
+A check is a function `(subject) -> (passed, figure)` with the decorator `checked(KIND)`, in a
+module of this folder. A material's checks are in `physics.py`, `sampling.py` and `derivatives.py`,
+with a `Subject`; those of other plugins in a file of their kind, with a `PluginSubject`.
 """
 
 import importlib
@@ -10,9 +11,13 @@ from dataclasses import dataclass
 
 from brdfkit import llvm
 from brdfkit.checks.failure import described
-from brdfkit.checks.subject import Finding, Subject, checks
+from brdfkit.checks.plugin import PluginSubject, example
+from brdfkit.checks.registry import Finding, checks
+from brdfkit.checks.subject import Subject
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.materials import material
+from brdfkit.plugins import discovery
+from brdfkit.plugins.discovery import MODELS
 
 for _module in pkgutil.iter_modules(__path__):
     importlib.import_module(f"{__name__}.{_module.name}")
@@ -38,39 +43,51 @@ class Report:
 
 
 def check(thing, only=None, progress=None):
-    """Check a model with values, a fit or a measured material; returns a `Report`.
+    """Check a material, or a plugin of another kind; returns a `Report`.
 
-    Sampling (χ² at five incidences to grazing, coverage, weight = eval / pdf), reciprocity,
-    finiteness to the horizon, energy, derivatives, and that the Mitsuba plugin computes the
-    formula. A model that raises an error has failed. `only`: names of checks; `progress`: called
-    with (done, total). Raises `BrdfkitError` for an unknown check, for what is no material, and
-    without an LLVM or CUDA variant.
+    `thing`: a model with values, a fit, a measured material, or the name or path of one; the name
+    of a plugin of another kind, or its dictionary for `mitsuba.load_dict`. Of a material: sampling
+    (χ² at five incidences to grazing, coverage, weight = eval / pdf), reciprocity, finiteness to
+    the horizon, energy, derivatives, and that the Mitsuba plugin computes the formula, in the
+    current variant. Of emitters and phase functions: χ², weights, normalisation, means; of
+    integrators a reference. What raises an error has failed. `only`: names of checks; `progress`:
+    called with (done, total). Raises `BrdfkitError` for an unknown check, for what is no material
+    or plugin, and without an LLVM or CUDA variant.
 
     >>> print(check(models()["ward"](alpha_u=0.1)))    # doctest: +SKIP
     """
-    thing = material(thing)
     if llvm.use_variant().startswith("scalar"):
         raise BrdfkitError(f"check needs an LLVM or CUDA variant of Mitsuba; {llvm.REMEDY}.")
-    subject = Subject(thing)
-    names = list(checks) if only is None else list(only)
-    for name in names:
-        if name not in checks:
-            raise no_such("check", name, checks)
+    subject, kind, name = _subject(thing)
+    names = list(checks[kind]) if only is None else list(only)
+    for wanted in names:
+        if wanted not in checks[kind]:
+            raise no_such("check", wanted, checks[kind])
     findings = []
-    for name in names:
-        findings.append(Finding(name, *_found(name, subject)))
+    for wanted in names:
+        findings.append(Finding(wanted, *_found(kind, wanted, subject)))
         if progress:
             progress(len(findings), len(names))
-    return Report(thing.name, tuple(findings))
+    return Report(name, tuple(findings))
 
 
-def _found(name, subject):
-    """(passed, figure) of a check; a model whose lines raise an error has failed it."""
+def _subject(thing):
+    """What is checked, its kind, and its name."""
+    name = thing.get("type") if isinstance(thing, dict) else thing
+    kind = discovery.kind_of(name) if isinstance(name, str) else None
+    if kind not in (None, MODELS):
+        return PluginSubject(kind, thing if isinstance(thing, dict) else example(name)), kind, name
+    found = material(thing)
+    return Subject(found), MODELS, found.name
+
+
+def _found(kind, name, subject):
+    """(passed, figure) of a check; a plugin whose lines raise an error has failed it."""
     try:
-        return checks[name](subject)
+        return checks[kind][name](subject)
     except BrdfkitError:
         raise
     except Exception as error:
-        if subject.model is None:
+        if subject.source is None:
             raise
-        return False, described(error, subject.model)
+        return False, described(error, subject.source)

@@ -1,20 +1,17 @@
-"""What to say where a check cannot run: a model's own lines went wrong."""
+"""What to say where a check cannot run: a plugin's own lines went wrong."""
 
-import sys
 import traceback
 from pathlib import Path
 
-# What words of Dr.Jit mean to who writes a model
+# What words of Dr.Jit mean to who writes a plugin
 HINTS = {
     "'bool'": "no if on values, but dr.select",
     "'ndarray'": "no function of NumPy, but that of dr",
 }
 
 
-def described(error, model):
-    """File and line of the model where `error` came from, and its last words."""
-    module, name = sys.modules[type(model).__module__], type(model).__name__
-    path = Path(getattr(module, "__file__", name))  # a notebook has none
+def described(error, path):
+    """The line of the plugin's file (`Path`) where `error` came from, and its last words."""
     frames = traceback.extract_tb(error.__traceback__)
     lines = [f.lineno for f in frames if Path(f.filename) == path]
     place = f"{path.name}, line {lines[-1]}" if lines else path.name

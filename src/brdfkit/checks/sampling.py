@@ -2,8 +2,11 @@
 
 import numpy as np
 
-from brdfkit.checks.subject import INCIDENCES, checked, incidences
+from brdfkit.checks.registry import checked
+from brdfkit.checks.subject import INCIDENCES, incidences
+from brdfkit.checks.variants import columns
 from brdfkit.geometry.quadrature import TOLERANCE, directional_albedo
+from brdfkit.plugins.discovery import MODELS
 
 # All tests of one check together reject a right sampler once in a hundred runs; seeds are
 # fixed, so a check that passed goes on to pass.
@@ -14,7 +17,7 @@ SAMPLES = 1_000_000
 CELLS, SUBCELLS = 48, (64, 128)
 
 
-@checked
+@checked(MODELS)
 def chi_squared(subject):
     """Samples follow the density that `pdf` states, at every incidence (Pearson's χ² test).
 
@@ -72,14 +75,14 @@ def _to_direction(mi, point, wi):
     return 2 * cos_d * h - wi, dr.select(cos_d > 0, jacobian, 0)
 
 
-@checked
+@checked(MODELS)
 def coverage(subject):
     """Mean weight of a sample = albedo by quadrature: no lobe is missed (χ² cannot see it)."""
     worst, where = 0.0, ""
     for degrees, wi in incidences():
-        weights = _own_weights(subject, wi)
+        weights = _means(own_weights(subject, wi), SAMPLES)
         mean = float(weights.mean())
-        expected = float(directional_albedo(subject.formula.eval, wi).mean())
+        expected = float(directional_albedo(subject.values, wi).mean())
         error = np.hypot(weights.std() / np.sqrt(len(weights)), TOLERANCE * expected)
         deviation = abs(mean - expected) / max(error, 1e-12)
         if deviation >= worst:
@@ -87,7 +90,7 @@ def coverage(subject):
     return bool(worst < 4.5), f"at most {worst:.1f} standard errors apart{where}"
 
 
-@checked
+@checked(MODELS)
 def weights(subject):
     """The weight of a sample = eval / pdf, its density = pdf, and eval_pdf = both."""
     import mitsuba as mi
@@ -101,7 +104,7 @@ def weights(subject):
         value_2 = subject.bsdf.eval(mi.BSDFContext(), si, drawn.wo)
         pdf_2 = subject.bsdf.pdf(mi.BSDFContext(), si, drawn.wo)
         kept = np.array(drawn.pdf) > 0
-        value, value_2, weight = (np.array(x)[:, kept] for x in (value, value_2, weight))
+        value, value_2, weight = (columns(x, n)[:, kept] for x in (value, value_2, weight))
         pdf, pdf_2, stated = (np.array(x)[kept] for x in (pdf, pdf_2, drawn.pdf))
         pairs = [(weight * pdf, value), (value, value_2), (pdf, pdf_2), (pdf, stated)]
         for a, b in pairs:
@@ -111,17 +114,21 @@ def weights(subject):
 
 def spread(subject, degrees, samples=SAMPLES):
     """Standard deviation of the weight of a sample over its mean, at an incidence [degrees]."""
-    wi = dict(incidences())[degrees]
-    weights = _own_weights(subject, wi, samples)
+    weights = _means(own_weights(subject, dict(incidences())[degrees], samples), samples)
     return float(weights.std() / weights.mean())
 
 
-def _own_weights(subject, wi, samples=SAMPLES):
+def own_weights(subject, wi, samples=SAMPLES, seed=1):
+    """Weights of samples at one incidence, as the spectrum of the variant."""
     import mitsuba as mi
 
     si = subject.interaction(np.tile(wi, (samples, 1)))
-    _, weight = subject.bsdf.sample(mi.BSDFContext(), si, *uniform(samples, seed=1))
-    return np.array(weight).mean(axis=0, dtype=float)
+    return subject.bsdf.sample(mi.BSDFContext(), si, *uniform(samples, seed))[1]
+
+
+def _means(spectrum, n):
+    """The mean of the channels (n,)."""
+    return columns(spectrum, n).mean(axis=0)
 
 
 def uniform(n, seed):

@@ -1,40 +1,33 @@
-"""What is checked: a material with its Mitsuba BSDF; and how a check says what it found."""
+"""What is checked of a material: its formula and its Mitsuba BSDF, in the current variant.
 
+In spectral variants at fixed wavelengths. What a model reflects there is its lobes, in double
+precision, times the weights that Mitsuba's textures make of its numbers and colours.
+"""
+
+import sys
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from brdfkit.checks.variants import WAVELENGTHS, columns, in_variant, weights_of
 from brdfkit.geometry.directions import from_angles
+from brdfkit.host.bsdf_material import BsdfMaterial
 from brdfkit.measured import Measured
 from brdfkit.model import Model
+from brdfkit.model.evaluation import lobe_values
 
 # Incidence of every statistical check [degrees], up to grazing, at an azimuth off the axes
 INCIDENCES = (0, 30, 60, 75, 85)
 AZIMUTH = 0.5
 
-checks: dict[str, Any] = {}
-
-
-@dataclass(frozen=True)
-class Finding:
-    """What one check found: whether it passed, and the figure by which."""
-
-    check: str
-    passed: bool
-    figure: str
-
-
-def checked(function):
-    """Make `function(subject) -> (passed, figure)` a check, named as the function."""
-    checks[function.__name__.replace("_", " ")] = function
-    return function
-
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """Anything with `.eval(wi, wo)` and `.scene_dict()`: a model, a fit, a measured material."""
+    """Anything with `.eval(wi, wo)` and `.scene_dict()`: a model, a fit, a measured material, a
+    BSDF of Mitsuba's."""
 
     thing: Any
 
@@ -44,17 +37,46 @@ class Subject:
         model = getattr(self.thing, "model", self.thing)
         return model if isinstance(model, Model) else None
 
-    @cached_property
-    def formula(self):
-        """What the BSDF should compute: anything with `.eval(wi, wo)`.
+    @property
+    def is_single(self):
+        """Whether its formula is that of a BSDF of Mitsuba's, in single precision."""
+        return isinstance(self.thing, BsdfMaterial)
 
-        That of samples is a table of what `eval` finds between them.
-        """
-        if isinstance(self.thing, Measured) and not self.thing.is_table:
-            table = self.thing.rgb.table
-            channels = self.thing.rgb.channels
-            return Measured.from_table(table.values, table.phi_d_period, channels)
-        return self.thing
+    @property
+    def source(self):
+        """The file of the model's class, None for another material; a notebook has none, either,
+        but its class a name."""
+        if self.model is None:
+            return None
+        module = sys.modules[type(self.model).__module__]
+        return Path(getattr(module, "__file__", None) or type(self.model).__name__)
+
+    def values(self, wi, wo):
+        """What the BSDF should be without its cosine, (n, channels of the variant), in double
+        precision, of direction pairs (n, 3) above the surface."""
+        if isinstance(self.thing, Measured):
+            return in_variant(self.rendered.eval(wi, wo), self.rendered)
+        if self.model is None:
+            return self.thing.eval(wi, wo)
+        plain, squared = lobe_values(self.model, wi, wo)
+        values = plain @ self.weights + squared @ self.weights**2
+        return np.maximum(values, 0) if self.model.signed() else values
+
+    @cached_property
+    def rendered(self):
+        """The measured material as the variant renders it; that of samples is a table of what
+        `eval` finds between them."""
+        import mitsuba as mi
+
+        found = self.thing if mi.is_spectral else self.thing.rgb
+        if found.is_table:
+            return found
+        return Measured.from_table(found.table.values, found.table.phi_d_period, found.channels)
+
+    @cached_property
+    def weights(self):
+        """The model's weights (lobes, channels of the variant)."""
+        return weights_of(self.bsdf, self.model)
 
     @cached_property
     def bsdf(self):
@@ -73,15 +95,17 @@ class Subject:
         si.wi = mi.Vector3f(wi.T)
         si.sh_frame = mi.Frame3f([0, 0, 1])
         si.n = mi.Normal3f(0, 0, 1)
+        if mi.is_spectral:
+            si.wavelengths = WAVELENGTHS
         return si
 
     def plugin_eval(self, wi, wo):
-        """BRDF times cosine (n, channels) of the Mitsuba BSDF, float32."""
+        """BRDF times cosine (n, channels of the variant) of the Mitsuba BSDF, float32."""
         import mitsuba as mi
 
         wo = mi.Vector3f(np.asarray(wo, np.float32).T)
         value = self.bsdf.eval(mi.BSDFContext(), self.interaction(wi), wo)
-        return np.array(value).T.astype(float)
+        return columns(value, len(wi)).T
 
 
 def incidences():

@@ -23,18 +23,25 @@ def material(name, settings=()):
 
 
 def values(name, settings):
-    """Parameter values of ``PARAMETER=VALUE`` settings, VALUE a number or r,g,b."""
-    parsed, model = {}, labels.model(name)
+    """Parameter values of a model, of ``PARAMETER=VALUE`` settings."""
+    found = numbers(settings)
+    for parameter in found:
+        labels.model(name).parameter(parameter)
+    return found
+
+
+def numbers(settings):
+    """Values by name of ``PARAMETER=VALUE`` settings, VALUE a number or r,g,b."""
+    parsed = {}
     for setting in settings:
         parameter, equals, text = setting.partition("=")
-        model.parameter(parameter)
         try:
-            numbers = [float(part) for part in text.split(",")]
+            parts = [float(part) for part in text.split(",")]
         except ValueError:
-            numbers = []
-        if not equals or len(numbers) not in (1, 3):
+            parts = []
+        if not equals or len(parts) not in (1, 3):
             raise BrdfkitError(f"{setting!r} should read {parameter}=VALUE or {parameter}=R,G,B.")
-        parsed[parameter] = numbers[0] if len(numbers) == 1 else numbers
+        parsed[parameter] = parts[0] if len(parts) == 1 else parts
     return parsed
 
 

@@ -10,16 +10,29 @@ from brdfkit.commands._options import output_options, values_option
 @values_option
 @output_options
 def check(things, values, console):
-    """Check that models sample, conserve energy and differentiate."""
+    """Check that models sample, conserve energy and differentiate; and plugins of other kinds."""
     from brdfkit.checks import check as check_thing
-    from brdfkit.commands._targets import material
 
     reports = []
-    for thing in [material(name, values) for name in things]:
-        with console.progress(f"check {thing.name}") as progress:
+    for name, thing in [(name, _checked(name, values)) for name in things]:
+        with console.progress(f"check {name}") as progress:
             reports.append(check_thing(thing, progress=progress))
     _print_reports(reports, console)
     click.get_current_context().exit(0 if all(reports) else 1)
+
+
+def _checked(name, settings):
+    """The material of a name, or the dictionary of a plugin of another kind, with `settings`."""
+    from brdfkit.checks.plugin import example
+    from brdfkit.commands._targets import material, numbers
+    from brdfkit.host.users_plugins import load_plugins
+    from brdfkit.plugins.discovery import MODELS, kind_of
+
+    if name.endswith(".py"):
+        (name,) = load_plugins(name)
+    if kind_of(name) in (None, MODELS):
+        return material(name, settings)
+    return example(name, **numbers(settings))
 
 
 def _print_reports(reports, console):

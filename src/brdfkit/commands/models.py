@@ -1,8 +1,6 @@
 """`brdfkit models`: the list of models, and the page of one."""
 
-import inspect
 import math
-import sys
 
 import click
 
@@ -19,25 +17,30 @@ def models(name, console):
     if name is None:
         _print_list(labels.models(), console)
     else:
-        _print_page(labels.model(name), console)
+        print_model(labels.model(labels.read_files(name)), console)
 
 
 def _print_list(models, console):
+    from brdfkit.plugins.pages import page
+
     if console.as_json:
         console.json({name: _parameters(model) for name, model in models.items()})
         return
     table = console.table("model", "what it is", "parameters")
     for name, model in models.items():
-        table.add_row(name, _page(model)[0].partition(": ")[2], ", ".join(model.parameters))
+        table.add_row(name, page(model).sentence, ", ".join(model.parameters))
     console.out.print(table)
     console.out.print("One model's page: brdfkit models NAME")
 
 
-def _print_page(model, console):
+def print_model(model, console):
+    """The page of a model, with its parameters and options."""
+    from brdfkit.plugins.pages import page
+
     if console.as_json:
         console.json({model.type_name(): _parameters(model)})
         return
-    console.out.print("\n".join(_page(model)))
+    console.out.print(str(page(model)))
     table = console.table("parameter", ">default", ">from", ">to", "meaning")
     for name, p in model.parameters.items():
         low, high = ("" if math.isinf(v) else f"{v:g}" for v in p.bounds)
@@ -55,11 +58,6 @@ def _print_page(model, console):
     console.out.print(
         f'Mitsuba: {{"type": "{model.type_name()}", ...}}; every parameter may be a texture.'
     )
-
-
-def _page(model):
-    """The lines of a model's page: its file's docstring."""
-    return inspect.cleandoc(sys.modules[model.__module__].__doc__ or model.__name__).splitlines()
 
 
 def _parameters(model):

@@ -13,40 +13,59 @@ from brdfkit.host.arrays import Rows, bracket
 
 def channels(values, wavelengths=None):
     """Rows `values` (n, channels): linear sRGB, achromatic, or, with `wavelengths` [nm], those."""
-    import mitsuba as mi
-
     if wavelengths is not None:
         return Wavelengths(values, wavelengths)
-    colours = np.broadcast_to(values, (len(values), 3))
-    if mi.is_monochromatic:
-        return Luminances(colours)
-    return SpectralColours(colours) if mi.is_spectral else Colours(colours)
+    return Colours(np.broadcast_to(values, (len(values), 3)))
 
 
 class Colours:
-    """Linear sRGB in an RGB variant."""
+    """Linear sRGB."""
 
     def __init__(self, values):
-        self.rows = Rows(values)
+        self.rows, self.spectrum = Rows(values), spectrum_of_rgb()
 
     def mean(self, corners, si):
         import drjit as dr
         import mitsuba as mi
 
-        return dr.maximum(sum(share * self.rows.at(row, mi.Color3f) for row, share in corners), 0)
+        rgb = sum(share * self.rows.at(row, mi.Color3f) for row, share in corners)
+        return self.spectrum(dr.maximum(rgb, 0), si)
 
 
-class Luminances(Colours):
-    """The luminance of linear sRGB, in a variant with one channel."""
+def spectrum_of_rgb():
+    """A function (rgb, si) → the variant's spectrum of a reflectance in linear sRGB."""
+    import drjit as dr
+    import mitsuba as mi
 
-    def mean(self, corners, si):
-        import drjit as dr
-        import mitsuba as mi
-
-        return mi.Color1f(dr.dot(super().mean(corners, si), mi.Color3f(LUMINANCE.tolist())))
+    if mi.is_monochromatic:
+        return lambda rgb, si: mi.Color1f(dr.dot(rgb, mi.Color3f(LUMINANCE.tolist())))
+    return Smooth() if mi.is_spectral else lambda rgb, si: rgb
 
 
-class SpectralColours(Colours):
+def emission_of_rgb():
+    """The same of a radiance: that of 1, 1, 1 is the white point's."""
+    spectrum, light = spectrum_of_rgb(), white()
+    return lambda rgb, it: spectrum(rgb, it) * light(it)
+
+
+def white():
+    """A function of an interaction → the spectrum that a colour of light is multiplied by: D65's
+    in spectral variants, 1 in the others."""
+    import mitsuba as mi
+
+    if not mi.is_spectral:
+        return lambda it: 1
+    daylight = mi.Texture.D65(1.0)
+
+    def spectrum(it):
+        si = mi.SurfaceInteraction3f()  # a texture takes no other interaction
+        si.wavelengths = it.wavelengths
+        return mi.unpolarized_spectrum(daylight.eval(si))
+
+    return spectrum
+
+
+class Smooth:
     """Linear sRGB in a spectral variant: each colour times a basis spectrum.
 
     Linear, so that the mean of colours is that of their spectra, and exact under D65.
@@ -54,19 +73,16 @@ class SpectralColours(Colours):
     EGSR 2019.
     """
 
-    def __init__(self, values):
-        colour = colour_science()
-
-        super().__init__(values)
-        basis = colour.recovery.MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019
+    def __init__(self):
+        basis = colour_science().recovery.MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019
         self.first, self.step = float(basis.shape.start), float(basis.shape.interval)
         self.count, self.basis = len(basis.values), Rows(basis.values)
 
-    def mean(self, corners, si):
+    def __call__(self, rgb, si):
         import drjit as dr
         import mitsuba as mi
 
-        rgb, spectrum = super().mean(corners, si), mi.UnpolarizedSpectrum(0)
+        spectrum = mi.UnpolarizedSpectrum(0)
         for k, wavelength in enumerate(si.wavelengths):
             lower, upper, t = bracket((wavelength - self.first) / self.step, self.count)
             basis = [self.basis.at(node, mi.Color3f) for node in (lower, upper)]

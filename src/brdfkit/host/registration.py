@@ -1,7 +1,8 @@
 """Registers the plugins in Mitsuba: every kind, in every variant, each built when first used.
 
-A plugin file holds either a `Model`, or a function ``define(mi)`` that returns a class of Mitsuba's
-for the current variant (or, where Mitsuba lets no class be written, a function of its properties).
+A plugin file holds either a `Model`, or a function ``define(mi)`` that returns a class derived from
+one of Mitsuba's for the current variant. Where Mitsuba lets no class be written, as of shapes, it
+returns a function of the properties that makes an instance.
 """
 
 from functools import cache
@@ -17,11 +18,17 @@ _registered: set[tuple[str, str, str]] = set()
 
 
 def register_all():
-    """Register what is not yet known in the current variant of Mitsuba, if one is set."""
+    """Register what is not yet known in the current variant of Mitsuba, if one is set.
+
+    A volume is not known in scalar_rgb. By what a name is registered there Mitsuba 3.9 tells its
+    kind in every variant; a volume, registered as a texture, could be in no dictionary any more.
+    """
     variant = mi.variant()
     if variant is None:
         return
     for kind, (_, register) in KINDS.items():
+        if kind == "volumes" and variant == "scalar_rgb":
+            continue
         for name in discovery.sources(kind):
             if (variant, kind, name) not in _registered:
                 _registered.add((variant, kind, name))

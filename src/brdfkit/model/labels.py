@@ -1,8 +1,12 @@
-"""Models by their labels: a name, with options and sums, or a Python file of a user's.
+"""Models by their labels: a name, with options and sums.
 
-ward    koenderink:order=8    ggx+ggx    oren_nayar:form=full+ward    my_models/felt.py+ggx
+    ward    koenderink:order=8    ggx+ggx    oren_nayar:form=full+ward
+
+Where a person names a model, a Python file may stand for the model in it: `read_files` loads it. A
+label out of a saved file is never read so: it must not run a program.
 """
 
+import os
 from pathlib import Path
 
 from brdfkit.errors import BrdfkitError, no_such
@@ -23,19 +27,17 @@ def models():
 
 def model(label):
     """The model of a label: its name, with options ``"lafortune:lobe_count=2"``, or a sum of
-    labels, ``"ggx+ward"``: one diffuse term and the other terms of each. A class means itself, a
-    Python file the model in it.
+    labels, ``"ggx+ward"``: one diffuse term and the other terms of each. A class means itself.
 
     Raises `BrdfkitError` for a name that is none, and proposes the nearest.
     """
     if isinstance(label, type) and issubclass(label, Model):
         label.make_known()
         return model(label.label()) if label.in_plugin_file() else label  # the file as it is now
-    if not isinstance(label, str | Path):
+    if not isinstance(label, str):
         raise BrdfkitError(
             f"A {type(label).__name__} names no model; give a name such as 'ward', or a class."
         )
-    label = read_files(str(label))
     parts = label.removeprefix("mixture:models=")
     if "+" in parts or parts != label:
         return model("mixture").configured(models=parts)
@@ -56,13 +58,16 @@ def is_label(word):
 
 
 def read_files(label):
-    """A label with the names of the models for the Python files in it, which are loaded.
+    """A label with the names of the models for the Python files in it, which are loaded; what is no
+    label, nor the `Path` of a file, comes back as it is.
 
     >>> read_files("my_models/felt.py+ggx")    # doctest: +SKIP
     'felt+ggx'
     """
-    parts = []
-    for part in [label] if Path(label).is_file() else label.split("+"):
+    if not isinstance(label, str | Path):
+        return label
+    parts, label = [], str(label)
+    for part in [label] if os.path.isfile(label) else label.split("+"):
         name, colon, options = part.partition(":")
         if name.endswith(".py"):
             load_models(name)

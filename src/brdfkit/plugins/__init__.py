@@ -1,4 +1,4 @@
-"""The plugins: one file, one model. They lie in the project's top folder `plugins/`.
+"""The plugins: one file, one plugin. They lie in the project's top folder `plugins/`, by kind.
 
 The wheel copies that folder in here; a checkout is served by extending the path.
 """

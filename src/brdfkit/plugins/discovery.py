@@ -53,6 +53,8 @@ def add(kind, added):
     """
     for name, source in added.items():
         require_free(name, source)
+    if not added:
+        return
     _users.update({name: (kind, source) for name, source in added.items()})
     for listener in _listeners:
         listener()

@@ -180,11 +180,6 @@ def _material(thing):
     """(name, BSDF dictionary, parameters' values by name) of whatever `render` takes."""
     if _is_pair(thing):
         return thing[0], *_material(thing[1])[1:]
-    if isinstance(thing, dict):
-        if "type" not in thing:
-            raise BrdfkitError(f'{thing!r} is the dictionary of no BSDF: it has no "type".')
-        bsdf = dict(thing)
-        return str(bsdf.pop("name", bsdf["type"])), bsdf, {}
     found = material(thing)
     values = found.values if isinstance(found, Model | Fit) else {}
     return str(found.name), found.scene_dict(), dict(values)

@@ -1,0 +1,29 @@
+"""Checks of integrators: the radiance of a scene in which it is known."""
+
+import numpy as np
+
+from brdfkit.checks.registry import checked
+
+SPP = 64
+
+
+@checked("integrators")
+def reference(subject):
+    """The mean of a picture = what the file's `reference` gives for its scene, by a closed form or
+    by another integrator."""
+    import mitsuba as mi
+
+    if not hasattr(subject.module, "reference"):
+        return True, "names no reference"
+    scene, expected = subject.module.reference()
+    scene["integrator"] = {**scene["integrator"], **subject.entries}
+    film = mi.load_dict(scene).integrator().render(mi.load_dict(scene), seed=0, spp=SPP)
+    found = np.array(film, float)
+    found = found.reshape(-1, found.shape[-1])
+    expected = np.asarray(expected, float)
+    if found.shape[1] == 1:
+        expected = np.atleast_1d(np.array(mi.luminance(mi.Color3f(*expected.tolist()))).ravel())
+    found = found[:, : len(expected)]
+    error = np.hypot(found.std(axis=0) / np.sqrt(len(found)), 2e-3 * np.abs(expected))
+    apart = float(np.max(np.abs(found.mean(axis=0) - expected) / error))
+    return apart < 4.5, f"{apart:.1f} standard errors apart"

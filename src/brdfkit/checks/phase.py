@@ -1,0 +1,88 @@
+"""Checks of phase functions: density, weight and sampler belong together, and lose no light."""
+
+import numpy as np
+
+from brdfkit.checks import directions
+from brdfkit.checks.registry import checked
+from brdfkit.checks.variants import columns
+
+# Where light goes, in two directions: a phase function may treat the axes differently
+FORWARD = ((0.0, 0.0, 1.0), (0.6, 0.48, 0.64))
+
+
+def sampler(subject, forward):
+    """The sampler of `directions.py` for light that goes `forward`, and value and density of it."""
+    import mitsuba as mi
+
+    context, it = mi.PhaseFunctionContext(None), mi.MediumInteraction3f()
+    it.wi = -mi.Vector3f(*forward)
+    it.sh_frame = mi.Frame3f(it.wi)
+
+    def draw(u, v):
+        return subject.plugin.sample(context, it, mi.Float(0.5), mi.Point2f(u, v))
+
+    def value_and_pdf(wo):
+        return subject.plugin.eval_pdf(context, it, wo)
+
+    return draw, value_and_pdf
+
+
+@checked("phase")
+def chi_squared(subject):
+    """Samples follow the density that `eval_pdf` states (Pearson's χ² test)."""
+    p_values = []
+    for forward in FORWARD:
+        draw, value_and_pdf = sampler(subject, forward)
+        p = directions.chi_squared(draw, lambda wo, f=value_and_pdf: f(wo)[1], len(FORWARD))
+        p_values.append(p)
+    if None in p_values:
+        return False, "rejected"
+    return True, f"least p {min(p_values):.3g}"
+
+
+@checked("phase")
+def weights(subject):
+    """The weight of a sample = value / density, and its density is that of `eval_pdf`."""
+    import mitsuba as mi
+
+    n, worst = 20_000, 0.0
+    u = np.random.default_rng(1).random((2, n), np.float32)
+    for forward in FORWARD:
+        draw, value_and_pdf = sampler(subject, forward)
+        wo, weight, stated = draw(mi.Float(u[0]), mi.Float(u[1]))
+        value, pdf = value_and_pdf(wo)
+        weight, value = (columns(x, n) for x in (weight, value))
+        pdf, stated = (directions.numbers(x, n) for x in (pdf, stated))
+        for a, b in ((weight * pdf, value), (stated, pdf)):
+            worst = max(worst, float(np.max(np.abs(a - b) / np.maximum(np.abs(b), 1e-6))))
+    return worst < 1e-3, f"relative difference at most {worst:.1e}"
+
+
+@checked("phase")
+def normalisation(subject):
+    """∫ p dω = 1 over the sphere: nothing is gained or lost by scattering."""
+    w, solid_angle = directions.sphere()
+    densities = [sampler(subject, forward)[1](w)[1] for forward in FORWARD]
+    totals = [directions.numbers(pdf, len(solid_angle)) @ solid_angle for pdf in densities]
+    worst = max(totals, key=lambda t: abs(t - 1))
+    return bool(abs(worst - 1) < 1e-3), f"integral {worst:.5f}"
+
+
+@checked("phase")
+def mean_cosine(subject):
+    """The mean of the samples' cosines, weighted = ∫ p μ dω: the sampler misses no direction."""
+    import mitsuba as mi
+
+    u = np.random.default_rng(2).random((2, directions.SAMPLES), np.float32)
+    w, solid_angle = directions.sphere()
+    worst = 0.0
+    for forward in FORWARD:
+        draw, value_and_pdf = sampler(subject, forward)
+        wo, weight, _ = draw(mi.Float(u[0]), mi.Float(u[1]))
+        cosine = np.array(mi.Vector3f(*forward)).ravel() @ np.array(wo)
+        straight = np.array(forward) @ np.array(w)
+        value = columns(value_and_pdf(w)[0], len(solid_angle))
+        expected = value @ (straight * solid_angle)
+        found = columns(weight, directions.SAMPLES) * cosine
+        worst = max(worst, directions.agreement(found, expected))
+    return worst < 4.5, f"at most {worst:.1f} standard errors apart"

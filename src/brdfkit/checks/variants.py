@@ -1,0 +1,49 @@
+"""Spectra of the current variant of Mitsuba as numbers: colours, one channel, or wavelengths."""
+
+import numpy as np
+
+from brdfkit.colours import LUMINANCE, RGB, colour_science
+from brdfkit.measured.spectra import wavelengths
+
+WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)  # nm, at which spectral variants are checked
+
+
+def columns(spectrum, n):
+    """The channels (channels, n) of a spectrum of the variant, without its polarisation."""
+    import mitsuba as mi
+
+    found = np.array(mi.unpolarized_spectrum(spectrum), float)
+    return np.broadcast_to(found.reshape(len(found), -1), (len(found), n))
+
+
+def in_variant(values, material):
+    """`values` (n, c) of a `Measured` as the variant has them, (n, channels).
+
+    A colour in a spectral variant is that of three basis spectra (Mallett & Yuksel 2019).
+    """
+    import mitsuba as mi
+
+    if values.shape[1] == 1:
+        return np.broadcast_to(values, (len(values), len(WAVELENGTHS) if mi.is_spectral else 1))
+    if material.channels != RGB:  # only in a spectral variant: elsewhere it comes as a colour
+        nm = wavelengths(material)
+        order = np.argsort(nm)
+        return np.stack([np.interp(WAVELENGTHS, nm[order], row) for row in values[:, order]])
+    if mi.is_monochromatic:
+        return (values @ LUMINANCE)[:, None]
+    if not mi.is_spectral:
+        return values
+    basis = colour_science().recovery.MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019
+    spectra = [np.interp(WAVELENGTHS, basis.wavelengths, column) for column in basis.values.T]
+    return values @ np.array(spectra)
+
+
+def weights_of(bsdf, model):
+    """A model's weights (lobes, channels), as the textures of its BSDF give them in the variant."""
+    import drjit as dr
+    import mitsuba as mi
+
+    si = dr.zeros(mi.SurfaceInteraction3f, 1)
+    if mi.is_spectral:
+        si.wavelengths = WAVELENGTHS
+    return np.stack([columns(bsdf.eval_attribute(n, si), 1)[:, 0] for n in model.weights()])

@@ -1,0 +1,73 @@
+"""`brdfkit plugins`: the plugins of every kind, and the page of one."""
+
+import math
+
+import click
+
+from brdfkit.commands._options import output_options
+
+
+@click.command()
+@click.argument("word", required=False, metavar="[KIND|NAME|FILE.py]")
+@output_options
+def plugins(word, console):
+    """List the plugins, those of one KIND, or show the page of one."""
+    from brdfkit.errors import no_such
+    from brdfkit.host.users_plugins import load_plugins
+    from brdfkit.plugins.discovery import KINDS, kind_of, sources
+
+    if word and word.endswith(".py"):
+        (word,) = load_plugins(word)
+    names = [name for kind in KINDS for name in sources(kind)]
+    if word is None or word in KINDS:
+        _print_list([word] if word else KINDS, console)
+    elif word in names:
+        _print_page(kind_of(word), word, console)
+    else:
+        raise no_such("plugin or kind of plugins", word, [*KINDS, *names])
+
+
+def _print_list(kinds, console):
+    from brdfkit.plugins.discovery import sources
+    from brdfkit.plugins.pages import page
+
+    found = {kind: {n: page(s).sentence for n, s in sources(kind).items()} for kind in kinds}
+    if console.as_json:
+        console.json(found)
+        return
+    table = console.table("kind", "plugin", "what it is")
+    for kind, named in found.items():
+        for name, sentence in named.items() or [("", "none yet")]:
+            table.add_row(kind, name, sentence)
+    console.out.print(table)
+    console.out.print("One plugin's page: brdfkit plugins NAME")
+
+
+def _print_page(kind, name, console):
+    from brdfkit.commands.models import print_model
+    from brdfkit.model.labels import model_in
+    from brdfkit.plugins.discovery import MODELS, module, sources
+    from brdfkit.plugins.pages import page
+
+    source = sources(kind)[name]
+    if kind == MODELS and (model := model_in(source)):
+        print_model(model, console)
+        return
+    parameters = getattr(module(source), "PARAMETERS", {})
+    if console.as_json:
+        records = {
+            n: {"default": p.default, "bounds": p.bounds, "meaning": p.meaning}
+            for n, p in parameters.items()
+        }
+        console.json({name: {"kind": kind, "parameters": records}})
+        return
+    console.out.print(str(page(source)))
+    if parameters:
+        table = console.table("parameter", ">default", ">from", ">to", "meaning")
+        for n, p in parameters.items():
+            low, high = ("" if math.isinf(v) else f"{v:g}" for v in p.bounds or (math.inf,) * 2)
+            table.add_row(
+                n, "" if p.default in (None, "") else f"{p.default}", low, high, p.meaning
+            )
+        console.out.print(table)
+    console.out.print(f'Mitsuba: {{"type": "{name}", ...}}')

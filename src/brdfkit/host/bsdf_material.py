@@ -1,0 +1,54 @@
+"""A BSDF of Mitsuba's, by its dictionary, as a material: it evaluates like a model."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.llvm import use_variant
+
+
+@dataclass(frozen=True, eq=False)
+class BsdfMaterial:
+    """The material of a BSDF's dictionary for `mitsuba.load_dict`, under a `name`.
+
+    >>> BsdfMaterial("grey", {"type": "diffuse"}).eval(up, up)    # doctest: +SKIP
+    array([[0.15915494, 0.15915494, 0.15915494]])
+    """
+
+    name: str
+    entries: dict[str, Any]
+
+    @classmethod
+    def of(cls, entries):
+        """Of a dictionary, which may hold a "name"; else the type is its name."""
+        if "type" not in entries:
+            raise BrdfkitError(f'{entries!r} is the dictionary of no BSDF: it has no "type".')
+        bsdf = dict(entries)
+        return cls(str(bsdf.pop("name", bsdf["type"])), bsdf)
+
+    def scene_dict(self):
+        """The dictionary for `mitsuba.load_dict`."""
+        return dict(self.entries)
+
+    def eval(self, wi, wo):
+        """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3), in Mitsuba's single precision.
+
+        Raises `BrdfkitError` in a spectral or scalar variant of Mitsuba.
+        """
+        import drjit as dr
+        import mitsuba as mi
+
+        if use_variant().startswith("scalar") or mi.is_spectral:
+            raise BrdfkitError(
+                f"{self.name}: a BSDF of Mitsuba's is not evaluated in the variant {mi.variant()}; "
+                "set llvm_ad_rgb or cuda_ad_rgb."
+            )
+        wi, wo = (np.asarray(w, np.float32) for w in (wi, wo))
+        si = dr.zeros(mi.SurfaceInteraction3f, len(wi))
+        si.wi, si.sh_frame, si.n = mi.Vector3f(wi.T), mi.Frame3f([0, 0, 1]), mi.Normal3f(0, 0, 1)
+        value = mi.load_dict(self.entries).eval(mi.BSDFContext(), si, mi.Vector3f(wo.T))
+        value = np.array(mi.unpolarized_spectrum(value)).T
+        above = (wi[:, 2:] > 0) & (wo[:, 2:] > 0)
+        return np.where(above, value / np.where(above, wo[:, 2:], 1), 0).astype(float)

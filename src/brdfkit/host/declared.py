@@ -1,0 +1,138 @@
+"""What a plugin that is no model declares: its parameters, read and checked by one base class.
+
+PARAMETERS = {"k": number(0.5, (-0.999, 0.999), "asymmetry: above 0 forward, below 0 back")}
+
+def define(mi):
+    class Schlick(declared(mi.PhaseFunction, PARAMETERS)): ...
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.host.properties import is_colour
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A parameter of a plugin: its `default`, its `bounds` (low, high), None for what is no number,
+    its `meaning`; `read(value)` makes of a property what the plugin uses, or raises a ValueError
+    that says what it should be; `differentiable`: whether an optimiser may change it."""
+
+    default: Any
+    bounds: tuple[float, float] | None
+    meaning: str
+    read: Callable
+    differentiable: bool = False
+
+
+def number(default, bounds, meaning):
+    """A number within `bounds` (low, high), opaque to the compiler and differentiable."""
+
+    def read(value):
+        import drjit as dr
+        import mitsuba as mi
+
+        _require_within(value, bounds)
+        found = mi.Float(float(value))
+        dr.make_opaque(found)
+        return found
+
+    return Setting(default, bounds, meaning, read, differentiable=True)
+
+
+def count(default, bounds, meaning):
+    """A whole number within `bounds`, a Python value: each compiles a kernel of its own."""
+
+    def read(value):
+        _require_within(value, bounds)
+        if value != int(value):
+            raise ValueError("a whole number")
+        return int(value)
+
+    return Setting(default, bounds, meaning, read)
+
+
+def text(default, meaning):
+    """A word or the name of a file."""
+
+    def read(value):
+        if not isinstance(value, str):
+            raise ValueError("a text")
+        return value
+
+    return Setting(default, None, meaning, read)
+
+
+def picture(meaning):
+    """A `mi.Bitmap`, None where the scene gives none."""
+
+    def read(value):
+        import mitsuba as mi
+
+        if not isinstance(value, mi.Bitmap | None):
+            raise ValueError("a mitsuba.Bitmap")
+        return value
+
+    return Setting(None, None, meaning, read)
+
+
+def volume(default, meaning):
+    """A volume, as Mitsuba's gridvolume; a number or a colour stands for a constant one."""
+
+    def read(value):
+        import mitsuba as mi
+
+        if isinstance(value, mi.Volume):
+            return value
+        if is_colour(value):
+            value = {"type": "rgb", "value": list(value)}
+        elif isinstance(value, bool) or not isinstance(value, int | float):
+            raise ValueError("a volume, such as a gridvolume, a number or a colour")
+        return mi.load_dict({"type": "constvolume", "value": value})
+
+    return Setting(default, None, meaning, read, differentiable=True)
+
+
+def declared(base, parameters):
+    """A class derived from `base`, one of Mitsuba's, that has each of the `parameters` (name →
+    `Setting`) as an attribute, tells an optimiser of them, and prints them."""
+
+    class Declared(base):
+        def __init__(self, props):
+            super().__init__(props)
+            for name, setting in parameters.items():
+                value = props.get(name, setting.default)
+                try:
+                    setattr(self, name, setting.read(value))
+                except (TypeError, ValueError) as error:
+                    raise BrdfkitError(
+                        f"{props.plugin_name()}: {name} = {_shown(value)} should be {error}."
+                    ) from error
+
+        def traverse(self, callback):
+            import mitsuba as mi
+
+            for name, setting in parameters.items():
+                if setting.differentiable:
+                    callback.put(name, getattr(self, name), mi.ParamFlags.Differentiable)
+
+        def to_string(self):
+            lines = [f"  {name} = {getattr(self, name)}" for name in parameters]
+            return "\n".join([f"{type(self).__name__}[", *lines, "]"])
+
+    return Declared
+
+
+def _require_within(value, bounds):
+    low, high = bounds
+    # not <: NaN is refused as well
+    if isinstance(value, bool | str) or not low <= float(value) <= high or math.isinf(float(value)):
+        limits = f"at least {low:g}" if math.isinf(high) else f"between {low:g} and {high:g}"
+        raise ValueError(f"a number {limits}")
+
+
+def _shown(value):
+    return " ".join(str(value).split())[:60]

@@ -1,0 +1,51 @@
+"""`load_plugins`: plugins of a user's own, of any kind."""
+
+from pathlib import Path
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.model import labels
+from brdfkit.plugins import discovery
+from brdfkit.plugins.discovery import KINDS, MODELS
+
+
+def load_plugins(path):
+    """Make plugins of yours known to Mitsuba, in every variant; returns their kinds by name.
+
+    `path`: a folder laid out as brdfkit's own, with ``emitters/``, ``phase/`` and the like in it,
+    one of these, or a file in one of them. A file that holds a `Model` may lie anywhere. A file's
+    name is the plugin's type. Raises `BrdfkitError`, and loads none, for a name that is taken, a
+    file that cannot be imported or holds no plugin, or that lies in no folder of a kind.
+
+    >>> load_plugins("my_plugins/")    # doctest: +SKIP
+    {'softbox': 'emitters', 'velvet': 'bsdfs'}
+    """
+    files = {}
+    for file in _files(Path(path).absolute()):
+        discovery.require_free(file.stem, file)
+        files[file] = _kind(file)
+    for kind in KINDS:
+        discovery.add(kind, {file.stem: file for file, k in files.items() if k == kind})
+    return {file.stem: kind for file, kind in sorted(files.items())}
+
+
+def _files(path):
+    """The plugin files that `path` means."""
+    folders = [path / kind for kind in KINDS if (path / kind).is_dir()]
+    if not folders:
+        return discovery.files_in(path)
+    return sorted(file for f in (path, *folders) for file in f.glob("[!_]*.py"))
+
+
+def _kind(file):
+    """The kind of a plugin by its folder, that of a model where it holds one."""
+    module = discovery.module(file)
+    if labels.model_in(file) is not None:
+        return MODELS
+    if file.parent.name not in KINDS:
+        raise BrdfkitError(
+            f"{file}: holds no Model, and its folder does not tell what kind of plugin it is; put "
+            f"it into one of {', '.join(f'{kind}/' for kind in KINDS)}."
+        )
+    if not callable(getattr(module, "define", None)):
+        raise BrdfkitError(f"{file}: has no function define(mi) that returns the plugin's class.")
+    return file.parent.name

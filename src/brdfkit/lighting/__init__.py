@@ -1,0 +1,1 @@
+"""What the plugins that emit light stand on; nothing here knows Mitsuba."""

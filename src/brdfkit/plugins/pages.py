@@ -1,0 +1,37 @@
+"""What a plugin says of itself: its file's docstring is its page.
+
+The first line is ``Title: one sentence.``; then come the formula, where there is one, and prose.
+"""
+
+import inspect
+import sys
+from dataclasses import dataclass
+
+from brdfkit.plugins import discovery
+
+
+@dataclass(frozen=True)
+class Page:
+    """A page: its `title`, one `sentence`, and the other `lines`."""
+
+    title: str
+    sentence: str
+    lines: tuple[str, ...]
+
+    def __str__(self):
+        return "\n".join([f"{self.title}: {self.sentence}", *self.lines])
+
+
+def page(source):
+    """The `Page` of a plugin's file; of a class that of its file, or, in a notebook, its own."""
+    if isinstance(source, type):
+        in_file = source.__module__.rpartition(".")[0] in discovery.PACKAGES_OF_MODELS
+        text = sys.modules[source.__module__].__doc__ if in_file else source.__doc__
+        name = source.__name__
+    else:
+        text, name = discovery.module(source).__doc__, source.stem
+    first, *lines = inspect.cleandoc(text or "").splitlines() or [""]
+    title, colon, sentence = first.partition(": ")
+    if not colon:
+        title, sentence = name, first
+    return Page(title, sentence, tuple(lines))

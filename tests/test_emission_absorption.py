@@ -1,0 +1,122 @@
+"""The integrator of volumes that glow and absorb: closed forms, order of convergence, gradients."""
+
+import drjit as dr
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.quick
+SPP = 512  # of gradients, whose samples are others
+
+
+def picture(mi, integrator, spp=1, **shapes):
+    """The radiance along rays that go through the unit cube, front to back, with light behind."""
+    return np.array(mi.render(scene(mi, integrator, **shapes), spp=spp))
+
+
+def scene(mi, integrator, **shapes):
+    camera = mi.ScalarTransform4f().look_at([0.5, 0.5, 3], [0.5, 0.5, 0], [0, 1, 0])
+    camera = camera @ mi.ScalarTransform4f().scale(0.3)
+    film = {"type": "hdrfilm", "width": 4, "height": 4, "rfilter": {"type": "box"}}
+    return mi.load_dict(
+        {
+            "type": "scene",
+            "integrator": {"type": "emission_absorption", **integrator},
+            "sensor": {"type": "orthographic", "to_world": camera, "film": film},
+            "behind": {"type": "constant", "radiance": 0.5},
+            **shapes,
+        }
+    )
+
+
+def exact(sigma, e, behind=0.5, n=200_000):
+    """The radiance of σ(z), e(z) seen from z = 1 along -z, by fine quadrature."""
+    z = 1 - (np.arange(n) + 0.5) / n
+    depth = np.cumsum(sigma(z)) / n
+    before = np.concatenate([[0], depth[:-1]])
+    return np.sum(np.exp(-(before + depth) / 2) * e(z)) / n + np.exp(-depth[-1]) * behind
+
+
+@pytest.mark.parametrize("sigma", [0.0, 1e-6, 0.3, 20.0])
+def test_an_even_volume_is_exact_in_one_step(llvm_variant, sigma):
+    found = picture(llvm_variant, {"extinction": sigma, "emission": 0.8, "steps": 1})
+    light = 0.8 * (-np.expm1(-sigma) / sigma if sigma else 1)
+    np.testing.assert_allclose(found, light + 0.5 * np.exp(-sigma), rtol=1e-5)
+
+
+def test_the_error_is_of_second_order(llvm_variant):
+    """Twice the steps, a quarter of the error, for extinction and emission that change."""
+
+    def sigma(z):
+        return np.interp(z, [0.25, 0.75], [1.0, 5.0])
+
+    def e(z):
+        return np.interp(z, [0.25, 0.75], [3.0, 0.5])
+
+    volumes = {}
+    for name, f in {"extinction": sigma, "emission": e}.items():
+        grid = f(np.array([0.25, 0.75])).astype(np.float32).reshape(2, 1, 1, 1)
+        volumes[name] = {"type": "gridvolume", "grid": llvm_variant.VolumeGrid(grid)}
+    truth = exact(sigma, e)
+    errors = []
+    for steps in (8, 16, 32):
+        found = picture(llvm_variant, {**volumes, "steps": steps})
+        errors.append(abs(float(found.mean()) - truth))
+    assert errors[0] / errors[1] == pytest.approx(4, rel=0.15)
+    assert errors[1] / errors[2] == pytest.approx(4, rel=0.15)
+
+
+def test_a_surface_in_the_volume_ends_the_ray(llvm_variant):
+    """Half of the depth, and what the surface emits behind it."""
+    mi = llvm_variant
+    wall = mi.ScalarTransform4f().translate([0.5, 0.5, 0.5])
+    lamp = {"type": "rectangle", "to_world": wall, "emitter": {"type": "area", "radiance": 2.0}}
+    found = picture(mi, {"extinction": 1.5, "emission": 0.4, "steps": 4}, lamp=lamp)
+    light = 0.4 * -np.expm1(-0.75) / 1.5
+    np.testing.assert_allclose(found, light + 2.0 * np.exp(-0.75), rtol=1e-5)
+
+
+def test_a_ray_beside_the_volume_sees_what_is_behind(llvm_variant):
+    mi = llvm_variant
+    away = mi.ScalarTransform4f().translate([5, 0, 0])
+    grid = {"type": "gridvolume", "grid": mi.VolumeGrid(np.ones((2, 2, 2, 1), np.float32))}
+    found = picture(mi, {"extinction": grid | {"to_world": away}, "emission": 9.0})
+    np.testing.assert_allclose(found, 0.5, rtol=1e-6)
+
+
+@pytest.mark.parametrize("key", ["extinction", "emission"])
+def test_gradients_by_the_grids(llvm_variant, key):
+    """Of the mean of a picture, along a random change of the grid: those of finite differences."""
+    mi = llvm_variant
+    rng = np.random.default_rng(0)
+    grids = rng.uniform(0.5, 2.0, (2, 4, 4, 4, 1)).astype(np.float32)
+    volumes = {
+        name: {"type": "gridvolume", "grid": mi.VolumeGrid(grid)}
+        for name, grid in zip(("extinction", "emission"), grids, strict=True)
+    }
+    loaded = scene(mi, volumes | {"steps": 16})
+    parameters = mi.traverse(loaded)
+    name = f"integrator.{key}.data"
+    values, change = np.array(parameters[name]), rng.random((4, 4, 4, 1), np.float32)
+
+    leaf = mi.TensorXf(values)
+    dr.enable_grad(leaf)
+    parameters[name] = leaf
+    parameters.update()
+    dr.backward(dr.mean(mi.render(loaded, parameters, spp=SPP), axis=None))
+    exact = float((np.array(dr.grad(leaf)) * change).sum())
+
+    means = []
+    for step in (-0.01, 0.01):
+        parameters[name] = mi.TensorXf(values + step * change)
+        parameters.update()
+        means.append(float(np.array(mi.render(loaded, spp=SPP), float).mean()))
+    assert exact == pytest.approx((means[1] - means[0]) / 0.02, rel=0.005)
+
+
+@pytest.mark.parametrize("wrong", ["dense", [1.0, 2.0], True])
+def test_what_is_no_volume_is_refused(llvm_variant, wrong):
+    if not isinstance(wrong, str | bool):
+        wrong = llvm_variant.ScalarVector3f(1, 2, 3)
+        wrong = llvm_variant.ScalarTransform4f().translate(wrong)
+    with pytest.raises(RuntimeError, match=r"extinction = .* should be a volume"):
+        llvm_variant.load_dict({"type": "emission_absorption", "extinction": wrong})
