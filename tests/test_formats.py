@@ -576,6 +576,6 @@ def test_a_saved_fit_runs_no_program(tmp_path):
     for label in (str(evil), f"{evil}+ward", "mixture:models=" + str(evil) + "+ward"):
         text = (tmp_path / "fit.json").read_text().replace('"lambert"', json.dumps(label))
         (tmp_path / "other.json").write_text(text)
-        with pytest.raises(BrdfkitError, match="somebody's own|no model"):
+        with pytest.raises(BrdfkitError, match=r"somebody's own|no model"):
             load(tmp_path / "other.json")
     assert not (tmp_path / "done").exists()

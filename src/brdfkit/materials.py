@@ -69,7 +69,7 @@ def _named(name):
     try:
         return load(name)
     except BrdfkitError:
-        if "/" in name or Path(name).suffix or os.path.exists(name):
+        if not name or "/" in name or Path(name).suffix or os.path.exists(name):
             raise
     raise no_such("file, model or material", name, [*labels.models(), *shipped.materials()])
 

@@ -10,7 +10,10 @@ from brdfkit.commands._options import output_options, values_option
 @values_option
 @output_options
 def check(things, values, console):
-    """Check that models sample, conserve energy and differentiate; and plugins of other kinds."""
+    """Check that models sample, conserve energy and differentiate.
+
+    A plugin of another kind is checked for what its kind should do: brdfkit plugins lists them.
+    """
     from brdfkit.checks import check as check_thing
 
     reports = []
