@@ -7,20 +7,50 @@ import pytest
 from random_models import random_model
 
 import brdfkit as bk
+from brdfkit.catalogue import shipped
 from brdfkit.checks.registry import checks
 from brdfkit.checks.sampling import spread
 from brdfkit.checks.subject import INCIDENCES, Subject
-from brdfkit.model import Model, follows, shape, weight
+from brdfkit.geometry.vectors import half_vector
+from brdfkit.model import Model, follows, labels, shape, weight
 from brdfkit.model.lobes import Cosine, HalfVector, Lobe, lambertian
 from brdfkit.model.microfacet import Beckmann
 from brdfkit.plugins.discovery import MODELS
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
+OTHER_VARIANTS = ("llvm_ad_mono", "llvm_ad_spectral", "llvm_ad_spectral_polarized")
 
 
 @pytest.mark.parametrize("check", checks[MODELS])
 def test_default_model(configured, check):
     report = bk.check(configured(), only=[check])
+    assert report, str(report)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("variant", OTHER_VARIANTS)
+def test_every_model_in_other_variants(model, variant):
+    """At the defaults and with colours, of which no spectrum holds those below 0."""
+    import mitsuba as mi
+
+    mi.set_variant(variant)
+    channels = None if mi.is_spectral and model.signed() else 3
+    for thing in (model(), random_model(model, 1, channels)):
+        report = bk.check(thing, only=["weights", "plugin is formula", "plugin gradient", "finite"])
+        assert report, str(report)
+
+
+@pytest.mark.parametrize("variant", ["llvm_ad_mono", "llvm_ad_spectral_polarized"])
+@pytest.mark.parametrize("name", ["ggx", "koenderink", "oren_nayar:form=full", "brushed_aluminium"])
+def test_every_check_in_other_variants(name, variant):
+    import mitsuba as mi
+
+    mi.set_variant(variant)
+    measured = name in shipped.materials()
+    channels = None if name == "koenderink" else 3
+    thing = bk.load(name) if measured else random_model(labels.model(name), 2, channels)
+    # a table is reciprocal where its file is; beyond 80° some measurements gain energy
+    report = bk.check(thing, only=set(checks[MODELS]) - {"reciprocity", "energy"})
     assert report, str(report)
 
 
@@ -93,6 +123,20 @@ class NegativeAtGrazing(Right):
         return Lobe(lambda wi, wo: wo.z - 0.05, Cosine(), diffuse=True), super().lobes()[1]
 
 
+class UndefinedAtTheNormal(Right):
+    """Rounding takes h.z to a little above 1 at some mirror directions."""
+
+    def specular(self, wi, wo):
+        return (1 - half_vector(wi, wo).z) ** (3 * self.alpha)
+
+
+class UndefinedDerivative(Right):
+    p = shape(0.5, (0.5, 2.0), "")
+
+    def specular(self, wi, wo):
+        return dr.sqrt(self.p - 0.5 + dr.square(wi.z - wo.z))
+
+
 class WrongDerivative(Right):
     def specular(self, wi, wo):
         return super().specular(wi, wo) * self.alpha / dr.detach(self.alpha)
@@ -106,6 +150,8 @@ class WrongDerivative(Right):
         (TooBright, "energy"),
         (NegativeAtGrazing, "finite"),
         (WrongDerivative, "gradient"),
+        (UndefinedAtTheNormal, "defined"),
+        (UndefinedDerivative, "defined"),
     ],
 )
 def test_check_notices(wrong, check, monkeypatch):

@@ -3,6 +3,7 @@
 import copy
 import pickle
 
+import drjit as dr
 import numpy as np
 import pytest
 from random_models import random_model
@@ -11,8 +12,9 @@ import brdfkit as bk
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.weights import bounded_quadratic
 from brdfkit.geometry.directions import from_angles
-from brdfkit.model import Model, weight
-from brdfkit.model.lobes import lambertian
+from brdfkit.geometry.vectors import half_vector
+from brdfkit.model import Model, shape, weight
+from brdfkit.model.lobes import Cosine, Lobe, lambertian
 from brdfkit.samples import Table
 
 
@@ -352,3 +354,68 @@ def test_bounded_quadratic_meets_the_optimality_conditions():
         assert (a >= 0).all()
         assert (gradient > -1e-8).all()
         assert np.abs(gradient[a > 0]).max(initial=0) < 1e-8
+
+
+class Undefined(Model):
+    """NaN at some mirror directions: rounding takes h.z to a little above 1."""
+
+    reflectance = weight(0.4, "")
+    p = shape(0.5, (0.1, 2.0), "")
+
+    def lobes(self):
+        return (Lobe(lambda wi, wo: (1 - half_vector(wi, wo).z) ** self.p, Cosine()),)
+
+
+class UndefinedDerivative(Undefined):
+    """Infinite at the default where both angles are equal."""
+
+    p = shape(0.5, (0.5, 2.0), "")
+
+    def lobes(self):
+        def value(wi, wo):
+            return dr.sqrt(self.p - 0.5 + dr.square(wi.z - wo.z))
+
+        return (Lobe(value, Cosine()),)
+
+
+def mirrored(n=500):
+    """A material measured at mirror directions, and back to the light."""
+    wi = from_angles(np.linspace(0.01, 1.3, n), 0.0)
+    wi, wo = np.concatenate([wi, wi]), np.concatenate([wi * [-1, 1, 1], wi])
+    return bk.Measured.from_samples(wi, wo, np.full(2 * n, 0.3), channels=("Y",))
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("model", "said"),
+    [
+        (Undefined, "^undefined: the lobe of reflectance is nan at theta_i"),
+        (UndefinedDerivative, "^undefined_derivative: the derivative by p of the lobe of reflec"),
+    ],
+)
+def test_a_formula_that_is_not_finite_is_named(model, said, no_user_plugins):
+    with pytest.raises(BrdfkitError, match=rf"{said}.*Δφ 180°, where h is the normal; keep"):
+        bk.fit(model, mirrored(), starts=1)
+
+
+@pytest.mark.quick
+def test_too_few_numbers_are_noted():
+    up = [[0.0, 0.0, 1.0]]
+    one = bk.Measured.from_samples(up, up, [[0.2, 0.3, 0.4]])
+    assert any(n.startswith("3 numbers were measured for 7") for n in bk.fit("ward", one).notes)
+    assert not bk.fit("lambert", one).notes
+
+
+@pytest.mark.quick
+def test_negatives_out_of_gamut_are_told_from_measured_ones():
+    """A saturated green laser: no wavelength is negative, its red is."""
+    wi = from_angles(np.linspace(0, 1.2, 20), 0.0)
+    names = tuple(f"{nm}nm" for nm in range(400, 701, 20))
+    values = np.zeros((20, len(names)))
+    values[:, names.index("520nm")] = 0.5
+    green = bk.Measured.from_samples(wi, wi, values, channels=names, name="green")
+    (note,) = bk.fit("lambert", green).notes
+    assert "in linear sRGB are negative and count as 0, though none was measured so" in note
+    noisy = bk.Measured.from_samples(wi, wi, values - 0.01, channels=names)
+    (note,) = bk.fit("lambert", noisy).notes
+    assert "of the measured values are negative and count as 0" in note

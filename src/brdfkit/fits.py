@@ -73,17 +73,33 @@ def fit(
         seconds=time.perf_counter() - began,
         message=found.message,
         at_bounds=found.at_bounds,
-        notes=(*found.notes, *_notes(samples, losses[loss], fitted)),
+        notes=(*found.notes, *_notes(data, samples, losses[loss], found, fitted)),
         settings={"robust": robust, "max_angle": float(max_angle), **how},
     )
 
 
-def _notes(samples, loss, fitted):
+def _notes(data, samples, loss, found, fitted):
+    """What one should know of a fit, in words."""
     notes = []
+    known, sought = samples.values.size, found.weights.size + len(found.shapes)
+    if known < sought:
+        notes.append(
+            f"{known} numbers were measured for {sought} that are sought: other values fit as well"
+        )
     negative = (samples.values < 0).mean()
     if negative and not loss.linear:
-        notes.append(f"{negative:.1%} of the measured values are negative and count as 0")
+        notes.append(f"{negative:.1%} of the {_negative(data)}")
     if fitted.signed():
         clamped = clamped_share(fitted)
         notes.append(f"{clamped:.1%} of the hemisphere's direction pairs are clamped at 0")
     return tuple(notes)
+
+
+def _negative(data):
+    """Which values are negative, why, and what that does to a fit."""
+    if data.rgb is not data and (data.values[data.samples.valid] >= 0).all():
+        return (
+            "values in linear sRGB are negative and count as 0, though none was measured so: these "
+            "colours are more saturated than sRGB holds, and the fit shows them less so"
+        )
+    return "measured values are negative and count as 0"

@@ -3,9 +3,13 @@
 import numpy as np
 
 from brdfkit.checks.registry import checked
-from brdfkit.checks.subject import incidences, random_pairs
+from brdfkit.checks.subject import AZIMUTH, incidences, random_pairs
+from brdfkit.errors import BrdfkitError
+from brdfkit.fitting.undefined import require_finite, require_finite_slopes
 from brdfkit.geometry.directions import from_angles
 from brdfkit.geometry.quadrature import TOLERANCE, directional_albedo
+from brdfkit.model import double_precision
+from brdfkit.model.evaluation import lobe_values
 from brdfkit.plugins.discovery import MODELS
 
 
@@ -35,6 +39,27 @@ def finite(subject):
     }
     found = "; ".join(f"{count} {what}" for what, count in problems.items() if count)
     return not found, found or f"{value.size} values to the horizon"
+
+
+@checked(MODELS)
+def defined(subject):
+    """The formula and its derivatives are finite in double precision where a fit may ask for them:
+    at the normal, at mirror directions, whose half vector is the normal, and back to the light."""
+    model = subject.model
+    if model is None:
+        return True, "no formula"
+    theta = np.linspace(0, np.radians(89.9), 2_000)
+    wi = from_angles(theta, AZIMUTH)
+    wi, wo = np.concatenate([wi, wi]), np.concatenate([wi * [-1, -1, 1], wi])
+    shapes = {name: getattr(model, name) for name in model.shapes(anisotropic=True)}
+    directions = double_precision.vector(wi), double_precision.vector(wo)
+    plain, _ = lobe_values(model, wi, wo)
+    try:
+        require_finite(model, plain.T, *directions)
+        require_finite_slopes(model, shapes, shapes, *directions)
+    except BrdfkitError as error:
+        return False, str(error).partition(": ")[2].partition(";")[0]
+    return True, f"{len(wi):,} pairs"
 
 
 @checked(MODELS)

@@ -11,7 +11,8 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.fitting.weights import bounded_quadratic, weighted_gram
+from brdfkit.fitting.undefined import require_finite, require_finite_slopes
+from brdfkit.fitting.weights import bounded_quadratic, newton, weighted_gram
 from brdfkit.model import double_precision
 
 
@@ -73,6 +74,7 @@ class Problem:
         )
         dr.eval(plain, squared)
         plain = np.stack([np.asarray(lobe) for lobe in plain])
+        require_finite(self.model, plain, self.wi, self.wo)
         if all(lobe is None for lobe in squared):
             return plain, None
         none = np.zeros(plain.shape[1])
@@ -99,26 +101,9 @@ class Problem:
         gram, moment = weighted_gram(plain, weight), plain @ (weight * measured)
         start = bounded_quadratic(gram, moment, self.bounded)
         linear = self.loss.linear and squared is None
-        return start if linear else self._newton(plain, squared, c, start)
-
-    def _newton(self, plain, squared, c, weights):
-        """Newton's method with the bounds, from a start near the solution."""
-        error, gradient, hessian = self._expand(plain, squared, c, weights)
-        for _ in range(30):
-            moment = hessian @ weights - gradient
-            step = bounded_quadratic(hessian, moment, self.bounded) - weights
-            for _halving in range(12):
-                expansion = self._expand(plain, squared, c, weights + step)
-                if expansion[0] <= error * (1 + 1e-14):
-                    break
-                step = step / 2
-            else:
-                return weights
-            weights, (error, gradient, hessian) = weights + step, expansion
-            # Newton's steps square: what is left after one of 1e-6 is 1e-12
-            if np.all(np.abs(step) <= 1e-6 * np.abs(weights).max(initial=1e-9)):
-                break
-        return weights
+        if linear:
+            return start
+        return newton(lambda a: self._expand(plain, squared, c, a), start, self.bounded)
 
     def _expand(self, plain, squared, c, weights):
         """E² of a channel with gradient and (positive definite) Hessian by the weights, halved."""
@@ -163,7 +148,10 @@ class Problem:
             dr.enable_grad(bound[name])
         total = dr.sum(self._error(bound, weights))
         dr.backward(total)
-        return _number(dr.detach(total)), np.array([_number(dr.grad(bound[n])) for n in values])
+        gradient = np.array([_number(dr.grad(bound[n])) for n in values])
+        if not np.isfinite(gradient).all():
+            require_finite_slopes(self.model, values | fixed, values, self.wi, self.wo)
+        return _number(dr.detach(total)), gradient
 
     def _error(self, bound, weights):
         plain, squared = self.lobes(bound)

@@ -1,4 +1,4 @@
-"""The bounded least squares inside a fit: a quadratic form, minimised where some a ≥ 0."""
+"""The weights inside a fit: least squares where some a ≥ 0, and Newton's method about them."""
 
 import numpy as np
 
@@ -42,6 +42,29 @@ def bounded_quadratic(hessian, moment, bounded=None):
             solution[bounded] = _not_negative(left, rest)
         solution[free] = at_zero - by_bounded @ solution[bounded]
     return solution / scale
+
+
+def newton(expand, start, bounded):
+    """The a (n,) that minimises a function near `start` (n,), within `bounded_quadratic`'s bounds.
+
+    `expand(a)` gives its value, gradient (n,) and a positive definite Hessian (n, n).
+    """
+    weights, (error, gradient, hessian) = start, expand(start)
+    for _ in range(30):
+        moment = hessian @ weights - gradient
+        step = bounded_quadratic(hessian, moment, bounded) - weights
+        for _halving in range(12):
+            expansion = expand(weights + step)
+            if expansion[0] <= error * (1 + 1e-14):
+                break
+            step = step / 2
+        else:
+            return weights
+        weights, (error, gradient, hessian) = weights + step, expansion
+        # Newton's steps square: what is left after one of 1e-6 is 1e-12
+        if np.all(np.abs(step) <= 1e-6 * np.abs(weights).max(initial=1e-9)):
+            break
+    return weights
 
 
 def _not_negative(form, moment):

@@ -246,10 +246,12 @@ def _errors(standard_error, values, name):
     """Standard errors (n, channels) that belong to `values`, or None."""
     if standard_error is None:
         return None
-    errors = np.asarray(standard_error, float)
+    errors = given = np.asarray(standard_error, float)
+    if given.ndim == 1 and values.shape[1:] == (1,):
+        errors = given[:, None]
     if errors.shape != values.shape:
         raise BrdfkitError(
-            f"{name}: standard errors {errors.shape} should have the shape {values.shape} of "
+            f"{name}: standard errors {given.shape} should have the shape {values.shape} of "
             "the values."
         )
     return errors.reshape(-1, values.shape[-1])

@@ -29,13 +29,18 @@ class Samples:
     def checked(cls, wi, wo, values, valid, channels, name):
         """Of any arrays: directions are normalised, and what cannot be is not `valid`.
 
-        Raises `BrdfkitError` for arrays that do not belong together, and where nothing is left.
+        Values of one channel may be (n,). Raises `BrdfkitError` for arrays that do not belong
+        together, and where nothing is left.
         """
-        wi, wo, values = (np.array(a, float, ndmin=2) for a in (wi, wo, values))
-        if wi.shape != wo.shape or wi.shape[1] != 3 or values.shape != (len(wi), len(channels)):
+        given = [np.array(a, float) for a in (wi, wo, values)]
+        wi, wo, values = (np.atleast_2d(a) for a in given)
+        if given[2].ndim == 1 and len(channels) == 1:
+            values = given[2][:, None]
+        if wi.shape != wo.shape or wi.shape[1:] != (3,) or values.shape != (len(wi), len(channels)):
+            shapes = [a.shape for a in given]
             raise BrdfkitError(
-                f"{name}: wi {wi.shape} and wo {wo.shape} should be (n, 3), "
-                f"values {values.shape} should be (n, {len(channels)}) for the channels {channels}."
+                f"{name}: wi {shapes[0]} and wo {shapes[1]} should be (n, 3), values {shapes[2]} "
+                f"should be (n, {len(channels)}) for the channels {', '.join(channels)}."
             )
         with np.errstate(invalid="ignore", divide="ignore"):
             wi, wo = (w / np.linalg.norm(w, axis=1, keepdims=True) for w in (wi, wo))

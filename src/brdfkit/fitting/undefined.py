@@ -1,0 +1,71 @@
+"""Where a model's formula, or a derivative of it, has no finite value: the error that says so.
+
+A sum over all samples would hide it, and a search go astray or end in another library's error.
+"""
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.geometry.directions import to_angles
+from brdfkit.model import double_precision
+
+REMEDY = "keep the formula finite there, as by dr.maximum, or leave the direction out of the data"
+
+
+def require_finite(model, columns, wi, wo):
+    """Raise `BrdfkitError` where a lobe's values, `columns` (lobes, n), are not finite."""
+    if np.isfinite(columns.sum(axis=1)).all():  # of a sum it is quick to see
+        return
+    lobe, row = np.argwhere(~np.isfinite(columns))[0]
+    raise BrdfkitError(
+        f"{model.type_name()}: the lobe of {model.weights()[lobe]} is {columns[lobe, row]:g} at "
+        f"{place(wi, wo, row)}; {REMEDY}."
+    )
+
+
+def require_finite_slopes(model, values, names, wi, wo):
+    """Raise `BrdfkitError` where a lobe's derivative by one of the parameters `names` is not
+    finite, at `values` of the shape parameters and directions that are vectors of doubles.
+
+    As a fit takes them, backwards: forwards, Dr.Jit has no derivative of 0^p by p, which is 0.
+    """
+    bound = {n: double_precision.scalar(v) for n, v in values.items()}
+    for name in names:
+        dr.enable_grad(bound[name])
+    lobes = [lobe.eval(wi, wo) for _, lobe in model.bind(bound).terms()]
+    if not any(dr.grad_enabled(lobe) for lobe in lobes):
+        return
+    for weight, lobe in zip(model.weights(), lobes, strict=True):
+        if not dr.grad_enabled(lobe):
+            continue
+        dr.clear_grad(bound)
+        dr.backward(dr.sum(lobe), dr.ADFlag.ClearInterior)
+        for name in names:
+            slope = np.array(dr.grad(bound[name]))[0]
+            if not np.isfinite(slope):
+                row = _undefined_row(model, values, name, weight, wi, wo)
+                raise BrdfkitError(
+                    f"{model.type_name()}: the derivative by {name} of the lobe of {weight} is "
+                    f"{slope:g} at {place(wi, wo, row)}; {REMEDY}."
+                )
+
+
+def _undefined_row(model, values, name, weight, wi, wo):
+    """The first direction pair at which a lobe has no finite derivative, by forward mode."""
+    bound = {n: double_precision.scalar(v) for n, v in values.items()}
+    dr.enable_grad(bound[name])
+    lobe = dict(model.bind(bound).terms())[weight].eval(wi, wo)
+    dr.forward_from(bound[name])
+    return int(np.argmin(np.isfinite(np.array(dr.grad(lobe)))))
+
+
+def place(wi, wo, row):
+    """The directions of a row, of vectors of doubles, in words."""
+    pair = [np.array([np.array(c)[row] for c in (w.x, w.y, w.z)]) for w in (wi, wo)]
+    (theta_i, phi_i), (theta_o, phi_o) = map(to_angles, pair)
+    apart = np.mod(phi_o - phi_i, 2 * np.pi)
+    angles = np.degrees([theta_i, theta_o, apart])
+    h = pair[0] + pair[1]
+    normal = ", where h is the normal" if np.hypot(h[0], h[1]) < 1e-7 * np.linalg.norm(h) else ""
+    return "theta_i {:.4g}°, theta_o {:.4g}°, Δφ {:.4g}°".format(*angles) + normal
