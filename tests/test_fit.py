@@ -379,9 +379,10 @@ class UndefinedDerivative(Undefined):
 
 
 def mirrored(n=500):
-    """A material measured at mirror directions, and back to the light."""
+    """A material measured at mirror directions, and seen from above."""
     wi = from_angles(np.linspace(0.01, 1.3, n), 0.0)
-    wi, wo = np.concatenate([wi, wi]), np.concatenate([wi * [-1, 1, 1], wi])
+    above = np.broadcast_to([0.0, 0.0, 1.0], wi.shape)
+    wi, wo = np.concatenate([wi, wi]), np.concatenate([wi * [-1, 1, 1], above])
     return bk.Measured.from_samples(wi, wo, np.full(2 * n, 0.3), channels=("Y",))
 
 
