@@ -396,7 +396,7 @@ def mirrored(n=500):
 )
 def test_a_formula_that_is_not_finite_is_named(model, said, no_user_plugins):
     with pytest.raises(BrdfkitError, match=rf"{said}.*Δφ 180°, where h is the normal; keep"):
-        bk.fit(model, mirrored(), starts=1)
+        bk.fit(model, mirrored(), "plain", starts=1)
 
 
 @pytest.mark.quick
