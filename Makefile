@@ -33,6 +33,8 @@ bench: $(VENV)/.ready
 
 docs: $(VENV)/.ready
 	$(RUN)/python docs/make_models.py
+	$(RUN)/python docs/make_plugins.py
+	$(RUN)/python docs/make_architecture.py
 
 wheel: $(VENV)/.ready
 	$(RUN)/python -m build

@@ -4,7 +4,6 @@ python docs/make_models.py              # pages and pictures, in two minutes
 python docs/make_models.py --check      # exits 1 where a page is not what its model says
 """
 
-import inspect
 import json
 import sys
 from pathlib import Path
@@ -15,6 +14,7 @@ from PIL import Image
 import brdfkit as bk
 from brdfkit.commands.models import choices, example
 from brdfkit.model import labels
+from brdfkit.plugins.pages import page as plugin_page
 
 FOLDER = Path(__file__).with_name("models")
 SIZE, SPP = 320, 128
@@ -86,11 +86,11 @@ def table(head, rows):
     )
 
 
-def docstring(model):
-    """Title, sentence and the other lines of the docstring of the model's file."""
-    head, _, text = inspect.getdoc(sys.modules[model.__module__]).partition("\n")
-    title, _, sentence = head.partition(": ")
-    return title, sentence[0].upper() + sentence[1:], text.strip("\n")
+def docstring(source):
+    """Title, sentence and the other lines of the page of a plugin's file or class."""
+    found = plugin_page(source)
+    text = "\n".join(found.lines).strip("\n")
+    return found.title, found.sentence[0].upper() + found.sentence[1:], text
 
 
 def parameter(name, p):
@@ -131,10 +131,11 @@ def python(entries):
     return json.dumps(entries, indent=4).replace("\n}", ",\n}")
 
 
-def xml(type, **entries):
+def xml(type, element="bsdf", **entries):
+    """A plugin in a scene file."""
     kinds = {str: "string", int: "integer", float: "float"}
     tags = [f'    <{kinds[v.__class__]} name="{n}" value="{v}"/>' for n, v in entries.items()]
-    return "\n".join([f'<bsdf type="{type}">', *tags, "</bsdf>"])
+    return "\n".join([f'<{element} type="{type}">', *tags, f"</{element}>"])
 
 
 def draw(model):

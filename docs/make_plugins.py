@@ -1,0 +1,93 @@
+"""Makes `docs/plugins/` of the plugins' files: a page of each that is no model, and an index.
+
+python docs/make_plugins.py              # the pages, at once
+python docs/make_plugins.py --check      # exits 1 where a page is not what its plugin says
+"""
+
+import math
+import sys
+from pathlib import Path
+
+from make_models import docstring, paragraphs, table, xml
+
+from brdfkit.model.labels import model_in
+from brdfkit.plugins import discovery
+from brdfkit.plugins.discovery import KINDS, MODELS
+
+FOLDER = Path(__file__).with_name("plugins")
+TOP = "../../plugins"
+INDEX = """A file in [`plugins/KIND/`]({top}) is a plugin of Mitsuba's, and its name the type. After
+`import brdfkit` it is known in every variant, in `mitsuba.load_dict`, in scene files and to
+`brdfkit render SCENE.xml`. `brdfkit plugins` lists them, `brdfkit check NAME` says whether one does
+what its kind should, `brdfkit.load_plugins("my_plugins/")` adds yours."""
+TAGS = {"bsdfs": "bsdf", "emitters": "emitter", "integrators": "integrator", "phase": "phase"}
+
+
+def pages():
+    """File name → text of all pages."""
+    rows = []
+    for kind in KINDS:
+        for name, source in shipped(kind).items():
+            link = f"../models/{name}.md" if is_model(kind, source) else f"{name}.md"
+            rows.append((f"`{kind}`", f"[{name}]({link})", docstring(source)[1]))
+    index = paragraphs(
+        "# The plugins", INDEX.format(top=TOP), table("kind, plugin, what it is", rows)
+    )
+    own = [(k, n, s) for k in KINDS for n, s in shipped(k).items() if not is_model(k, s)]
+    return {"README.md": index} | {f"{n}.md": page(k, n, s) for k, n, s in own}
+
+
+def shipped(kind):
+    """brdfkit's own plugins of a kind, without those of a user's that were loaded."""
+    found = discovery.sources(kind).items()
+    return {n: s for n, s in found if discovery.module(s).__name__.startswith(discovery.OWN)}
+
+
+def is_model(kind, source):
+    return kind == MODELS and model_in(source) is not None
+
+
+def page(kind, name, source):
+    """The text of a plugin's page."""
+    title, sentence, text = docstring(source)
+    settings = getattr(discovery.module(source), "PARAMETERS", {})
+    rows = [(f"`{n}`", default(s), *bounds(s), s.meaning) for n, s in settings.items()]
+    return paragraphs(
+        *(f"# {title}", sentence, text),
+        rows and table("parameter, default, from, to, meaning", rows),
+        f"```xml\n{element(kind, name, settings)}\n```",
+        f"[The source]({TOP}/{kind}/{name}.py) · [all plugins](README.md)",
+    )
+
+
+def default(setting):
+    return "" if setting.default in (None, "") else f"{setting.default:g}"
+
+
+def bounds(setting):
+    if setting.bounds is None:
+        return "", ""
+    return ["∞" if math.isinf(b) else f"{b:g}".replace("-", "−") for b in setting.bounds]
+
+
+def element(kind, name, settings):
+    """The plugin in a scene file, with its numbers at their defaults."""
+    numbers = {n: s.default for n, s in settings.items() if isinstance(s.default, int | float)}
+    return xml(name, TAGS.get(kind, kind.removesuffix("s")), **numbers)
+
+
+def problems():
+    """What is not as the plugins' files say, in words."""
+    made, files = pages(), {file.name for file in FOLDER.iterdir()}
+    found = [f"{name} is missing" for name in sorted(made.keys() - files)]
+    found += [f"{name} belongs to no plugin" for name in sorted(files - made.keys())]
+    read = {name: (FOLDER / name).read_text(encoding="utf-8") for name in made if name in files}
+    return found + [f"{name} is not up to date" for name, t in read.items() if t != made[name]]
+
+
+if __name__ == "__main__":
+    if "--check" in sys.argv[1:]:
+        sys.exit("\n".join(problems()) or 0)
+    FOLDER.mkdir(exist_ok=True)
+    for name, text in pages().items():
+        (FOLDER / name).write_text(text, encoding="utf-8")

@@ -1,0 +1,45 @@
+"""The works that are cited: `references.toml` has each once, texts have its key in brackets.
+
+[Ward 1992]    [Kurt 2007, eqs. 3.6, 3.7]    [Cook & Torrance 1982]
+"""
+
+import re
+import tomllib
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+CITATION = re.compile(r"\[([A-ZÀ-Ž][^\[\]]*? \d{4}[a-z]?)(?:, [^\[\]]*)?\]")
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A cited work; `where`: the journal, conference or university; `link`: where to read it."""
+
+    key: str
+    authors: str
+    title: str
+    where: str
+    link: str = ""
+
+    def __str__(self):
+        year = re.search(r"\d{4}", self.key)[0]
+        link = f". {self.link}" if self.link else ""
+        return f"[{self.key}] {self.authors}, “{self.title}”, {self.where}, {year}{link}"
+
+
+@cache
+def references():
+    """All `Reference`s by key, in alphabetical order."""
+    text = Path(__file__).with_suffix(".toml").read_text(encoding="utf-8")
+    return {key: Reference(key, **entry) for key, entry in sorted(tomllib.loads(text).items())}
+
+
+def cited(text):
+    """The keys of a text's citations, each once, in their order.
+
+    >>> cited("Lambert's law [Lambert 1760]; [Kurt 2007, eq. 3.1].")
+    ['Lambert 1760', 'Kurt 2007']
+    """
+    # a line may break within a citation
+    return list(dict.fromkeys(" ".join(key.split()) for key in CITATION.findall(text)))
