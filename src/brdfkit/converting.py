@@ -2,12 +2,14 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from brdfkit.geometry.directions import from_angles
 from brdfkit.loading import save_and_read
-from brdfkit.materials import material
+from brdfkit.materials import Material, MaterialLike, material
 from brdfkit.measured import Measured
 from brdfkit.measured.tabulation import sampled, table_shape
 
@@ -23,17 +25,36 @@ class Conversion:
     path: Path
     changes: tuple[str, ...]
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"{self.path} ({'; '.join(self.changes) or 'nothing lost'})"
 
 
-def convert(thing, path):
-    """Write a measured material, a fit or a model to `path`; returns a `Conversion`.
+def convert(thing: MaterialLike, path: str | Path) -> Conversion:
+    """Write a material in another file format, and find out what that changed.
 
-    The file is read again and compared, so that no format need say what it leaves out.
-    Raises `BrdfkitError`, and writes nothing, where the format of the suffix cannot hold it.
+    The file is read again and compared, so that no format need say what it leaves out. A model or a
+    fit is evaluated where a table would be.
 
-    >>> print(convert(load("cayman.brdf"), "cayman.npz"))  # doctest: +SKIP
+    Parameters
+    ----------
+    thing : Measured, Fit, Model, str, Path or dict
+        The material, or the name or path of one, or a BSDF's dictionary.
+    path : str or Path
+        The file to write; its suffix chooses the format.
+
+    Returns
+    -------
+    Conversion
+        The file's path, and its `changes` in words.
+
+    Raises
+    ------
+    BrdfkitError
+        For what is no material, and where the format cannot hold it: then nothing is written.
+
+    Examples
+    --------
+    >>> print(convert("cayman.brdf", "cayman.npz"))    # doctest: +SKIP
     cayman.npz (nothing lost)
     """
     thing = material(thing)
@@ -44,11 +65,13 @@ def convert(thing, path):
     return Conversion(Path(path), (note, *changes(table, save_and_read(table, path))))
 
 
-def evaluated(thing):
+def evaluated(thing: Material) -> Measured:
     """A fit or a model as a `Measured`: evaluated where a table would be, exact in between."""
-    model = getattr(thing, "model", thing)
-    anisotropic = any(model.parameters[name].follows for name in model.free_values)
-    channels = thing.eval(*[[[0, 0, 1.0]]] * 2).shape[1]
+    model: Any = getattr(thing, "model", thing)
+    free = getattr(model, "free_values", {})
+    anisotropic = any(model.parameters[name].follows for name in free)
+    up = np.array([[0.0, 0.0, 1.0]])
+    channels = thing.eval(up, up).shape[1]
     table = sampled(thing.eval, channels, table_shape(anisotropic))
     wi, wo = (w.reshape(-1, 3) for w in table.directions())
     values = table.values.reshape(-1, channels)
@@ -66,7 +89,7 @@ def evaluated(thing):
     )
 
 
-def changes(before, after):
+def changes(before: Measured, after: Measured) -> tuple[str, ...]:
     """What differs in the measured material `after`, and which notes it lacks, in words."""
     old, new = facts(before), facts(after)
     told = [f"{what} {old[what]} → {new[what]}" for what in old if old[what] != new[what]]
@@ -77,7 +100,7 @@ def changes(before, after):
     return tuple(told)
 
 
-def between(before, after):
+def between(before: Measured, after: Measured) -> str:
     """How far `eval` of the one is from the other's, in words; "" where they are equal."""
     if not any(data.is_table or data.has_lookup for data in (before, after)):
         return ""  # samples alone are interpolated in one and the same way
@@ -93,7 +116,7 @@ def between(before, after):
     return f"{median:.1%} in the median, 95 of 100 within {most:.1%}" if most >= EQUAL else ""
 
 
-def facts(data):
+def facts(data: Measured) -> dict[str, str]:
     """What is in a measured material apart from its notes, in words."""
     samples, channels, errors = data.samples, data.channels, data.standard_error
     values = samples.values[samples.valid]
@@ -111,5 +134,5 @@ def facts(data):
     }
 
 
-def _median(errors):
+def _median(errors: NDArray[np.float64]) -> str:
     return f"{np.median(errors):.3g} sr⁻¹ in the median"

@@ -1,21 +1,36 @@
 """The numbers of a material: `evaluate`, its BRDF, and `albedo`, what it reflects of all light."""
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.geometry.directions import normalize
 from brdfkit.geometry.quadrature import directional_albedo
-from brdfkit.materials import material
+from brdfkit.materials import MaterialLike, material
 
 
-def evaluate(brdf, wi, wo):
-    """BRDF (n, channels) in sr⁻¹, without cosine, of direction pairs `wi`, `wo` (n, 3).
+def evaluate(brdf: MaterialLike, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
+    """The BRDF of a material for pairs of directions, without a cosine.
 
-    `brdf`: a model with values, a fit or a measured material. Directions are unit vectors in
-    the local frame; where one is not above the surface the BRDF is 0. Of no directions the result
-    is empty. Raises `BrdfkitError` for what is no material, other shapes, and directions whose
-    length is not 1 (to 1e-4).
+    Parameters
+    ----------
+    brdf : Measured, Fit, Model, str, Path or dict
+        The material, or the name or path of one, or a BSDF's dictionary.
+    wi, wo : array_like, shape (n, 3)
+        Unit vectors in the local frame, z along the normal; below the surface the BRDF is 0.
 
+    Returns
+    -------
+    ndarray, shape (n, channels)
+        BRDF [sr⁻¹]: one channel, linear R, G, B, or the material's wavelengths.
+
+    Raises
+    ------
+    BrdfkitError
+        For what is no material, other shapes, and vectors whose length is not 1 (to 1e-4).
+
+    Examples
+    --------
     >>> evaluate(models()["lambert"](), [[0, 0, 1]], [[0.6, 0, 0.8]])
     array([[0.15915494]])
     """
@@ -32,20 +47,37 @@ def evaluate(brdf, wi, wo):
     return brdf.eval(wi, wo)
 
 
-def albedo(brdf, wi):
-    """Directional albedo (channels,) ∫ f cosθ_o dω_o at one incidence `wi`, of shape (3,).
+def albedo(brdf: MaterialLike, wi: ArrayLike) -> NDArray[np.float64]:
+    """The directional albedo ∫ f cosθ_o dω_o of a material: what it reflects of light from `wi`.
 
-    `brdf`: a model with values, a fit or a measured material; `wi`: a unit vector above the
-    surface, else it raises `BrdfkitError`. By quadrature that settles to 2e-4 of the value:
-    `geometry/quadrature.py`.
+    By quadrature that settles to 2e-4 of the value, of the narrowest lobes, too.
 
-    >>> albedo(models()["lambert"](diffuse_reflectance=0.5), [0, 0, 1])    # doctest: +SKIP
+    Parameters
+    ----------
+    brdf : Measured, Fit, Model, str, Path or dict
+        The material, or the name or path of one, or a BSDF's dictionary.
+    wi : array_like, shape (3,)
+        Where light comes from: a unit vector above the surface.
+
+    Returns
+    -------
+    ndarray, shape (channels,)
+        Reflected over incident light; a material that gains no light has at most 1.
+
+    Raises
+    ------
+    BrdfkitError
+        For what is no material, and for what is no unit vector above the surface.
+
+    Examples
+    --------
+    >>> albedo(models()["lambert"](diffuse_reflectance=0.5), [0, 0, 1]).round(4)
     array([0.5])
     """
     return directional_albedo(material(brdf, needed=("eval",)).eval, _incidence(wi))
 
 
-def _incidence(wi):
+def _incidence(wi: ArrayLike) -> NDArray[np.float64]:
     """`wi` as a unit vector (3,) above the surface, or an error."""
     try:
         found = np.array(wi, float)

@@ -7,19 +7,37 @@ from brdfkit import formats
 from brdfkit.catalogue import index, public, shipped
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import contents, written
+from brdfkit.fitting import Fit
+from brdfkit.measured import Measured
+from brdfkit.model import Model
 
 
-def load(path):
-    """What the file at `path` (str or Path) holds: a `Measured` or a saved `Fit`.
+def load(path: str | Path) -> Measured | Fit:
+    """The measured material, or the saved fit, in a file of any known format.
 
-    The content decides the format; the suffix decides between formats that all, or none,
-    recognise it. ``.gz`` and ``.xz`` are unpacked. ``abrdf.dat#1`` names a sample of a file
-    that holds many. Where there is no such file, the name of a known material stands for its
-    file: of one that comes with brdfkit, ``car_paint``, or of one in a public collection, as
-    ``merl/alum-bronze``, once `brdfkit data get` has downloaded it. Raises `BrdfkitError` with
-    one sentence for every file that cannot be read.
+    The content decides the format; the suffix decides between formats that all, or none, recognise
+    it. ``.gz`` and ``.xz`` are unpacked.
 
-    >>> print(load("gold-metallic-paint.binary.xz"))  # doctest: +SKIP
+    Parameters
+    ----------
+    path : str or Path
+        The file. ``abrdf.dat#1`` names a sample of one that holds many. Where there is no such
+        file, the name of a material that comes with brdfkit, ``car_paint``, or of one in a public
+        collection, ``merl/alum-bronze``, once ``brdfkit data get`` has downloaded it.
+
+    Returns
+    -------
+    Measured or Fit
+        What the file holds.
+
+    Raises
+    ------
+    BrdfkitError
+        For every file that cannot be read: what is wrong with it, and what to do.
+
+    Examples
+    --------
+    >>> print(load("gold-metallic-paint.binary.xz"))    # doctest: +SKIP
     gold-metallic-paint: 90×90×180 table, 1,048,000 of 1,458,000 valid, channels R G B
     """
     if not str(path):
@@ -30,21 +48,32 @@ def load(path):
     return formats.read(formats.Source(path, sample, contents(path)))
 
 
-def save(obj, path):
-    """Write `obj` to `path` in the format of its suffix, whole or not at all.
+def save(obj: Measured | Fit | Model, path: str | Path) -> None:
+    """Write a material to a file in the format of its suffix, whole or not at all.
 
-    `obj`: a `Measured`, a `Fit`, or for ``.bsdf`` also a model with values.
+    Parameters
+    ----------
+    obj : Measured, Fit or Model
+        What to write: a measured material in any format that holds it, a fit as ``.json``, and all
+        of them, a model with values too, as ``.bsdf`` for Mitsuba's own `measured`.
+    path : str or Path
+        The file; ``.gz`` or ``.xz`` behind the suffix compress it.
 
-    ``.gz`` and ``.xz`` behind the suffix compress. Raises `BrdfkitError` when no format writes
-    that suffix, the format cannot hold `obj`, or the folder cannot be written.
+    Raises
+    ------
+    BrdfkitError
+        Where no format writes that suffix or it cannot hold `obj`, and where the folder or the disk
+        does not take the file.
 
-    >>> save(load("copper.astm"), "copper.binary.xz")  # doctest: +SKIP
+    Examples
+    --------
+    >>> save(load("copper.astm"), "copper.binary.xz")    # doctest: +SKIP
     """
     with written(path) as beside:
         formats.write(obj, Path(path), beside)
 
 
-def save_and_read(obj, path):
+def save_and_read(obj: Measured, path: str | Path) -> Measured:
     """`save`, and what the file holds: nothing is written that could not be read again.
 
     >>> save_and_read(load("copper.astm"), "copper.npz").name  # doctest: +SKIP
@@ -61,7 +90,7 @@ def save_and_read(obj, path):
             ) from error
 
 
-def _known(name):
+def _known(name: str) -> Path | None:
     """The file of a known material, None where the name is none."""
     if name in shipped.materials():
         return shipped.path(name)
@@ -70,7 +99,7 @@ def _known(name):
     return None
 
 
-def _split(path):
+def _split(path: str | Path) -> tuple[Path, str | None]:
     """The path and the sample named behind its last '#', unless that is part of the name."""
     path = Path(path)
     name, hash_sign, sample = path.name.rpartition("#")

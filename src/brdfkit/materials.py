@@ -7,7 +7,12 @@ dictionary of a BSDF of Mitsuba's.
 """
 
 import os
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any, Protocol, TypeAlias, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
 
 from brdfkit.catalogue import shipped
 from brdfkit.errors import BrdfkitError, no_such
@@ -16,10 +21,27 @@ from brdfkit.loading import load
 from brdfkit.measured import Measured
 from brdfkit.model import labels
 
+
+@runtime_checkable
+class Material(Protocol):
+    """What a `Measured`, a `Fit` and a `Model` with values have in common."""
+
+    @property
+    def name(self) -> str:
+        """What pictures and tables call it."""
+
+    def eval(self, wi: NDArray[np.float64], wo: NDArray[np.float64]) -> NDArray[np.float64]:
+        """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3)."""
+
+    def scene_dict(self) -> dict[str, Any]:
+        """The dictionary for `mitsuba.load_dict`."""
+
+
+MaterialLike: TypeAlias = Material | str | Path | dict[str, Any]
 ATTRIBUTES = "name", "eval", "scene_dict"
 
 
-def material(thing, needed=ATTRIBUTES):
+def material(thing: MaterialLike, needed: Iterable[str] = ATTRIBUTES) -> Material:
     """`thing` itself, once it has the `needed` attributes, or what its name or path stands for.
 
     Raises `BrdfkitError`, one and the same for every verb, for what is no material.
@@ -42,16 +64,19 @@ def material(thing, needed=ATTRIBUTES):
     return thing
 
 
-def materials(things, needed=ATTRIBUTES):
+def materials(
+    things: MaterialLike | Iterable[MaterialLike], needed: Iterable[str] = ATTRIBUTES
+) -> list[Material]:
     """One material or several, as a list; at least one."""
-    several = hasattr(things, "__iter__") and not isinstance(things, str | dict)
-    found = [material(thing, needed) for thing in (things if several else [things])]
+    if isinstance(things, str | dict) or not isinstance(things, Iterable):
+        things = [things]
+    found = [material(thing, needed) for thing in things]
     if not found:
         raise BrdfkitError("There is no material here; give at least one.")
     return found
 
 
-def measured(thing):
+def measured(thing: MaterialLike) -> Measured:
     """A `Measured`, or what its name or path stands for; `BrdfkitError` for another material."""
     found = material(thing)
     if not isinstance(found, Measured):
@@ -61,7 +86,7 @@ def measured(thing):
     return found
 
 
-def _named(name):
+def _named(name: str) -> Material:
     """The material of a name: of a model, where no file bears it, else of a file or known name."""
     label = labels.read_files(name)
     if labels.is_label(label) and (label != name or not os.path.isfile(name)):
@@ -74,7 +99,7 @@ def _named(name):
     raise no_such("file, model or material", name, [*labels.models(), *shipped.materials()])
 
 
-def _shown(thing):
+def _shown(thing: object) -> str:
     """In one line, whatever it is."""
     kind, words = type(thing).__name__, " ".join(repr(thing).split())
     return f"{words[:40]}{'…' if len(words) > 40 else ''} ({kind})"

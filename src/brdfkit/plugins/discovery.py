@@ -7,6 +7,7 @@ added. Nothing here looks into a file; who uses a kind knows what its files hold
 import importlib
 import importlib.util
 import sys
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
@@ -29,7 +30,7 @@ OWN, USERS = "brdfkit.plugins", "brdfkit.user_plugins"  # packages of the files'
 PACKAGES_OF_MODELS = f"{OWN}.{MODELS}", USERS
 
 _users: dict[str, tuple[str, Path | type]] = {}
-_listeners = []
+_listeners: list[Callable[[], None]] = []
 
 
 def sources(kind):
