@@ -1,4 +1,4 @@
-"""The public names as a type checker sees them: `make lint` runs mypy over this file, nothing else."""
+"""The public names as a type checker sees them: `make lint` runs mypy over this file."""
 
 from typing import assert_type
 

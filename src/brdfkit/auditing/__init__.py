@@ -1,7 +1,7 @@
 """What a measurement holds, how far it reaches and where it is doubtful: `audit`."""
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,8 +12,11 @@ from brdfkit.auditing.noise import Noise, noise
 from brdfkit.auditing.pairs import Difference, by_mirror, by_reciprocity
 from brdfkit.auditing.ratios import grazing, retroreflection
 from brdfkit.auditing.spikes import Spike, spikes
-from brdfkit.materials import measured
+from brdfkit.materials import MaterialLike, measured
 from brdfkit.measured.spectra import rgb_or_mean
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MAX_ANGLE = 80.0  # degrees: what a fit uses by default
 FEW = 10  # angles that are told each
@@ -57,19 +60,19 @@ class Audit:
     data: Any = field(repr=False, compare=False)
 
     @property
-    def kind(self):
+    def kind(self) -> str:
         """In words: a 90×90×180 table, or samples."""
         return "×".join(map(str, self.shape)) + " table" if self.shape else "samples"
 
-    def rows(self):
+    def rows(self) -> dict[str, str]:
         """The audit in words, by heading."""
         return words.rows(self)
 
-    def findings(self):
+    def findings(self) -> tuple[str, ...]:
         """Sentences on what is doubtful."""
         return words.findings(self)
 
-    def picture(self):
+    def picture(self) -> "Figure":
         """A slice of the BRDF, its lobes and its albedo, as a matplotlib `Figure`.
 
         >>> load("paint.astm").audit().picture().savefig("paint.png")    # doctest: +SKIP
@@ -78,7 +81,7 @@ class Audit:
 
         return picture(self)
 
-    def __str__(self):
+    def __str__(self) -> str:
         rows = self.rows()
         width = max(map(len, rows))
         lines = [f"  {heading:<{width}}  {text}" for heading, text in rows.items()]
@@ -86,12 +89,26 @@ class Audit:
         return "\n".join([self.name, *lines])
 
 
-def audit(data):
-    """How far a measurement reaches, how noisy it is and what is doubtful: its `Audit`.
+def audit(data: MaterialLike) -> Audit:
+    """How far a measurement reaches, how noisy it is and what is doubtful.
 
-    `data`: a measured material, or the name or path of one. The result prints as text, and its
-    `picture()` is a matplotlib `Figure`. Raises `BrdfkitError` for what was not measured.
+    Parameters
+    ----------
+    data : Measured, str or Path
+        The measured material, or the name or path of one.
 
+    Returns
+    -------
+    Audit
+        Prints as text; `findings()` are its doubts, `picture()` is a matplotlib `Figure`.
+
+    Raises
+    ------
+    BrdfkitError
+        For what was not measured.
+
+    Examples
+    --------
     >>> print(audit("copper.astm"))    # doctest: +SKIP
     """
     data = measured(data)

@@ -8,14 +8,29 @@ from brdfkit.plugins import discovery
 from brdfkit.plugins.discovery import KINDS, MODELS
 
 
-def load_plugins(path):
-    """Make plugins of yours known to Mitsuba, in every variant; returns their kinds by name.
+def load_plugins(path: str | Path) -> dict[str, str]:
+    """Make plugins of yours, of any kind, known to Mitsuba in every variant.
 
-    `path`: a folder laid out as brdfkit's own, with ``emitters/``, ``phase/`` and the like in it,
-    one of these, or a file in one of them. A file that holds a `Model` may lie anywhere. A file's
-    name is the plugin's type. Raises `BrdfkitError`, and loads none, for a name that is taken, a
-    file that cannot be imported or holds no plugin, or that lies in no folder of a kind.
+    Parameters
+    ----------
+    path : str or Path
+        A folder laid out as brdfkit's own, with ``emitters/``, ``phase/`` and the like in it, one
+        of these, or a file in one of them; a file that holds a `Model` may lie anywhere. A file's
+        name is the plugin's type.
 
+    Returns
+    -------
+    dict of str to str
+        The kinds of the plugins that were loaded, by name.
+
+    Raises
+    ------
+    BrdfkitError
+        And loads none, for a name that is taken, a file that cannot be imported or holds no plugin,
+        or that lies in no folder of a kind.
+
+    Examples
+    --------
     >>> load_plugins("my_plugins/")    # doctest: +SKIP
     {'softbox': 'emitters', 'velvet': 'bsdfs'}
     """

@@ -8,6 +8,7 @@ label out of a saved file is never read so: it must not run a program.
 
 import os
 from pathlib import Path
+from typing import Any
 
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.model.model import Model
@@ -15,17 +16,24 @@ from brdfkit.plugins import discovery
 from brdfkit.plugins.discovery import MODELS
 
 
-def models():
-    """The models there are, by name: ``{"abc": ABC, ...}``, brdfkit's and those that were loaded.
+def models() -> dict[str, type[Model]]:
+    """The BRDF models there are: brdfkit's, and those of yours that were loaded.
 
-    >>> sorted(models())[0]
-    'abc'
+    Returns
+    -------
+    dict of str to type
+        Classes by name; called with parameters, a class gives a model with values.
+
+    Examples
+    --------
+    >>> models()["ward"](alpha_u=0.1)
+    ward(diffuse_reflectance=0.4, specular_reflectance=0.2, alpha_u=0.1, alpha_v=0.1)
     """
     found = {name: model_in(source) for name, source in discovery.sources(MODELS).items()}
     return {name: model for name, model in found.items() if model is not None}
 
 
-def model(label):
+def model(label: str | type[Model]) -> type[Model]:
     """The model of a label: its name, with options ``"lafortune:lobe_count=2"``, or a sum of
     labels, ``"ggx+ward"``: one diffuse term and the other terms of each. A class means itself.
 
@@ -52,12 +60,12 @@ def model(label):
     return found.configured(**options)
 
 
-def is_label(word):
+def is_label(word: str) -> bool:
     """Whether a word can only be meant as a model: "ggx", "ggx+ward", "koenderink:order=4"."""
     return all(part.partition(":")[0] in models() for part in word.split("+"))
 
 
-def read_files(label):
+def read_files(label: Any) -> Any:
     """A label with the names of the models for the Python files in it, which are loaded; what is no
     label, nor the `Path` of a file, comes back as it is.
 
@@ -76,23 +84,44 @@ def read_files(label):
     return "+".join(parts)
 
 
-def load_models(path):
-    """Make the models of a file or folder of yours known, beside brdfkit's; returns them.
+def load_models(path: str | Path) -> dict[str, type[Model]]:
+    """Make BRDF models of yours known, beside brdfkit's: in fits, in Mitsuba and by name.
 
+    Parameters
+    ----------
+    path : str or Path
+        A Python file that holds one class derived from `Model`, or a folder of such files; those
+        whose name begins with an underscore are left out. A file's name is the model's.
+
+    Returns
+    -------
+    dict of str to type
+        The models that were loaded, by name.
+
+    Raises
+    ------
+    BrdfkitError
+        And loads none, for a file that cannot be imported or holds no model or several, and for a
+        name that another plugin of brdfkit's, of Mitsuba's or of yours has.
+
+    Examples
+    --------
     >>> load_models("my_models/")    # doctest: +SKIP
     {'velvet': <class 'brdfkit.user_plugins.velvet.Velvet'>}
     """
-    files, loaded = discovery.files_in(path), {}
+    files = discovery.files_in(path)
+    loaded: dict[str, type[Model]] = {}
     for file in files:
         discovery.require_free(file.stem, file)
-        loaded[file.stem] = model_in(file)
-        if loaded[file.stem] is None:
+        defined = model_in(file)
+        if defined is None:
             raise BrdfkitError(f"{file} defines no class derived from brdfkit.Model.")
+        loaded[file.stem] = defined
     discovery.add(MODELS, {file.stem: file for file in files})
     return loaded
 
 
-def model_in(source):
+def model_in(source: Path | type | None) -> type[Model] | None:
     """The `Model` class that a plugin file defines, None if it defines none; a class is itself."""
     if isinstance(source, type):
         return source
@@ -109,7 +138,7 @@ def model_in(source):
     return own[0] if own else None
 
 
-def _named(name):
+def _named(name: str) -> type[Model]:
     source = discovery.sources(MODELS).get(name)
     found = source and model_in(source)
     if not found:
