@@ -34,6 +34,7 @@ bench: $(VENV)/.ready
 docs: $(VENV)/.ready
 	$(RUN)/python docs/make_models.py
 	$(RUN)/python docs/make_plugins.py
+	$(RUN)/python docs/make_references.py
 	$(RUN)/python docs/make_architecture.py
 
 wheel: $(VENV)/.ready

@@ -71,6 +71,7 @@ def page(model):
         options and table("option, default, choices, meaning", options),
         f"![Polar plots of {name} in the plane of incidence]({name}_lobes.png)",
         *("## Use", use(model)),
+        references(model),
         f"[The source](../../plugins/bsdfs/{name}.py) · [all models](README.md)",
     )
 
@@ -91,6 +92,12 @@ def docstring(source):
     found = plugin_page(source)
     text = "\n".join(found.lines).strip("\n")
     return found.title, found.sentence[0].upper() + found.sentence[1:], text
+
+
+def references(source):
+    """The works that a page cites, in full."""
+    found = plugin_page(source).references
+    return found and "## References\n\n" + "\n".join(f"- {work}" for work in found)
 
 
 def parameter(name, p):

@@ -8,7 +8,7 @@ import math
 import sys
 from pathlib import Path
 
-from make_models import docstring, paragraphs, table, xml
+from make_models import docstring, paragraphs, references, table, xml
 
 from brdfkit.model.labels import model_in
 from brdfkit.plugins import discovery
@@ -56,6 +56,7 @@ def page(kind, name, source):
         *(f"# {title}", sentence, text),
         rows and table("parameter, default, from, to, meaning", rows),
         f"```xml\n{element(kind, name, settings)}\n```",
+        references(source),
         f"[The source]({TOP}/{kind}/{name}.py) · [all plugins](README.md)",
     )
 

@@ -1,40 +1,36 @@
 """The documentation: the models' pages are what their files say, and no link leads nowhere."""
 
 import doctest
-import importlib.util
 import re
+from importlib import import_module
 from pathlib import Path
 from urllib.parse import unquote
 
 import pytest
+from click.testing import CliRunner
 from PIL import Image, ImageDraw, ImageFont
 
 import brdfkit as bk
+from brdfkit.cli import main
+from brdfkit.references import cited, references
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [
     ROOT / "README.md",
     ROOT / "CONTRIBUTING.md",
     *sorted(ROOT.glob("docs/*.md")),
-    *sorted(ROOT.glob("docs/models/*.md")),
+    *sorted(ROOT.glob("docs/*/*.md")),
 ]
+OWN = "references.py"  # shows how one cites
 LINK = re.compile(r'\]\(([^)\s]+)\)|(?:src|href)="([^"]+)"')
 
 pytestmark = pytest.mark.quick
 
 
-def program(name):
-    """A program in `docs/`, as a module."""
-    spec = importlib.util.spec_from_file_location(name, ROOT / "docs" / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.fixture(scope="module")
 def make():
     """The program that makes the models' pages."""
-    module = program("make_models")
+    module = import_module("make_models")
     new = [name for name in module.models() if not (module.FOLDER / f"{name}.md").exists()]
     if new:  # a model is one file: its page is made of it when it is to be published
         pytest.skip(f"no page yet of {', '.join(new)}: make docs")
@@ -53,6 +49,32 @@ def copied(make, monkeypatch, tmp_path):
 def test_the_pages_are_what_the_models_say(make):
     """Otherwise: make docs"""
     assert make.problems() == []
+
+
+def test_the_pages_are_what_the_plugins_say():
+    """Otherwise: make docs"""
+    assert import_module("make_plugins").problems() == []
+
+
+def test_every_cited_work_is_known_and_every_known_work_is_cited():
+    """Otherwise: an entry of references.toml is missing, or too many; make docs"""
+    files = [*ROOT.glob("src/**/*.py"), *ROOT.glob("plugins/**/*.py"), *PAGES]
+    listed = ROOT / "docs" / "references.md"
+    texts = [f.read_text(encoding="utf-8") for f in files if f != listed and f.name != OWN]
+    assert {key for text in texts for key in cited(text)} == set(references())
+    assert listed.read_text(encoding="utf-8") == import_module("make_references").text()
+
+
+CITING = {
+    "ward": ["Ward 1992", "Kurt 2007"],
+    "kdtree_envmap": ["Ergun 2015", "Mallett & Yuksel 2019"],
+}
+
+
+@pytest.mark.parametrize("name", CITING)
+def test_a_page_ends_with_the_works_that_it_cites(name):
+    page = CliRunner().invoke(main, ["plugins", name]).output
+    assert page.rstrip().endswith("\n".join(str(references()[key]) for key in CITING[name]))
 
 
 def test_every_model_has_a_page_and_two_pictures(make):
@@ -116,7 +138,7 @@ def test_the_readme_counts_the_measured_materials(measured):
 
 
 def test_every_measured_material_has_its_whole_name_above_its_ball(measured):
-    make = program("make_measured")
+    make = import_module("make_measured")
     font = ImageFont.load_default(make.FONT)
     draw = ImageDraw.Draw(Image.new("RGB", (1, 1)))
     for name in measured:

@@ -2,13 +2,12 @@
 
     f = k_d / π + D G F / (π (N·L)(N·V)),   D = A / (1 + B (1 - N·H))^C
 
-J. Löw, J. Kronander, A. Ynnerman & J. Unger, "BRDF models for accurate and efficient rendering
-of glossy surfaces", ACM TOG 31(1), 2012, eq. 15: the microfacet ABC model, with the 1/π of the
-fits that its authors published. A is the specular weight as it enters there: D is not normalised,
-the albedo goes with A / B. As in the paper, F is a dielectric's for unpolarised light, in the form
-of R. L. Cook & K. E. Torrance, and G theirs too. With C = 2 the peak is about GGX's of width
-√(2/B). Shows polished metals, paints and plastics, whose tails may be longer or shorter than
-GGX's; no anisotropy, no retro-reflection.
+The microfacet ABC model [Löw et al. 2012, eq. 15], with the 1/π of the fits that its authors
+published. A is the specular weight as it enters there: D is not normalised, the albedo goes with
+A / B. As in the paper, F is a dielectric's for unpolarised light, and it and G have the form of
+[Cook & Torrance 1982]. With C = 2 the peak is about GGX's of width √(2/B). Shows polished metals,
+paints and plastics, whose tails may be longer or shorter than GGX's; no anisotropy, no
+retro-reflection.
 """
 
 from dataclasses import dataclass
@@ -60,7 +59,7 @@ class PowerOfHeight:
 
 
 def fresnel(ior, cos_theta):
-    """Reflectance of a dielectric for unpolarised light: Cook & Torrance 1982."""
+    """Reflectance of a dielectric for unpolarised light [Cook & Torrance 1982]."""
     g = dr.sqrt(ior * ior - 1 + cos_theta * cos_theta)
     a = (g - cos_theta) / (g + cos_theta)
     b = (cos_theta * (g + cos_theta) - 1) / (cos_theta * (g - cos_theta) + 1)

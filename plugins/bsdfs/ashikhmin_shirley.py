@@ -6,8 +6,8 @@
     diffuse=lambert   f_d = k_d / π
     diffuse=coupled   f_d = 28 k_d / 23π (1 - F₀) (1 - (1 - N·L/2)⁵) (1 - (1 - N·V/2)⁵)
 
-M. Ashikhmin & P. Shirley, "An anisotropic Phong BRDF model", JGT 5(2), 2000; Kurt 2007,
-eqs. 3.13-3.17. The paper has no k_s, and the coupled f_d, which dims as the highlight brightens.
+[Ashikhmin & Shirley 2000]; [Kurt 2007, eqs. 3.13-3.17]. The paper has no k_s, and the coupled f_d,
+which dims as the highlight brightens.
 Shows metals, brushed or not, and varnished surfaces; no retro-reflection. Where F₀ is about 1,
 only the product k_s F₀ is told by measurements.
 """

@@ -5,10 +5,10 @@
     normalisation=printed   c = (n + 2) / 2π
     normalisation=exact     c = (n + 2)(n + 4) / 8π (2^(-n/2) + n)
 
-n + 2 stands for √((n_u + 2)(n_v + 2)) where the exponents differ. J. F. Blinn, "Models of light
-reflection for computer synthesized pictures", SIGGRAPH 1977; Kurt 2007, eq. 3.4. The printed
-constant is Phong's: with the half vector the lobe reflects up to four times k_s, so that energy is
-conserved only for about k_d + 4 k_s ≤ 1; with the exact one k_s is the albedo at normal incidence.
+n + 2 stands for √((n_u + 2)(n_v + 2)) where the exponents differ. [Blinn 1977]; [Kurt 2007,
+eq. 3.4]. The printed constant is Phong's: with the half vector the lobe reflects up to four times
+k_s, so that energy is conserved only for about k_d + 4 k_s ≤ 1; with the exact one k_s is the
+albedo at normal incidence.
 Shows plastics; no Fresnel effect, no retro-reflection.
 """
 

@@ -2,10 +2,9 @@
 
     f = k_d / π + k_s / π · D G F / ((N·L)(N·V)),   D = exp[-(tanθ_h / m)²] / (m² cos⁴θ_h)
 
-R. L. Cook & K. E. Torrance, "A reflectance model for computer graphics", ACM TOG 1(1), 1982;
-Kurt 2007, eqs. 3.28, 3.29, with Schlick's F (3.16). As printed, the term is four times today's
-D G F / 4(N·L)(N·V): energy is conserved only for about k_d + 4 k_s ≤ 1. Shows metals and
-plastics of one roughness; no anisotropy.
+[Cook & Torrance 1982]; [Kurt 2007, eqs. 3.28, 3.29], with Schlick's F (3.16). As printed, the term
+is four times today's D G F / 4(N·L)(N·V): energy is conserved only for about k_d + 4 k_s ≤ 1. Shows
+metals and plastics of one roughness; no anisotropy.
 """
 
 from brdfkit.geometry.vectors import cos_theta_d, half_vector

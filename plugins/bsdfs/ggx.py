@@ -2,10 +2,8 @@
 
     f = k_d / π + k_s D G₂ F / (4 (N·L)(N·V))
 
-B. Walter et al., "Microfacet models for refraction through rough surfaces", EGSR 2007;
-E. Heitz, "Understanding the masking-shadowing function in microfacet-based BRDFs", JCGT 3(2),
-2014. F is Schlick's. Its long tails show most metals, paints and plastics; no retro-reflection,
-no scattering between facets.
+D is that of [Walter et al. 2007], G₂ that of [Heitz 2014], F Schlick's. Its long tails show most
+metals, paints and plastics; no retro-reflection, no scattering between facets.
 """
 
 from brdfkit.geometry.vectors import cos_theta_d, half_vector

@@ -11,10 +11,8 @@ K_n^l = √((n+1)/2π) R_n^|l|(ρ) {√2 cos lφ, 1, √2 sin |l|φ}; m ≤ n �
 2, 4 and 8 there are 5, 14 and 55 isotropic weights, 21, 120 and 1035 anisotropic ones. Order 0 is
 Lambert with a_0_0_0 = 2 k_d. Weights may be negative; a sum below 0 is clamped at 0.
 
-J. J. Koenderink, A. J. van Doorn & M. Stavridi, "Bidirectional reflection distribution function
-expressed in terms of surface scattering modes", ECCV 1996; J. J. Koenderink & A. J. van Doorn,
-"Phenomenological description of bidirectional surface reflection", JOSA A 15, 1998; Kurt 2007, 3.1.
-Shows rough, diffuse and retro-reflecting surfaces; a highlight needs infinitely many terms.
+[Koenderink et al. 1996]; [Koenderink & van Doorn 1998]; [Kurt 2007, section 3.1]. Shows rough,
+diffuse and retro-reflecting surfaces; a highlight needs infinitely many terms.
 """
 
 import math

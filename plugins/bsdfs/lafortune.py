@@ -3,8 +3,7 @@
     f = k_d / π + Σ_j k_s (n + 2) / 2π [C_x l_x v_x + C_y l_y v_y + C_z l_z v_z]₊ⁿ
                       / max(|C_x|, |C_y|, |C_z|)ⁿ
 
-E. P. F. Lafortune, S.-C. Foo, K. E. Torrance & D. P. Greenberg, "Non-linear approximation of
-reflectance functions", SIGGRAPH 1997; Kurt 2007, eqs. 3.10-3.12. Only the ratios of the C count.
+[Lafortune et al. 1997]; [Kurt 2007, eqs. 3.10-3.12]. Only the ratios of the C count.
 -C_x = -C_y = C_z is Phong's lobe, C_z < -C_x peaks below the mirror direction, C_x > 0 reflects
 back, C_x ≠ C_y is anisotropic; `lobe_count` sums several. k_s is the albedo of a mirror lobe from
 above, others reflect less. Shows off-specular and retro-reflection of rough surfaces; highlights

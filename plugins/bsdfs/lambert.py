@@ -2,8 +2,7 @@
 
     f = k_d / π
 
-J. H. Lambert, "Photometria", 1760; Kurt 2007, eq. 3.1. Shows chalk and matte paper; nothing
-that depends on the view.
+[Lambert 1760]; [Kurt 2007, eq. 3.1]. Shows chalk and matte paper; nothing that depends on the view.
 """
 
 from brdfkit.model import Model, weight

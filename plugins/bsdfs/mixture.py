@@ -5,8 +5,7 @@
 The option `models` names them, as in "ggx+ggx" or "lambert+ward+cook_torrance"; wherever a model
 is named, such a sum may stand. The first model gives the diffuse term. The parameters of the j-th
 are called after it and its number: ggx_2_alpha_u. Two lobes show metals and glossy plastics better
-than one, three are seldom told apart: A. Ngan, F. Durand & W. Matusik, "Experimental analysis of
-BRDF models", EGSR 2005; Kurt 2007, eqs. 3.12, 3.30.
+than one, three are seldom told apart [Ngan et al. 2005]; [Kurt 2007, eqs. 3.12, 3.30].
 """
 
 from dataclasses import replace

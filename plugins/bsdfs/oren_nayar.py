@@ -8,8 +8,8 @@ with α, β = greater, lesser of θ_i, θ_o; A = C₁ = 1 - 0.5 σ² / (σ² + 0
 B = 0.45 σ² / (σ² + 0.09), C₂ = B (sinα, less (2β/π)³ where cosΔφ < 0),
 C₃ = 0.125 σ² / (σ² + 0.09) (4αβ/π²)². The term of k_d² is light that bounces between facets.
 
-M. Oren & S. K. Nayar, "Generalization of Lambert's reflectance model", SIGGRAPH 1994; Kurt 2007,
-eqs. 3.18-3.24 (the bracket of eq. 3.23 closes too early: black at normal incidence). Lambert at
+[Oren & Nayar 1994]; [Kurt 2007, eqs. 3.18-3.24] (the printed bracket of eq. 3.23 closes too early,
+which would be black at normal incidence). Lambert at
 σ = 0. Shows clay, plaster, cloth and the moon: flat, with retro-reflection at grazing angles; no
 gloss. With k_d = 1 the full form reflects up to 5 % more than it receives at grazing incidence.
 """

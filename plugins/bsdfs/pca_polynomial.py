@@ -10,9 +10,8 @@ takes it from them, and it belongs to the fitted material. It is given by its an
 may be negative; a sum below 0 is clamped at 0. Interactions Z_1^j Z_2^k are left out, as printed,
 although uncorrelated components may well interact.
 
-A. Öztürk, M. Kurt, A. Bilgili & C. Güngör, "Linear approximation of bidirectional reflectance
-distribution functions", Computers & Graphics 32(2), 2008; Kurt 2007, eqs. 7.4, 7.5. Shows diffuse
-and rough materials; a highlight takes a degree that then swings below 0 elsewhere.
+[Öztürk et al. 2008]; [Kurt 2007, eqs. 7.4, 7.5]. Shows diffuse and rough materials; a highlight
+takes a degree that then swings below 0 elsewhere.
 """
 
 import math

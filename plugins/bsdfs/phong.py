@@ -2,11 +2,9 @@
 
     f = k_d / π + k_s (n + 2) / 2π (cos α)ⁿ,   cos α = max(0, R·V),   R = 2 (N·L) N - L
 
-B. T. Phong, "Illumination for computer generated pictures", CACM 18(6), 1975, in the reciprocal
-form of E. P. Lafortune & Y. D. Willems, "Using the modified Phong reflectance model for physically
-based rendering", 1994; Kurt 2007, eqs. 3.2, 3.3. Energy is conserved for k_d + k_s ≤ 1. Shows
-plastics from above; highlights stay round and grow darker towards grazing angles, where those of
-materials grow long and bright; no retro-reflection.
+[Phong 1975] in the reciprocal form of [Lafortune & Willems 1994]; [Kurt 2007, eqs. 3.2, 3.3].
+Energy is conserved for k_d + k_s ≤ 1. Shows plastics from above; highlights stay round and grow
+darker towards grazing angles, where those of materials grow long and bright; no retro-reflection.
 """
 
 import drjit as dr

@@ -4,8 +4,7 @@
     D = P₂₂(tan²θ_h) / (π cos⁴θ_h),   P₂₂(s) = K x^-p exp(-x) with x = α + s / α
     K = 1 / (α Γ(1 - p, α)), so that ∫ D cosθ_h dω = 1
 
-M. M. Bagher, C. Soler & N. Holzschuch, "Accurate fitting of measured reflectances using a Shifted
-Gamma micro-facet distribution", CGF 31(4), 2012. Slopes up to α are a flat top, up to √α a power
+[Bagher et al. 2012]. Slopes up to α are a flat top, up to √α a power
 law, beyond a Gaussian; p = 0 is Beckmann's of width √α. G₁ is Smith's, integrated here; the paper
 puts 1 + λ (1 - exp(c (θ - θ₀)^k)) for it, with four more numbers per material, 2e-3 from it. F is
 Schlick's, without the paper's further term -F₁ V·H, which lets it fall below 0. As printed, the

@@ -3,11 +3,10 @@
     f = k_d / π + k_s D G F / (4 (N·L)(N·V)),   D = exp(-θ_h² / m²) / (π m²)
     G = min(1, 2 (N·H)(N·V) / (V·H), 2 (N·H)(N·L) / (V·H))
 
-K. E. Torrance & E. M. Sparrow, "Theory for off-specular reflection from roughened surfaces",
-JOSA 57(9), 1967; Kurt 2007, eqs. 3.25-3.27, with Schlick's F (3.16). The constant of D, R.
-Ramamoorthi's and P. Hanrahan's of 2001, is that of small m: ∫ D cosθ_h dω is 0.974 at m = 0.2
-and 0.548 at m = 1, so that rough surfaces come out darker, never brighter. Shows metals and
-plastics of one roughness and their off-specular peaks; no long tails, no anisotropy.
+[Torrance & Sparrow 1967]; [Kurt 2007, eqs. 3.25-3.27], with Schlick's F (3.16). The constant of D
+[Ramamoorthi & Hanrahan 2001] is that of small m: ∫ D cosθ_h dω is 0.974 at m = 0.2 and 0.548 at m =
+1, so that rough surfaces come out darker, never brighter. Shows metals and plastics of one
+roughness and their off-specular peaks; no long tails, no anisotropy.
 """
 
 from dataclasses import dataclass

@@ -3,9 +3,8 @@
     f = k_d / π + k_s exp[-tan²θ_h (cos²φ_h / α_u² + sin²φ_h / α_v²)]
                   / (4π α_u α_v √((N·L)(N·V)))
 
-G. J. Ward, "Measuring and modeling anisotropic reflection", SIGGRAPH 1992; Kurt 2007,
-eqs. 3.6, 3.7. Shows brushed metal and satin paint; loses energy at grazing angles, has no
-Fresnel effect and no retro-reflection.
+[Ward 1992]; [Kurt 2007, eqs. 3.6, 3.7]. Shows brushed metal and satin paint; loses energy at
+grazing angles, has no Fresnel effect and no retro-reflection.
 """
 
 import drjit as dr

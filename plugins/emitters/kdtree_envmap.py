@@ -8,9 +8,8 @@ angle (least sum of squared errors); one is chosen by its exact share of the pow
 point evenly in both angles. The density is stored for every pixel, so that multiple importance
 sampling costs one look-up.
 
-S. Ergun, "New approaches to real-time global illumination algorithms for dynamic scenes", PhD
-thesis, Ege University, 2015, chapter 6. In spectral variants a colour of the map becomes a smooth
-spectrum under D65 (Mallett & Yuksel 2019), linear in the colour.
+[Ergun 2015, chapter 6]. In spectral variants a colour of the map becomes a smooth spectrum under
+D65 [Mallett & Yuksel 2019], linear in the colour.
 """
 
 import math

@@ -8,8 +8,7 @@ multiplied by σ; in spectral variants its colour is times D65, as that of emitt
 into `steps` equal parts, in each of which σ and e are those of its middle: exact there, and in the
 whole of second order in the length of a step.
 
-N. Max, "Optical models for direct volume rendering", IEEE TVCG 1(2), 1995; Ž. Lesar, MSc thesis,
-University of Ljubljana, 2018, eq. 6.3. Shows CT, MRI and smoke without light of their own; the
+[Max 1995]; [Lesar 2018, eq. 6.3]. Shows CT, MRI and smoke without light of their own; the
 derivatives by both volumes are exact (those of the marched sum).
 """
 

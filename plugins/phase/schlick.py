@@ -6,8 +6,7 @@
 cosine is 1/k - (1 - k²)/(2k²) ln((1 + k)/(1 - k)), about 2k/3 for small k; the usual
 k = 1.55 g - 0.55 g³ makes it look like Henyey-Greenstein's of g, but for the mean cosine.
 
-P. Blasi, B. Le Saëc & C. Schlick, "A rendering algorithm for discrete volume density objects",
-CGF 12(3), 1993; its inverse distribution function is exact.
+[Blasi et al. 1993]; its inverse distribution function is exact.
 """
 
 import drjit as dr

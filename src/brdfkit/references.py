@@ -8,8 +8,10 @@ import tomllib
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from unicodedata import normalize
 
-CITATION = re.compile(r"\[([A-ZÀ-Ž][^\[\]]*? \d{4}[a-z]?)(?:, [^\[\]]*)?\]")
+# a line may break within a citation
+CITATION = re.compile(r"\[([A-ZÀ-Ž][^\[\]]*?\s\d{4}[a-z]?)(?:,\s[^\[\]]*)?\]")
 
 
 @dataclass(frozen=True)
@@ -31,8 +33,9 @@ class Reference:
 @cache
 def references():
     """All `Reference`s by key, in alphabetical order."""
-    text = Path(__file__).with_suffix(".toml").read_text(encoding="utf-8")
-    return {key: Reference(key, **entry) for key, entry in sorted(tomllib.loads(text).items())}
+    entries = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+    keys = sorted(entries, key=lambda key: normalize("NFKD", key))  # Ö beside O
+    return {key: Reference(key, **entries[key]) for key in keys}
 
 
 def cited(text):
@@ -41,5 +44,9 @@ def cited(text):
     >>> cited("Lambert's law [Lambert 1760]; [Kurt 2007, eq. 3.1].")
     ['Lambert 1760', 'Kurt 2007']
     """
-    # a line may break within a citation
     return list(dict.fromkeys(" ".join(key.split()) for key in CITATION.findall(text)))
+
+
+def works(text):
+    """The `Reference`s that a text cites; a key that brdfkit does not know is left out."""
+    return [references()[key] for key in cited(text) if key in references()]

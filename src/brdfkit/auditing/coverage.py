@@ -71,7 +71,7 @@ def _of_samples(data):
 def _of_table(data, low, high):
     """Likewise the cells, their weights the solid angles of those above the horizon.
 
-    dωi dωo = 4 cos θd dωh dωd: Rusinkiewicz 1998.
+    dωi dωo = 4 cos θd dωh dωd [Rusinkiewicz 1998].
     """
     table = data.table
     theta_h, theta_d, _ = np.meshgrid(*table.centres[-3:], indexing="ij", sparse=True)

@@ -19,7 +19,7 @@ def columns(spectrum, n):
 def in_variant(values, material):
     """`values` (n, c) of a `Measured` as the variant has them, (n, channels).
 
-    A colour in a spectral variant is that of three basis spectra (Mallett & Yuksel 2019).
+    A colour in a spectral variant is that of three basis spectra [Mallett & Yuksel 2019].
     """
     import mitsuba as mi
 

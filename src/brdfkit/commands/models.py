@@ -58,6 +58,13 @@ def print_model(model, console):
     console.out.print(
         f'Mitsuba: {{"type": "{model.type_name()}", ...}}; every parameter may be a texture.'
     )
+    print_references(page(model), console)
+
+
+def print_references(page, console):
+    """The works that a page cites, in full."""
+    for n, work in enumerate(page.references):
+        console.out.print(f"\n{work}" if n == 0 else str(work))
 
 
 def _parameters(model):

@@ -44,7 +44,7 @@ def _print_list(kinds, console):
 
 
 def _print_page(kind, name, console):
-    from brdfkit.commands.models import print_model
+    from brdfkit.commands.models import print_model, print_references
     from brdfkit.model.labels import model_in
     from brdfkit.plugins.discovery import MODELS, module, sources
     from brdfkit.plugins.pages import page
@@ -71,3 +71,4 @@ def _print_page(kind, name, console):
             )
         console.out.print(table)
     console.out.print(f'Mitsuba: {{"type": "{name}", ...}}')
+    print_references(page(source), console)

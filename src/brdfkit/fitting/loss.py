@@ -4,7 +4,7 @@
 
 R is measured, M the model, κ a factor of cosines and g a transform that weighs dark against
 bright. Samples with an angle beyond 80° are left out, where measurements are least reliable
-(Ngan et al. 2005). A negative measurement (noise, or a colour out of gamut) counts as it is in the
+[Ngan et al. 2005]. A negative measurement (noise, or a colour out of gamut) counts as it is in the
 cosine and the plain loss, and as 0 in the others, whose g knows no negative BRDF.
 """
 
@@ -69,7 +69,7 @@ losses = Losses(
     for loss in (
         Loss(
             name="cosine",
-            meaning="cosine-weighted L2, w = sin θ_i, channels summed (Kurt 2007, eq. 5.13)",
+            meaning="cosine-weighted L2, w = sin θ_i, channels summed [Kurt 2007, eq. 5.13]",
             g=lambda x: x,
             dg=lambda x: 1,
             ddg=lambda x: 0,

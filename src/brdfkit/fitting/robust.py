@@ -4,9 +4,8 @@ Every pass weighs a sample by its residual in the pass before,
 
     r = residual / (tune · s · √(1 - h)),   s = MAD / 0.6745,
 
-h its leverage, MAD the median of the absolute residuals. P. W. Holland & R. E. Welsch, "Robust
-regression using iteratively reweighted least-squares", 1977; Kurt 2007, eqs. 5.14, 5.15, whose
-constants, and the order of the steps, are those of MATLAB's robustfit.
+h its leverage, MAD the median of the absolute residuals. [Holland & Welsch 1977]; [Kurt 2007, eqs.
+5.14, 5.15], whose constants, and the order of the steps, are those of MATLAB's robustfit.
 
 The bisquare removes noise, and with it any peak that a model cannot follow: compare the loss.
 """

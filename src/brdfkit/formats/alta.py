@@ -1,6 +1,6 @@
 """ALTA's text, `.dat`: a header of lines ``#KEY value``, then a row of numbers per sample.
 
-L. Belcour et al., "ALTA: a BRDF analysis library", MAM 2014; the keys as read by
+[Belcour et al. 2014]; the keys as read by
 `sources/core/data_storage.cpp` and `params.cpp` of github.com/belcour/alta:
 
 - ``DIM``: how many coordinates and how many values a row has;

@@ -1,6 +1,6 @@
 """CUReT: `abrdf.dat`, 61 samples × 205 geometries, averaged over the channels.
 
-K. Dana et al., "Reflectance and texture of real-world surfaces", ACM TOG 18(1), 1999. A row of
+[Dana et al. 1999]. A row of
 `abrdf.dat` is a sample's number and its values [sr⁻¹]; `table.txt` beside it lists the
 geometries: number, theta_v, phi_v, theta_i, phi_i [rad], the viewing direction first.
 """

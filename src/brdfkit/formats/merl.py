@@ -1,6 +1,6 @@
 """MERL BRDF database: `.binary` tables over half/difference angles.
 
-W. Matusik et al., "A data-driven reflectance model", SIGGRAPH 2003. Little-endian: three
+[Matusik et al. 2003]. Little-endian: three
 int32 (n_theta_h, n_theta_d, n_phi_d), then the planes R, G, B of float64. A cell that was not
 measured is negative. Four times as many phi_d as theta_d cells span the full circle (a table
 that is not reciprocal), else they span half of it.

@@ -1,7 +1,6 @@
 """UTIA BRDF database: `.bin`, anisotropic, over the angles of light and view.
 
-J. Filip, R. Vávra, "Template-based sampling of anisotropic BRDFs", CGF 33(7), 2014;
-http://btf.utia.cas.cz. Little-endian float64 and nothing else: the planes R, G, B, each
+[Filip & Vávra 2014]. Little-endian float64 and nothing else: the planes R, G, B, each
 288 × 288. A row is a light (theta_i, phi_i), a column a view (theta_v, phi_v); theta takes
 0°, 15°, ..., 75° and phi, which runs faster, 0°, 7.5°, ..., 352.5°. Order and lookup are those of
 J. Filip's own program, as published in github.com/belcour/alta (sources/plugins/data_io/utia.cpp)

@@ -3,8 +3,7 @@
 Unit vectors in the local frame, z along the normal, both pointing away from the surface;
 the mirror direction of ``wi`` is at Δφ = 180°. NumPy, float64, shape (..., 3).
 
-Half/difference coordinates: S. Rusinkiewicz, "A new change of variables for efficient BRDF
-representation", EGWR 1998.
+Half/difference coordinates are those of [Rusinkiewicz 1998].
 """
 
 import numpy as np

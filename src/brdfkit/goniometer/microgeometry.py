@@ -3,8 +3,8 @@
 Lengths are in grid cells; x and y are the axes of the patch, z is up, the mean height is 0.
 A surface is exactly the triangles between its grid points, two a cell.
 
-The Gaussian surface: P. Beckmann & A. Spizzichino, "The Scattering of Electromagnetic Waves from
-Rough Surfaces", 1963. Its slopes are those of Beckmann's microfacets of alpha = √2·slope.
+The Gaussian surface is that of [Beckmann & Spizzichino 1963]. Its slopes are those of Beckmann's
+microfacets of alpha = √2·slope.
 """
 
 import inspect

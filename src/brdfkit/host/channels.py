@@ -69,8 +69,7 @@ class Smooth:
     """Linear sRGB in a spectral variant: each colour times a basis spectrum.
 
     Linear, so that the mean of colours is that of their spectra, and exact under D65.
-    I. Mallett & C. Yuksel, "Spectral primary decomposition for rendering with sRGB reflectance",
-    EGSR 2019.
+    [Mallett & Yuksel 2019]
     """
 
     def __init__(self):

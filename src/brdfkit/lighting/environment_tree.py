@@ -4,8 +4,7 @@ The block with the largest sum of squared errors about its mean is cut next, whe
 have the least together. Sums over blocks come from summed-area tables, so that a cut costs as many
 steps as the block is wide and high.
 
-S. Ergun, "New approaches to real-time global illumination algorithms for dynamic scenes", PhD
-thesis, Ege University, 2015, Algorithm 2, eqs. 6.1, 6.2.
+[Ergun 2015, Algorithm 2, eqs. 6.1, 6.2]
 """
 
 import heapq

@@ -10,9 +10,8 @@ mirror symmetry put the four equivalent pairs on one point. That of an anisotrop
 vector and the difference vector; each sample stands there twice, with its directions exchanged. A
 channel that is not positive counts as a thousandth of the median.
 
-D. Shepard, "A two-dimensional interpolation function for irregularly-spaced data", ACM 1968; the
-weights end at the farthest neighbour as in R. Franke & G. Nielson, "Smooth interpolation of large
-sets of scattered data", IJNME 15, 1980.
+Inverse-distance weights are those of [Shepard 1968]; they end at the farthest neighbour as in
+[Franke & Nielson 1980].
 """
 
 import functools

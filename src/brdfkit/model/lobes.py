@@ -53,13 +53,13 @@ def components_of(lobes):
 
 
 def lambertian():
-    """The diffuse lobe of all models: 1/π. Kurt 2007, eq. 3.1."""
+    """The diffuse lobe of all models: 1/π [Kurt 2007, eq. 3.1]."""
     return Lobe(lambda wi, wo: 1 / dr.pi, Cosine(), diffuse=True)
 
 
 @dataclass(frozen=True)
 class Cosine:
-    """Proportional to the cosine: Kurt 2007, eqs. 4.21, 4.22."""
+    """Proportional to the cosine [Kurt 2007, eqs. 4.21, 4.22]."""
 
     def sample(self, wi, u):
         radius = dr.sqrt(u.x)
@@ -89,7 +89,7 @@ class PowerLobe:
     """Outgoing directions by cos^n about `axis(wi)`, which is above the surface; what would fall
     below it is mirrored up.
 
-    E. P. Lafortune & Y. D. Willems, "Using the modified Phong reflectance model", 1994.
+    [Lafortune & Willems 1994]
     """
 
     axis: Callable

@@ -16,7 +16,7 @@ from brdfkit.model.numerics import cosine_power, expm1
 
 
 def schlick(f0, cos_theta):
-    """Fresnel reflectance: C. Schlick, "An inexpensive BRDF model", 1994; Kurt 2007, eq. 3.16."""
+    """Fresnel reflectance [Schlick 1994]; [Kurt 2007, eq. 3.16]."""
     return f0 + (1 - f0) * fifth_power(1 - cos_theta)
 
 
@@ -27,7 +27,7 @@ def fifth_power(x):
 
 
 def v_groove(wi, wo, h):
-    """Shadowing and masking in V-grooves: Torrance & Sparrow 1967; Kurt 2007, eq. 3.27."""
+    """Shadowing and masking in V-grooves [Torrance & Sparrow 1967]; [Kurt 2007, eq. 3.27]."""
     s = 2 * h.z / cos_theta_d(wi, wo)
     return dr.minimum(1, s * dr.minimum(wi.z, wo.z))
 
@@ -47,7 +47,7 @@ def cos_squared(h):
 class Beckmann:
     """Gaussian slopes of width `alpha_u` along x, `alpha_v` along y.
 
-    P. Beckmann & A. Spizzichino 1963; sampling: Kurt 2007, eqs. 4.23-4.25.
+    [Beckmann & Spizzichino 1963]; sampling: [Kurt 2007, eqs. 4.23-4.25].
     """
 
     alpha_u: Any
@@ -76,7 +76,7 @@ class Beckmann:
 class TrowbridgeReitz:
     """Slopes with long tails, of width `alpha_u` along x, `alpha_v` along y: "GGX".
 
-    B. Walter et al. 2007; E. Heitz, "Understanding the masking-shadowing function", JCGT 2014.
+    [Walter et al. 2007]; [Heitz 2014]
     """
 
     alpha_u: Any
@@ -88,17 +88,16 @@ class TrowbridgeReitz:
         return 1 / (dr.pi * self.alpha_u * self.alpha_v * s * s)
 
     def Lambda(self, w):
-        """Smith's auxiliary function (Heitz 2014, eq. 72)."""
+        """Smith's auxiliary function [Heitz 2014, eq. 72]."""
         x, y = self.alpha_u * w.x, self.alpha_v * w.y
         return 0.5 * (dr.sqrt(1 + (x * x + y * y) / (w.z * w.z)) - 1)
 
     def G2(self, wi, wo):
-        """Height-correlated shadowing and masking (Heitz 2014, eq. 99)."""
+        """Height-correlated shadowing and masking [Heitz 2014, eq. 99]."""
         return 1 / (1 + self.Lambda(wi) + self.Lambda(wo))
 
     def sample(self, wi, u):
-        """Visible normals: J. Dupuy & A. Benyoub, "Sampling visible GGX normals with spherical
-        caps", HPG 2023."""
+        """Visible normals by spherical caps [Dupuy & Benyoub 2023]."""
         x, y = self.alpha_u * wi.x, self.alpha_v * wi.y
         inverse = dr.rsqrt(x * x + y * y + wi.z * wi.z)
         x, y, z = x * inverse, y * inverse, wi.z * inverse
@@ -118,7 +117,7 @@ class TrowbridgeReitz:
 
 @dataclass(frozen=True)
 class CosinePower:
-    """(N·H)^(n_u cos²φ_h + n_v sin²φ_h): J. Blinn 1977, M. Ashikhmin & P. Shirley 2000."""
+    """(N·H)^(n_u cos²φ_h + n_v sin²φ_h) [Blinn 1977]; [Ashikhmin & Shirley 2000]."""
 
     n_u: Any
     n_v: Any
@@ -148,8 +147,7 @@ class Visible:
     """What wi sees of a `distribution` in V-grooves: of each pair of facets, h and its mirror image
     about the normal, as much as is turned towards wi. A half turn should not change it.
 
-    E. Heitz & E. d'Eon, "Importance sampling microfacet-based BSDFs using the distribution of
-    visible normals", EGSR 2014: G1 (wi·h)⁺ D / cosθ_i, with the G1 of `v_groove`.
+    G1 (wi·h)⁺ D / cosθ_i [Heitz & d'Eon 2014], with the G1 of `v_groove`.
     """
 
     distribution: Any

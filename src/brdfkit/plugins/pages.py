@@ -8,6 +8,7 @@ import sys
 from dataclasses import dataclass
 
 from brdfkit.plugins import discovery
+from brdfkit.references import works
 
 
 @dataclass(frozen=True)
@@ -20,6 +21,11 @@ class Page:
 
     def __str__(self):
         return "\n".join([f"{self.title}: {self.sentence}", *self.lines])
+
+    @property
+    def references(self):
+        """The works that it cites."""
+        return works(str(self))
 
 
 def page(source):

@@ -99,8 +99,7 @@ def colour_differences(rendering):
     """Name → (height, width) ΔE of every other picture to the reference, by CIEDE2000.
 
     1 is about what is just seen, black to white is 100. Not clipped: highlights count as well.
-    M. R. Luo, G. Cui and B. Rigg, "The development of the CIE 2000 colour-difference formula:
-    CIEDE2000", Color Research and Application 26(5), 2001.
+    [Luo et al. 2001]
     """
     names = rendering.differences
     if not names:

@@ -1,6 +1,6 @@
 """A table over half/difference coordinates: the cells of MERL, and their multilinear lookup.
 
-W. Matusik et al., "A data-driven reflectance model", SIGGRAPH 2003. theta_h is square-root
+The cells are those of [Matusik et al. 2003]. theta_h is square-root
 spaced, so that cells are small where highlights are; theta_d and phi_d are evenly spaced.
 An anisotropic table has the azimuth phi_h of the half vector as its first axis, evenly spaced
 over the full circle. A value stands at the centre of its cell.

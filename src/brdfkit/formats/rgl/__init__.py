@@ -1,7 +1,6 @@
 """RGL material database: `.bsdf` files in the adaptive parameterisation (`brdfkit.adaptive`).
 
-J. Dupuy & W. Jakob, "An adaptive parameterization for efficient material acquisition and
-rendering", ACM TOG 37(6), 2018; https://rgl.epfl.ch/materials. Mitsuba's plugin `measured` renders
+[Dupuy & Jakob 2018]; https://rgl.epfl.ch/materials. Mitsuba's plugin `measured` renders
 them: a file with the field `rgb` in RGB variants, one with `spectra` in spectral variants.
 
 Negative values are colours out of gamut, and are kept. A luminance of 0 marks what was not

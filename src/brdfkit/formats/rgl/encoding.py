@@ -1,7 +1,6 @@
 """From any BRDF to the adaptive parameterisation (`adaptive.py`).
 
-J. Dupuy & W. Jakob, "An adaptive parameterization for efficient material acquisition and
-rendering", ACM TOG 37(6), 2018. What is tabulated is a function f(wi, wo) of directions (n, 3);
+[Dupuy & Jakob 2018]. What is tabulated is a function f(wi, wo) of directions (n, 3);
 the mean of its channels shapes the grid.
 """
 

@@ -7,8 +7,7 @@ Where wi = wo = w, a surface of microfacets has
 So D is an eigenvector of D → f(w, w) cosθ σ(w): the one without a negative entry, to which
 repeated application leads.
 
-J. Dupuy, E. Heitz, J.-C. Iehl, P. Poulin & V. Ostromoukhov, "Extracting microfacet-based BRDF
-parameters from arbitrary materials with power iterations", EGSR 2015.
+[Dupuy et al. 2015]
 """
 
 from dataclasses import dataclass

@@ -8,8 +8,7 @@ wi reflected about m is wo. So an even grid over u looks where the light goes. S
 
 which varies little as far as the surface is made of microfacets.
 
-J. Dupuy & W. Jakob, "An adaptive parameterization for efficient material acquisition and
-rendering", ACM TOG 37(6), 2018; looked up as Mitsuba's plugin `measured` does.
+[Dupuy & Jakob 2018]; looked up as Mitsuba's plugin `measured` does.
 """
 
 from dataclasses import dataclass

@@ -1,0 +1,25 @@
+"""Makes `docs/references.md`: all works that brdfkit cites.
+
+python docs/make_references.py
+"""
+
+from pathlib import Path
+
+from brdfkit.references import references
+
+PAGE = Path(__file__).with_name("references.md")
+HEAD = """# References
+
+The works that brdfkit cites, by the key that stands in brackets in its texts. A new one is an entry
+of [`references.toml`](../src/brdfkit/references.toml), of which `make docs` makes this page.
+
+"""
+
+
+def text():
+    """The page."""
+    return HEAD + "".join(f"- {reference}\n" for reference in references().values())
+
+
+if __name__ == "__main__":
+    PAGE.write_text(text(), encoding="utf-8")
