@@ -1,4 +1,8 @@
-"""What a measurement holds, how far it reaches and where it is doubtful: `audit`."""
+"""`audit`: what a measurement covers, how noisy it is and what is doubtful.
+
+One file answers one question; `pairs.py` finds the samples that should be equal, `picture.py` draws
+the audit and `words.py` says it in sentences.
+"""
 
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any

@@ -1,4 +1,4 @@
-"""An `Audit` in words."""
+"""An `Audit` in words: the sentences of `brdfkit info`."""
 
 import math
 

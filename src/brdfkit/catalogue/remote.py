@@ -1,4 +1,4 @@
-"""A file on a server, read in parts."""
+"""A file on a server, read in parts: one member of a large archive."""
 
 import io
 from zipfile import BadZipFile

@@ -1,4 +1,4 @@
-"""What every material and every plugin must fulfil: `check`. The tests run the same over all.
+"""`check`: what every material and every plugin must fulfil; the tests run the same over all.
 
 A check is a function `(subject) -> (passed, figure)` with the decorator `checked(KIND)`, in a
 module of this folder. A material's checks are in `physics.py`, `sampling.py` and `derivatives.py`,

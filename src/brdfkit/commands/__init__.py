@@ -1,4 +1,4 @@
-"""The commands: one file of this folder each; `brdfkit.cli` finds them by their being there.
+"""The commands: one file is one command, found by its being there.
 
 A file NAME.py holds the click command NAME, and the functions that print its result. It imports
 what is heavy when a command runs, so that `--help` is instant. A module whose name begins with an

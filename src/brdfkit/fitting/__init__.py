@@ -1,4 +1,4 @@
-"""The numeric core of a fit: a model regressed on samples. Who may call it knows no files.
+"""The numeric core of a fit: a model regressed on samples, without files and without Mitsuba.
 
 `loss.py`: what is made small; `problem.py`: that as a function of the shape parameters, with the
 weights solved inside (`weights.py`); `space.py`: where the search goes and begins; `search.py`: SQP

@@ -1,4 +1,4 @@
-"""What a fit returns: the model with its values, and how they were found."""
+"""`Fit`, what a fit returns: the model with its values, and how they were found."""
 
 from dataclasses import dataclass, field
 from typing import Any

@@ -1,4 +1,4 @@
-"""The file formats: one file of this folder each, found by being there.
+"""The file formats: one file is one format, found by its being there.
 
 A format module offers
 

@@ -1,1 +1,1 @@
-"""What the plugins that emit light stand on; nothing here knows Mitsuba."""
+"""What emitter plugins compute from a picture of the surroundings, without Mitsuba."""

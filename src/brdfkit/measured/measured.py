@@ -1,4 +1,4 @@
-"""A measured material: a BRDF given by samples or by a table, with what is known of it."""
+"""`Measured`: a BRDF given by samples or by a table, with what is known of it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace

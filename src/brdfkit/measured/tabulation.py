@@ -1,4 +1,4 @@
-"""From a BRDF that can be asked for any pair of directions to a `Table` of it."""
+"""Tabulates any BRDF over half/difference angles."""
 
 import numpy as np
 

@@ -1,7 +1,8 @@
 """What a BRDF model is made of: all that the author of a model reads.
 
 `model.py`: the class `Model`; `parameters.py`: what it declares; `lobes.py`: its terms and how
-they are drawn; `microfacet.py`: distributions of normals; `numerics.py`: accurate functions.
+they are drawn; `microfacet.py`: distributions of normals; `numerics.py`: accurate functions. The
+rest serves all models: `labels.py` finds one by its label, `evaluation.py` gives its numbers.
 """
 
 from brdfkit.model.model import Model as Model

@@ -1,4 +1,4 @@
-"""What a BRDF model is: weights × lobes.
+"""`Model`: a BRDF model is weights × lobes.
 
     f(wi, wo) = Σ weight_k · lobe_k(wi, wo; shape)
 

@@ -1,4 +1,4 @@
-"""The paper that lobes are drawn on: half a polar plot, the normal upwards, logarithmic."""
+"""Half a polar plot, the normal upwards, logarithmic: what lobes are drawn on."""
 
 import math
 

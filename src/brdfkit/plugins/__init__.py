@@ -1,4 +1,4 @@
-"""The plugins: one file, one plugin. They lie in the project's top folder `plugins/`, by kind.
+"""Finds the plugins: one file is one plugin, in the top folder `plugins/` or of a user's.
 
 The wheel copies that folder in here; a checkout is served by extending the path.
 """

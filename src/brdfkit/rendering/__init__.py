@@ -1,4 +1,4 @@
-"""Path-traced pictures of materials."""
+"""`render`: path-traced pictures of materials: the scene, the passes, the picture file."""
 
 from brdfkit.rendering.rendering import Rendering as Rendering
 from brdfkit.rendering.rendering import render as render

@@ -1,4 +1,4 @@
-"""RGL material database: `.bsdf` files in the adaptive parameterisation (`brdfkit.adaptive`).
+"""RGL material database: `.bsdf` files in the adaptive parameterisation (`parameterisation.py`).
 
 [Dupuy & Jakob 2018]; https://rgl.epfl.ch/materials. Mitsuba's plugin `measured` renders
 them: a file with the field `rgb` in RGB variants, one with `spectra` in spectral variants.

@@ -1,4 +1,4 @@
-"""From any BRDF to the adaptive parameterisation (`adaptive.py`).
+"""Encodes any BRDF in the adaptive parameterisation: what `save` writes as `.bsdf`.
 
 [Dupuy & Jakob 2018]. What is tabulated is a function f(wi, wo) of directions (n, 3);
 the mean of its channels shapes the grid.

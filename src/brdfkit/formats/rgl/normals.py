@@ -1,4 +1,4 @@
-"""The microfacets of a BRDF, from the light it sends back to where it came from.
+"""The microfacet normals of a BRDF, computed from its retro-reflection.
 
 Where wi = wo = w, a surface of microfacets has
 
