@@ -4,8 +4,8 @@ python docs/make_architecture.py
 
 The layers are those that `make lint` holds (pyproject.toml), the arrows the imports that the code
 has, at the top of a file or within a function. An import that other arrows lead to as well is left
-out. A room's width goes with the root of its lines. `house.md` has every file in one line: the first
-of its docstring.
+out. A room's width goes with the root of its lines. `house.md` has every file in one line: the
+first of its docstring.
 """
 
 import ast
