@@ -62,16 +62,12 @@ class Subject:
         values = plain @ self.weights + squared @ self.weights**2
         return np.maximum(values, 0) if self.model.signed() else values
 
-    @cached_property
+    @property
     def rendered(self):
-        """The measured material as the variant renders it; that of samples is a table of what
-        `eval` finds between them."""
+        """The measured material as the variant renders it."""
         import mitsuba as mi
 
-        found = self.thing if mi.is_spectral else self.thing.rgb
-        if found.is_table:
-            return found
-        return Measured.from_table(found.table.values, found.table.phi_d_period, found.channels)
+        return (self.thing if mi.is_spectral else self.thing.rgb).rendered
 
     @cached_property
     def weights(self):

@@ -47,3 +47,22 @@ def periodic_bracket(x, n):
     x = x - n * dr.floor(x / n)
     lower = dr.minimum(mi.UInt32(x), n - 1)
     return lower, dr.select(lower + 1 == n, 0, lower + 1), x - mi.Float(lower)
+
+
+class Nodes:
+    """Increasing numbers, at which an axis has its values."""
+
+    def __init__(self, values):
+        self.count, self.rows = len(values), Rows(values)
+
+    def bracket(self, x):
+        """(lower, upper, share of the upper) of the nodes around `x`, clamped."""
+        import drjit as dr
+        import mitsuba as mi
+
+        above = dr.binary_search(1, self.count - 1, lambda node: self.rows.at(node) <= x)
+        lower = mi.UInt32(above - 1)
+        upper = dr.minimum(lower + 1, self.count - 1)
+        start, end = self.rows.at(lower), self.rows.at(upper)
+        width = dr.select(end > start, end - start, 1)
+        return lower, upper, dr.clip((x - start) / width, 0, 1)

@@ -8,7 +8,7 @@ counts as 0, as in `Measured.eval`.
 import numpy as np
 
 from brdfkit.colours import LUMINANCE, colour_science
-from brdfkit.host.arrays import Rows, bracket
+from brdfkit.host.arrays import Nodes, Rows, bracket
 
 
 def channels(values, wavelengths=None):
@@ -95,7 +95,7 @@ class Wavelengths:
     def __init__(self, values, wavelengths):
         order = np.argsort(wavelengths)
         self.count = len(order)
-        self.nodes = Rows(np.asarray(wavelengths, float)[order])
+        self.nodes = Nodes(np.asarray(wavelengths, float)[order])
         self.values = Rows(values[:, order].ravel())
 
     def mean(self, corners, si):
@@ -104,8 +104,7 @@ class Wavelengths:
 
         corners, spectrum = list(corners), mi.UnpolarizedSpectrum(0)
         for k, wavelength in enumerate(si.wavelengths):
-            position = self._position(wavelength)
-            *nodes, t = bracket(position, self.count)
+            *nodes, t = self.nodes.bracket(wavelength)
             means = [self._mean(corners, node) for node in nodes]
             spectrum[k] = dr.lerp(*means, t)
         return spectrum
@@ -116,13 +115,3 @@ class Wavelengths:
 
         values = (share * self.values.at(row * self.count + node) for row, share in corners)
         return dr.maximum(sum(values), 0)
-
-    def _position(self, wavelength):
-        """Where among the nodes, which need not be even: how many of the gaps lie below."""
-        import drjit as dr
-
-        position = 0
-        for k in range(self.count - 1):
-            low, high = self.nodes.at(k), self.nodes.at(k + 1)
-            position = position + dr.clip((wavelength - low) / (high - low), 0, 1)
-        return position

@@ -1,5 +1,7 @@
 """The properties that a plugin is given in a scene: checked, and brought to what Mitsuba holds."""
 
+import os
+
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
@@ -29,3 +31,15 @@ def fit_for_a_spectrum(props, model, name):
 
 def is_colour(value):
     return type(value).__name__.endswith("Color3d")
+
+
+def located(name):
+    """The file of that name as the scene finds it, beside its own; other names as they are."""
+    import mitsuba as mi
+
+    file, hash_sign, sample = name.rpartition("#")
+    for path, rest in ((name, ""), (file, hash_sign + sample)):
+        found = str(mi.file_resolver().resolve(path))
+        if os.path.isfile(found):
+            return found + rest
+    return name

@@ -1,5 +1,6 @@
 """`Measured`: a BRDF given by samples or by a table, with what is known of it."""
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -58,8 +59,9 @@ class Measured:
 
         Directions need not be normalised. `valid` (n,) marks what was measured; without it
         everything finite above the surface is. `standard_error`: of the values, likewise
-        (n, channels). `lookup(wi, wo)`, which may be a `Table`: values between the samples, where
-        the format defines them; without it `interpolation.py` interpolates.
+        (n, channels). `lookup(wi, wo)`: values between the samples, where the format defines them;
+        without it `interpolation.py` interpolates. One that has, as a `Table`, `scene_dict()` and
+        `mixed(weights)`, is rendered as it is; another one through the table that it gives.
         """
         name, channels, info = _words(name, channels, info)
         samples = Samples.checked(wi, wo, values, valid, channels, name)
@@ -184,11 +186,12 @@ class Measured:
         if self.standard_error is not None:
             changed["standard_error"] = np.sqrt(self.standard_error**2 @ weights**2)
         if self._table is not None:
-            changed["_table"] = replace(self._table, values=self._table.values @ weights)
+            changed["_table"] = self._table.mixed(weights)
         if self._samples is not None:
             changed["_samples"] = replace(self._samples, values=self.values @ weights)
         if self._lookup is not None:
-            changed["_lookup"] = _Mixed(self._lookup, weights)
+            mixed = getattr(self._lookup, "mixed", functools.partial(_Mixed, self._lookup))
+            changed["_lookup"] = mixed(weights)
         return replace(self, **changed)
 
     def audit(self):
@@ -200,18 +203,27 @@ class Measured:
         """
         return brdfkit.audit(self)
 
+    @cached_property
+    def tabulated(self):
+        """The same material given by its `table`."""
+        if self.is_table:
+            return self
+        table, info = self.table, self.info
+        return self.from_table(table.values, table.phi_d_period, self.channels, self.name, info)
+
+    @property
+    def rendered(self):
+        """What the renderer computes: this material, or its table where it can only that."""
+        own = self.is_table or hasattr(self._lookup, "scene_dict")
+        return self if own else self.tabulated
+
     def scene_dict(self):
-        """The dictionary for `mitsuba.load_dict`, in the current variant: the table, looked up."""
+        """The dictionary for `mitsuba.load_dict`, in the current variant: of what is `rendered`."""
         import mitsuba as mi
 
         spectral = mi.is_spectral and len(self.channels) > 1 and self.channels != RGB
-        material = self if spectral else self.rgb
-        values = np.ascontiguousarray(material.table.filled, np.float32)
-        entries = {
-            "type": "measured_table",
-            "table": mi.TensorXf(values),
-            "phi_d_period": float(material.table.phi_d_period),
-        }
+        material = (self if spectral else self.rgb).rendered
+        entries = (material._table or material._lookup).scene_dict()
         if spectral:
             entries["wavelengths"] = mi.TensorXf(wavelengths(material).astype(np.float32))
         return entries

@@ -6,7 +6,7 @@ An anisotropic table has the azimuth phi_h of the half vector as its first axis,
 over the full circle. A value stands at the centre of its cell.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -83,6 +83,20 @@ class Table:
         own = tuple(slice(a, a + n) for a, n in zip(added, self.shape, strict=True))
         cells = [(i[own] - a) % n for i, a, n in zip(nearest, added, self.shape, strict=True)]
         return self.values[tuple(cells)]
+
+    def mixed(self, weights):
+        """The table in other channels, the old ones mixed by `weights` (old, new)."""
+        return replace(self, values=self.values @ weights)
+
+    def scene_dict(self):
+        """The dictionary for `mitsuba.load_dict`; wavelengths are left to who knows them."""
+        import mitsuba as mi
+
+        return {
+            "type": "measured_table",
+            "table": mi.TensorXf(np.ascontiguousarray(self.filled, np.float32)),
+            "phi_d_period": float(self.phi_d_period),
+        }
 
     def eval(self, wi, wo):
         """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3): multilinear between cell centres.

@@ -73,7 +73,7 @@ def read(source):
     found = _checked(source, arrays, LAYOUT | (SPECTRA if spectral else COLOURS))
     over = Parameterisation(*(found[f.name] for f in fields(Parameterisation)))
     values = np.moveaxis(found["spectra" if spectral else "rgb"], 2, -1)
-    brdf = Adaptive(over, values, divided=bool(found["jacobian"]))
+    brdf = Adaptive(over, values, _drawable(found["luminance"]), bool(found["jacobian"]))
     channels = tuple(map(_channel, found["wavelengths"])) if spectral else RGB
     description = bytes(arrays.get("description", b""))[:LONGEST].decode("utf-8", errors="replace")
     wi, wo, brdf_values = brdf.at_grid()
@@ -104,9 +104,9 @@ def write(obj, stream):
         raise BrdfkitError(
             f"a {type(obj).__name__} has no BRDF; save a measured material, a model or a fit."
         )
-    brdf, luminance = adapted(obj.eval)
+    brdf = adapted(obj.eval)
     arrays = {f.name: getattr(brdf.over, f.name) for f in fields(brdf.over)}
-    arrays |= {"luminance": luminance, **_values(obj, np.moveaxis(brdf.values, -1, 2))}
+    arrays |= {"luminance": brdf.density, **_values(obj, np.moveaxis(brdf.values, -1, 2))}
     arrays = {name: array.astype(np.float32) for name, array in arrays.items()}
     arrays["jacobian"] = np.ones(1, np.uint8)
     arrays["description"] = np.frombuffer(_description(obj).encode(errors="replace"), np.uint8)
@@ -140,6 +140,13 @@ def _description(obj):
     else:
         what = repr(getattr(obj, "model", obj))
     return f"{what}; written by brdfkit {__version__}"
+
+
+def _drawable(luminance):
+    """The luminance (a, b, y, x) as a density: not negative, even for an incidence without any."""
+    density = np.maximum(luminance, 0)
+    density[~density.any(axis=(2, 3))] = 1
+    return density
 
 
 def _channel(wavelength):

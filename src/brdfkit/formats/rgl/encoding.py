@@ -10,7 +10,12 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats.rgl.normals import Hemisphere, power_iteration
-from brdfkit.formats.rgl.parameterisation import Adaptive, Parameterisation, from_square
+from brdfkit.formats.rgl.parameterisation import (
+    Adaptive,
+    Parameterisation,
+    from_square,
+    solid_angle,
+)
 from brdfkit.formats.rgl.warp import even_grid, interpolated
 from brdfkit.geometry.directions import from_angles, from_half_difference
 
@@ -41,7 +46,7 @@ ANISOTROPIC = Resolution(phi_i=12, theta_i=20, phi_m=64, theta_m=128, grid=48)
 
 
 def adapted(f):
-    """f as an `Adaptive`, and the density over u (a, b, y, x), not normalised, to sample it by.
+    """f as an `Adaptive`.
 
     Raises `BrdfkitError` where f is not finite.
     """
@@ -61,7 +66,7 @@ def adapted(f):
     excess = (1 + _spread(m) / D).reshape(above.shape) * (1 + LEAST_SEEN / cosines)
     density = np.maximum(M.mean(axis=-1), 0) / excess
     density[~density.any(axis=(2, 3))] = 1  # black
-    return Adaptive(over, M), density
+    return Adaptive(over, M, density)
 
 
 def parameterisation(f, quarters, size):
@@ -73,7 +78,7 @@ def parameterisation(f, quarters, size):
     theta_i = GRAZING * (1 - np.linspace(1, 0, size.theta_i) ** 1.5)  # closer towards grazing
     ndf, sigma = _microfacets(f, size)
     m = even_grid(size.grid)
-    density = (interpolated(ndf[None], m) + _spread(m)) * _solid_angle(m)
+    density = (interpolated(ndf[None], m) + _spread(m)) * solid_angle(m)
     wi, normals = from_angles(theta_i, phi_i[:, None]), from_angles(*from_square(m))
     cosines = wi @ normals.T
     height = 2 * cosines * normals[:, 2] - wi[..., 2:]  # cosθ_o
@@ -116,19 +121,13 @@ def _microfacets(f, size):
     return [np.concatenate([x, x[:1]]) for x in (D, hemisphere.projected(D))]
 
 
-def _solid_angle(m):
-    """dm/dx dy [sr] at points (n, 2) of the square of directions."""
-    theta, _ = from_square(m)
-    return 2 * np.pi**2 * m[:, 0] * np.sin(theta)
-
-
 def _spread(m):
     """A density [sr⁻¹] that is even over the square of directions, but for the innermost part.
 
     Beside the normals' it leaves half of the grid to the slopes of a highlight, where D is small
     and M changes most, and narrow cells to a peak that comes back from no other direction.
     """
-    return 1 / (_solid_angle(m) + INNERMOST)
+    return 1 / (solid_angle(m) + INNERMOST)
 
 
 def _evaluated(f, wi, wo):

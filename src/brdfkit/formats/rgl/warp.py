@@ -86,6 +86,12 @@ class Warp:
         tx = _solved(share - before, left, right)
         return np.stack([(x + tx) / (row.shape[1] - 1), (y + ty) / (len(rows) - 1)], axis=1)
 
+    def pdf(self, points, slices):
+        """Density of `sample` at points (n, 2); `slices` as `between` gives them."""
+        density, _, _ = self._tables
+        _, ny, nx = density.shape
+        return (ny - 1) * (nx - 1) * interpolated(density, points, slices)
+
     def invert(self, u, slices):
         """Where `sample` takes the points `u` (n, 2) from; `slices` as `between` gives them."""
         density, along, rows = self._tables

@@ -1,0 +1,72 @@
+"""A measured BRDF of the RGL database, in its file's own adaptive parameterisation.
+
+    {"type": "measured_adaptive", "filename": "paper_white_rgb.bsdf"}
+
+takes a `.bsdf` file, looked for beside the scene's own as a bitmap is; `Measured.scene_dict()`
+hands over what it has read. It is the BRDF of Mitsuba's own `measured`, but in every variant, for
+files with colours and with spectra. In spectral variants measured wavelengths stay what they are,
+and colours become smooth spectra. Negative values, colours out of gamut, count as 0.
+
+A file stores f cosθ_o, finite up to the horizon, over a unit square that is warped to the normals
+that wi sees. By this warp, and the file's luminance over the square, directions are drawn; a
+fiftieth of them by the cosine, for where either is 0. The diffuse reflectance (as in an albedo
+image) is the albedo, linear between the file's incidences: nobody can tell which part of a
+measurement is diffuse.
+
+J. Dupuy & W. Jakob, "An adaptive parameterization for efficient material acquisition and
+rendering", ACM TOG 37(6), 2018; https://rgl.epfl.ch/materials.
+"""
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.host.adaptive_lookup import AdaptiveLookup
+from brdfkit.host.channels import channels
+from brdfkit.host.measured_frame import measured_frame
+from brdfkit.host.properties import located
+
+ARRAYS = "phi_i", "theta_i", "ndf", "sigma", "vndf", "density"
+FLAGS = "isotropic", "parts", "divided"
+COSINE_SHARE = 0.02
+
+
+def define(mi):
+    """The class of `mi.BSDF` for the current variant."""
+
+    class MeasuredAdaptive(measured_frame(mi)):
+        def __init__(self, props):
+            super().__init__(props)
+            props = _read(props)
+            arrays = {name: np.array(props[name], np.float32) for name in ARRAYS}
+            self.lookup = AdaptiveLookup(**arrays, **{name: props[name] for name in FLAGS})
+            wavelengths = np.array(props["wavelengths"]) if "wavelengths" in props else None
+            self.values, self.albedos = (
+                channels(np.array(props[name]).reshape(-1, props[name].shape[-1]), wavelengths)
+                for name in ("values", "albedo")
+            )
+            self.draw_by(self.lookup, not props["isotropic"], COSINE_SHARE)
+            self.shape = props["values"].shape
+
+        def brdf(self, wi, wo, si):
+            return self.values.mean(self.lookup.corners(wi, wo), si)
+
+        def albedo(self, wi, si):
+            return self.albedos.mean(self.lookup.around(wi), si)
+
+        def to_string(self):
+            return f"MeasuredAdaptive[shape = {self.shape}]"
+
+    return MeasuredAdaptive
+
+
+def _read(props):
+    """What an RGL file's lookup hands over: `props`, or that of the file which they name."""
+    if "filename" in props:
+        from brdfkit.loading import load  # only here: listing the plugins should be quick
+
+        name, props = props["filename"], load(located(props["filename"])).scene_dict()
+        if "density" not in props:
+            raise BrdfkitError(f"{name} is no RGL file; give it to measured_table.")
+    if "density" not in props:
+        raise BrdfkitError("measured_adaptive needs a filename.")
+    return props

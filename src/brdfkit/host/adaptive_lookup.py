@@ -1,0 +1,111 @@
+"""RGL's adaptive parameterisation in the renderer, and the sampling that comes with it.
+
+`formats/rgl/parameterisation.py` says what it is, and has the same in NumPy. The warps of the unit
+square, between the stored incidences too, are Mitsuba's own.
+
+J. Dupuy & W. Jakob, "An adaptive parameterization for efficient material acquisition and
+rendering", ACM TOG 37(6), 2018.
+"""
+
+import drjit as dr
+
+from brdfkit.geometry import multilinear
+from brdfkit.geometry.vectors import angle, cos_theta_d, half_vector, reflect
+from brdfkit.host.arrays import Nodes, bracket
+
+# The least x of a half vector, 0.02 µrad from the normal: at 0 its density is infinite
+INNERMOST = 1e-4
+
+
+class AdaptiveLookup:
+    """Where a BRDF is stored, and a `Sampling` of it, in the current variant.
+
+    Of its `Parameterisation`: `phi_i` (a,), `theta_i` (b,), `ndf`, `sigma` (y, x), `vndf`
+    (a, b, y, x), `isotropic` and `parts`; of itself: `density` (a, b, n, n) and `divided`.
+    """
+
+    def __init__(self, phi_i, theta_i, ndf, sigma, vndf, density, isotropic, parts, divided):
+        import mitsuba as mi
+
+        self.isotropic, self.parts, self.divided = isotropic, parts, divided
+        self.nodes, self.n = (Nodes(phi_i), Nodes(theta_i)), density.shape[-1]
+        plain = {"normalize": False, "enable_sampling": False}
+        self.ndf, self.sigma = (mi.MarginalContinuous2D0(x, **plain) for x in (ndf, sigma))
+        angles = [phi_i.tolist(), theta_i.tolist()]
+        self.normals = mi.MarginalContinuous2D2(vndf, angles)
+        self.density = mi.MarginalContinuous2D2(density, angles)
+
+    def around(self, wi):
+        """(index, share) of the stored incidences around `wi`."""
+        angles = self._angles(self._turned(wi, wi))
+        axes = [(nodes, x) for nodes, x in zip(self.nodes, angles, strict=True) if nodes.count > 1]
+        brackets, shape = [nodes.bracket(x) for nodes, x in axes], [n.count for n, _ in axes]
+        return [(multilinear.flat(at, shape), t) for at, t in multilinear.corners(brackets)]
+
+    def corners(self, wi, wo):
+        """(row, share) of the stored values, rows (a b n n), whose sum is the BRDF."""
+        incidences = self.around(wi)
+        wi, wo = self._turned(wi, wi), self._turned(wo, wi)
+        m, u, _ = self._located(wi, wo)
+        factor = 1 / wo.z
+        if self.divided:
+            phi_i, theta_i = self._angles(wi)
+            factor *= self.ndf.eval(m) / (4 * self.sigma.eval(_to_square(theta_i, phi_i)))
+        n = self.n
+        for cell, share in multilinear.corners([bracket(x * (n - 1), n) for x in (u.y, u.x)]):
+            for incidence, weight in incidences:
+                yield incidence * n * n + multilinear.flat(cell, (n, n)), weight * share * factor
+
+    def sample(self, wi, u):
+        """A direction, possibly below the surface, for a point `u`, of which x and y count."""
+        import mitsuba as mi
+
+        turned = self._turned(wi, wi)
+        angles = self._angles(turned)
+        point, _ = self.density.sample(mi.Point2f(u.x, u.y), angles)
+        m, _ = self.normals.sample(point, angles)
+        sin_theta, cos_theta = dr.sincos(m.x * m.x * (dr.pi / 2))
+        phi_m = (2 * m.y - 1) * dr.pi
+        sin_phi, cos_phi = dr.sincos(phi_m + angles[0] if self.isotropic else phi_m)
+        normal = type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
+        return self._turned(reflect(turned, normal), wi)
+
+    def pdf(self, wi, wo):
+        """Density of `wo` per solid angle."""
+        wi, wo = self._turned(wi, wi), self._turned(wo, wi)
+        m, u, density = self._located(wi, wo)
+        density *= self.density.eval(u, self._angles(wi))
+        solid_angle = 2 * dr.pi**2 * m.x * dr.sin(m.x * m.x * (dr.pi / 2))  # dm / dx dy
+        return density / (solid_angle * 4 * cos_theta_d(wi, wo))
+
+    def _located(self, wi, wo):
+        """The half vector on the square of directions, from where the normals' warp takes it, and
+        the density of that warp there."""
+        import mitsuba as mi
+
+        angles, h = self._angles(wi), half_vector(wi, wo)
+        phi_m = dr.atan2(h.y, h.x)
+        m = _to_square(angle(h), phi_m - angles[0] if self.isotropic else phi_m)
+        m = mi.Point2f(dr.maximum(m.x, INNERMOST), m.y - dr.floor(m.y))
+        return m, *self.normals.invert(m, angles)
+
+    def _angles(self, wi):
+        """[phi_i, theta_i] of a direction that was turned."""
+        phi_i = dr.atan2(wi.y, wi.x)
+        # Nodes of a part of the circle are -π and above: π stands for the first
+        return [phi_i if self.parts < 2 else -dr.abs(phi_i), angle(wi)]
+
+    def _turned(self, w, wi):
+        """`w` turned or mirrored as brings `wi` to where phi_i has its nodes; and back."""
+        if self.parts < 2:
+            return w
+        sign_y = dr.select(wi.y < 0, 1, -1)
+        sign_x = dr.select(wi.x < 0, 1, -1) if self.parts == 4 else sign_y
+        return type(w)(w.x * sign_x, w.y * sign_y, w.z)
+
+
+def _to_square(theta, phi):
+    """The point (x, y) of a direction: θ = x² π/2, φ = (2y - 1) π."""
+    import mitsuba as mi
+
+    return mi.Point2f(dr.sqrt(theta * (2 / dr.pi)), (phi + dr.pi) / (2 * dr.pi))
