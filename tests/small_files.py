@@ -3,13 +3,14 @@
 import io
 import struct
 from functools import cache
+from pathlib import Path
 from unittest import mock
 
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.result import Fit
-from brdfkit.formats import formats
+from brdfkit.formats import Source, formats, rgl
 from brdfkit.formats.rgl import encoding
 from brdfkit.geometry.directions import from_angles
 from brdfkit.measured import Measured
@@ -127,6 +128,9 @@ def fit():
 # of the tables in an RGL file, which has 16 MB otherwise
 FEW_NODES = encoding.Resolution(phi_i=0, theta_i=3, phi_m=1, theta_m=8, grid=5)
 FEW_ALL_AROUND = encoding.Resolution(phi_i=2, theta_i=3, phi_m=8, theta_m=8, grid=5)
+# of tables in which a highlight still is one
+SOME_NODES = encoding.Resolution(phi_i=0, theta_i=6, phi_m=1, theta_m=32, grid=16)
+SOME_ALL_AROUND = encoding.Resolution(phi_i=3, theta_i=6, phi_m=16, theta_m=32, grid=16)
 MATERIALS = {"table": table, "spectrum": spectrum, "brushed": brushed, "fit": fit}
 
 
@@ -146,6 +150,20 @@ def written():
             found[f"{name}, written"] = (f"paint{module.SUFFIXES[0]}", stream.getvalue())
             break
     return found
+
+
+def rgl_file(source):
+    """The bytes of a small RGL file of a material or a model, close to it."""
+    stream = io.BytesIO()
+    some = {"ISOTROPIC": SOME_NODES, "ANISOTROPIC": SOME_ALL_AROUND}
+    with mock.patch.multiple(encoding, **some):
+        rgl.write(source, stream)
+    return stream.getvalue()
+
+
+def adaptive(data):
+    """What the bytes of an RGL file hold."""
+    return rgl.read(Source(Path("paint.bsdf"), None, data))
 
 
 FILES = {  # format or convention: (name, content)

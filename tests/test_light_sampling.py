@@ -6,6 +6,7 @@ halves the light of one sample each; so would a density that is not that of the 
 
 import numpy as np
 import pytest
+from small_files import adaptive, rgl_file
 
 # A right renderer is further off once in 7,000 tests, for some 100 tests
 SIGMA = 3.8 + 0.5
@@ -41,7 +42,9 @@ def radiance(mi, bsdf, counts, spp=2**15):
 def materials():
     import brdfkit as bk
 
-    return {**{n: m() for n, m in bk.models().items()}, "dusty_gold": bk.load("dusty_gold")}
+    gold = bk.load("dusty_gold")
+    measured = {"dusty_gold": gold, "dusty_gold in RGL's file": adaptive(rgl_file(gold))}
+    return {n: m() for n, m in bk.models().items()} | measured
 
 
 @pytest.mark.parametrize("name", materials())

@@ -1,11 +1,12 @@
-"""Measured materials in the renderer: looked up in every variant, sampled by their own table."""
+"""Measured materials in the renderer: looked up in every variant, sampled by what they hold."""
 
+import lzma
 from functools import cache
 
 import drjit as dr
 import numpy as np
 import pytest
-from small_files import place
+from small_files import adaptive, place, rgl_file, written
 
 import brdfkit as bk
 from brdfkit.catalogue import shipped
@@ -18,6 +19,7 @@ from brdfkit.model import labels
 from brdfkit.samples import Table
 
 VARIANTS = ("llvm_ad_rgb", "llvm_ad_mono", "llvm_ad_spectral", "scalar_rgb", "scalar_spectral")
+POLARIZED = ("llvm_ad_mono_polarized", "llvm_ad_spectral_polarized", "scalar_spectral_polarized")
 NODES = (450.0, 550.0, 650.0)  # nm
 
 
@@ -50,10 +52,17 @@ def below_zero(channels=("R", "G", "B")):
     return bk.Measured.from_table(values, channels=channels, name="below zero")
 
 
+@cache
+def in_rgl(channels=("R", "G", "B")):
+    """An anisotropic material from a file of RGL's."""
+    return adaptive(rgl_file(brushed(channels)[0]))
+
+
 MATERIALS = {
     "dusty_gold": lambda: bk.load("dusty_gold"),
     "brushed": lambda: brushed()[0],
     "below_zero": below_zero,
+    "in_rgl": in_rgl,
 }
 
 
@@ -64,7 +73,7 @@ def seen(mi, bsdf, wi, wo, wavelengths=None):
     if wavelengths is not None:
         si.wavelengths = wavelengths
     value = bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(*map(float, wo)))
-    return np.array(value).ravel() / wo[2]
+    return np.array(mi.unpolarized_spectrum(value)).ravel() / wo[2]
 
 
 @pytest.mark.parametrize("name", MATERIALS)
@@ -96,7 +105,7 @@ def test_an_anisotropic_table_is_its_material():
 
 
 @pytest.mark.parametrize("name", MATERIALS)
-@pytest.mark.parametrize("label", VARIANTS)
+@pytest.mark.parametrize("label", VARIANTS + POLARIZED)
 def test_in_every_variant(name, label, variant):
     """The colour in an rgb variant, its luminance in mono, a spectrum with that colour else."""
     import mitsuba as mi
@@ -129,7 +138,7 @@ def colour_of(spectrum):
 
 
 @pytest.mark.parametrize("label", ["llvm_ad_spectral", "scalar_spectral"])
-@pytest.mark.parametrize("make", [lambda nodes: brushed(nodes)[0], below_zero])
+@pytest.mark.parametrize("make", [lambda nodes: brushed(nodes)[0], below_zero, in_rgl])
 def test_measured_wavelengths_stay(label, make, variant):
     """Between the wavelengths the BRDF is linear, beyond them constant."""
     import mitsuba as mi
@@ -161,8 +170,15 @@ def test_an_unknown_cell_takes_the_nearest(shape):
     np.testing.assert_array_equal(np.take_along_axis(distance, taken, 1)[:, 0], distance.min(1))
 
 
-SCENE = """<scene version="3.0.0"><shape type="sphere"><bsdf type="measured_table">
+SCENE = """<scene version="3.0.0"><shape type="sphere"><bsdf type="{}">
 <string name="filename" value="{}"/></bsdf></shape></scene>"""
+FOUND = {
+    "below_zero.npz": ("measured_table", "MeasuredTable"),
+    "abrdf.dat#2": ("measured_table", "MeasuredTable"),
+    "dusty_gold": ("measured_table", "MeasuredTable"),
+    "paint.bsdf": ("measured_adaptive", "MeasuredAdaptive"),
+    "paint.bsdf.xz": ("measured_table", "MeasuredTable"),  # its table, where that is asked for
+}
 
 
 @pytest.mark.parametrize("parallel", [False, True])
@@ -171,11 +187,30 @@ def test_a_file_lies_beside_its_scene(parallel, tmp_path, monkeypatch, llvm_vari
     (scenes := tmp_path / "scenes").mkdir()
     bk.save(below_zero(), scenes / "below_zero.npz")
     place(scenes, "curet")
+    place(scenes, "rgl, written")
+    place(scenes, "rgl, written", lzma.compress(written()["rgl, written"][1]), "paint.bsdf.xz")
     monkeypatch.chdir(tmp_path)
-    for name in ("below_zero.npz", "abrdf.dat#2", "dusty_gold"):
-        (scenes / "scene.xml").write_text(SCENE.format(name))
+    for name, (plugin, shown) in FOUND.items():
+        (scenes / "scene.xml").write_text(SCENE.format(plugin, name))
         scene = llvm_variant.load_file("scenes/scene.xml", parallel=parallel)
-        assert "MeasuredTable" in str(scene.shapes()[0].bsdf())
+        assert shown in str(scene.shapes()[0].bsdf())
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("entries", "said"),
+    [
+        ({"type": "measured_adaptive"}, "measured_adaptive needs a filename"),
+        (
+            {"type": "measured_adaptive", "filename": "dusty_gold"},
+            "dusty_gold is no RGL file; give it to measured_table",
+        ),
+        ({"type": "measured_table"}, "measured_table needs a filename"),
+    ],
+)
+def test_says_what_file_it_needs(entries, said, llvm_variant):
+    with pytest.raises(RuntimeError, match=said):
+        llvm_variant.load_dict(entries)
 
 
 @pytest.mark.parametrize("name", MATERIALS)

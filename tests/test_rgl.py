@@ -6,12 +6,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from small_files import written
+from small_files import adaptive, rgl_file, written
 
 import brdfkit as bk
 from brdfkit import checks
-from brdfkit.checks.sampling import uniform
-from brdfkit.checks.subject import Subject, incidences, random_pairs
+from brdfkit.checks.sampling import spread, uniform
+from brdfkit.checks.subject import INCIDENCES, Subject, incidences, random_pairs
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit
 from brdfkit.formats.rgl import encoding, tensor_file
@@ -382,6 +382,110 @@ def test_a_size_that_the_file_does_not_have_is_not_allocated(tmp_path):
     path.write_bytes(data.replace(shape, np.full(8, 2**63, "<u8").tobytes()))
     with pytest.raises(BrdfkitError, match=r"'ndf', 92233.* is not within"):
         load(path)
+
+
+# -- rendering --------------------------------------------------------------------------------
+
+
+def below_zero(fields):
+    """As colours out of gamut are, and an instrument's zero."""
+    fields["rgb"] -= fields["rgb"].mean(axis=(2, 3, 4), keepdims=True) * np.float32(0.5)
+
+
+def partly_dark(fields):
+    """No luminance for one incidence, and for half of the others', though they have values."""
+    fields["luminance"][:, 2] = 0
+    fields["luminance"][..., ::2, :] = 0
+
+
+def two_azimuths(fields):
+    """An isotropic file may have two phi_i."""
+    fields["phi_i"] = np.float32([-1, 2])
+    for name in ("vndf", "luminance", "rgb"):
+        fields[name] = np.concatenate([fields[name], fields[name] ** 2 + 0.1])
+
+
+def one_incidence(fields):
+    for name in ("vndf", "luminance", "rgb"):
+        fields[name] = fields[name][:, 3:4]
+    fields["theta_i"] = np.float32([0.7])
+
+
+CHANGES = {**variations(), **{f.__name__: f for f in (below_zero, partly_dark, two_azimuths)}}
+CHANGES["one_incidence"] = one_incidence
+STATISTICS = ("chi squared", "coverage", "weights", "finite")
+
+
+def rendered(kind):
+    """A small material, by its symmetry or how its file was changed."""
+    if kind in SYMMETRIES:
+        make, _ = SYMMETRIES[kind]
+        return adaptive(rgl_file(make()))
+    fields = unpacked(rgl_file(bk.models()["ggx"]()))
+    CHANGES[kind](fields)
+    return adaptive(packed(fields))
+
+
+@pytest.mark.parametrize("kind", [*SYMMETRIES, *CHANGES])
+def test_what_is_rendered_is_what_eval_says(llvm_variant, kind):
+    material = rendered(kind)
+    subject = Subject(material)
+    assert "MeasuredAdaptive" in str(subject.bsdf)
+    for wi, wo in (pairs(degrees=89.5), random_pairs(20_000, seed=6, max_degrees=89.99)):
+        expected = material.eval(wi, wo) * wo[:, 2:]
+        found = subject.plugin_eval(wi, wo)
+        assert np.median(relative(found, expected)) < 2e-6
+        assert np.quantile(relative(found, expected), 0.999) < 1e-3
+        assert np.abs(found - expected).max() < 1e-4 * expected.max()
+
+
+@pytest.mark.parametrize("kind", [*SYMMETRIES, *CHANGES])
+def test_it_is_sampled_as_it_says(llvm_variant, kind):
+    """Where the file has no luminance, too."""
+    report = bk.check(rendered(kind), only=STATISTICS)
+    assert report, str(report)
+
+
+@pytest.mark.parametrize("kind", ["two planes", "half turn"])
+@pytest.mark.parametrize("x", [1, -1])
+def test_a_plane_of_symmetry_is_no_edge(llvm_variant, kind, x):
+    """There phi_i is π, or -π: from single precision both may come, the file has one."""
+    material = rendered(kind)
+    _, wo = pairs(1000)
+    wi = np.tile([0.6 * x, 0, 0.8], (1000, 1))
+    found = Subject(material).plugin_eval(wi, wo) / wo[:, 2:]
+    assert np.quantile(relative(found, material.eval(wi, wo)), 0.99) < 1e-3
+
+
+def test_spectra_are_rendered(variant):
+    material = adaptive(rgl_file(spectral()))
+    wi, wo = pairs(5000, degrees=89.5)
+    for label in ("llvm_ad_spectral", "llvm_ad_rgb"):
+        variant(label)
+        subject = Subject(material)
+        found, expected = subject.plugin_eval(wi, wo), subject.values(wi, wo) * wo[:, 2:]
+        assert np.quantile(relative(found, expected), 0.999) < 1e-4
+        assert bk.check(material, only=STATISTICS)
+    assert "MeasuredAdaptive" in str(subject.bsdf)  # as the colours of the spectra
+
+
+@pytest.mark.parametrize("name", DATABASE)
+def test_the_database_is_rendered_as_by_mitsuba(llvm_variant, measured_data, name):
+    """And the weights of samples vary no more: E[w²] ≤ E'[w²] / 0.98 with a fiftieth of cosine."""
+    path = measured_data / "rgl" / f"{name}_rgb.bsdf"
+    ours, theirs = Subject(load(path)), Rendered(path)
+    wi, wo = pairs(50_000, degrees=89.5)
+    grazing = np.minimum(wi[:, 2], wo[:, 2]) < np.cos(np.radians(80))
+    expected = np.maximum(theirs.plugin_eval(wi, wo), 0)
+    differences = relative(ours.plugin_eval(wi, wo), expected)
+    bright = expected.mean(axis=1) > 1e-3 * expected.mean(axis=1).max()
+    for where in (grazing, ~grazing):
+        assert np.median(differences[where]) < 1e-6
+        assert np.quantile(differences[where], 0.95) < 1e-4
+        assert differences[where & bright].max() < 1e-3
+    for degrees in INCIDENCES:
+        most = (1 + spread(theirs, degrees, 100_000) ** 2) / 0.98
+        assert 1 + spread(ours, degrees, 100_000) ** 2 < most + 1e-3
 
 
 # -- writing ----------------------------------------------------------------------------------
