@@ -1,4 +1,4 @@
-"""A measured BRDF of the RGL database, in its file's own adaptive parameterisation.
+"""Adaptive parameterisation: a measured BRDF of the RGL database, looked up as its file stores it.
 
     {"type": "measured_adaptive", "filename": "paper_white_rgb.bsdf"}
 
