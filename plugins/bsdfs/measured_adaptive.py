@@ -13,8 +13,7 @@ fiftieth of them by the cosine, for where either is 0. The diffuse reflectance (
 image) is the albedo, linear between the file's incidences: nobody can tell which part of a
 measurement is diffuse.
 
-J. Dupuy & W. Jakob, "An adaptive parameterization for efficient material acquisition and
-rendering", ACM TOG 37(6), 2018; https://rgl.epfl.ch/materials.
+[Dupuy & Jakob 2018]; https://rgl.epfl.ch/materials
 """
 
 import numpy as np

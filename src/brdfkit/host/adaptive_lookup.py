@@ -3,8 +3,7 @@
 `formats/rgl/parameterisation.py` says what it is, and has the same in NumPy. The warps of the unit
 square, between the stored incidences too, are Mitsuba's own.
 
-J. Dupuy & W. Jakob, "An adaptive parameterization for efficient material acquisition and
-rendering", ACM TOG 37(6), 2018.
+[Dupuy & Jakob 2018]
 """
 
 import drjit as dr
