@@ -31,15 +31,14 @@ TEXT = """# Measured materials
 Every measurement that was at hand when `docs/make_measured.py` ran, looked up and path-traced in
 the same light: brdfkit's own, then third-party files, which are shown here and not shipped.
 What begins with *neural* is no measurement, but a neural reconstruction of one in MERL's or
-Nielsen's collection (A. Sztrajman et al., "Neural BRDF Representation and Importance Sampling",
-CGF 40(6), 2021).
+Nielsen's collection [Sztrajman et al. 2021].
 
 ![A ball of each](measured.jpg)
 
-*std*: standard deviation of the weight of a sample over its mean, at 0, 30, 60, 75 and 85°; by a
-table of half vectors and a tenth of cosine samples. *albedo*: at 0 and 60°, mean of the channels.
-*open*: seconds from the file to a BSDF. *time*: of a picture, in units of an analytic Ward's.
-*doubts*: how many things `brdfkit info` finds to say.
+*std*: standard deviation of the weight of a sample over its mean, at 0, 30, 60, 75 and 85°; RGL's
+files (`_rgb`) are sampled by their own luminance, all others by a table of half vectors. *albedo*:
+at 0 and 60°, mean of the channels. *open*: seconds from the file to a BSDF. *time*: of a picture,
+in units of an analytic Ward's. *doubts*: how many things `brdfkit info` finds to say.
 
 """
 
