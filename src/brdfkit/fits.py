@@ -10,8 +10,10 @@ from brdfkit.materials import measured
 from brdfkit.measured.selection import selected
 from brdfkit.model import labels
 from brdfkit.model.evaluation import clamped_share
+from brdfkit.threads import in_turn
 
 
+@in_turn
 def fit(
     name,
     data,

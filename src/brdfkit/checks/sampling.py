@@ -4,6 +4,7 @@ import numpy as np
 
 from brdfkit.checks.subject import INCIDENCES, checked, incidences
 from brdfkit.geometry.quadrature import TOLERANCE, directional_albedo
+from brdfkit.padding import padded
 
 # All tests of one check together reject a right sampler once in a hundred runs; seeds are
 # fixed, so a check that passed goes on to pass.
@@ -128,5 +129,5 @@ def uniform(n, seed):
     """Random numbers for `n` samples, (1D, 2D)."""
     import mitsuba as mi
 
-    u = np.random.default_rng(seed).random((3, n), np.float32)
+    u = [padded(row) for row in np.random.default_rng(seed).random((3, n), np.float32)]
     return mi.Float(u[0]), mi.Point2f(u[1], u[2])

@@ -15,6 +15,7 @@ from brdfkit.measured.tabulation import looked_up, reciprocal, sampled, steady, 
 from brdfkit.names import printable
 from brdfkit.samples import Samples, Table
 from brdfkit.samples.samples import require_some
+from brdfkit.threads import cached_in_turn, in_turn
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +126,7 @@ class Measured:
             return self._samples
         return Samples.of_table(self._table)
 
-    @cached_property
+    @cached_in_turn
     def table(self):
         """The table to look up in; that of samples has what lies between them."""
         if self._table is not None:
@@ -150,7 +151,7 @@ class Measured:
             brdf = reciprocal(steady(self._lookup, self.anisotropic))
         return sampled(brdf, len(self.channels), shape)
 
-    @cached_property
+    @cached_in_turn
     def _between(self):
         """The BRDF (wi, wo) → (n, channels) between the samples."""
         return self._lookup or Scattered(self.samples, self.anisotropic)
@@ -200,6 +201,7 @@ class Measured:
         """
         return brdfkit.audit(self)
 
+    @in_turn
     def scene_dict(self):
         """The dictionary for `mitsuba.load_dict`, in the current variant: the table, looked up."""
         import mitsuba as mi
