@@ -13,6 +13,7 @@ from brdfkit.checks.failure import described
 from brdfkit.checks.subject import Finding, Subject, checks
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.materials import material
+from brdfkit.threads import in_turn
 
 for _module in pkgutil.iter_modules(__path__):
     importlib.import_module(f"{__name__}.{_module.name}")
@@ -37,6 +38,7 @@ class Report:
         return "\n".join([f"{self.name}: {'passed' if self else 'failed'}", *lines])
 
 
+@in_turn
 def check(thing, only=None, progress=None):
     """Check a model with values, a fit or a measured material; returns a `Report`.
 
@@ -50,7 +52,9 @@ def check(thing, only=None, progress=None):
     """
     thing = material(thing)
     if llvm.use_variant().startswith("scalar"):
-        raise BrdfkitError(f"check needs an LLVM or CUDA variant of Mitsuba; {llvm.REMEDY}.")
+        usable = llvm.loaded_version() >= llvm.OLDEST
+        remedy = "set llvm_ad_rgb" if usable else llvm.remedy()
+        raise BrdfkitError(f"check needs an LLVM or CUDA variant of Mitsuba; {remedy}.")
     subject = Subject(thing)
     names = list(checks) if only is None else list(only)
     for name in names:
