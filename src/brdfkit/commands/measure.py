@@ -6,6 +6,7 @@ import click
 
 from brdfkit.commands._errors import say
 from brdfkit.commands._options import output_options
+from brdfkit.commands._stopping import status
 from brdfkit.commands.info import print_audit
 
 
@@ -66,4 +67,4 @@ def measure(
     print_audit(audited, [output], console)
     if "interrupted" in found.info:
         say(f"interrupted; measured with {found.info['interrupted']}.")
-        context.exit(130)
+        context.exit(status())
