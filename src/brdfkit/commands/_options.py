@@ -42,6 +42,6 @@ def values_option(command):
         "values",
         multiple=True,
         metavar="PARAMETER=VALUE",
-        help="A parameter of the models named, a number or R,G,B; repeat it.",
+        help="Set a parameter of the models, to a number or R,G,B; repeat it for more.",
     )
     return option(command)

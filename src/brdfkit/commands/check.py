@@ -10,7 +10,10 @@ from brdfkit.commands._options import output_options, values_option
 @values_option
 @output_options
 def check(things, values, console):
-    """Check that models sample, conserve energy and differentiate."""
+    """Check that materials sample, conserve energy and differentiate.
+
+    Models, fits and measured files. The exit status is 1 where one of them fails.
+    """
     from brdfkit.checks import check as check_thing
     from brdfkit.commands._targets import material
 

@@ -17,17 +17,31 @@ from brdfkit.commands.render import path_trace
     "--model",
     "names",
     multiple=True,
-    help="A model or FILE.py; repeat it. Default: all.",
+    help="A model, or FILE.py with one; repeat it for more. Default: all.",
 )
-@click.option("--loss", default="log", show_default=True, help="cosine, log, cbrt, plain.")
+@click.option("--loss", default="log", show_default=True, help="One of cosine, log, cbrt, plain.")
 @click.option("--robust", help="Weigh outliers down: bisquare, huber, cauchy ...")
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="Folder for the results. Default: none; with --render, the material's name.",
+)
 @click.option("--render", "rendered", is_flag=True, help="Path-trace the measurement and the fits.")
-@click.option("--max-angle", default=80.0, show_default=True, help="Use angles below [degrees].")
+@click.option(
+    "--max-angle",
+    default=80.0,
+    show_default=True,
+    help="Leave out samples with an angle at or beyond it [degrees].",
+)
 @render_options
 @output_options
 def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed, console):
-    """Fit models to a measured FILE, or to a material of brdfkit's."""
+    """Fit models to a measured FILE, and compare them.
+
+    FILE may also be the name of a material that brdfkit knows. Ctrl-C keeps the fits that are
+    finished.
+    """
     from brdfkit.commands._targets import fit_file, results
     from brdfkit.comparing import compare
     from brdfkit.materials import measured

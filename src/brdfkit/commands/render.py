@@ -26,7 +26,8 @@ def render(things, output, values, spp, size, seed, console):
     """Path-trace fits, models, measured files or a Mitsuba scene.
 
     Several are rendered side by side; the first is the reference of the differences. A scene is
-    rendered alone, in its own size and, without --spp, with its own samples per pixel.
+    rendered alone, in its own size, and without --spp with its own samples per pixel. Ctrl-C keeps
+    the samples that all pictures have.
     """
     from brdfkit.commands._targets import material, picture_file
     from brdfkit.names import slug
