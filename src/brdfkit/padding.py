@@ -5,17 +5,26 @@ backend reads whole packets: up to 15 numbers behind the end. Where the array en
 memory and nothing follows, the process ends there.
 """
 
+import mmap
+
 import numpy as np
 
 PACKET = 16  # numbers, the most (AVX-512)
 
 
 def padded(values):
-    """A copy of `values` (n,), contiguous, with a packet of its own memory behind it.
+    """`values` (n,), contiguous, with a packet of readable memory behind them.
+
+    They are copied only where they are not contiguous, or too near the end of a page.
 
     >>> padded(np.arange(3.0))
     array([0., 1., 2.])
     """
-    room = np.zeros(len(values) + PACKET, values.dtype)
-    room[: len(values)] = values
-    return room[: len(values)]
+    values = np.ascontiguousarray(values)
+    left = -(values.ctypes.data + values.nbytes) % mmap.PAGESIZE  # bytes of the last page
+    if left >= PACKET * values.itemsize:
+        return values
+    room = np.empty(len(values) + PACKET, values.dtype)
+    copy, behind = np.split(room, [len(values)])
+    copy[:], behind[:] = values, 0
+    return copy
