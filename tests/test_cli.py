@@ -4,6 +4,7 @@ import json
 import os
 import re
 import resource
+import signal
 import subprocess
 import sys
 import time
@@ -14,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from rich.cells import cell_len
 from small_files import merl
 
 import brdfkit as bk
@@ -190,6 +192,16 @@ def test_render_a_scene_and_a_fit(cli):
         assert Path(made).exists()
 
 
+@pytest.mark.quick
+@pytest.mark.parametrize(("words", "spp"), [([], 7), (["--spp", "3"], 3), (["--spp", "64"], 64)])
+def test_a_scene_has_its_own_samples_per_pixel(cli, words, spp):
+    sampler = '<sampler type="independent"><integer name="sample_count" value="7"/></sampler>'
+    Path("room.xml").write_text(SCENE.format(alpha=0.3).replace("<film", f"{sampler}<film"))
+    result = cli("render", "room.xml", *words, "--json")
+    assert_fine(result)
+    assert json.loads(result.stdout)["spp"] == spp
+
+
 def test_check(cli):
     Path("felt.py").write_text(USER_MODEL)
     result = cli("check", "lambert", "felt.py", "--json")
@@ -236,16 +248,19 @@ def test_check_fails_with_status_1(cli, monkeypatch):
         ["models"],
         ["models", "ward"],
         ["info"],
-        ["info", "paint.binary", "--json"],
+        ["info", "paint.binary"],
         ["fit", "paint.binary", "-m", "lambert"],
         ["render", "lambert", *SMALL],
     ],
     ids=" ".join,
 )
-def test_quiet_prints_nothing(cli, words):
+def test_quiet_prints_nothing_but_json(cli, words):
     result = cli(*words, "--quiet")
     assert_fine(result)
     assert result.stdout == ""
+    result = cli(*words, "--quiet", "--json")
+    assert_fine(result)
+    assert json.loads(result.stdout)
 
 
 @pytest.mark.quick
@@ -349,6 +364,8 @@ TRAPS = [
     ([*WARD, "-p", "diffuse_reflectance=-1"], ["diffuse_reflectance = -1", "at least 0"]),
     ([*WARD, "-p", "diffuse_reflectance=1,2"], ["diffuse_reflectance=R,G,B"]),
     ([*WARD, "--size", "0"], ["--size", "x>=1"]),
+    ([*WARD, "--size", "100000"], ["100000×100000", "1,250 GB", "give a smaller size"]),
+    ([*LAMBERT, "--render", "--size", "100000"], ["2 pictures of 100000×100000", "smaller size"]),
     ([*WARD, "--spp", "0"], ["--spp", "x>=1"]),
     ([*WARD, "--spp", "many"], ["--spp", "many"]),
     ([*WARD, "--seed", "-1"], ["--seed"]),
@@ -369,9 +386,16 @@ TRAPS = [
     ([*LAMBERT, "-o", "paint.binary"], ["paint.binary", "folder"]),
     ([*LAMBERT, "-o", "paint.binary/new"], ["paint.binary/new", "folder"]),
     (["fit"], ["FILE", "fit --help"]),
-    (["info", "--nope"], ["--nope", "info --help"]),
-    (["nope"], ["nope", "brdfkit --help"]),
-    (["--nope"], ["--nope"]),
+    (["info", "--nope"], ["no option '--nope'; there are --output", "see brdfkit info --help."]),
+    (
+        [*WARD, "--spx", "3"],
+        ["no option '--spx'; did you mean --spp? There are --output", "--seed"],
+    ),
+    (["nope"], ["no command 'nope'; there are check, convert", "see brdfkit --help."]),
+    (["rendr"], ["no command 'rendr'; did you mean render? There are check", "brdfkit --help."]),
+    (["data", "gte"], ["no command 'gte'; did you mean get? There are", "brdfkit data --help."]),
+    (["--nope"], ["no option '--nope'; there are --version, --help; see brdfkit --help."]),
+    (["--versio"], ["did you mean --version?"]),
 ]
 
 
@@ -445,6 +469,112 @@ def interrupting(console, what):
             raise KeyboardInterrupt
 
     yield progress
+
+
+WRITES_ITS_SECOND_FIT = """
+import os, time
+from brdfkit.cli import main
+
+replace, written = os.replace, []
+
+def slow(source, target):
+    if written:
+        print("writing", flush=True)
+        time.sleep(60)
+    written.append(target)
+    replace(source, target)
+
+os.replace = slow
+main(["fit", "paint.binary", "-m", "lambert", "-m", "phong", "-o", "out"])
+"""
+
+
+@pytest.mark.parametrize("received", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_command_cleanly(here, received):
+    """In a process of its own, while it writes a file."""
+    command = [sys.executable, "-c", WRITES_ITS_SECOND_FIT]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen(command, text=True, cwd=here, **pipes) as process:
+        assert process.stdout.readline() == "writing\n"
+        assert [name for name in tree(Path("out")) if name.startswith(".brdfkit-")]
+        process.send_signal(received)
+        printed, told = process.communicate(timeout=60)
+    assert process.returncode == 128 + received
+    assert told == "brdfkit: interrupted; 1 of 2 fits are finished.\n"
+    assert "lambert fitted to paint" in printed
+    assert tree(Path("out")) == ["lambert.json"]
+
+
+@pytest.mark.quick
+def test_after_a_command_a_signal_does_what_it_did_before(cli):
+    before = signal.getsignal(signal.SIGTERM)
+    assert_fine(cli("models"))
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+# Tables at all widths
+
+TABLES = [
+    ["models"],
+    ["models", "ward"],
+    ["models", "koenderink"],
+    ["models", "mixture"],
+    ["info"],
+    ["info", "paint.binary"],
+    ["data"],
+    ["data", "list", "merl"],
+    ["data", "list", "rgl"],
+    ["data", "list", "cornell"],
+]
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("words", TABLES, ids=" ".join)
+def test_no_word_of_a_table_is_lost(cli, monkeypatch, words):
+    def printed(columns):
+        monkeypatch.setenv("COLUMNS", str(columns))
+        result = cli(*words)
+        assert_fine(result)
+        return result.stdout
+
+    expected = set(re.findall(r"[^\s:─]+", printed(500)))
+    for columns in (40, 60, 80, 120):
+        shown = printed(columns)
+        assert "…" not in shown
+        assert expected - set(re.findall(r"[^\s:─]+", shown)) == set()
+
+
+LONG = "a-word-of-a-length-that-is-rare"
+COLUMNS = "model", ">PSNR [dB]", "", "what it is"
+ROWS = [
+    ("漆 with a long name (2)", "123.456789", "to download", LONG),
+    ("ward", "", "here", "[bold]no markup[/bold] :car:"),
+    ("", "1", "", ""),
+]
+BLOCK = """
+model: ward
+  PSNR [dB]: -
+  here
+  what it is: [bold]no
+    markup[/bold] :car:
+"""
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("columns", [30, 40, 80, 81, 82, 83, 84, 120])
+def test_a_table_is_one_or_a_block_for_each_row(monkeypatch, capsys, columns):
+    from brdfkit.commands._console import Console
+
+    monkeypatch.setenv("COLUMNS", str(columns))
+    Console().table(COLUMNS, ROWS[:2], ROWS[2:], title="an [important] table")
+    shown = capsys.readouterr().out
+    words = {word for row in (COLUMNS, *ROWS) for text in row for word in text.lstrip(">").split()}
+    assert {word.strip(":") for word in words} <= {word.strip(":") for word in shown.split()}
+    assert "an [important] table" in shown
+    assert "…" not in shown
+    assert ("───" in shown) == (columns >= 83)
+    assert columns != 30 or BLOCK in shown
+    assert max(map(cell_len, shown.splitlines())) <= max(columns, len(f"    {LONG}"))
 
 
 # The bar

@@ -14,6 +14,8 @@ from types import SimpleNamespace
 import pytest
 
 from brdfkit import llvm
+from brdfkit.checks import check
+from brdfkit.errors import BrdfkitError
 
 REPLACED = "which is not an LLVM of version 17 or newer"
 
@@ -101,6 +103,30 @@ def test_bundled_before_system_and_named_before_bundled(machine, monkeypatch):
     assert llvm.find_library() == bundled
     monkeypatch.setenv(llvm.VARIABLE, named)
     assert llvm.find_library() == named
+
+
+@pytest.mark.quick
+def test_the_advice_is_to_install_or_to_import_in_another_order(machine):
+    assert llvm.remedy().startswith("install karellen-llvm-core")
+    machine.add_bundled()
+    assert llvm.remedy() == "start Python anew and import brdfkit before mitsuba and drjit"
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("loaded", "found", "advice"),
+    [
+        (23, "/usr/lib/libLLVM.so.23", "set llvm_ad_rgb"),
+        (15, "/usr/lib/libLLVM.so.23", "start Python anew and import brdfkit before"),
+        (-1, None, "install karellen-llvm-core"),
+    ],
+)
+def test_a_check_without_llvm_says_what_to_do(monkeypatch, loaded, found, advice):
+    monkeypatch.setattr(llvm, "use_variant", lambda: "scalar_rgb")
+    monkeypatch.setattr(llvm, "loaded_version", lambda: loaded)
+    monkeypatch.setattr(llvm, "find_library", lambda: found)
+    with pytest.raises(BrdfkitError, match=f"needs an LLVM or CUDA variant of Mitsuba; {advice}"):
+        check("lambert")
 
 
 @pytest.mark.quick
@@ -192,7 +218,8 @@ try:
     {variant if when == "after" else ""}
     {RENDER.strip().splitlines()[0]}
 except bk.BrdfkitError as error:
-    assert "import brdfkit first" in str(error)
+    assert str(error).endswith("import brdfkit before mitsuba and drjit."), error
+    assert "install" not in str(error)
 else:
     raise AssertionError("a kernel ran")
 """

@@ -1,14 +1,15 @@
 """Pictures: repeatable, unbiased in their seeds, rightly exposed; written whole or not at all."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.colours import colour_science
+from brdfkit.colours import colour_science, luminance
 from brdfkit.errors import BrdfkitError
-from brdfkit.rendering import Rendering, render, render_scene
+from brdfkit.rendering import Rendering, memory, render, render_scene
 from brdfkit.rendering.montage import colour_differences, montage
 from brdfkit.rendering.scenes import ball, ball_mask
 from brdfkit.rendering.tracing import passes_of
@@ -256,3 +257,76 @@ def test_a_scene_file_is_rendered(tmp_path):
     np.testing.assert_allclose(picture, np.ones((8, 12, 3)), rtol=1e-5)
     with pytest.raises(BrdfkitError, match="no such scene"):
         render_scene(tmp_path / "missing.xml")
+    (tmp_path / "cut.xml").write_text(scene.replace('<integrator type="path"/>', ""))
+    with pytest.raises(BrdfkitError, match=r"cut\.xml: the scene has no integrator; add"):
+        render_scene(tmp_path / "cut.xml")
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("sampler", "given", "spp"), [(7, {}, 7), (7, {"spp": None}, 7), (7, {"spp": 3}, 3)]
+)
+def test_a_scene_has_its_own_samples_per_pixel(tmp_path, sampler, given, spp):
+    scene = tmp_path / "scene.xml"
+    scene.write_text(
+        f"""<scene version="3.0.0"><integrator type="path"/><emitter type="constant"/>
+        <sensor type="perspective">
+        <sampler type="independent"><integer name="sample_count" value="{sampler}"/></sampler>
+        <film type="hdrfilm"><integer name="width" value="4"/><integer name="height" value="4"/>
+        </film></sensor></scene>"""
+    )
+    rendering = render_scene(scene, **given)
+    assert (rendering.spp, rendering.asked) == (spp, spp)
+
+
+@pytest.mark.quick
+def test_what_is_larger_than_the_memory_is_refused_before_any_is_taken(monkeypatch, tmp_path):
+    def build(bsdf, size):
+        raise AssertionError("a scene was made")
+
+    free = SimpleNamespace(virtual_memory=lambda: SimpleNamespace(available=10**8))
+    monkeypatch.setattr(memory, "psutil", free)
+    said = "A picture of 1000×900 pixels would take about 0.11 GB .* 0.1 GB are available; give a s"
+    with pytest.raises(BrdfkitError, match=said):
+        render(WHITE, size=(1000, 900), scene=build)
+    with pytest.raises(BrdfkitError, match="3 pictures of 500×500 pixels would take about"):
+        render([WHITE, GREY, "ward"], size=500, scene=build)
+    render(WHITE, spp=1, size=32)
+    (tmp_path / "large.xml").write_text(
+        """<scene version="3.0.0"><integrator type="path"/><sensor type="perspective">
+        <film type="hdrfilm"><integer name="width" value="5000"/></film></sensor></scene>"""
+    )
+    with pytest.raises(BrdfkitError, match=r"large\.xml: a picture of 5000×.* would take about"):
+        render_scene(tmp_path / "large.xml", spp=1)
+
+
+OTHER_VARIANTS = (
+    "llvm_ad_mono",
+    "llvm_ad_mono_polarized",
+    "llvm_ad_spectral",
+    "llvm_ad_spectral_polarized",
+)
+
+
+@pytest.fixture(scope="module")
+def in_rgb():
+    return render([WHITE, "ggx"], spp=64, size=32)
+
+
+@pytest.mark.parametrize("variant", OTHER_VARIANTS)
+def test_every_variant_exposes_alike(in_rgb, variant):
+    """Both sides of the ball, and the ground and sky behind it, within 4 % in the mean."""
+    import mitsuba as mi
+
+    mi.set_variant(variant)
+    try:
+        rendering = render([WHITE, "ggx"], spp=64, size=32)
+    finally:
+        mi.set_variant("llvm_ad_rgb")
+    left = np.arange(32) < 16
+    for name, picture in rendering.pictures.items():
+        found, expected = luminance(picture), luminance(in_rgb.pictures[name])
+        for part in (in_rgb.mask & left, in_rgb.mask & ~left, ~in_rgb.mask):
+            assert found[part].mean() == pytest.approx(expected[part].mean(), rel=0.04)
+        if "mono" in variant:
+            assert np.ptp(picture, axis=-1).max() == 0

@@ -10,6 +10,7 @@ from brdfkit.materials import materials, measured
 from brdfkit.measured.selection import selected
 from brdfkit.model import double_precision
 from brdfkit.names import unused
+from brdfkit.threads import in_turn
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,7 @@ def error(thing, data, loss, max_angle=80.0):
     return math.sqrt(total / normaliser) if normaliser else math.nan
 
 
+@in_turn
 def _transformed(loss, values, cosines):
-    Float64 = double_precision.float64()
-    columns = [loss.g(Float64(np.ascontiguousarray(v * cosines))) for v in values.T]
+    columns = [loss.g(double_precision.array(v * cosines)) for v in values.T]
     return np.stack([np.asarray(c) for c in columns], axis=1)

@@ -10,8 +10,10 @@ from brdfkit.materials import measured
 from brdfkit.measured.selection import selected
 from brdfkit.model import labels
 from brdfkit.model.evaluation import clamped_share
+from brdfkit.threads import in_turn
 
 
+@in_turn
 def fit(
     name,
     data,
@@ -38,7 +40,8 @@ def fit(
     too, which otherwise follow ``alpha_u``: by default where the measurement is anisotropic;
     `max_angle`: samples with an angle at or beyond it [degrees, above 0 to 90] are left out;
     `seed`: of the starts, and of the part of a large table by which they are compared: equal seeds
-    give equal fits; `progress`: called with (done, total). Returns a `Fit`.
+    give equal fits; `progress`: called with (done, total). Returns a `Fit`. Fits of several threads
+    run one after the other.
 
     Raises `BrdfkitError` for an unknown model, loss or robust weight; for a parameter that is not
     searched, or bounds and values beyond the model's; where `data` was not measured or no sample

@@ -18,15 +18,12 @@ import warnings
 from pathlib import Path
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.threads import in_turn
 
 VARIABLE = "DRJIT_LIBLLVM_PATH"
 OLDEST = 17
 SYSTEM_FOLDERS = ("/usr/lib/*-linux-gnu*", "/usr/lib64", "/usr/lib", "/usr/local/lib")
 VARIANTS = ("cuda_ad_rgb", "llvm_ad_rgb", "scalar_rgb")
-REMEDY = (
-    "install karellen-llvm-core (Linux x86-64) or set DRJIT_LIBLLVM_PATH to a libLLVM of version "
-    f"{OLDEST} or newer"
-)
 # A path that cannot be loaded turns Dr.Jit's LLVM backend off
 NO_LIBRARY = "no-LLVM-17-or-newer-found"
 
@@ -81,6 +78,19 @@ def library_version(path):
         return 0
 
 
+def remedy():
+    """What to do where Dr.Jit has no usable LLVM, as the end of a sentence.
+
+    Where there is one on the machine, it was not known, or not there, when Dr.Jit looked.
+    """
+    if find_library():
+        return "start Python anew and import brdfkit before mitsuba and drjit"
+    return (
+        "install karellen-llvm-core (Linux x86-64) or set DRJIT_LIBLLVM_PATH to a libLLVM of "
+        f"version {OLDEST} or newer"
+    )
+
+
 def loaded_version():
     """Major version of the LLVM in Dr.Jit, -1 where it has none."""
     import drjit as dr
@@ -94,6 +104,7 @@ def refuse_bad_choice(variant):
         raise BrdfkitError(_bad_choice())
 
 
+@in_turn
 def use_variant():
     """The current Mitsuba variant; where none is set, set the best that works, and return it.
 
@@ -105,12 +116,10 @@ def use_variant():
         usable = loaded_version() >= OLDEST
         mi.set_variant(*(v for v in VARIANTS if usable or not v.startswith("llvm")))
         if mi.variant() == "scalar_rgb":
-            # one that is there now was not when Dr.Jit looked
-            remedy = "import brdfkit before mitsuba and drjit" if find_library() else REMEDY
             warnings.warn(
                 f"Mitsuba has no CUDA device and no LLVM {OLDEST} or newer: its slow variant "
-                f"scalar_rgb is used; to mend it, {remedy}.",
-                stacklevel=2,
+                f"scalar_rgb is used; to mend it, {remedy()}.",
+                stacklevel=3,  # who called, beyond `in_turn`
             )
     refuse_bad_choice(mi.variant())
     return mi.variant()
@@ -124,5 +133,5 @@ def _warn_of_bad_choice():
 def _bad_choice():
     return (
         f"Dr.Jit was imported before brdfkit and took LLVM {loaded_version()}, which aborts the "
-        f"process in Mitsuba's llvm variants: import brdfkit first, or {REMEDY}."
+        f"process in Mitsuba's llvm variants: {remedy()}."
     )

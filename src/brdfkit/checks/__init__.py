@@ -18,6 +18,7 @@ from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.materials import material
 from brdfkit.plugins import discovery
 from brdfkit.plugins.discovery import MODELS
+from brdfkit.threads import in_turn
 
 for _module in pkgutil.iter_modules(__path__):
     importlib.import_module(f"{__name__}.{_module.name}")
@@ -42,6 +43,7 @@ class Report:
         return "\n".join([f"{self.name}: {'passed' if self else 'failed'}", *lines])
 
 
+@in_turn
 def check(thing, only=None, progress=None):
     """Check a material, or a plugin of another kind; returns a `Report`.
 
@@ -57,7 +59,9 @@ def check(thing, only=None, progress=None):
     >>> print(check(models()["ward"](alpha_u=0.1)))    # doctest: +SKIP
     """
     if llvm.use_variant().startswith("scalar"):
-        raise BrdfkitError(f"check needs an LLVM or CUDA variant of Mitsuba; {llvm.REMEDY}.")
+        usable = llvm.loaded_version() >= llvm.OLDEST
+        remedy = "set llvm_ad_rgb" if usable else llvm.remedy()
+        raise BrdfkitError(f"check needs an LLVM or CUDA variant of Mitsuba; {remedy}.")
     subject, kind, name = _subject(thing)
     names = list(checks[kind]) if only is None else list(only)
     for wanted in names:

@@ -6,6 +6,8 @@ and `pdf(direction)`.
 
 import numpy as np
 
+from brdfkit.padding import padded
+
 SIGNIFICANCE = 0.01
 SAMPLES = 400_000
 CELLS, SUBCELLS = 101, 32  # of χ²'s histogram; fewer points in a cell reject a small sun
@@ -24,6 +26,14 @@ def chi_squared(draw, pdf, tests):
 
     test = ChiSquareTest(SphericalDomain(), sample, pdf, 2, SAMPLES, res=CELLS, ires=SUBCELLS)
     return test.p_value if test.run(SIGNIFICANCE, test_count=tests, quiet=True) else None
+
+
+def square(n, seed):
+    """Points of the unit square, (u, v), each a `mi.Float` of `n` numbers."""
+    import mitsuba as mi
+
+    u = np.random.default_rng(seed).random((2, n), np.float32)
+    return tuple(mi.Float(padded(row)) for row in u)
 
 
 def sphere():

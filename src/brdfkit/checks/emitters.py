@@ -45,14 +45,13 @@ def chi_squared(subject):
 @checked("emitters")
 def weights(subject):
     """The weight of a sample = radiance / density, and its density is that of `pdf_direction`."""
-    import mitsuba as mi
 
     if not subject.plugin.is_environment():
         return True, NO_ENVIRONMENT
     n = 20_000
-    u = np.random.default_rng(1).random((2, n), np.float32)
+    u = directions.square(n, seed=1)
     draw, radiance_and_pdf = sampler(subject)
-    w, weight, stated = draw(mi.Float(u[0]), mi.Float(u[1]))
+    w, weight, stated = draw(*u)
     radiance, pdf = radiance_and_pdf(w)
     weight, radiance = (columns(x, n) for x in (weight, radiance))
     pdf, stated = (directions.numbers(x, n) for x in (pdf, stated))
@@ -78,13 +77,12 @@ def normalisation(subject):
 @checked("emitters")
 def mean_light(subject):
     """The mean weight of a sample = ∫ L dω by quadrature: no light is missed."""
-    import mitsuba as mi
 
     if not subject.plugin.is_environment():
         return True, NO_ENVIRONMENT
-    u = np.random.default_rng(2).random((2, directions.SAMPLES), np.float32)
+    u = directions.square(directions.SAMPLES, seed=2)
     draw, radiance_and_pdf = sampler(subject)
-    _, weight, _ = draw(mi.Float(u[0]), mi.Float(u[1]))
+    _, weight, _ = draw(*u)
     w, solid_angle = directions.sphere()
     expected = columns(radiance_and_pdf(w)[0], len(solid_angle)) @ solid_angle
     apart = directions.agreement(columns(weight, directions.SAMPLES), expected)

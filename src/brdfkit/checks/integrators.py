@@ -17,7 +17,8 @@ def reference(subject):
         return True, "names no reference"
     scene, expected = subject.module.reference()
     scene["integrator"] = {**scene["integrator"], **subject.entries}
-    film = mi.load_dict(scene).integrator().render(mi.load_dict(scene), seed=0, spp=SPP)
+    loaded = mi.load_dict(scene, parallel=False)
+    film = loaded.integrator().render(loaded, seed=0, spp=SPP)
     found = np.array(film, float)
     found = found.reshape(-1, found.shape[-1])
     expected = np.asarray(expected, float)

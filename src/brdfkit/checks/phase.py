@@ -43,13 +43,12 @@ def chi_squared(subject):
 @checked("phase")
 def weights(subject):
     """The weight of a sample = value / density, and its density is that of `eval_pdf`."""
-    import mitsuba as mi
 
     n, worst = 20_000, 0.0
-    u = np.random.default_rng(1).random((2, n), np.float32)
+    u = directions.square(n, seed=1)
     for forward in FORWARD:
         draw, value_and_pdf = sampler(subject, forward)
-        wo, weight, stated = draw(mi.Float(u[0]), mi.Float(u[1]))
+        wo, weight, stated = draw(*u)
         value, pdf = value_and_pdf(wo)
         weight, value = (columns(x, n) for x in (weight, value))
         pdf, stated = (directions.numbers(x, n) for x in (pdf, stated))
@@ -73,12 +72,12 @@ def mean_cosine(subject):
     """The mean of the samples' cosines, weighted = ∫ p μ dω: the sampler misses no direction."""
     import mitsuba as mi
 
-    u = np.random.default_rng(2).random((2, directions.SAMPLES), np.float32)
+    u = directions.square(directions.SAMPLES, seed=2)
     w, solid_angle = directions.sphere()
     worst = 0.0
     for forward in FORWARD:
         draw, value_and_pdf = sampler(subject, forward)
-        wo, weight, _ = draw(mi.Float(u[0]), mi.Float(u[1]))
+        wo, weight, _ = draw(*u)
         cosine = np.array(mi.Vector3f(*forward)).ravel() @ np.array(wo)
         straight = np.array(forward) @ np.array(w)
         value = columns(value_and_pdf(w)[0], len(solid_angle))

@@ -35,7 +35,7 @@ class PluginSubject:
         """The instance that Mitsuba makes of it."""
         import mitsuba as mi
 
-        return mi.load_dict(self.entries)
+        return mi.load_dict(self.entries, parallel=False)
 
 
 def example(name, **values):

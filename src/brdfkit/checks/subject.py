@@ -79,7 +79,7 @@ class Subject:
         """The Mitsuba BSDF in the current variant."""
         import mitsuba as mi
 
-        return mi.load_dict(self.thing.scene_dict())
+        return mi.load_dict(self.thing.scene_dict(), parallel=False)
 
     def interaction(self, wi):
         """A surface interaction seen from directions `wi`, (3,) or (n, 3)."""

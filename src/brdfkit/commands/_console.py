@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from threading import Timer
 
+from brdfkit.commands import _tables
 from brdfkit.records import plain
 
 # A bar that appears for a blink is noise
@@ -14,7 +15,7 @@ PATIENCE = 1.0  # seconds
 
 @dataclass(frozen=True)
 class Console:
-    """Prints results; `as_json`: as JSON, for programs; `quiet`: nothing at all."""
+    """Prints results; `as_json`: as JSON, for programs; `quiet`: no tables and no progress."""
 
     as_json: bool = False
     quiet: bool = False
@@ -55,23 +56,20 @@ class Console:
 
     def json(self, record):
         """The `record`, of whatever the result holds, as JSON."""
-        if not self.quiet:
-            print(json.dumps(plain(record), indent=2))
+        print(json.dumps(plain(record), indent=2))
 
-    def table(self, *columns, title=None):
-        """An empty table; a column whose name begins with ">" is flush right, for numbers."""
-        from rich.box import SIMPLE_HEAD
-        from rich.table import Table
-        from rich.text import Text
+    def table(self, columns, *sections, title=None):
+        """Print a table: `columns`, their names; `sections`, each a list of rows of texts.
 
-        title = title and Text(title)
-        table = Table(box=SIMPLE_HEAD, title=title, title_justify="left", pad_edge=False)
-        for column in columns:
-            number = column.startswith(">")
-            name = Text(column.removeprefix(">").replace(" [", "\n["))
-            side = "right" if number else "left"
-            table.add_column(name, justify=side, no_wrap=number or not table.columns)
-        return table
+        A column whose name begins with ">" is flush right, for numbers. Where the terminal is too
+        narrow for a table, each row becomes a block of lines.
+        """
+        found = _tables.table(columns, sections, self.out.width, title)
+        if found is not None:
+            self.out.print(found, soft_wrap=False)
+            return
+        lines = _tables.blocks(columns, sections, self.out.width)
+        self.out.print(title or "", *lines, "", sep="\n")
 
     def written(self, paths):
         """A line for each file that was written."""

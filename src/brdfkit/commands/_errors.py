@@ -8,7 +8,8 @@ from contextlib import contextmanager, nullcontext
 
 import click
 
-from brdfkit.errors import BrdfkitError
+from brdfkit.commands._stopping import status, stoppable
+from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.names import printable
 
 NO_ROOM = errno.ENOSPC, errno.EDQUOT, errno.EIO  # where standard output is a file
@@ -25,7 +26,7 @@ class Group(click.Group):
         for stream in (sys.stdout, sys.stderr):  # a terminal may not know θ: ? stands for it
             if hasattr(stream, "reconfigure"):
                 stream.reconfigure(errors="replace")
-        with told(), warnings.catch_warnings():
+        with told(), stoppable(), warnings.catch_warnings():
             warnings.showwarning = _say_warning
             try:
                 return super().invoke(ctx)
@@ -46,22 +47,33 @@ class Told(click.ClickException):
 
 @contextmanager
 def told():
-    """Turns errors for people, those of click too, a lost output and Ctrl-C into `Told`."""
+    """Turns errors for people and of click, a lost output, Ctrl-C and SIGTERM into `Told`."""
     try:
         yield
     except BrdfkitError as error:
         raise Told(str(error)) from error
     except click.UsageError as error:
         command = error.ctx.command_path if error.ctx else "brdfkit"
-        message = error.format_message().rstrip(".")
-        raise Told(f"{message}; see {command} --help.") from error
+        raise Told(f"{_misused(error)}; see {command} --help.") from error
     except OSError as error:
         if error.errno not in NO_ROOM or error.filename:
             raise
         _drop_output()
         raise Told(f"the output cannot be written ({error.strerror}); make room.") from error
     except KeyboardInterrupt as error:
-        raise Told("interrupted.", 130) from error
+        raise Told("interrupted.", status()) from error
+
+
+def _misused(error):
+    """What click found wrong, an unknown name in the words that brdfkit has for all of them."""
+    message = error.format_message()
+    if isinstance(error, click.NoSuchCommand):
+        message = str(no_such("command", error.command_name, error.ctx.command.commands))
+    elif isinstance(error, click.NoSuchOption):
+        parameters = error.ctx.command.get_params(error.ctx)
+        options = [p.opts[-1] for p in parameters if isinstance(p, click.Option)]
+        message = str(no_such("option", error.option_name, options))
+    return message.rstrip(".")
 
 
 def _flush():

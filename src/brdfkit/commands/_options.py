@@ -9,7 +9,7 @@ def output_options(command):
     """The options of every command that prints a result; it gets a `console`."""
 
     @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-    @click.option("-q", "--quiet", is_flag=True, help="No progress, no tables: only errors.")
+    @click.option("-q", "--quiet", is_flag=True, help="Print only errors, and JSON if asked for.")
     @functools.wraps(command)
     def with_output(*args, as_json, quiet, **kwargs):
         from brdfkit.commands._console import Console
@@ -42,6 +42,6 @@ def values_option(command):
         "values",
         multiple=True,
         metavar="PARAMETER=VALUE",
-        help="A parameter of the models named, a number or R,G,B; repeat it.",
+        help="Set a parameter of the models, to a number or R,G,B; repeat it for more.",
     )
     return option(command)

@@ -10,9 +10,10 @@ from brdfkit.commands._options import output_options, values_option
 @values_option
 @output_options
 def check(things, values, console):
-    """Check that models sample, conserve energy and differentiate.
+    """Check that materials sample, conserve energy and differentiate.
 
-    A plugin of another kind is checked for what its kind should do: brdfkit plugins lists them.
+    Models, fits and measured files; and plugins of another kind for what their kind should do:
+    brdfkit plugins lists them. The exit status is 1 where one of them fails.
     """
     from brdfkit.checks import check as check_thing
 

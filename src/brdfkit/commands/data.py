@@ -63,13 +63,13 @@ def _print_collections(collections, materials, folder, console):
     if console.as_json:
         console.json({name: _record(c) for name, c in collections.items()})
         return
-    table = console.table("collection", "what it is", ">here", ">to download", "licence")
+    columns = "collection", "what it is", ">here", ">to download", "licence"
     licence = next(iter(materials.values())).licence
-    table.add_row("brdfkit's own", ", ".join(materials), str(len(materials)), "", licence)
+    rows = [("brdfkit's own", ", ".join(materials), str(len(materials)), "", licence)]
     for name, c in collections.items():
         download = sum(bool(listed.url) for listed in c.files.values())
-        table.add_row(name, c.title, str(len(c.here())), str(download or "by hand"), c.licence)
-    console.out.print(table)
+        rows.append((name, c.title, str(len(c.here())), str(download or "by hand"), c.licence))
+    console.table(columns, rows)
     console.out.print("The materials of a collection: brdfkit data list NAME")
     console.out.print(f"Downloaded files lie in {folder}")
 
@@ -80,13 +80,13 @@ def _print_collection(collection, console):
         console.json(_record(collection))
         return
     files, here = collection.files, collection.here()
-    table = console.table("material", ">size [MB]", "")
+    rows = []
     for name in sorted({*files, *here}):
         size = files[name].bytes if name in files else here[name].stat().st_size
         state = "here" if name in here else "to download" if files[name].url else "by hand"
-        table.add_row(name, f"{size / 1e6:.1f}" if size else "", state)
-    if table.rows:
-        console.out.print(table)
+        rows.append((name, f"{size / 1e6:.1f}" if size else "", state))
+    if rows:
+        console.table(["material", ">size [MB]", ""], rows)
     console.out.print(str(collection))
     if not any(listed.url for listed in files.values()):
         console.out.print(f"To use one, {collection.by_hand()}.")

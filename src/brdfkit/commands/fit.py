@@ -6,6 +6,7 @@ import click
 
 from brdfkit.commands._errors import say
 from brdfkit.commands._options import output_options, render_options
+from brdfkit.commands._stopping import status
 from brdfkit.commands.render import path_trace
 
 
@@ -16,30 +17,46 @@ from brdfkit.commands.render import path_trace
     "--model",
     "names",
     multiple=True,
-    help="A model or FILE.py; repeat it. Default: all.",
+    help="A model, or FILE.py with one; repeat it for more. Default: all.",
 )
-@click.option("--loss", default="log", show_default=True, help="cosine, log, cbrt, plain.")
+@click.option("--loss", default="log", show_default=True, help="One of cosine, log, cbrt, plain.")
 @click.option("--robust", help="Weigh outliers down: bisquare, huber, cauchy ...")
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="Folder for the results. Default: none; with --render, the material's name.",
+)
 @click.option("--render", "rendered", is_flag=True, help="Path-trace the measurement and the fits.")
-@click.option("--max-angle", default=80.0, show_default=True, help="Use angles below [degrees].")
+@click.option(
+    "--max-angle",
+    default=80.0,
+    show_default=True,
+    help="Leave out samples with an angle at or beyond it [degrees].",
+)
 @render_options
 @output_options
 def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed, console):
-    """Fit models to a measured FILE, or to a material of brdfkit's."""
+    """Fit models to a measured FILE, and compare them.
+
+    FILE may also be the name of a material that brdfkit knows. Ctrl-C keeps the fits that are
+    finished.
+    """
     from brdfkit.commands._targets import fit_file, results
     from brdfkit.comparing import compare
     from brdfkit.materials import measured
     from brdfkit.model import labels
     from brdfkit.names import slug
+    from brdfkit.rendering.memory import require_memory
 
     names = list(dict.fromkeys(map(labels.read_files, names or labels.models())))
     for name in names:
         labels.model(name)
     with console.progress(f"read {file}"):
         material = measured(file)
-    if output is None and rendered:
-        output = Path(slug(material.name))
+    if rendered:
+        require_memory((size, size), 1 + len(names))
+        output = output or Path(slug(material.name))
 
     how = {"loss": loss, "robust": robust, "max_angle": max_angle, "seed": seed}
     psnr = {}
@@ -49,13 +66,13 @@ def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed,
         written = [fit_file(output, f) for f in fits] if output else []
         if rendered and not interrupted:
             picture = path_trace([material, *fits], output / "render.exr", spp, size, seed, console)
-            psnr, interrupted = picture.psnr(), picture.spp < spp
+            psnr, interrupted = picture.psnr(), picture.spp < picture.asked
             written += [output / "render.exr", output / "render.png"]
     with console.progress("compare"):
         comparison = compare(material, fits, max_angle)
     _print_fits(material, fits, comparison, psnr, written, console)
     if interrupted:
-        click.get_current_context().exit(130)
+        click.get_current_context().exit(status())
 
 
 def _fit_each(names, material, how, output, console):
@@ -91,13 +108,12 @@ def _print_fits(material, fits, comparison, psnr, written, console):
         console.out.print()
     losses = [f">{name}" for name in next(iter(comparison.errors.values()))]
     image = [">PSNR [dB]"] if psnr else []
-    title = f"{material.name}: errors"
-    table = console.table("model", *losses, *image, ">time [s]", title=title)
+    columns, rows = ["model", *losses, *image, ">time [s]"], []
     for found in fits:
         errors = [figure(e) for e in comparison.errors[found.name].values()]
         image = [f"{psnr[found.name]:.1f}"] if psnr else []
-        table.add_row(found.name, *errors, *image, f"{found.seconds:.2f}")
-    console.out.print(table)
+        rows.append((found.name, *errors, *image, f"{found.seconds:.2f}"))
+    console.table(columns, rows, title=f"{material.name}: errors")
     console.written(written)
 
 

@@ -50,15 +50,9 @@ def print_audit(found, written, console):
     if console.as_json:
         console.json(record(found, written))
         return
-    table = console.table("", "")
-    table.show_header = False
-    for key, value in found.rows().items():
-        table.add_row(key, value)
-    table.add_section()
-    for key, value in found.data.info.items():
-        table.add_row(key.replace("_", " "), str(value))
+    notes = [(key.replace("_", " "), str(value)) for key, value in found.data.info.items()]
     console.out.print(found.name, style="bold")
-    console.out.print(table)
+    console.table(["", ""], list(found.rows().items()), notes)
     for finding in found.findings():
         console.out.print(f"! {finding}")
     console.written(written)
@@ -78,8 +72,6 @@ def _print_materials(materials, console):
     if console.as_json:
         console.json({name: asdict(m) for name, m in materials.items()})
         return
-    table = console.table("material", "what it is", "licence")
-    for name, m in materials.items():
-        table.add_row(name, m.title, m.licence)
-    console.out.print(table)
+    rows = [(name, m.title, m.licence) for name, m in materials.items()]
+    console.table(["material", "what it is", "licence"], rows)
     console.out.print("Use a name where a file is asked for: brdfkit fit NAME")

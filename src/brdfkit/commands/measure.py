@@ -6,21 +6,22 @@ import click
 
 from brdfkit.commands._errors import say
 from brdfkit.commands._options import output_options
+from brdfkit.commands._stopping import status
 from brdfkit.commands.info import print_audit
 
 
 @click.command()
 @click.argument("geometry", metavar="gaussian|brushed|woven")
-@click.option("--slope", default=0.3, show_default=True, help="Its root mean square.")
-@click.option("--stretch", type=float, help="brushed: length of a groove, in its width.")
-@click.option("--thickness", type=float, help="woven: of a yarn, in its width.")
+@click.option("--slope", default=0.3, show_default=True, help="Root mean square of the slopes.")
+@click.option("--stretch", type=float, help="brushed: length of a groove, in widths of it.")
+@click.option("--thickness", type=float, help="woven: thickness of a yarn, in widths of it.")
 @click.option(
     "--facets",
     multiple=True,
     default=["Au"],
     show_default=True,
     metavar="MATERIAL",
-    help="A metal, paint:R,G,B or plastic:R,G,B; for warp and weft give two.",
+    help="A metal, paint:R,G,B or plastic:R,G,B; repeat it for warp and weft.",
 )
 @click.option("--facet-alpha", default=0.2, show_default=True, help="Roughness of the facets.")
 @click.option(
@@ -31,9 +32,13 @@ from brdfkit.commands.info import print_audit
     show_default=True,
     help="Seed of the surface.",
 )
-@click.option("--cells", metavar="N,N,N", help="Of theta_h, theta_d, phi_d; phi_h before them.")
+@click.option(
+    "--cells",
+    metavar="N,N,N",
+    help="Cells of the table in theta_h, theta_d, phi_d; phi_h before them, where it counts.",
+)
 @click.option("--error", default=0.05, show_default=True, help="Relative standard error wanted.")
-@click.option("--spp", default=16384, show_default=True, help="Samples a cell at most.")
+@click.option("--spp", default=16384, show_default=True, help="Samples per cell, at most.")
 @click.option("--seed", default=0, show_default=True, help="Seed of the samples.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Default: GEOMETRY.npz.")
 @output_options
@@ -42,7 +47,7 @@ def measure(
 ):
     """Measure a surface's BRDF by path-tracing its microgeometry.
 
-    A virtual goniometer. It writes a table with a standard error for every value. The defaults
+    A virtual goniometer: it writes a table with a standard error for every value. The defaults
     measure rough gold, in about a minute. Ctrl-C ends it early, with larger errors.
     """
     from brdfkit.auditing import audit
@@ -66,4 +71,4 @@ def measure(
     print_audit(audited, [output], console)
     if "interrupted" in found.info:
         say(f"interrupted; measured with {found.info['interrupted']}.")
-        context.exit(130)
+        context.exit(status())

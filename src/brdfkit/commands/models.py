@@ -26,10 +26,8 @@ def _print_list(models, console):
     if console.as_json:
         console.json({name: _parameters(model) for name, model in models.items()})
         return
-    table = console.table("model", "what it is", "parameters")
-    for name, model in models.items():
-        table.add_row(name, page(model).sentence, ", ".join(model.parameters))
-    console.out.print(table)
+    rows = [(name, page(m).sentence, ", ".join(m.parameters)) for name, m in models.items()]
+    console.table(["model", "what it is", "parameters"], rows)
     console.out.print("One model's page: brdfkit models NAME")
 
 
@@ -41,18 +39,16 @@ def print_model(model, console):
         console.json({model.type_name(): _parameters(model)})
         return
     console.out.print(str(page(model)))
-    table = console.table("parameter", ">default", ">from", ">to", "meaning")
+    rows = []
     for name, p in model.parameters.items():
         low, high = ("" if math.isinf(v) else f"{v:g}" for v in p.bounds)
         default = p.follows or f"{p.default:g}"
         per_channel = " (per channel)" if p.linear else ""
-        table.add_row(name, default, low, high, p.meaning + per_channel)
-    console.out.print(table)
+        rows.append((name, default, low, high, p.meaning + per_channel))
+    console.table(["parameter", ">default", ">from", ">to", "meaning"], rows)
     if model.options:
-        table = console.table("option", "default", "choices", "meaning")
-        for name, o in model.options.items():
-            table.add_row(name, str(o.default), choices(o), o.meaning)
-        console.out.print(table)
+        rows = [(n, str(o.default), choices(o), o.meaning) for n, o in model.options.items()]
+        console.table(["option", "default", "choices", "meaning"], rows)
         with_another = example(model, next(iter(model.options)))
         console.out.print(f"With another choice: brdfkit fit FILE -m {with_another}")
     console.out.print(

@@ -35,11 +35,12 @@ def _print_list(kinds, console):
     if console.as_json:
         console.json(found)
         return
-    table = console.table("kind", "plugin", "what it is")
-    for kind, named in found.items():
-        for name, sentence in named.items() or [("", "none yet")]:
-            table.add_row(kind, name, sentence)
-    console.out.print(table)
+    rows = [
+        (kind, name, sentence)
+        for kind, named in found.items()
+        for name, sentence in named.items() or [("", "none yet")]
+    ]
+    console.table(["kind", "plugin", "what it is"], rows)
     console.out.print("One plugin's page: brdfkit plugins NAME")
 
 
@@ -63,12 +64,12 @@ def _print_page(kind, name, console):
         return
     console.out.print(str(page(source)))
     if parameters:
-        table = console.table("parameter", ">default", ">from", ">to", "meaning")
+        rows = []
         for n, p in parameters.items():
             low, high = ("" if math.isinf(v) else f"{v:g}" for v in p.bounds or (math.inf,) * 2)
-            table.add_row(
-                n, "" if p.default in (None, "") else f"{p.default}", low, high, p.meaning
+            rows.append(
+                (n, "" if p.default in (None, "") else f"{p.default}", low, high, p.meaning)
             )
-        console.out.print(table)
+        console.table(["parameter", ">default", ">from", ">to", "meaning"], rows)
     console.out.print(f'Mitsuba: {{"type": "{name}", ...}}')
     print_references(page(source), console)

@@ -3,9 +3,11 @@
 from pathlib import Path
 
 import click
+from click.core import ParameterSource
 
 from brdfkit.commands._errors import say
 from brdfkit.commands._options import output_options, render_options, values_option
+from brdfkit.commands._stopping import status
 from brdfkit.errors import BrdfkitError
 
 
@@ -24,7 +26,8 @@ def render(things, output, values, spp, size, seed, console):
     """Path-trace fits, models, measured files or a Mitsuba scene.
 
     Several are rendered side by side; the first is the reference of the differences. A scene is
-    rendered alone, in its own size.
+    rendered alone, in its own size, and without --spp with its own samples per pixel. Ctrl-C keeps
+    the samples that all pictures have.
     """
     from brdfkit.commands._targets import material, picture_file
     from brdfkit.names import slug
@@ -36,15 +39,15 @@ def render(things, output, values, spp, size, seed, console):
             raise BrdfkitError("A scene is rendered alone and as it is: name one SCENE.xml.")
         output = picture_file(output or Path(scenes[0]).with_suffix(".png").name)
         with console.progress("render") as progress:
-            picture = render_scene(scenes[0], spp=spp, seed=seed, progress=progress)
-        _write(picture, output, spp)
+            picture = render_scene(scenes[0], _given("spp"), seed=seed, progress=progress)
+        _write(picture, output)
     else:
         found = [material(thing, values) for thing in things]
         output = picture_file(output or f"{slug(found[0].name)}.png")
         picture = path_trace(found, output, spp, size, seed, console)
     _print_picture(picture, output, console)
-    if picture.spp < spp:
-        click.get_current_context().exit(130)
+    if picture.spp < picture.asked:
+        click.get_current_context().exit(status())
 
 
 def path_trace(things, output, spp, size, seed, console):
@@ -53,14 +56,21 @@ def path_trace(things, output, spp, size, seed, console):
 
     with console.progress("render") as progress:
         picture = render_things(things, spp=spp, size=size, seed=seed, progress=progress)
-    _write(picture, output, spp)
+    _write(picture, output)
     return picture
 
 
-def _write(picture, output, spp):
+def _given(option):
+    """The value of an option of this command, None where it is only the default."""
+    context = click.get_current_context()
+    default = context.get_parameter_source(option) is ParameterSource.DEFAULT
+    return None if default else context.params[option]
+
+
+def _write(picture, output):
     picture.write(output)
-    if picture.spp < spp:
-        say(f"interrupted; rendered with {picture.spp} of {spp} samples per pixel.")
+    if picture.spp < picture.asked:
+        say(f"interrupted; rendered with {picture.spp} of {picture.asked} samples per pixel.")
 
 
 def _print_picture(picture, path, console):

@@ -21,14 +21,14 @@ class Problem:
 
     def __init__(self, model, samples, loss):
         cosines, importance = loss.geometry(samples)
-        Float64 = double_precision.float64()
+        array = double_precision.array
         self.model, self.loss = model, loss
         self.bounded = np.array([model.parameters[n].bounds[0] >= 0 for n in model.weights()])
         self.wi, self.wo = double_precision.vector(samples.wi), double_precision.vector(samples.wo)
-        self.cosines = Float64(cosines)
+        self.cosines = array(cosines)
         self.measured = np.ascontiguousarray((loss.target(samples.values) * cosines[:, None]).T)
         self.channels = len(self.measured)
-        self.targets = [loss.g(Float64(m)) for m in self.measured]
+        self.targets = [loss.g(array(m)) for m in self.measured]
 
         # The loss itself is scale · √E²
         normaliser = loss.normaliser(importance, self.channels)
@@ -38,17 +38,17 @@ class Problem:
                 "choose another loss."
             )
         importance = importance / normaliser
-        black = loss.g(Float64(0.0))
-        squares = sum(_sum(Float64(importance) * dr.square(black - t)) for t in self.targets)
+        black = loss.g(double_precision.float64()(0.0))
+        squares = sum(_sum(array(importance) * dr.square(black - t)) for t in self.targets)
         self.scale = squares**0.5 or 1.0
         self.importance = importance / self.scale**2
-        self.importances = [Float64(self.importance)] * self.channels
+        self.importances = [array(self.importance)] * self.channels
         dr.eval(self.targets, self.importances)
 
     def reweighted(self, weights):
         """The same problem with each sample counting `weights` (channels, n) times as much."""
         other = copy.copy(self)
-        other.importances = [double_precision.float64()(self.importance * w) for w in weights]
+        other.importances = [double_precision.array(self.importance * w) for w in weights]
         return other
 
     def lobes(self, values):
@@ -96,7 +96,7 @@ class Problem:
     def _solve_channel(self, plain, squared, c):
         # Linearised about the data: exact where g is the identity, else the start of Newton's
         measured = self.measured[c]
-        slope = self.loss.dg(double_precision.float64()(measured))
+        slope = self.loss.dg(double_precision.array(measured))
         weight = np.asarray(self.importances[c] * slope * slope)
         gram, moment = weighted_gram(plain, weight), plain @ (weight * measured)
         start = bounded_quadratic(gram, moment, self.bounded)
@@ -128,7 +128,7 @@ class Problem:
         if squared is not None:
             columns = plain + 2 * weights[:, None] * squared
             mixture = mixture + weights**2 @ squared
-        model = double_precision.float64()(mixture)
+        model = double_precision.array(mixture)
         # A trial step of free weights may leave the domain of g
         return model if self.loss.linear else dr.maximum(model, 0), columns
 

@@ -9,6 +9,7 @@ from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.robust import robust_search
 from brdfkit.fitting.search import Outcome, evaluate, slsqp
 from brdfkit.fitting.space import Space, start_points
+from brdfkit.threads import in_turn
 
 # The starts are compared on a random part of a large table, the best goes on with all of it
 PART = 20_000
@@ -34,6 +35,7 @@ class Solution:
     notes: tuple[str, ...]
 
 
+@in_turn
 def regress(
     model,
     samples,

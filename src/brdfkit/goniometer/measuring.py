@@ -17,6 +17,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.goniometer.specimen import Specimen
 from brdfkit.measured import Measured
 from brdfkit.samples import Table
+from brdfkit.threads import in_turn
 from brdfkit.version import __version__
 
 ISOTROPIC = (30, 30, 60)
@@ -29,6 +30,7 @@ MOST_CELLS = 2**22  # likewise: 1 GB; three times the cells of a MERL table
 MOST_SPP, LEAST_ERROR = 10**9, 1e-5  # weeks a cell
 
 
+@in_turn
 def measure(
     surface,
     facets,

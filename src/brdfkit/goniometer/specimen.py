@@ -19,6 +19,7 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.llvm import use_variant
+from brdfkit.padding import padded
 
 # Rays leave a point so much above it, in grid cells. Mitsuba's own offset, 20 times this, lets
 # grazing light reach 1 % too far; single precision asks for some 1e-4 here.
@@ -49,7 +50,7 @@ class Specimen:
             name: _mesh(name, surface.vertices(), surface.faces(part), _bsdf(facets[part]))
             for part, name in enumerate(surface.parts)
         }
-        self.scene = mi.load_dict({"type": "scene", **meshes})
+        self.scene = mi.load_dict({"type": "scene", **meshes}, parallel=False)
         self.isotropic, self.max_bounces = surface.isotropic, max_bounces
         # opaque numbers: as literals, each specimen would compile a kernel of its own
         self.side = dr.opaque(mi.Float, len(surface.heights))
@@ -66,7 +67,7 @@ class Specimen:
 
         sampler = mi.load_dict({"type": "independent"})
         sampler.seed(seed, len(pair))
-        pair = mi.UInt32(pair.astype(np.uint32))
+        pair = mi.UInt32(padded(pair.astype(np.uint32)))
         wi, wo = (
             dr.gather(mi.Vector3f, mi.Vector3f(w.T.astype(np.float32)), pair) for w in (wi, wo)
         )
@@ -147,7 +148,7 @@ def _bsdf(facets):
     import mitsuba as mi
 
     try:
-        bsdf = mi.load_dict(facets)
+        bsdf = mi.load_dict(facets, parallel=False)
     except (RuntimeError, TypeError) as error:
         reason = str(error).rpartition("] ")[2].rstrip(".!")
         raise BrdfkitError(f"Mitsuba cannot load the facets {facets} ({reason}).") from error
@@ -167,8 +168,8 @@ def _mesh(name, vertices, faces, bsdf):
     properties["bsdf"] = bsdf
     mesh = mi.Mesh(name, len(vertices), len(faces), properties)
     parameters = mi.traverse(mesh)
-    parameters["vertex_positions"] = mi.Float(vertices.ravel().astype(np.float32))
-    parameters["faces"] = mi.UInt32(faces.ravel().astype(np.uint32))
+    parameters["vertex_positions"] = mi.Float(padded(vertices.ravel().astype(np.float32)))
+    parameters["faces"] = mi.UInt32(padded(faces.ravel().astype(np.uint32)))
     parameters.update()
     return mesh
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.llvm import use_variant
+from brdfkit.threads import in_turn
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +33,7 @@ class BsdfMaterial:
         """The dictionary for `mitsuba.load_dict`."""
         return dict(self.entries)
 
+    @in_turn
     def eval(self, wi, wo):
         """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3), in Mitsuba's single precision.
 
@@ -48,7 +50,8 @@ class BsdfMaterial:
         wi, wo = (np.asarray(w, np.float32) for w in (wi, wo))
         si = dr.zeros(mi.SurfaceInteraction3f, len(wi))
         si.wi, si.sh_frame, si.n = mi.Vector3f(wi.T), mi.Frame3f([0, 0, 1]), mi.Normal3f(0, 0, 1)
-        value = mi.load_dict(self.entries).eval(mi.BSDFContext(), si, mi.Vector3f(wo.T))
+        bsdf = mi.load_dict(self.entries, parallel=False)
+        value = bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(wo.T))
         value = np.array(mi.unpolarized_spectrum(value)).T
         above = (wi[:, 2:] > 0) & (wo[:, 2:] > 0)
         return np.where(above, value / np.where(above, wo[:, 2:], 1), 0).astype(float)

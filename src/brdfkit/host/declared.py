@@ -91,7 +91,7 @@ def volume(default, meaning):
             value = {"type": "rgb", "value": list(value)}
         elif isinstance(value, bool) or not isinstance(value, int | float):
             raise ValueError("a volume, such as a gridvolume, a number or a colour")
-        return mi.load_dict({"type": "constvolume", "value": value})
+        return mi.load_dict({"type": "constvolume", "value": value}, parallel=False)
 
     return Setting(default, None, meaning, read, differentiable=True)
 

@@ -5,7 +5,7 @@
 that of Dr.Jit, which looks for LLVM.
 """
 
-import importlib.util
+import functools
 import os
 import sys
 from contextlib import contextmanager
@@ -32,22 +32,33 @@ class _After:
     def find_spec(self, name, path=None, target=None):
         if name != self.module:
             return None
-        sys.meta_path.remove(self)
-        try:
-            spec = importlib.util.find_spec(name)
-        finally:
-            sys.meta_path.insert(0, self)
+        spec = self._found_by_others(path, target)
         if spec is not None and spec.loader is not None:
             load = spec.loader.exec_module
 
             def exec_module(module):
-                sys.meta_path.remove(self)  # not before: somebody may only ask where it is
                 with _without_llvm_noise():
                     load(module)
+                _stand_for_successor(module)
                 self.then()
 
             spec.loader.exec_module = exec_module
         return spec
+
+    def _found_by_others(self, path, target):
+        # sys.meta_path stays as it is: another thread may be looking through it
+        others = [f for f in sys.meta_path if hasattr(f, "find_spec") and not isinstance(f, _After)]
+        specs = (finder.find_spec(self.module, path, target) for finder in others)
+        return next((spec for spec in specs if spec is not None), None)
+
+
+def _stand_for_successor(module):
+    """Let a module whose import put another in its place have all that the other has.
+
+    So does Mitsuba's. Python hands the first one to a thread that asks for it meanwhile.
+    """
+    if sys.modules[module.__name__] is not module:
+        module.__getattr__ = functools.partial(getattr, sys.modules[module.__name__])
 
 
 def _connect():

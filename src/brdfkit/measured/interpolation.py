@@ -30,6 +30,7 @@ from brdfkit.samples.coordinates import (
     anisotropic_coordinates,
     isotropic_coordinates,
 )
+from brdfkit.threads import in_turn
 
 NEIGHBOURS = 12
 # So far from the samples the guide counts as much as one of them
@@ -116,6 +117,7 @@ def _angles(wi, wo):
     return np.arccos(np.clip(cosines, -1, 1))
 
 
+@in_turn
 def _guide(samples, anisotropic):
     """The BRDF (wi, wo) → (n, channels) of the model that fits `samples` best, or a constant."""
     if len(samples.wi) < FEWEST or samples.values.max() <= 0:

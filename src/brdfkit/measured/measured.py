@@ -16,6 +16,7 @@ from brdfkit.measured.tabulation import looked_up, reciprocal, sampled, steady, 
 from brdfkit.names import printable
 from brdfkit.samples import Samples, Table
 from brdfkit.samples.samples import require_some
+from brdfkit.threads import cached_in_turn, in_turn
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +128,7 @@ class Measured:
             return self._samples
         return Samples.of_table(self._table)
 
-    @cached_property
+    @cached_in_turn
     def table(self):
         """The table to look up in; that of samples has what lies between them."""
         if self._table is not None:
@@ -152,7 +153,7 @@ class Measured:
             brdf = reciprocal(steady(self._lookup, self.anisotropic))
         return sampled(brdf, len(self.channels), shape)
 
-    @cached_property
+    @cached_in_turn
     def _between(self):
         """The BRDF (wi, wo) → (n, channels) between the samples."""
         return self._lookup or Scattered(self.samples, self.anisotropic)
@@ -203,7 +204,7 @@ class Measured:
         """
         return brdfkit.audit(self)
 
-    @cached_property
+    @cached_in_turn
     def tabulated(self):
         """The same material given by its `table`."""
         if self.is_table:
@@ -217,6 +218,7 @@ class Measured:
         own = self.is_table or hasattr(self._lookup, "scene_dict")
         return self if own else self.tabulated
 
+    @in_turn
     def scene_dict(self):
         """The dictionary for `mitsuba.load_dict`, in the current variant: of what is `rendered`."""
         import mitsuba as mi

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit import llvm
+from brdfkit.padding import padded
 
 
 @dataclass(frozen=True)
@@ -55,10 +56,14 @@ def differentiable():
     return bool(dr.is_diff_v(float64()))
 
 
+def array(values):
+    """The NumPy array `values` (n,) as `float64()`."""
+    return float64()(padded(np.asarray(values, float)))
+
+
 def vector(w):
     """A `Vector` of NumPy directions (n, 3)."""
-    Float64 = float64()
-    return Vector(*(Float64(np.ascontiguousarray(w[:, k])) for k in range(3)))
+    return Vector(*(array(w[:, k]) for k in range(3)))
 
 
 def scalar(value):

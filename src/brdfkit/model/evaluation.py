@@ -4,6 +4,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.model import double_precision
+from brdfkit.threads import in_turn
 
 
 def evaluate_model(model, wi, wo):
@@ -39,6 +40,7 @@ def weight_matrix(model):
     return np.array([np.broadcast_to(w, channels) for w in weights])
 
 
+@in_turn
 def lobe_values(model, wi, wo):
     """Lobes (n, lobes) in sr⁻¹ of directions (n, 3) above the surface, and those of the weights'
     squares, likewise."""

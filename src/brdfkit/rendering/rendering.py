@@ -14,14 +14,13 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import written
-from brdfkit.fitting import Fit
-from brdfkit.llvm import use_variant
-from brdfkit.materials import material
-from brdfkit.model import Model
 from brdfkit.names import unused
 from brdfkit.rendering import scenes
+from brdfkit.rendering.memory import require_memory
 from brdfkit.rendering.montage import montage, picture_suffix, write_exr
+from brdfkit.rendering.subjects import described, is_pair, load_scene, mitsuba
 from brdfkit.rendering.tracing import trace
+from brdfkit.threads import in_turn
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +30,8 @@ class Rendering:
     `pictures`: name → (height, width, 3) float32, linear sRGB; `spp`: samples per pixel that
     every picture has, fewer than asked for after Ctrl-C; `seconds`: wall-clock time; `seed`: of
     the samples; `parameters`: name → the material's parameters, where it has any; `mask`:
-    (height, width), True where the material shows, None for everywhere.
+    (height, width), True where the material shows, None for everywhere; `asked`: samples per pixel
+    that were asked for.
 
     >>> render([paint, fit]).write("copper.exr")
     """
@@ -42,6 +42,7 @@ class Rendering:
     seed: int = 0
     parameters: dict[str, dict] = field(default_factory=dict)
     mask: np.ndarray | None = field(default=None, repr=False)
+    asked: int | None = None
 
     @property
     def reference(self):
@@ -121,75 +122,64 @@ def render(
 
     Equal seeds give equal pictures, up to the order in which threads sum up (1e-6). Ctrl-C
     keeps the passes that every picture has; before the first of them it is raised.
-    Raises `BrdfkitError` for what cannot be rendered. Uses the current variant of Mitsuba,
-    where none is set the best that works.
+    Raises `BrdfkitError` for what cannot be rendered, and for pictures larger than the memory that
+    is available. Uses the current variant of Mitsuba, where none is set the best that works.
+    It may be called from any thread; renders of several threads run one after the other.
 
     >>> render([paint, ("grey", {"type": "diffuse"})], spp=16, size=128).psnr()
     """
     size = (size, size) if np.ndim(size) == 0 else tuple(size)
     if min(size) < 1:
         raise BrdfkitError(f"{size} pixels make no picture; give a size above 0.")
-    if _is_pair(things) or isinstance(things, dict | str) or not hasattr(things, "__iter__"):
+    if is_pair(things) or isinstance(things, dict | str) or not hasattr(things, "__iter__"):
         things = [things]
-    mi = _mitsuba()
+    things = list(things)
+    if not things:
+        raise BrdfkitError("There is nothing to render; give at least one material.")
+    require_memory(size, len(things))
+    mitsuba()  # in a variant: dictionaries depend on it
     materials, parameters = {}, {}
     for thing in things:
-        name, bsdf, values = _material(thing)
+        name, bsdf, values = described(thing)
         name = unused(name, materials)
         materials[name] = bsdf
         if values:
             parameters[name] = values
-    if not materials:
-        raise BrdfkitError("There is nothing to render; give at least one material.")
     build, mask = (scene, None) if scene else (scenes.ball, scenes.ball_mask(size))
-    loaded = {n: _load(mi.load_dict, build(bsdf, size), n) for n, bsdf in materials.items()}
-    pictures, spp, seconds = trace(loaded, spp, seed, progress)
-    return Rendering(pictures, spp, seconds, seed, parameters, mask)
+    scenes_by_name = {name: build(bsdf, size) for name, bsdf in materials.items()}
+    pictures, reached, seconds = _traced(scenes_by_name, spp, seed, progress)
+    return Rendering(pictures, reached, seconds, seed, parameters, mask, asked=spp)
 
 
-def render_scene(path, spp: int = 256, seed: int = 0, progress=None) -> Rendering:
+@in_turn
+def render_scene(path, spp: int | None = None, seed: int = 0, progress=None) -> Rendering:
     """Path-trace a Mitsuba scene file, `path`.xml, in which brdfkit's models may appear.
 
-    Size, camera and integrator are the scene's; the rest is as in `render`.
+    `spp`: samples per pixel, by default those of the scene's sampler. Size, camera and integrator
+    are the scene's; the rest is as in `render`.
 
     >>> render_scene("kitchen.xml", spp=64).write("kitchen.exr")
     """
     path = Path(path)
     if not path.is_file():
         raise BrdfkitError(f"{path}: there is no such scene file; check the path.")
-    loaded = {path.stem: _load(_mitsuba().load_file, str(path), path)}
-    if not loaded[path.stem].sensors():
+    scene = load_scene(mitsuba().load_file, str(path), path)
+    if not scene.sensors():
         raise BrdfkitError(f"{path}: the scene has no sensor to see it with; add a <sensor>.")
-    pictures, spp, seconds = trace(loaded, spp, seed, progress)
-    return Rendering(pictures, spp, seconds, seed)
+    if scene.integrator() is None:
+        raise BrdfkitError(f'{path}: the scene has no integrator; add <integrator type="path"/>.')
+    require_memory(scene.sensors()[0].film().size(), 1, path)
+    if spp is None:
+        spp = scene.sensors()[0].sampler().sample_count()
+    pictures, reached, seconds = trace({path.stem: scene}, spp, seed, progress)
+    return Rendering(pictures, reached, seconds, seed, asked=spp)
 
 
-def _mitsuba():
-    """Mitsuba with a variant set."""
-    import mitsuba as mi
+@in_turn
+def _traced(dictionaries, spp, seed, progress):
+    """What `trace` makes of scene dictionaries, name → dictionary.
 
-    use_variant()
-    return mi
-
-
-def _is_pair(thing):
-    return isinstance(thing, tuple) and len(thing) == 2 and isinstance(thing[0], str)
-
-
-def _material(thing):
-    """(name, BSDF dictionary, parameters' values by name) of whatever `render` takes."""
-    if _is_pair(thing):
-        return thing[0], *_material(thing[1])[1:]
-    found = material(thing)
-    values = found.values if isinstance(found, Model | Fit) else {}
-    return str(found.name), found.scene_dict(), dict(values)
-
-
-def _load(load, source, name):
-    try:
-        return load(source)
-    except (RuntimeError, TypeError) as error:
-        lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-        # a plugin written in Python reports its traceback, of which people want the last line
-        reason = lines[-1] if any("Traceback" in line for line in lines) else " ".join(lines)
-        raise BrdfkitError(f"{name}: Mitsuba cannot load it ({reason.rstrip('.')}).") from error
+    The scenes end here, too: Mitsuba traces through the BSDFs of all that there are in the process.
+    """
+    loaded = {name: load_scene(mitsuba().load_dict, d, name) for name, d in dictionaries.items()}
+    return trace(loaded, spp, seed, progress)

@@ -12,6 +12,8 @@ TARGET = (0.0, 0.0, 0.96)
 FOV = 19.8  # [degrees] along the shorter side of the picture: the ball fills 70 % of it
 SOFTBOX = (-4.4, -3.2, 5.4)
 BALL = (0.0, 0.0, 1.0)
+SUN = (0.75, 0.5, 0.45)
+GREY_SKY = 0.18
 
 
 def ball(bsdf, size=(512, 512), spp=64):
@@ -20,7 +22,7 @@ def ball(bsdf, size=(512, 512), spp=64):
     `bsdf`: a BSDF's dictionary (or object); `size`: (width, height) [pixels]; `spp`: samples per
     pixel. The exposure is fixed: a white wall paint (diffuse, reflectance 0.8) comes out near
     sRGB 200 where it is brightest, so that pictures of different materials can be compared.
-    Mitsuba's sky needs an RGB or spectral variant.
+    Works in every variant of Mitsuba.
 
     >>> ball({"type": "diffuse"})["type"]
     'scene'
@@ -32,7 +34,7 @@ def ball(bsdf, size=(512, 512), spp=64):
         "type": "scene",
         "integrator": {"type": "path", "max_depth": 6},
         "sensor": _camera(at, size, spp),
-        "sky": _sky(),
+        "sky": _grey_sky(at) if mi.is_monochromatic else _sky(),
         "softbox": _softbox(at),
         "ground": {
             "type": "disk",
@@ -74,6 +76,8 @@ def _axes():
 
 
 def _camera(at, size, spp):
+    import mitsuba as mi
+
     return {
         "type": "perspective",
         "fov": FOV,
@@ -83,7 +87,7 @@ def _camera(at, size, spp):
             "type": "hdrfilm",
             "width": int(size[0]),
             "height": int(size[1]),
-            "pixel_format": "rgb",
+            "pixel_format": "luminance" if mi.is_monochromatic else "rgb",
             "component_format": "float32",
         },
         "sampler": {"type": "multijitter", "sample_count": int(spp)},
@@ -100,9 +104,34 @@ def _sky():
         "type": "sunsky",
         "turbidity": 7.0,
         "albedo": 0.32,
-        "sun_direction": [0.75, 0.5, 0.45],
+        "sun_direction": list(SUN),
         "sun_scale": 0.0,
         "sky_scale": 1.65,
+    }
+
+
+def _grey_sky(at):
+    """A sky of the same brightness for mono variants, in which Mitsuba's own does not work.
+
+    CIE standard sky 13, clear over polluted air (ISO 15469:2004), on such a scale that the ground
+    receives as much light as from `_sky`, in luminance.
+    """
+    import mitsuba as mi
+
+    height, width = 129, 256
+    theta = np.linspace(0, np.pi / 2, height // 2 + 1)[:, None]  # the first and last row are poles
+    phi = (np.arange(width) + 0.5) / width * 2 * np.pi
+    up, side = np.cos(theta), np.sin(theta)
+    towards = np.stack(np.broadcast_arrays(side * np.sin(phi), side * np.cos(phi), up), axis=-1)
+    from_sun = np.arccos(np.clip(towards @ SUN / np.linalg.norm(SUN), -1, 1))
+    gradation = 1 - np.exp(-0.32 / np.maximum(up, 1e-6))
+    glow = 16 * (np.exp(-3 * from_sun) - np.exp(-3 * np.pi / 2)) + 0.3 * np.cos(from_sun) ** 2
+    luminance = np.zeros((height, width, 1), np.float32)  # black below the horizon
+    luminance[: len(theta), :, 0] = GREY_SKY * gradation * (1 + glow)
+    return {
+        "type": "envmap",
+        "bitmap": mi.Bitmap(luminance),
+        "to_world": at.rotate([1, 0, 0], 90),  # an environment map has y up
     }
 
 

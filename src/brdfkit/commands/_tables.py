@@ -1,0 +1,66 @@
+"""Tables that lose no word, however narrow the terminal: columns fold, or rows become blocks."""
+
+import textwrap
+
+
+def table(columns, sections, width, title=None):
+    """A Rich table at most `width` characters wide; None where a word would not fit.
+
+    `columns`: their names, flush right and in one piece behind ">", for numbers; `sections`: lists
+    of rows of texts. The first column, which holds names, is not folded either.
+    """
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+    from rich.text import Text
+
+    headers = [column.removeprefix(">").replace(" [", "\n[") for column in columns]
+    rows = [row for section in sections for row in section]
+    cells = [[h, *texts] for h, *texts in zip(headers, *rows, strict=True)]
+    whole = [k == 0 or column.startswith(">") for k, column in enumerate(columns)]
+    widths = _widths(cells, whole, width - 3 * len(columns) + 1)  # between and beside the columns
+    if widths is None:
+        return None
+    title = title and Text(title)
+    found = Table(box=SIMPLE_HEAD, title=title, title_justify="left", pad_edge=False)
+    found.show_header = any(columns)
+    for column, header, w in zip(columns, headers, widths, strict=True):
+        found.add_column(Text(header), justify="right" if column[:1] == ">" else "left", width=w)
+    for section in sections:
+        for row in section:
+            found.add_row(*map(Text, row))
+        found.add_section()
+    return found
+
+
+def blocks(columns, sections, width):
+    """The same in lines: for each row its texts, one below the other, with their columns' names."""
+    for row in (row for section in sections for row in section):
+        for k, (column, text) in enumerate(zip(columns, row, strict=True)):
+            name = column.removeprefix(">")
+            if not (name or text):
+                continue
+            yield textwrap.fill(
+                f"{name}: {text or '-'}" if name else text,
+                width,
+                initial_indent="  " if k else "",
+                subsequent_indent="    ",
+                break_long_words=False,
+                break_on_hyphens=False,
+            )
+
+
+def _widths(cells, whole, room):
+    """Widths of columns with these `cells` that have `room`, together; None where it is too little.
+
+    What is left beside the longest words goes to the columns that have most to say.
+    """
+    from rich.cells import cell_len
+
+    most = [max(cell_len(line) for c in column for line in c.split("\n")) for column in cells]
+    words = [max((cell_len(w) for c in column for w in c.split()), default=0) for column in cells]
+    least = [m if w else longest for m, w, longest in zip(most, whole, words, strict=True)]
+    wanted = [m - n for m, n in zip(most, least, strict=True)]
+    spare = min(room - sum(least), sum(wanted))
+    if spare < 0:
+        return None
+    return [n + spare * w // max(sum(wanted), 1) for n, w in zip(least, wanted, strict=True)]

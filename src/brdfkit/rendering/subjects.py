@@ -1,0 +1,39 @@
+"""What may be rendered, as Mitsuba takes it."""
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.fitting import Fit
+from brdfkit.llvm import use_variant
+from brdfkit.materials import material
+from brdfkit.model import Model
+
+
+def mitsuba():
+    """Mitsuba with a variant set."""
+    import mitsuba as mi
+
+    use_variant()
+    return mi
+
+
+def is_pair(thing):
+    return isinstance(thing, tuple) and len(thing) == 2 and isinstance(thing[0], str)
+
+
+def described(thing):
+    """(name, BSDF dictionary, parameters' values by name) of whatever `render` takes."""
+    if is_pair(thing):
+        return thing[0], *described(thing[1])[1:]
+    found = material(thing)
+    values = found.values if isinstance(found, Model | Fit) else {}
+    return str(found.name), found.scene_dict(), dict(values)
+
+
+def load_scene(load, source, name):
+    """The scene that `load`, a function of Mitsuba's, makes of `source`; errors tell its name."""
+    try:
+        return load(source, parallel=False)
+    except (RuntimeError, TypeError) as error:
+        lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+        # a plugin written in Python reports its traceback, of which people want the last line
+        reason = lines[-1] if any("Traceback" in line for line in lines) else " ".join(lines)
+        raise BrdfkitError(f"{name}: Mitsuba cannot load it ({reason.rstrip('.')}).") from error
