@@ -27,6 +27,7 @@ lint: $(VENV)/.ready
 	$(RUN)/ruff check
 	$(RUN)/ruff format --check
 	$(RUN)/lint-imports --no-logo --no-cache
+	$(RUN)/mypy
 
 bench: $(VENV)/.ready
 	DRJIT_CACHE_DIR=$$(mktemp -d) $(RUN)/python tests/benchmark.py
@@ -41,5 +42,5 @@ wheel: $(VENV)/.ready
 	$(RUN)/python -m build
 
 clean:
-	rm -rf $(VENV) build dist demo .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) build dist demo .mypy_cache .pytest_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

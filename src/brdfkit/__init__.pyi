@@ -22,5 +22,6 @@ from .model.labels import models as models
 from .plotting import plot as plot
 from .rendering import Rendering as Rendering
 from .rendering import render as render
+from .rendering import render_scene as render_scene
 
 __version__: str

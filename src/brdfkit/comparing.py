@@ -1,12 +1,13 @@
 """`compare`: how well models describe a measured material, as a table."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from brdfkit.fitting import losses
-from brdfkit.materials import materials, measured
+from brdfkit.materials import MaterialLike, materials, measured
 from brdfkit.measured.selection import selected
 from brdfkit.model import double_precision
 from brdfkit.names import unused
@@ -15,21 +16,26 @@ from brdfkit.threads import in_turn
 
 @dataclass(frozen=True)
 class Comparison:
-    """Errors of several BRDFs against one measured material, under every loss.
+    """Errors of several BRDFs against one measured material, under every loss; prints as a table.
 
-    `errors`: name → loss → E (its units: `brdfkit.losses`), the best by the log loss first; nan
-    where a loss weighs no sample.
+    Attributes
+    ----------
+    material : str
+        Name of the measured material.
+    errors : dict
+        Name → loss → E, in the units of `brdfkit.losses`, the best by the log loss first; nan where
+        a loss weighs no sample.
     """
 
     material: str
     errors: dict[str, dict[str, float]]
 
     @property
-    def best(self):
+    def best(self) -> str:
         """Name of the BRDF with the least log loss."""
         return next(iter(self.errors))
 
-    def __str__(self):
+    def __str__(self) -> str:
         names = list(next(iter(self.errors.values())))
         width = max(map(len, [self.material, *self.errors]))
         lines = [f"{self.material:<{width}}" + "".join(f"{n:>12}" for n in names)]
@@ -43,19 +49,38 @@ def figure(error):
     return "-" if math.isnan(error) else f"{error:.5f}"
 
 
-def compare(data, things, max_angle=80.0):
-    """Compare fits, models or other materials to a `Measured`; returns a `Comparison`.
+def compare(
+    data: MaterialLike, things: MaterialLike | Iterable[MaterialLike], max_angle: float = 80.0
+) -> Comparison:
+    """Compare fits, models or other materials to a measured one, under every loss.
 
-    `things`: one material or a list of them; `max_angle`: samples with an angle at or beyond it
-    [degrees, above 0 to 90] are left out, as in `fit`. The result has them in the order of their
-    log loss, the best first; equal names are numbered. Raises `BrdfkitError` where `data` was not
-    measured, one of `things` is no material, or no sample is left.
+    Parameters
+    ----------
+    data : Measured, str or Path
+        The measured material, or the name or path of one.
+    things : Measured, Fit, Model, str, Path or dict, or several
+        What is compared to it; equal names are numbered.
+    max_angle : float, default 80
+        Samples with an angle to the normal at or beyond it [degrees, above 0 to 90] are left out,
+        as in `fit`.
 
-    >>> print(compare(paint, [fit("ward", paint), fit("ggx", paint)]))    # doctest: +SKIP
+    Returns
+    -------
+    Comparison
+        The errors, in the order of the log loss, the best first; prints as a table.
+
+    Raises
+    ------
+    BrdfkitError
+        Where `data` was not measured, one of `things` is no material, or no sample is left.
+
+    Examples
+    --------
+    >>> print(compare("car_paint", ["ward", fit("ggx", "car_paint")]))    # doctest: +SKIP
     """
-    data, things = measured(data), materials(things)
-    errors = {}
-    for thing in things:
+    data, found = measured(data), materials(things)
+    errors: dict[str, dict[str, float]] = {}
+    for thing in found:
         errors[unused(thing.name, errors)] = {
             loss: error(thing, data, loss, max_angle) for loss in losses
         }

@@ -20,7 +20,15 @@ EQUAL = 5e-4  # relative: below, it would read 0.0 %
 
 @dataclass(frozen=True)
 class Conversion:
-    """The file written, and what it does not hold, or holds otherwise, in words."""
+    """The file that `convert` wrote, and what changed; prints as a line.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    changes : tuple of str
+        What it does not hold, or holds otherwise, in words.
+    """
 
     path: Path
     changes: tuple[str, ...]

@@ -1,53 +1,86 @@
 """`fit`: a model fitted to a measured material."""
 
 import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
 
 from brdfkit.errors import no_such
 from brdfkit.fitting import Fit, losses, regress
 from brdfkit.fitting.arguments import by_name, pair, whole_number
 from brdfkit.fitting.robust import WEIGHTS
-from brdfkit.materials import measured
+from brdfkit.materials import MaterialLike, measured
 from brdfkit.measured.selection import selected
-from brdfkit.model import labels
+from brdfkit.model import Model, labels
 from brdfkit.model.evaluation import clamped_share
 from brdfkit.threads import in_turn
 
 
 @in_turn
 def fit(
-    name,
-    data,
-    loss="log",
+    name: str | Path | type[Model],
+    data: MaterialLike,
+    loss: str = "log",
     *,
-    robust=None,
-    starts=16,
-    bounds=None,
-    fixed=None,
-    anisotropic=None,
-    max_angle=80.0,
-    seed=0,
-    progress=None,
-):
-    """Fit the model `name`, a label as ``"ggx+ward"`` or a class, to a measured material.
+    robust: str | None = None,
+    starts: int = 16,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    fixed: Mapping[str, float] | None = None,
+    anisotropic: bool | None = None,
+    max_angle: float = 80.0,
+    seed: int = 0,
+    progress: Callable[[int, int], object] | None = None,
+) -> Fit:
+    """Fit a model to a measured material.
 
-    SQP over the shape parameters from several starts, in double precision; the weights are solved
-    inside, per channel, not negative. Spectral data is fitted as linear sRGB.
+    Sequential quadratic programming (SQP) searches the shape parameters from several starts, in
+    double precision with exact derivatives; the weights are solved inside every step, per channel.
+    Spectral measurements are fitted as linear sRGB. Fits of several threads run one after the
+    other.
 
-    `data`: a `Measured`; `loss`: a name in `losses`; `robust`: a name in `fitting.robust.WEIGHTS`,
-    ``"bisquare"``, by which outliers lose their say; `starts`: the default and points spread over
-    the bounds; `bounds`: other bounds by name, ``{"alpha_u": (0.01, 0.5)}``; `fixed`: shape
-    parameters held at a value, ``{"f0": 0.04}``; `anisotropic`: search ``alpha_v`` and its like
-    too, which otherwise follow ``alpha_u``: by default where the measurement is anisotropic;
-    `max_angle`: samples with an angle at or beyond it [degrees, above 0 to 90] are left out;
-    `seed`: of the starts, and of the part of a large table by which they are compared: equal seeds
-    give equal fits; `progress`: called with (done, total). Returns a `Fit`. Fits of several threads
-    run one after the other.
+    Parameters
+    ----------
+    name : str, Path or class
+        The model: its label, as ``"ggx"``, ``"koenderink:order=8"`` or ``"ggx+ward"``; a file that
+        defines one; or a class derived from `Model`.
+    data : Measured, str or Path
+        The measured material, or the name or path of one.
+    loss : str, default "log"
+        What is made small: a name in `brdfkit.losses`.
+    robust : str, optional
+        The weight by which outliers lose their say, as ``"bisquare"`` [Kurt 2007, eq. 5.14]; the
+        others are in `brdfkit.fitting.robust.WEIGHTS`. By default all samples count.
+    starts : int, default 16
+        Points from which the search begins: the defaults and others, spread over the bounds.
+    bounds : dict of str to (float, float), optional
+        Narrower bounds of shape parameters, as ``{"alpha_u": (0.01, 0.5)}``.
+    fixed : dict of str to float, optional
+        Shape parameters that keep a value, as ``{"f0": 0.04}``.
+    anisotropic : bool, optional
+        Whether ``alpha_v`` and its like are searched, too, or else follow ``alpha_u``. By default
+        they are where the measurement is anisotropic.
+    max_angle : float, default 80
+        Samples with an angle to the normal at or beyond it [degrees, above 0 to 90] are left out.
+    seed : int, default 0
+        Seed of the starts, and of the part of a large table by which they are compared; equal seeds
+        give equal fits.
+    progress : callable, optional
+        Called with (steps done, steps in all).
 
-    Raises `BrdfkitError` for an unknown model, loss or robust weight; for a parameter that is not
-    searched, or bounds and values beyond the model's; where `data` was not measured or no sample
-    is left; and for a robust fit without more samples than parameters.
+    Returns
+    -------
+    Fit
+        The model with its values; prints as a table.
 
-    >>> print(fit("ward", load("paint.binary")))    # doctest: +SKIP
+    Raises
+    ------
+    BrdfkitError
+        For an unknown model, loss or robust weight; for a parameter that is not searched, or bounds
+        and values beyond the model's; where `data` was not measured or no sample is left; for a
+        formula that is not finite; and for a robust fit without more samples than parameters.
+
+    Examples
+    --------
+    >>> print(fit("ward", "paint.binary"))    # doctest: +SKIP
     """
     began = time.perf_counter()
     model, data = labels.model(labels.read_files(name)), measured(data)

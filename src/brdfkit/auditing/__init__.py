@@ -28,14 +28,39 @@ FEW = 10  # angles that are told each
 
 @dataclass(frozen=True)
 class Audit:
-    """What is in a measurement; printed it says so in words. Made by `audit`.
+    """What is in a measurement; prints as text. Made by `audit`. NaN is what it cannot tell.
 
-    `shape`: of a table, else None; `size`: number of cells or samples, of which some are `above`
-    the horizon, `valid`, and `used` by a fit as it comes (both angles below 80°); `negative`,
-    `zero`: so many values of the valid ones, each channel counted; `theta_i`, `theta_o`: the
-    angles that were measured [degrees], or their ends; `smallest` (above 0), `median`, `largest`:
-    of the valid values [sr⁻¹]; `grazing`, `retroreflection`: see `ratios.py`. NaN is what the
-    measurement cannot tell.
+    Attributes
+    ----------
+    name : str
+        Name of the material.
+    shape : tuple of int or None
+        Cells of a table; None for samples.
+    channels : tuple of str
+        What the columns of the values are.
+    size, above, valid, used : int
+        Number of cells or samples; of these, how many are above the horizon, are valid, and are
+        used by a fit as it comes (both angles below 80°).
+    negative, zero : int
+        Number of valid values below 0 and equal to 0, each channel counted.
+    theta_i, theta_o : tuple of float
+        The measured angles to the normal [degrees], or their ends where they are many.
+    smallest, median, largest : float
+        Of the valid values [sr⁻¹]; the smallest above 0.
+    coverage : Coverage
+        Which part of all direction pairs was measured.
+    reciprocity, mirror : Difference
+        Between values that should be equal: with the directions exchanged, and left and right.
+    noise : Noise
+        How much the values scatter.
+    albedo, albedo_of_samples : Albedo
+        Over the angle of incidence: as it is looked up, and of the samples alone.
+    grazing, retroreflection : float
+        Two ratios of medians: see `brdfkit.auditing.ratios`.
+    spikes : tuple of Spike
+        Values far above all around them.
+    data : Measured
+        The material.
     """
 
     name: str

@@ -7,6 +7,7 @@ with a `Subject`; those of other plugins in a file of their kind, with a `Plugin
 
 import importlib
 import pkgutil
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from brdfkit import llvm
@@ -15,7 +16,7 @@ from brdfkit.checks.plugin import PluginSubject, example
 from brdfkit.checks.registry import Finding, checks
 from brdfkit.checks.subject import Subject
 from brdfkit.errors import BrdfkitError, no_such
-from brdfkit.materials import material
+from brdfkit.materials import MaterialLike, material
 from brdfkit.plugins import discovery
 from brdfkit.plugins.discovery import MODELS
 from brdfkit.threads import in_turn
@@ -26,15 +27,23 @@ for _module in pkgutil.iter_modules(__path__):
 
 @dataclass(frozen=True)
 class Report:
-    """What `check` found; true when everything passed."""
+    """What `check` found; true when everything passed; prints as a list.
+
+    Attributes
+    ----------
+    name : str
+        What was checked.
+    findings : tuple of Finding
+        Of each check its name (`check`), whether it `passed`, and the `figure` by which.
+    """
 
     name: str
     findings: tuple[Finding, ...]
 
-    def __bool__(self):
+    def __bool__(self) -> bool:
         return all(finding.passed for finding in self.findings)
 
-    def __str__(self):
+    def __str__(self) -> str:
         width = max(len(f.check) for f in self.findings)
         lines = [
             f"  {'ok  ' if f.passed else 'FAIL'}  {f.check:<{width}}  {f.figure}"
@@ -44,19 +53,43 @@ class Report:
 
 
 @in_turn
-def check(thing, only=None, progress=None):
-    """Check a material, or a plugin of another kind; returns a `Report`.
+def check(
+    thing: MaterialLike,
+    only: Iterable[str] | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> Report:
+    """Check that a material, or a plugin of another kind, is what a renderer and a fit need.
 
-    `thing`: a model with values, a fit, a measured material, or the name or path of one; the name
-    of a plugin of another kind, or its dictionary for `mitsuba.load_dict`. Of a material: sampling
-    (χ² at five incidences to grazing, coverage, weight = eval / pdf), reciprocity, finiteness to
-    the horizon, energy, derivatives, and that the Mitsuba plugin computes the formula, in the
-    current variant. Of emitters and phase functions: χ², weights, normalisation, means; of
-    integrators a reference. What raises an error has failed. `only`: names of checks; `progress`:
-    called with (done, total). Raises `BrdfkitError` for an unknown check, for what is no material
-    or plugin, and without an LLVM or CUDA variant.
+    Of a material: its sampling (χ² at five incidences to grazing, coverage, weight = eval / pdf),
+    reciprocity, finiteness to the horizon, energy, derivatives, and that the Mitsuba plugin
+    computes the formula. Of an emitter or a phase function: χ², weights, normalisation and means.
+    Of an integrator: the reference that its file names. A plugin whose lines raise an error has
+    failed. Everything runs in the current variant of Mitsuba; where none is set, in the best that
+    works.
 
-    >>> print(check(models()["ward"](alpha_u=0.1)))    # doctest: +SKIP
+    Parameters
+    ----------
+    thing : Model, Fit, Measured, str, Path or dict
+        The material, or the name or path of one; the name of a plugin of another kind, or its
+        dictionary for `mitsuba.load_dict`.
+    only : list of str, optional
+        Names of the checks to run; by default all there are for its kind.
+    progress : callable, optional
+        Called with (checks done, checks in all).
+
+    Returns
+    -------
+    Report
+        True where everything passed; prints as a list.
+
+    Raises
+    ------
+    BrdfkitError
+        For an unknown check, for what is no material or plugin, and in a scalar variant of Mitsuba.
+
+    Examples
+    --------
+    >>> print(check("ward"))    # doctest: +SKIP
     """
     if llvm.use_variant().startswith("scalar"):
         usable = llvm.loaded_version() >= llvm.OLDEST

@@ -52,7 +52,7 @@ def _sin_theta(w):
     return np.sqrt(np.maximum(1 - w[:, 2] ** 2, 0))
 
 
-class Losses(dict):
+class Losses(dict[str, Loss]):
     """The losses by name, "cosine", "log", "cbrt" and "plain": what `fit` makes small.
 
     A loss E is a root mean square of differences: of f cos θ_i [sr⁻¹] for "cosine", of its cube

@@ -7,7 +7,7 @@ import numpy as np
 
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.robust import robust_search
-from brdfkit.fitting.search import Outcome, evaluate, slsqp
+from brdfkit.fitting.search import evaluate, slsqp
 from brdfkit.fitting.space import Space, start_points
 from brdfkit.threads import in_turn
 
@@ -85,7 +85,7 @@ def regress(
     )
 
 
-def _search(problem, space, model, count, seed, report) -> tuple[Outcome, int]:
+def _search(problem, space, model, count, seed, report):
     """The best outcome from the most promising starts, and the evaluations of them all."""
     points = start_points(space, space.coordinates(model().values), count, seed)
     total = len(points) + min(FOLLOWED, len(points))

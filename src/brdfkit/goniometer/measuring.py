@@ -10,10 +10,13 @@ reaches most of what is seen from the other, and fewer samples are 0.
 """
 
 import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.goniometer.microgeometry import HeightField
 from brdfkit.goniometer.specimen import Specimen
 from brdfkit.measured import Measured
 from brdfkit.samples import Table
@@ -32,31 +35,60 @@ MOST_SPP, LEAST_ERROR = 10**9, 1e-5  # weeks a cell
 
 @in_turn
 def measure(
-    surface,
-    facets,
-    shape=None,
-    error=0.05,
-    spp=16384,
-    seed=0,
-    name="specimen",
-    info=None,
-    progress=None,
-    max_bounces=8,
+    surface: HeightField,
+    facets: dict[str, Any] | Sequence[dict[str, Any]],
+    shape: Sequence[int] | None = None,
+    error: float = 0.05,
+    spp: int = 16384,
+    seed: int = 0,
+    name: str = "specimen",
+    info: Mapping[str, str] | None = None,
+    progress: Callable[[int, int], object] | None = None,
+    max_bounces: int = 8,
 ) -> Measured:
     """Measure a table of a surface's BRDF, with the standard error of every cell.
 
-    `surface`: a `brdfkit.microgeometry.HeightField`; `facets`: the dictionary of a Mitsuba BSDF,
-    or one for each part of the surface: reciprocal, opaque and no mirror; `shape`: cells of the
-    table, by default 30×30×60 (theta_h, theta_d, phi_d) where the surface is isotropic, else
-    16×20×12×24 (phi_h first); `error`: the relative standard error, of the channels together,
-    that a cell is to reach, with `spp` samples at most; `seed`: of the samples; `info`: notes to
-    add; `progress`: called with (done, total) paths; `max_bounces`: light that needs more is lost.
+    A virtual goniometer path-traces the surface's microgeometry. Ctrl-C ends it early, with larger
+    errors; before every cell has its share it is raised.
 
-    Channels are R, G, B. Cells with a direction below the plane are NaN. Ctrl-C ends it early,
-    with larger errors; before every cell has its share it is raised. Equal seeds give equal
-    values on one machine. Raises `BrdfkitError` for arguments out of bounds and for facets that
-    cannot be measured.
+    Parameters
+    ----------
+    surface : HeightField
+        As `brdfkit.goniometer.microgeometry` makes them: ``gaussian``, ``brushed``, ``woven``.
+    facets : dict, or several
+        The dictionary of a BSDF of Mitsuba's, or one for each part of the surface: reciprocal,
+        opaque and no mirror.
+    shape : (int, int, int) or (int, int, int, int), optional
+        Cells of the table: 30×30×60 (theta_h, theta_d, phi_d) where the surface is isotropic, else
+        16×20×12×24 (phi_h before them).
+    error : float, default 0.05
+        The relative standard error, of the channels together, that a cell is to reach.
+    spp : int, default 16384
+        Samples per cell, at most.
+    seed : int, default 0
+        Seed of the samples; equal seeds give equal values on one machine.
+    name : str, default "specimen"
+        Name of the material.
+    info : dict of str to str, optional
+        Notes to add to those of the measurement.
+    progress : callable, optional
+        Called with (paths done, paths in all).
+    max_bounces : int, default 8
+        Light that needs more bounces between the facets is lost.
 
+    Returns
+    -------
+    Measured
+        A table with the channels R, G, B; cells with a direction below the plane are NaN.
+
+    Raises
+    ------
+    BrdfkitError
+        For arguments out of bounds, and for facets that cannot be measured.
+
+    Examples
+    --------
+    >>> from brdfkit.goniometer.microgeometry import gaussian
     >>> measure(gaussian(slope=0.3), {"type": "diffuse"}).standard_error.shape  # doctest: +SKIP
     (54000, 3)
     """
@@ -79,7 +111,7 @@ def measure(
 
     values, errors = np.full((2, *shape, 3), np.nan)
     values[above], errors[above] = tally.mean, tally.standard_error
-    notes = _notes(tally, total) | (info or {})
+    notes = _notes(tally, total) | dict(info or {})
     return Measured.from_table(values, name=name, info=notes, standard_error=errors)
 
 

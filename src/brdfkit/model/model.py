@@ -13,7 +13,10 @@ What is no number to fit, a form or an order, is an `option`: a plain Python val
 class for each (`Model.configured`). Where the parameters depend on it, `more_parameters` adds them.
 """
 
+from typing import TYPE_CHECKING, Any, Self
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.model.declaration import Declared
@@ -25,22 +28,40 @@ CHANNELS = 1, 3  # that a weight may have: achromatic, linear sRGB
 
 
 class Model(Declared):
-    """A BRDF model with values. Its attributes are the parameters; they do not change.
+    """A BRDF model with values.
 
+    Each model is a class derived from this one. The values of its parameters are the attributes of
+    an object, which do not change; `parameters` has the default, bounds and meaning of each.
+
+    Parameters
+    ----------
+    **values : float or sequence of float
+        Values by the parameters' names; the others have their default. A weight takes one number,
+        or one for each of R, G, B.
+
+    Raises
+    ------
+    BrdfkitError
+        For an unknown name, or a value out of bounds.
+
+    Examples
+    --------
     >>> ward = models()["ward"](alpha_u=0.1, specular_reflectance=[0.3, 0.2, 0.1])
     >>> ward.alpha_v
     0.1
     """
 
-    def __init_subclass__(cls):
+    if TYPE_CHECKING:  # the parameters, of which a type checker cannot know
+
+        def __getattr__(self, name: str) -> Any: ...
+
+    def __init_subclass__(cls) -> None:
         super().__init_subclass__()
         for name in (*cls.parameters, *cls.options):
             if hasattr(Model, name):
                 raise BrdfkitError(f"{cls.__name__}: no parameter can be named {name!r}.")
 
-    def __init__(self, **values):
-        """Values by name; what is not given has its default. Weights: one number or one per
-        channel. Raises `BrdfkitError` for an unknown name or a value out of bounds."""
+    def __init__(self, **values: ArrayLike | None) -> None:
         for name in values:
             self.parameter(name)
         for name, parameter in self.parameters.items():
@@ -54,9 +75,26 @@ class Model(Declared):
                 raise BrdfkitError(f"{self.type_name()}: {name} = {problem}.")
             self.__dict__[name] = value
 
-    def changed(self, **values):
-        """The model with other values; what follows another parameter goes on to follow it.
+    def changed(self, **values: ArrayLike | None) -> Self:
+        """The model with other values.
 
+        Parameters
+        ----------
+        **values : float or sequence of float
+            Values by the parameters' names; what follows another parameter goes on to follow it.
+
+        Returns
+        -------
+        Model
+            Another object of the same class.
+
+        Raises
+        ------
+        BrdfkitError
+            For an unknown name, or a value out of bounds.
+
+        Examples
+        --------
         >>> models()["ward"](alpha_u=0.1).changed(alpha_u=0.2).alpha_v
         0.2
         """
@@ -98,27 +136,27 @@ class Model(Declared):
         return list(zip(weights, lobes, strict=True))
 
     @property
-    def values(self):
+    def values(self) -> dict[str, float | tuple[float, ...]]:
         """The parameters' values by name."""
         return {name: getattr(self, name) for name in self.parameters}
 
     @property
-    def free_values(self):
+    def free_values(self) -> dict[str, float | tuple[float, ...]]:
         """`values` without the parameters that follow another one and equal it."""
         values = self.values
         followed = {name: p.follows for name, p in self.parameters.items() if p.follows}
         return {n: v for n, v in values.items() if n not in followed or v != values[followed[n]]}
 
     @property
-    def name(self):
+    def name(self) -> str:
         """What pictures and tables call it."""
         return self.label()
 
-    def eval(self, wi, wo):
+    def eval(self, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
         """BRDF (n, channels) in sr⁻¹ of NumPy direction pairs (n, 3); 0 below the surface."""
         return evaluate_model(self, wi, wo)
 
-    def scene_dict(self):
+    def scene_dict(self) -> dict[str, Any]:
         """The dictionary for `mitsuba.load_dict`."""
         self.make_known()
         entries = {"type": self.type_name(), **self.chosen()}
@@ -126,16 +164,16 @@ class Model(Declared):
             entries[name] = _rgb(value) if isinstance(value, tuple) else value
         return entries
 
-    def __eq__(self, other):
+    def __eq__(self, other: object) -> bool:
         return type(self) is type(other) and self.values == other.values
 
-    def __hash__(self):
+    def __hash__(self) -> int:
         return hash((type(self), *self.values.values()))
 
     def __reduce__(self):
         return reduced(self)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         values = ", ".join(f"{name}={_short(value)}" for name, value in self.values.items())
         return f"{self.label()}({values})"
 

@@ -2,15 +2,17 @@
 
 import io
 import math
+from collections.abc import Iterable
 from itertools import cycle
 
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 
 from brdfkit.colours import luminance
 from brdfkit.errors import BrdfkitError
 from brdfkit.geometry.directions import from_angles, to_angles
-from brdfkit.materials import materials
+from brdfkit.materials import MaterialLike, materials
 from brdfkit.measured import Measured
 from brdfkit.names import unused
 from brdfkit.plotting.half_disc import Radius, half_disc, xy
@@ -26,27 +28,42 @@ DASHES = ("-", "--", "-.", ":")
 MOST_COLUMNS = 3
 
 
-def plot(things, theta_i=None):
+def plot(things: MaterialLike | Iterable[MaterialLike], theta_i: ArrayLike | None = None) -> Figure:
     """Polar plots of BRDFs in the plane of incidence, one panel per angle of incidence.
-
-    `things`: one or several of what has `eval` and `name`: measured materials, fits, models.
-    `theta_i`: one or several angles of incidence [degrees], 0 ≤ theta_i < 90; without it 15, 45
-    and 75, or the nearest ones at which the first scattered material was measured.
 
     The radius is logarithmic in the BRDF [sr⁻¹], in its luminance where it has colour; what is
     too dark for the scale lies in the centre. Light comes from the left, along the arrow. The
     first measured material is black: a table a line, where it was measured, and scattered samples
-    dots, those within 3° of theta_i and 5° of the plane. Returns a matplotlib `Figure`. Raises
-    `BrdfkitError` for angles out of range, for values that are neither achromatic nor RGB, and
-    for what cannot be plotted.
+    dots, those within 3° of theta_i and 5° of the plane.
 
-    >>> plot([paint, *fits]).savefig("paint.png")    # doctest: +SKIP
+    Parameters
+    ----------
+    things : Measured, Fit, Model, str, Path or dict, or several
+        The materials, or the names or paths of them, or BSDFs' dictionaries.
+    theta_i : float or array_like, optional
+        Angles of incidence [degrees], from 0 to below 90. By default 15, 45 and 75, or the nearest
+        ones at which the first scattered material was measured.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Not pyplot's: a notebook shows it, ``savefig`` writes it.
+
+    Raises
+    ------
+    BrdfkitError
+        For angles out of range, for values that are neither achromatic nor RGB, and for what is no
+        material.
+
+    Examples
+    --------
+    >>> plot(["car_paint", "ward"]).savefig("paint.png")    # doctest: +SKIP
     """
-    things = _things(things)
-    angles = usual_angles(things) if theta_i is None else np.atleast_1d(theta_i).astype(float)
+    found = _things(things)
+    angles = usual_angles(found) if theta_i is None else np.atleast_1d(theta_i).astype(float)
     if angles.ndim != 1 or not angles.size or not np.all((angles >= 0) & (angles < 90)):
         raise BrdfkitError(f"plot: theta_i = {theta_i} should be angles from 0 to below 90°.")
-    return _figure(things, angles)
+    return _figure(found, angles)
 
 
 class Plot(Figure):

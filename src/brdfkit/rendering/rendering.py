@@ -5,10 +5,11 @@ pass by pass, so that an interrupted render still compares like with like.
 """
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from math import inf
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -18,22 +19,31 @@ from brdfkit.names import unused
 from brdfkit.rendering import scenes
 from brdfkit.rendering.memory import require_memory
 from brdfkit.rendering.montage import montage, picture_suffix, write_exr
-from brdfkit.rendering.subjects import described, is_pair, load_scene, mitsuba
+from brdfkit.rendering.subjects import Renderable, as_list, described, load_scene, mitsuba
 from brdfkit.rendering.tracing import trace
 from brdfkit.threads import in_turn
 
 
 @dataclass(frozen=True, eq=False)
 class Rendering:
-    """Pictures of one scene with several materials; the first is the reference.
+    """Pictures of one scene with several materials; the first is the reference. Made by `render`.
 
-    `pictures`: name → (height, width, 3) float32, linear sRGB; `spp`: samples per pixel that
-    every picture has, fewer than asked for after Ctrl-C; `seconds`: wall-clock time; `seed`: of
-    the samples; `parameters`: name → the material's parameters, where it has any; `mask`:
-    (height, width), True where the material shows, None for everywhere; `asked`: samples per pixel
-    that were asked for.
-
-    >>> render([paint, fit]).write("copper.exr")
+    Attributes
+    ----------
+    pictures : dict of str to ndarray, shape (height, width, 3)
+        The pictures by name: float32, linear sRGB.
+    spp : int
+        Samples per pixel that every picture has; fewer than `asked` after Ctrl-C.
+    seconds : float
+        Wall-clock time.
+    seed : int
+        Seed of the samples.
+    parameters : dict of str to dict
+        The material's parameters by the picture's name, where it has any.
+    mask : ndarray of bool, shape (height, width), or None
+        Where the material shows; None for everywhere.
+    asked : int or None
+        Samples per pixel that were asked for.
     """
 
     pictures: dict[str, np.ndarray] = field(repr=False)
@@ -45,22 +55,27 @@ class Rendering:
     asked: int | None = None
 
     @property
-    def reference(self):
+    def reference(self) -> str:
         """Name of the picture that the others are compared to."""
         return next(iter(self.pictures))
 
     @property
-    def differences(self):
-        """Name → picture minus reference, (height, width, 3), of every other picture."""
+    def differences(self) -> dict[str, np.ndarray]:
+        """Picture minus reference, (height, width, 3), by the name of every other picture."""
         first = self.pictures[self.reference]
         return {n: p - first for n, p in self.pictures.items() if n != self.reference}
 
-    def psnr(self):
-        """Name → peak signal-to-noise ratio [dB] to the reference, of every other picture.
+    def psnr(self) -> dict[str, float]:
+        """Peak signal-to-noise ratio [dB] to the reference, by the name of every other picture.
 
         10·log10(peak² / mean squared difference), linear values, all channels, over the pixels
         that show the ball; peak is the 99.9th percentile of the reference there. inf for
         equal pictures.
+
+        Examples
+        --------
+        >>> render(["car_paint", "ward"], spp=16, size=128).psnr()    # doctest: +SKIP
+        {'ward': 24.6}
         """
         mask = slice(None) if self.mask is None else self.mask
         peak = np.percentile(self.pictures[self.reference][mask], 99.9)
@@ -68,14 +83,27 @@ class Rendering:
         with np.errstate(divide="ignore"):  # a black reference: -inf
             return {n: float(10 * np.log10(peak**2 / e)) if e else inf for n, e in errors.items()}
 
-    def write(self, path):
-        """Write `path`: .exr for everything, with a .png of the same stem beside it, or .png.
+    def write(self, path: str | Path) -> None:
+        """Write the pictures to a file.
 
         The EXR has one named part a picture and one a difference ("difference: NAME"), each
         with R, G, B float32 and, in its header, spp, seed, brdfkit (the version) and parameters
         (JSON). A difference is picture minus reference, linear. The PNG shows the pictures side
         by side, captioned, over their differences in colour (CIEDE2000).
-        Raises `BrdfkitError` for another suffix or where it cannot write; no half-written file.
+
+        Parameters
+        ----------
+        path : str or Path
+            `.exr` for everything, with a `.png` of the same stem beside it, or `.png` alone.
+
+        Raises
+        ------
+        BrdfkitError
+            For another suffix, or where it cannot write; no file is half-written.
+
+        Examples
+        --------
+        >>> render(["car_paint", "ward"]).write("paint.exr")    # doctest: +SKIP
         """
         path = Path(path)
         suffix = picture_suffix(path)
@@ -86,60 +114,81 @@ class Rendering:
         with written(path.with_suffix(".png") if suffix == ".exr" else path) as beside:
             beside.write_bytes(png)
 
-    def _repr_png_(self):
+    def _repr_png_(self) -> bytes:
         """The montage, which notebooks show."""
         stream = io.BytesIO()
         montage(self).save(stream, "PNG")
         return stream.getvalue()
 
     @property
-    def captions(self):
-        """Name → what there is to say of the picture in a word or two."""
+    def captions(self) -> dict[str, str]:
+        """A word or two on each picture, by its name."""
         figures = {name: f"PSNR {value:.1f} dB" for name, value in self.psnr().items()}
         return {self.reference: "reference" if figures else f"{self.spp} spp", **figures}
 
-    def __str__(self):
+    def __str__(self) -> str:
         height, width = self.pictures[self.reference].shape[:2]
         head = f"{width}×{height} pixels, {self.spp} spp, {self.seconds:.1f} s"
         return "\n".join([head, *(f"  {name}: {said}" for name, said in self.captions.items())])
 
 
 def render(
-    things,
+    things: Renderable | Iterable[Renderable],
     spp: int = 256,
     size: int | tuple[int, int] = 512,
     seed: int = 0,
-    scene: Callable | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    scene: Callable[[dict[str, Any], tuple[int, int]], dict[str, Any]] | None = None,
+    progress: Callable[[int, int], object] | None = None,
 ) -> Rendering:
     """Path-trace one or several materials in the same scene, with the same samples.
 
-    `things`: a material or a list of them, the reference first: anything with `.scene_dict()`
-    and `.name` (measured, fit, model), a BSDF's dictionary, with a key "name" or not, or a pair
-    (name, one of those). `spp`: samples per pixel; `size`: side or (width, height) [pixels];
-    `scene`: a function (bsdf, size) → scene dictionary in place of `brdfkit.scenes.ball`;
-    `progress`: called with (done, total) after each pass of a picture.
+    It runs in the current variant of Mitsuba; where none is set, in the best that works. Ctrl-C
+    keeps the passes that every picture has; before the first of them it is raised. Renders of
+    several threads run one after the other.
 
-    Equal seeds give equal pictures, up to the order in which threads sum up (1e-6). Ctrl-C
-    keeps the passes that every picture has; before the first of them it is raised.
-    Raises `BrdfkitError` for what cannot be rendered, and for pictures larger than the memory that
-    is available. Uses the current variant of Mitsuba, where none is set the best that works.
-    It may be called from any thread; renders of several threads run one after the other.
+    Parameters
+    ----------
+    things : Measured, Fit, Model, str, Path, dict or (str, one of these), or several
+        The materials, the reference first: objects, names or paths, BSDFs' dictionaries, which may
+        hold a "name", or pairs of a name and one of these.
+    spp : int, default 256
+        Samples per pixel.
+    size : int or (int, int), default 512
+        Side, or width and height, of a picture [pixels].
+    seed : int, default 0
+        Seed of the samples; equal seeds give equal pictures, up to the order in which threads sum
+        up (1e-6).
+    scene : callable, optional
+        Gives the scene's dictionary for (BSDF's dictionary, (width, height)). By default
+        `brdfkit.rendering.scenes.ball`: a ball on grey ground under a clear sky and one softbox.
+    progress : callable, optional
+        Called with (done, total) after each pass of a picture.
 
-    >>> render([paint, ("grey", {"type": "diffuse"})], spp=16, size=128).psnr()
+    Returns
+    -------
+    Rendering
+        The pictures; ``write`` makes an OpenEXR file of all, or a PNG to look at.
+
+    Raises
+    ------
+    BrdfkitError
+        For what cannot be rendered, and for pictures larger than the memory that is available.
+
+    Examples
+    --------
+    >>> pictures = render(["car_paint", ("grey", {"type": "diffuse"})], spp=16)    # doctest: +SKIP
+    >>> pictures.write("paint.exr")    # doctest: +SKIP
     """
-    size = (size, size) if np.ndim(size) == 0 else tuple(size)
+    width, height = (size, size) if isinstance(size, int | np.integer) else size
+    size = width, height
     if min(size) < 1:
         raise BrdfkitError(f"{size} pixels make no picture; give a size above 0.")
-    if is_pair(things) or isinstance(things, dict | str) or not hasattr(things, "__iter__"):
-        things = [things]
-    things = list(things)
-    if not things:
-        raise BrdfkitError("There is nothing to render; give at least one material.")
-    require_memory(size, len(things))
+    subjects = as_list(things)
+    require_memory(size, len(subjects))
     mitsuba()  # in a variant: dictionaries depend on it
-    materials, parameters = {}, {}
-    for thing in things:
+    materials: dict[str, dict[str, Any]] = {}
+    parameters: dict[str, dict[str, Any]] = {}
+    for thing in subjects:
         name, bsdf, values = described(thing)
         name = unused(name, materials)
         materials[name] = bsdf
@@ -152,13 +201,41 @@ def render(
 
 
 @in_turn
-def render_scene(path, spp: int | None = None, seed: int = 0, progress=None) -> Rendering:
-    """Path-trace a Mitsuba scene file, `path`.xml, in which brdfkit's models may appear.
+def render_scene(
+    path: str | Path,
+    spp: int | None = None,
+    seed: int = 0,
+    progress: Callable[[int, int], object] | None = None,
+) -> Rendering:
+    """Path-trace a scene file of Mitsuba's, in which brdfkit's plugins may appear.
 
-    `spp`: samples per pixel, by default those of the scene's sampler. Size, camera and integrator
-    are the scene's; the rest is as in `render`.
+    Size, camera and integrator are the scene's. For Ctrl-C, threads and variants see `render`.
 
-    >>> render_scene("kitchen.xml", spp=64).write("kitchen.exr")
+    Parameters
+    ----------
+    path : str or Path
+        The file, `.xml`.
+    spp : int, optional
+        Samples per pixel; by default those of the scene's sampler.
+    seed : int, default 0
+        Seed of the samples.
+    progress : callable, optional
+        Called with (done, total) after each pass.
+
+    Returns
+    -------
+    Rendering
+        One picture.
+
+    Raises
+    ------
+    BrdfkitError
+        For a file that is missing or that Mitsuba cannot load, for a scene without a sensor or an
+        integrator, and for a picture larger than the memory that is available.
+
+    Examples
+    --------
+    >>> render_scene("kitchen.xml", spp=64).write("kitchen.exr")    # doctest: +SKIP
     """
     path = Path(path)
     if not path.is_file():

@@ -1,10 +1,14 @@
 """What may be rendered, as Mitsuba takes it."""
 
+from typing import Any, TypeAlias
+
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit
 from brdfkit.llvm import use_variant
-from brdfkit.materials import material
+from brdfkit.materials import MaterialLike, material
 from brdfkit.model import Model
+
+Renderable: TypeAlias = MaterialLike | tuple[str, MaterialLike]
 
 
 def mitsuba():
@@ -15,13 +19,22 @@ def mitsuba():
     return mi
 
 
-def is_pair(thing):
+def as_list(things: Any) -> list[Renderable]:
+    """One thing to render or several, as a list; at least one."""
+    alone = _is_pair(things) or isinstance(things, dict | str) or not hasattr(things, "__iter__")
+    found = [things] if alone else list(things)
+    if not found:
+        raise BrdfkitError("There is nothing to render; give at least one material.")
+    return found
+
+
+def _is_pair(thing):
     return isinstance(thing, tuple) and len(thing) == 2 and isinstance(thing[0], str)
 
 
 def described(thing):
     """(name, BSDF dictionary, parameters' values by name) of whatever `render` takes."""
-    if is_pair(thing):
+    if _is_pair(thing):
         return thing[0], *described(thing[1])[1:]
     found = material(thing)
     values = found.values if isinstance(found, Model | Fit) else {}
