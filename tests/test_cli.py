@@ -143,6 +143,49 @@ def test_fit(cli):
         assert fit["parameters"].keys() == saved.values.keys()
 
 
+UNDEFINED_MODEL = '''"""Fog: not a number at normal incidence."""
+
+import drjit as dr
+
+from brdfkit.model import Model, shape, weight
+from brdfkit.model.lobes import Cosine, Lobe
+
+
+class Fog(Model):
+    reflectance = weight(0.3, "k")
+    p = shape(0.5, (0.1, 2.0), "p")
+
+    def lobes(self):
+        return (Lobe(lambda wi, wo: dr.sqrt(self.p * (0.5 - wi.z)), Cosine()),)
+'''
+
+
+def test_render_a_scene_with_plugins_of_ones_own(cli):
+    Path("my/bsdfs").mkdir(parents=True)
+    Path("my/bsdfs/felt.py").write_text(USER_MODEL)
+    scene = SCENE.replace("ward", "felt").replace("alpha_u", "diffuse_reflectance")
+    Path("room.xml").write_text(scene.format(alpha=0.3))
+    alone = cli("render", "room.xml", "--spp", "1")
+    assert (alone.exit_code, alone.stdout) == (2, "")
+    assert "room.xml" in alone.stderr
+    assert_fine(cli("render", "room.xml", "--spp", "1", "--plugins", "my"))
+
+
+def test_a_model_that_cannot_be_fitted_does_not_stop_the_others(cli):
+    Path("fog.py").write_text(UNDEFINED_MODEL)
+    models = "-m", "fog.py", "-m", "lambert"
+    result = cli("fit", "paint.binary", *models, "-o", "out", "--json")
+    assert result.exit_code == 2
+    assert result.stderr.startswith("brdfkit: fog: the lobe of reflectance is nan at theta_i")
+    assert tree(Path("out")) == ["lambert.json"]
+    record = json.loads(result.stdout)
+    assert [f["model"] for f in record["fits"]] == ["lambert"]
+    assert list(record["failed"]) == ["fog"]
+    alone = cli("fit", "paint.binary", "-m", "fog.py", "-o", "new")
+    assert (alone.exit_code, alone.stdout, alone.stderr) == (2, "", result.stderr)
+    assert not Path("new").exists()
+
+
 def test_fit_and_render(cli):
     result = cli("fit", "paint.binary", "-m", "lambert", "-m", "lambert", "--render", *SMALL)
     assert_fine(result)

@@ -8,6 +8,7 @@ from brdfkit.commands._errors import say
 from brdfkit.commands._options import output_options, render_options
 from brdfkit.commands._stopping import status
 from brdfkit.commands.render import path_trace
+from brdfkit.errors import BrdfkitError
 
 
 @click.command()
@@ -40,7 +41,7 @@ def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed,
     """Fit models to a measured FILE, and compare them.
 
     FILE may also be the name of a material that brdfkit knows. Ctrl-C keeps the fits that are
-    finished.
+    finished. Where a model cannot be fitted, the others go on; the exit status is then 2.
     """
     from brdfkit.commands._targets import fit_file, results
     from brdfkit.comparing import compare
@@ -61,8 +62,8 @@ def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed,
     how = {"loss": loss, "robust": robust, "max_angle": max_angle, "seed": seed}
     psnr = {}
     with results(output):
-        fits = _fit_each(names, material, how, output, console)
-        interrupted = len(fits) < len(names)
+        fits, failed = _fit_each(names, material, how, output, console)
+        interrupted = len(fits) + len(failed) < len(names)
         written = [fit_file(output, f) for f in fits] if output else []
         if rendered and not interrupted:
             picture = path_trace([material, *fits], output / "render.exr", spp, size, seed, console)
@@ -70,22 +71,32 @@ def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed,
             written += [output / "render.exr", output / "render.png"]
     with console.progress("compare"):
         comparison = compare(material, fits, max_angle)
-    _print_fits(material, fits, comparison, psnr, written, console)
-    if interrupted:
-        click.get_current_context().exit(status())
+    _print_fits(material, fits, failed, comparison, psnr, written, console)
+    for error in failed.values():
+        say(error)
+    if interrupted or failed:
+        click.get_current_context().exit(status() if interrupted else 2)
 
 
 def _fit_each(names, material, how, output, console):
-    """The fits, best first, each saved as soon as it is there; Ctrl-C leaves out the rest."""
+    """The fits, best first, and the errors of models that cannot be fitted, by name.
+
+    Each fit is saved as soon as it is there; Ctrl-C leaves out the rest. Where no model can be
+    fitted the first error is raised.
+    """
     from brdfkit.commands._targets import fit_file
     from brdfkit.fits import fit as fit_model
     from brdfkit.loading import save
 
-    fits = []
+    fits, failed = [], {}
     try:
         for number, name in enumerate(names, 1):
-            with console.progress(f"fit {name} ({number} of {len(names)})") as progress:
-                found = fit_model(name, material, **how, progress=progress)
+            try:
+                with console.progress(f"fit {name} ({number} of {len(names)})") as progress:
+                    found = fit_model(name, material, **how, progress=progress)
+            except BrdfkitError as error:
+                failed[name] = error
+                continue
             if output is not None:
                 save(found, fit_file(output, found))
             fits.append(found)
@@ -93,15 +104,18 @@ def _fit_each(names, material, how, output, console):
         if not fits:
             raise
         say(f"interrupted; {len(fits)} of {len(names)} fits are finished.")
-    return sorted(fits, key=lambda f: f.loss)
+    if not fits:
+        raise next(iter(failed.values()))
+    return sorted(fits, key=lambda f: f.loss), failed
 
 
-def _print_fits(material, fits, comparison, psnr, written, console):
+def _print_fits(material, fits, failed, comparison, psnr, written, console):
     from brdfkit.comparing import figure
 
     if console.as_json:
         records = [_record(f, comparison, psnr) for f in fits]
-        console.json({"material": material.name, "fits": records, "written": written})
+        entries = {"material": material.name, "fits": records, "failed": failed}
+        console.json({**entries, "written": written})
         return
     for found in fits:
         console.out.print(str(found))

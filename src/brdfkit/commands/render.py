@@ -19,10 +19,17 @@ from brdfkit.errors import BrdfkitError
     type=click.Path(path_type=Path),
     help="Picture to write, .exr (with a .png beside it) or .png. Default: NAME.png.",
 )
+@click.option(
+    "--plugins",
+    "folders",
+    multiple=True,
+    metavar="PATH",
+    help="Load plugins of yours first: a folder or a file; repeat it for more.",
+)
 @values_option
 @render_options
 @output_options
-def render(things, output, values, spp, size, seed, console):
+def render(things, output, folders, values, spp, size, seed, console):
     """Path-trace fits, models, measured files or a Mitsuba scene.
 
     Several are rendered side by side; the first is the reference of the differences. A scene is
@@ -30,9 +37,12 @@ def render(things, output, values, spp, size, seed, console):
     the samples that all pictures have.
     """
     from brdfkit.commands._targets import material, picture_file
+    from brdfkit.host.users_plugins import load_plugins
     from brdfkit.names import slug
     from brdfkit.rendering import render_scene
 
+    for folder in folders:
+        load_plugins(folder)
     scenes = [t for t in things if t.lower().endswith(".xml")]
     if scenes:
         if len(things) > 1 or values:
