@@ -494,6 +494,19 @@ def test_valid_is_one_for_each_sample(valid):
         Measured.from_samples(w, w, np.ones((3, 3)), valid, name="grey")
 
 
+@pytest.mark.quick
+def test_values_of_one_channel_need_no_second_axis():
+    w = from_angles(np.array([0.1, 0.2, 0.3]), 0.0)
+    values, errors = np.array([0.2, 0.3, 0.4]), np.array([0.01, 0.02, 0.03])
+    material = Measured.from_samples(w, w, values, channels=("Y",), standard_error=errors)
+    np.testing.assert_array_equal(material.values, values[:, None])
+    np.testing.assert_array_equal(material.standard_error, errors[:, None])
+    with pytest.raises(BrdfkitError, match=r"values \(2,\) should be \(n, 1\)"):
+        Measured.from_samples(w, w, values[:2], channels=("Y",), name="grey")
+    with pytest.raises(BrdfkitError, match=r"values \(3,\) should be \(n, 3\)"):
+        Measured.from_samples(w, w, values, name="grey")
+
+
 def test_what_is_infinite_was_not_measured():
     values = np.ones((3, 2, 4, 3))
     values[1, 1, 2, 0], values[2, 0, 1, 2] = np.inf, -np.inf
