@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from brdfkit.checks.plugin import example
-from brdfkit.lighting.environment_tree import blocks, sums
+from brdfkit.lighting.environment_tree import block_sums, blocks
 
 pytestmark = pytest.mark.quick
 
@@ -26,7 +26,7 @@ def test_blocks_cover_a_picture_once(height, width, count, seed):
         covered[y0:y1, x0:x1] += 1
     assert (covered == 1).all()
     assert len(found) == min(count, values.size)
-    assert sums(values, found).sum() == pytest.approx(values.sum())
+    assert block_sums(values, found).sum() == pytest.approx(values.sum())
     fewer = blocks(values, max(count - 1, 1))
     assert error(values, found) <= error(values, fewer) * (1 + 1e-9)
 

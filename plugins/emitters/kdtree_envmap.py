@@ -70,7 +70,7 @@ def define(mi):
             power = between * np.sin(theta)[:, None]
             found = environment_tree.blocks(power, self.blocks)
             x0, x1, y0, y1 = found.T
-            share = environment_tree.sums(power, found).clip(0)
+            share = environment_tree.block_sums(power, found).clip(0)
             share = share / share.sum()
             self.choice = mi.DiscreteDistribution(share.tolist())
             self.corners = Rows(np.stack([x0, y0], axis=1))

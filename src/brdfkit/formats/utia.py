@@ -17,7 +17,7 @@ import numpy as np
 
 from brdfkit.formats._writing import measured
 from brdfkit.geometry.directions import from_angles, to_angles
-from brdfkit.geometry.multilinear import corners, periodic
+from brdfkit.geometry.multilinear import corners, periodic_bracket
 
 NAME = "UTIA"
 SUFFIXES = (".bin",)
@@ -101,4 +101,4 @@ def _cells(theta, phi):
     theta = theta / THETA[1]
     i = np.minimum(theta.astype(int), len(THETA) - 2)
     # beyond 75° the share exceeds 1: the line goes on
-    return (i, i + 1, theta - i), periodic(phi / PHI[1], len(PHI))
+    return (i, i + 1, theta - i), periodic_bracket(phi / PHI[1], len(PHI))

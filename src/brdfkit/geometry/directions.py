@@ -1,7 +1,7 @@
 """Directions on the hemisphere: angles, and half/difference coordinates and back.
 
-Unit vectors in the local frame, z along the normal, both pointing away from the surface;
-the mirror direction of ``wi`` is at Δφ = 180°. NumPy, float64, shape (..., 3).
+Directions are unit vectors (..., 3) of NumPy, float64, in the local frame, z along the normal. `wi`
+and `wo` both point away from the surface: the mirror direction of `wi` is at Δφ = 180°.
 
 Half/difference coordinates are those of [Rusinkiewicz 1998].
 """
@@ -27,7 +27,7 @@ def to_angles(w):
 
 
 def normalize(w):
-    """Vectors (..., 3) at unit length."""
+    """Unit vectors (..., 3) along the vectors `w` (..., 3)."""
     w = np.asarray(w, float)
     return w / np.linalg.norm(w, axis=-1, keepdims=True)
 
@@ -35,13 +35,13 @@ def normalize(w):
 def to_half_difference(wi, wo):
     """(theta_h, theta_d, phi_d) [rad] of direction pairs (..., 3); phi_d in [0, 2π).
 
-    Exchanging `wi` and `wo` turns phi_d by π: a reciprocal BRDF has period π in phi_d.
-    The azimuth of the half vector, which only an anisotropic BRDF sees, is `half_azimuth`.
+    Exchanging `wi` and `wo` adds π to phi_d: a reciprocal BRDF has period π in phi_d. The azimuth
+    of the half vector, on which only an anisotropic BRDF depends, is `half_azimuth`.
     """
     wi, wo = np.asarray(wi, float), np.asarray(wo, float)
     h = normalize(wi + wo)
     theta_h, phi_h = to_angles(h)
-    # wi as seen from the half vector: turned by -phi_h about z, then by -theta_h about y
+    # The difference vector: wi rotated by -phi_h about z, then by -theta_h about y
     d = _rotate_y(_rotate_z(wi, -phi_h), -theta_h)
     theta_d, phi_d = to_angles(d)
     return theta_h, theta_d, np.mod(phi_d, 2 * np.pi)
@@ -56,7 +56,7 @@ def half_azimuth(wi, wo):
 def from_half_difference(theta_h, theta_d, phi_d, phi_h=0.0):
     """Direction pairs (wi, wo), each (..., 3), with the half vector at azimuth `phi_h`.
 
-    A direction below the surface comes back as such (z < 0): the caller masks it.
+    A direction may lie below the surface (z < 0): the caller masks it.
     """
     theta_h, theta_d, phi_d, phi_h = np.broadcast_arrays(theta_h, theta_d, phi_d, phi_h)
     wi = _rotate_y(from_angles(theta_d, phi_d), theta_h)

@@ -1,4 +1,7 @@
-"""Directions in a formula: anything with x, y, z, z along the normal, in any precision."""
+"""Vector functions for the formulas of models: on anything with x, y, z, in any precision.
+
+Directions are unit vectors in the local frame, z along the normal.
+"""
 
 import drjit as dr
 
@@ -7,13 +10,13 @@ HORIZON = 1e-6
 
 
 def above_horizon(w, active):
-    """The direction, or the normal where it is not above the surface, which turns inactive."""
+    """`w` and `active`; where `w` is not above the surface, the normal and False."""
     up = w.z > HORIZON
     return dr.select(up, w, type(w)(0, 0, 1)), active & up
 
 
 def dot(a, b):
-    """Scalar product."""
+    """Dot product."""
     return a.x * b.x + a.y * b.y + a.z * b.z
 
 
@@ -24,7 +27,7 @@ def half_vector(wi, wo):
 
 
 def cos_theta_d(wi, wo):
-    """Cosine of the difference angle, wi·h; as a dot product its terms cancel where wo ≈ -wi."""
+    """Cosine of the difference angle, wi·h; the terms of that dot product cancel at wo ≈ -wi."""
     s = wi + wo
     return 0.5 * dr.sqrt(dot(s, s))
 
@@ -41,7 +44,7 @@ def one_minus_dot(a, b):
 
 
 def angle(w):
-    """Angle to the normal [rad], accurate about it."""
+    """Polar angle [rad], accurate near the normal."""
     return dr.atan2(dr.sqrt(w.x * w.x + w.y * w.y), w.z)
 
 

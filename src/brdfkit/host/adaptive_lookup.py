@@ -39,7 +39,7 @@ class AdaptiveLookup:
         angles = self._angles(self._turned(wi, wi))
         axes = [(nodes, x) for nodes, x in zip(self.nodes, angles, strict=True) if nodes.count > 1]
         brackets, shape = [nodes.bracket(x) for nodes, x in axes], [n.count for n, _ in axes]
-        return [(multilinear.flat(at, shape), t) for at, t in multilinear.corners(brackets)]
+        return [(multilinear.flat_index(at, shape), t) for at, t in multilinear.corners(brackets)]
 
     def corners(self, wi, wo):
         """(row, share) of the stored values, rows (a b n n), whose sum is the BRDF."""
@@ -53,7 +53,10 @@ class AdaptiveLookup:
         n = self.n
         for cell, share in multilinear.corners([bracket(x * (n - 1), n) for x in (u.y, u.x)]):
             for incidence, weight in incidences:
-                yield incidence * n * n + multilinear.flat(cell, (n, n)), weight * share * factor
+                yield (
+                    incidence * n * n + multilinear.flat_index(cell, (n, n)),
+                    weight * share * factor,
+                )
 
     def sample(self, wi, u):
         """A direction, possibly below the surface, for a point `u`, of which x and y count."""

@@ -11,7 +11,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.geometry.directions import from_angles
-from brdfkit.geometry.multilinear import corners, flat
+from brdfkit.geometry.multilinear import corners, flat_index
 from brdfkit.geometry.vectors import angle, azimuth, cos_theta_d, half_vector, reflect
 from brdfkit.host.arrays import Rows, bracket, periodic_bracket
 
@@ -78,7 +78,7 @@ class Tabulated:
         """(incidence, its share) of those around `wi`."""
         brackets = self._brackets(wi)
         shape = (self.azimuths, self.angles)[-len(brackets) :]
-        return [(flat(nodes, shape), share) for nodes, share in corners(brackets)]
+        return [(flat_index(nodes, shape), share) for nodes, share in corners(brackets)]
 
     def _chosen(self, wi, u):
         """One of them by its share, and what is left of the random numbers."""

@@ -20,7 +20,7 @@ def corners(table, wi, wo):
         n_a = table.shape[0]
         axes.insert(0, periodic_bracket(phi_h / (2 * dr.pi) * n_a - 0.5, n_a))
     for cells, share in multilinear.corners(axes):
-        yield multilinear.flat(cells, table.shape), share
+        yield multilinear.flat_index(cells, table.shape), share
 
 
 def half_difference(wi, wo):

@@ -1,8 +1,8 @@
-"""A picture cut into blocks of nearly constant value, by a tree of axis-aligned cuts.
+"""Cuts a picture into blocks of nearly constant value, by a tree of axis-aligned cuts.
 
-The block with the largest sum of squared errors about its mean is cut next, where its two parts
-have the least together. Sums over blocks come from summed-area tables, so that a cut costs as many
-steps as the block is wide and high.
+The block with the largest sum of squared errors about its mean is cut next, at the place where its
+two parts have the smallest sum together. Sums over blocks come from summed-area tables, so that a
+cut takes time in proportion to the block's width plus height.
 
 [Ergun 2015, Algorithm 2, eqs. 6.1, 6.2]
 """
@@ -13,53 +13,56 @@ import numpy as np
 
 
 def blocks(values, count):
-    """At most `count` blocks (n, 4) of `values` (height, width) ≥ 0: x from, x to, y from, y to.
+    """At most `count` blocks (n, 4) of `values` (height, width) ≥ 0, each (x0, x1, y0, y1).
 
-    They cover the picture once; a block of one value is not cut, so that there may be fewer.
+    A block holds the columns x0 ≤ x < x1 and the rows y0 ≤ y < y1; together they cover the picture
+    once. A block of constant value is not cut, so that there may be fewer than `count`.
 
     >>> blocks(np.array([[0.0, 0.0, 1.0]]), 2).tolist()
     [[0, 2, 0, 1], [2, 3, 0, 1]]
     """
     height, width = values.shape
-    sums, squares = _summed(values), _summed(values**2)
-    # Rounding of the tables: a block whose error is not above it is even
-    rounding = 1e-12 * squares[-1, -1]
-    waiting = [(-_error(sums, squares, whole), whole) for whole in [(0, width, 0, height)]]
+    table, squares = _summed_area_table(values), _summed_area_table(values**2)
+    rounding = 1e-12 * squares[-1, -1]  # a block with no larger error is of constant value
+    whole = (0, width, 0, height)
+    waiting = [(-_squared_error(table, squares, whole), whole)]  # a heap, the largest error first
     while len(waiting) < count and -waiting[0][0] > rounding:
         _, block = heapq.heappop(waiting)
-        for part in _cut(sums, block):
-            heapq.heappush(waiting, (-_error(sums, squares, part), part))
+        for part in _cut(table, block):
+            heapq.heappush(waiting, (-_squared_error(table, squares, part), part))
     return np.array(sorted(block for _, block in waiting))
 
 
-def sums(values, found):
-    """The sum (n,) of `values` (height, width) over each of the blocks `found` (n, 4)."""
-    return _over(_summed(values), found.T)
+def block_sums(values, blocks):
+    """The sums (n,) of `values` (height, width) over each of the `blocks` (n, 4)."""
+    return _block_sum(_summed_area_table(values), blocks.T)
 
 
-def _summed(values):
-    """Sums of all values above and to the left of each corner (height + 1, width + 1)."""
+def _summed_area_table(values):
+    """(height + 1, width + 1): entry (y, x) is the sum over the rows below y, columns below x."""
     return np.pad(values, ((1, 0), (1, 0))).cumsum(axis=0).cumsum(axis=1)
 
 
-def _over(table, block):
+def _block_sum(table, block):
+    """The sum over a block (x0, x1, y0, y1), whose entries may be arrays."""
     x0, x1, y0, y1 = block
     return table[y1, x1] - table[y0, x1] - table[y1, x0] + table[y0, x0]
 
 
-def _error(sums, squares, block):
-    """Sum of squared errors of a block about its mean."""
+def _squared_error(table, squares, block):
+    """The sum of squared errors of a block about its mean."""
     x0, x1, y0, y1 = block
-    return _over(squares, block) - _over(sums, block) ** 2 / ((x1 - x0) * (y1 - y0))
+    return _block_sum(squares, block) - _block_sum(table, block) ** 2 / ((x1 - x0) * (y1 - y0))
 
 
-def _cut(sums, block):
-    """The two parts of a block of more than one value."""
+def _cut(table, block):
+    """The two parts of a block that holds more than one pixel."""
     x0, x1, y0, y1 = block
-    whole = _over(sums, block)
+    whole = _block_sum(table, block)
     x, y = np.arange(x0 + 1, x1), np.arange(y0 + 1, y1)
-    left, above = _over(sums, (x0, x, y0, y1)), _over(sums, (x0, x1, y0, y))
-    # Eq. 6.2 over the parts' numbers of values; the common factor of either axis counts as well
+    left, above = _block_sum(table, (x0, x, y0, y1)), _block_sum(table, (x0, x1, y0, y))
+    # Eq. 6.2, Σ (sum of a part)² / (its number of pixels), for every cut between two columns
+    # (across) and between two rows (down): where it is largest, the squared error is smallest
     across = (left**2 / (x - x0) + (whole - left) ** 2 / (x1 - x)) / (y1 - y0)
     down = (above**2 / (y - y0) + (whole - above) ** 2 / (y1 - y)) / (x1 - x0)
     if across.max(initial=-1) >= down.max(initial=-1):

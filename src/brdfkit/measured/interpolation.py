@@ -123,7 +123,7 @@ def _guide(samples, anisotropic):
     if len(samples.wi) < FEWEST or samples.values.max() <= 0:
         return functools.partial(_constant, np.median(samples.values, axis=0))
     grey = samples.values.mean(axis=1, keepdims=True)
-    grey = Samples.checked(samples.wi, samples.wo, grey, None, ("Y",), "grey")
+    grey = Samples.from_arrays(samples.wi, samples.wo, grey, None, ("Y",), "grey")
     model, how = labels.model(GUIDE), {"starts": 1, "anisotropic": anisotropic}
     inside = grey.at(grey.within(MAX_ANGLE))
     found = regress(model, inside, losses["log"], **how)

@@ -65,7 +65,7 @@ class Measured:
         `mixed(weights)`, is rendered as it is; another one through the table that it gives.
         """
         name, channels, info = _words(name, channels, info)
-        samples = Samples.checked(wi, wo, values, valid, channels, name)
+        samples = Samples.from_arrays(wi, wo, values, valid, channels, name)
         return cls(
             name,
             channels,
@@ -88,7 +88,7 @@ class Measured:
     ):
         """From a table (n_theta_h, n_theta_d, n_phi_d, channels) in sr⁻¹, NaN = not measured.
 
-        Its axes are those of `brdfkit.table.Table`; an anisotropic one has n_phi_h before them.
+        Its axes are those of `brdfkit.samples.Table`; an anisotropic one has n_phi_h before them.
         An infinite value was not measured, either.
         `standard_error`: of the values, in the same shape.
         """
@@ -126,7 +126,7 @@ class Measured:
         """The direction pairs and values; those of a table are its cell centres."""
         if self._samples is not None:
             return self._samples
-        return Samples.of_table(self._table)
+        return Samples.from_table(self._table)
 
     @cached_in_turn
     def table(self):

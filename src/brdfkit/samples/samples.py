@@ -1,4 +1,4 @@
-"""Samples of a BRDF: direction pairs with what was measured there."""
+"""Samples of a BRDF: direction pairs with the values measured there."""
 
 import math
 from dataclasses import dataclass, fields
@@ -10,12 +10,12 @@ from brdfkit.errors import BrdfkitError
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Direction pairs with their BRDF.
+    """Direction pairs with the BRDF's values.
 
-    `wi`, `wo`: unit vectors (n, 3); `values`: (n, channels) in sr⁻¹, as measured, negative
-    ones too; `valid`: (n,), False where the reader or the format says that nothing was measured;
-    `weight`: (n,), how much each counts in a loss: 1 for a scattered sample, the width in
-    theta_h for a table's cell, so that a table counts evenly over Rusinkiewicz's angles however
+    `wi`, `wo`: unit vectors (n, 3); `values`: (n, channels) in sr⁻¹, as measured, negative ones
+    included; `valid`: (n,), False where the reader or the format says that nothing was measured;
+    `weight`: (n,), the weight of each sample in a loss: 1 for a scattered sample, the cell's width
+    in theta_h for a table's cell. So a table counts evenly over Rusinkiewicz's angles, however
     finely it divides the highlight.
     """
 
@@ -26,11 +26,13 @@ class Samples:
     weight: np.ndarray
 
     @classmethod
-    def checked(cls, wi, wo, values, valid, channels, name):
-        """Of any arrays: directions are normalised, and what cannot be is not `valid`.
+    def from_arrays(cls, wi, wo, values, valid, channels, name):
+        """`Samples` of arrays as a user gives them.
 
-        Values of one channel may be (n,). Raises `BrdfkitError` for arrays that do not belong
-        together, and where nothing is left.
+        `wi`, `wo`: vectors (n, 3), normalised here; `values`: (n, channels), or (n,) of one
+        channel; `valid`: (n,) or None. Samples that are not finite or have a direction below the
+        surface become invalid. Raises `BrdfkitError` for shapes that do not fit, and where no
+        sample is valid.
         """
         given = [np.array(a, float) for a in (wi, wo, values)]
         wi, wo, values = (np.atleast_2d(a) for a in given)
@@ -44,39 +46,39 @@ class Samples:
             )
         with np.errstate(invalid="ignore", divide="ignore"):
             wi, wo = (w / np.linalg.norm(w, axis=1, keepdims=True) for w in (wi, wo))
-        seen = _seen(wi, wo, values)
+        usable = _find_usable(wi, wo, values)
         if valid is not None:
-            seen &= _mask(valid, len(wi), name)
-        require_some(seen, name)
-        return cls(wi, wo, values, seen, np.ones(len(seen)))
+            usable &= _check_mask(valid, len(wi), name)
+        require_some(usable, name)
+        return cls(wi, wo, values, usable, np.ones(len(usable)))
 
     @classmethod
-    def of_table(cls, table):
-        """A table's cells, at their centres."""
+    def from_table(cls, table):
+        """One sample per cell of a `Table`, at the cell's centre."""
         wi, wo = (w.reshape(-1, 3) for w in table.directions())
         values = table.values.reshape(len(wi), -1)
         weight = np.broadcast_to(table.theta_h_widths, table.shape).reshape(-1)
-        return cls(wi, wo, values, _seen(wi, wo, values), weight)
+        return cls(wi, wo, values, _find_usable(wi, wo, values), weight)
 
     def within(self, max_angle):
-        """Which are valid, with both angles below `max_angle` [degrees] (n,)."""
+        """A mask (n,) of the valid samples with θ_i and θ_o below `max_angle` [degrees]."""
         cos_min = math.cos(math.radians(max_angle)) * (1 + 1e-12)
         return self.valid & (self.wi[:, 2] > cos_min) & (self.wo[:, 2] > cos_min)
 
     def at(self, rows):
-        """These `rows` (mask or indices) only."""
+        """The `Samples` of these `rows` (a mask or indices)."""
         return Samples(*(getattr(self, f.name)[rows] for f in fields(self)))
 
 
 def require_some(valid, name):
-    """Raise `BrdfkitError` unless one is valid."""
+    """Raise `BrdfkitError` where no sample is valid, by the mask `valid` (n,)."""
     if not valid.any():
         raise BrdfkitError(
             f"{name}: no valid measurement is left (all masked, not finite or below the surface)."
         )
 
 
-def _mask(valid, n, name):
+def _check_mask(valid, n, name):
     valid = np.asarray(valid, bool)
     if valid.shape != (n,):
         raise BrdfkitError(
@@ -85,5 +87,6 @@ def _mask(valid, n, name):
     return valid
 
 
-def _seen(wi, wo, values):
+def _find_usable(wi, wo, values):
+    """A mask (n,) of the samples with finite values and both directions above the surface."""
     return np.isfinite(values).all(axis=1) & (wi[:, 2] > 0) & (wo[:, 2] > 0)

@@ -1,9 +1,9 @@
 """A table over half/difference coordinates: the cells of MERL, and their multilinear lookup.
 
-The cells are those of [Matusik et al. 2003]. theta_h is square-root
-spaced, so that cells are small where highlights are; theta_d and phi_d are evenly spaced.
-An anisotropic table has the azimuth phi_h of the half vector as its first axis, evenly spaced
-over the full circle. A value stands at the centre of its cell.
+The cells are those of [Matusik et al. 2003]. The axis theta_h is square-root spaced, so that cells
+are small where highlights are; theta_d and phi_d are evenly spaced. An anisotropic table has the
+azimuth phi_h of the half vector as its first axis, evenly spaced over the full circle. A cell's
+value belongs to the cell's centre.
 """
 
 from dataclasses import dataclass, replace
@@ -12,14 +12,14 @@ from functools import cached_property
 import numpy as np
 
 from brdfkit.geometry.directions import from_half_difference, half_azimuth, to_half_difference
-from brdfkit.geometry.multilinear import clamped, corners, periodic
+from brdfkit.geometry.multilinear import bracket, corners, periodic_bracket
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
     """BRDF values ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, channels) in sr⁻¹, NaN = unknown.
 
-    `phi_d_period` is π for a reciprocal table (half of the azimuths suffice), else 2π.
+    `phi_d_period` is π for a reciprocal table, which needs half of the azimuths phi_d, else 2π.
 
     >>> Table(np.full((9, 9, 18, 1), 1 / np.pi)).eval([[0, 0, 1.0]], [[0, 0, 1.0]])
     array([[0.31830989]])
@@ -30,7 +30,7 @@ class Table:
 
     @property
     def anisotropic(self):
-        """Whether the surface's own azimuth counts."""
+        """Whether the BRDF depends on the azimuth phi_h of the half vector."""
         return self.values.ndim == 5
 
     @property
@@ -54,7 +54,7 @@ class Table:
 
     @property
     def theta_h_widths(self):
-        """Widths of the theta_h cells (n_theta_h, 1, 1), 1 in the mean; for every `shape`."""
+        """Widths of the theta_h cells (n_theta_h, 1, 1), mean 1; broadcasts to `shape`."""
         n_h = self.shape[-3]
         return ((2 * np.arange(n_h) + 1) / n_h)[:, None, None]
 
@@ -65,31 +65,32 @@ class Table:
 
     @cached_property
     def filled(self):
-        """The values with each unknown cell taken from the nearest known one (in cells).
+        """The values with each unknown cell filled from the nearest known one, counted in cells.
 
-        Both azimuths wrap: phi_d, too, where its period is π.
+        Both azimuths are periodic, phi_d with its own period.
         """
         unknown = np.isnan(self.values).any(axis=-1)
         if not unknown.any():
             return self.values
         from scipy.ndimage import distance_transform_edt
 
-        # Around the azimuths as many cells of the other side as may be nearest
+        # Periodic axes are extended at both ends by as many cells as may hold the nearest one
         farthest = int(np.ceil(distance_transform_edt(unknown).max()))
         azimuths = (0, 3) if self.anisotropic else (2,)
         added = [min(farthest, n // 2) * (k in azimuths) for k, n in enumerate(self.shape)]
         wrapped = np.pad(unknown, [(a, a) for a in added], mode="wrap")
+        # Index along each axis of the nearest known cell, back in the table that is not extended
         nearest = distance_transform_edt(wrapped, return_distances=False, return_indices=True)
         own = tuple(slice(a, a + n) for a, n in zip(added, self.shape, strict=True))
         cells = [(i[own] - a) % n for i, a, n in zip(nearest, added, self.shape, strict=True)]
         return self.values[tuple(cells)]
 
     def mixed(self, weights):
-        """The table in other channels, the old ones mixed by `weights` (old, new)."""
+        """A table in new channels: the old ones times the matrix `weights` (old, new)."""
         return replace(self, values=self.values @ weights)
 
     def scene_dict(self):
-        """The dictionary for `mitsuba.load_dict`; wavelengths are left to who knows them."""
+        """The dictionary for `mitsuba.load_dict`; a caller that has wavelengths adds them."""
         import mitsuba as mi
 
         return {
@@ -107,13 +108,14 @@ class Table:
         theta_h, theta_d, phi_d = to_half_difference(wi, wo)
         n_h, n_d, n_p = self.shape[-3:]
         axes = [
-            clamped(np.sqrt(theta_h / (np.pi / 2)) * n_h - 0.5, n_h),
-            clamped(theta_d / (np.pi / 2) * n_d - 0.5, n_d),
-            periodic(phi_d / self.phi_d_period * n_p - 0.5, n_p),
+            bracket(np.sqrt(theta_h / (np.pi / 2)) * n_h - 0.5, n_h),
+            bracket(theta_d / (np.pi / 2) * n_d - 0.5, n_d),
+            periodic_bracket(phi_d / self.phi_d_period * n_p - 0.5, n_p),
         ]
         if self.anisotropic:
             n_a = self.shape[0]
-            axes.insert(0, periodic(half_azimuth(wi, wo) / (2 * np.pi) * n_a - 0.5, n_a))
+            phi_h = half_azimuth(wi, wo)
+            axes.insert(0, periodic_bracket(phi_h / (2 * np.pi) * n_a - 0.5, n_a))
 
         result = np.zeros((*theta_h.shape, self.values.shape[-1]))
         for cells, share in corners(axes):
@@ -121,4 +123,4 @@ class Table:
         above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
         return np.where(above[..., None], result, 0.0)
 
-    __call__ = eval  # a table may be a measurement's lookup
+    __call__ = eval  # so that a table can be the lookup function of a `Measured`

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from brdfkit.geometry.multilinear import clamped, corners, flat
+from brdfkit.geometry.multilinear import bracket, corners, flat_index
 
 
 def even_grid(n):
@@ -35,7 +35,7 @@ def between(nodes, values):
             brackets.append((lower, lower + 1, t))
             shape.append(len(axis))
     first = np.zeros(np.shape(values[0]), int)
-    return [(first + flat(at, shape), weight) for at, weight in corners(brackets)]
+    return [(first + flat_index(at, shape), weight) for at, weight in corners(brackets)]
 
 
 def interpolated(table, u, slices=((0, 1.0),)):
@@ -113,7 +113,7 @@ class Warp:
 
 def _bracket(u, n):
     """Of a coordinate of the unit square among `n` nodes from edge to edge."""
-    return clamped(u * (n - 1), n)
+    return bracket(u * (n - 1), n)
 
 
 def _cumulative(values):
