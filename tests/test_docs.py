@@ -12,7 +12,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 import brdfkit as bk
 from brdfkit.cli import main
-from brdfkit.references import cited, references
+from brdfkit.references import citations, references
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [
@@ -69,7 +69,7 @@ def test_every_cited_work_is_known_and_every_known_work_is_cited():
     files = [*ROOT.glob("src/**/*.py"), *ROOT.glob("plugins/**/*.py"), *PAGES]
     listed = ROOT / "docs" / "references.md"
     texts = [f.read_text(encoding="utf-8") for f in files if f != listed and f.name != OWN]
-    assert {key for text in texts for key in cited(text)} == set(references())
+    assert {key for text in texts for key in citations(text)} == set(references())
     assert listed.read_text(encoding="utf-8") == import_module("make_references").text()
 
 

@@ -416,7 +416,7 @@ def test_interrupted_writing_leaves_the_old_file(tmp_path, failure):
     target.write_text("old")
 
     def half_written():
-        with files.written(target) as beside:
+        with files.write_safely(target) as beside:
             beside.write_text("half")
             assert beside.suffix == ".json"
             raise failure("stop")
@@ -431,7 +431,7 @@ def test_written_leaves_the_old_content_to_who_reads_it(tmp_path):
     target = tmp_path / "copper.json"
     target.write_text("old")
     with target.open() as reader:
-        with files.written(target) as beside:
+        with files.write_safely(target) as beside:
             beside.write_text("new")
         assert reader.read() == "old"
     assert target.read_text() == "new"
@@ -441,7 +441,7 @@ def test_written_replaces_and_follows_links(tmp_path):
     (tmp_path / "real").mkdir()
     link = tmp_path / "link.txt"
     link.symlink_to(tmp_path / "real" / "file.txt")
-    with files.written(link) as beside:
+    with files.write_safely(link) as beside:
         beside.write_text("new")
         assert not (tmp_path / "real" / "file.txt").exists()
     assert link.is_symlink()
@@ -452,7 +452,7 @@ def test_links_in_a_circle(tmp_path):
     (tmp_path / "a.txt").symlink_to(tmp_path / "b.txt")
     (tmp_path / "b.txt").symlink_to(tmp_path / "a.txt")
     for path in (tmp_path / "a.txt", tmp_path / "a.txt" / "c.txt"):
-        for check in (files.require_writable, lambda path: files.written(path).__enter__()):
+        for check in (files.require_writable, lambda path: files.write_safely(path).__enter__()):
             with pytest.raises(
                 BrdfkitError, match=rf"{path.name}: (is a link that leads|there is no)"
             ):
@@ -462,7 +462,7 @@ def test_links_in_a_circle(tmp_path):
 
 def test_disk_that_is_full_is_one_sentence(tmp_path):
     def fill():
-        with files.written(tmp_path / "x.txt"):
+        with files.write_safely(tmp_path / "x.txt"):
             raise OSError(28, "No space left on device")
 
     with pytest.raises(BrdfkitError, match=r"x.txt: cannot be written \(No space left"):
@@ -478,7 +478,7 @@ def test_protected_files(tmp_path):
     tmp_path.chmod(0o500)
     with (
         pytest.raises(BrdfkitError, match="cannot be written"),
-        files.written(tmp_path / "new.txt"),
+        files.write_safely(tmp_path / "new.txt"),
     ):
         pass
     tmp_path.chmod(0o700)

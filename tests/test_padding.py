@@ -8,7 +8,7 @@ import textwrap
 import numpy as np
 import pytest
 
-from brdfkit.padding import PACKET, padded
+from brdfkit.padding import PACKET, pad
 
 
 @pytest.mark.quick
@@ -22,7 +22,7 @@ def test_behind_an_array_a_packet_is_readable(n, dtype):
     for start in range(mmap.PAGESIZE // itemsize):
         values = memory[start : start + n]
         values[:] = np.arange(n)
-        found = padded(values)
+        found = pad(values)
         np.testing.assert_array_equal(found, values)
         assert (found.dtype, found.flags.c_contiguous) == (dtype, True)
         if found is values:
@@ -33,7 +33,7 @@ def test_behind_an_array_a_packet_is_readable(n, dtype):
             assert found.base.size == n + PACKET
     assert copies == PACKET
     strided = np.arange(2 * n, dtype=dtype)[::2]
-    np.testing.assert_array_equal(padded(strided), strided)
+    np.testing.assert_array_equal(pad(strided), strided)
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="mprotect of Linux")

@@ -26,7 +26,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from brdfkit.cli import main
-from brdfkit.files import written
+from brdfkit.files import write_safely
 from brdfkit.formats import npz
 from brdfkit.formats.merl import NOT_MEASURED, SCALE
 from brdfkit.loading import load
@@ -192,7 +192,7 @@ if __name__ == "__main__":
         else:
             suffix, data = ".npz.xz", packed(measured(name))
         path = Path(__file__).with_name(name + suffix)
-        with written(path) as beside, lzma.open(beside, "wb", filters=FILTERS) as stream:
+        with write_safely(path) as beside, lzma.open(beside, "wb", filters=FILTERS) as stream:
             stream.write(data)
         checksum = hashlib.sha256(path.read_bytes()).hexdigest()
         print(f"{path.name}: {path.stat().st_size:,} bytes, sha256 {checksum}")

@@ -23,7 +23,7 @@ def luminance(values):
 
 
 def colour_science():
-    """The package `colour`, whose import alone would change how NumPy prints arrays."""
+    """The package `colour`, imported without its change of how NumPy prints arrays."""
     with np.printoptions():
         import colour
     return colour

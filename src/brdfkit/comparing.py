@@ -10,7 +10,7 @@ from brdfkit.fitting import losses
 from brdfkit.materials import MaterialLike, materials, measured
 from brdfkit.measured.selection import selected
 from brdfkit.model import double_precision
-from brdfkit.names import unused
+from brdfkit.names import make_unique
 from brdfkit.threads import in_turn
 
 
@@ -81,7 +81,7 @@ def compare(
     data, found = measured(data), materials(things)
     errors: dict[str, dict[str, float]] = {}
     for thing in found:
-        errors[unused(thing.name, errors)] = {
+        errors[make_unique(thing.name, errors)] = {
             loss: error(thing, data, loss, max_angle) for loss in losses
         }
     return Comparison(data.name, dict(sorted(errors.items(), key=lambda item: item[1]["log"])))

@@ -22,7 +22,7 @@ def no_such(what, name, known, where=""):
 
 
 def nearest(name, known):
-    """The one of the `known` names that is nearly `name`, None where none is."""
+    """The name among `known` that is most like `name`, None where none is similar."""
     import difflib  # only here: `--help` should be instant
 
     return next(iter(difflib.get_close_matches(str(name), known, n=1)), None)

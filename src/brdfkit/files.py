@@ -18,15 +18,15 @@ COMPRESSED = {GZIP: b"\x1f\x8b", XZ: b"\xfd7zXZ\x00"}  # suffix: first bytes
 
 
 @contextmanager
-def written(path):
-    """A temporary path beside `path`, to write to; it takes the name `path` on success.
+def write_safely(path):
+    """A temporary path beside `path` to write to, renamed to `path` when the block has succeeded.
 
-    Whatever interrupts the block, Ctrl-C too, leaves an older file at `path` as it was and
-    nothing else behind. The temporary path has the suffix of `path`, for libraries that choose
-    a format by it. Raises `BrdfkitError` when the folder or disk does not take the file; an
-    `OSError` inside the block counts as such.
+    Where the block is interrupted, by Ctrl-C too, an older file at `path` stays as it was and no
+    other file is left. The temporary path has the suffix of `path`, for libraries that choose a
+    format by it. Raises `BrdfkitError` where the file cannot be written, and for an `OSError`
+    inside the block.
 
-    >>> with written("copper.json") as beside:  # doctest: +SKIP
+    >>> with write_safely("copper.json") as beside:  # doctest: +SKIP
     ...     beside.write_text("{}")
     """
     target = require_writable(path)
@@ -44,10 +44,12 @@ def written(path):
             beside.unlink()
 
 
-def folder(path):
-    """Make the folder `path`, where it is not there, for results.
+def make_folder(path):
+    """Make the folder `path` for results, unless it exists.
 
-    >>> folder("results")
+    Raises `BrdfkitError` where no file can be written to it.
+
+    >>> make_folder("results")
     """
     try:
         Path(path).mkdir(parents=True, exist_ok=True)
@@ -60,9 +62,10 @@ def folder(path):
 
 
 def require_writable(path):
-    """Raise now what `written` would raise after the work, as far as it can be known.
+    """The `Path` of the file that `write_safely` will write: of a link, the file it leads to.
 
-    Returns the file that it will write: a link is written through, not replaced.
+    Raises, before the work, the `BrdfkitError` that `write_safely` would raise after it, as far as
+    that can be known.
     """
     try:
         target = Path(os.path.realpath(path))
@@ -84,8 +87,9 @@ def require_writable(path):
 def contents(path):
     """The bytes of a file, decompressed where it is gzip or xz by its name or its first bytes.
 
-    Raises `BrdfkitError` when it is missing, no regular file, unreadable, empty, damaged, or
-    above `LIMIT` bytes; a plain file is then not read at all, unpacking stops at the limit.
+    Raises `BrdfkitError` when it is missing, no regular file, unreadable, empty, damaged, or larger
+    than `LIMIT` bytes. A plain file that is too large is not read at all; decompression stops at
+    the limit.
 
     >>> contents("gold.binary.xz")[:4]  # doctest: +SKIP
     b'Z\\x00\\x00\\x00'
@@ -138,10 +142,10 @@ def _read(path):
     return path.read_bytes()
 
 
-def _decompress(path, opened):
-    """All of a compressed file; a small one that unpacks to terabytes is stopped at `LIMIT`."""
+def _decompress(path, open_stream):
+    """All bytes of a compressed file, `LIMIT` at most: a small file may unpack to terabytes."""
     data = bytearray()
-    with opened(path) as stream:
+    with open_stream(path) as stream:
         while chunk := stream.read(CHUNK):
             data += chunk
             if len(data) > LIMIT:

@@ -1,8 +1,8 @@
-"""Finds an LLVM that Dr.Jit can live with, before Dr.Jit is loaded; chooses Mitsuba's variant.
+"""Finds an LLVM that works with Dr.Jit, before Dr.Jit is loaded; chooses Mitsuba's variant.
 
-Dr.Jit looks for libLLVM when it is imported and takes the newest of the system. With LLVM 15
-or 16 everything seems well until the first kernel that holds a `minimum`: then LLVM aborts the
-process. So the library is chosen here, through DRJIT_LIBLLVM_PATH:
+Dr.Jit looks for libLLVM when it is imported and takes the newest of the system. With LLVM 15 or 16
+all works until the first kernel that contains a `minimum`: then LLVM aborts the process. So brdfkit
+chooses the library, through the environment variable DRJIT_LIBLLVM_PATH:
 
 1. the one that the user named there, if it is LLVM 17 or newer;
 2. the one that the package karellen-llvm-core brought into this environment;
@@ -31,7 +31,7 @@ NO_LIBRARY = "no-LLVM-17-or-newer-found"
 def prepare():
     """Point Dr.Jit to a usable libLLVM; called when brdfkit is imported.
 
-    Where Dr.Jit was imported before, its choice stands: a bad one is reported.
+    Where Dr.Jit was imported before, its choice stands; a warning says so if it is a bad one.
     """
     if "drjit" in sys.modules:
         _warn_of_bad_choice()
@@ -49,7 +49,7 @@ def prepare():
 
 
 def find_library():
-    """Path of the libLLVM to use, None if there is none of version 17 or newer."""
+    """Path of the libLLVM to use, None where none of version 17 or newer is found."""
     named = os.environ.get(VARIABLE)
     if named and library_version(named) >= OLDEST:
         return named
@@ -63,7 +63,7 @@ def find_library():
 
 
 def library_version(path):
-    """Major version of a libLLVM, by its name or else by asking it; 0 if it cannot be loaded."""
+    """Major version of a libLLVM, from its name or else from the library; 0 if it does not load."""
     by_name = re.search(r"libLLVM(?:-|\.so\.)(\d+)", os.path.realpath(path))
     if by_name and Path(path).exists():
         return int(by_name[1])
@@ -81,7 +81,7 @@ def library_version(path):
 def remedy():
     """What to do where Dr.Jit has no usable LLVM, as the end of a sentence.
 
-    Where there is one on the machine, it was not known, or not there, when Dr.Jit looked.
+    Where the machine has a usable one, it was not set or not installed when Dr.Jit was imported.
     """
     if find_library():
         return "start Python anew and import brdfkit before mitsuba and drjit"
@@ -92,23 +92,23 @@ def remedy():
 
 
 def loaded_version():
-    """Major version of the LLVM in Dr.Jit, -1 where it has none."""
+    """Major version of the LLVM that Dr.Jit has loaded, -1 where it has none."""
     import drjit as dr
 
     return dr.detail.llvm_version()[0]
 
 
 def refuse_bad_choice(variant):
-    """Raise before a kernel runs with an LLVM that aborts the process."""
+    """Raise `BrdfkitError` where kernels of this `variant` would abort the process."""
     if variant and variant.startswith("llvm") and 0 < loaded_version() < OLDEST:
         raise BrdfkitError(_bad_choice())
 
 
 @in_turn
 def use_variant():
-    """The current Mitsuba variant; where none is set, set the best that works, and return it.
+    """The name of the current Mitsuba variant; where none is set, the best that works is set first.
 
-    One sentence says when that is only `scalar_rgb`, which is many times slower.
+    A warning says so where that is only `scalar_rgb`, which is many times slower.
     """
     import mitsuba as mi
 
@@ -119,7 +119,7 @@ def use_variant():
             warnings.warn(
                 f"Mitsuba has no CUDA device and no LLVM {OLDEST} or newer: its slow variant "
                 f"scalar_rgb is used; to mend it, {remedy()}.",
-                stacklevel=3,  # who called, beyond `in_turn`
+                stacklevel=3,  # the caller of use_variant, above the wrapper of `in_turn`
             )
     refuse_bad_choice(mi.variant())
     return mi.variant()

@@ -6,7 +6,7 @@ from pathlib import Path
 from brdfkit import formats
 from brdfkit.catalogue import index, public, shipped
 from brdfkit.errors import BrdfkitError
-from brdfkit.files import contents, written
+from brdfkit.files import contents, write_safely
 from brdfkit.fitting import Fit
 from brdfkit.measured import Measured
 from brdfkit.model import Model
@@ -69,7 +69,7 @@ def save(obj: Measured | Fit | Model, path: str | Path) -> None:
     --------
     >>> save(load("copper.astm"), "copper.binary.xz")    # doctest: +SKIP
     """
-    with written(path) as beside:
+    with write_safely(path) as beside:
         formats.write(obj, Path(path), beside)
 
 
@@ -79,7 +79,7 @@ def save_and_read(obj: Measured, path: str | Path) -> Measured:
     >>> save_and_read(load("copper.astm"), "copper.npz").name  # doctest: +SKIP
     'copper'
     """
-    with written(path) as beside:
+    with write_safely(path) as beside:
         formats.write(obj, Path(path), beside)
         try:
             return formats.read(formats.Source(Path(path), None, contents(beside)))

@@ -1,14 +1,14 @@
-"""Names: apart from each other, fit to be printed, fit for a file."""
+"""Makes names unique, printable, and fit for a file."""
 
-CONTROL = {chr(c) for c in (*range(32), *range(127, 160))}  # ASCII's, ISO 6429's: a terminal obeys
-RESERVED = '/\\:*?"<>|'  # no part of a file's name, here or on another system
+CONTROL = {chr(c) for c in (*range(32), *range(127, 160))}  # ASCII, ISO 6429: a terminal obeys
+RESERVED = '/\\:*?"<>|'  # not allowed in a file name, here or on another system
 LONGEST = 100  # bytes: a file system takes 255, with suffix and all
 
 
-def unused(name, taken):
-    """`name`, numbered where it is among `taken`: "ward", "ward (2)".
+def make_unique(name, taken):
+    """`name`, or `name` with the first number by which it is not among `taken`.
 
-    >>> unused("ward", {"ward"})
+    >>> make_unique("ward", {"ward"})
     'ward (2)'
     """
     number, result = 1, name
@@ -19,7 +19,9 @@ def unused(name, taken):
 
 
 def printable(text, keep=""):
-    """`text` without control characters, which a file could send to the terminal, but `keep`.
+    """`text` without control characters, by which a file could steer the terminal.
+
+    The control characters in `keep` stay.
 
     >>> printable("gold\\x1b[2J")
     'gold[2J'
@@ -28,7 +30,7 @@ def printable(text, keep=""):
 
 
 def slug(name):
-    """A file's name, without suffix, after a material's: never empty, too long or elsewhere.
+    """A file name without suffix for a material's `name`: not empty, not too long, in no folder.
 
     >>> slug("../gold: matte")
     '-gold- matte'

@@ -7,7 +7,7 @@ import numpy as np
 
 
 def plain(value):
-    """`value` as JSON knows it: NumPy's numbers as Python's, null for what is not finite."""
+    """`value` in JSON's types: NumPy's numbers as Python's, numbers that are not finite as null."""
     if is_dataclass(value):
         value = {f.name: getattr(value, f.name) for f in fields(value)}
     if isinstance(value, dict):

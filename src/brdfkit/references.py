@@ -1,4 +1,4 @@
-"""The works that are cited: `references.toml` has each once, texts have its key in brackets.
+"""The cited works: `references.toml` has each work once, texts cite it by its key in brackets.
 
 [Ward 1992]    [Kurt 2007, eqs. 3.6, 3.7]    [Cook & Torrance 1982]
 """
@@ -38,15 +38,15 @@ def references():
     return {key: Reference(key, **entries[key]) for key in keys}
 
 
-def cited(text):
-    """The keys of a text's citations, each once, in their order.
+def citations(text):
+    """The keys of the works that a text cites, each once, in their order.
 
-    >>> cited("Lambert's law [Lambert 1760]; [Kurt 2007, eq. 3.1].")
+    >>> citations("Lambert's law [Lambert 1760]; [Kurt 2007, eq. 3.1].")
     ['Lambert 1760', 'Kurt 2007']
     """
     return list(dict.fromkeys(" ".join(key.split()) for key in CITATION.findall(text)))
 
 
 def works(text):
-    """The `Reference`s that a text cites; a key that brdfkit does not know is left out."""
-    return [references()[key] for key in cited(text) if key in references()]
+    """The `Reference`s that a text cites; keys that are not in `references.toml` are left out."""
+    return [references()[key] for key in citations(text) if key in references()]

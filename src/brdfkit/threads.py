@@ -1,8 +1,8 @@
-"""One thread at a time in Mitsuba and Dr.Jit.
+"""Lets one thread at a time into Mitsuba and Dr.Jit.
 
-A thread that waits for a kernel of Dr.Jit 1.5 helps with the kernels of all threads, and now and
-then with one that is gone: the process ends. So whatever runs kernels does it in turn, and brdfkit
-can be used from any thread. A kernel runs on all cores anyway.
+In Dr.Jit 1.5 a thread that waits for a kernel also works on the kernels of other threads, and now
+and then on one that is already freed: the process crashes. So all functions that run kernels take
+turns by one lock, and brdfkit can be used from any thread. A kernel runs on all cores anyway.
 """
 
 import functools
@@ -13,25 +13,25 @@ from typing import Any, ParamSpec, TypeVar
 P = ParamSpec("P")
 R = TypeVar("R")
 
-TURN = threading.RLock()  # what has its turn may call what takes one
+TURN = threading.RLock()  # re-entrant: a function that has its turn may call another that takes one
 
 
 def in_turn(function: Callable[P, R]) -> Callable[P, R]:
-    """`function`, which runs kernels, in one thread at a time."""
+    """A decorator of functions that run kernels: one thread at a time calls any of them."""
 
     @functools.wraps(function)
-    def waiting(*args: P.args, **kwargs: P.kwargs) -> R:
+    def call_in_turn(*args: P.args, **kwargs: P.kwargs) -> R:
         with TURN:
             return function(*args, **kwargs)
 
-    return waiting
+    return call_in_turn
 
 
 class cached_in_turn(functools.cached_property[R]):
     """A `cached_property` whose function runs kernels.
 
-    The turn comes first: Python 3.11 has a lock of its own for every cached property, and two
-    locks that two threads take in different orders are never released.
+    The turn is taken first: Python 3.11 has a lock of its own for every cached property, and two
+    threads that take two locks in different orders wait for each other for ever.
     """
 
     def __get__(self, instance: object, owner: type[Any] | None = None) -> Any:

@@ -6,7 +6,7 @@ and `pdf(direction)`.
 
 import numpy as np
 
-from brdfkit.padding import padded
+from brdfkit.padding import pad
 
 SIGNIFICANCE = 0.01
 SAMPLES = 400_000
@@ -33,7 +33,7 @@ def square(n, seed):
     import mitsuba as mi
 
     u = np.random.default_rng(seed).random((2, n), np.float32)
-    return tuple(mi.Float(padded(row)) for row in u)
+    return tuple(mi.Float(pad(row)) for row in u)
 
 
 def sphere():

@@ -6,7 +6,7 @@ from brdfkit.checks.registry import checked
 from brdfkit.checks.subject import INCIDENCES, incidences
 from brdfkit.checks.variants import columns
 from brdfkit.geometry.quadrature import TOLERANCE, directional_albedo
-from brdfkit.padding import padded
+from brdfkit.padding import pad
 from brdfkit.plugins.discovery import MODELS
 
 # All tests of one check together reject a right sampler once in a hundred runs; seeds are
@@ -136,5 +136,5 @@ def uniform(n, seed):
     """Random numbers for `n` samples, (1D, 2D)."""
     import mitsuba as mi
 
-    u = [padded(row) for row in np.random.default_rng(seed).random((3, n), np.float32)]
+    u = [pad(row) for row in np.random.default_rng(seed).random((3, n), np.float32)]
     return mi.Float(u[0]), mi.Point2f(u[1], u[2])

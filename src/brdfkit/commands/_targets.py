@@ -5,7 +5,7 @@ from pathlib import Path
 
 from brdfkit import materials
 from brdfkit.errors import BrdfkitError
-from brdfkit.files import folder, require_writable, written
+from brdfkit.files import make_folder, require_writable, write_safely
 from brdfkit.model import labels
 from brdfkit.rendering.montage import picture_suffix
 
@@ -53,7 +53,7 @@ def results(path):
         return
     made = [p for p in (path, *path.parents) if not p.exists()]
     try:
-        folder(path)
+        make_folder(path)
         yield
     finally:
         for p in made:
@@ -81,7 +81,7 @@ def figure_file(name):
 
 def write_figure(figure, path):
     """Write a matplotlib `Figure` to `path`, whole or not at all."""
-    with written(path) as beside:
+    with write_safely(path) as beside:
         figure.savefig(beside, dpi=130)
 
 

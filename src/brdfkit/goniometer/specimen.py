@@ -19,7 +19,7 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.llvm import use_variant
-from brdfkit.padding import padded
+from brdfkit.padding import pad
 
 # Rays leave a point so much above it, in grid cells. Mitsuba's own offset, 20 times this, lets
 # grazing light reach 1 % too far; single precision asks for some 1e-4 here.
@@ -67,7 +67,7 @@ class Specimen:
 
         sampler = mi.load_dict({"type": "independent"})
         sampler.seed(seed, len(pair))
-        pair = mi.UInt32(padded(pair.astype(np.uint32)))
+        pair = mi.UInt32(pad(pair.astype(np.uint32)))
         wi, wo = (
             dr.gather(mi.Vector3f, mi.Vector3f(w.T.astype(np.float32)), pair) for w in (wi, wo)
         )
@@ -168,8 +168,8 @@ def _mesh(name, vertices, faces, bsdf):
     properties["bsdf"] = bsdf
     mesh = mi.Mesh(name, len(vertices), len(faces), properties)
     parameters = mi.traverse(mesh)
-    parameters["vertex_positions"] = mi.Float(padded(vertices.ravel().astype(np.float32)))
-    parameters["faces"] = mi.UInt32(padded(faces.ravel().astype(np.uint32)))
+    parameters["vertex_positions"] = mi.Float(pad(vertices.ravel().astype(np.float32)))
+    parameters["faces"] = mi.UInt32(pad(faces.ravel().astype(np.uint32)))
     parameters.update()
     return mesh
 

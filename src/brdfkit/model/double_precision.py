@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit import llvm
-from brdfkit.padding import padded
+from brdfkit.padding import pad
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def differentiable():
 
 def array(values):
     """The NumPy array `values` (n,) as `float64()`."""
-    return float64()(padded(np.asarray(values, float)))
+    return float64()(pad(np.asarray(values, float)))
 
 
 def vector(w):

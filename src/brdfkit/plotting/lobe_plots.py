@@ -14,7 +14,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.geometry.directions import from_angles, to_angles
 from brdfkit.materials import MaterialLike, materials
 from brdfkit.measured import Measured
-from brdfkit.names import unused
+from brdfkit.names import make_unique
 from brdfkit.plotting.half_disc import Radius, half_disc, xy
 from brdfkit.samples import Table
 
@@ -183,7 +183,7 @@ def _styles(things):
             style |= {"linewidth": 2.4, "zorder": 1.9}
         if _scattered(thing):
             style |= {"linestyle": "", "marker": "o", "markersize": 3}
-        style["label"] = unused(thing.name.replace("$", r"\$"), taken)  # $ begins a formula
+        style["label"] = make_unique(thing.name.replace("$", r"\$"), taken)  # $ begins a formula
         taken.add(style["label"])
         styles.append(style)
     return styles

@@ -1,6 +1,7 @@
-"""Finds the plugins: one file is one plugin, in the top folder `plugins/` or of a user's.
+"""Finds the plugins: one file is one plugin, in the top folder `plugins/` or added by a user.
 
-The wheel copies that folder in here; a checkout is served by extending the path.
+The wheel contains a copy of the top folder here; in a checkout this package's path is extended by
+the top folder.
 """
 
 from pathlib import Path

@@ -1,7 +1,7 @@
-"""The plugin files: a file ``plugins/KIND/NAME.py`` is a plugin of that kind, and NAME its type.
+"""Finds the plugin files: ``plugins/KIND/NAME.py`` is a plugin of that kind, and NAME its type.
 
-No list names them: they are found by being there, brdfkit's own and those of a user's that were
-added. Nothing here looks into a file; who uses a kind knows what its files hold.
+No list names the plugins: brdfkit's own files are found in their folders, and a user adds files.
+What the files of a kind contain is left to the code that uses the kind.
 """
 
 import importlib
@@ -14,7 +14,7 @@ from pathlib import Path
 from brdfkit import plugins
 from brdfkit.errors import BrdfkitError
 
-# Folder → (the class of Mitsuba's, the function that registers one). One line is one kind.
+# Kind, the name of its folder → (Mitsuba's class, the function of `mitsuba` that registers it)
 KINDS = {
     "bsdfs": ("BSDF", "register_bsdf"),
     "emitters": ("Emitter", "register_emitter"),
@@ -25,8 +25,8 @@ KINDS = {
     "textures": ("Texture", "register_texture"),
     "volumes": ("Volume", "register_texture"),  # Mitsuba 3.9 has no register_volume
 }
-MODELS = "bsdfs"  # the kind that a model is
-OWN, USERS = "brdfkit.plugins", "brdfkit.user_plugins"  # packages of the files' modules
+MODELS = "bsdfs"  # the kind of every model
+OWN, USERS = "brdfkit.plugins", "brdfkit.user_plugins"  # packages of the plugin files' modules
 PACKAGES_OF_MODELS = f"{OWN}.{MODELS}", USERS
 
 _users: dict[str, tuple[str, Path | type]] = {}
@@ -34,23 +34,24 @@ _listeners: list[Callable[[], None]] = []
 
 
 def sources(kind):
-    """Name → file of every plugin of a kind; a class, where a notebook defines one in a cell.
+    """Name → source of every plugin of a kind: its file, or its class if defined in a notebook.
 
     >>> sources("bsdfs")["ward"].name
     'ward.py'
     """
-    return _shipped(kind) | {name: s for name, (k, s) in _users.items() if k == kind}
+    return _own_files(kind) | {name: s for name, (k, s) in _users.items() if k == kind}
 
 
 def kind_of(name):
-    """The kind of the plugin of that name, None where there is none."""
+    """The kind of the plugin `name`, None where there is no such plugin."""
     return next((kind for kind in KINDS if name in sources(kind)), None)
 
 
 def add(kind, added):
-    """Add a user's plugins, name → file or class; a later one of the same file takes its place.
+    """Add a user's plugins of a kind; `added`: name → file or class.
 
-    Raises `BrdfkitError`, and adds none, where a name is taken by another plugin.
+    A file that is added again, and a class of the same name, replaces the earlier one. Raises
+    `BrdfkitError`, and adds none, where a name is taken by another plugin.
     """
     for name, source in added.items():
         require_free(name, source)
@@ -62,12 +63,15 @@ def add(kind, added):
 
 
 def on_added(listener):
-    """Call `listener()` whenever plugins were added."""
+    """Call `listener()` each time that plugins have been added."""
     _listeners.append(listener)
 
 
 def files_in(path):
-    """The Python files that `path` means: itself, or those of a folder without an underscore."""
+    """The Python files at `path`: a file itself, or the files of a folder without a leading "_".
+
+    Raises `BrdfkitError` where there are none.
+    """
     path = Path(path).absolute()
     files = sorted(path.glob("[!_]*.py")) if path.is_dir() else [path]
     if not path.exists() or not files:
@@ -76,46 +80,51 @@ def files_in(path):
 
 
 def module(file):
-    """The module of a plugin file; that of a user's anew when the file has changed.
+    """The module of a plugin file; a user's file is imported again when it has changed.
 
     Raises `BrdfkitError` where it cannot be imported.
     """
     for kind in KINDS:
-        if _shipped(kind).get(file.stem) == file:
+        if _own_files(kind).get(file.stem) == file:
             return importlib.import_module(f"{OWN}.{kind}.{file.stem}")
     if not file.is_file():
         raise BrdfkitError(f"{file} is not a Python file.")
-    return _executed(file, file.stat().st_mtime_ns)
+    return _import_file(file, file.stat().st_mtime_ns)
 
 
 @cache
-def _shipped(kind):
+def _own_files(kind):
+    """Name → file of brdfkit's own plugins of a kind."""
     files = [f for folder in plugins.__path__ for f in Path(folder, kind).glob("[!_]*.py")]
     return {file.stem: file for file in sorted(files)}
 
 
 @cache
-def _executed(file, _changed):
+def _import_file(file, _modified):
+    """The module of a user's file; the time of its last change makes the cache import it anew."""
     name = f"{USERS}.{file.stem}"
     spec = importlib.util.spec_from_file_location(name, file)
     if spec is None:
         raise BrdfkitError(f"{file} is not a Python file.")
-    found = importlib.util.module_from_spec(spec)
-    sys.modules[name] = found
+    imported = importlib.util.module_from_spec(spec)
+    sys.modules[name] = imported
     try:
-        spec.loader.exec_module(found)
+        spec.loader.exec_module(imported)
     except Exception as error:
         del sys.modules[name]
         raise BrdfkitError(f"{file} cannot be imported: {str(error).rstrip('.')}.") from error
-    return found
+    return imported
 
 
 def require_free(name, source):
-    """An error where a plugin of any kind has the name: Mitsuba would go on with that one."""
+    """Raise `BrdfkitError` where another plugin, of any kind, has the name of `source`.
+
+    Mitsuba would go on using the other one.
+    """
     _, known = _users.get(name, (None, source))
-    if any(name in _shipped(kind) for kind in KINDS):
+    if any(name in _own_files(kind) for kind in KINDS):
         owner = "brdfkit has a plugin"
-    elif name in _mitsubas():
+    elif name in _mitsuba_names():
         owner = "Mitsuba has a plugin"
     elif isinstance(known, Path) and known != source:
         owner = f"{known} is loaded as"
@@ -126,7 +135,7 @@ def require_free(name, source):
 
 
 @cache
-def _mitsubas():
+def _mitsuba_names():
     """Names of Mitsuba's own plugins."""
     package = Path(importlib.util.find_spec("mitsuba").origin).parent
     return {file.stem for file in (package / "plugins").iterdir()}

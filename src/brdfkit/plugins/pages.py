@@ -1,6 +1,6 @@
-"""What a plugin says of itself: its file's docstring is its page.
+"""The page of a plugin: the docstring of its file.
 
-The first line is ``Title: one sentence.``; then come the formula, where there is one, and prose.
+The first line is ``Title: one sentence.``; the formula, where there is one, and prose follow.
 """
 
 import inspect
@@ -13,7 +13,7 @@ from brdfkit.references import works
 
 @dataclass(frozen=True)
 class Page:
-    """A page: its `title`, one `sentence`, and the other `lines`."""
+    """A page: its `title`, one `sentence`, and the `lines` that follow the first."""
 
     title: str
     sentence: str
@@ -24,12 +24,15 @@ class Page:
 
     @property
     def references(self):
-        """The works that it cites."""
+        """The cited works, as `Reference`s."""
         return works(str(self))
 
 
 def page(source):
-    """The `Page` of a plugin's file; of a class that of its file, or, in a notebook, its own."""
+    """The `Page` of a plugin, given as its file or its class.
+
+    A class that no plugin file defines has its own docstring as its page.
+    """
     if isinstance(source, type):
         in_file = source.__module__.rpartition(".")[0] in discovery.PACKAGES_OF_MODELS
         text = sys.modules[source.__module__].__doc__ if in_file else source.__doc__

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.files import written
-from brdfkit.names import unused
+from brdfkit.files import write_safely
+from brdfkit.names import make_unique
 from brdfkit.rendering import scenes
 from brdfkit.rendering.memory import require_memory
 from brdfkit.rendering.montage import montage, picture_suffix, write_exr
@@ -109,9 +109,9 @@ class Rendering:
         suffix = picture_suffix(path)
         png = self._repr_png_()
         if suffix == ".exr":
-            with written(path) as beside:
+            with write_safely(path) as beside:
                 write_exr(self, beside)
-        with written(path.with_suffix(".png") if suffix == ".exr" else path) as beside:
+        with write_safely(path.with_suffix(".png") if suffix == ".exr" else path) as beside:
             beside.write_bytes(png)
 
     def _repr_png_(self) -> bytes:
@@ -190,7 +190,7 @@ def render(
     parameters: dict[str, dict[str, Any]] = {}
     for thing in subjects:
         name, bsdf, values = described(thing)
-        name = unused(name, materials)
+        name = make_unique(name, materials)
         materials[name] = bsdf
         if values:
             parameters[name] = values
