@@ -2,7 +2,7 @@
 
 `model.py`: the class `Model`; `parameters.py`: what it declares; `lobes.py`: its terms and how
 they are drawn; `microfacet.py`: distributions of normals; `numerics.py`: accurate functions. The
-rest serves all models: `labels.py` finds one by its label, `evaluation.py` gives its numbers.
+rest serves all models: `labels.py` finds a model by its label, `evaluation.py` computes its values.
 """
 
 from brdfkit.model.model import Model as Model

@@ -1,4 +1,4 @@
-"""What the class of a model declares: parameters and options, and the names that they give it."""
+"""What the class of a model declares: its parameters, its options and its name."""
 
 import re
 from functools import cache
@@ -8,8 +8,8 @@ from brdfkit.model.parameters import Option, Parameter
 from brdfkit.plugins import discovery
 
 
-class Declared:
-    """What is the same for all values of a `Model`: it belongs to the class."""
+class Declaration:
+    """The part of a `Model` that belongs to the class and not to the values."""
 
     parameters: dict[str, Parameter] = {}  # noqa: RUF012  filled by __init_subclass__
     options: dict[str, Option] = {}  # noqa: RUF012
@@ -17,21 +17,24 @@ class Declared:
     def __init_subclass__(cls):
         own = {k: v for k, v in vars(cls).items() if isinstance(v, Parameter | Option)}
         options = {name: o for name, o in own.items() if isinstance(o, Option)}
-        for name, declared in options.items():
-            setattr(cls, name, declared.default)
+        for name, option in options.items():
+            setattr(cls, name, option.default)
         cls.options = {**cls.options, **options}
-        declared = {name: p for name, p in own.items() if isinstance(p, Parameter)}
-        cls._declared = {**getattr(cls, "_declared", {}), **declared}
+        parameters = {name: p for name, p in own.items() if isinstance(p, Parameter)}
+        cls._declared = {**getattr(cls, "_declared", {}), **parameters}
         cls.parameters = {**cls._declared, **cls.more_parameters()}
 
     @classmethod
     def more_parameters(cls) -> dict[str, Parameter]:
-        """Parameters by name that depend on the options, which are attributes of `cls`."""
+        """The parameters, by name, that depend on the options; those are attributes of `cls`."""
         return {}
 
     @classmethod
     def configured(cls, **options):
-        """The model with other options, a class like this one.
+        """The class of this model with other options, given by name.
+
+        Raises `BrdfkitError` for an option that the model does not have or a value that is none of
+        its choices.
 
         >>> models()["ashikhmin_shirley"].configured(diffuse="coupled")    # doctest: +SKIP
         """
@@ -40,7 +43,7 @@ class Declared:
                 raise no_such("option", name, cls.options, cls.type_name())
             options[name] = cls.options[name].read(given, f"{cls.type_name()}: {name}")
         changed = {n: v for n, v in options.items() if v != getattr(cls, n)}
-        return _configured(cls, tuple(sorted(changed.items()))) if changed else cls
+        return _derive(cls, tuple(sorted(changed.items()))) if changed else cls
 
     @classmethod
     def unconfigured(cls):
@@ -54,11 +57,13 @@ class Declared:
 
     @classmethod
     def make_known(cls):
-        """Give a class that lies in no plugin file its name among the models, as one of a cell of a
-        notebook or of somebody's module: Mitsuba and labels find it by that."""
-        written = cls.unconfigured()
-        if not cls.in_plugin_file() and _known(cls.type_name()) is not written:
-            discovery.add(discovery.MODELS, {cls.type_name(): written})
+        """Add a class that is in no plugin file to the models, for Mitsuba and labels to find it.
+
+        Such a class is defined in a notebook or in a module of the user's.
+        """
+        model, name = cls.unconfigured(), cls.type_name()
+        if not cls.in_plugin_file() and _find_source(name) is not model:
+            discovery.add(discovery.MODELS, {name: model})
 
     @classmethod
     def type_name(cls):
@@ -69,24 +74,24 @@ class Declared:
 
     @classmethod
     def chosen(cls):
-        """The options that are not the default, by name."""
+        """The options that differ from their defaults, name → value."""
         values = {name: getattr(cls, name) for name in cls.options}
         return {name: v for name, v in values.items() if v != cls.options[name].default}
 
     @classmethod
     def label(cls):
-        """The type with the options that are not the default: ``"lafortune:lobe_count=2"``."""
+        """The type with the options that differ from their defaults: "lafortune:lobe_count=2"."""
         options = ",".join(f"{name}={value}" for name, value in cls.chosen().items())
         return f"{cls.type_name()}:{options}" if options else cls.type_name()
 
     @classmethod
     def made_of(cls):
-        """The classes, as they were written, that it needs: of a sum those of its terms, too."""
+        """The unconfigured classes that a pickled model needs: its own, then those of its terms."""
         return (cls.unconfigured(),)
 
     @classmethod
     def parameter(cls, name):
-        """The parameter of that name, or an error that proposes the nearest."""
+        """The `Parameter` of that name; else raises `BrdfkitError`, which proposes the nearest."""
         if name in cls.options:
             raise BrdfkitError(
                 f"{cls.type_name()}: {name} is an option; write {cls.type_name()}:{name}=VALUE."
@@ -102,7 +107,7 @@ class Declared:
 
     @classmethod
     def shapes(cls, anisotropic=False):
-        """Names of the nonlinear parameters; those that follow another if `anisotropic`."""
+        """Names of the nonlinear parameters; those that follow another only if `anisotropic`."""
         return [
             name
             for name, p in cls.parameters.items()
@@ -111,20 +116,22 @@ class Declared:
 
     @classmethod
     def anisotropic(cls):
-        """True where the surface's azimuth may count: a parameter for each of its directions."""
+        """True where the BRDF may depend on the surface's azimuth: a parameter follows another."""
         return any(p.follows for p in cls.parameters.values())
 
     @classmethod
     def signed(cls):
-        """True where a weight may be negative: then the sum is clamped at 0."""
+        """True where a weight may be negative: then the BRDF is clamped at 0."""
         return any(p.linear and p.bounds[0] < 0 for p in cls.parameters.values())
 
 
-def _known(name):
+def _find_source(name):
+    """The file or class of the model of that name, None where there is none."""
     return discovery.sources(discovery.MODELS).get(name)
 
 
 @cache
-def _configured(cls, options):
+def _derive(cls, options):
+    """The class derived from `cls` with other `options`, ((name, value), ...)."""
     attributes = dict(options) | {"__module__": cls.__module__, "__doc__": cls.__doc__}
     return type(cls.__name__, (cls,), attributes | {"_chosen": options})

@@ -1,7 +1,7 @@
 """Double precision with Dr.Jit: the arrays in which models are evaluated and fitted.
 
-With LLVM (or CUDA) a kernel runs over all directions at once and has derivatives; without
-either, Dr.Jit's scalar arrays do the same work slower, and a fit takes finite differences.
+With LLVM (or CUDA) a kernel runs over all directions at once and has derivatives. Without either,
+Dr.Jit's scalar arrays do the same more slowly, and a fit takes finite differences.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from brdfkit.padding import pad
 
 @dataclass(frozen=True)
 class Vector:
-    """Directions as a model sees them: x, y, z, each an array over all directions."""
+    """Directions in a model's formula: x, y and z are arrays (n,) over all directions."""
 
     x: Any
     y: Any
@@ -67,7 +67,7 @@ def vector(w):
 
 
 def scalar(value):
-    """A number as an array of size 1 that is not compiled into the kernel as a constant."""
+    """A number as an array of size 1, opaque: a kernel does not contain it as a constant."""
     import drjit as dr
 
     number = float64()(float(value))

@@ -1,4 +1,4 @@
-"""The numbers of a model in double precision: its lobes over directions, times its weights."""
+"""Evaluates a model in double precision: the values of its lobes times its weights."""
 
 import drjit as dr
 import numpy as np
@@ -8,9 +8,9 @@ from brdfkit.threads import in_turn
 
 
 def evaluate_model(model, wi, wo):
-    """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3): Σ weight · lobe + weight² · quadratic.
+    """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3): Σ weight · eval + weight² · quadratic.
 
-    0 where a direction is not above the surface; a sum of signed weights is clamped at 0.
+    It is 0 where a direction is not above the surface, and clamped at 0 where weights are signed.
     """
     wi, wo = np.asarray(wi, float), np.asarray(wo, float)
     above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
@@ -23,8 +23,10 @@ def evaluate_model(model, wi, wo):
 
 
 def clamped_share(model, n=20_000):
-    """Share of direction pairs, even in solid angle, where a channel of a signed model is below 0
-    and clamped."""
+    """The share of direction pairs at which a channel of a signed model is clamped at 0.
+
+    The `n` pairs are drawn uniformly in solid angle, by a fixed seed.
+    """
     z, phi = np.random.default_rng(0).random((2, 2, n))
     sine, phi = np.sqrt(1 - z * z), 2 * np.pi * phi
     wi, wo = np.stack([sine * np.cos(phi), sine * np.sin(phi), z], axis=-1)
@@ -34,7 +36,7 @@ def clamped_share(model, n=20_000):
 
 
 def weight_matrix(model):
-    """Weights (lobes, channels) of a model."""
+    """The weights (lobes, channels) of a model with values."""
     weights = [np.atleast_1d(getattr(model, name)) for name in model.weights()]
     channels = max(len(w) for w in weights)
     return np.array([np.broadcast_to(w, channels) for w in weights])
@@ -42,13 +44,16 @@ def weight_matrix(model):
 
 @in_turn
 def lobe_values(model, wi, wo):
-    """Lobes (n, lobes) in sr⁻¹ of directions (n, 3) above the surface, and those of the weights'
-    squares, likewise."""
+    """Two arrays (n, lobes) in sr⁻¹ of direction pairs (n, 3) above the surface.
+
+    The first holds the values of each `Lobe.eval`, the second those of each `Lobe.quadratic`, 0 for
+    a lobe without.
+    """
     terms = model.bind(double_precision.shapes(model)).terms()
     wi, wo = double_precision.vector(wi), double_precision.vector(wo)
     plain = [lobe.eval(wi, wo) for _, lobe in terms]
     squared = [lobe.quadratic(wi, wo) if lobe.quadratic else 0.0 for _, lobe in terms]
-    dr.eval(plain, squared)  # together: a kernel for each takes six times as long
+    dr.eval(plain, squared)  # in one kernel: one for each lobe takes six times as long
     shape = len(wi.x), len(terms)
     return [
         np.stack([np.broadcast_to(np.asarray(c), shape[0]) for c in columns], axis=1)

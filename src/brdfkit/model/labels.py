@@ -2,8 +2,8 @@
 
     ward    koenderink:order=8    ggx+ggx    oren_nayar:form=full+ward
 
-Where a person names a model, a Python file may stand for the model in it: `read_files` loads it. A
-label out of a saved file is never read so: it must not run a program.
+In a label that a person types, a Python file may stand for the model that it defines: `read_files`
+loads the file. A label from a saved file never goes through `read_files`, for it must not run code.
 """
 
 import os
@@ -34,14 +34,15 @@ def models() -> dict[str, type[Model]]:
 
 
 def model(label: str | type[Model]) -> type[Model]:
-    """The model of a label: its name, with options ``"lafortune:lobe_count=2"``, or a sum of
-    labels, ``"ggx+ward"``: one diffuse term and the other terms of each. A class means itself.
+    """The class of a label: a model's name, with options "lafortune:lobe_count=2", or a sum.
 
-    Raises `BrdfkitError` for a name that is none, and proposes the nearest.
+    A sum, "ggx+ward", has the diffuse term of the first model and the other terms of all. A class
+    stands for itself. Raises `BrdfkitError` for an unknown name, and proposes the nearest.
     """
     if isinstance(label, type) and issubclass(label, Model):
         label.make_known()
-        return model(label.label()) if label.in_plugin_file() else label  # the file as it is now
+        # A plugin file may have changed since the class was read
+        return model(label.label()) if label.in_plugin_file() else label
     if not isinstance(label, str):
         raise BrdfkitError(
             f"A {type(label).__name__} names no model; give a name such as 'ward', or a class."
@@ -50,7 +51,7 @@ def model(label: str | type[Model]) -> type[Model]:
     if "+" in parts or parts != label:
         return model("mixture").configured(models=parts)
     name, _, settings = label.partition(":")
-    found = _named(name)
+    found = _find_model(name)
     options = {}
     for setting in filter(None, settings.split(",")):
         key, equals, value = setting.partition("=")
@@ -61,13 +62,14 @@ def model(label: str | type[Model]) -> type[Model]:
 
 
 def is_label(word: str) -> bool:
-    """Whether a word can only be meant as a model: "ggx", "ggx+ward", "koenderink:order=4"."""
+    """Whether a word is the label of a known model: "ggx", "ggx+ward", "koenderink:order=4"."""
     return all(part.partition(":")[0] in models() for part in word.split("+"))
 
 
 def read_files(label: Any) -> Any:
-    """A label with the names of the models for the Python files in it, which are loaded; what is no
-    label, nor the `Path` of a file, comes back as it is.
+    """Load the Python files that stand for models in a label; the label with the models' names.
+
+    What is neither a text nor a `Path` comes back as it is.
 
     >>> read_files("my_models/felt.py+ggx")    # doctest: +SKIP
     'felt+ggx'
@@ -122,7 +124,10 @@ def load_models(path: str | Path) -> dict[str, type[Model]]:
 
 
 def model_in(source: Path | type | None) -> type[Model] | None:
-    """The `Model` class that a plugin file defines, None if it defines none; a class is itself."""
+    """The `Model` class that a plugin file defines, None if it defines none; a class for itself.
+
+    Raises `BrdfkitError` for a file that defines several.
+    """
     if isinstance(source, type):
         return source
     module = discovery.module(source)
@@ -138,7 +143,8 @@ def model_in(source: Path | type | None) -> type[Model] | None:
     return own[0] if own else None
 
 
-def _named(name: str) -> type[Model]:
+def _find_model(name: str) -> type[Model]:
+    """The model of that name; raises `BrdfkitError`, which proposes the nearest."""
     source = discovery.sources(MODELS).get(name)
     found = source and model_in(source)
     if not found:

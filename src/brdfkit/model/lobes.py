@@ -12,7 +12,7 @@ from brdfkit.model.numerics import cosine_power
 
 
 class Sampling(Protocol):
-    """A way to draw the outgoing direction of a lobe."""
+    """Draws the outgoing direction of a lobe."""
 
     def sample(self, wi, u):
         """A unit vector wo for a point `u` (x, y, z) of the unit cube.
@@ -21,9 +21,9 @@ class Sampling(Protocol):
         """
 
     def pdf(self, wi, wo):
-        """Density of `sample` per solid angle [sr⁻¹], asked for `wo` above the surface only.
+        """Density of `sample` per solid angle [sr⁻¹], called for `wo` above the surface only.
 
-        Its integral over the sphere is 1, over the hemisphere less where samples fall below.
+        Its integral over the hemisphere is 1, less the share of samples below the surface.
         """
 
 
@@ -31,10 +31,12 @@ class Sampling(Protocol):
 class Lobe:
     """One term of a model, without its weight.
 
-    `eval(wi, wo)`: value in sr⁻¹ without cosine, both directions above the surface; `sampling`: a
-    way to draw `wo`, one object for lobes that are drawn together; `energy(wi)`: about the lobe's
-    albedo, by which it is chosen; `quadratic(wi, wo)`: a value that the square of the weight
-    multiplies, where light scattered twice counts; `diffuse`: Mitsuba's kind of the lobe.
+    `eval(wi, wo)`: the value in sr⁻¹ without cosine, for directions above the surface;
+    `sampling`: draws `wo`; lobes that are drawn together share one object;
+    `energy(wi)`: about the lobe's albedo; lobes are chosen in proportion to weight times energy;
+    `quadratic(wi, wo)`: a value to be multiplied by the weight's square, as of light that is
+    scattered twice;
+    `diffuse`: whether Mitsuba counts the lobe as diffuse, else as glossy.
     """
 
     eval: Callable
@@ -45,7 +47,7 @@ class Lobe:
 
 
 def components_of(lobes):
-    """Indices of the lobes of each component: lobes that share a sampling are one."""
+    """A list of each component's lobe indices: lobes that share a sampling are one component."""
     groups = {}
     for index, lobe in enumerate(lobes):
         groups.setdefault(id(lobe.sampling), []).append(index)
@@ -53,13 +55,13 @@ def components_of(lobes):
 
 
 def lambertian():
-    """The diffuse lobe of all models: 1/π [Kurt 2007, eq. 3.1]."""
+    """The diffuse lobe of most models: 1/π [Kurt 2007, eq. 3.1]."""
     return Lobe(lambda wi, wo: 1 / dr.pi, Cosine(), diffuse=True)
 
 
 @dataclass(frozen=True)
 class Cosine:
-    """Proportional to the cosine [Kurt 2007, eqs. 4.21, 4.22]."""
+    """Draws directions in proportion to their cosine [Kurt 2007, eqs. 4.21, 4.22]."""
 
     def sample(self, wi, u):
         radius = dr.sqrt(u.x)
@@ -72,7 +74,7 @@ class Cosine:
 
 @dataclass(frozen=True)
 class HalfVector:
-    """A half vector from a distribution of normals, and the mirror direction about it."""
+    """Draws a half vector from a `distribution` of normals, and reflects wi about it."""
 
     distribution: Any
 
@@ -86,10 +88,9 @@ class HalfVector:
 
 @dataclass(frozen=True)
 class PowerLobe:
-    """Outgoing directions by cos^n about `axis(wi)`, which is above the surface; what would fall
-    below it is mirrored up.
+    """Draws directions in proportion to cos^n of their angle to `axis(wi)`, above the surface.
 
-    [Lafortune & Willems 1994]
+    A direction below the surface is mirrored up. [Lafortune & Willems 1994]
     """
 
     axis: Callable
@@ -107,7 +108,10 @@ class PowerLobe:
         return (self.exponent + 1) / (2 * dr.pi) * power
 
     def energy(self, wi):
-        """About ∫ (n + 2) / 2π cos^n cosθ dω over the hemisphere: 1 about the normal, towards the
-        horizon the cosine of the axis, at it 0.4 / √(n + 0.6)."""
+        """About the albedo ∫ (n + 2) / 2π cos^n cosθ dω of the lobe.
+
+        It is about the axis's cosine, 1 at the normal; with the axis at the horizon it is
+        0.4 / √(n + 0.6).
+        """
         z = self.axis(wi).z
         return 0.5 * (z + dr.sqrt(z * z + 0.64 / (self.exponent + 0.6)))

@@ -1,9 +1,9 @@
 """Distributions of microfacet normals, shadowing and Fresnel, shared by the models.
 
-A distribution answers `D(h)` [sr⁻¹, ∫ D cosθ_h dω = 1], `sample(wi, u)` → h and
-`pdf(wi, h, cos_d)` per solid angle of h, where cos_d = wi·h (see `cos_theta_d`). `wi`, `h` are
-vectors with x, y, z in the local frame, z along the normal; `u` is a point (x, y, z) of the unit
-cube.
+A distribution has `D(h)` [sr⁻¹, ∫ D cosθ_h dω = 1], `sample(wi, u)` → h and `pdf(wi, h, cos_d)`,
+the density of `sample` per solid angle of h. `wi` and `h` are unit vectors with x, y, z in the
+local frame, z along the normal; `u` is a point (x, y, z) of the unit cube; cos_d = wi·h, as
+`cos_theta_d` gives it.
 """
 
 from dataclasses import dataclass
@@ -33,13 +33,13 @@ def v_groove(wi, wo, h):
 
 
 def _slope_exponent(h, alpha_u, alpha_v):
-    # tan²θ_h (cos²φ_h/α_u² + sin²φ_h/α_v²), without a trigonometric function
+    """tan²θ_h (cos²φ_h/α_u² + sin²φ_h/α_v²), without a trigonometric function."""
     x, y = h.x / alpha_u, h.y / alpha_v
     return (x * x + y * y) / cos_squared(h)
 
 
 def cos_squared(h):
-    """cos²θ_h, kept off 0: its powers divide, and their derivatives in single precision."""
+    """cos²θ_h, at least 1e-6: D and its derivatives, which divide by its powers, stay finite."""
     return dr.maximum(h.z * h.z, 1e-6)
 
 
@@ -74,7 +74,7 @@ class Beckmann:
 
 @dataclass(frozen=True)
 class TrowbridgeReitz:
-    """Slopes with long tails, of width `alpha_u` along x, `alpha_v` along y: "GGX".
+    """GGX: slopes with long tails, of width `alpha_u` along x, `alpha_v` along y.
 
     [Walter et al. 2007]; [Heitz 2014]
     """
@@ -98,14 +98,16 @@ class TrowbridgeReitz:
 
     def sample(self, wi, u):
         """Visible normals by spherical caps [Dupuy & Benyoub 2023]."""
+        # wi, stretched to where the visible normals are those of a hemisphere
         x, y = self.alpha_u * wi.x, self.alpha_v * wi.y
         inverse = dr.rsqrt(x * x + y * y + wi.z * wi.z)
         x, y, z = x * inverse, y * inverse, wi.z * inverse
-        # a cap of the unit sphere, seen from the stretched direction
+        # Its mirror direction, uniform in a spherical cap; the sum of both is along the normal
         cos_theta = (1 - u.y) * (1 + z) - z
         sin_theta = dr.sqrt(dr.maximum(1 - cos_theta * cos_theta, 0))
         sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.x)
         x, y, z = x + sin_theta * cos_phi, y + sin_theta * sin_phi, z + cos_theta
+        # The normal, stretched back
         x, y, z = self.alpha_u * x, self.alpha_v * y, dr.maximum(z, 1e-7)
         inverse = dr.rsqrt(x * x + y * y + z * z)
         return type(wi)(x * inverse, y * inverse, z * inverse)
@@ -117,12 +119,16 @@ class TrowbridgeReitz:
 
 @dataclass(frozen=True)
 class CosinePower:
-    """(N·H)^(n_u cos²φ_h + n_v sin²φ_h) [Blinn 1977]; [Ashikhmin & Shirley 2000]."""
+    """Normals in proportion to (N·H)^(n_u cos²φ_h + n_v sin²φ_h).
+
+    [Blinn 1977]; [Ashikhmin & Shirley 2000]
+    """
 
     n_u: Any
     n_v: Any
 
     def power(self, h):
+        """(N·H)^(n_u cos²φ_h + n_v sin²φ_h)."""
         x, y = h.x * h.x, h.y * h.y
         exponent = (self.n_u * x + self.n_v * y) / dr.maximum(x + y, 1e-20)
         return cosine_power((x + y) / (1 + h.z), exponent)
@@ -133,7 +139,7 @@ class CosinePower:
         inverse = dr.rsqrt(x * x + y * y)
         x, y = x * inverse, y * inverse
         exponent = self.n_u * x * x + self.n_v * y * y
-        # 1 - cosθ, of which cosθ in single precision knows too little
+        # 1 - cosθ_h: taken from a cosine in single precision, it would have lost its digits
         complement = -expm1(dr.log(dr.maximum(1 - u.x, 1e-12)) / (exponent + 1))
         sin_theta = dr.sqrt(complement * (2 - complement))
         return type(wi)(sin_theta * x, sin_theta * y, 1 - complement)
@@ -144,10 +150,13 @@ class CosinePower:
 
 @dataclass(frozen=True)
 class Visible:
-    """What wi sees of a `distribution` in V-grooves: of each pair of facets, h and its mirror image
-    about the normal, as much as is turned towards wi. A half turn should not change it.
+    """The normals of a `distribution` that are visible from wi on a surface of V-grooves.
 
-    G1 (wi·h)⁺ D / cosθ_i [Heitz & d'Eon 2014], with the G1 of `v_groove`.
+    The two facets of a groove have the normal h and its mirror image about the surface normal; one
+    of them is drawn in proportion to its area as seen from wi. The `distribution` should be
+    the same after a half turn about the surface normal.
+
+    The density is G1 (wi·h)⁺ D / cosθ_i [Heitz & d'Eon 2014], with the G1 of `v_groove`.
     """
 
     distribution: Any
@@ -164,5 +173,6 @@ class Visible:
 
 
 def _from_slope(vector, x, y):
+    """The unit normal of a facet with slopes `x` and `y`, of the type `vector`."""
     inverse = dr.rsqrt(1 + x * x + y * y)
     return vector(x * inverse, y * inverse, inverse)

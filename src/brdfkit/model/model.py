@@ -9,8 +9,9 @@ channels. A model is a class in a file of its own: its parameters are class attr
 The same lines run in the renderer, where a parameter is a value per ray, and in a fit, where
 it is a double with derivatives. So a model uses `dr.*` and no Python `if` on values.
 
-What is no number to fit, a form or an order, is an `option`: a plain Python value, and another
-class for each (`Model.configured`). Where the parameters depend on it, `more_parameters` adds them.
+A choice that is not a number to fit, such as a form or an order, is an `option`: a plain Python
+value. Each of its values makes a class of its own (`Model.configured`). `more_parameters` adds the
+parameters that depend on options.
 """
 
 from typing import TYPE_CHECKING, Any, Self
@@ -19,15 +20,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.model.declaration import Declared
+from brdfkit.model.declaration import Declaration
 from brdfkit.model.evaluation import evaluate_model
 from brdfkit.model.lobes import Lobe
-from brdfkit.model.pickling import reduced
+from brdfkit.model.pickling import reduce_model
 
-CHANNELS = 1, 3  # that a weight may have: achromatic, linear sRGB
+CHANNELS = 1, 3  # how many a weight may have: achromatic, linear sRGB
 
 
-class Model(Declared):
+class Model(Declaration):
     """A BRDF model with values.
 
     Each model is a class derived from this one. The values of its parameters are the attributes of
@@ -108,12 +109,12 @@ class Model(Declared):
 
     @classmethod
     def determined(cls, samples):
-        """Shape parameters by name that a fit takes from where was measured, not from a search."""
+        """Shape parameters by name that are computed from the measured directions, not searched."""
         return {}
 
     @classmethod
     def bind(cls, values):
-        """The model over `values` of any type (rays, derivatives), nothing checked."""
+        """The model with `values` by name, of any type, such as arrays; nothing is checked."""
         bound = object.__new__(cls)
         bound.__dict__.update(values)
         for name, parameter in cls.parameters.items():
@@ -171,7 +172,7 @@ class Model(Declared):
         return hash((type(self), *self.values.values()))
 
     def __reduce__(self):
-        return reduced(self)
+        return reduce_model(self)
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name}={_short(value)}" for name, value in self.values.items())
@@ -179,6 +180,7 @@ class Model(Declared):
 
 
 def _number(value, per_channel, what):
+    """`value` as a float, or as a tuple of floats if `per_channel` and given so."""
     try:
         if np.ndim(value) == 0:
             return float(value)

@@ -4,22 +4,22 @@ import drjit as dr
 
 
 def cosine_power(complement, exponent):
-    """cosine^exponent by `complement` = 1 - cosine, accurate for large exponents.
+    """cosine^exponent, of `complement` = 1 - cosine: accurate for large exponents.
 
-    0 where the cosine is not positive.
+    It is 0 where the cosine is not positive.
     """
     power = dr.exp(exponent * log1p(-dr.minimum(complement, 1 - 1e-6)))
     return dr.select(complement < 1, power, 0)
 
 
 def log1p(x):
-    """log(1 + x), accurate for small x: W. Kahan's way."""
+    """log(1 + x), accurate for small x: W. Kahan's method."""
     y = 1 + x
     return dr.select(y == 1, x, dr.log(y) * x / dr.select(y == 1, 1, y - 1))
 
 
 def expm1(x):
-    """exp(x) - 1, accurate for small x: W. Kahan's way."""
+    """exp(x) - 1, accurate for small x: W. Kahan's method."""
     y = dr.exp(dr.maximum(x, -50))
     log_y = dr.log(y)
     return dr.select(y == 1, x, (y - 1) * dr.maximum(x, -50) / dr.select(y == 1, 1, log_y))

@@ -13,9 +13,10 @@ NOT_NEGATIVE, SIGNED = (0.0, math.inf), (-math.inf, math.inf)
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a model: its default, its bounds and what it means.
+    """A parameter of a model, with its default, its bounds (low, high) and its meaning.
 
-    `width`: the power of it that a lobe's width goes with, 0 where that does not depend on it.
+    `linear`: whether it is a weight; `log`: whether it is searched on a logarithmic scale;
+    `follows`: the parameter that it equals unless given; `width`: p in: lobe width ∝ parameter^p.
     """
 
     default: float | None
@@ -44,7 +45,7 @@ class Parameter:
             raise BrdfkitError(f"{self.meaning!r}: the default {problem}.")
 
     def problem_with(self, value):
-        """What is wrong with `value` (one number or several), None if it is within the bounds."""
+        """What is wrong with `value`, one number or several; None where all are within bounds."""
         low, high = self.bounds
         given = np.asarray(value)
         if np.all(np.isfinite(given) & (given >= low) & (given <= high)):
@@ -64,8 +65,9 @@ def weight(default, meaning, bounds=NOT_NEGATIVE):
 def shape(default, bounds, meaning, log=False, width=0.0):
     """A nonlinear parameter within `bounds` (low, high), both finite.
 
-    `log`: where its magnitude counts, as of a width; `width`: 1 if it is the width of a lobe, -0.5
-    if it is an exponent n, whose lobe is about as wide as 1/√n: by it lobes begin apart in a sum.
+    `log`: True for a parameter whose order of magnitude matters, such as a width;
+    `width`: p in: lobe width ∝ parameter^p. It is 1 for a width, -0.5 for an exponent n, whose lobe
+    is about 1/√n wide, and 0 for all others. By it, a sum of models begins with unequal widths.
     """
     return Parameter(default, bounds, meaning, log=log, width=width)
 
@@ -84,7 +86,10 @@ class Option:
     meaning: str
 
     def read(self, given, what):
-        """`given`, a word or a number, as this option takes it; `what`: for the error."""
+        """The option's value for `given`, a word or a number.
+
+        Raises `BrdfkitError`, which calls the option `what`.
+        """
         value = type(self.default)(given) if _is_a(type(self.default), given) else given
         if type(value) is not type(self.default) or (self.choices and value not in self.choices):
             one_of = " or ".join(map(str, self.choices)) if self.choices else "of another kind"
@@ -93,11 +98,12 @@ class Option:
 
 
 def option(default, choices, meaning):
-    """An option with its `choices`, None where any value of the default's type will do."""
+    """An `Option` with its `choices`, None where any value of the default's type is allowed."""
     return Option(default, choices, meaning)
 
 
 def _is_a(kind, given):
+    """Whether `given` is a value of the type `kind`, or a word for one."""
     try:
         return kind(given) == given or str(kind(given)) == given
     except (TypeError, ValueError):

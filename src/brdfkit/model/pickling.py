@@ -1,7 +1,8 @@
-"""How a model with values is pickled: its class, its options and its values.
+"""Pickles a model with values: its class, its options and its values.
 
-The class of a user's file can be imported in no other process. So the file's path and checksum go
-along, and the file is loaded where the pickle is.
+Another process cannot import a class that a user's file defines. So the pickle holds the path and
+the checksum of the file, which is loaded with the pickle. Pickles refer to `restored` and
+`UsersClass` by these names, which therefore stay.
 """
 
 import sys
@@ -16,14 +17,17 @@ from brdfkit.plugins import discovery
 
 @dataclass(frozen=True)
 class UsersClass:
-    """A class in a file of a user's: its `name` in the module, the file's `path` and `checksum`."""
+    """A class in a user's file: its `name` in the module, the file's `path` and `checksum`."""
 
     name: str
     path: str
     checksum: str
 
-    def found(self):
-        """The class, of the file of that name that was loaded, or else of the one at `path`."""
+    def load(self):
+        """The class from the loaded file with the name of `path`, else from the file at `path`.
+
+        Warns where the file has changed since, raises `BrdfkitError` where it is missing.
+        """
         path = Path(self.path)
         file = discovery.sources(discovery.MODELS).get(path.stem, path)
         if not file.is_file():
@@ -41,20 +45,20 @@ class UsersClass:
         return getattr(discovery.module(file), self.name)
 
 
-def reduced(model):
-    """What `pickle` keeps of a model: see `object.__reduce__`."""
-    kept = tuple(map(_kept, model.made_of()))
-    return restored, (kept, model.chosen(), model.values)
+def reduce_model(model):
+    """What `pickle` stores of a model, as `object.__reduce__` returns it."""
+    classes = tuple(map(_portable, model.made_of()))
+    return restored, (classes, model.chosen(), model.values)
 
 
-def restored(kept, options, values):
-    """The model of `reduced`; of the classes that it needs, its own is the first."""
-    written, *_ = (c.found() if isinstance(c, UsersClass) else c for c in kept)
-    return written.configured(**options)(**values)
+def restored(classes, options, values):
+    """The model that was pickled; `classes`: its own, then those of its terms."""
+    own, *_ = (c.load() if isinstance(c, UsersClass) else c for c in classes)
+    return own.configured(**options)(**values)
 
 
-def _kept(cls):
-    """A class as it is pickled: by its name in a module, but for one of a user's file."""
+def _portable(cls):
+    """What stands for a class in a pickle: `UsersClass` for one of a user's file, else itself."""
     if cls.__module__.rpartition(".")[0] != discovery.USERS:
         return cls
     file = Path(sys.modules[cls.__module__].__file__)
