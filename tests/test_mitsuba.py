@@ -15,7 +15,7 @@ import brdfkit as bk
 from brdfkit.checks.sampling import uniform
 from brdfkit.checks.subject import random_pairs
 from brdfkit.geometry.directions import from_angles, normalize
-from brdfkit.host.signed_sum import tabulated
+from brdfkit.host.signed_sum import tabulate
 from brdfkit.model.lobes import components_of
 
 # All z-scores of this file, some 30: a right renderer exceeds this once in 5,000 files
@@ -124,9 +124,9 @@ def test_gradient_of_a_picture(model, llvm_variant, monkeypatch):
     mi = llvm_variant
     tables = {}  # a table drawn from moves with the weights, and the directions would with it
     monkeypatch.setattr(
-        "brdfkit.host.bsdf.tabulated",
+        "brdfkit.host.bsdf.tabulate",
         lambda model, weights, lobes: tables.setdefault(
-            tuple(lobes), tabulated(model, weights, lobes)
+            tuple(lobes), tabulate(model, weights, lobes)
         ),
     )
     integrator = {"type": "prb", "max_depth": 2}

@@ -22,7 +22,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.host.adaptive_lookup import AdaptiveLookup
 from brdfkit.host.channels import channels
 from brdfkit.host.measured_frame import measured_frame
-from brdfkit.host.properties import located
+from brdfkit.host.properties import resolve_file
 
 ARRAYS = "phi_i", "theta_i", "ndf", "sigma", "vndf", "density"
 FLAGS = "isotropic", "parts", "divided"
@@ -50,7 +50,7 @@ def define(mi):
             return self.values.mean(self.lookup.corners(wi, wo), si)
 
         def albedo(self, wi, si):
-            return self.albedos.mean(self.lookup.around(wi), si)
+            return self.albedos.mean(self.lookup.incidences(wi), si)
 
         def to_string(self):
             return f"MeasuredAdaptive[shape = {self.shape}]"
@@ -63,7 +63,7 @@ def _read(props):
     if "filename" in props:
         from brdfkit.loading import load  # only here: listing the plugins should be quick
 
-        name, props = props["filename"], load(located(props["filename"])).scene_dict()
+        name, props = props["filename"], load(resolve_file(props["filename"])).scene_dict()
         if "density" not in props:
             raise BrdfkitError(f"{name} is no RGL file; give it to measured_table.")
     if "density" not in props:

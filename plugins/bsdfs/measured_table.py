@@ -16,9 +16,9 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.host.channels import channels
-from brdfkit.host.half_vector_table import Tabulated
+from brdfkit.host.half_vector_table import HalfVectorTable
 from brdfkit.host.measured_frame import measured_frame
-from brdfkit.host.properties import located
+from brdfkit.host.properties import resolve_file
 from brdfkit.host.table_lookup import corners
 from brdfkit.samples import Table
 
@@ -36,7 +36,7 @@ def define(mi):
             filled = self.table.filled
             self.values = channels(filled.reshape(-1, filled.shape[-1]), wavelengths)
             size = ANISOTROPIC if self.table.anisotropic else {}
-            half_vectors = Tabulated(self.looked_up, **size)
+            half_vectors = HalfVectorTable(self.looked_up, **size)
             self.albedos = channels(half_vectors.albedo, wavelengths)
             self.draw_by(half_vectors, self.table.anisotropic)
 
@@ -48,7 +48,7 @@ def define(mi):
             return self.values.mean(corners(self.table, wi, wo), si)
 
         def albedo(self, wi, si):
-            return self.albedos.mean(self.sampling.mixed(wi), si)
+            return self.albedos.mean(self.sampling.incidences(wi), si)
 
         def to_string(self):
             return f"MeasuredTable[shape = {self.table.shape}]"
@@ -61,7 +61,7 @@ def _table(props):
     if "filename" in props:
         from brdfkit.loading import load  # only here: listing the plugins should be quick
 
-        found = load(located(props["filename"]))
+        found = load(resolve_file(props["filename"]))
         props = getattr(found, "tabulated", found).scene_dict()
     if "table" not in props:
         raise BrdfkitError("measured_table needs a filename (or the tensor table).")

@@ -1,7 +1,7 @@
-"""RGL's adaptive parameterisation in the renderer, and the sampling that comes with it.
+"""RGL's adaptive parameterisation in the renderer: its lookup, and the sampling that it offers.
 
-`formats/rgl/parameterisation.py` says what it is, and has the same in NumPy. The warps of the unit
-square, between the stored incidences too, are Mitsuba's own.
+`formats/rgl/parameterisation.py` explains it and has the lookup in NumPy. Here Mitsuba's own
+distributions warp the unit square and interpolate between the stored incidences.
 
 [Dupuy & Jakob 2018]
 """
@@ -12,15 +12,16 @@ from brdfkit.geometry import multilinear
 from brdfkit.geometry.vectors import cos_theta_d, half_vector, reflect
 from brdfkit.host.arrays import Nodes, bracket
 
-# The least x of a half vector, 0.02 µrad from the normal: at 0 its density is infinite
+# The least x of a half vector, 0.02 µrad from the normal: at x = 0 its density is infinite
 INNERMOST = 1e-4
 
 
 class AdaptiveLookup:
-    """Where a BRDF is stored, and a `Sampling` of it, in the current variant.
+    """The places of a BRDF's stored values, and a `Sampling` of the BRDF, in the current variant.
 
-    Of its `Parameterisation`: `phi_i` (a,), `theta_i` (b,), `ndf`, `sigma` (y, x), `vndf`
-    (a, b, y, x), `isotropic` and `parts`; of itself: `density` (a, b, n, n) and `divided`.
+    `phi_i` (a,), `theta_i` (b,), `ndf`, `sigma` (y, x), `vndf` (a, b, y, x), `isotropic` and
+    `parts` are those of the BRDF's `Parameterisation`, `density` (a, b, n, n) and `divided` those
+    of its `Adaptive`.
     """
 
     def __init__(self, phi_i, theta_i, ndf, sigma, vndf, density, isotropic, parts, divided):
@@ -34,18 +35,21 @@ class AdaptiveLookup:
         self.normals = mi.MarginalContinuous2D2(vndf, angles)
         self.density = mi.MarginalContinuous2D2(density, angles)
 
-    def around(self, wi):
-        """(index, share) of the stored incidences around `wi`."""
-        angles = self._angles(self._turned(wi, wi))
+    def incidences(self, wi):
+        """(index, share) of the stored incidences around `wi`; the shares add up to 1."""
+        angles = self._angles(self._fold(wi, wi))
         axes = [(nodes, x) for nodes, x in zip(self.nodes, angles, strict=True) if nodes.count > 1]
         brackets, shape = [nodes.bracket(x) for nodes, x in axes], [n.count for n, _ in axes]
         return [(multilinear.flat_index(at, shape), t) for at, t in multilinear.corners(brackets)]
 
     def corners(self, wi, wo):
-        """(row, share) of the stored values, rows (a b n n), whose sum is the BRDF."""
-        incidences = self.around(wi)
-        wi, wo = self._turned(wi, wi), self._turned(wo, wi)
-        m, u, _ = self._located(wi, wo)
+        """(row, factor) of stored values: the BRDF is the sum of factor times value.
+
+        A row is an index among all stored values (a b n n,).
+        """
+        incidences = self.incidences(wi)
+        wi, wo = self._fold(wi, wi), self._fold(wo, wi)
+        m, u, _ = self._locate(wi, wo)
         factor = 1 / wo.z
         if self.divided:
             phi_i, theta_i = self._angles(wi)
@@ -59,30 +63,35 @@ class AdaptiveLookup:
                 )
 
     def sample(self, wi, u):
-        """A direction, possibly below the surface, for a point `u`, of which x and y count."""
+        """A direction, possibly below the surface, for a point `u`; its x and y are used."""
         import mitsuba as mi
 
-        turned = self._turned(wi, wi)
-        angles = self._angles(turned)
+        folded = self._fold(wi, wi)
+        angles = self._angles(folded)
+        # A point on the square of stored values, then on the square of directions: the normal
         point, _ = self.density.sample(mi.Point2f(u.x, u.y), angles)
         m, _ = self.normals.sample(point, angles)
         sin_theta, cos_theta = dr.sincos(m.x * m.x * (dr.pi / 2))
         phi_m = (2 * m.y - 1) * dr.pi
         sin_phi, cos_phi = dr.sincos(phi_m + angles[0] if self.isotropic else phi_m)
         normal = type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
-        return self._turned(reflect(turned, normal), wi)
+        return self._fold(reflect(folded, normal), wi)
 
     def pdf(self, wi, wo):
         """Density of `wo` per solid angle."""
-        wi, wo = self._turned(wi, wi), self._turned(wo, wi)
-        m, u, density = self._located(wi, wo)
+        wi, wo = self._fold(wi, wi), self._fold(wo, wi)
+        m, u, density = self._locate(wi, wo)
         density *= self.density.eval(u, self._angles(wi))
-        solid_angle = 2 * dr.pi**2 * m.x * dr.sin(m.x * m.x * (dr.pi / 2))  # dm / dx dy
+        # dω_m / dx dy on the square of directions
+        solid_angle = 2 * dr.pi**2 * m.x * dr.sin(m.x * m.x * (dr.pi / 2))
         return density / (solid_angle * 4 * cos_theta_d(wi, wo))
 
-    def _located(self, wi, wo):
-        """The half vector on the square of directions, from where the normals' warp takes it, and
-        the density of that warp there."""
+    def _locate(self, wi, wo):
+        """(m, u, density) of a folded direction pair.
+
+        m: the half vector on the square of directions; u: the point on the square of stored values
+        that the normals' warp takes to m; density: that of the warp at m.
+        """
         import mitsuba as mi
 
         angles, h = self._angles(wi), half_vector(wi, wo)
@@ -92,13 +101,16 @@ class AdaptiveLookup:
         return m, *self.normals.invert(m, angles)
 
     def _angles(self, wi):
-        """[phi_i, theta_i] of a direction that was turned."""
+        """[phi_i, theta_i] of a folded direction."""
         phi_i = dr.atan2(wi.y, wi.x)
-        # Nodes of a part of the circle are -π and above: π stands for the first
+        # The nodes of a part of the circle begin at -π: the azimuth π becomes -π
         return [phi_i if self.parts < 2 else -dr.abs(phi_i), _theta(wi)]
 
-    def _turned(self, w, wi):
-        """`w` turned or mirrored as brings `wi` to where phi_i has its nodes; and back."""
+    def _fold(self, w, wi):
+        """`w` after the rotation or reflection that brings `wi` to the part of the circle of phi_i.
+
+        It is its own inverse.
+        """
         if self.parts < 2:
             return w
         sign_y = dr.select(wi.y < 0, 1, -1)
@@ -107,12 +119,12 @@ class AdaptiveLookup:
 
 
 def _theta(w):
-    """Angle to the normal [rad], eight times as exact in single precision as by `dr.atan2`."""
+    """Polar angle [rad], eight times as exact in single precision as by `dr.atan2`."""
     return 2 * dr.safe_asin(0.5 * dr.norm(w - type(w)(0, 0, 1)))
 
 
 def _to_square(theta, phi):
-    """The point (x, y) of a direction: θ = x² π/2, φ = (2y - 1) π."""
+    """The point (x, y) of a direction on the square of directions: θ = x² π/2, φ = (2y - 1) π."""
     import mitsuba as mi
 
     return mi.Point2f(dr.sqrt(theta * (2 / dr.pi)), (phi + dr.pi) / (2 * dr.pi))

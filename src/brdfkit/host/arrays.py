@@ -1,4 +1,4 @@
-"""Constant arrays that a plugin reads by index, in every variant of Mitsuba."""
+"""Constant arrays that a plugin reads by index, and brackets, in every variant of Mitsuba."""
 
 import numpy as np
 
@@ -30,7 +30,7 @@ class Rows:
 
 
 def bracket(x, n):
-    """(lower, upper, share of the upper) of the nodes 0 ... n - 1 around `x`, clamped."""
+    """The bracket (see `geometry/multilinear.py`) around `x` on an axis of `n` nodes, clamped."""
     import drjit as dr
     import mitsuba as mi
 
@@ -40,7 +40,7 @@ def bracket(x, n):
 
 
 def periodic_bracket(x, n):
-    """The same where node n is node 0."""
+    """The bracket around `x` on a periodic axis, where node n is node 0."""
     import drjit as dr
     import mitsuba as mi
 
@@ -50,13 +50,13 @@ def periodic_bracket(x, n):
 
 
 class Nodes:
-    """Increasing numbers, at which an axis has its values."""
+    """The nodes of an axis: increasing numbers, at any distances."""
 
     def __init__(self, values):
         self.count, self.rows = len(values), Rows(values)
 
     def bracket(self, x):
-        """(lower, upper, share of the upper) of the nodes around `x`, clamped."""
+        """The bracket around `x`, clamped: (lower node, upper node, share of the upper node)."""
         import drjit as dr
         import mitsuba as mi
 

@@ -1,4 +1,4 @@
-"""A BSDF of Mitsuba's, by its dictionary, as a material: it evaluates like a model."""
+"""A BSDF of Mitsuba's, given by its dictionary, as a material that is evaluated like a model."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -12,7 +12,7 @@ from brdfkit.threads import in_turn
 
 @dataclass(frozen=True, eq=False)
 class BsdfMaterial:
-    """The material of a BSDF's dictionary for `mitsuba.load_dict`, under a `name`.
+    """A BSDF as a material: its `name`, and its dictionary for `mitsuba.load_dict`, `entries`.
 
     >>> BsdfMaterial("grey", {"type": "diffuse"}).eval(up, up)    # doctest: +SKIP
     array([[0.15915494, 0.15915494, 0.15915494]])
@@ -23,7 +23,10 @@ class BsdfMaterial:
 
     @classmethod
     def of(cls, entries):
-        """Of a dictionary, which may hold a "name"; else the type is its name."""
+        """The material of a dictionary; its name is the entry "name", if there is one, else "type".
+
+        Raises `BrdfkitError` for a dictionary without "type".
+        """
         if "type" not in entries:
             raise BrdfkitError(f'{entries!r} is the dictionary of no BSDF: it has no "type".')
         bsdf = dict(entries)

@@ -1,4 +1,4 @@
-"""A model's BSDF at a point of a surface, seen from one direction: how the frame asks it."""
+"""A model's BSDF at a point of a surface, seen from `wi`: its sampling, density and value."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,11 +12,11 @@ from brdfkit.model.lobes import Lobe
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """The lobes of a model with their values at a point, `wi` being where light comes from.
+    """The lobes of a model with the values of its parameters at a point, seen from `wi`.
 
-    `mi`: Mitsuba; `weights`, `lobes`: one another's; `signed`: whether the sum is clamped at 0;
-    `groups`: the indices of each component's lobes; `samplings`: how each component is drawn;
-    `enabled`: whether the context asks for it.
+    `mi`: Mitsuba; `weights`: one for each of the `lobes`; `signed`: whether the sum is clamped at
+    0; `groups`: the indices of each component's lobes; `samplings`: the `Sampling` of each
+    component; `enabled`: whether the context asks for the component.
     """
 
     mi: Any
@@ -30,7 +30,7 @@ class Point:
 
     @cached_property
     def shares(self):
-        """Probability of each component by its energy, None where the context leaves it out."""
+        """The probability of drawing each component, by its energy; None if it is not enabled."""
         energies = []
         for group, enabled in zip(self.groups, self.enabled, strict=True):
             parts = (
@@ -42,7 +42,7 @@ class Point:
         return [None if e is None else rest * e / total for e in energies]
 
     def draw(self, sample1, sample2):
-        """An outgoing direction, by one of the components or the cosine, and the component."""
+        """An outgoing direction, drawn by the cosine or a component, and the component's number."""
         wo = frame.COSINE.sample(self.wi, sample2)
         first = next((k for k, enabled in enumerate(self.enabled) if enabled), 0)
         component = self.mi.UInt32(first)
@@ -51,7 +51,7 @@ class Point:
             if share is None:
                 continue
             hit = (sample1 >= chosen_up_to) & (sample1 < chosen_up_to + share)
-            # what sample1 has not yet decided is as random as sample2
+            # What the choice leaves of sample1 is a third random number, as even as sample2
             u = self.mi.Point3f(sample2.x, sample2.y, (sample1 - chosen_up_to) / share)
             chosen_up_to += share
             wo = dr.select(hit, self.samplings[k].sample(self.wi, u), wo)
@@ -68,12 +68,12 @@ class Point:
         return pdf
 
     def value(self, wo):
-        """BRDF of the enabled components."""
+        """BRDF [sr⁻¹] of the enabled components."""
         groups = zip(self.groups, self.enabled, strict=True)
         return self.sum_of([i for group, enabled in groups if enabled for i in group], wo)
 
     def sum_of(self, chosen, wo):
-        """BRDF, the sum of the lobes of these indices."""
+        """BRDF [sr⁻¹] of the lobes with the indices `chosen`: the sum of weight times lobe."""
         value = self.mi.UnpolarizedSpectrum(0)
         for i in chosen:
             weight, lobe = self.weights[i], self.lobes[i]

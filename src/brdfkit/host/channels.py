@@ -1,8 +1,8 @@
 """Values per colour channel or wavelength, as the spectrum type of the current variant.
 
-A class here answers `mean(corners, si)`: the weighted mean of rows, given as (row, share), at the
-wavelengths of the rays. Rows keep their sign, so that noise about 0 averages out; a mean below 0
-counts as 0, as in `Measured.eval`.
+A class here has `mean(corners, si)`: the mean of stored rows of values, weighted by the `corners`
+(row, share), as a spectrum at the wavelengths of the rays `si`. Rows may be negative, so that noise
+about 0 averages out; a mean below 0 becomes 0, as in `Measured.eval`.
 """
 
 import numpy as np
@@ -12,14 +12,17 @@ from brdfkit.host.arrays import Nodes, Rows, bracket
 
 
 def channels(values, wavelengths=None):
-    """Rows `values` (n, channels): linear sRGB, achromatic, or, with `wavelengths` [nm], those."""
+    """The `Colours` of rows `values` (n, 3), linear sRGB, or (n, 1), achromatic.
+
+    With `wavelengths` (channels,) [nm], the `Wavelengths` of rows (n, channels).
+    """
     if wavelengths is not None:
         return Wavelengths(values, wavelengths)
     return Colours(np.broadcast_to(values, (len(values), 3)))
 
 
 class Colours:
-    """Linear sRGB."""
+    """Rows of linear sRGB."""
 
     def __init__(self, values):
         self.rows, self.spectrum = Rows(values), spectrum_of_rgb()
@@ -33,24 +36,29 @@ class Colours:
 
 
 def spectrum_of_rgb():
-    """A function (rgb, si) → the variant's spectrum of a reflectance in linear sRGB."""
+    """A function (rgb, si) → spectrum of a reflectance in linear sRGB, in the current variant."""
     import drjit as dr
     import mitsuba as mi
 
     if mi.is_monochromatic:
         return lambda rgb, si: mi.Color1f(dr.dot(rgb, mi.Color3f(LUMINANCE.tolist())))
-    return Smooth() if mi.is_spectral else lambda rgb, si: rgb
+    return SmoothSpectrum() if mi.is_spectral else lambda rgb, si: rgb
 
 
 def emission_of_rgb():
-    """The same of a radiance: that of 1, 1, 1 is the white point's."""
+    """A function (rgb, it) → spectrum of a radiance in linear sRGB, in the current variant.
+
+    (1, 1, 1) has the spectrum of the white point, D65.
+    """
     spectrum, light = spectrum_of_rgb(), white()
     return lambda rgb, it: spectrum(rgb, it) * light(it)
 
 
 def white():
-    """A function of an interaction → the spectrum that a colour of light is multiplied by: D65's
-    in spectral variants, 1 in the others."""
+    """A function (interaction) → the factor by which the spectrum of a reflectance becomes light.
+
+    It is the spectrum of D65 in spectral variants, 1 in the others.
+    """
     import mitsuba as mi
 
     if not mi.is_spectral:
@@ -65,11 +73,11 @@ def white():
     return spectrum
 
 
-class Smooth:
-    """Linear sRGB in a spectral variant: each colour times a basis spectrum.
+class SmoothSpectrum:
+    """A function (rgb, si) → spectrum of a linear sRGB colour in a spectral variant.
 
-    Linear, so that the mean of colours is that of their spectra, and exact under D65.
-    [Mallett & Yuksel 2019]
+    It is the sum of three basis spectra, times R, G and B: linear, so that a mean of colours has
+    the mean of their spectra, and exact under D65. [Mallett & Yuksel 2019]
     """
 
     def __init__(self):
@@ -90,7 +98,7 @@ class Smooth:
 
 
 class Wavelengths:
-    """Measured wavelengths in a spectral variant: linear between them, constant beyond."""
+    """Rows of values at measured wavelengths, linear between these, constant beyond."""
 
     def __init__(self, values, wavelengths):
         order = np.argsort(wavelengths)
@@ -110,7 +118,7 @@ class Wavelengths:
         return spectrum
 
     def _mean(self, corners, node):
-        """At one of the measured wavelengths."""
+        """The mean at the measured wavelength of index `node`."""
         import drjit as dr
 
         values = (share * self.values.at(row * self.count + node) for row, share in corners)

@@ -1,4 +1,4 @@
-"""What a plugin that is no model declares: its parameters, read and checked by one base class.
+"""Declares the parameters of a plugin that is no model; one base class reads and checks them.
 
 PARAMETERS = {"k": number(0.5, (-0.999, 0.999), "asymmetry: above 0 forward, below 0 back")}
 
@@ -17,9 +17,12 @@ from brdfkit.host.properties import is_colour
 
 @dataclass(frozen=True)
 class Setting:
-    """A parameter of a plugin: its `default`, its `bounds` (low, high), None for what is no number,
-    its `meaning`; `read(value)` makes of a property what the plugin uses, or raises a ValueError
-    that says what it should be; `differentiable`: whether an optimiser may change it."""
+    """A parameter of a plugin, with its `default`, its `bounds` (low, high) and its `meaning`.
+
+    `bounds` are None for a parameter that is not a number. `read(value)` converts a property to
+    what the plugin uses, or raises a ValueError that says what it should be. `differentiable`:
+    whether an optimiser may change it.
+    """
 
     default: Any
     bounds: tuple[float, float] | None
@@ -29,22 +32,22 @@ class Setting:
 
 
 def number(default, bounds, meaning):
-    """A number within `bounds` (low, high), opaque to the compiler and differentiable."""
+    """A number within `bounds` (low, high), differentiable; opaque: any value has one kernel."""
 
     def read(value):
         import drjit as dr
         import mitsuba as mi
 
         _require_within(value, bounds)
-        found = mi.Float(float(value))
-        dr.make_opaque(found)
-        return found
+        opaque = mi.Float(float(value))
+        dr.make_opaque(opaque)
+        return opaque
 
     return Setting(default, bounds, meaning, read, differentiable=True)
 
 
 def count(default, bounds, meaning):
-    """A whole number within `bounds`, a Python value: each compiles a kernel of its own."""
+    """A whole number within `bounds`, a Python value: each value compiles a kernel of its own."""
 
     def read(value):
         _require_within(value, bounds)
@@ -80,7 +83,7 @@ def picture(meaning):
 
 
 def volume(default, meaning):
-    """A volume, as Mitsuba's gridvolume; a number or a colour stands for a constant one."""
+    """A volume, such as Mitsuba's gridvolume; a number or a colour makes a constant one."""
 
     def read(value):
         import mitsuba as mi
@@ -97,8 +100,10 @@ def volume(default, meaning):
 
 
 def declared(base, parameters):
-    """A class derived from `base`, one of Mitsuba's, that has each of the `parameters` (name →
-    `Setting`) as an attribute, tells an optimiser of them, and prints them."""
+    """A class derived from `base`, one of Mitsuba's, with the `parameters` (name → `Setting`).
+
+    Each is an attribute of an instance; the differentiable ones are exposed to optimisers.
+    """
 
     class Declared(base):
         def __init__(self, props):
@@ -109,7 +114,7 @@ def declared(base, parameters):
                     setattr(self, name, setting.read(value))
                 except (TypeError, ValueError) as error:
                     raise BrdfkitError(
-                        f"{props.plugin_name()}: {name} = {_shown(value)} should be {error}."
+                        f"{props.plugin_name()}: {name} = {_shorten(value)} should be {error}."
                     ) from error
 
         def traverse(self, callback):
@@ -128,11 +133,12 @@ def declared(base, parameters):
 
 def _require_within(value, bounds):
     low, high = bounds
-    # not <: NaN is refused as well
+    # "not <=" refuses NaN as well
     if isinstance(value, bool | str) or not low <= float(value) <= high or math.isinf(float(value)):
         limits = f"at least {low:g}" if math.isinf(high) else f"between {low:g} and {high:g}"
         raise ValueError(f"a number {limits}")
 
 
-def _shown(value):
+def _shorten(value):
+    """`value` as text in one line of at most 60 characters."""
     return " ".join(str(value).split())[:60]

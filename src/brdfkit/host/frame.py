@@ -1,8 +1,8 @@
-"""The methods of a Mitsuba BSDF, written once: a plugin says how it is at a point of a surface.
+"""The base class of brdfkit's BSDF plugins: the methods of `mi.BSDF`, written once for all.
 
-What they share: directions below the horizon are masked, directions are drawn without derivatives,
-a share of the samples follows the cosine, so that the weight of a sample stays bounded where the
-BRDF is, and values are unpolarised.
+Directions below the horizon are masked. Directions are drawn without derivatives. A share of the
+samples follows the cosine, so that the weight of a sample is bounded where the BRDF is. Values are
+unpolarised.
 """
 
 from brdfkit.geometry.vectors import above_horizon
@@ -16,14 +16,14 @@ COSINE = Cosine()
 def frame(mi):
     """The base class of brdfkit's BSDFs in the current variant.
 
-    A plugin that is derived from it defines `at(ctx, si, wi, active)`, the BSDF at a point, seen
-    from `wi`: an object with
+    A derived class defines `at(ctx, si, wi, active)`, the BSDF at a point of a surface, seen from
+    `wi`: an object with
 
     - `draw(sample1, sample2)`: an outgoing direction and the number of its component;
     - `pdf(wo)`: the density of `draw`, per solid angle;
     - `value(wo)`: the BRDF of the components that the context asks for.
 
-    It sets `m_components`, of which `draw` gives numbers, and `m_flags`.
+    It sets `m_components`, to which the numbers of components refer, and `m_flags`.
     """
     import drjit as dr
 
@@ -62,7 +62,7 @@ def frame(mi):
             return self.eval_pdf(ctx, si, wo, active)[1]
 
         def kind_of(self, component):
-            """Mitsuba's flag of a component, without what is said of its place."""
+            """Mitsuba's kind of reflection of a component: its flag without side and anisotropy."""
             kinds = [int(c) & int(mi.BSDFFlags.Reflection) for c in self.m_components]
             kind = mi.UInt32(kinds[0])
             for k, other in enumerate(kinds[1:], 1):

@@ -1,10 +1,11 @@
 """Draws the outgoing direction of any BRDF, from a table of its half vectors.
 
-For a few incidences the table holds the distribution of half vectors that f cosθ_o has, even
-within a cell; between the incidences the distributions are mixed. Cells of half vectors shrink with
-the highlight at grazing angles, which those of an image of outgoing directions do not.
+For a few incidences the table holds the density of half vectors in proportion to f cosθ_o, constant
+within a cell; between the incidences the densities are mixed. At grazing angles a cell of half
+vectors shrinks with the highlight; a cell of outgoing directions would not.
 
-A density p_h of half vectors is p_h / (4 wi·h) of the directions that they mirror wi to.
+A density p_h of half vectors is the density p_h / (4 wi·h) of the directions to which they reflect
+wi.
 """
 
 import drjit as dr
@@ -16,39 +17,45 @@ from brdfkit.geometry.vectors import angle, azimuth, cos_theta_d, half_vector, r
 from brdfkit.host.arrays import Rows, bracket, periodic_bracket
 
 
-class Tabulated:
-    """A `Sampling` of the BRDF `f(wi, wo)` → (n, channels) in sr⁻¹, NumPy, in the current variant.
+class HalfVectorTable:
+    """A `Sampling` of a BRDF in the current variant.
 
-    `azimuths` (1: isotropic), `angles`: how many of each the incidences have; `cells`: of theta_h,
-    square-root spaced, and of phi_h as seen from wi; `points`: along each side of a cell, where f
-    is asked. Nothing is drawn from a cell where f is 0 all over: mix it with cosine samples.
+    `f(wi, wo)`: the BRDF (n, channels) in sr⁻¹ of NumPy direction pairs (n, 3);
+    `azimuths`, `angles`: the numbers of azimuths (1: isotropic) and of polar angles of the
+    incidences; `cells`: the numbers of cells in theta_h, square-root spaced, and in phi_h, relative
+    to the azimuth of wi; `points`: the number of points along each side of a cell at which f is
+    evaluated.
+
+    A cell in which f is 0 is never drawn: mix the table with cosine samples. `albedo` is the
+    directional albedo (incidences, channels).
     """
 
     def __init__(self, f, azimuths=1, angles=32, cells=(90, 32), points=2):
         self.azimuths, self.angles, self.cells = azimuths, angles, cells
-        theta = (np.arange(angles) + 0.5) / angles * np.pi / 2
-        azimuth = np.arange(azimuths) / azimuths * 2 * np.pi
-        light = np.concatenate([_reflected(f, theta, phi, cells, points) for phi in azimuth])
-        # Directional albedo (incidences, channels)
+        theta_i = (np.arange(angles) + 0.5) / angles * np.pi / 2
+        phi_i = np.arange(azimuths) / azimuths * 2 * np.pi
+        light = np.concatenate([_cell_light(f, theta_i, phi, cells, points) for phi in phi_i])
         self.albedo = light.sum(axis=(1, 2))
 
+        # Shares by which a row of cells (theta_h) and a cell in it (phi_h) are drawn
         masses = light.mean(axis=-1)
-        masses[masses.sum(axis=(1, 2)) == 0] = 1
-        rows = _cumulated(masses.sum(axis=2))
-        columns = _cumulated(masses)
+        masses[masses.sum(axis=(1, 2)) == 0] = 1  # a black incidence: any direction will do
+        rows = _cumulative_shares(masses.sum(axis=2))
+        columns = _cumulative_shares(masses)
         self.rows, self.columns = Rows(rows.ravel()), Rows(columns.ravel())
-        # The rounded sums are what is drawn by
-        drawn = _differences(rows)[..., None] * _differences(columns)
-        self.density = Rows((drawn / _solid_angles(cells)[:, None]).ravel())
+
+        # Density per solid angle of these shares, which are rounded to single precision
+        shares = _differences(rows)[..., None] * _differences(columns)
+        self.density = Rows((shares / _solid_angles(cells)[:, None]).ravel())
         self.edges = Rows(_versines(cells[0]))
 
     def sample(self, wi, u):
-        """A direction, possibly below the surface, for a point `u`, of which x and y count."""
+        """A direction, possibly below the surface, for a point `u`; its x and y are used."""
         n_h, n_p = self.cells
-        incidence, x, y = self._chosen(wi, u)
-        row, x = _drawn(self.rows, incidence * n_h, n_h, x)
-        column, y = _drawn(self.columns, (incidence * n_h + row) * n_p, n_p, y)
-        # 1 - cosθ_h keeps its digits about the normal
+        incidence, x, y = self._choose_incidence(wi, u)
+        row, x = _draw_cell(self.rows, incidence * n_h, n_h, x)
+        column, y = _draw_cell(self.columns, (incidence * n_h + row) * n_p, n_p, y)
+        # By 1 - cosθ_h, which keeps its digits near the normal
         versine = dr.lerp(self.edges.at(row), self.edges.at(row + 1), x)
         sine = dr.safe_sqrt(versine * (2 - versine))
         sin_phi, cos_phi = dr.sincos(azimuth(wi) + (column + y) / n_p * (2 * dr.pi))
@@ -62,47 +69,59 @@ class Tabulated:
         turn = (azimuth(h) - azimuth(wi)) / (2 * dr.pi)
         cell = row * n_p + _cell(turn - dr.floor(turn), n_p)
         density = 0
-        for incidence, share in self.mixed(wi):
+        for incidence, share in self.incidences(wi):
             density += share * self.density.at(incidence * (n_h * n_p) + cell)
         return density / (4 * cos_theta_d(wi, wo))
 
+    def incidences(self, wi):
+        """(index, share) of the incidences of the table around `wi`; the shares add up to 1."""
+        brackets = self._brackets(wi)
+        shape = (self.azimuths, self.angles)[-len(brackets) :]
+        return [(flat_index(nodes, shape), share) for nodes, share in corners(brackets)]
+
     def _brackets(self, wi):
-        """(lower, upper, share of the upper) among the azimuths, if any, and among the angles."""
+        """The brackets of `wi` among the azimuths, if there are several, and the polar angles."""
         theta = bracket(angle(wi) / (dr.pi / 2) * self.angles - 0.5, self.angles)
         if self.azimuths == 1:
             return [theta]
         phi = periodic_bracket(azimuth(wi) / (2 * dr.pi) * self.azimuths, self.azimuths)
         return [phi, theta]
 
-    def mixed(self, wi):
-        """(incidence, its share) of those around `wi`."""
-        brackets = self._brackets(wi)
-        shape = (self.azimuths, self.angles)[-len(brackets) :]
-        return [(flat_index(nodes, shape), share) for nodes, share in corners(brackets)]
+    def _choose_incidence(self, wi, u):
+        """The index of one of `incidences`, by its share, and two new random numbers.
 
-    def _chosen(self, wi, u):
-        """One of them by its share, and what is left of the random numbers."""
+        A random number that has chosen between two nodes is stretched to [0, 1) again.
+        """
         incidence, left = 0, [u.x, u.y]
         for k, (lower, upper, t) in enumerate(self._brackets(wi)):
             up = left[k] < t
-            # one division, by what is not 0: a scalar variant would raise at the other branch
+            # One division, by the chosen number: a scalar variant would raise where the other is 0
             left[k] = dr.select(up, left[k], left[k] - t) / dr.select(up, t, 1 - t)
             incidence = incidence * self.angles + dr.select(up, upper, lower)
         return incidence, *left
 
 
-def _reflected(f, theta_i, phi_i, cells, points):
-    """f cosθ_o dω_o (incidences, theta_h, phi_h, channels) in every cell of half vectors."""
+def _cell_light(f, theta_i, phi_i, cells, points):
+    """The share of the light that each cell of half vectors reflects: f cosθ_o dω_o.
+
+    It has the shape (incidences, theta_h, phi_h, channels). The incidences have the polar angles
+    `theta_i` (incidences,) and one azimuth `phi_i`.
+    """
+    # Half vectors h on a grid of points in every cell, even in solid angle within the cell
     n_h, n_p = cells
     edges = _versines(n_h)
     inside = (np.arange(points) + 0.5) / points
     cos_theta = 1 - (edges[:-1, None] + np.diff(edges)[:, None] * inside).ravel()
     phi = phi_i + (np.arange(n_p * points) + 0.5) / (n_p * points) * 2 * np.pi
     h = from_angles(np.arccos(cos_theta)[:, None], phi)
+
+    # Outgoing directions: wi reflected about h
     wi = np.broadcast_to(from_angles(theta_i, phi_i)[:, None, None], (len(theta_i), *h.shape))
     cos_d = (wi * h).sum(axis=-1)
     wo = 2 * cos_d[..., None] * h - wi
     above = (wo[..., 2] > 0) & (cos_d > 0)
+
+    # f cosθ_o dω_o/dω_h, its mean over the points of a cell, times the cell's solid angle
     values = np.asarray(f(wi[above], wo[above]))
     light = np.zeros((*above.shape, values.shape[1]))
     light[above] = values * (wo[above][:, 2] * 4 * cos_d[above])[:, None]
@@ -111,17 +130,20 @@ def _reflected(f, theta_i, phi_i, cells, points):
 
 
 def _versines(n):
-    """1 - cosθ_h at the edges (n + 1,) of the cells."""
+    """1 - cosθ_h (n + 1,) at the edges of `n` cells, which are even in √θ_h."""
     return 2 * np.sin((np.arange(n + 1) / n) ** 2 * np.pi / 4) ** 2
 
 
 def _solid_angles(cells):
-    """[sr] of a cell in each row (n_h,)."""
+    """Solid angle [sr] of a cell of each row (n_h,)."""
     return np.diff(_versines(cells[0])) * 2 * np.pi / cells[1]
 
 
-def _cumulated(masses):
-    """Cumulative shares along the last axis, in the plugin's precision; even where all are 0."""
+def _cumulative_shares(masses):
+    """Cumulative shares of the `masses` along the last axis, in single precision.
+
+    Where all masses are 0, the shares are even.
+    """
     sums = masses.cumsum(axis=-1)
     even = np.arange(1, masses.shape[-1] + 1) / masses.shape[-1]
     total = sums[..., -1:]
@@ -130,12 +152,16 @@ def _cumulated(masses):
 
 
 def _differences(sums):
+    """The shares of which `sums` are the cumulative ones."""
     return np.diff(sums.astype(float), axis=-1, prepend=0)
 
 
-def _drawn(sums, start, n, x):
-    """The cell whose cumulative share `x` falls into, among `n` from `start`, and where in it."""
-    cell, low, high = 0, 0, 1  # shares up to the cell, and with it
+def _draw_cell(sums, start, n, x):
+    """(cell, place in it in [0, 1]) for a random number `x`, by binary search.
+
+    The cumulative shares of the `n` cells stand in `sums` from `start` on.
+    """
+    cell, low, high = 0, 0, 1  # cumulative shares before the cell and including it
     for step in 2 ** np.arange(int(n - 1).bit_length())[::-1]:
         there = dr.minimum(cell + int(step), n)
         share = sums.at(start + there - 1)
@@ -146,6 +172,7 @@ def _drawn(sums, start, n, x):
 
 
 def _cell(position, n):
+    """The index of the cell at a `position` in [0, 1] among `n` even ones."""
     import mitsuba as mi
 
     return dr.minimum(mi.UInt32(position * n), n - 1)

@@ -1,8 +1,8 @@
 """Makes the plugins known to Mitsuba, whenever and by whomever it is imported.
 
-`import brdfkit` must stay light (the command line's `--help`), yet after it a scene with
-`<bsdf type="ward">` should simply load. So a finder waits for the import of Mitsuba; and for
-that of Dr.Jit, which looks for LLVM.
+`import brdfkit` must stay fast, for the command line's `--help`, and so does not import Mitsuba.
+Yet after it a scene with `<bsdf type="ward">` should load. So one finder on `sys.meta_path` waits
+for the import of Mitsuba, another for that of Dr.Jit, which looks for LLVM.
 """
 
 import functools
@@ -15,7 +15,7 @@ from brdfkit.errors import BrdfkitError
 
 
 def install():
-    """Register the plugins now, if Mitsuba is there already, or once it gets imported."""
+    """Register the plugins now, if Mitsuba is imported already, or when it gets imported."""
     sys.meta_path.insert(0, _After("drjit", lambda: None))
     if "mitsuba" in sys.modules:
         _connect()
@@ -24,7 +24,7 @@ def install():
 
 
 class _After:
-    """A finder that finds `module` as everybody would, and calls `then` when it is loaded."""
+    """A finder that finds `module` by the other finders, and calls `then()` when it is loaded."""
 
     def __init__(self, module, then):
         self.module, self.then = module, then
@@ -32,30 +32,30 @@ class _After:
     def find_spec(self, name, path=None, target=None):
         if name != self.module:
             return None
-        spec = self._found_by_others(path, target)
+        spec = self._find_by_others(path, target)
         if spec is not None and spec.loader is not None:
             load = spec.loader.exec_module
 
             def exec_module(module):
                 with _without_llvm_noise():
                     load(module)
-                _stand_for_successor(module)
+                _forward_to_successor(module)
                 self.then()
 
             spec.loader.exec_module = exec_module
         return spec
 
-    def _found_by_others(self, path, target):
+    def _find_by_others(self, path, target):
         # sys.meta_path stays as it is: another thread may be looking through it
         others = [f for f in sys.meta_path if hasattr(f, "find_spec") and not isinstance(f, _After)]
         specs = (finder.find_spec(self.module, path, target) for finder in others)
         return next((spec for spec in specs if spec is not None), None)
 
 
-def _stand_for_successor(module):
-    """Let a module whose import put another in its place have all that the other has.
+def _forward_to_successor(module):
+    """Give a module the attributes of the module that its import put into its place, if it did.
 
-    So does Mitsuba's. Python hands the first one to a thread that asks for it meanwhile.
+    Mitsuba's import does: a thread that imports Mitsuba at the same time gets the first module.
     """
     if sys.modules[module.__name__] is not module:
         module.__getattr__ = functools.partial(getattr, sys.modules[module.__name__])
@@ -82,7 +82,7 @@ def _connect():
 
 @contextmanager
 def _without_llvm_noise():
-    """Dr.Jit prints to stderr that it found no LLVM; brdfkit says so itself, when it matters."""
+    """Silence Dr.Jit's message that it found no LLVM: brdfkit says so itself, when it matters."""
     if os.environ.get(llvm.VARIABLE) != llvm.NO_LIBRARY:
         yield
         return

@@ -1,4 +1,4 @@
-"""The frame of a measurement's BSDF: one component, and a way to draw from it."""
+"""The base class of a measurement's BSDF plugin: one component, drawn by one `Sampling`."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -10,11 +10,12 @@ from brdfkit.host.frame import COSINE, COSINE_SHARE, frame
 def measured_frame(mi):
     """The base class of a measurement's plugins in the current variant.
 
-    A plugin that is derived from it calls `draw_by` and defines
+    A derived class calls `draw_by` in its constructor and defines
 
     - `brdf(wi, wo, si)`: the BRDF in sr⁻¹;
-    - `albedo(wi, si)`: the share of the light from `wi` that is reflected. It is the diffuse
-      reflectance (as in an albedo image): nobody can tell which part of a measurement is diffuse.
+    - `albedo(wi, si)`: the share of the light from `wi` that is reflected. It stands for the
+      diffuse reflectance (as in an albedo image), because nobody can tell which part of a
+      measurement is diffuse.
     """
     import drjit as dr
 
@@ -22,7 +23,7 @@ def measured_frame(mi):
 
     class MeasuredFrame(frame(mi)):
         def draw_by(self, sampling, anisotropic, cosine_share=COSINE_SHARE):
-            """Draw by a `brdfkit.model.lobes.Sampling` and, a share of the samples, the cosine."""
+            """Draw by a `brdfkit.model.lobes.Sampling`, a share of the samples by the cosine."""
             self.sampling, self.cosine_share = sampling, cosine_share
             azimuth = flags.Anisotropic if anisotropic else flags.Empty
             self.m_components = [flags.GlossyReflection | flags.FrontSide | azimuth]
@@ -49,13 +50,13 @@ class Point:
     enabled: bool
 
     def draw(self, sample1, sample2):
-        """An outgoing direction, and the number of the one component."""
+        """An outgoing direction, and the number of the only component."""
         import drjit as dr
 
         by_cosine = COSINE.sample(self.wi, sample2)
         by_itself = self.bsdf.sampling.sample(self.wi, sample2)
-        drawn = dr.select(sample1 < self.bsdf.cosine_share, by_cosine, by_itself)
-        return drawn, self.mi.UInt32(0)
+        wo = dr.select(sample1 < self.bsdf.cosine_share, by_cosine, by_itself)
+        return wo, self.mi.UInt32(0)
 
     def pdf(self, wo):
         """Density of `draw` per solid angle."""
@@ -66,7 +67,7 @@ class Point:
         return pdf + (1 - share) * self.bsdf.sampling.pdf(self.wi, wo)
 
     def value(self, wo):
-        """BRDF."""
+        """BRDF [sr⁻¹], 0 if not enabled."""
         if not self.enabled:
             return self.mi.UnpolarizedSpectrum(0)
         return self.bsdf.brdf(self.wi, wo, self.si)

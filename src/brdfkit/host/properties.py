@@ -1,4 +1,4 @@
-"""The properties that a plugin is given in a scene: checked, and brought to what Mitsuba holds."""
+"""Checks and converts the properties that a scene gives to a plugin."""
 
 import os
 
@@ -8,7 +8,7 @@ from brdfkit.errors import BrdfkitError
 
 
 def require_within_bounds(props, model, name):
-    """An error for a constant parameter out of bounds; textures are taken as they are."""
+    """Raise `BrdfkitError` for a constant parameter out of bounds; textures are not checked."""
     value = props.get(name, None)
     if isinstance(value, float | int) or is_colour(value):
         problem = model.parameters[name].problem_with(np.array(value, float))
@@ -16,8 +16,12 @@ def require_within_bounds(props, model, name):
             raise BrdfkitError(f"{model.type_name()}: {name} = {problem}.")
 
 
-def fit_for_a_spectrum(props, model, name):
-    """Bring a colour to 0..1, beyond which Mitsuba clips its spectrum without a word; the scale."""
+def normalise_colour(props, model, name):
+    """Divide a colour in `props` by a scale that brings it into 0..1; return the scale.
+
+    Mitsuba clips the spectrum of a larger colour without a warning. Raises `BrdfkitError` for a
+    colour with a value below 0.
+    """
     value = props[name]
     if min(value) < 0:
         raise BrdfkitError(
@@ -30,16 +34,20 @@ def fit_for_a_spectrum(props, model, name):
 
 
 def is_colour(value):
+    """Whether a property is a colour of Mitsuba's."""
     return type(value).__name__.endswith("Color3d")
 
 
-def located(name):
-    """The file of that name as the scene finds it, beside its own; other names as they are."""
+def resolve_file(name):
+    """The path of the file `name`, possibly with ``#SAMPLE``, also if it lies beside the scene's.
+
+    A name of no file comes back as it is.
+    """
     import mitsuba as mi
 
     file, hash_sign, sample = name.rpartition("#")
     for path, rest in ((name, ""), (file, hash_sign + sample)):
-        found = str(mi.file_resolver().resolve(path))
-        if os.path.isfile(found):
-            return found + rest
+        resolved = str(mi.file_resolver().resolve(path))
+        if os.path.isfile(resolved):
+            return resolved + rest
     return name

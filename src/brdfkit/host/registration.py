@@ -1,8 +1,8 @@
 """Registers the plugins in Mitsuba: every kind, in every variant, each built when first used.
 
 A plugin file holds either a `Model`, or a function ``define(mi)`` that returns a class derived from
-one of Mitsuba's for the current variant. Where Mitsuba lets no class be written, as of shapes, it
-returns a function of the properties that makes an instance.
+one of Mitsuba's for the current variant. Where Mitsuba allows no derived class, as for shapes,
+``define`` returns a function that makes an instance from the properties.
 """
 
 from functools import cache
@@ -18,10 +18,10 @@ _registered: set[tuple[str, str, str]] = set()
 
 
 def register_all():
-    """Register what is not yet known in the current variant of Mitsuba, if one is set.
+    """Register the plugins that are not yet registered in Mitsuba's current variant, if it has one.
 
-    A volume is not known in scalar_rgb. By what a name is registered there Mitsuba 3.9 tells its
-    kind in every variant; a volume, registered as a texture, could be in no dictionary any more.
+    Volumes are left out in scalar_rgb. Mitsuba 3.9 takes the kind of a plugin in all variants from
+    its registration there, and refuses in dictionaries a volume that is registered as a texture.
     """
     variant = mi.variant()
     if variant is None:
@@ -32,22 +32,22 @@ def register_all():
         for name in discovery.sources(kind):
             if (variant, kind, name) not in _registered:
                 _registered.add((variant, kind, name))
-                getattr(mi, register)(name, lambda props, k=kind, n=name: _plugin(k, n, props))
+                getattr(mi, register)(name, lambda props, k=kind, n=name: _make(k, n, props))
 
 
-def _plugin(kind, name, props):
-    """A plugin of the class that its file defines now, in the current variant."""
+def _make(kind, name, props):
+    """An instance, in the current variant, of the class that the plugin's file defines now."""
     source = discovery.sources(kind)[name]
     model = labels.model_in(source) if kind == MODELS else None
     if model is None:
-        return _defined(discovery.module(source), mi.variant())(props)
+        return _define(discovery.module(source), mi.variant())(props)
     options = {option: props[option] for option in model.options if option in props}
-    return _defined(model.configured(**options), mi.variant())(props)
+    return _define(model.configured(**options), mi.variant())(props)
 
 
 @cache
-def _defined(source, _variant):
-    """The class of a `Model`, or of a module that defines it itself."""
+def _define(source, _variant):
+    """Mitsuba's class for a `Model`, or what the ``define(mi)`` of a module returns."""
     if isinstance(source, type) and issubclass(source, Model):
         return bsdf.define(mi, source)
     return source.define(mi)

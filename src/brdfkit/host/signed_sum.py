@@ -1,26 +1,29 @@
-"""The sampling of weights that may be negative: of the sum of their lobes, clamped at 0.
+"""Samples a sum of lobes with signed weights, clamped at 0, by a table of half vectors.
 
-No lobe of its own can be drawn from, so the sum is tabulated whenever a parameter changes, for the
-mean of each texture.
+A single lobe cannot be sampled where its weight may be negative. So the sum is tabulated whenever a
+parameter changes, with the mean of each texture.
 """
 
 import numpy as np
 
-from brdfkit.host.half_vector_table import Tabulated
+from brdfkit.host.half_vector_table import HalfVectorTable
 from brdfkit.model.evaluation import lobe_values
 
-# Polynomials are smooth
+# Coarse tables: the models with signed weights are smooth polynomials
 ISOTROPIC = {"azimuths": 1, "angles": 32, "cells": (24, 20), "points": 2}
 ANISOTROPIC = {"azimuths": 12, "angles": 16, "cells": (24, 20), "points": 1}
 BATCH = 8192  # directions at once: a model may have a thousand lobes
-# Points along each side of a texture
+# A texture is averaged over as many points along each side, and over these wavelengths [nm]
 TEXELS = 8
-WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)  # [nm]
+WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)
 
 
-def tabulated(model, weights, lobes):
-    """The `Tabulated` of the sum over the indices `lobes` of a model with shape parameters, its
-    `weights` (all lobes, channels)."""
+def tabulate(model, weights, lobes):
+    """The `HalfVectorTable` of a sum of lobes, clamped at 0.
+
+    `model`: with its shape parameters; `weights`: (all its lobes, channels); `lobes`: the indices
+    of the lobes in the sum.
+    """
     weights = weights[lobes]
 
     def f(wi, wo):
@@ -31,13 +34,13 @@ def tabulated(model, weights, lobes):
             values[rows] = plain[:, lobes] @ weights
         return np.maximum(values, 0)
 
-    return Tabulated(f, **(ANISOTROPIC if model.anisotropic() else ISOTROPIC))
+    return HalfVectorTable(f, **(ANISOTROPIC if model.anisotropic() else ISOTROPIC))
 
 
 def texture_mean(texture, default):
-    """Mean of a texture (channels,), over its unit square where it varies.
+    """The mean (channels,) of a texture over the unit square.
 
-    `default` for an attribute of a mesh: only its surface knows it.
+    It is `default` for a mesh attribute, whose values only the mesh has.
     """
     import drjit as dr
     import mitsuba as mi

@@ -8,7 +8,7 @@ from brdfkit.host.arrays import bracket, periodic_bracket
 
 
 def corners(table, wi, wo):
-    """(index of a cell, its share) of the cells of `brdfkit.table.Table` around two directions."""
+    """(index, share) of the cells of a `brdfkit.samples.Table` around a direction pair."""
     theta_h, theta_d, phi_d, phi_h = half_difference(wi, wo)
     n_h, n_d, n_p = table.shape[-3:]
     axes = [
@@ -27,7 +27,8 @@ def half_difference(wi, wo):
     """(theta_h, theta_d, phi_d, phi_h) of two directions."""
     h = half_vector(wi, wo)
     sin_h = dr.safe_sqrt(h.x * h.x + h.y * h.y)
-    # wi in the frame of the half vector; at h = n any azimuth will do
+    # The difference vector: wi in the frame of the half vector; where that is the normal, any
+    # azimuth phi_h will do
     off = sin_h > 1e-7
     inverse = 1 / dr.select(off, sin_h, 1)
     cos_p, sin_p = dr.select(off, h.x * inverse, 1), h.y * inverse

@@ -44,7 +44,7 @@ def load_plugins(path: str | Path) -> dict[str, str]:
 
 
 def _files(path):
-    """The plugin files that `path` means."""
+    """The plugin files at `path`: a file, a folder of one kind, or a folder of such folders."""
     folders = [path / kind for kind in KINDS if (path / kind).is_dir()]
     if not folders:
         return discovery.files_in(path)
@@ -52,7 +52,10 @@ def _files(path):
 
 
 def _kind(file):
-    """The kind of a plugin by its folder, that of a model where it holds one."""
+    """The kind of a plugin file: its folder's name, but for a file that defines a `Model`.
+
+    Raises `BrdfkitError` for a file that holds no plugin or lies in no folder of a kind.
+    """
     module = discovery.module(file)
     if labels.model_in(file) is not None:
         return MODELS
