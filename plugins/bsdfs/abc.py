@@ -3,10 +3,10 @@
     f = k_d / π + D G F / (π (N·L)(N·V)),   D = A / (1 + B (1 - N·H))^C
 
 The microfacet ABC model [Löw et al. 2012, eq. 15], with the 1/π of the fits that its authors
-published. A is the specular weight as it enters there: D is not normalised, the albedo goes with
-A / B. As in the paper, F is a dielectric's for unpolarised light, and it and G have the form of
-[Cook & Torrance 1982]. With C = 2 the peak is about GGX's of width √(2/B). Shows polished metals,
-paints and plastics, whose tails may be longer or shorter than GGX's; no anisotropy, no
+published. The specular weight is A. D is not normalised: the albedo is roughly proportional to A/B.
+As in the paper, F is that of a dielectric in unpolarised light; F and G have the form of
+[Cook & Torrance 1982]. With C = 2 the peak is about that of GGX with width √(2/B). Shows polished
+metals, paints and plastics, whose tails may be longer or shorter than GGX's; no anisotropy, no
 retro-reflection.
 """
 
@@ -45,16 +45,17 @@ class PowerOfHeight:
         return dr.exp((self._q() - 1) * self._log(h)) / self.integral()
 
     def integral(self):
-        """Of `power` over the hemisphere."""
+        """The integral of `power` over the hemisphere."""
         q = self._q()
         return 2 * dr.pi / self.B * expm1(q * log1p(self.B)) / q
 
     def _q(self):
-        # 1 - C, kept away from 0, where the integral is a logarithm: for sampling near enough
+        """1 - C, kept away from 0, where the integral is a logarithm: near enough for sampling."""
         q = 1 - self.C
         return dr.select(abs(q) < 1e-3, 1e-3, q)
 
     def _log(self, h):
+        """log(1 + B (1 - cosθ_h))."""
         return log1p(self.B * (h.x * h.x + h.y * h.y) / (1 + h.z))
 
 

@@ -6,10 +6,10 @@
     diffuse=lambert   f_d = k_d / π
     diffuse=coupled   f_d = 28 k_d / 23π (1 - F₀) (1 - (1 - N·L/2)⁵) (1 - (1 - N·V/2)⁵)
 
-[Ashikhmin & Shirley 2000]; [Kurt 2007, eqs. 3.13-3.17]. The paper has no k_s, and the coupled f_d,
-which dims as the highlight brightens.
+[Ashikhmin & Shirley 2000]; [Kurt 2007, eqs. 3.13-3.17]. The paper has the coupled f_d, which dims
+as the highlight brightens, and no k_s.
 Shows metals, brushed or not, and varnished surfaces; no retro-reflection. Where F₀ is about 1,
-only the product k_s F₀ is told by measurements.
+measurements determine only the product k_s F₀.
 """
 
 import drjit as dr

@@ -7,8 +7,8 @@
                  H_nkml = [K_n^k(i) K_m^l(r) + K_n^k(r) K_m^l(i)] / √(2 + 2δ_nm δ_kl)
 
 with ρ = √2 sin(θ/2), A = (1 if l > 0 else 2)(1 if n ≠ m else 2), and the hemisphere's basis
-K_n^l = √((n+1)/2π) R_n^|l|(ρ) {√2 cos lφ, 1, √2 sin |l|φ}; m ≤ n ≤ `order`, n - l even. Of order
-2, 4 and 8 there are 5, 14 and 55 isotropic weights, 21, 120 and 1035 anisotropic ones. Order 0 is
+K_n^l = √((n+1)/2π) R_n^|l|(ρ) {√2 cos lφ, 1, √2 sin |l|φ}; m ≤ n ≤ `order`, n - l even. The orders
+2, 4 and 8 have 5, 14 and 55 isotropic weights, and 21, 120 and 1035 anisotropic ones. Order 0 is
 Lambert with a_0_0_0 = 2 k_d. Weights may be negative; a sum below 0 is clamped at 0.
 
 [Koenderink et al. 1996]; [Koenderink & van Doorn 1998]; [Kurt 2007, section 3.1]. Shows rough,
@@ -34,7 +34,8 @@ def isotropic_term(n, m, l, wi, wo):
     harmonic, before = (re, 1.0) if l > 0 else (1.0, None)
     for _ in range(l - 1):
         harmonic, before = 2 * re * harmonic - square * before, harmonic
-    radial = reduced(n, l, i[2]) * reduced(m, l, r[2]) + reduced(m, l, i[2]) * reduced(n, l, r[2])
+    radial = radial_part(n, l, i[2]) * radial_part(m, l, r[2])
+    radial += radial_part(m, l, i[2]) * radial_part(n, l, r[2])
     return math.sqrt((n + 1) * (m + 1) / a) / (2 * math.pi) * radial * harmonic
 
 
@@ -51,7 +52,7 @@ def mode(n, l, w):
     for _ in range(abs(l)):
         re, im = re * x - im * y, re * y + im * x
     azimuth = 1.0 if l == 0 else math.sqrt(2) * (re if l > 0 else im)
-    return math.sqrt((n + 1) / (2 * math.pi)) * reduced(n, abs(l), square) * azimuth
+    return math.sqrt((n + 1) / (2 * math.pi)) * radial_part(n, abs(l), square) * azimuth
 
 
 def disc(w):
@@ -60,8 +61,8 @@ def disc(w):
     return w.x * s, w.y * s, 1 - w.z
 
 
-def reduced(n, l, square):
-    """R_n^l(ρ) / ρ^l, a polynomial in ρ²."""
+def radial_part(n, l, square):
+    """R_n^l(ρ) / ρ^l, a polynomial in ρ² = `square`."""
     value = 0.0
     for c in _coefficients(n, l):
         value = value * square + c
@@ -70,7 +71,7 @@ def reduced(n, l, square):
 
 @cache
 def _coefficients(n, l):
-    """Of ρ^(n-l), ρ^(n-l-2), ..., 1."""
+    """The coefficients of ρ^(n-l), ρ^(n-l-2), ..., 1 in `radial_part`."""
     return [
         (-1) ** s
         * factorial(n - s)

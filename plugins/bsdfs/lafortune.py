@@ -5,9 +5,9 @@
 
 [Lafortune et al. 1997]; [Kurt 2007, eqs. 3.10-3.12]. Only the ratios of the C count.
 -C_x = -C_y = C_z is Phong's lobe, C_z < -C_x peaks below the mirror direction, C_x > 0 reflects
-back, C_x ≠ C_y is anisotropic; `lobe_count` sums several. k_s is the albedo of a mirror lobe from
-above, others reflect less. Shows off-specular and retro-reflection of rough surfaces; highlights
-are round, never elliptic, and there is no Fresnel effect.
+back, C_x ≠ C_y is anisotropic; `lobe_count` sums several. k_s is the albedo of a mirror lobe at
+normal incidence; other lobes reflect less. Shows off-specular and retro-reflection of rough
+surfaces; highlights are round, never elliptic, and there is no Fresnel effect.
 """
 
 import drjit as dr
@@ -22,8 +22,8 @@ class Lafortune(Model):
     lobe_count = option(1, (1, 2, 3), "S: the number of lobes")
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.3, "k_s: strength of the lobe")
-    # The scale is free, so these bounds hold all ratios to 1000; C_z > 0 keeps the lobe's axis
-    # above the surface, and one of the C off 0
+    # Only ratios count: these bounds allow all up to 1000. C_z > 0 keeps the lobe's axis above the
+    # surface, and the C from being 0 together
     c_x = shape(-0.7, (-1.0, 1.0), "C_x: below 0 towards the mirror direction, above 0 back")
     c_y = follows("c_x", c_x, "C_y: the same along y")
     c_z = shape(0.68, (0.001, 1.0), "C_z: along the normal; the ratios to C_x, C_y count")
@@ -33,7 +33,7 @@ class Lafortune(Model):
     def more_parameters(cls):
         more = {}
         for j in range(2, cls.lobe_count + 1):
-            # Alike, the lobes would be a saddle of the fit: each next one begins wider
+            # Equal lobes would be a saddle point of the fit: each begins wider than the one before
             more |= {
                 f"specular_reflectance_{j}": weight(0.1, f"k_s: strength of lobe {j}"),
                 f"c_x_{j}": (c_x := shape(-0.7, (-1.0, 1.0), f"C_x of lobe {j}")),
@@ -58,7 +58,7 @@ def lobe(c_x, c_y, c_z, n):
 
     def value(wi, wo):
         # 1 - bracket, accurate where it is small
-        complement = missing(a_x, wi.x, wo.x) + missing(a_y, wi.y, wo.y) + missing(a_z, wi.z, wo.z)
+        complement = defect(a_x, wi.x, wo.x) + defect(a_y, wi.y, wo.y) + defect(a_z, wi.z, wo.z)
         return (n + 2) / (2 * dr.pi) * cosine_power(complement, n)
 
     def axis(wi):
@@ -76,13 +76,13 @@ def lobe(c_x, c_y, c_z, n):
 
 
 def ratio(c, largest):
-    """c / largest; ±1 without a derivative for the largest, whose two terms would cancel."""
+    """c / largest; for the largest itself ±1, without its derivatives, which would cancel."""
     sign = dr.select(c < 0, -1, 1)
     return dr.select(dr.abs(c) == largest, sign, c / largest)
 
 
-def missing(a, l, v):
-    """(l² + v²)/2 - a l v, a sum of two small terms where a is about ±1 and l about ±v."""
+def defect(a, l, v):
+    """(l² + v²)/2 - a l v, as two terms that are both small where a ≈ ±1 and l ≈ ±v."""
     sign = dr.select(a < 0, -1, 1)
     d = l - sign * v
     return 0.5 * d * d + (sign - a) * l * v

@@ -2,16 +2,16 @@
 
     {"type": "measured_adaptive", "filename": "paper_white_rgb.bsdf"}
 
-takes a `.bsdf` file, looked for beside the scene's own as a bitmap is; `Measured.scene_dict()`
-hands over what it has read. It is the BRDF of Mitsuba's own `measured`, but in every variant, for
-files with colours and with spectra. In spectral variants measured wavelengths stay what they are,
-and colours become smooth spectra. Negative values, colours out of gamut, count as 0.
+takes a `.bsdf` file, also one beside the scene's file, as for a bitmap; `Measured.scene_dict()`
+passes the arrays of its file directly. The BRDF is that of Mitsuba's own `measured`, but in every
+variant, for files with colours and with spectra. In spectral variants measured wavelengths are
+kept, and colours become smooth spectra. Negative values, of colours out of gamut, become 0.
 
 A file stores f cosθ_o, finite up to the horizon, over a unit square that is warped to the normals
-that wi sees. By this warp, and the file's luminance over the square, directions are drawn; a
-fiftieth of them by the cosine, for where either is 0. The diffuse reflectance (as in an albedo
-image) is the albedo, linear between the file's incidences: nobody can tell which part of a
-measurement is diffuse.
+that are visible from wi. Directions are drawn by the file's luminance over the square and this
+warp; a fiftieth of them are drawn by the cosine, as either may be 0. The diffuse reflectance (as in
+an albedo image) is the albedo, linear between the file's incidences: nobody can tell which part of
+a measurement is diffuse.
 
 [Dupuy & Jakob 2018]; https://rgl.epfl.ch/materials
 """
@@ -59,7 +59,7 @@ def define(mi):
 
 
 def _read(props):
-    """What an RGL file's lookup hands over: `props`, or that of the file which they name."""
+    """The arrays and flags of an RGL file: `props`, or those of the file that they name."""
     if "filename" in props:
         from brdfkit.loading import load  # only here: listing the plugins should be quick
 

@@ -2,14 +2,15 @@
 
     {"type": "measured_table", "filename": "gold-metallic-paint.binary"}
 
-takes any file that `brdfkit.load` reads, looked for beside the scene's own as a bitmap is;
-`Measured.scene_dict()` hands over its table directly. Multilinear between the cells' centres, the
-azimuths wrap; isotropic, or with the azimuth phi_h.
-In spectral variants measured wavelengths stay what they are, and colours become smooth spectra.
+takes any file that `brdfkit.load` reads, also one beside the scene's file, as for a bitmap;
+`Measured.scene_dict()` passes its table directly. Values are interpolated multilinearly between the
+cells' centres, and periodically in the azimuths. A table is isotropic, or has an axis for the
+azimuth phi_h.
+In spectral variants measured wavelengths are kept, and colours become smooth spectra.
 
-Sampled by a table of the half vectors that the material itself has, and a share of cosine. The
-diffuse reflectance (as in an albedo image) is the albedo at the incidence: nobody can tell which
-part of a measurement is diffuse.
+Directions are drawn from a table of the material's own half vectors, and a share of them by the
+cosine. The diffuse reflectance (as in an albedo image) is the albedo at the incidence: nobody can
+tell which part of a measurement is diffuse.
 """
 
 import numpy as np
@@ -22,7 +23,7 @@ from brdfkit.host.properties import resolve_file
 from brdfkit.host.table_lookup import corners
 from brdfkit.samples import Table
 
-# The table of half vectors; more would take seconds
+# The size of the table of half vectors; a larger one would take seconds
 ANISOTROPIC = {"azimuths": 24, "angles": 16, "cells": (60, 32), "points": 1}
 
 
@@ -36,12 +37,12 @@ def define(mi):
             filled = self.table.filled
             self.values = channels(filled.reshape(-1, filled.shape[-1]), wavelengths)
             size = ANISOTROPIC if self.table.anisotropic else {}
-            half_vectors = HalfVectorTable(self.looked_up, **size)
+            half_vectors = HalfVectorTable(self.look_up, **size)
             self.albedos = channels(half_vectors.albedo, wavelengths)
             self.draw_by(half_vectors, self.table.anisotropic)
 
-        def looked_up(self, wi, wo):
-            """What `brdf` looks up, in NumPy: negative cells count, a negative sum is 0."""
+        def look_up(self, wi, wo):
+            """`brdf` in NumPy. Cells may be negative; a negative mean of cells becomes 0."""
             return np.maximum(self.table.eval(wi, wo), 0)
 
         def brdf(self, wi, wo, si):
@@ -57,12 +58,12 @@ def define(mi):
 
 
 def _table(props):
-    """The table, and its wavelengths [nm] where the variant is spectral and they are known."""
+    """The `Table`, and its wavelengths [nm], None where the channels are colours."""
     if "filename" in props:
         from brdfkit.loading import load  # only here: listing the plugins should be quick
 
-        found = load(resolve_file(props["filename"]))
-        props = getattr(found, "tabulated", found).scene_dict()
+        measured = load(resolve_file(props["filename"]))
+        props = getattr(measured, "tabulated", measured).scene_dict()
     if "table" not in props:
         raise BrdfkitError("measured_table needs a filename (or the tensor table).")
     period = props.get("phi_d_period", np.pi)

@@ -4,8 +4,9 @@
 
 The option `models` names them, as in "ggx+ggx" or "lambert+ward+cook_torrance"; wherever a model
 is named, such a sum may stand. The first model gives the diffuse term. The parameters of the j-th
-are called after it and its number: ggx_2_alpha_u. Two lobes show metals and glossy plastics better
-than one, three are seldom told apart [Ngan et al. 2005]; [Kurt 2007, eqs. 3.12, 3.30].
+model are named after the model and j: ggx_2_alpha_u. Two lobes show metals and glossy plastics
+better than one; measurements seldom tell three apart [Ngan et al. 2005]; [Kurt 2007, eqs. 3.12,
+3.30].
 """
 
 from dataclasses import replace
@@ -13,7 +14,8 @@ from dataclasses import replace
 from brdfkit.errors import BrdfkitError
 from brdfkit.model import Model, labels, option
 
-# A lobe of the same model begins this much narrower: two alike are a saddle of the fit
+# Each further lobe of the same model begins narrower by this factor: equal lobes would be a saddle
+# point of the fit
 NARROWER = 3.0
 
 
@@ -26,7 +28,7 @@ class Mixture(Model):
 
     @classmethod
     def parts(cls):
-        """(prefix, model, names of the weights that it brings) of every part."""
+        """(prefix of its parameters, model, names of the weights that it brings) of every term."""
         named, parts = cls.models.split("+"), []
         if len(named) < 2:
             raise BrdfkitError(
@@ -69,7 +71,7 @@ class Mixture(Model):
 
     @classmethod
     def determined(cls, samples):
-        """What the parts take from where was measured."""
+        """The shape parameters of the terms that are computed from the measured directions."""
         return {
             prefix + name: value
             for prefix, model, _ in cls.parts()

@@ -6,12 +6,12 @@
 
 with α, β = greater, lesser of θ_i, θ_o; A = C₁ = 1 - 0.5 σ² / (σ² + 0.33),
 B = 0.45 σ² / (σ² + 0.09), C₂ = B (sinα, less (2β/π)³ where cosΔφ < 0),
-C₃ = 0.125 σ² / (σ² + 0.09) (4αβ/π²)². The term of k_d² is light that bounces between facets.
+C₃ = 0.125 σ² / (σ² + 0.09) (4αβ/π²)². The term with k_d² is light reflected between facets.
 
-[Oren & Nayar 1994]; [Kurt 2007, eqs. 3.18-3.24] (the printed bracket of eq. 3.23 closes too early,
-which would be black at normal incidence). Lambert at
-σ = 0. Shows clay, plaster, cloth and the moon: flat, with retro-reflection at grazing angles; no
-gloss. With k_d = 1 the full form reflects up to 5 % more than it receives at grazing incidence.
+[Oren & Nayar 1994]; [Kurt 2007, eqs. 3.18-3.24] (the bracket printed in eq. 3.23 closes too early:
+by it, surfaces would be black at normal incidence). Lambert at σ = 0. Shows clay, plaster, cloth
+and the moon: flat, with retro-reflection at grazing angles; no gloss. With k_d = 1 the full form
+reflects up to 5 % more than it receives at grazing incidence.
 """
 
 import drjit as dr
@@ -38,10 +38,10 @@ class OrenNayar(Model):
         C2 = B * (dr.sin(alpha) - less)
         C3 = 0.125 / 0.45 * B * dr.square(4 * alpha * beta / dr.pi**2)
         across = (1 - dr.abs(cos_phi)) * C3 * dr.tan((alpha + beta) / 2)
-        # Opposite the light and near the horizon rough facets would come out below 0
+        # The formula is below 0 for rough facets opposite the light and near the horizon
         return dr.maximum(C1 + cos_phi * C2 * dr.tan(beta) + across, 0) / dr.pi
 
-    def bounced(self, wi, wo):
+    def interreflection(self, wi, wo):
         _, _, share = self.factors()
         _, beta, cos_phi = angles(wi, wo)
         return 0.17 / dr.pi * share * (1 - cos_phi * dr.square(2 * beta / dr.pi))
@@ -54,11 +54,11 @@ class OrenNayar(Model):
     def lobes(self):
         if self.form == "qualitative":
             return (Lobe(self.qualitative, Cosine(), diffuse=True),)
-        return (Lobe(self.full, Cosine(), quadratic=self.bounced, diffuse=True),)
+        return (Lobe(self.full, Cosine(), quadratic=self.interreflection, diffuse=True),)
 
 
 def angles(wi, wo):
-    """α, β [rad] and cosΔφ, 0 where a direction is the normal."""
+    """α, β [rad] and cosΔφ; cosΔφ is 0 where a direction is the normal."""
     high, low = dr.minimum(wi.z, wo.z), dr.maximum(wi.z, wo.z)
     sines = dr.sqrt(dr.maximum((1 - wi.z * wi.z) * (1 - wo.z * wo.z), 1e-20))
     cos_phi = dr.maximum(dr.minimum((wi.x * wo.x + wi.y * wo.y) / sines, 1), -1)

@@ -5,13 +5,13 @@
     anisotropic  f = β_0 + Σ_k (β_{3k-2} Z_1^k + β_{3k-1} Z_2^k + β_{3k} Z_3^k)
                  Z = X U,  X_1 = l_x v_x,  X_2 = l_y v_y,  X_3 = l_z v_z
 
-k = 1 ... `degree`. U turns the products to their principal axes over the measured directions: a fit
-takes it from them, and it belongs to the fitted material. It is given by its angles [rad]. Weights
-may be negative; a sum below 0 is clamped at 0. Interactions Z_1^j Z_2^k are left out, as printed,
-although uncorrelated components may well interact.
+k = 1 ... `degree`. U rotates the products to their principal axes over the measured directions. A
+fit computes U from these directions, and U belongs to the fitted material; it is given by angles
+[rad]. Weights may be negative; a sum below 0 is clamped at 0. Interactions Z_1^j Z_2^k are left
+out, as printed, although uncorrelated components may well interact.
 
 [Öztürk et al. 2008]; [Kurt 2007, eqs. 7.4, 7.5]. Shows diffuse and rough materials; a highlight
-takes a degree that then swings below 0 elsewhere.
+needs a high degree, with which the polynomial swings below 0 elsewhere.
 """
 
 import math
@@ -22,18 +22,18 @@ import numpy as np
 from brdfkit.model import Model, option, shape, weight
 from brdfkit.model.lobes import Cosine, Lobe
 
-# The planes that the angles turn, one after the other: of two components, of three
+# Number of components → the planes in which the angles rotate them, one after the other
 PLANES = {2: ((0, 1),), 3: ((0, 1), (0, 2), (1, 2))}
 
 
 def products(wi, wo, components):
-    """W of two components, X of three."""
+    """The products of two directions: the two components of W, or the three of X."""
     x, y, z = wi.x * wo.x, wi.y * wo.y, wi.z * wo.z
     return [x + y, z] if components == 2 else [x, y, z]
 
 
-def turned(products, angles):
-    """Z: the products along the axes that the angles give."""
+def rotate(products, angles):
+    """Z: the products along the axes that the `angles` give."""
     z = list(products)
     for (a, b), angle in zip(PLANES[len(z)], angles, strict=True):
         sine, cosine = dr.sin(angle), dr.cos(angle)
@@ -42,7 +42,7 @@ def turned(products, angles):
 
 
 def angles_of(axes):
-    """The angles [rad] by which `turned` goes to `axes`, the rows of an orthonormal matrix."""
+    """The angles [rad] by which `rotate` leads to `axes`, the rows of an orthonormal matrix."""
     if np.linalg.det(axes) < 0:  # the sign of a component is free
         axes = np.vstack([axes[:-1], -axes[-1]])
     angles = [math.atan2(axes[0, 1], axes[0, 0])]
@@ -89,7 +89,7 @@ class PCAPolynomial(Model):
 
     @classmethod
     def determined(cls, samples):
-        """The angles of the principal axes of the measured directions."""
+        """The angles of the principal axes of the products of the measured directions."""
         data = samples.wi * samples.wo
         if cls.components() == 2:
             data = np.stack([data[:, 0] + data[:, 1], data[:, 2]], axis=1)
@@ -104,7 +104,7 @@ class PCAPolynomial(Model):
 
         def power(j, k):
             def value(wi, wo):
-                return turned(products(wi, wo, self.components()), angles)[j] ** k
+                return rotate(products(wi, wo, self.components()), angles)[j] ** k
 
             return Lobe(value, cosine, lambda wi: 0.0, diffuse=True)
 

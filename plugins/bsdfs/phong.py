@@ -3,8 +3,9 @@
     f = k_d / π + k_s (n + 2) / 2π (cos α)ⁿ,   cos α = max(0, R·V),   R = 2 (N·L) N - L
 
 [Phong 1975] in the reciprocal form of [Lafortune & Willems 1994]; [Kurt 2007, eqs. 3.2, 3.3].
-Energy is conserved for k_d + k_s ≤ 1. Shows plastics from above; highlights stay round and grow
-darker towards grazing angles, where those of materials grow long and bright; no retro-reflection.
+Energy is conserved for k_d + k_s ≤ 1. Shows plastics from above. Towards grazing angles its
+highlights stay round and grow darker, where those of real materials grow long and bright; no
+retro-reflection.
 """
 
 import drjit as dr
@@ -21,14 +22,14 @@ class Phong(Model):
     exponent = shape(30.0, (0.1, 1e4), "n: sharpness of the highlight", log=True, width=-0.5)
 
     def specular(self, wi, wo):
-        power = cosine_power(one_minus_dot(mirrored(wi), wo), self.exponent)
+        power = cosine_power(one_minus_dot(mirror(wi), wo), self.exponent)
         return (self.exponent + 2) / (2 * dr.pi) * power
 
     def lobes(self):
-        sampling = PowerLobe(mirrored, self.exponent)
+        sampling = PowerLobe(mirror, self.exponent)
         return lambertian(), Lobe(self.specular, sampling, sampling.energy)
 
 
-def mirrored(w):
-    """R: the mirror direction about the normal."""
+def mirror(w):
+    """R: the mirror direction of `w` about the normal."""
     return type(w)(-w.x, -w.y, w.z)

@@ -4,13 +4,13 @@
     D = P₂₂(tan²θ_h) / (π cos⁴θ_h),   P₂₂(s) = K x^-p exp(-x) with x = α + s / α
     K = 1 / (α Γ(1 - p, α)), so that ∫ D cosθ_h dω = 1
 
-[Bagher et al. 2012]. Slopes up to α are a flat top, up to √α a power
-law, beyond a Gaussian; p = 0 is Beckmann's of width √α. G₁ is Smith's, integrated here; the paper
-puts 1 + λ (1 - exp(c (θ - θ₀)^k)) for it, with four more numbers per material, 2e-3 from it. F is
-Schlick's, without the paper's further term -F₁ V·H, which lets it fall below 0. As printed, the
-term is 4/π of today's D G F / 4(N·L)(N·V): energy is conserved for about ρ_d + 4/π ρ_s ≤ 1.
-Shows paints, plastics and metals, whose tails are longer than Beckmann's and end before GGX's;
-fits in twice GGX's time; no anisotropy, no retro-reflection.
+[Bagher et al. 2012]. D is flat up to the slope α, a power law up to the slope √α and a Gaussian
+beyond; p = 0 is Beckmann's D of width √α. G₁ is Smith's, integrated here; the paper approximates it
+within 2e-3 by 1 + λ (1 - exp(c (θ - θ₀)^k)), with four more numbers per material. F is Schlick's,
+without the paper's further term -F₁ V·H, by which F may fall below 0. As printed, the term is 4/π
+times today's D G F / 4(N·L)(N·V): energy is conserved for about ρ_d + 4/π ρ_s ≤ 1.
+Shows paints, plastics and metals, whose tails are longer than Beckmann's and end before GGX's; no
+anisotropy, no retro-reflection. A fit takes twice as long as with GGX.
 """
 
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ class ShiftedGamma:
     p: Any
 
     def D(self, h):
-        # Slopes beyond 1000 have no mass, but would take the derivatives out of single precision
+        # Slopes beyond 1000 have no mass, but derivatives beyond the range of single precision
         s = dr.minimum(_slope_squared(h), 1e6)
         power = dr.exp(-self.p * log1p(s / (self.alpha * self.alpha)) - s / self.alpha)
         I = sum(mass for _, mass in self._slopes())
@@ -54,7 +54,10 @@ class ShiftedGamma:
         return 1 / (1 + above / (dr.pi * total))
 
     def _slopes(self):
-        """(s/α², its share of the integral I over s/α²) at even steps of log(1 + s/α²)."""
+        """(s/α², its part of the integral I over s/α²) at nodes between 0 and END in s/α.
+
+        They are Gauss-Legendre nodes in log(1 + s/α²).
+        """
         end = log1p(END / self.alpha)
         for point, gauss in zip(POINTS.tolist(), GAUSS.tolist(), strict=True):
             t = (point + 1) / 2 * end
@@ -62,7 +65,10 @@ class ShiftedGamma:
             yield s, gauss / 2 * end * dr.exp((1 - self.p) * t - self.alpha * s)
 
     def sample(self, wi, u):
-        """Up to s = α the power law, or an exponential that meets it there: close to P₂₂."""
+        """A normal whose squared slope s has a density close to P₂₂.
+
+        The density is a power law up to s = α, mixed with an exponential that equals it there.
+        """
         share, q, end = self._share(), self._q(), log1p(1 / self.alpha)
         near = expm1(log1p(u.x / share * expm1(q * end)) / q) * self.alpha * self.alpha
         far = -self.alpha * dr.log(dr.maximum((1 - u.x) / (1 - share), 1e-12))
@@ -81,17 +87,19 @@ class ShiftedGamma:
         return density / (dr.pi * h.z * h.z * h.z)
 
     def _share(self):
+        """The share of samples that `sample` draws by the power law."""
         q, end = self._q(), log1p(1 / self.alpha)
         near = self.alpha * expm1(q * end) / q
         return near / (near + dr.exp((q - 1) * end))
 
     def _q(self):
-        # 1 - p, kept away from 0, where the power's integral is a logarithm: near enough
+        """1 - p, kept away from 0, where the integral is a logarithm: near enough for sampling."""
         q = 1 - self.p
         return dr.select(abs(q) < 1e-3, 1e-3, q)
 
 
 def _slope_squared(w):
+    """tan²θ of a direction."""
     return (w.x * w.x + w.y * w.y) / (w.z * w.z)
 
 
@@ -103,7 +111,7 @@ class SGD(Model):
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
     def specular(self, wi, wo):
-        # A value per direction, so that a fit sums its derivatives once and not at every slope
+        # α and p as one value per direction: a fit then sums derivatives once, not at every slope
         one = wi.z / wi.z
         facets = ShiftedGamma(self.alpha * one, self.p * one)
         h = half_vector(wi, wo)

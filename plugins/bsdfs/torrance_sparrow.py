@@ -4,9 +4,9 @@
     G = min(1, 2 (N·H)(N·V) / (V·H), 2 (N·H)(N·L) / (V·H))
 
 [Torrance & Sparrow 1967]; [Kurt 2007, eqs. 3.25-3.27], with Schlick's F (3.16). The constant of D
-[Ramamoorthi & Hanrahan 2001] is that of small m: ∫ D cosθ_h dω is 0.974 at m = 0.2 and 0.548 at m =
-1, so that rough surfaces come out darker, never brighter. Shows metals and plastics of one
-roughness and their off-specular peaks; no long tails, no anisotropy.
+[Ramamoorthi & Hanrahan 2001] normalises D for small m: ∫ D cosθ_h dω is 0.974 at m = 0.2 and 0.548
+at m = 1, so that rough surfaces come out too dark, never too bright. Shows metals and plastics of
+one roughness and their off-specular peaks; no long tails, no anisotropy.
 """
 
 from dataclasses import dataclass
@@ -42,7 +42,7 @@ class GaussianAngle:
         return self.D(h) * _angle(h) / (_sine(h) * self._share())
 
     def _share(self):
-        """Of the Gaussian in the plane, what lies within a radius of π/2."""
+        """The share of the Gaussian in the plane that lies within the radius π/2."""
         end = dr.pi / 2 / self.m
         return 1 - dr.exp(-end * end)
 

@@ -2,11 +2,11 @@
 
     {"type": "kdtree_envmap", "filename": "studio.exr", "scale": 1.0, "to_world": ...}
 
-in place of Mitsuba's `envmap`: latitude over longitude, y up, with the same convention of rows and
-columns and the same bilinear interpolation. The map is cut into `blocks` of nearly even power per
-angle (least sum of squared errors); one is chosen by its exact share of the power, and in it a
-point evenly in both angles. The density is stored for every pixel, so that multiple importance
-sampling costs one look-up.
+takes the place of Mitsuba's `envmap`: latitude over longitude, y up, with the same convention of
+rows and columns and the same bilinear interpolation. The map is cut into `blocks` of nearly
+constant power per angle (least sum of squared errors). A sample chooses a block by its exact share
+of the power, and a point of the block uniformly in both angles. The density is stored for every
+pixel, so that multiple importance sampling costs one look-up.
 
 [Ergun 2015, chapter 6]. In spectral variants a colour of the map becomes a smooth spectrum under
 D65 [Mallett & Yuksel 2019], linear in the colour.
@@ -31,7 +31,7 @@ PARAMETERS = {
     "blocks": count(4096, (1, 1_000_000), "blocks that the map is cut into at most"),
 }
 FAR = 1e7  # distance of the environment: Mitsuba does not tell a plugin how large the scene is
-LEAST_SINE = 1e-4  # nearer the poles the density per solid angle stays what it is here
+LEAST_SINE = 1e-4  # of the polar angle: nearer the poles, the density divides by this
 
 
 def define(mi):
@@ -52,16 +52,17 @@ def define(mi):
 
         def parameters_changed(self, keys=()):
             if not keys or "data" in keys:
-                # Rows lie at the polar angles 0 to π, columns in the middle of their azimuths
+                # The first row is at the polar angle 0, the last at π; a column is at the middle of
+                # its azimuths
                 self.texture = mi.Texture2f(self.data, True, False)
                 self.height, self.width = self.data.shape[0], self.data.shape[1]
                 self.cut(np.array(dr.detach(self.data), float))
 
         def cut(self, pixels):
-            """The blocks of a map, the probability of each, and the density of every cell.
+            """Compute the blocks of a map, the probability of each, and the density of every cell.
 
-            A cell lies between four pixels: as bright as their mean, it is black only where the
-            interpolated map is.
+            A cell lies between four pixels and is as bright as their mean: it is black only where
+            the interpolated map is black.
             """
             bright = luminance(pixels)
             between = bright + np.roll(bright, -1, axis=1)
@@ -91,7 +92,7 @@ def define(mi):
             return dr.select(active, self.spectrum(rgb, si) * self.scale, 0)
 
         def place(self, direction):
-            """Column (0 in the middle of the first, periodic) and row of a direction."""
+            """The column (periodic, 0 at the middle of the first) and the row of a direction."""
             d = self.to_local @ direction
             turn = dr.atan2(d.x, -d.z) * (0.5 / dr.pi)
             turn = turn - dr.floor(turn)
@@ -133,7 +134,10 @@ def define(mi):
 
 
 def _pixels(mi, filename, bitmap):
-    """The map (height, width, 3) in linear sRGB, once it can light a scene."""
+    """The map (height, width, 3) in linear sRGB.
+
+    Raises `BrdfkitError` for a map that cannot light a scene.
+    """
     if bool(filename) == (bitmap is not None):
         raise BrdfkitError("kdtree_envmap needs a filename, or a bitmap in its place.")
     if bitmap is None:

@@ -2,14 +2,15 @@
 
     L = T(0, d) L_behind + ∫ T(0, s) e(s) ds,   T(0, s) = exp(-∫ σ(t) dt) from 0 to s
 
-over the part of a ray within the box of `extinction` σ [1/unit] and before the first surface, whose
-own emission, or else the environment's, is L_behind. `emission` e [radiance/unit] is as it is, not
-multiplied by σ; in spectral variants its colour is times D65, as that of emitters. The ray is cut
-into `steps` equal parts, in each of which σ and e are those of its middle: exact there, and in the
-whole of second order in the length of a step.
+over the part of a ray that lies within the box of `extinction` σ [1/unit] and before the first
+surface. L_behind is the emission of that surface, or else of the environment. `emission` e
+[radiance/unit] is not multiplied by σ; in spectral variants its colour is multiplied by D65, as an
+emitter's. The ray is cut into `steps` equal parts. In each, σ and e have the values of its
+midpoint, and the integral is exact; the error of the whole is of second order in the length of a
+step.
 
-[Max 1995]; [Lesar 2018, eq. 6.3]. Shows CT, MRI and smoke without light of their own; the
-derivatives by both volumes are exact (those of the marched sum).
+[Max 1995]; [Lesar 2018, eq. 6.3]. Shows CT and MRI scans and smoke without a source of light; the
+derivatives by both volumes are exact derivatives of the sum over the parts.
 """
 
 import drjit as dr
@@ -38,7 +39,7 @@ def define(mi):
             si = scene.ray_intersect(mi.Ray3f(ray), active)
             emitter = si.emitter(scene)  # of the surface, or the environment
             behind = mi.UnpolarizedSpectrum(0)
-            if emitter is not None:  # a scalar variant knows; elsewhere none at all emits 0
+            if emitter is not None:  # it may be in scalar variants; elsewhere a missing one emits 0
                 behind = mi.unpolarized_spectrum(emitter.eval(si, active))
 
             near, far = within(mi, ray, self.extinction.bbox())
@@ -51,7 +52,7 @@ def define(mi):
                 it.p, it.wavelengths = ray(near + (mi.Float(i) + 0.5) * step), ray.wavelengths
                 depth = self.extinction.eval_1(it, inside) * step
                 e = mi.unpolarized_spectrum(self.emission.eval(it, inside)) * self.white(it)
-                radiance = radiance + transmittance * e * (dimmed(depth) * step)
+                radiance = radiance + transmittance * e * (mean_transmittance(depth) * step)
                 return i + 1, radiance, transmittance * dr.exp(-depth)
 
             _, radiance, transmittance = dr.while_loop(
@@ -66,13 +67,13 @@ def define(mi):
     return EmissionAbsorption
 
 
-def dimmed(depth):
-    """(1 - exp(-depth)) / depth: the mean transmittance along an even medium of that depth."""
+def mean_transmittance(depth):
+    """(1 - exp(-depth)) / depth, along a homogeneous medium of this optical `depth`."""
     return dr.select(depth > 0, -expm1(-depth) / dr.select(depth > 0, depth, 1), 1)
 
 
 def within(mi, ray, box):
-    """Where a ray enters a box and leaves it: distances, the second one smaller where it misses."""
+    """The distances at which a ray enters and leaves a box; the second is smaller if it misses."""
     inverse = dr.rcp(ray.d)
     a, b = (mi.Point3f(corner) - ray.o for corner in (box.min, box.max))
     a, b = a * inverse, b * inverse
@@ -80,8 +81,10 @@ def within(mi, ray, box):
 
 
 def reference():
-    """A scene in which all rays go through one unit of an even volume, and the radiance (3,) they
-    bring: e (1 - exp(-σ)) / σ + exp(-σ) L."""
+    """A scene, and the radiance (3,) of each of its pixels: e (1 - exp(-σ)) / σ + exp(-σ) L.
+
+    All rays cross one unit of a homogeneous volume.
+    """
     import mitsuba as mi
 
     sigma, e, behind = 2.0, np.array([0.9, 0.5, 0.1]), 0.3

@@ -1,10 +1,11 @@
 """Schlick: a phase function close to Henyey-Greenstein's, without a power.
 
-    p(μ) = (1 - k²) / (4π (1 - kμ)²),   μ = cosine of the angle by which light is turned
+    p(μ) = (1 - k²) / (4π (1 - kμ)²),   μ = cosine of the angle by which light is deflected
 
 μ = 1 is straight on: light goes forward for k > 0, back for k < 0, and evenly for k = 0. Its mean
 cosine is 1/k - (1 - k²)/(2k²) ln((1 + k)/(1 - k)), about 2k/3 for small k; the usual
-k = 1.55 g - 0.55 g³ makes it look like Henyey-Greenstein's of g, but for the mean cosine.
+k = 1.55 g - 0.55 g³ makes it resemble Henyey-Greenstein's of the mean cosine g, although its own
+mean cosine differs.
 
 [Blasi et al. 1993]; its inverse distribution function is exact.
 """
@@ -24,7 +25,7 @@ def density(k, mu):
 
 
 def cosine(k, u):
-    """The μ below which a share `u` of all light is turned."""
+    """The μ below which the share `u` of the scattered light lies."""
     return (2 * u + k - 1) / (2 * k * u - k + 1)
 
 
@@ -40,9 +41,9 @@ def define(mi):
             mu = cosine(self.k, sample2.x)
             radius = dr.safe_sqrt(1 - mu * mu)
             sin_phi, cos_phi = dr.sincos(2 * dr.pi * sample2.y)
-            turned = mi.Vector3f(radius * cos_phi, radius * sin_phi, mu)
-            # Directions are drawn without derivatives, and so is their density in the weight
-            wo = dr.detach(mi.Frame3f(-interaction.wi).to_world(turned))
+            local = mi.Vector3f(radius * cos_phi, radius * sin_phi, mu)
+            # Neither the direction nor its density in the weight has derivatives
+            wo = dr.detach(mi.Frame3f(-interaction.wi).to_world(local))
             value, pdf = self.eval_pdf(ctx, interaction, wo, active)
             return wo, value / dr.detach(pdf), pdf
 

@@ -33,7 +33,7 @@ def frame(mi):
             here = self.at(ctx, si, wi, active)
             wo, component = here.draw(sample1, sample2)
 
-            # Directions are drawn without derivatives, and so is their density in the weight
+            # Neither the direction nor its density in the weight has derivatives
             wo = dr.detach(wo)
             sample = dr.zeros(mi.BSDFSample3f)
             above_wo, active = above_horizon(wo, active)
