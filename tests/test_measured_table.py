@@ -166,7 +166,7 @@ def test_an_unknown_cell_takes_the_nearest(shape):
     for azimuth in (2,) if len(shape) == 3 else (0, 3):
         apart[..., azimuth] = np.minimum(apart, shape[azimuth] - apart)[..., azimuth]
     distance = np.linalg.norm(apart, axis=-1)
-    taken = Table(values.reshape(*shape, 1)).filled.astype(int).reshape(-1, 1)
+    taken = Table(values.reshape(*shape, 1)).filled_values.astype(int).reshape(-1, 1)
     np.testing.assert_array_equal(np.take_along_axis(distance, taken, 1)[:, 0], distance.min(1))
 
 

@@ -30,11 +30,11 @@ class AshikhminShirley(Model):
     exponent_v = follows("exponent_u", exponent_u, "n_v: sharpness of the highlight along y")
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def coupled(self, wi, wo):
-        return 28 / (23 * dr.pi) * (1 - self.f0) * entering(wi.z) * entering(wo.z)
+    def coupled_diffuse(self, wi, wo):
+        return 28 / (23 * dr.pi) * (1 - self.f0) * entering_share(wi.z) * entering_share(wo.z)
 
     def coupled_albedo(self, wi):
-        return (1 - self.f0) * entering(wi.z)
+        return (1 - self.f0) * entering_share(wi.z)
 
     def specular(self, wi, wo):
         h = half_vector(wi, wo)
@@ -47,9 +47,10 @@ class AshikhminShirley(Model):
         specular = Lobe(self.specular, sampling, lambda wi: schlick(self.f0, wi.z))
         if self.diffuse == "lambert":
             return lambertian(), specular
-        diffuse = Lobe(self.coupled, Cosine(), self.coupled_albedo, diffuse=True)
+        diffuse = Lobe(self.coupled_diffuse, Cosine(), self.coupled_albedo, diffuse=True)
         return diffuse, specular
 
 
-def entering(cosine):
+def entering_share(cosine):
+    """The share of light at this cosine that enters the diffuse base."""
     return 1 - fifth_power(1 - cosine / 2)

@@ -34,8 +34,8 @@ def define(mi):
         def __init__(self, props):
             super().__init__(props)
             self.table, wavelengths = _table(props)
-            filled = self.table.filled
-            self.values = channels(filled.reshape(-1, filled.shape[-1]), wavelengths)
+            cells = self.table.filled_values
+            self.values = channels(cells.reshape(-1, cells.shape[-1]), wavelengths)
             size = ANISOTROPIC if self.table.anisotropic else {}
             half_vectors = HalfVectorTable(self.look_up, **size)
             self.albedos = channels(half_vectors.albedo, wavelengths)

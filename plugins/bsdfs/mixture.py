@@ -57,6 +57,7 @@ class Mixture(Model):
             for name, parameter in model.parameters.items():
                 if parameter.linear and name not in brought:
                     continue
+                # Where a fit begins: lobes of different widths, weights that share the light
                 default = parameter.default
                 if parameter.width and not parameter.follows:
                     default = default * NARROWER ** (-seen.count(model) / parameter.width)

@@ -69,6 +69,8 @@ def define(mi):
             between = (between[:-1] + between[1:]) / 4
             theta = np.pi * (np.arange(self.height - 1) + 0.5) / (self.height - 1)
             power = between * np.sin(theta)[:, None]
+
+            # Blocks of nearly constant power, and their shares of it
             found = environment_tree.blocks(power, self.blocks)
             x0, x1, y0, y1 = found.T
             share = environment_tree.block_sums(power, found).clip(0)
@@ -76,7 +78,8 @@ def define(mi):
             self.choice = mi.DiscreteDistribution(share.tolist())
             self.corners = Rows(np.stack([x0, y0], axis=1))
             self.sizes = Rows(np.stack([x1 - x0, y1 - y0], axis=1))
-            # Probability per cell, over the solid angle of an average one
+
+            # Probability per cell, over the solid angle of an average cell
             density = np.zeros_like(power)
             for block, value in zip(found, share / ((x1 - x0) * (y1 - y0)), strict=True):
                 density[block[2] : block[3], block[0] : block[1]] = value
@@ -99,6 +102,7 @@ def define(mi):
             return turn * self.width - 0.5, dr.safe_acos(d.y) / dr.pi * (self.height - 1)
 
         def sample_direction(self, it, sample, active=True):
+            # A block, a point in it, and the point's direction in the map's frame
             block, rest = self.choice.sample_reuse(sample.x, active)
             corner, size = (r.at(block, mi.Vector2f, active) for r in (self.corners, self.sizes))
             x, y = corner.x + rest * size.x, corner.y + sample.y * size.y

@@ -36,12 +36,14 @@ def define(mi):
             self.white = white()
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
+            # Light from behind the volume
             si = scene.ray_intersect(mi.Ray3f(ray), active)
             emitter = si.emitter(scene)  # of the surface, or the environment
             behind = mi.UnpolarizedSpectrum(0)
             if emitter is not None:  # it may be in scalar variants; elsewhere a missing one emits 0
                 behind = mi.unpolarized_spectrum(emitter.eval(si, active))
 
+            # The part of the ray within the volume, cut into steps
             near, far = within(mi, ray, self.extinction.bbox())
             far = dr.minimum(far, si.t)
             inside = active & (far > near)
@@ -55,6 +57,7 @@ def define(mi):
                 radiance = radiance + transmittance * e * (mean_transmittance(depth) * step)
                 return i + 1, radiance, transmittance * dr.exp(-depth)
 
+            # Radiance and transmittance of all parts, from the nearest to the farthest
             _, radiance, transmittance = dr.while_loop(
                 (mi.UInt32(0), mi.UnpolarizedSpectrum(0), mi.Float(1)),
                 lambda i, radiance, transmittance: inside & (i < self.steps),

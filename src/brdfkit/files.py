@@ -119,6 +119,7 @@ def sha256(file):
 
 
 def _require_file(path):
+    """Raise `BrdfkitError` unless `path` is a regular file; propose a similar name beside it."""
     if path.is_dir():
         raise BrdfkitError(f"{path}: is a folder; name a file in it.")
     if path.is_file():
@@ -132,6 +133,7 @@ def _require_file(path):
 
 
 def _read(path):
+    """The bytes of a file, decompressed, `LIMIT` at most."""
     with path.open("rb") as stream:
         first = stream.read(8)
     for suffix, magic in COMPRESSED.items():

@@ -46,7 +46,7 @@ def _slice(figure, axes, data):
     table = data.table
     across = int(np.argmin(np.abs(table.centres[-1] - np.pi / 2)))
     cells = (0,) * table.anisotropic + (slice(None), slice(None), across)
-    values = luminance(table.filled[cells])
+    values = luminance(table.filled_values[cells])
     known = _known(data, table, cells)
     axes.patch.set(facecolor="0.92", hatch="////", edgecolor="0.75", linewidth=0)
     norm = _norm(values[known] if known.any() else values)

@@ -62,6 +62,7 @@ def _forward_to_successor(module):
 
 
 def _connect():
+    """Register the plugins in Mitsuba's current variant, and in each one that is set later."""
     import mitsuba as mi
 
     from brdfkit.host.registration import register_all
@@ -71,7 +72,7 @@ def _connect():
         try:
             llvm.refuse_bad_choice(variant)
         except BrdfkitError:
-            mi.set_variant("scalar_rgb")  # the refused one would still be in place
+            mi.set_variant("scalar_rgb")  # or the refused variant would stay set
             raise
         register_all()
 

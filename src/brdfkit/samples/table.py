@@ -64,7 +64,7 @@ class Table:
         return from_half_difference(theta_h, theta_d, phi_d, *phi_h)
 
     @cached_property
-    def filled(self):
+    def filled_values(self):
         """The values with each unknown cell filled from the nearest known one, counted in cells.
 
         Both azimuths are periodic, phi_d with its own period.
@@ -95,7 +95,7 @@ class Table:
 
         return {
             "type": "measured_table",
-            "table": mi.TensorXf(np.ascontiguousarray(self.filled, np.float32)),
+            "table": mi.TensorXf(np.ascontiguousarray(self.filled_values, np.float32)),
             "phi_d_period": float(self.phi_d_period),
         }
 
@@ -119,7 +119,7 @@ class Table:
 
         result = np.zeros((*theta_h.shape, self.values.shape[-1]))
         for cells, share in corners(axes):
-            result += share[..., None] * self.filled[cells]
+            result += share[..., None] * self.filled_values[cells]
         above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
         return np.where(above[..., None], result, 0.0)
 
