@@ -5,7 +5,7 @@ from numbers import Real
 from brdfkit.errors import BrdfkitError
 
 
-def selected(data, max_angle):
+def select_samples(data, max_angle):
     """The valid `Samples` of a `Measured` with both angles below `max_angle` [degrees].
 
     Spectral data comes as linear sRGB. Raises `BrdfkitError` where the angle is not above 0° and at
