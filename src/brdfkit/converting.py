@@ -74,8 +74,8 @@ def convert(thing: MaterialLike, path: str | Path) -> Conversion:
 
 
 def evaluate_on_grid(thing: Material) -> Measured:
-    """A fit or a model as a `Measured`: its samples are the cells of a table, and its lookup between
-    them is the fit or model itself."""
+    """A fit or a model as a `Measured`, whose samples are the cells of a table, and whose lookup
+    between them is `thing` itself."""
     model: Any = getattr(thing, "model", thing)
     free = getattr(model, "free_values", {})
     anisotropic = any(model.parameters[name].follows for name in free)

@@ -100,7 +100,7 @@ def _find_known(name: str) -> Path | None:
 
 
 def _split(path: str | Path) -> tuple[Path, str | None]:
-    """The path without its last '#', and the sample that stands behind it; None for the sample where
+    """The path before its last '#', and the sample named behind it; the whole path and None where
     there is no '#', or where it belongs to the name of a file."""
     path = Path(path)
     name, hash_sign, sample = path.name.rpartition("#")

@@ -44,8 +44,8 @@ ATTRIBUTES = "name", "eval", "scene_dict"
 def material(thing: MaterialLike, needed: Iterable[str] = ATTRIBUTES) -> Material:
     """The material that `thing` is, or stands for as a name, a path or a dictionary.
 
-    An object is returned as it is if it has the `needed` attributes. Raises `BrdfkitError`, the same
-    one for every verb, for anything that is no material.
+    An object with the `needed` attributes is returned as it is. Raises `BrdfkitError`, the same one
+    for every verb, for anything that is no material.
 
     >>> material("ward").alpha_u
     0.2
@@ -59,8 +59,8 @@ def material(thing: MaterialLike, needed: Iterable[str] = ATTRIBUTES) -> Materia
         raise BrdfkitError(f"{name} is a model without values; call it: {name}().")
     if not all(hasattr(thing, attribute) for attribute in needed):
         raise BrdfkitError(
-            f"{_describe(thing)} is no material; give a measured one, a fit, a model with values, a "
-            "BSDF's dictionary, or the name or path of one."
+            f"{_describe(thing)} is no material; give a measured one, a fit, a model with values, "
+            "a BSDF's dictionary, or the name or path of one."
         )
     return thing
 
