@@ -10,7 +10,7 @@ from random_models import random_model
 
 import brdfkit as bk
 from brdfkit.errors import BrdfkitError
-from brdfkit.fitting.weights import bounded_quadratic
+from brdfkit.fitting.weights import minimise_quadratic
 from brdfkit.geometry.directions import from_angles
 from brdfkit.geometry.vectors import half_vector
 from brdfkit.model import Model, shape, weight
@@ -342,13 +342,13 @@ def test_bad_requests_are_refused(arguments, words):
 
 
 @pytest.mark.quick
-def test_bounded_quadratic_meets_the_optimality_conditions():
+def test_minimise_quadratic_meets_the_optimality_conditions():
     rng = np.random.default_rng(0)
     for _ in range(200):
         n = rng.integers(1, 5)
         factor = rng.normal(size=(n + 2, n)) * 10.0 ** rng.integers(-4, 4, n)
         hessian, moment = factor.T @ factor, factor.T @ rng.normal(size=n + 2)
-        a = bounded_quadratic(hessian, moment)
+        a = minimise_quadratic(hessian, moment)
         scale = np.sqrt(np.diag(hessian))
         gradient = (hessian @ a - moment) / scale
         assert (a >= 0).all()

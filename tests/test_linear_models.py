@@ -8,7 +8,7 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.geometry.directions import from_angles
-from brdfkit.measured.selection import selected
+from brdfkit.measured.selection import select_samples
 from brdfkit.model import labels
 from brdfkit.model.evaluation import lobe_values
 
@@ -103,11 +103,11 @@ def test_turned_by_its_angles_data_has_its_principal_axes():
 
 def test_principal_axes_of_curet(measured_data):
     """Kurt 2007: the first axis at -1.80°, by the 189 geometries below 80°."""
-    samples = selected(bk.load(measured_data / "curet" / "abrdf.dat#1"), 80.0)
+    samples = select_samples(bk.load(measured_data / "curet" / "abrdf.dat#1"), 80.0)
     angles = labels.model("pca_polynomial").determined(samples)
     assert np.degrees(angles["angle_1_2"]) == pytest.approx(-1.80, abs=5e-3)
     # All 205 geometries: -0.92°
-    samples = selected(bk.load(measured_data / "curet" / "abrdf.dat#1"), 89.0)
+    samples = select_samples(bk.load(measured_data / "curet" / "abrdf.dat#1"), 89.0)
     angles = labels.model("pca_polynomial").determined(samples)
     assert np.degrees(angles["angle_1_2"]) == pytest.approx(-0.92, abs=5e-3)
 

@@ -9,7 +9,7 @@ import brdfkit as bk
 from brdfkit.checks.subject import random_pairs
 from brdfkit.errors import BrdfkitError
 from brdfkit.geometry.directions import from_angles
-from brdfkit.measured.selection import selected
+from brdfkit.measured.selection import select_samples
 from brdfkit.model import labels
 
 
@@ -96,7 +96,7 @@ def test_a_second_lobe_of_the_same_model_begins_narrower(model):
 @pytest.mark.quick
 def test_what_a_part_takes_from_the_geometry_is_no_search():
     data = bk.load("dusty_gold")
-    angles = labels.model("pca_polynomial").determined(selected(data, 80.0))
+    angles = labels.model("pca_polynomial").determined(select_samples(data, 80.0))
     found = bk.fit("pca_polynomial+ward", data, starts=1)
     for name, value in angles.items():
         assert found.values[f"pca_polynomial_1_{name}"] == value

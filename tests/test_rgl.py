@@ -17,7 +17,7 @@ from brdfkit.fitting import Fit
 from brdfkit.formats.rgl import encoding, tensor_file
 from brdfkit.formats.rgl.encoding import Resolution
 from brdfkit.formats.rgl.normals import Hemisphere, power_iteration
-from brdfkit.formats.rgl.warp import Warp, between, even_grid
+from brdfkit.formats.rgl.warp import Warp, even_grid, find_slices
 from brdfkit.geometry.directions import from_angles
 from brdfkit.loading import load, save
 from brdfkit.measured import Measured
@@ -134,7 +134,7 @@ def test_warp_is_mitsubas(llvm_variant):
     point = mi.Point2f(u.T.astype(np.float32))
     inverted, _ = theirs.invert(point, [mi.Float(x.astype(np.float32)) for x in params])
     np.testing.assert_allclose(
-        ours.invert(u, between(nodes, params)), np.array(inverted).T, atol=2e-5
+        ours.invert(u, find_slices(nodes, params)), np.array(inverted).T, atol=2e-5
     )
     for at, (x, y) in enumerate((x, y) for x in nodes[0] for y in nodes[1]):
         sampled, _ = theirs.sample(point, [mi.Float(float(x)), mi.Float(float(y))])
@@ -171,7 +171,7 @@ def test_power_iteration_finds_the_microfacets(alpha_x, alpha_y, n_phi):
     found = power_iteration(0.3 * D / (4 * np.maximum(z, 1e-9) * sigma), hemisphere)
     near = hemisphere.theta < np.radians(80)
     np.testing.assert_allclose(found[:, near], D[:, near], rtol=5e-3)
-    np.testing.assert_allclose(hemisphere.projected(found), sigma, atol=1e-3)
+    np.testing.assert_allclose(hemisphere.projected_area(found), sigma, atol=1e-3)
 
 
 # -- reading ----------------------------------------------------------------------------------
@@ -257,7 +257,7 @@ SYMMETRIES = {
 def test_every_symmetry_is_found_written_and_looked_up(llvm_variant, tmp_path, small_tables, kind):
     make, quarters = SYMMETRIES[kind]
     brdf = make()
-    assert encoding.symmetry(brdf.eval) == quarters
+    assert encoding.detect_symmetry(brdf.eval) == quarters
     material = saved(brdf, tmp_path / "surface.bsdf")
     assert material.anisotropic == (quarters > 0)
     wi, wo = random_pairs(5000, seed=4)

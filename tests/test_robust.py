@@ -8,7 +8,7 @@ from brdfkit.checks.subject import random_pairs
 from brdfkit.fitting.loss import losses
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.robust import WEIGHTS, robust_least_squares
-from brdfkit.measured.selection import selected
+from brdfkit.measured.selection import select_samples
 
 # y = 10 - 2x + e with the last one set to 0; MATLAB's robustfit (Kurt 2007, digest 6.5)
 NOISE = [0.5377, 1.8339, -2.2588, 0.8622, 0.3188, -1.3077, -0.4336, 0.3426, 3.5784, 2.7694]
@@ -85,7 +85,7 @@ def test_a_linear_fit_is_the_least_squares():
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
     for name in ("bisquare", "huber"):
         fit = bk.fit("koenderink", data, "plain", robust=name)
-        problem = Problem(type(fit.model), selected(data, 80.0), losses["plain"])
+        problem = Problem(type(fit.model), select_samples(data, 80.0), losses["plain"])
         columns, _ = problem.columns({})
         found = robust_least_squares(columns.T, values[:, 0], name)
         weights = [fit.values[n] for n in fit.model.weights()]
@@ -98,10 +98,12 @@ def test_the_thesis_polynomial(measured_data):
     expected = {None: 0.011160, "bisquare": 0.0243}
     for robust, error in expected.items():
         fit = bk.fit("pca_polynomial:degree=7", data, "plain", robust=robust)
-        cosine = Problem(type(fit.model), selected(data, 80.0), losses["cosine"])
+        cosine = Problem(type(fit.model), select_samples(data, 80.0), losses["cosine"])
         shapes = {n: fit.values[n] for n in fit.model.shapes()}
         weights = np.array([fit.values[n] for n in fit.model.weights()]).T
-        assert cosine.scale * cosine.error(shapes, weights) ** 0.5 == pytest.approx(error, rel=3e-3)
+        assert cosine.scale * cosine.squared_error(shapes, weights) ** 0.5 == pytest.approx(
+            error, rel=3e-3
+        )
 
 
 @pytest.mark.quick

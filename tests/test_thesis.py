@@ -16,7 +16,7 @@ from random_models import random_model
 import brdfkit as bk
 from brdfkit.fitting.loss import losses
 from brdfkit.geometry.directions import from_angles
-from brdfkit.measured.selection import selected
+from brdfkit.measured.selection import select_samples
 from brdfkit.model import double_precision
 from brdfkit.model.lobes import HalfVector
 from brdfkit.model.microfacet import Beckmann
@@ -65,8 +65,8 @@ class Sample:
 
     @classmethod
     def of(cls, data):
-        samples = selected(data, 80)
-        cosines, weights = losses["cosine"].geometry(samples)
+        samples = select_samples(data, 80)
+        cosines, weights = losses["cosine"].factors(samples)
         return cls(samples.wi, samples.wo, samples.values[:, 0], cosines, weights)
 
     def solve(self, lobes, weights=None):

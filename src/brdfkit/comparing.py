@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.fitting import losses
-from brdfkit.materials import MaterialLike, materials, measured
-from brdfkit.measured.selection import selected
+from brdfkit.materials import MaterialLike, materials, measured_material
+from brdfkit.measured.selection import select_samples
 from brdfkit.model import double_precision
 from brdfkit.names import make_unique
 from brdfkit.threads import in_turn
@@ -40,12 +40,12 @@ class Comparison:
         width = max(map(len, [self.material, *self.errors]))
         lines = [f"{self.material:<{width}}" + "".join(f"{n:>12}" for n in names)]
         for name, row in self.errors.items():
-            lines.append(f"{name:<{width}}" + "".join(f"{figure(row[n]):>12}" for n in names))
+            lines.append(f"{name:<{width}}" + "".join(f"{format_error(row[n]):>12}" for n in names))
         return "\n".join(lines)
 
 
-def figure(error):
-    """An error in print, a dash where there is none."""
+def format_error(error):
+    """An error as text; a dash for nan."""
     return "-" if math.isnan(error) else f"{error:.5f}"
 
 
@@ -78,7 +78,7 @@ def compare(
     --------
     >>> print(compare("car_paint", ["ward", fit("ggx", "car_paint")]))    # doctest: +SKIP
     """
-    data, found = measured(data), materials(things)
+    data, found = measured_material(data), materials(things)
     errors: dict[str, dict[str, float]] = {}
     for thing in found:
         errors[make_unique(thing.name, errors)] = {
@@ -90,23 +90,25 @@ def compare(
 def error(thing, data, loss, max_angle=80.0):
     """E of the loss named `loss` between `thing` (anything with `.eval`) and a `Measured`.
 
-    Over the samples with both angles below `max_angle` [degrees]; its units: `brdfkit.losses`.
-    nan where the loss weighs none of them, as the cosine loss at normal incidence.
+    E is computed over the samples with both angles below `max_angle` [degrees]; its units:
+    `brdfkit.losses`. It is nan where the loss weighs none of them, as the cosine loss does for
+    samples at normal incidence.
 
     >>> error(models()["lambert"](), load("paint.binary"), "log")    # doctest: +SKIP
     """
     loss = losses[loss]
-    samples = selected(data, max_angle)
-    cosines, weights = loss.geometry(samples)
+    samples = select_samples(data, max_angle)
+    cosines, weights = loss.factors(samples)
     target = loss.target(samples.values)
     values = np.broadcast_to(thing.eval(samples.wi, samples.wo), target.shape)
-    squares = np.square(_transformed(loss, values, cosines) - _transformed(loss, target, cosines))
+    squares = np.square(_transform(loss, values, cosines) - _transform(loss, target, cosines))
     total = weights @ squares.sum(axis=1)
     normaliser = loss.normaliser(weights, target.shape[1])
     return math.sqrt(total / normaliser) if normaliser else math.nan
 
 
 @in_turn
-def _transformed(loss, values, cosines):
+def _transform(loss, values, cosines):
+    """g(κf) (n, channels) of BRDF `values` (n, channels) and `cosines` κ (n,)."""
     columns = [loss.g(double_precision.array(v * cosines)) for v in values.T]
     return np.stack([np.asarray(c) for c in columns], axis=1)

@@ -1,4 +1,4 @@
-"""`convert`: a material into another file format, and what of it that changed."""
+"""`convert`: writes a material in another file format, and finds out what that changed."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,11 +11,11 @@ from brdfkit.geometry.directions import from_angles
 from brdfkit.loading import save_and_read
 from brdfkit.materials import Material, MaterialLike, material
 from brdfkit.measured import Measured
-from brdfkit.measured.tabulation import sampled, table_shape
+from brdfkit.measured.tabulation import table_shape, tabulate
 
-# Direction pairs where two materials are compared, up to so far from the normal
+# Two materials are compared at this many direction pairs, up to this angle from the normal
 PAIRS, STEEPEST = 4000, np.radians(80)
-EQUAL = 5e-4  # relative: below, it would read 0.0 %
+EQUAL = 5e-4  # relative difference: a smaller one would be printed as 0.0 %
 
 
 @dataclass(frozen=True)
@@ -67,20 +67,21 @@ def convert(thing: MaterialLike, path: str | Path) -> Conversion:
     """
     thing = material(thing)
     if isinstance(thing, Measured):
-        return Conversion(Path(path), changes(thing, save_and_read(thing, path)))
-    table = evaluated(thing)
-    note = f"{thing.name} evaluated at {len(table.values):,} direction pairs"
-    return Conversion(Path(path), (note, *changes(table, save_and_read(table, path))))
+        return Conversion(Path(path), list_changes(thing, save_and_read(thing, path)))
+    data = evaluate_on_grid(thing)
+    note = f"{thing.name} evaluated at {len(data.values):,} direction pairs"
+    return Conversion(Path(path), (note, *list_changes(data, save_and_read(data, path))))
 
 
-def evaluated(thing: Material) -> Measured:
-    """A fit or a model as a `Measured`: evaluated where a table would be, exact in between."""
+def evaluate_on_grid(thing: Material) -> Measured:
+    """A fit or a model as a `Measured`, whose samples are the cells of a table, and whose lookup
+    between them is `thing` itself."""
     model: Any = getattr(thing, "model", thing)
     free = getattr(model, "free_values", {})
     anisotropic = any(model.parameters[name].follows for name in free)
     up = np.array([[0.0, 0.0, 1.0]])
     channels = thing.eval(up, up).shape[1]
-    table = sampled(thing.eval, channels, table_shape(anisotropic))
+    table = tabulate(thing.eval, channels, table_shape(anisotropic))
     wi, wo = (w.reshape(-1, 3) for w in table.directions())
     values = table.values.reshape(-1, channels)
     above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
@@ -97,21 +98,21 @@ def evaluated(thing: Material) -> Measured:
     )
 
 
-def changes(before: Measured, after: Measured) -> tuple[str, ...]:
-    """What differs in the measured material `after`, and which notes it lacks, in words."""
-    old, new = facts(before), facts(after)
-    told = [f"{what} {old[what]} → {new[what]}" for what in old if old[what] != new[what]]
-    if difference := between(before, after):
-        told.append(f"between the samples: {difference}")
+def list_changes(before: Measured, after: Measured) -> tuple[str, ...]:
+    """The differences of `after` from `before`, and the notes that it lacks, in words."""
+    old, new = describe(before), describe(after)
+    changes = [f"{what} {old[what]} → {new[what]}" for what in old if old[what] != new[what]]
+    if difference := compare_lookups(before, after):
+        changes.append(f"between the samples: {difference}")
     if lost := [key for key in before.info if key not in after.info]:
-        told.append(f"without {', '.join(lost)}")
-    return tuple(told)
+        changes.append(f"without {', '.join(lost)}")
+    return tuple(changes)
 
 
-def between(before: Measured, after: Measured) -> str:
-    """How far `eval` of the one is from the other's, in words; "" where they are equal."""
+def compare_lookups(before: Measured, after: Measured) -> str:
+    """How far the values of `eval` are apart, in words; "" where they are equal."""
     if not any(data.is_table or data.has_lookup for data in (before, after)):
-        return ""  # samples alone are interpolated in one and the same way
+        return ""  # equal samples are interpolated equally
     if before.channels != after.channels:
         before, after = before.rgb, after.rgb
     random = np.random.default_rng(0)
@@ -124,8 +125,8 @@ def between(before: Measured, after: Measured) -> str:
     return f"{median:.1%} in the median, 95 of 100 within {most:.1%}" if most >= EQUAL else ""
 
 
-def facts(data: Measured) -> dict[str, str]:
-    """What is in a measured material apart from its notes, in words."""
+def describe(data: Measured) -> dict[str, str]:
+    """The contents of a measured material, without its notes, in words by topic."""
     samples, channels, errors = data.samples, data.channels, data.standard_error
     values = samples.values[samples.valid]
     cosine = min(w[samples.valid, 2].min() for w in (samples.wi, samples.wo))
@@ -138,9 +139,9 @@ def facts(data: Measured) -> dict[str, str]:
         "angles": f"to {np.degrees(np.arccos(cosine)):.1f}°",
         "negative": f"{(values < 0).mean():.2%} of the values",
         "BRDF": f"{values.min():.4g} to {values.max():.4g}, median {np.median(values):.4g} sr⁻¹",
-        "standard error": "none" if errors is None else _median(errors[samples.valid]),
+        "standard error": "none" if errors is None else _describe_errors(errors[samples.valid]),
     }
 
 
-def _median(errors: NDArray[np.float64]) -> str:
+def _describe_errors(errors: NDArray[np.float64]) -> str:
     return f"{np.median(errors):.3g} sr⁻¹ in the median"

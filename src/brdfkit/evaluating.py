@@ -1,4 +1,4 @@
-"""The numbers of a material: `evaluate`, its BRDF, and `albedo`, what it reflects of all light."""
+"""`evaluate` and `albedo`: the BRDF of a material, and the share of light that it reflects."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -42,7 +42,7 @@ def evaluate(brdf: MaterialLike, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.flo
         )
     if not np.allclose(np.linalg.norm([wi, wo], axis=-1), 1, atol=1e-4):
         raise BrdfkitError("evaluate: wi and wo should be unit vectors.")
-    if len(wi) == 0:  # no direction, but as many channels as of any
+    if len(wi) == 0:  # an empty array, with the channels of the material
         return brdf.eval(*[np.array([[0.0, 0.0, 1.0]])] * 2)[:0]
     return brdf.eval(wi, wo)
 
@@ -74,16 +74,16 @@ def albedo(brdf: MaterialLike, wi: ArrayLike) -> NDArray[np.float64]:
     >>> albedo(models()["lambert"](diffuse_reflectance=0.5), [0, 0, 1]).round(4)
     array([0.5])
     """
-    return directional_albedo(material(brdf, needed=("eval",)).eval, _incidence(wi))
+    return directional_albedo(material(brdf, needed=("eval",)).eval, _check_incidence(wi))
 
 
-def _incidence(wi: ArrayLike) -> NDArray[np.float64]:
-    """`wi` as a unit vector (3,) above the surface, or an error."""
+def _check_incidence(wi: ArrayLike) -> NDArray[np.float64]:
+    """`wi` as a unit vector (3,) above the surface; `BrdfkitError` for anything else."""
     try:
         found = np.array(wi, float)
     except (TypeError, ValueError):
         found = np.empty(0)
-    # not <: NaN is refused as well
+    # "not (a <= b)" in place of "a > b", so that NaN is refused, too
     if found.shape != (3,) or not (abs(np.linalg.norm(found) - 1) <= 1e-4 and found[2] > 0):
         raise BrdfkitError(
             f"albedo: wi = {wi} should be one unit vector above the surface, such as [0, 0, 1]."

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from brdfkit.errors import no_such
 from brdfkit.fitting import Fit, losses, regress
-from brdfkit.fitting.arguments import by_name, pair, whole_number
+from brdfkit.fitting.arguments import to_dictionary, to_pair, to_whole_number
 from brdfkit.fitting.robust import WEIGHTS
-from brdfkit.materials import MaterialLike, measured
-from brdfkit.measured.selection import selected
+from brdfkit.materials import MaterialLike, measured_material
+from brdfkit.measured.selection import select_samples
 from brdfkit.model import Model, labels
 from brdfkit.model.evaluation import clamped_share
 from brdfkit.threads import in_turn
@@ -83,16 +83,17 @@ def fit(
     >>> print(fit("ward", "paint.binary"))    # doctest: +SKIP
     """
     began = time.perf_counter()
-    model, data = labels.model(labels.read_files(name)), measured(data)
+    model, data = labels.model(labels.read_files(name)), measured_material(data)
     if not isinstance(loss, str) or loss not in losses:
         raise no_such("loss", loss, losses)
     if robust not in (None, *WEIGHTS):
         raise no_such("robust weight", robust, WEIGHTS)
-    starts, seed = whole_number("starts", starts, least=1), whole_number("seed", seed, least=0)
-    bounds, fixed = by_name("bounds", bounds), by_name("fixed", fixed)
-    bounds = {n: pair(f"{model.type_name()}: the bounds of {n}", v) for n, v in bounds.items()}
+    starts = to_whole_number("starts", starts, least=1)
+    seed = to_whole_number("seed", seed, least=0)
+    bounds, fixed = to_dictionary("bounds", bounds), to_dictionary("fixed", fixed)
+    bounds = {n: to_pair(f"{model.type_name()}: the bounds of {n}", v) for n, v in bounds.items()}
     anisotropic = data.anisotropic if anisotropic is None else anisotropic
-    samples = selected(data, max_angle)
+    samples = select_samples(data, max_angle)
     how = {"seed": seed, "starts": starts, "bounds": bounds, "fixed": fixed}
     how["anisotropic"] = anisotropic
 
@@ -109,13 +110,13 @@ def fit(
         seconds=time.perf_counter() - began,
         message=found.message,
         at_bounds=found.at_bounds,
-        notes=(*found.notes, *_notes(data, samples, losses[loss], found, fitted)),
+        notes=(*found.notes, *_list_notes(data, samples, losses[loss], found, fitted)),
         settings={"robust": robust, "max_angle": float(max_angle), **how},
     )
 
 
-def _notes(data, samples, loss, found, fitted):
-    """What one should know of a fit, in words."""
+def _list_notes(data, samples, loss, found, fitted):
+    """Notes on a fit, in words: too few measured numbers, negative values, a clamped model."""
     notes = []
     known, sought = samples.values.size, found.weights.size + len(found.shapes)
     if known < sought:
@@ -124,15 +125,15 @@ def _notes(data, samples, loss, found, fitted):
         )
     negative = (samples.values < 0).mean()
     if negative and not loss.linear:
-        notes.append(f"{negative:.1%} of the {_negative(data)}")
+        notes.append(f"{negative:.1%} of the {_explain_negative(data)}")
     if fitted.signed():
         clamped = clamped_share(fitted)
         notes.append(f"{clamped:.1%} of the hemisphere's direction pairs are clamped at 0")
     return tuple(notes)
 
 
-def _negative(data):
-    """Which values are negative, why, and what that does to a fit."""
+def _explain_negative(data):
+    """The end of a note in words: which values are negative, and what this does to the fit."""
     if data.rgb is not data and (data.values[data.samples.valid] >= 0).all():
         return (
             "values in linear sRGB are negative and count as 0, though none was measured so: these "

@@ -43,8 +43,8 @@ def load(path: str | Path) -> Measured | Fit:
     if not str(path):
         raise BrdfkitError("The path is empty; name a file, or a material that brdfkit knows.")
     path, sample = _split(path)
-    if not os.path.isfile(path):  # False, too, for what no path can be
-        path = _known(path.as_posix()) or path
+    if not os.path.isfile(path):  # isfile is False, too, for text that cannot be a path
+        path = _find_known(path.as_posix()) or path
     return formats.read(formats.Source(path, sample, contents(path)))
 
 
@@ -74,7 +74,7 @@ def save(obj: Measured | Fit | Model, path: str | Path) -> None:
 
 
 def save_and_read(obj: Measured, path: str | Path) -> Measured:
-    """`save`, and what the file holds: nothing is written that could not be read again.
+    """`save`, then what `load` makes of the file; nothing is written if it cannot be read again.
 
     >>> save_and_read(load("copper.astm"), "copper.npz").name  # doctest: +SKIP
     'copper'
@@ -90,8 +90,8 @@ def save_and_read(obj: Measured, path: str | Path) -> Measured:
             ) from error
 
 
-def _known(name: str) -> Path | None:
-    """The file of a known material, None where the name is none."""
+def _find_known(name: str) -> Path | None:
+    """The file of the material that brdfkit knows by `name`, None for another name."""
     if name in shipped.materials():
         return shipped.path(name)
     if name.partition("/")[0] in index.entries()["collections"] and "/" in name:
@@ -100,7 +100,8 @@ def _known(name: str) -> Path | None:
 
 
 def _split(path: str | Path) -> tuple[Path, str | None]:
-    """The path and the sample named behind its last '#', unless that is part of the name."""
+    """The path before its last '#', and the sample named behind it; the whole path and None where
+    there is no '#', or where it belongs to the name of a file."""
     path = Path(path)
     name, hash_sign, sample = path.name.rpartition("#")
     if not hash_sign or not name or os.path.exists(path):

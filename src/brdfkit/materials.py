@@ -1,9 +1,9 @@
-"""What is a material, for every verb that takes one.
+"""What verbs accept as a material: an object, a name, a path or a dictionary.
 
-A measured material, a fit, or a model with values: all have a `name`, `eval(wi, wo)` and
-`scene_dict()`. The name or path of one stands for it, in Python as on the command line: a model by
-its label, with its defaults; a file that `load` reads; a material that brdfkit knows. So does the
-dictionary of a BSDF of Mitsuba's.
+A material is a measured one, a fit, or a model with values: all have a `name`, `eval(wi, wo)` and
+`scene_dict()`. In its place one can give a name or a path, in Python as on the command line: the
+label of a model, which then has its defaults; a file that `load` reads; or the name of a material
+that brdfkit knows. The dictionary of one of Mitsuba's BSDFs is a material, too.
 """
 
 import os
@@ -28,7 +28,7 @@ class Material(Protocol):
 
     @property
     def name(self) -> str:
-        """What pictures and tables call it."""
+        """The name in pictures and tables."""
 
     def eval(self, wi: NDArray[np.float64], wo: NDArray[np.float64]) -> NDArray[np.float64]:
         """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3)."""
@@ -42,15 +42,16 @@ ATTRIBUTES = "name", "eval", "scene_dict"
 
 
 def material(thing: MaterialLike, needed: Iterable[str] = ATTRIBUTES) -> Material:
-    """`thing` itself, once it has the `needed` attributes, or what its name or path stands for.
+    """The material that `thing` is, or stands for as a name, a path or a dictionary.
 
-    Raises `BrdfkitError`, one and the same for every verb, for what is no material.
+    An object with the `needed` attributes is returned as it is. Raises `BrdfkitError`, the same one
+    for every verb, for anything that is no material.
 
     >>> material("ward").alpha_u
     0.2
     """
     if isinstance(thing, str | Path):
-        return _named(str(thing))
+        return _find(str(thing))
     if isinstance(thing, dict):
         return BsdfMaterial.of(thing)
     if isinstance(thing, type) and hasattr(thing, "lobes"):
@@ -58,8 +59,8 @@ def material(thing: MaterialLike, needed: Iterable[str] = ATTRIBUTES) -> Materia
         raise BrdfkitError(f"{name} is a model without values; call it: {name}().")
     if not all(hasattr(thing, attribute) for attribute in needed):
         raise BrdfkitError(
-            f"{_shown(thing)} is no material; give a measured one, a fit, a model with values, a "
-            "BSDF's dictionary, or the name or path of one."
+            f"{_describe(thing)} is no material; give a measured one, a fit, a model with values, "
+            "a BSDF's dictionary, or the name or path of one."
         )
     return thing
 
@@ -67,7 +68,10 @@ def material(thing: MaterialLike, needed: Iterable[str] = ATTRIBUTES) -> Materia
 def materials(
     things: MaterialLike | Iterable[MaterialLike], needed: Iterable[str] = ATTRIBUTES
 ) -> list[Material]:
-    """One material or several, as a list; at least one."""
+    """The `material` of each of `things`, as a list; one thing alone gives a list of one.
+
+    Raises `BrdfkitError` where there is none.
+    """
     if isinstance(things, str | dict) or not isinstance(things, Iterable):
         things = [things]
     found = [material(thing, needed) for thing in things]
@@ -76,8 +80,8 @@ def materials(
     return found
 
 
-def measured(thing: MaterialLike) -> Measured:
-    """A `Measured`, or what its name or path stands for; `BrdfkitError` for another material."""
+def measured_material(thing: MaterialLike) -> Measured:
+    """The `material` of `thing`, which must be a `Measured`: `BrdfkitError` for any other."""
     found = material(thing)
     if not isinstance(found, Measured):
         raise BrdfkitError(
@@ -86,8 +90,9 @@ def measured(thing: MaterialLike) -> Measured:
     return found
 
 
-def _named(name: str) -> Material:
-    """The material of a name: of a model, where no file bears it, else of a file or known name."""
+def _find(name: str) -> Material:
+    """The material of a name: a model of that label, unless a file has the same name; otherwise the
+    file's content or the known material."""
     label = labels.read_files(name)
     if labels.is_label(label) and (label != name or not os.path.isfile(name)):
         return labels.model(label)()
@@ -99,7 +104,7 @@ def _named(name: str) -> Material:
     raise no_such("file, model or material", name, [*labels.models(), *shipped.materials()])
 
 
-def _shown(thing: object) -> str:
-    """In one line, whatever it is."""
+def _describe(thing: object) -> str:
+    """Any object in one line: the beginning of its `repr`, and its type."""
     kind, words = type(thing).__name__, " ".join(repr(thing).split())
     return f"{words[:40]}{'…' if len(words) > 40 else ''} ({kind})"

@@ -16,7 +16,7 @@ from brdfkit.auditing.noise import Noise, noise
 from brdfkit.auditing.pairs import Difference, by_mirror, by_reciprocity
 from brdfkit.auditing.ratios import grazing, retroreflection
 from brdfkit.auditing.spikes import Spike, spikes
-from brdfkit.materials import MaterialLike, measured
+from brdfkit.materials import MaterialLike, measured_material
 from brdfkit.measured.spectra import rgb_or_mean
 
 if TYPE_CHECKING:
@@ -140,7 +140,7 @@ def audit(data: MaterialLike) -> Audit:
     --------
     >>> print(audit("copper.astm"))    # doctest: +SKIP
     """
-    data = measured(data)
+    data = measured_material(data)
     samples = data.samples
     above = (samples.wi[:, 2] > 0) & (samples.wo[:, 2] > 0)
     values = samples.values[samples.valid]

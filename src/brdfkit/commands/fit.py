@@ -45,7 +45,7 @@ def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed,
     """
     from brdfkit.commands._targets import fit_file, results
     from brdfkit.comparing import compare
-    from brdfkit.materials import measured
+    from brdfkit.materials import measured_material
     from brdfkit.model import labels
     from brdfkit.names import slug
     from brdfkit.rendering.memory import require_memory
@@ -54,7 +54,7 @@ def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed,
     for name in names:
         labels.model(name)
     with console.progress(f"read {file}"):
-        material = measured(file)
+        material = measured_material(file)
     if rendered:
         require_memory((size, size), 1 + len(names))
         output = output or Path(slug(material.name))
@@ -110,7 +110,7 @@ def _fit_each(names, material, how, output, console):
 
 
 def _print_fits(material, fits, failed, comparison, psnr, written, console):
-    from brdfkit.comparing import figure
+    from brdfkit.comparing import format_error
 
     if console.as_json:
         records = [_record(f, comparison, psnr) for f in fits]
@@ -124,7 +124,7 @@ def _print_fits(material, fits, failed, comparison, psnr, written, console):
     image = [">PSNR [dB]"] if psnr else []
     columns, rows = ["model", *losses, *image, ">time [s]"], []
     for found in fits:
-        errors = [figure(e) for e in comparison.errors[found.name].values()]
+        errors = [format_error(e) for e in comparison.errors[found.name].values()]
         image = [f"{psnr[found.name]:.1f}"] if psnr else []
         rows.append((found.name, *errors, *image, f"{found.seconds:.2f}"))
     console.table(columns, rows, title=f"{material.name}: errors")

@@ -27,7 +27,7 @@ def info(file, output, console):
     from brdfkit.auditing import audit
     from brdfkit.catalogue import shipped
     from brdfkit.commands._targets import figure_file, write_figure
-    from brdfkit.materials import measured
+    from brdfkit.materials import measured_material
 
     if file is None and output:
         raise BrdfkitError("A picture shows a measurement: name a FILE.")
@@ -36,7 +36,7 @@ def info(file, output, console):
         return
     output = output and figure_file(output)
     with console.progress(f"read {file}"):
-        material = measured(file)
+        material = measured_material(file)
     with console.progress("audit"):
         found = audit(material)
     if output:

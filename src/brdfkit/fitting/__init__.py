@@ -1,8 +1,9 @@
 """The numeric core of a fit: a model regressed on samples, without files and without Mitsuba.
 
-`loss.py`: what is made small; `problem.py`: that as a function of the shape parameters, with the
-weights solved inside (`weights.py`); `space.py`: where the search goes and begins; `search.py`: SQP
-from one start; `robust.py`: outliers; `regression.py`: one after the other; `result.py`: a `Fit`.
+`loss.py`: the error E that a fit minimises; `problem.py`: E² as a function of the shape parameters,
+with the best weights for each of their values (`weights.py`); `space.py`: the search space and its
+start points; `search.py`: SQP from one start; `robust.py`: outliers; `regression.py`: runs these
+one after the other; `result.py`: `Fit`.
 """
 
 from brdfkit.fitting.loss import losses as losses

@@ -1,4 +1,4 @@
-"""What `fit` is given, or an error that names it."""
+"""Checks the arguments of `fit`: a wrong one is an error that names it."""
 
 from collections.abc import Mapping
 
@@ -7,21 +7,21 @@ import numpy as np
 from brdfkit.errors import BrdfkitError
 
 
-def whole_number(what, value, least):
-    """`value` as an int of at least `least`."""
+def to_whole_number(what, value, least):
+    """`value` as an int of at least `least`; `what` names the argument in the error."""
     if not isinstance(value, int | np.integer) or value < least:
         raise BrdfkitError(f"{what} = {value!r} should be a whole number, at least {least}.")
     return int(value)
 
 
-def by_name(what, given):
-    """`given` as a dictionary, empty for None."""
+def to_dictionary(what, given):
+    """`given` as a dictionary by parameter, empty for None."""
     if not isinstance(given, Mapping | None):
         raise BrdfkitError(f"{what} = {given!r} should be a dictionary by parameter.")
     return dict(given or {})
 
 
-def pair(what, given):
+def to_pair(what, given):
     """`given` as two floats."""
     try:
         low, high = map(float, given)

@@ -1,11 +1,12 @@
-"""Losses: what a fit makes small.
+"""Losses: the errors E that a fit minimises.
 
     E² = Σ_n w_n Σ_c [g(κ_n R_nc) - g(κ_n M_nc)]² / N
 
-R is measured, M the model, κ a factor of cosines and g a transform that weighs dark against
-bright. Samples with an angle beyond 80° are left out, where measurements are least reliable
-[Ngan et al. 2005]. A negative measurement (noise, or a colour out of gamut) counts as it is in the
-cosine and the plain loss, and as 0 in the others, whose g knows no negative BRDF.
+R is the measured BRDF and M the model's, at sample n in channel c. κ is a product of cosines, w the
+sample's weight, and N normalises. The transform g decides how much dark values count beside bright
+ones. Samples with an angle beyond 80° are left out, where measurements are least reliable
+[Ngan et al. 2005]. A measured value may be negative (noise, or a colour out of gamut): the cosine
+and the plain loss take it as it is, the others as 0, because their g needs values ≥ 0.
 """
 
 from collections.abc import Callable
@@ -14,15 +15,20 @@ from dataclasses import dataclass
 import drjit as dr
 import numpy as np
 
-# Below this the logarithm turns linear: about the noise of a measured table, in sr⁻¹
+# Added inside the logarithm, which is nearly linear for smaller values: about the noise of a
+# measured table [sr⁻¹]
 LOG_OFFSET = 1e-3
-# The cube root has no derivative at 0
+# Added inside the cube root, which has no derivative at 0
 CBRT_OFFSET = 1e-6
 
 
 @dataclass(frozen=True)
 class Loss:
-    """One loss. `g`, its derivative `dg` and second derivative `ddg` take Dr.Jit arrays."""
+    """One loss. `g`, its derivative `dg` and second derivative `ddg` take Dr.Jit arrays.
+
+    `cosines(cos_i, cos_o)` gives κ, `weights(wi)` gives w; `linear`: whether g is the identity;
+    `channel_mean`: whether E² is a mean over the channels, otherwise their sum.
+    """
 
     name: str
     meaning: str
@@ -34,13 +40,13 @@ class Loss:
     linear: bool = False
     channel_mean: bool = True
 
-    def geometry(self, samples):
-        """(κ, w), each (n,), of `Samples`; w times how much each counts."""
+    def factors(self, samples):
+        """(κ, w), each (n,), of `Samples`; w includes how much each sample counts."""
         cosines = self.cosines(samples.wi[:, 2], samples.wo[:, 2])
         return cosines, self.weights(samples.wi) * samples.weight
 
     def target(self, values):
-        """`values` (n, channels) as the loss sees them: g takes no negative BRDF, which is 0."""
+        """The values (n, channels) that g takes: negative ones are 0 unless g is the identity."""
         return values if self.linear else np.maximum(values, 0)
 
     def normaliser(self, weights, channels):

@@ -1,13 +1,15 @@
-"""Robust least squares: iteratively reweighted, so that outliers lose their say.
+"""Robust least squares: repeated with new weights of the samples, so that outliers count less.
 
-Every pass weighs a sample by its residual in the pass before,
+Every pass weighs a sample by its residual after the pass before,
 
     r = residual / (tune · s · √(1 - h)),   s = MAD / 0.6745,
 
-h its leverage, MAD the median of the absolute residuals. [Holland & Welsch 1977]; [Kurt 2007, eqs.
-5.14, 5.15], whose constants, and the order of the steps, are those of MATLAB's robustfit.
+where h is the sample's leverage and MAD the median of the absolute residuals. [Holland & Welsch
+1977]; [Kurt 2007, eqs. 5.14, 5.15]. The constants and the order of the steps are those of MATLAB's
+robustfit.
 
-The bisquare removes noise, and with it any peak that a model cannot follow: compare the loss.
+The bisquare ignores noise, but also any peak that the model cannot follow: compare the loss with
+that of a fit that is not robust.
 """
 
 from dataclasses import dataclass
@@ -44,7 +46,8 @@ WEIGHTS = {
 
 @dataclass(frozen=True)
 class Reweighted:
-    """Where the passes ended: `solution`, `weights` (n,) of the samples, `passes`, `converged`."""
+    """Where the passes ended: `solution`, the samples' `weights` (n,), the number of `passes`, and
+    whether they `converged`."""
 
     solution: np.ndarray
     weights: np.ndarray
@@ -53,9 +56,10 @@ class Reweighted:
 
 
 def reweight(solve, weigh, start, tolerance=TOLERANCE):
-    """Repeat `solve(weigh(solution), solution)` from the `start` until the solution rests.
+    """Repeat solution = `solve(weigh(solution), solution)` from `start` until it converges.
 
-    Solutions are arrays; they rest when no entry changes by more than `tolerance` of itself.
+    A solution is an array. It has converged when no entry changes by more than `tolerance` times
+    itself.
     """
     solution = start
     for number in range(1, PASSES + 1):
@@ -68,10 +72,11 @@ def reweight(solve, weigh, start, tolerance=TOLERANCE):
 
 
 def sample_weights(residuals, name, rank, least, tune=None):
-    """Weights (n,) by `residuals` (n,), already divided by √(1 - h).
+    """Weights (n,) of samples by their `residuals` (n,), already divided by √(1 - h).
 
-    `name`: in `WEIGHTS`; `rank`: number of parameters, as many of the smallest residuals but one
-    tell nothing of the scale; `least`: scale below which residuals count as rounding.
+    `name`: in `WEIGHTS`; `rank`: the number of parameters: the smallest rank - 1 residuals are
+    nearly zero by construction and are left out of the scale; `least`: the least scale: smaller
+    residuals are rounding errors; `tune`: replaces the constant of the weight.
     """
     function, usual = WEIGHTS[name]
     ordered = np.sort(np.abs(residuals))
@@ -79,8 +84,9 @@ def sample_weights(residuals, name, rank, least, tune=None):
     return function(residuals / (scale * (tune or usual)))
 
 
-def _require_more(samples, rank):
-    """An error where every sample can be met: no residual then tells of the scale."""
+def _require_more_samples(samples, rank):
+    """Raise `BrdfkitError` unless there are more `samples` than parameters: with as few, the model
+    can meet every sample, and no residual tells the scale of the noise."""
     if samples <= rank:
         raise BrdfkitError(
             f"A robust fit needs more samples than parameters; here are {samples} and {rank}: "
@@ -89,12 +95,13 @@ def _require_more(samples, rank):
 
 
 def least_scale(values):
-    """1e-6 of the spread of the `values` that are fitted."""
+    """The least scale of residuals: 1e-6 of the standard deviation of the fitted `values`."""
     return 1e-6 * np.std(values, ddof=1) or 1.0
 
 
 def leverages(columns):
-    """h (n,) of `columns` (parameters, n): the diagonal of the projection onto them, below 1."""
+    """The leverages h (n,) of `columns` (parameters, n): the diagonal of the projection onto them,
+    kept below 1."""
     gram = columns @ columns.T
     return np.minimum(np.einsum("in,in->n", columns, np.linalg.pinv(gram) @ columns), 0.9999)
 
@@ -102,15 +109,15 @@ def leverages(columns):
 def robust_least_squares(design, values, name="bisquare", tune=None):
     """The `Reweighted` that fits `design` (n, parameters) · solution to `values` (n,).
 
-    A constant column is not added. Converged is False after 50 passes: the bisquare may go round
-    in circles. Raises `BrdfkitError` unless there are more values than parameters.
+    No constant column is added. `converged` is False after 50 passes: the bisquare may alternate
+    between solutions. Raises `BrdfkitError` unless there are more values than parameters.
 
     >>> x = np.arange(5.0)
     >>> robust_least_squares(np.stack([np.ones(5), x], 1), 2 * x).solution.round(6)
     array([-0.,  2.])
     """
     design, values = np.asarray(design, float), np.asarray(values, float)
-    _require_more(*design.shape)
+    _require_more_samples(*design.shape)
     lever = np.sqrt(1 - leverages(design.T))
     rank, least = np.linalg.matrix_rank(design), least_scale(values)
 
@@ -125,32 +132,34 @@ def robust_least_squares(design, values, name="bisquare", tune=None):
 
 
 def robust_search(problem, space, u, name, report):
-    """The `Reweighted` of a fit from its optimum `u` without weights.
+    """The `Reweighted` of a fit; `u`: its optimum where all samples count alike.
 
-    The solution is u, then the weights (channels, lobes) of the model; a sample is weighed in
-    each channel by itself, (channels, n). The leverages are those of the linear parameters.
+    A solution is the coordinates u, then the model's weights (channels, lobes). The weights of the
+    samples are (channels, n): a sample may count less in one channel than in another. The leverages
+    are those of the linear parameters.
     """
 
     def split(solution):
         return solution[: len(u)], solution[len(u) :].reshape(problem.channels, -1)
 
-    def at(solution):
+    def residuals_at(solution):
         u, weights = split(solution)
         return problem.residuals(space.values(u) | space.fixed, weights)
 
-    def solved(problem, u):
+    def add_weights(problem, u):
         return np.concatenate([u, problem.solve(space.values(u) | space.fixed).ravel()])
 
-    start, root = solved(problem, u), np.sqrt(problem.importance)
+    # Leverages and the least scale do not change from pass to pass
+    start, root = add_weights(problem, u), np.sqrt(problem.importance)
     rank = len(start) // problem.channels
-    _require_more(len(root), rank)
-    levers = [np.sqrt(1 - leverages(columns)) for columns in at(start)[1]]
+    _require_more_samples(len(root), rank)
+    levers = [np.sqrt(1 - leverages(columns)) for columns in residuals_at(start)[1]]
     least = [least_scale(root * np.asarray(target)) for target in problem.targets]
     passes = iter(range(1, PASSES + 1))
 
     def weigh(solution):
         report(next(passes), PASSES)
-        residuals, _ = at(solution)
+        residuals, _ = residuals_at(solution)
         return np.array(
             [
                 sample_weights(r / lever, name, rank, floor)
@@ -160,7 +169,7 @@ def robust_search(problem, space, u, name, report):
 
     def solve(weights, before):
         again = problem.reweighted(weights)
-        return solved(again, slsqp(again, space, split(before)[0]).u if space.names else u)
+        return add_weights(again, slsqp(again, space, split(before)[0]).u if space.names else u)
 
-    # A search stops short of a linear solution's digits
+    # A search is less precise than the solution of a linear problem
     return reweight(solve, weigh, start, 1e-5 if space.names else TOLERANCE)

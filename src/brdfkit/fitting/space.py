@@ -1,6 +1,7 @@
-"""The space that a fit searches: the shape parameters within their bounds, and where it begins.
+"""The search space of a fit: the shape parameters within their bounds, and the start points.
 
-Coordinates run from 0 to 1 between the bounds, logarithmically where the parameter says so.
+A coordinate runs from 0 at the lower to 1 at the upper bound of its parameter, logarithmically for
+a parameter that is declared so.
 """
 
 from dataclasses import dataclass
@@ -22,34 +23,13 @@ class Space:
 
     @classmethod
     def of(cls, model, bounds, fixed, anisotropic):
-        """The shape parameters of `model` to search, within its bounds or narrower ones.
+        """The space of the shape parameters of `model` that are not `fixed`, within its bounds or
+        the narrower `bounds`.
 
         Raises `BrdfkitError` for a parameter that is not searched, and bounds beyond the model's.
         """
         shapes = model.shapes(anisotropic)
-        for name in (*bounds, *fixed):
-            if name not in shapes:
-                model.parameter(name)
-                raise BrdfkitError(
-                    f"{model.type_name()}: {name} is not searched, so it can be neither bounded "
-                    f"nor fixed; searched are {', '.join(shapes) or 'none'}."
-                )
-        if both := set(bounds) & set(fixed):
-            raise BrdfkitError(
-                f"{model.type_name()}: {both.pop()} is bounded and fixed; choose one."
-            )
-        for name, (low, high) in bounds.items():
-            allowed = model.parameters[name].bounds
-            if not allowed[0] <= low < high <= allowed[1]:
-                raise BrdfkitError(
-                    f"{model.type_name()}: the bounds {low:g}..{high:g} of {name} should lie "
-                    f"within {allowed[0]:g}..{allowed[1]:g}."
-                )
-        if unknown := [name for name, value in fixed.items() if value is None]:
-            raise BrdfkitError(
-                f"{model.type_name()}: {unknown[0]} is fixed at None; give a number."
-            )
-        model(**fixed)  # within the bounds
+        _check(model, shapes, bounds, fixed)
         names = tuple(name for name in shapes if name not in fixed)
         limits = [bounds.get(n, model.parameters[n].bounds) for n in names]
         low, high = np.array(limits).reshape(-1, 2).T
@@ -57,12 +37,12 @@ class Space:
         return cls(names, low, high, log, {k: float(v) for k, v in fixed.items()})
 
     def values(self, u):
-        """Parameters by name at coordinates `u` in [0, 1]."""
+        """The parameters by name at coordinates `u`."""
         linear = self.low + u * (self.high - self.low)
         return dict(zip(self.names, np.where(self.log, self._geometric(u), linear), strict=True))
 
     def coordinates(self, values):
-        """Coordinates in [0, 1] of parameters by name."""
+        """The coordinates of parameters by name, clamped to [0, 1]."""
         x = np.array([values[name] for name in self.names])
         linear = (x - self.low) / (self.high - self.low)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -70,7 +50,7 @@ class Space:
         return np.clip(np.where(self.log, log, linear), 0, 1)
 
     def slopes(self, u):
-        """d parameter / d coordinate."""
+        """The derivative of each parameter by its coordinate, at coordinates `u`."""
         with np.errstate(divide="ignore", invalid="ignore"):
             log = self._geometric(u) * np.log(self.high / self.low)
         return np.where(self.log, log, self.high - self.low)
@@ -80,8 +60,32 @@ class Space:
             return self.low * (self.high / self.low) ** u
 
 
+def _check(model, shapes, bounds, fixed):
+    """Raise `BrdfkitError` for bounds or fixed values that the search cannot have."""
+    for name in (*bounds, *fixed):
+        if name not in shapes:
+            model.parameter(name)
+            raise BrdfkitError(
+                f"{model.type_name()}: {name} is not searched, so it can be neither bounded "
+                f"nor fixed; searched are {', '.join(shapes) or 'none'}."
+            )
+    if both := set(bounds) & set(fixed):
+        raise BrdfkitError(f"{model.type_name()}: {both.pop()} is bounded and fixed; choose one.")
+    for name, (low, high) in bounds.items():
+        allowed = model.parameters[name].bounds
+        if not allowed[0] <= low < high <= allowed[1]:
+            raise BrdfkitError(
+                f"{model.type_name()}: the bounds {low:g}..{high:g} of {name} should lie "
+                f"within {allowed[0]:g}..{allowed[1]:g}."
+            )
+    if unknown := [name for name, value in fixed.items() if value is None]:
+        raise BrdfkitError(f"{model.type_name()}: {unknown[0]} is fixed at None; give a number.")
+    model(**fixed)  # raises for values beyond the bounds
+
+
 def start_points(space, default, count, seed):
-    """The default and `count - 1` points spread over the bounds, (count, parameters)."""
+    """Start points (count, parameters), as coordinates: `default`, then points that Halton's
+    sequence spreads over the bounds."""
     if count == 1:
         return default[None, :]
     from scipy.stats import qmc

@@ -1,6 +1,7 @@
-"""Where a model's formula, or a derivative of it, has no finite value: the error that says so.
+"""Errors for a model whose formula, or a derivative of it, is not finite at some sample.
 
-A sum over all samples would hide it, and a search go astray or end in another library's error.
+A sum over all samples would hide which one, and a search would go wrong or end in another library's
+error.
 """
 
 import drjit as dr
@@ -15,20 +16,21 @@ REMEDY = "keep the formula finite there, as by dr.maximum, or leave the directio
 
 def require_finite(model, columns, wi, wo):
     """Raise `BrdfkitError` where a lobe's values, `columns` (lobes, n), are not finite."""
-    if np.isfinite(columns.sum(axis=1)).all():  # of a sum it is quick to see
+    if np.isfinite(columns.sum(axis=1)).all():  # quick: one sum per lobe
         return
     lobe, row = np.argwhere(~np.isfinite(columns))[0]
     raise BrdfkitError(
         f"{model.type_name()}: the lobe of {model.weights()[lobe]} is {columns[lobe, row]:g} at "
-        f"{place(wi, wo, row)}; {REMEDY}."
+        f"{describe_pair(wi, wo, row)}; {REMEDY}."
     )
 
 
 def require_finite_slopes(model, values, names, wi, wo):
     """Raise `BrdfkitError` where a lobe's derivative by one of the parameters `names` is not
-    finite, at `values` of the shape parameters and directions that are vectors of doubles.
+    finite, at `values` of the shape parameters; `wi`, `wo`: `double_precision.Vector`.
 
-    As a fit takes them, backwards: forwards, Dr.Jit has no derivative of 0^p by p, which is 0.
+    The derivatives are taken in reverse mode, as in a fit: in forward mode Dr.Jit gives no finite
+    derivative of 0^p by p, which is 0.
     """
     bound = {n: double_precision.scalar(v) for n, v in values.items()}
     for name in names:
@@ -44,15 +46,16 @@ def require_finite_slopes(model, values, names, wi, wo):
         for name in names:
             slope = np.array(dr.grad(bound[name]))[0]
             if not np.isfinite(slope):
-                row = _undefined_row(model, values, name, weight, wi, wo)
+                row = _find_undefined_row(model, values, name, weight, wi, wo)
                 raise BrdfkitError(
                     f"{model.type_name()}: the derivative by {name} of the lobe of {weight} is "
-                    f"{slope:g} at {place(wi, wo, row)}; {REMEDY}."
+                    f"{slope:g} at {describe_pair(wi, wo, row)}; {REMEDY}."
                 )
 
 
-def _undefined_row(model, values, name, weight, wi, wo):
-    """The first direction pair at which a lobe has no finite derivative, by forward mode."""
+def _find_undefined_row(model, values, name, weight, wi, wo):
+    """The index of the first direction pair at which the lobe of `weight` has no finite derivative
+    by `name`, in forward mode."""
     bound = {n: double_precision.scalar(v) for n, v in values.items()}
     dr.enable_grad(bound[name])
     lobe = dict(model.bind(bound).terms())[weight].eval(wi, wo)
@@ -60,8 +63,8 @@ def _undefined_row(model, values, name, weight, wi, wo):
     return int(np.argmin(np.isfinite(np.array(dr.grad(lobe)))))
 
 
-def place(wi, wo, row):
-    """The directions of a row, of vectors of doubles, in words."""
+def describe_pair(wi, wo, row):
+    """The direction pair number `row` in words; `wi`, `wo`: `double_precision.Vector`."""
     pair = [np.array([np.array(c)[row] for c in (w.x, w.y, w.z)]) for w in (wi, wo)]
     (theta_i, phi_i), (theta_o, phi_o) = map(to_angles, pair)
     apart = np.mod(phi_o - phi_i, 2 * np.pi)

@@ -1,15 +1,15 @@
-"""The file formats: one file is one format, found by its being there.
+"""The file formats: every file of this folder is one format and is found by itself.
 
-A format module offers
+A format's file defines
 
-- ``NAME``: for people; ``SUFFIXES``: such as ``(".binary",)``;
-- ``sniff(head)``: whether the first 4 kB (bytes, decompressed) look like it;
-- ``read(source)``: what the file holds, from a `Source`;
-- ``write(obj, stream)``, where it can: into a binary stream; a `BrdfkitError` says what it
-  cannot hold, and `save` puts the path before it;
-- ``MANY = True``, where one file holds many samples and ``source.sample`` names one.
+- ``NAME``: the name for people; ``SUFFIXES``: such as ``(".binary",)``;
+- ``sniff(head)``: whether the first 4 kB (bytes, decompressed) look like this format;
+- ``read(source)``: returns the content of a `Source` (`_source.py`), a `Measured` or a `Fit`;
+- ``write(obj, stream)``, if the format can be written: writes `obj` to a binary stream, or raises a
+  `BrdfkitError` that tells what the format cannot hold; `save` puts the path before the error;
+- ``MANY = True``, if one file holds many samples: ``source.sample`` names one of them.
 
-What several share is in `_writing.py` and `_notes.py`, what `read` is given in `_source.py`.
+`_writing.py` and `_notes.py` have the functions that several formats share.
 """
 
 import gzip
@@ -40,11 +40,13 @@ def has_format(path):
 
 
 def write(obj, path, beside):
-    """Write `obj` in the format of `path`, but into the file `beside` it (both `Path`)."""
+    """Write `obj` in the format of the suffix of `path`, but to the file `beside` (both `Path`)."""
     writers = [module for module in formats() if hasattr(module, "write")]
     chosen = [module for module in writers if format_suffix(path) in module.SUFFIXES]
     if not chosen:
-        raise BrdfkitError(f"{path}: no format with this suffix; written are {_listed(writers)}.")
+        raise BrdfkitError(
+            f"{path}: no format with this suffix; written are {_list_names(writers)}."
+        )
     with _compressing(beside) as stream:
         try:
             chosen[0].write(obj, stream)
@@ -53,36 +55,38 @@ def write(obj, path, beside):
 
 
 def read(source):
-    """What a `Source` holds, by the format that recognises it."""
-    chosen = _recognised(source)
+    """The content of a `Source`, read by the format that recognises it."""
+    chosen = _recognise(source)
     if source.sample is not None and not getattr(chosen, "MANY", False):
         raise source.error(f"holds one material; leave '#{source.sample}' off the path")
     return chosen.read(source)
 
 
-def _recognised(source):
+def _recognise(source):
+    """The format of a `Source`: by its content, or by its suffix where several formats, or none,
+    recognise the content."""
     sniffed = [module for module in formats() if module.sniff(source.data[:HEAD])]
     named = [m for m in sniffed or formats() if source.suffix in m.SUFFIXES]
-    # two formats are called .dat: a sample that is named tells them apart
+    # Two formats have the suffix .dat: only one of them holds many samples
     named.sort(key=lambda m: getattr(m, "MANY", False) != (source.sample is not None))
     if len(sniffed) == 1:
         return sniffed[0]
-    if named:  # where none recognises it, its reader says what is wrong
+    if named:  # if none recognised the content, the format's reader tells what is wrong
         return named[0]
     if sniffed:
-        raise source.error(f"could be {_listed(sniffed)}; rename it to one of these suffixes")
+        raise source.error(f"could be {_list_names(sniffed)}; rename it to one of these suffixes")
     raise source.error(
-        f"is in no known format; read are {_listed(formats())}, each also as .gz or .xz"
+        f"is in no known format; read are {_list_names(formats())}, each also as .gz or .xz"
     )
 
 
-def _listed(modules):
+def _list_names(modules):
     return ", ".join(f"{module.NAME} ({' '.join(module.SUFFIXES)})" for module in modules)
 
 
 @contextmanager
 def _compressing(path):
-    """A binary stream into `path` that compresses by its suffix; equal input, equal bytes."""
+    """A binary stream into `path`, compressed if the suffix is; equal input gives equal bytes."""
     with path.open("wb") as raw:
         if path.suffix.lower() not in COMPRESSED:
             yield raw

@@ -1,21 +1,21 @@
-"""What a reader of samples notes about them, without changing any."""
+"""Notes about doubtful samples, which the readers of formats add; no sample is changed."""
 
 import numpy as np
 
-from brdfkit.formats._writing import angles
+from brdfkit.formats._writing import sample_angles
 
 SUSPICIOUS = 5  # times the next largest value
 
 
-def lone_point(samples):
-    """A note where the one sample near grazing mirror reflection stands out; it is kept.
+def note_lone_point(samples):
+    """A note, by its key, if one sample at grazing mirror reflection stands out; otherwise none.
 
-    Every file of Cornell's instrument has it.
+    It is more than 5 times as bright as any other. Every file of Cornell's instrument has one.
     """
     samples = samples.at(samples.valid)
     brightest = samples.values.max(axis=1)
     top = int(np.argmax(brightest))
-    theta_i, phi_i, theta_s, phi_s = np.degrees(angles(samples))[:, top]
+    theta_i, phi_i, theta_s, phi_s = np.degrees(sample_angles(samples))[:, top]
     others = np.delete(brightest, top)
     near_grazing = theta_i > 79.5 and theta_s > 78.5 and abs(abs(phi_s - phi_i) - 180) < 0.5
     if not near_grazing or not others.size or brightest[top] <= SUSPICIOUS * others.max():
@@ -26,13 +26,13 @@ def lone_point(samples):
     }
 
 
-def stopping_short(samples):
-    """A note where rings of views, of one theta_i and one theta_s, leave out the mirror's azimuth.
+def note_short_rings(samples):
+    """A note, by its key, if rings of views leave out the mirror's azimuth; otherwise none.
 
-    Cornell's instrument measured every ring up to Δφ = 180°, and its files are sorted so that
-    whatever is cut off their end leaves such a ring.
+    A ring is the samples with one theta_i and one theta_s. Cornell's instrument measured every ring
+    up to Δφ = 180°. Its files are sorted so that a file that is cut short ends within a ring.
     """
-    theta_i, phi_i, theta_s, phi_s = np.round(np.degrees(angles(samples)), 1)
+    theta_i, phi_i, theta_s, phi_s = np.round(np.degrees(sample_angles(samples)), 1)
     mirror = np.abs(np.mod(phi_s - phi_i, 360) - 180) < 0.5
     tilted = theta_s > 0.5
     rings = set(zip(theta_i[tilted], theta_s[tilted], strict=True))

@@ -1,4 +1,4 @@
-"""What a format's `read` is given: the file's content, its lines, and sentences about it."""
+"""`Source`: a file for a format's `read`: its bytes, lines and numbers, and errors that name it."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -19,9 +19,10 @@ REMEDY = "mend the line or fetch the file again"
 
 @dataclass(frozen=True)
 class Source:
-    """A file to read: `path`, for messages; `data`: its bytes, decompressed.
+    """A file to read.
 
-    `sample`: what stood behind '#' in the path, or None.
+    `path`: for messages; `sample`: the text behind '#' in the path, or None; `data`: the file's
+    bytes, decompressed.
 
     >>> Source(Path("paint/copper.astm.xz"), None, b"...").name
     'copper'
@@ -33,13 +34,13 @@ class Source:
 
     @property
     def suffix(self):
-        """The format's suffix, in lower case: that before .gz or .xz."""
+        """The format's suffix in lower case, without .gz or .xz."""
         return format_suffix(self.path)
 
     @property
     def name(self):
         """The file's name without its suffixes."""
-        name = _uncompressed(self.path).name
+        name = _strip_compression(self.path).name
         return name[: -len(self.suffix)] if self.suffix else name
 
     @cached_property
@@ -60,10 +61,11 @@ class Source:
         return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
     def error(self, problem):
-        """The `BrdfkitError` that says `problem` (what and remedy, no full stop) of this file."""
+        """A `BrdfkitError` that names this file; `problem`: what is wrong and what to do, without a
+        full stop."""
         return BrdfkitError(f"{self.path}: {problem}.")
 
-    def sibling(self, name):
+    def open_sibling(self, name):
         """The file `name` in the same folder, compressed or not, as a `Source`."""
         for suffix in ("", *COMPRESSED):
             path = self.path.with_name(name + suffix)
@@ -71,31 +73,34 @@ class Source:
                 return Source(path, None, contents(path))
         raise self.error(f"needs {name} beside it; put the two in one folder")
 
-    def numbers(self, line, fields, count=None):
-        """The `fields` of `line` as floats; `count` of them where it is given."""
+    def parse_numbers(self, line, fields, count=None):
+        """The texts `fields` of line number `line` as floats; there must be `count` of them, unless
+        it is None."""
         if count is not None and len(fields) != count:
             raise self.error(
                 f"line {line} has {len(fields)} columns where {count} belong (cut short?); {REMEDY}"
             )
         try:
-            return [_number(text) for text in fields]
+            return [_parse_number(text) for text in fields]
         except ValueError:
             wrong = next(text for text in fields if not _is_number(text))
             raise self.error(
                 f"line {line} has {wrong[:40]!r} where a number belongs; {REMEDY}"
             ) from None
 
-    def measured(self, lines, angles, values, **details):
-        """The `Measured` of `angles` (n, 4), theta_i phi_i theta_o phi_o [rad], and `values`.
+    def build_from_angles(self, lines, angles, values, **details):
+        """The `Measured` with `values` (n, channels) at `angles` (n, 4) [rad]: theta_i, phi_i,
+        theta_o, phi_o.
 
-        `lines` (n,) are the lines they stood on; for the rest see `from_directions`.
+        `lines` (n,): the numbers of the lines where they stand, for errors; `details`: see
+        `build_from_directions`.
         """
         angles = np.array(angles, float)
         self.require_radians(lines, angles, SPHERICAL)
         wi, wo = from_angles(*angles[:, :2].T), from_angles(*angles[:, 2:].T)
-        return self.from_directions(wi, wo, values, **details)
+        return self.build_from_directions(wi, wo, values, **details)
 
-    def from_directions(
+    def build_from_directions(
         self,
         wi,
         wo,
@@ -107,7 +112,8 @@ class Source:
         standard_error=None,
         **details,
     ):
-        """`Measured.from_samples`, named after the file; a value not finite was not measured."""
+        """`Measured.from_samples` with the file's name; a row with a value that is not finite is
+        marked as not measured."""
         values = np.array(values, float)
         finite = np.isfinite(values).all(axis=1)
         if standard_error is not None:
@@ -127,7 +133,8 @@ class Source:
             ) from None
 
     def require_radians(self, lines, angles, limits):
-        """Raise unless each column of `angles` (n, k) is at most its limit, up or down [rad]."""
+        """Raise `BrdfkitError` unless `angles` (n, k) [rad], without sign, are at most the `limits`
+        (k,)."""
         limit = np.array(limits) + ANGLE_TOLERANCE
         wrong = ~(np.abs(angles) <= limit)  # NaN is wrong, too
         if wrong.any():
@@ -139,27 +146,27 @@ class Source:
 
 
 def format_suffix(path):
-    """The suffix that names the format, in lower case: that before .gz or .xz.
+    """The suffix of the format in lower case, without .gz or .xz.
 
     >>> format_suffix(Path("copper.astm.xz"))
     '.astm'
     """
-    return _uncompressed(path).suffix.lower()
+    return _strip_compression(path).suffix.lower()
 
 
-def _uncompressed(path):
+def _strip_compression(path):
     return path.with_suffix("") if path.suffix.lower() in COMPRESSED else path
 
 
-def _number(text):
-    if "_" in text:  # Python reads 1_0 as ten; a damaged file means nothing by it
+def _parse_number(text):
+    if "_" in text:  # Python reads 1_0 as ten, but in a file it is damage
         raise ValueError
     return float(text)
 
 
 def _is_number(text):
     try:
-        _number(text)
+        _parse_number(text)
     except ValueError:
         return False
     return True

@@ -1,4 +1,4 @@
-"""What the writers of formats share."""
+"""Functions that the writers of formats share: what they accept, angles, rows of text."""
 
 import numpy as np
 
@@ -7,10 +7,10 @@ from brdfkit.geometry.directions import to_angles
 from brdfkit.measured import Measured
 
 
-def measured(obj, name, anisotropic=False):
-    """`obj`, where it is a `Measured` that a format `name` can hold.
+def require_measured(obj, name, anisotropic=False):
+    """`obj`, if it is a `Measured` that the format `name` can hold; otherwise a `BrdfkitError`.
 
-    `anisotropic`: whether the format can say so of a material.
+    `anisotropic`: whether the format can hold an anisotropic material.
     """
     if not isinstance(obj, Measured):
         raise BrdfkitError(
@@ -25,15 +25,16 @@ def measured(obj, name, anisotropic=False):
     return obj
 
 
-def angles(samples):
-    """theta_i, phi_i, theta_o, phi_o [rad] of `samples`, (4, n)."""
+def sample_angles(samples):
+    """theta_i, phi_i, theta_o, phi_o (4, n) [rad] of `Samples`."""
     return np.stack([*to_angles(samples.wi), *to_angles(samples.wo)])
 
 
 def write_rows(stream, header, columns, delimiter=" "):
-    """Text in UTF-8: the lines of `header`, then a row per number of the `columns`, every digit.
+    """Write text in UTF-8: the lines of `header`, then rows of the numbers in `columns`, with all
+    their digits.
 
-    A surrogate, which Python makes of a byte of a file's name that is no UTF-8, becomes "?".
+    Python reads a byte of a file's name that is no UTF-8 as a surrogate; it is written as "?".
     """
     lines = "".join(f"{line}\n" for line in header)
     stream.write(lines.encode(errors="replace"))

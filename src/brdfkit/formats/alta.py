@@ -1,18 +1,19 @@
 """ALTA's text, `.dat`: a header of lines ``#KEY value``, then a row of numbers per sample.
 
-[Belcour et al. 2014]; the keys as read by
-`sources/core/data_storage.cpp` and `params.cpp` of github.com/belcour/alta:
+[Belcour et al. 2014]. The keys are those that `sources/core/data_storage.cpp` and `params.cpp` of
+github.com/belcour/alta read:
 
 - ``DIM``: how many coordinates and how many values a row has;
 - ``PARAM_IN``: what the coordinates are, L the light and V the view;
 - ``PARAM_OUT``: what the values are; INV_STERADIAN_COSINE_FACTOR is the BRDF times cos theta_v
-  (the real files become reciprocal by this division, not by theta_l's);
-- ``VS``: per value, 0, or 1 for a column behind the values that says ±, or 2 for two columns with
-  the ends of an interval. Half an interval is taken for the standard error; files do not state its
-  level. A single number speaks of the first value only.
+  (divided by it, the real files are reciprocal; divided by cos theta_l, they are not);
+- ``VS``: a number per value that tells of its interval: 0 for none, 1 for one column behind the
+  values with half its width, 2 for two columns with its ends. A single number is that of the first
+  value; the others have 0. Half the width is read as the standard error; files do not state the
+  confidence level.
 
-An isotropic material has three coordinates; one with four is anisotropic where their azimuth
-varies.
+A file with three coordinates is isotropic; one with four is anisotropic if the second of them, an
+azimuth, varies.
 """
 
 import re
@@ -20,9 +21,8 @@ import re
 import numpy as np
 
 from brdfkit.colours import RGB
-from brdfkit.formats._source import SPHERICAL
-from brdfkit.formats._writing import angles, measured, write_rows
-from brdfkit.geometry.directions import from_angles, from_half_difference
+from brdfkit.formats._alta_coordinates import PARAM_IN
+from brdfkit.formats._writing import require_measured, sample_angles, write_rows
 
 NAME = "ALTA"
 SUFFIXES = (".dat",)
@@ -31,36 +31,7 @@ CHANNELS = {1: ("Y",), 3: RGB}
 COSINE = "INV_STERADIAN_COSINE_FACTOR"
 PLAIN = ("INV_STERADIAN", "RGB_COLOR")
 UNSTATED = (None, "UNKNOWN_OUTPUT")
-LEAST_COSINE = 1e-3  # below it, a BRDF times cosine does not tell the BRDF
-QUARTER, FULL = np.pi / 2, 2 * np.pi
-
-
-def _projected(theta_l, x, y):
-    return from_angles(theta_l, 0), from_angles(np.hypot(x, y), np.arctan2(y, x))
-
-
-def _spherical(theta_l, phi_l, theta_v, phi_v):
-    return from_angles(theta_l, phi_l), from_angles(theta_v, phi_v)
-
-
-def _half_difference(theta_h, phi_h, theta_d, phi_d):
-    view, light = from_half_difference(theta_h, theta_d, phi_d, phi_h)
-    return light, view
-
-
-PARAM_IN = {  # the coordinates' limits [rad], and the function from them to (wi, wo)
-    "SPHERICAL_TL_PL_TV_PV": (SPHERICAL, _spherical),
-    "ISOTROPIC_TL_TV_PROJ_DPHI": ((QUARTER,) * 3, _projected),
-    "ISOTROPIC_TV_TL_DPHI": (
-        (QUARTER, QUARTER, FULL),
-        lambda theta_v, theta_l, phi: _spherical(theta_l, phi, theta_v, 0),
-    ),
-    "RUSIN_TH_PH_TD_PD": (SPHERICAL, _half_difference),
-    "RUSIN_TH_TD_PD": (
-        (QUARTER, QUARTER, FULL),
-        lambda theta_h, theta_d, phi_d: _half_difference(theta_h, 0, theta_d, phi_d),
-    ),
-}
+LEAST_COSINE = 1e-3  # a BRDF times a smaller cosine does not tell the BRDF
 
 
 def sniff(head):
@@ -72,28 +43,33 @@ def read(source):
     """The samples as `Measured`, of one channel Y or of R, G, B.
 
     Raises `BrdfkitError` for a binary file, a missing key, coordinates that do not give both
-    directions, values that are no BRDF, or a row that does not fit.
+    directions, values that are no BRDF, or a row with other columns.
     """
+    # The header
     header = {}
     for comment in source.comments:
         key, _, text = comment.partition(" ")
         header.setdefault(key, text.strip().strip('"'))
-    coordinates, channels = _dimensions(source, header)
-    intervals = _intervals(source, header.get("VS", "0"), len(channels))
+    coordinates, channels = _read_dimensions(source, header)
+    intervals = _read_intervals(source, header.get("VS", "0"), len(channels))
     limits, directions = PARAM_IN[header["PARAM_IN"]]
     if not source.lines:
         raise source.error("has no rows behind its header; fetch the file again")
 
+    # The rows: coordinates, values, intervals
     columns = coordinates + len(channels) + sum(intervals)
-    data = np.array([source.numbers(n, line.split(), columns) for n, line in source.lines])
+    data = np.array([source.parse_numbers(n, line.split(), columns) for n, line in source.lines])
     where, values, ends = np.split(data, [coordinates, coordinates + len(channels)], axis=1)
     source.require_radians([n for n, _ in source.lines], where, limits)
+    # The BRDF and its standard errors
     wi, wo = directions(*where.T)
-    factor, valid, notes = _factor(source, header, wo)
-    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite will be masked
+    factor, valid, notes = _find_factor(source, header, wo)
+    with np.errstate(
+        over="ignore", invalid="ignore"
+    ):  # values that are not finite are masked later
         values = values / factor
-        errors = _half(ends / factor, intervals)
-    return source.from_directions(
+        errors = _halve(ends / factor, intervals)
+    return source.build_from_directions(
         wi,
         wo,
         values,
@@ -107,9 +83,9 @@ def read(source):
 
 def write(obj, stream):
     """Write the valid samples of a `Measured`, in linear sRGB or achromatic, to the last digit."""
-    obj = measured(obj, NAME, anisotropic=True).rgb
+    obj = require_measured(obj, NAME, anisotropic=True).rgb
     samples, valid = obj.samples, obj.samples.valid
-    theta_l, phi_l, theta_v, phi_v = where = angles(samples.at(valid))
+    theta_l, phi_l, theta_v, phi_v = where = sample_angles(samples.at(valid))
     name = "SPHERICAL_TL_PL_TV_PV"
     if not obj.anisotropic:
         phi = phi_v - phi_l
@@ -118,7 +94,9 @@ def write(obj, stream):
     channels = len(obj.channels)
     columns, interval = [*where, *samples.values[valid].T], "0"
     errors = None if obj.standard_error is None else obj.standard_error[valid]
-    if errors is not None and np.isfinite(errors).all():  # else its reader masks the values, too
+    if (
+        errors is not None and np.isfinite(errors).all()
+    ):  # otherwise a reader would mask the values, too
         columns += [*errors.T]
         interval = " ".join(["1"] * channels)
     header = [
@@ -131,7 +109,7 @@ def write(obj, stream):
     write_rows(stream, [f"#{line}" for line in header], columns)
 
 
-def _dimensions(source, header):
+def _read_dimensions(source, header):
     """The number of coordinates, and the channels."""
     if header.get("FORMAT") == "binary":
         raise source.error("is ALTA's binary form; save it as text with ALTA's data2data")
@@ -154,7 +132,7 @@ def _dimensions(source, header):
     return coordinates, CHANNELS[values]
 
 
-def _intervals(source, text, channels):
+def _read_intervals(source, text, channels):
     """How many columns each channel has behind the values: 0, 1 or 2."""
     kinds = text.split()
     if len(kinds) > channels or not all(kind in ("0", "1", "2") for kind in kinds):
@@ -162,8 +140,8 @@ def _intervals(source, text, channels):
     return [int(kind) for kind in kinds] + [0] * (channels - len(kinds))
 
 
-def _half(columns, intervals):
-    """Half of each interval, (n, channels); None unless every channel has one."""
+def _halve(columns, intervals):
+    """Half the width (n, channels) of each interval; None unless every channel has one."""
     if not all(intervals):
         return None
     each = np.split(columns, np.cumsum(intervals)[:-1], axis=1)
@@ -171,8 +149,9 @@ def _half(columns, intervals):
     return np.abs(np.stack(halves, axis=1))
 
 
-def _factor(source, header, wo):
-    """What the BRDF was multiplied by (n, 1), where that can be undone, and notes."""
+def _find_factor(source, header, wo):
+    """The factor (n, 1) of the BRDF in the file's values, the rows in which it can be divided out,
+    and notes."""
     stated = header.get("PARAM_OUT")
     if stated == COSINE:
         cosine = wo[:, 2]

@@ -1,12 +1,12 @@
 """ASTM E1392-like text, `.astm`: a header of keys up to VARS, then comma-separated rows.
 
 VARS names the columns: theta_i, phi_i, theta_s, phi_s [rad] and the channels [sr⁻¹], which are
-R, G, B, wavelengths such as 465nm, or a single one. Two instruments are known to differ:
+R, G, B, or wavelengths such as 465nm, or a single channel. The files of two instruments are known:
 
-- Cornell/Kodak: phi_i = 0; negative values are kept.
-- Light Tec Mini-Diff V2: phi_i = 180°; VARS leaves out phi_s, though the rows have it; the
-  wavelengths 465, 525, 630 nm stand for B, G, R; beyond theta_s = 75° nothing was measured,
-  the file holds a straight line down to 0 there.
+- Cornell/Kodak: phi_i is 0; values may be negative and are kept.
+- Light Tec Mini-Diff V2: phi_i is 180°; VARS leaves out phi_s, though the rows have it; the
+  wavelengths 465, 525, 630 nm stand for B, G, R; beyond theta_s = 75° nothing was measured, and the
+  values there, on a straight line down to 0, are masked.
 
 In both, the mirror direction is at Δφ = 180°.
 """
@@ -17,9 +17,8 @@ import numpy as np
 
 from brdfkit.colours import RGB
 from brdfkit.errors import BrdfkitError
-from brdfkit.formats._notes import lone_point
-from brdfkit.formats._writing import angles as angles_of
-from brdfkit.formats._writing import measured, write_rows
+from brdfkit.formats._notes import note_lone_point
+from brdfkit.formats._writing import require_measured, sample_angles, write_rows
 
 NAME = "ASTM"
 SUFFIXES = (".astm",)
@@ -32,22 +31,23 @@ MINI_DIFF_LIMIT = np.radians(75) + 1e-6
 
 
 def sniff(head):
-    """Whether a line of `head` begins with VARS, behind lines that begin with a key."""
+    """Whether a line of `head` begins with VARS."""
     return re.search(rb"^VARS\s", head, re.MULTILINE) is not None
 
 
 def read(source):
-    """The samples as `Measured`, its channels R, G, B, or as VARS names them.
+    """The samples as `Measured`, with the channels R, G, B, or those that VARS names.
 
     Raises `BrdfkitError` when VARS is missing, the columns do not add up, NUM_POINTS does not
     match the rows, or text stands among numbers.
     """
-    header, vars_line, rows = _header(source)
+    # The header, and the names of the columns
+    header, vars_line, rows = _read_header(source)
     lines = [n for n, _ in rows]
-    names, notes = _names(source, header["VARS"], vars_line, rows)
-    data = np.array([source.numbers(n, line.split(","), len(names)) for n, line in rows])
+    names, notes = _read_names(source, header["VARS"], vars_line, rows)
+    data = np.array([source.parse_numbers(n, line.split(","), len(names)) for n, line in rows])
     named = tuple(name for name in names if name not in ANGLES)
-    known = _channels(named)
+    known = _find_channels(named)
     if known is None:
         raise source.error(
             f"line {vars_line} names the channels {', '.join(named)[:80]}, but {KNOWN} belong; "
@@ -56,6 +56,7 @@ def read(source):
     channels, columns, note = known
     notes.update(note)
 
+    # The columns in our order
     column = dict(zip(names, data.T, strict=True))
     angles = np.stack([column[name] for name in ANGLES], axis=1)
     values = np.stack([column[name] for name in columns], axis=1)
@@ -64,15 +65,17 @@ def read(source):
         valid = angles[:, 2] <= MINI_DIFF_LIMIT
         notes["masked"] = f"{(~valid).sum():,} rows beyond theta_s = 75°, not measured"
     info = {"format": NAME, **header, **notes}
-    found = source.measured(lines, angles, values, valid=valid, channels=channels, info=info)
-    found.info.update(lone_point(found.samples))
+    found = source.build_from_angles(
+        lines, angles, values, valid=valid, channels=channels, info=info
+    )
+    found.info.update(note_lone_point(found.samples))
     return found
 
 
 def write(obj, stream):
     """Write the valid samples of a `Measured`, in its own channels, to the last digit."""
-    obj = measured(obj, NAME)
-    if not _writable(obj.channels):
+    obj = require_measured(obj, NAME)
+    if not _is_writable(obj.channels):
         raise BrdfkitError(
             f"the format {NAME} holds {KNOWN}, and {obj.name} has the channels "
             f"{' '.join(obj.channels)[:80]}; choose another suffix, such as .npz."
@@ -83,12 +86,12 @@ def write(obj, stream):
         f"NUM_POINTS {valid.sum()}",
         f"VARS {','.join((*ANGLES, *obj.channels))}",
     ]
-    columns = [*angles_of(samples.at(valid)), *samples.values[valid].T]
+    columns = [*sample_angles(samples.at(valid)), *samples.values[valid].T]
     write_rows(stream, header, columns, ",")
 
 
-def _header(source):
-    """Keys with their values, the line of VARS, and the lines of the rows."""
+def _read_header(source):
+    """The values by key, the number of the line VARS, and the lines of the rows."""
     header = {}
     for at, (n, line) in enumerate(source.lines):
         key, *value = line.split(maxsplit=1)
@@ -112,8 +115,8 @@ def _require_count(source, announced, rows):
         )
 
 
-def _names(source, text, vars_line, rows):
-    """The names of the columns, and a note where phi_s had to be put in."""
+def _read_names(source, text, vars_line, rows):
+    """The names of the columns, and a note if phi_s had to be inserted."""
     names = [name.strip() for name in text.split(",")]
     notes = {}
     more = len(rows[0][1].split(",")) - len(names)
@@ -128,11 +131,9 @@ def _names(source, text, vars_line, rows):
     return names, notes
 
 
-def _channels(columns):
-    """The channels' names, the columns they are taken from, and a note where those differ.
-
-    None for columns that are no channels.
-    """
+def _find_channels(columns):
+    """The names of the channels, the names of their columns, and a note if these differ; None for
+    columns that are no channels."""
     if set(columns) == set(RGB):
         return RGB, RGB, {}
     if set(columns) == set(MINI_DIFF_CHANNELS):
@@ -145,8 +146,8 @@ def _channels(columns):
     return None
 
 
-def _writable(channels):
-    """Whether VARS can name `channels` so that they are found again."""
+def _is_writable(channels):
+    """Whether VARS can name `channels` so that `read` finds them."""
     words = all(re.fullmatch(r"[^\s,]+", name) for name in channels)
     distinct = len({*ANGLES, *channels}) == len(ANGLES) + len(channels)
-    return words and distinct and _channels(channels) is not None
+    return words and distinct and _find_channels(channels) is not None

@@ -8,59 +8,58 @@ at Δφ = 180°. https://www.graphics.cornell.edu/online/measurements/reflectanc
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.formats._notes import lone_point, stopping_short
-from brdfkit.formats._writing import angles as angles_of
-from brdfkit.formats._writing import measured, write_rows
+from brdfkit.formats._notes import note_lone_point, note_short_rings
+from brdfkit.formats._writing import require_measured, sample_angles, write_rows
 from brdfkit.measured.spectra import wavelengths
 
 NAME = "Cornell"
 SUFFIXES = (".brdf",)
 
 MOST_WAVELENGTHS = 4096
-NANOMETRES = (100, 100_000)  # what a wavelength can be
+NANOMETRES = (100, 100_000)  # the least and the largest plausible wavelength
 
 
 def sniff(head):
-    """Whether a whole number of plausible wavelengths follows the comments of `head`."""
+    """Whether a whole number and a plausible wavelength follow the comments of `head`."""
     lines = [line for line in head.split(b"\n") if line.strip() and not line.startswith(b"#")]
     tokens = b" ".join(lines[:3]).split()
     try:
-        return int(tokens[0]) > 0 and _plausible(float(tokens[1]))
+        return int(tokens[0]) > 0 and _is_plausible(float(tokens[1]))
     except (ValueError, IndexError):
         return False
 
 
 def read(source):
-    """The samples as `Measured`, its channels the wavelengths: ``("400nm", ...)``.
+    """The samples as `Measured`, with the wavelengths as channels: ``("400nm", ...)``.
 
-    Raises `BrdfkitError` for a row with too few or too many columns, text among numbers,
-    wavelengths that do not add up, or angles that are not in radians.
+    Raises `BrdfkitError` for a row with too few or too many columns, text among numbers, a wrong
+    number of wavelengths, or angles that are not in radians.
     """
-    wavelengths, rows = _wavelengths(source)
-    columns = 4 + len(wavelengths)
+    nanometres, rows = _read_wavelengths(source)
+    columns = 4 + len(nanometres)
     if not rows:
         raise source.error("has no samples behind its wavelengths; fetch the file again")
-    data = np.array([source.numbers(n, line.split(), columns) for n, line in rows])
+    data = np.array([source.parse_numbers(n, line.split(), columns) for n, line in rows])
     angles, values = data[:, :4], data[:, 4:]
     lines = [n for n, _ in rows]
-    channels = tuple(f"{w:.10g}nm" for w in wavelengths)
-    info = {"format": NAME, **_description(source), **_clipped(values)}
-    found = source.measured(lines, angles, values, channels=channels, info=info)
-    found.info.update({**lone_point(found.samples), **stopping_short(found.samples)})
+    channels = tuple(f"{w:.10g}nm" for w in nanometres)
+    info = {"format": NAME, **_read_description(source), **_note_clipping(values)}
+    found = source.build_from_angles(lines, angles, values, channels=channels, info=info)
+    found.info.update({**note_lone_point(found.samples), **note_short_rings(found.samples)})
     return found
 
 
 def write(obj, stream):
     """Write the valid samples of a spectral `Measured`, to the last digit."""
-    obj = measured(obj, NAME)
+    obj = require_measured(obj, NAME)
     try:
-        nm = wavelengths(obj)
+        nanometres = wavelengths(obj)
     except BrdfkitError:
         raise BrdfkitError(
             f"the format {NAME} holds wavelengths, and {obj.name} has the channels "
             f"{' '.join(obj.channels)[:80]}; choose another suffix, such as .astm."
         ) from None
-    if not _possible(nm):
+    if not _are_possible(nanometres):
         raise BrdfkitError(
             f"the format {NAME} holds up to {MOST_WAVELENGTHS} wavelengths of {NANOMETRES[0]} to "
             f"{NANOMETRES[1]:,} nm, each once, not those of {obj.name}; choose another suffix."
@@ -69,16 +68,16 @@ def write(obj, stream):
     header = [
         f"# {' '.join(obj.name.split())}",
         "# num wls",
-        f"{len(nm)}",
+        f"{len(nanometres)}",
         "# wls",
-        " ".join(f"{w:.10g}" for w in nm),
+        " ".join(f"{w:.10g}" for w in nanometres),
         "# theta i  phi i  theta s  phi_s  spectral sample values",
     ]
-    write_rows(stream, header, [*angles_of(samples.at(valid)), *samples.values[valid].T])
+    write_rows(stream, header, [*sample_angles(samples.at(valid)), *samples.values[valid].T])
 
 
-def _wavelengths(source):
-    """The wavelengths, and the lines behind them; they may stand on several lines."""
+def _read_wavelengths(source):
+    """The wavelengths [nm], which may stand on several lines, and the lines behind them."""
     if not source.lines:
         raise source.error("has comments only, no wavelengths; fetch the file again")
     first, text = source.lines[0]
@@ -91,37 +90,38 @@ def _wavelengths(source):
     for n, line in source.lines[1:]:
         if len(found) >= count:
             break
-        found += source.numbers(n, line.split())
+        found += source.parse_numbers(n, line.split())
         used += 1
     if len(found) != count:
         raise source.error(
             f"line {first} announces {count} wavelengths, but the next lines list {len(found)}; "
             "mend the number or fetch the file again"
         )
-    if not _possible(found):
+    if not _are_possible(found):
         raise source.error(
             f"the wavelengths behind line {first} repeat or are not in nm; mend them"
         )
     return found, source.lines[used:]
 
 
-def _possible(wavelengths):
-    """Whether a file may list these."""
-    distinct = len({f"{w:.10g}" for w in wavelengths}) == len(wavelengths) <= MOST_WAVELENGTHS
-    return distinct and all(map(_plausible, wavelengths))
+def _are_possible(nanometres):
+    """Whether a file may list these wavelengths: not too many, each once, all plausible."""
+    distinct = len({f"{w:.10g}" for w in nanometres}) == len(nanometres) <= MOST_WAVELENGTHS
+    return distinct and all(map(_is_plausible, nanometres))
 
 
-def _plausible(wavelength):
+def _is_plausible(wavelength):
     return NANOMETRES[0] <= wavelength <= NANOMETRES[1]
 
 
-def _description(source):
-    """What the comments before the first number say of the sample."""
+def _read_description(source):
+    """The comments that describe the sample, as a note."""
     told = [c for c in source.comments if c and not c.startswith(("num wls", "wls", "theta i"))]
     return {"description": "; ".join(told)} if told else {}
 
 
-def _clipped(values):
+def _note_clipping(values):
+    """A note if values are 0 and none is negative; otherwise none."""
     zeros = (values == 0).mean()
     if not zeros or (values < 0).any():
         return {}

@@ -1,8 +1,8 @@
 """CUReT: `abrdf.dat`, 61 samples × 205 geometries, averaged over the channels.
 
-[Dana et al. 1999]. A row of
-`abrdf.dat` is a sample's number and its values [sr⁻¹]; `table.txt` beside it lists the
-geometries: number, theta_v, phi_v, theta_i, phi_i [rad], the viewing direction first.
+[Dana et al. 1999]. A row of `abrdf.dat` has a sample's number and its values [sr⁻¹]. A row of
+`table.txt`, in the same folder, has a geometry's number and its angles theta_v, phi_v, theta_i,
+phi_i [rad], those of the view first.
 """
 
 NAME = "CUReT"
@@ -24,15 +24,15 @@ def sniff(head):
 
 
 def read(source):
-    """One sample, ``abrdf.dat#1``, as `Measured` with the one channel Y.
+    """One sample, as of ``abrdf.dat#1``, as `Measured` with the one channel Y.
 
     Raises `BrdfkitError` when no sample is named, `table.txt` is missing, or either file is not
     61 × 205.
     """
-    rows = _rows(source, SAMPLES, GEOMETRIES)
-    sample = _sample(source)
-    table = source.sibling(TABLE)
-    geometries = _rows(table, GEOMETRIES, 4)
+    rows = _read_rows(source, SAMPLES, GEOMETRIES)
+    sample = _sample_number(source)
+    table = source.open_sibling(TABLE)
+    geometries = _read_rows(table, GEOMETRIES, 4)
     lines = [n for n, _ in table.lines]
     theta_v, phi_v, theta_i, phi_i = zip(*geometries, strict=True)
     angles = list(zip(theta_i, phi_i, theta_v, phi_v, strict=True))
@@ -43,10 +43,12 @@ def read(source):
         "overexposed": "entries that were overexposed are not marked in the file",
     }
     values = [[value] for value in rows[sample - 1]]
-    return table.measured(lines, angles, values, channels=("Y",), name=f"CUReT {sample}", info=info)
+    name = f"CUReT {sample}"
+    return table.build_from_angles(lines, angles, values, channels=("Y",), name=name, info=info)
 
 
-def _sample(source):
+def _sample_number(source):
+    """The number behind '#' in the path; `BrdfkitError` if it is none of a sample."""
     number = source.sample or ""
     if number.isascii() and number.isdecimal() and 1 <= int(number[:9]) <= SAMPLES:
         return int(number[:9])
@@ -56,9 +58,9 @@ def _sample(source):
     )
 
 
-def _rows(source, count, columns):
-    """The numbers of each line behind its own number, which must be 1, 2, ... `count`."""
-    rows = [source.numbers(n, line.split(), 1 + columns) for n, line in source.lines]
+def _read_rows(source, count, columns):
+    """The numbers of each line, without its first, which numbers the lines 1, 2, ... `count`."""
+    rows = [source.parse_numbers(n, line.split(), 1 + columns) for n, line in source.lines]
     if [row[0] for row in rows] != list(range(1, count + 1)):
         raise source.error(
             f"has {len(rows)} rows where {count} belong, numbered from 1; fetch the file again"

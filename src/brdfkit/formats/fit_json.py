@@ -1,4 +1,4 @@
-"""A fit, as brdfkit saves it: JSON with the model, its values and how they were found."""
+"""Fits, as brdfkit saves them: JSON with the model, its values and how they were found."""
 
 import json
 from dataclasses import fields
@@ -16,7 +16,7 @@ FIELDS = [f for f in fields(Fit) if f.name != "model"]
 
 
 def sniff(head):
-    """JSON that begins with brdfkit's version."""
+    """Whether `head` begins as JSON with brdfkit's version."""
     return head.lstrip().startswith(b"{") and f'"{KEY}"'.encode() in head[:200]
 
 
@@ -24,8 +24,8 @@ def read(source):
     """The `Fit` that `write` wrote."""
     try:
         record = json.loads(source.data)
-        label, values = _of_type(str, record["model"]), dict(record["parameters"])
-        found = {f.name: _of_type(f.type, record["fit"][f.name]) for f in FIELDS}
+        label, values = _to_type(str, record["model"]), dict(record["parameters"])
+        found = {f.name: _to_type(f.type, record["fit"][f.name]) for f in FIELDS}
     except (ValueError, KeyError, TypeError, RecursionError):
         raise source.error("is no fit that brdfkit saved, or is damaged; fit it again") from None
     try:
@@ -55,8 +55,8 @@ def write(fit, stream):
     stream.write(json.dumps(record, indent=2).encode() + b"\n")
 
 
-def _of_type(kind, value):
-    """A value of JSON as the type that `Fit` declares, or a TypeError."""
+def _to_type(kind, value):
+    """A value of JSON as the type `kind`, which `Fit` declares, or a TypeError."""
     kind = get_origin(kind) or kind
     if isinstance(value, list) and kind is tuple:
         return tuple(value)

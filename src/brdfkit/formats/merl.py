@@ -1,9 +1,9 @@
 """MERL BRDF database: `.binary` tables over half/difference angles.
 
-[Matusik et al. 2003]. Little-endian: three
-int32 (n_theta_h, n_theta_d, n_phi_d), then the planes R, G, B of float64. A cell that was not
-measured is negative. Four times as many phi_d as theta_d cells span the full circle (a table
-that is not reciprocal), else they span half of it.
+[Matusik et al. 2003]. Little-endian: three int32 (n_theta_h, n_theta_d, n_phi_d), then the planes
+R, G, B of float64. A cell that was not measured is negative. The phi_d cells span half the circle,
+as suffices for a reciprocal BRDF; if there are four times as many as theta_d cells, they span the
+full circle.
 """
 
 import functools
@@ -13,7 +13,7 @@ import numpy as np
 
 from brdfkit.colours import RGB
 from brdfkit.errors import BrdfkitError
-from brdfkit.formats._writing import measured
+from brdfkit.formats._writing import require_measured
 from brdfkit.measured import Measured
 
 NAME = "MERL"
@@ -28,16 +28,15 @@ NOT_MEASURED = -1.0
 
 def sniff(head):
     """Whether `head` begins with the dimensions of a table, in either byte order."""
-    return len(head) >= HEADER and any(map(_plausible, _dimensions(head)))
+    return len(head) >= HEADER and any(map(_is_plausible, _read_dimensions(head)))
 
 
 def read(source):
-    """The table as `Measured`, channels R, G, B; NaN where a stored value is negative.
+    """The table as `Measured` with the channels R, G, B; NaN where a stored value is negative.
 
-    Raises `BrdfkitError` when header and size disagree, a value is not finite, or no cell is
-    valid.
+    Raises `BrdfkitError` if header and size disagree, a value is not finite, or no cell is valid.
     """
-    shape = _shape(source)
+    shape = _read_shape(source)
     raw = np.frombuffer(source.data, "<f8", offset=HEADER).reshape(3, *shape)
     wrong = [np.flatnonzero(~np.isfinite(plane)) + k * plane.size for k, plane in enumerate(raw)]
     if wrong := [int(i) for plane in wrong for i in plane]:
@@ -45,7 +44,7 @@ def read(source):
             f"{len(wrong):,} values are not finite, the first at byte {HEADER + 8 * wrong[0]:,}; "
             "a MERL table holds none, so fetch the file again"
         )
-    # before scaling: what is stored decides
+    # Before scaling: the stored sign decides
     unknown = functools.reduce(np.logical_or, (plane < 0 for plane in raw))
     if unknown.all():
         raise source.error("every cell is marked as not measured; fetch the file again")
@@ -56,14 +55,14 @@ def read(source):
 
 
 def write(obj, stream):
-    """Write the table of a `Measured`, in linear sRGB; achromatic values stand in each plane.
+    """Write the table of a `Measured`, in linear sRGB; achromatic values are written to each plane.
 
-    Samples are interpolated to the database's 90×90×180 cells, which other programs insist on.
-    Negative values, which the format takes for "not measured", are written as 0.
+    Samples are interpolated to the database's 90×90×180 cells, which other programs require.
+    Negative values would mean "not measured" and are written as 0.
     """
-    obj = measured(obj, NAME).rgb
+    obj = require_measured(obj, NAME).rgb
     table = obj.table if obj.is_table else obj.resampled(SHAPE)
-    if not _plausible(table.shape) or not np.isclose(
+    if not _is_plausible(table.shape) or not np.isclose(
         table.phi_d_period, _phi_d_period(table.shape)
     ):
         raise BrdfkitError(
@@ -76,37 +75,37 @@ def write(obj, stream):
     stream.write(np.moveaxis(raw, -1, 0).astype("<f8").tobytes())
 
 
-def _shape(source):
-    """The dimensions of the header, once they agree with the size of the file."""
+def _read_shape(source):
+    """The shape of the table; `BrdfkitError` unless the header agrees with the size of the file."""
     size = len(source.data)
     if size < HEADER:
         raise source.error(f"has {size} bytes, fewer than a MERL header; fetch the file again")
-    little, big = _dimensions(source.data)
-    if not _plausible(little):
-        if _plausible(big):
+    little, big = _read_dimensions(source.data)
+    if not _is_plausible(little):
+        if _is_plausible(big):
             raise source.error(
-                f"is big-endian (its header reads {_times(big)} so); swap the byte order to "
+                f"is big-endian (its header reads {_format_shape(big)} so); swap the byte order to "
                 "little-endian"
             )
         raise source.error(
-            f"its header says {_times(little)} cells where 1 to {MOST_CELLS} belong on each axis; "
-            "check that it is a MERL table"
+            f"its header says {_format_shape(little)} cells where 1 to {MOST_CELLS} belong on each "
+            "axis; check that it is a MERL table"
         )
     expected = HEADER + 3 * 8 * int(np.prod(little))
     if size != expected:
         raise source.error(
             f"is {'cut short' if size < expected else 'too long'}: {size:,} bytes where its "
-            f"header, {_times(little)} cells, asks for {expected:,}; fetch the file again"
+            f"header, {_format_shape(little)} cells, asks for {expected:,}; fetch the file again"
         )
     return little
 
 
-def _dimensions(data):
+def _read_dimensions(data):
     """The three integers of the header, as little-endian and as big-endian."""
     return struct.unpack_from("<3i", data), struct.unpack_from(">3i", data)
 
 
-def _plausible(dimensions):
+def _is_plausible(dimensions):
     return all(1 <= n <= MOST_CELLS for n in dimensions)
 
 
@@ -114,5 +113,5 @@ def _phi_d_period(shape):
     return 2 * np.pi if shape[2] == 4 * shape[1] else np.pi
 
 
-def _times(dimensions):
+def _format_shape(dimensions):
     return "×".join(map(str, dimensions))

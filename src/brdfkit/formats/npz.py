@@ -1,16 +1,17 @@
 """brdfkit's own `.npz`: everything a `Measured` holds, to the last bit; `numpy.load` opens it.
 
-Members: ``about``, JSON in UTF-8 (brdfkit's version, name, channels, info, anisotropic,
-phi_d_period), and either ``table`` ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, channels), or
-``wi``, ``wo`` (n, 3), ``values`` (n, channels) [sr⁻¹] and ``valid`` (n,); ``standard_error``
-(n, channels), where it is known, n counting a table's cells in their order.
+The first member is ``about``: JSON in UTF-8 with brdfkit's version, name, channels, info,
+anisotropic and phi_d_period. A table is the member ``table`` ([n_phi_h,] n_theta_h, n_theta_d,
+n_phi_d, channels); samples are the members ``wi``, ``wo`` (n, 3), ``values`` (n, channels) [sr⁻¹]
+and ``valid`` (n,). ``standard_error`` (n, channels) is there where it is known; for a table, n is
+the number of its cells.
 
-How another format interpolates between its samples is a function, which no file holds. What it
-gives at the centres of a table's cells is stored beside the samples, as ``table``, and is the
-interpolation from then on: the samples stay what they are, between them it is as fine as the
-table, and reciprocal.
+If a format interpolates between its samples in its own way, this is a function, which no file can
+hold. Its values at the centres of a table's cells are stored with the samples, as ``table``, and
+replace the function when the file is read: the samples keep their values, but the values between
+them are as fine as the table, and reciprocal.
 
-The archive is not compressed inside, so that no small file asks for much memory; ``.npz.xz`` is
+The members are not compressed, so that no small file can ask for much memory; ``.npz.xz`` is
 compressed as a whole.
 """
 
@@ -25,7 +26,7 @@ from dataclasses import replace
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.formats._writing import measured
+from brdfkit.formats._writing import require_measured
 from brdfkit.measured import Measured
 from brdfkit.version import __version__
 
@@ -35,10 +36,10 @@ SUFFIXES = (".npz",)
 FIRST = "about"
 SAMPLES = ("wi", "wo", "values", "valid")
 MEMBERS = tuple(f"{name}.npy" for name in (FIRST, "table", *SAMPLES, "standard_error"))
-EPOCH = (1980, 1, 1, 0, 0, 0)  # equal content, equal bytes
+EPOCH = (1980, 1, 1, 0, 0, 0)  # a fixed date, so that equal content gives equal bytes
 REMEDY = "save it again or fetch it again"
-# What numpy.save writes of such arrays. numpy.load evaluates a header as Python, and allocates
-# what it claims before it looks further.
+# The header that numpy.save writes for such arrays. We do not use numpy.load: it evaluates a header
+# as Python, and allocates the memory that the header claims before it checks the data.
 HEADER = re.compile(
     rb"\x93NUMPY\x01\x00..\{'descr': '(<f4|<f8|\|b1|\|u1)', 'fortran_order': False, "
     rb"'shape': \(((?:[0-9]{1,18}, ?){1,4}(?:[0-9]{1,18})?)\), \} *\n",
@@ -52,15 +53,17 @@ def sniff(head):
 
 
 def read(source):
-    """The `Measured` that `write` wrote; its arrays may be float32, too.
+    """The `Measured` that `write` wrote; the arrays may also be float32.
 
     Raises `BrdfkitError` for an archive that is damaged or compressed inside, and for a member
     that is missing or does not fit the others.
     """
-    arrays = {name: _array(source, name, data) for name, data in _members(source).items()}
+    arrays = {
+        name: _parse_array(source, name, data) for name, data in _read_members(source).items()
+    }
     try:
         about = json.loads(arrays.pop(FIRST, np.empty(0)).tobytes())
-        return _measured(about, arrays)
+        return _build(about, arrays)
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         problem = f"lacks {error}" if isinstance(error, KeyError) else str(error)
         raise source.error(
@@ -70,7 +73,7 @@ def read(source):
 
 def write(obj, stream):
     """Write a `Measured`."""
-    obj = measured(obj, NAME, anisotropic=True)
+    obj = require_measured(obj, NAME, anisotropic=True)
     about = {
         "brdfkit": __version__,
         "name": str(obj.name),
@@ -87,18 +90,18 @@ def write(obj, stream):
     if obj.standard_error is not None:
         arrays["standard_error"] = obj.standard_error
     text = np.frombuffer(json.dumps(about).encode(), np.uint8)
-    stream.write(_archive({FIRST: text, **arrays}))
+    stream.write(_pack({FIRST: text, **arrays}))
 
 
-def _measured(about, arrays):
-    """The material; a `ValueError` or the like where something does not fit."""
+def _build(about, arrays):
+    """The `Measured`; a `ValueError`, `KeyError` or the like if members are missing or disagree."""
     details = {key: about[key] for key in ("name", "channels", "info")}
     words = [about["name"], *about["channels"], *about["info"], *about["info"].values()]
     if not all(isinstance(word, str) for word in words):
         raise ValueError("a name, a channel or a note is no text")
     errors = arrays.get("standard_error")
     if "values" in arrays:
-        return _from_samples(about, arrays, details, errors)
+        return _build_from_samples(about, arrays, details, errors)
     if errors is not None:
         errors = errors.reshape(arrays["table"].shape)
     return Measured.from_table(
@@ -106,7 +109,8 @@ def _measured(about, arrays):
     )
 
 
-def _from_samples(about, arrays, details, errors):
+def _build_from_samples(about, arrays, details, errors):
+    """The `Measured` of the members of samples, with their directions to the last bit."""
     wi, wo, values, valid = (arrays[name] for name in SAMPLES)
     if not all(((np.abs(w) < 1 + 1e-6) | np.isnan(w)).all() for w in (wi, wo)):
         raise ValueError("a direction is no unit vector")
@@ -122,7 +126,7 @@ def _from_samples(about, arrays, details, errors):
     return replace(found, _samples=replace(samples, wi=wi, wo=wo))
 
 
-def _members(source):
+def _read_members(source):
     """The bytes of the members by name."""
     try:
         with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
@@ -134,12 +138,12 @@ def _members(source):
             return {i.filename.removesuffix(".npy"): archive.read(i) for i in infos}
     except BrdfkitError:
         raise
-    # a password, a version, a name or a number that zipfile cannot read
+    # zipfile raises these for passwords, versions, names and numbers that it cannot read
     except (zipfile.BadZipFile, RuntimeError, ValueError, EOFError, OSError, struct.error) as error:
         raise source.error(f"is no whole zip archive ({str(error)[:100]}); {REMEDY}") from error
 
 
-def _array(source, name, data):
+def _parse_array(source, name, data):
     """The array in the bytes of a member."""
     header = HEADER.match(data)
     shape = [int(n) for n in header[2].split(b",") if n.strip()] if header else []
@@ -149,18 +153,18 @@ def _array(source, name, data):
     array = np.frombuffer(data, dtype, offset=header.end()).reshape(shape)
     if dtype.kind == "b":
         return array.view(np.uint8) != 0
-    with np.errstate(invalid="ignore"):  # a NaN that signals
+    with np.errstate(invalid="ignore"):  # converting a signalling NaN warns
         return array if dtype.kind == "u" else array.astype(float)
 
 
-def _archive(arrays):
-    """The bytes of a zip archive with the arrays, always the same for the same arrays."""
+def _pack(arrays):
+    """The bytes of a zip archive of the arrays; equal arrays give equal bytes."""
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
         for name, array in arrays.items():
             member = io.BytesIO()
             np.lib.format.write_array(member, np.ascontiguousarray(array), version=(1, 0))
             info = zipfile.ZipInfo(f"{name}.npy", EPOCH)
-            info.create_system = 3  # Unix, wherever it is written
+            info.create_system = 3  # Unix, on every system
             archive.writestr(info, member.getvalue())
     return packed.getvalue()

@@ -1,21 +1,22 @@
 """UTIA BRDF database: `.bin`, anisotropic, over the angles of light and view.
 
-[Filip & Vávra 2014]. Little-endian float64 and nothing else: the planes R, G, B, each
-288 × 288. A row is a light (theta_i, phi_i), a column a view (theta_v, phi_v); theta takes
-0°, 15°, ..., 75° and phi, which runs faster, 0°, 7.5°, ..., 352.5°. Order and lookup are those of
-J. Filip's own program, as published in github.com/belcour/alta (sources/plugins/data_io/utia.cpp)
-and github.com/asztr/UTIA-brdf: linear in the four angles, above 75° continued on the same line.
+[Filip & Vávra 2014]. The file has little-endian float64 only: the planes R, G, B, each 288 × 288. A
+row is a direction of light (theta_i, phi_i), a column one of view (theta_v, phi_v). theta takes 0°,
+15°, ..., 75°, and phi, which runs faster, 0°, 7.5°, ..., 352.5°. The values are interpolated
+linearly in the four angles, and extrapolated linearly above 75°. Order and lookup are those of J.
+Filip's own program, as published in github.com/belcour/alta (sources/plugins/data_io/utia.cpp) and
+github.com/asztr/UTIA-brdf.
 
-The unit is not documented. Those programs take the stored numbers as they are, and so does this
-reader. Others do not: github.com/jdupuy/dj_brdf clamps negative numbers, divides by 140, undoes
-sRGB's gamma and multiplies by 100; A. Fichet's utia.py undoes the gamma alone.
+The unit is not documented. These programs take the stored numbers as they are, and so does this
+reader. Other programs convert them: github.com/jdupuy/dj_brdf clamps negative numbers, divides by
+140, undoes sRGB's gamma and multiplies by 100; A. Fichet's utia.py only undoes the gamma.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.formats._writing import measured
+from brdfkit.formats._writing import require_measured
 from brdfkit.geometry.directions import from_angles, to_angles
 from brdfkit.geometry.multilinear import corners, periodic_bracket
 
@@ -28,12 +29,12 @@ SIZE = 3 * 8 * 288 * 288  # bytes
 
 
 def sniff(head):
-    """Never: the file has no header, its suffix and its size decide."""
+    """Always False: the file has no header; its suffix and its size decide."""
     return False
 
 
 def read(source):
-    """The 82,944 samples as `Measured`, R, G, B as they are stored, negative values too.
+    """The 82,944 samples as `Measured`, with R, G, B as they are stored, also negative ones.
 
     Raises `BrdfkitError` for a file of another size or with values that are not finite.
     """
@@ -53,17 +54,17 @@ def read(source):
         "unit": "as stored, which UTIA does not document as sr⁻¹",
     }
     wi, wo = directions()
-    return source.from_directions(
+    return source.build_from_directions(
         wi, wo, raw, info=info, anisotropic=True, lookup=Lookup(raw.reshape(*SHAPE, 3))
     )
 
 
 def write(obj, stream):
-    """Write a `Measured`, in linear sRGB or achromatic in each plane.
+    """Write a `Measured`, in linear sRGB; achromatic values are written to each plane.
 
-    Where it was measured in other directions, or in part of them, it is interpolated.
+    Unless it was measured in exactly the format's directions, it is interpolated.
     """
-    obj = measured(obj, NAME, anisotropic=True).rgb
+    obj = require_measured(obj, NAME, anisotropic=True).rgb
     wi, wo = directions()
     samples = obj.samples
     own = samples.wi.shape == wi.shape and samples.valid.all()
@@ -84,21 +85,21 @@ def directions():
 
 @dataclass(frozen=True, eq=False)
 class Lookup:
-    """Values (theta_i, phi_i, theta_v, phi_v, channels), linear between them in each angle."""
+    """The lookup in `values` (theta_i, phi_i, theta_v, phi_v, channels), linear in each angle."""
 
     values: np.ndarray
 
     def __call__(self, wi, wo):
-        axes = [part for w in (wi, wo) for part in _cells(*to_angles(w))]
+        axes = [part for w in (wi, wo) for part in _bracket(*to_angles(w))]
         result = 0.0
         for cells, share in corners(axes):
             result = result + share[..., None] * self.values[cells]
         return result
 
 
-def _cells(theta, phi):
-    """The brackets of theta and of phi among the stored angles."""
+def _bracket(theta, phi):
+    """The brackets (`geometry.multilinear`) of theta and of phi among the stored angles."""
     theta = theta / THETA[1]
     i = np.minimum(theta.astype(int), len(THETA) - 2)
-    # beyond 75° the share exceeds 1: the line goes on
+    # Beyond 75° the share exceeds 1: linear extrapolation
     return (i, i + 1, theta - i), periodic_bracket(phi / PHI[1], len(PHI))

@@ -1,7 +1,9 @@
-"""`Measured`: a BRDF given by data, and what it is between and beyond its samples.
+"""`Measured`: a BRDF given by samples or by a table, and its values between and beyond them.
 
-`interpolation.py`: scattered samples; `tabulation.py`: any BRDF as a table; `spectra.py`:
-wavelengths and colours; `selection.py`: some of the samples.
+`data.py`: samples and tables as they are given, checked by `validation.py`; `measured.py`: their
+lookup; `interpolation.py`: between scattered samples; `tabulation.py`: any BRDF as a table;
+`mixing.py` and `spectra.py`: channels, wavelengths and colours; `selection.py`: the samples that a
+fit uses.
 """
 
 from brdfkit.measured.measured import Measured as Measured

@@ -1,15 +1,15 @@
-"""Which samples of a measured material a fit, and its errors, are about."""
+"""Selects the samples of a measured material that fits and comparisons use."""
 
 from numbers import Real
 
 from brdfkit.errors import BrdfkitError
 
 
-def selected(data, max_angle):
+def select_samples(data, max_angle):
     """The valid `Samples` of a `Measured` with both angles below `max_angle` [degrees].
 
-    Spectral data comes as linear sRGB. Raises `BrdfkitError` where the angle is not above 0° and at
-    most 90°, or no sample is left.
+    Spectral samples are converted to linear sRGB. Raises `BrdfkitError` for an angle that is not
+    above 0° and at most 90°, and where no sample is left.
     """
     if not isinstance(max_angle, Real) or not 0 < max_angle <= 90:
         raise BrdfkitError(

@@ -1,11 +1,11 @@
-"""The microfacet normals of a BRDF, computed from its retro-reflection.
+"""Computes the distribution of microfacet normals of a BRDF from its retro-reflection.
 
-Where wi = wo = w, a surface of microfacets has
+For wi = wo = w, the BRDF of a surface of microfacets is
 
     f(w, w) = F(0) D(w) / (4 cosθ σ(w)),    σ(w) = ∫ D(m) max(0, w·m) dm.
 
-So D is an eigenvector of D → f(w, w) cosθ σ(w): the one without a negative entry, to which
-repeated application leads.
+So D is an eigenvector of the linear map D → f(w, w) cosθ σ(w): the one without negative entries.
+Applying the map repeatedly converges to it.
 
 [Dupuy et al. 2015]
 """
@@ -23,8 +23,11 @@ TOLERANCE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Hemisphere:
-    """A grid of directions: `theta` (n_theta,) [rad] from 0 to π/2, and `n_phi` azimuths evenly
-    from -π on, one for what does not depend on them."""
+    """A grid of directions on the hemisphere, and integrals over it.
+
+    `theta` (n_theta,) [rad] runs from 0 to π/2; `n_phi` azimuths are evenly spaced from -π on, a
+    single one if nothing depends on the azimuth.
+    """
 
     theta: np.ndarray
     n_phi: int
@@ -37,16 +40,17 @@ class Hemisphere:
 
     @cached_property
     def solid_angles(self):
-        """Of all azimuths at each theta (n_theta,), by the trapezoidal rule [sr]."""
+        """The solid angle of the ring at each theta (n_theta,) [sr], by the trapezoidal rule."""
         steps = np.diff(self.theta, prepend=self.theta[0], append=self.theta[-1])
         return 2 * np.pi * np.sin(self.theta) * (steps[1:] + steps[:-1]) / 2
 
     def area(self, D):
-        """∫ D cosθ dm of D (n_phi, n_theta)."""
+        """The integral ∫ D cosθ dm of D (n_phi, n_theta)."""
         return D.mean(axis=0) @ (self.solid_angles * np.cos(self.theta))
 
-    def projected(self, D):
+    def projected_area(self, D):
         """σ (n_phi, n_theta) of D (n_phi, n_theta)."""
+        # A convolution over the azimuth is a product of Fourier coefficients
         coefficients = np.fft.rfft(D * self.solid_angles, axis=0)
         projected = np.einsum("ijk,kj->ki", self._kernel, coefficients)
         return np.fft.irfft(projected, self.n_phi, axis=0)
@@ -55,8 +59,8 @@ class Hemisphere:
     def _kernel(self):
         """Fourier coefficients (n_theta, n_theta', k) over Δφ of max(0, w·m) = max(0, a + b cosΔφ).
 
-        With a = cosθ cosθ', b = sinθ sinθ' and φ₀ = arccos(-a/b), beyond which it is 0, they are
-        (φ₀/π) (a s_k + b (s_{k-1} + s_{k+1}) / 2), where s_k = sin(k φ₀) / (k φ₀).
+        Here a = cosθ cosθ' and b = sinθ sinθ'. The function is 0 beyond φ₀ = arccos(-a/b). Its
+        coefficients are (φ₀/π) (a s_k + b (s_{k-1} + s_{k+1}) / 2), where s_k = sin(k φ₀) / (k φ₀).
         """
         a, b = (np.multiply.outer(x, x) for x in (np.cos(self.theta), np.sin(self.theta)))
         a, b = a[..., None], b[..., None]
@@ -67,11 +71,11 @@ class Hemisphere:
 
 
 def power_iteration(retro, hemisphere):
-    """D (n_phi, n_theta) [sr⁻¹], ∫ D cosθ dm = 1, of f(w, w), `retro` (n_phi, n_theta) ≥ 0."""
+    """D (n_phi, n_theta) [sr⁻¹] with ∫ D cosθ dm = 1; `retro` (n_phi, n_theta): f(w, w) ≥ 0."""
     gain = retro * np.cos(hemisphere.theta)
     D = np.ones_like(gain)
     for _ in range(MOST_ITERATIONS):
-        previous, D = D, gain * hemisphere.projected(D)
+        previous, D = D, gain * hemisphere.projected_area(D)
         D = D / hemisphere.area(D)
         if np.abs(D - previous).max() < TOLERANCE * D.max():
             break

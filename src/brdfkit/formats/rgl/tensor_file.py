@@ -1,8 +1,8 @@
 """The container of RGL's files: named arrays, little-endian, as Mitsuba's `TensorFile` defines it.
 
-``tensor_file\\0``, version (two uint8), number of fields (uint32); per field the length of its name
-(uint16), name, number of dimensions (uint16), type (uint8), offset (uint64) and dimensions
-(uint64 each); then the data.
+A file has ``tensor_file\\0``, the version (two uint8) and the number of fields (uint32); for each
+field the length of its name (uint16), its name, number of dimensions (uint16), type (uint8), offset
+(uint64) and dimensions (uint64 each); then the data.
 """
 
 import math
@@ -14,36 +14,39 @@ MAGIC = b"tensor_file\0"
 VERSION = 1, 0
 ALIGNMENT = 8
 MOST_DIMENSIONS = 8
-# in the order of their numbers, from 1
+# In the order of their numbers in the file, which begin with 1
 TYPES = [np.dtype(f"<{kind}{size}") for size in (1, 2, 4, 8) for kind in "ui"]
 TYPES += [np.dtype(f"<f{size}") for size in (2, 4, 8)]
 REMEDY = "fetch the file again"
 
 
 def read(source):
-    """The arrays of the `Source` by name: views, so that nothing is allocated by what it says.
+    """The arrays of a `Source` by name.
 
-    Raises `BrdfkitError` when a field is not wholly in the file, twice, or of an unknown type.
+    They are views of its bytes: no memory is allocated because a header asks for it. Raises
+    `BrdfkitError` if a field is not wholly in the file, twice there, or of an unknown type.
     """
     header = _Cursor(source)
-    if header.bytes(len(MAGIC)) != MAGIC or header.numbers("<BB") != VERSION:
+    if header.read_bytes(len(MAGIC)) != MAGIC or header.read_numbers("<BB") != VERSION:
         raise source.error("is no tensor file of version 1.0; check that it is an RGL file")
     fields = {}
-    (count,) = header.numbers("<I")
+    (count,) = header.read_numbers("<I")
     for _ in range(count):
-        name = header.bytes(*header.numbers("<H")).decode("utf-8", errors="backslashreplace")[:40]
+        name = header.read_bytes(*header.read_numbers("<H")).decode(
+            "utf-8", errors="backslashreplace"
+        )[:40]
         if name in fields:
             raise source.error(f"has the field {name!r} twice; {REMEDY}")
-        dimensions, number, offset = header.numbers("<HBQ")
+        dimensions, number, offset = header.read_numbers("<HBQ")
         if not 1 <= dimensions <= MOST_DIMENSIONS:
             raise source.error(f"field {name!r} has {dimensions} dimensions; {REMEDY}")
-        shape = header.numbers(f"<{dimensions}Q")
-        fields[name] = _array(source, name, number, offset, shape)
+        shape = header.read_numbers(f"<{dimensions}Q")
+        fields[name] = _view_array(source, name, number, offset, shape)
     return fields
 
 
 def write(stream, fields):
-    """Write arrays by name, in their order, to a binary stream."""
+    """Write the arrays `fields`, by name, to a binary stream, in their order."""
     arrays = {name.encode(): np.ascontiguousarray(array) for name, array in fields.items()}
     sizes = (2 + len(name) + 2 + 1 + 8 + 8 * array.ndim for name, array in arrays.items())
     end = len(MAGIC) + 2 + 4 + sum(sizes)
@@ -60,7 +63,7 @@ def write(stream, fields):
         stream.write(part)
 
 
-def _array(source, name, number, offset, shape):
+def _view_array(source, name, number, offset, shape):
     if not 1 <= number <= len(TYPES):
         raise source.error(f"field {name!r} has the unknown type {number}; {REMEDY}")
     dtype, size = TYPES[number - 1], math.prod(shape)
@@ -75,12 +78,12 @@ def _array(source, name, number, offset, shape):
 
 
 class _Cursor:
-    """Reads the header from the front."""
+    """Reads the header of a `Source` from its start on."""
 
     def __init__(self, source):
         self.source, self.position = source, 0
 
-    def bytes(self, count):
+    def read_bytes(self, count):
         start, self.position = self.position, self.position + count
         if self.position > len(self.source.data):
             raise self.source.error(
@@ -88,5 +91,5 @@ class _Cursor:
             )
         return self.source.data[start : self.position]
 
-    def numbers(self, layout):
-        return struct.unpack(layout, self.bytes(struct.calcsize(layout)))
+    def read_numbers(self, layout):
+        return struct.unpack(layout, self.read_bytes(struct.calcsize(layout)))

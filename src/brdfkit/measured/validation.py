@@ -1,0 +1,54 @@
+"""Checks the data of which a `Measured` is made: names and notes, a table, standard errors."""
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.names import printable
+from brdfkit.samples.samples import require_some
+
+
+def make_printable(name, channels, info):
+    """The name, the channels and the notes `info`, as text that can be printed."""
+    notes = {printable(key): printable(note, keep="\n\t") for key, note in (info or {}).items()}
+    return printable(name), tuple(map(printable, channels)), notes
+
+
+def check_table(values, phi_d_period, channels, name):
+    """The `values` ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, channels) of a table, infinite ones
+    replaced by NaN.
+
+    Raises `BrdfkitError` for another shape, an impossible period, and where no cell is measured.
+    """
+    values = np.asarray(values, float)
+    if values.ndim not in (4, 5) or values.shape[-1] != len(channels) or 0 in values.shape:
+        raise BrdfkitError(
+            f"{name}: a table of shape {values.shape} was given; it should be "
+            f"([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, {len(channels)})."
+        )
+    if not 0 < phi_d_period < 7:
+        raise BrdfkitError(
+            f"{name}: phi_d_period is {phi_d_period:g}; give π or, for a table that is not "
+            "reciprocal, 2π."
+        )
+    require_some(np.isfinite(values).all(axis=-1), name)
+    if np.isinf(values).any():
+        values = np.where(np.isinf(values), np.nan, values)
+    return values
+
+
+def check_errors(standard_error, values, name):
+    """Standard errors (n, channels), or None where none are given.
+
+    Raises `BrdfkitError` unless they have the shape of `values`; those of one channel may be (n,).
+    """
+    if standard_error is None:
+        return None
+    errors = given = np.asarray(standard_error, float)
+    if given.ndim == 1 and values.shape[1:] == (1,):
+        errors = given[:, None]
+    if errors.shape != values.shape:
+        raise BrdfkitError(
+            f"{name}: standard errors {given.shape} should have the shape {values.shape} of "
+            "the values."
+        )
+    return errors.reshape(-1, values.shape[-1])
