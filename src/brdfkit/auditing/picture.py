@@ -8,7 +8,8 @@ from brdfkit.auditing.coverage import is_near
 from brdfkit.colours import RGB, luminance
 from brdfkit.measured.spectra import rgb_or_mean
 from brdfkit.plotting import Plot
-from brdfkit.plotting.lobe_plots import draw, usual_angles
+from brdfkit.plotting.lobe_plots import draw
+from brdfkit.plotting.plane_of_incidence import usual_angles
 
 SIZE = 12.6, 6.8  # inches
 GREY = "0.45"  # of the legend, where it means all channels
