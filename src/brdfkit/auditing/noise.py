@@ -43,9 +43,7 @@ def noise(data):
     if np.isnan(sigmas).all():
         return Noise(unknown, "not testable: no direction pair was measured twice or mirrored")
     if np.nanmax(sigmas) < EQUAL:
-        return Noise(
-            unknown, "not testable: left and right are equal, one probably a copy of the other"
-        )
+        return Noise(unknown, "not testable: left and right are equal, probably copies")
     return Noise(sigmas, "differences between left and right of the plane of incidence")
 
 
