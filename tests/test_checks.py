@@ -209,9 +209,9 @@ class Mine(Model):
     [
         (
             "if wi.z > 0.5: return 0\n        return self.k",
-            "line 15: no if on values",
+            "line 15: write dr.select in place of `if`",
         ),
-        ("return np.exp(-wi.z) * self.k", "py: no function of NumPy, but that of dr"),
+        ("return np.exp(-wi.z) * self.k", "py: write functions of dr in place of NumPy's"),
         ("return self.q", "line 15: 'Mine' object has no attribute 'q'"),
     ],
 )

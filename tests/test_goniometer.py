@@ -15,9 +15,9 @@ from scipy import stats
 from brdfkit.errors import BrdfkitError
 from brdfkit.geometry.directions import from_angles
 from brdfkit.goniometer import measure, measuring, microgeometry
-from brdfkit.goniometer.measuring import Tally
 from brdfkit.goniometer.microgeometry import HeightField, brushed, gaussian, make, woven
 from brdfkit.goniometer.specimen import Specimen
+from brdfkit.goniometer.tally import Tally
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 

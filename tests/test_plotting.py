@@ -7,12 +7,13 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from brdfkit import models
+from brdfkit.colours import luminance
 from brdfkit.errors import BrdfkitError
 from brdfkit.geometry.directions import from_angles
 from brdfkit.measured import Measured
 from brdfkit.plotting import Plot, plot
 from brdfkit.plotting.half_disc import Radius
-from brdfkit.plotting.lobe_plots import lobe, luminance
+from brdfkit.plotting.plane_of_incidence import lobe
 
 pytestmark = pytest.mark.quick
 

@@ -100,7 +100,7 @@ def test_renders_of_several_threads_run_one_after_the_other(inside, tmp_path):
 def test_a_scene_ends_in_its_turn(monkeypatch, llvm_variant):
     """Mitsuba traces through the BSDFs of every scene, also of one that another thread frees."""
     seen = []
-    traced, trace = rendering._traced, rendering.trace
+    load_and_trace, trace = rendering._load_and_trace, rendering.trace
 
     def noted(loaded, *others):
         for scene in loaded.values():
@@ -108,12 +108,12 @@ def test_a_scene_ends_in_its_turn(monkeypatch, llvm_variant):
         return trace(loaded, *others)
 
     def counted(*args):
-        result = traced(*args)
+        result = load_and_trace(*args)
         assert [plugin() for plugin in seen] == [None, None]
         return result
 
     monkeypatch.setattr(rendering, "trace", noted)
-    monkeypatch.setattr(rendering, "_traced", counted)
+    monkeypatch.setattr(rendering, "_load_and_trace", counted)
     bk.render(["ward", "ggx"], size=4, spp=1)
 
 

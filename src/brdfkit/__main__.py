@@ -1,4 +1,4 @@
-"""`python -m brdfkit`: the command line, where its program is not on the path."""
+"""`python -m brdfkit`: the command line, where the program `brdfkit` is not on the path."""
 
 from brdfkit.cli import main
 

@@ -1,4 +1,4 @@
-"""The command line, `brdfkit`: its commands are the files of `brdfkit/commands/`."""
+"""The command line `brdfkit`; its commands are the files of `brdfkit/commands/`."""
 
 import importlib
 import pkgutil

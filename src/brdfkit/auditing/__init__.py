@@ -1,7 +1,7 @@
 """`audit`: what a measurement covers, how noisy it is and what is doubtful.
 
-One file answers one question; `pairs.py` finds the samples that should be equal, `picture.py` draws
-the audit and `words.py` says it in sentences.
+One file answers one question. Besides, `pairs.py` finds the samples that should be equal,
+`picture.py` draws the audit, and `words.py` tells it in sentences.
 """
 
 from dataclasses import dataclass, field
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MAX_ANGLE = 80.0  # degrees: what a fit uses by default
-FEW = 10  # angles that are told each
+FEW = 10  # up to so many angles are listed one by one
 
 
 @dataclass(frozen=True)
@@ -176,8 +176,10 @@ def audit(data: MaterialLike) -> Audit:
 
 
 def _angles(data, w):
-    """The angles to the normal [degrees] of the valid directions `w`; their ends for a table, and
-    where they are many."""
+    """The angles to the normal [degrees] of the valid directions `w`, ascending.
+
+    Only the smallest and the largest of a table, and of more than `FEW` angles.
+    """
     cosines = w[data.samples.valid, 2]
     if data.is_table:
         cosines = np.array([cosines.max(), cosines.min()])

@@ -1,4 +1,4 @@
-"""The albedo of a material over the angle of incidence: as it is looked up, and of its samples."""
+"""The albedo of a material over the angle of incidence: of its lookup, and of its samples alone."""
 
 from dataclasses import dataclass
 
@@ -6,20 +6,21 @@ import numpy as np
 
 from brdfkit.geometry.directions import from_angles, to_angles
 
-DEGREES = np.arange(0, 90, 5)  # of incidence
-# Points of the half vector: its polar angle, spaced as a table's, and its azimuth
+DEGREES = np.arange(0, 90, 5)  # angles of incidence
+# Half vectors of the quadrature: polar angles, spaced as in a table, and azimuths
 N_THETA, N_PHI = 180, 72
-AZIMUTHS = 8  # of incidence, over which the albedo of an anisotropic material is averaged
-MOST_OF = 0.75  # of the disc of directions, for an albedo of samples
+AZIMUTHS = 8  # azimuths of incidence of an anisotropic material
+LEAST_AREA = 0.75  # share of the disc of directions that samples must cover for their albedo
 
 
 @dataclass(frozen=True)
 class Albedo:
-    """Reflected over incident light, of `channels`, at angles of incidence.
+    """Reflected over incident light, per angle of incidence and channel.
 
-    `theta_i`: degrees (n,); `values`: (n, channels), over all azimuths; `measured_to`: the largest
-    angle of incidence [degrees] that was measured, behind it the values are extrapolated;
-    `brightest`: (n, channels), from the azimuth of incidence that reflects most.
+    `theta_i`: angles of incidence [degrees], (n,); `values`: (n, channels), the mean over the
+    azimuth of incidence; `measured_to`: the largest measured angle of incidence [degrees], beyond
+    which the values are extrapolated; `brightest`: (n, channels), at the azimuth of incidence that
+    reflects most.
     """
 
     channels: tuple[str, ...]
@@ -30,34 +31,38 @@ class Albedo:
 
 
 def albedo(data, measured_to):
-    """The `Albedo` of a `Measured`, ∫ f cos θo dωo, measured to θi = `measured_to` [degrees].
+    """The `Albedo` of a `Measured`, ∫ f cos θo dωo, whose largest measured θi is `measured_to`.
 
-    The integral runs over the half vector, dωo = 4 (wi·h) dωh, on the axes of a table: few points
-    are enough there, where `brdfkit.albedo`, for anything, refines for seconds. It is divided by
-    that of f = 1/π, so that a Lambertian surface has its reflectance exactly.
+    The integral is over half vectors, dωo = 4 (wi·h) dωh, spaced as in a table. Few are enough
+    there, whereas `brdfkit.albedo`, which takes any BRDF, refines for seconds. The sum is divided
+    by that of f = 1/π, so that a Lambertian surface gets exactly its reflectance.
     """
     azimuths = np.arange(AZIMUTHS) / AZIMUTHS * 2 * np.pi if data.anisotropic else (0.0,)
     values = np.array(
         [
-            [_albedo(data, from_angles(theta, phi)) for phi in azimuths]
+            [_albedo_at(data, from_angles(theta, phi)) for phi in azimuths]
             for theta in np.radians(DEGREES)
         ]
     )
     return Albedo(data.channels, DEGREES, values.mean(axis=1), measured_to, values.max(axis=1))
 
 
-def _albedo(data, wi):
+def _albedo_at(data, wi):
+    """The albedo (channels,) of light from `wi`, (3,)."""
     wo, weight = _quadrature(wi)
     values = data.eval(np.broadcast_to(wi, wo.shape), wo)
     return weight @ values * np.pi / weight.sum()
 
 
 def _quadrature(wi):
-    """Directions (n, 3) above the surface and their weights cos θo dωo."""
+    """Directions (n, 3) above the surface and their weights cos θo dωo, up to a factor."""
+    # half vectors; dense around the normal
     x = (np.arange(N_THETA) + 0.5) / N_THETA
     theta, phi = x**2 * np.pi / 2, (np.arange(N_PHI) + 0.5) / N_PHI * 2 * np.pi
     h = from_angles(*np.meshgrid(theta, phi, indexing="ij")).reshape(-1, 3)
     d_omega = np.repeat(x * np.sin(theta), N_PHI)
+
+    # the directions that they reflect `wi` to
     cosine = h @ wi
     wo = 2 * cosine[:, None] * h - wi
     above = (cosine > 0) & (wo[:, 2] > 0)
@@ -67,9 +72,10 @@ def _quadrature(wi):
 def albedo_of_samples(data):
     """The `Albedo` of scattered samples alone, at the angles of incidence that have enough of them.
 
-    In the disc of directions (sin θo cos φo, sin θo sin φo), where an area is cos θo dωo, the BRDF
-    is linear between the samples, and from the outermost constant to the horizon. None for a
-    table, for an anisotropic material, and where there are too few.
+    Directions are projected onto the unit disc (sin θo cos φo, sin θo sin φo), where an area is
+    cos θo dωo. There the BRDF is taken as linear between the samples, and as constant from the
+    outermost samples to the horizon. None for a table, for an anisotropic material, and where there
+    are too few samples.
     """
     if data.is_table or data.anisotropic:
         return None
@@ -77,7 +83,7 @@ def albedo_of_samples(data):
     degrees = np.degrees(to_angles(samples.wi)[0]).round(1)
     found = {}
     for angle in np.unique(degrees):
-        value = _of_disc(samples.at(degrees == angle))
+        value = _integrate_over_disc(samples.at(degrees == angle))
         if value is not None:
             found[float(angle)] = value
     if not found:
@@ -86,28 +92,36 @@ def albedo_of_samples(data):
     return Albedo(data.channels, np.array(list(found)), values, max(found), values)
 
 
-def _of_disc(samples):
-    """∫ f over the unit disc, from samples of one angle of incidence, or None."""
+def _integrate_over_disc(samples):
+    """∫ f over the unit disc (channels,), of samples at one incidence; None for too few."""
     from scipy.spatial import ConvexHull, Delaunay
 
-    places, values = _on_disc(samples)
+    # too few where they lie on a line, or cover too little of the disc
+    places, values = _project_to_disc(samples)
     if len(places) < 4 or np.linalg.matrix_rank(places - places[0], tol=1e-3) < 2:
         return None
     hull = ConvexHull(places)  # its volume is an area
-    if hull.volume < MOST_OF * np.pi:
+    if hull.volume < LEAST_AREA * np.pi:
         return None
+
+    # the outermost samples once more at the horizon
     outermost = places[hull.vertices]
     rim = outermost / np.linalg.norm(outermost, axis=1, keepdims=True)
     places = np.concatenate([places, rim])
     values = np.concatenate([values, values[hull.vertices]])
+
+    # linear on triangles between the samples; the polygon's area is scaled to the disc's
     corners = Delaunay(places).simplices
     (ax, ay), (bx, by) = (places[corners[:, k]].T - places[corners[:, 0]].T for k in (1, 2))
     area = np.abs(ax * by - ay * bx)
     return area @ values[corners].mean(axis=1) * np.pi / area.sum()
 
 
-def _on_disc(samples):
-    """Places (n, 2) and values of samples and of their mirror images, the same place once."""
+def _project_to_disc(samples):
+    """Places (n, 2) on the disc and values (n, channels) of the samples and their mirror images.
+
+    Samples at the same place are averaged.
+    """
     radius = np.sin(to_angles(samples.wo)[0])
     azimuth = to_angles(samples.wo)[1] - to_angles(samples.wi)[1]
     x, y = radius * np.cos(azimuth), radius * np.sin(azimuth)

@@ -1,4 +1,4 @@
-"""Which part of all direction pairs a measurement reaches."""
+"""Coverage: the share of all direction pairs that a measurement reaches."""
 
 from dataclasses import dataclass
 
@@ -8,16 +8,16 @@ from brdfkit.auditing.pairs import points
 from brdfkit.geometry.directions import from_angles
 
 NEAR = np.radians(5)  # a pair this near to a sample counts as measured
-PAIRS = 20_000  # the shares are good to 0.4 %
+PAIRS = 20_000  # random pairs for scattered samples: the shares are accurate to 0.4 %
 
 
 @dataclass(frozen=True)
 class Coverage:
-    """Shares of the direction pairs above the horizon, evenly in solid angle; their sum is 1.
+    """Shares of the direction pairs above the horizon, by solid angle; their sum is 1.
 
-    `measured`: in valid cells of a table, or within 5° of a sample, the exchange of wi and wo and
-    the symmetries of an isotropic material allowed for; `between`: not measured, at angles between
-    those that were; `beyond`: at larger ones, where nothing but extrapolation remains.
+    `measured`: in valid cells of a table, or within 5° of a sample, also after exchanging wi and wo
+    and by the symmetries of an isotropic material; `between`: not measured, at angles up to the
+    largest measured ones; `beyond`: at larger angles, where values are extrapolated.
     """
 
     measured: float
@@ -29,9 +29,9 @@ def coverage(data):
     """The `Coverage` of a `Measured`."""
     samples = data.samples
     low, high = _cosines(samples.wi, samples.wo)
-    pairs = _of_table(data, low, high) if data.is_table else _of_samples(data)
+    pairs = _table_pairs(data, low, high) if data.is_table else _random_pairs(data)
     pair_low, pair_high, weight, reached = pairs
-    # the larger angle of a pair, and the smaller one, against the largest that were measured
+    # neither the larger nor the smaller angle is above the largest such angle that was measured
     within = pair_low >= low[samples.valid].min()
     within &= pair_high >= high[samples.valid].min()
     shares = (reached, ~reached & within, ~reached & ~within)
@@ -39,17 +39,18 @@ def coverage(data):
 
 
 def is_near(data, wi, wo):
-    """Which direction pairs (n, 3) are within 5° of a valid sample."""
+    """Which direction pairs are within 5° of a valid sample: a mask (n,) for `wi`, `wo` (n, 3)."""
     from scipy.spatial import cKDTree
 
     samples = data.samples
     there = samples.wi[samples.valid], samples.wo[samples.valid]
-    both_ways = [_folded(data, *there), _folded(data, *there[::-1])]
+    both_ways = [_fold(data, *there), _fold(data, *there[::-1])]
     tree = cKDTree(np.concatenate(both_ways))
-    return np.isfinite(tree.query(_folded(data, wi, wo), distance_upper_bound=NEAR)[0])
+    return np.isfinite(tree.query(_fold(data, wi, wo), distance_upper_bound=NEAR)[0])
 
 
-def _folded(data, wi, wo):
+def _fold(data, wi, wo):
+    """The pairs as `points`; of an isotropic material, mirror images are the same point."""
     here = points(wi, wo, data.anisotropic)
     if not data.anisotropic:
         here[:, 3] = np.abs(here[:, 3])  # left and right of the plane of incidence
@@ -57,19 +58,19 @@ def _folded(data, wi, wo):
 
 
 def _cosines(wi, wo):
-    """The cosines of the larger and of the smaller angle of pairs."""
+    """The cosine of the larger angle, and that of the smaller angle, of each pair; both (n,)."""
     return np.minimum(wi[:, 2], wo[:, 2]), np.maximum(wi[:, 2], wo[:, 2])
 
 
-def _of_samples(data):
-    """Random pairs, evenly in solid angle: cosines, weights, and which of them are measured."""
+def _random_pairs(data):
+    """Random pairs, uniform in solid angle: their `_cosines`, weights, and which are measured."""
     z, phi = np.random.default_rng(0).random((2, 2, PAIRS))
     wi, wo = from_angles(np.arccos(z), 2 * np.pi * phi)
     return *_cosines(wi, wo), np.ones(PAIRS), is_near(data, wi, wo)
 
 
-def _of_table(data, low, high):
-    """Likewise the cells, their weights the solid angles of those above the horizon.
+def _table_pairs(data, low, high):
+    """The same of a table's cells; their weights are their solid angles above the horizon.
 
     dωi dωo = 4 cos θd dωh dωd [Rusinkiewicz 1998].
     """

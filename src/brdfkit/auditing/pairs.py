@@ -1,23 +1,23 @@
-"""Direction pairs as points: how near two are, and which are the same by a symmetry.
+"""Direction pairs as points: their distances, and pairs whose values a symmetry makes equal.
 
-The distance of two pairs is about the angle [rad] by which their directions differ, from 1/√2 of
-it to 3/2. Of an isotropic material only the azimuth between the directions counts: the common
-rotation that brings two pairs nearest leaves sin θi sin θo / √(sin² θi + sin² θo) of their
-azimuths' difference.
+The distance of two points is 1/√2 to 3/2 of the angle [rad] by which the pairs' directions differ.
+Of an isotropic material only the azimuth between wi and wo counts. Where this azimuth differs by δ
+between two pairs, no common rotation brings them nearer to each other than
+δ sin θi sin θo / √(sin² θi + sin² θo).
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-SAME = np.radians(0.5)  # directions this near are taken for one
+SAME = np.radians(0.5)  # pairs this near are taken for one
 
 
 @dataclass(frozen=True)
 class Difference:
-    """Relative differences |a - b| / ½ (a + b) of positive values that a symmetry makes equal.
+    """Relative differences |a - b| / ½ (a + b) of positive values that should be equal.
 
-    `pairs`: how many values were compared; their `median` and `percentile_95`, NaN without any.
+    `pairs`: the number of pairs of values; their `median` and `percentile_95`: NaN without any.
     """
 
     pairs: int
@@ -32,7 +32,7 @@ NOTHING = Difference(0, np.nan, np.nan)
 
 
 def points(wi, wo, anisotropic=False):
-    """Direction pairs (n, 3) as points (n, 4), those of an anisotropic material (n, 6)."""
+    """Direction pairs `wi`, `wo` (n, 3) as points (n, 4); of an anisotropic material (n, 6)."""
     if anisotropic:
         return np.concatenate([wi, wo], axis=-1)
     theta_i, theta_o = (np.arccos(np.clip(w[:, 2], -1, 1)) for w in (wi, wo))
@@ -48,7 +48,7 @@ def by_reciprocity(data):
         return _by_reciprocity_of_table(data.table)
     if data.has_lookup:
         return _by_lookup(data, data.samples.wo, data.samples.wi)
-    rows = swapped(data)
+    rows = find_swapped(data)
     values = _valid(data).values
     return difference(values[rows[:, 0]], values[rows[:, 1]])
 
@@ -56,22 +56,23 @@ def by_reciprocity(data):
 def by_mirror(data):
     """The `Difference` of values left and right of the plane of incidence of a `Measured`.
 
-    An isotropic material has none; of an anisotropic one nothing is compared.
+    It should be 0 for an isotropic material. Of an anisotropic one nothing is compared.
     """
     if data.anisotropic:
         return NOTHING
     if data.is_table:
         f = data.table.values
-        half = f.shape[-2] // 2
+        half = f.shape[-2] // 2  # cells at phi_d against those at -phi_d
         return difference(f[..., :half, :], f[..., : -half - 1 : -1, :])
     if data.has_lookup:
         return _by_lookup(data, *(w * [1, -1, 1] for w in (data.samples.wi, data.samples.wo)))
-    rows = mirrored(data)
+    rows = find_mirrored(data)
     values = _valid(data).values
     return difference(values[rows[:, 0]], values[rows[:, 1]])
 
 
 def _by_reciprocity_of_table(table):
+    """Of a table; the exchange of wi and wo adds π to phi_d."""
     half, odd = divmod(table.shape[-1], 2)
     if table.phi_d_period == np.pi or odd:
         return NOTHING
@@ -79,37 +80,44 @@ def _by_reciprocity_of_table(table):
 
 
 def _by_lookup(data, wi, wo):
+    """Of the samples and the looked-up values at `wi`, `wo`, their images by a symmetry."""
     valid = data.samples.valid
     return difference(data.samples.values[valid], data.eval(wi[valid], wo[valid]))
 
 
-def swapped(data):
-    """Rows (n, 2) of the valid samples whose directions are exchanged.
+def find_swapped(data):
+    """Pairs of valid samples of which one has the other's directions exchanged; rows (n, 2).
 
-    Where an isotropic material has θi = θo the exchange is a mirror image, and left out.
+    Samples of an isotropic material with θi = θo are left out: their exchange is a mirror image.
     """
     samples = _valid(data)
     images = points(samples.wo, samples.wi, data.anisotropic)
     if not data.anisotropic:
         images[np.abs(images[:, 0] - images[:, 1]) < 2 * SAME] = np.inf
-    return _rows(points(samples.wi, samples.wo, data.anisotropic), images)
+    return _match(points(samples.wi, samples.wo, data.anisotropic), images)
 
 
-def mirrored(data):
-    """Rows (n, 2) of the valid samples left and right of the plane of incidence."""
+def find_mirrored(data):
+    """Pairs of valid samples, left and right of the plane of incidence; rows (n, 2).
+
+    None of an anisotropic material.
+    """
     if data.anisotropic:
         return np.empty((0, 2), int)
     samples = _valid(data)
     here = points(samples.wi, samples.wo)
-    return _rows(here, here * [1, 1, 1, -1])
+    return _match(here, here * [1, 1, 1, -1])
 
 
 def _valid(data):
     return data.samples.at(data.samples.valid)
 
 
-def _rows(here, images):
-    """Pairs of different rows of which one is the other's image, each once."""
+def _match(here, images):
+    """Pairs (n, 2) of different rows of `here`, of which one is the other's image; each once.
+
+    `images`: of the rows of `here` by a symmetry; rows that are not finite have none.
+    """
     from scipy.spatial import cKDTree
 
     asked = np.flatnonzero(np.isfinite(images).all(axis=1))
@@ -119,16 +127,16 @@ def _rows(here, images):
     return np.unique(rows[rows[:, 0] != rows[:, 1]], axis=0)
 
 
-def relative(a, b):
-    """(a - b) / ½ (a + b) where both are positive, flat."""
+def relative_differences(a, b):
+    """(a - b) / ½ (a + b) where both are positive; a flat array."""
     both = (a > 0) & (b > 0)  # False where one is NaN
     a, b = a[both], b[both]
     return 2 * (a - b) / (a + b)
 
 
 def difference(a, b):
-    """The `Difference` of values `a` and `b` of one shape."""
-    found = np.abs(relative(a, b))
+    """The `Difference` of the values `a` and `b`, of one shape."""
+    found = np.abs(relative_differences(a, b))
     if not found.size:
         return NOTHING
     median, percentile = np.percentile(found, (50, 95))

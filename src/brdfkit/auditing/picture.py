@@ -8,14 +8,15 @@ from brdfkit.auditing.coverage import is_near
 from brdfkit.colours import RGB, luminance
 from brdfkit.measured.spectra import rgb_or_mean
 from brdfkit.plotting import Plot
-from brdfkit.plotting.lobe_plots import draw, usual_angles
+from brdfkit.plotting.lobe_plots import draw
+from brdfkit.plotting.plane_of_incidence import usual_angles
 
 SIZE = 12.6, 6.8  # inches
-GREY = "0.45"  # of the legend, where it means all channels
-COLOURS = {"R": "#d55e00", "G": "#009e73", "B": "#0072b2"}  # and black for what has one channel
+GREY = "0.45"  # legend entries that stand for all channels
+COLOURS = {"R": "#d55e00", "G": "#009e73", "B": "#0072b2"}  # of the channels; others are black
 TICKS = np.array([0, 1, 5, 10, 20, 40, 60, 90])  # degrees of theta_h
-MOST = 4  # times the looked-up albedo, for an albedo of samples
-FAINT = 0.35  # opacity of what was not measured
+MOST = 4  # an albedo of samples above so many times the looked-up albedo is out of range
+FAINT = 0.35  # opacity of cells that were not measured
 
 
 def picture(audit):
@@ -24,10 +25,10 @@ def picture(audit):
     figure = Plot(figsize=SIZE, layout="constrained")
     figure.get_layout_engine().set(w_pad=0.1, h_pad=0.1)
     above, below = figure.subfigures(2, 1, height_ratios=(1, 1.06))
-    _title(figure, audit)
+    _draw_title(figure, audit)
     slice_axes, albedo_axes = above.subplots(1, 2, width_ratios=(1.25, 1))
-    _slice(above, slice_axes, data)
-    _albedo(albedo_axes, audit)
+    _draw_slice(above, slice_axes, data)
+    _draw_albedo(albedo_axes, audit)
     things = [data]
     if not data.is_table:
         things.append(SimpleNamespace(name="interpolated", eval=data.eval))
@@ -35,23 +36,26 @@ def picture(audit):
     return figure
 
 
-def _title(figure, audit):
+def _draw_title(figure, audit):
     covered = f"{audit.coverage.measured:.0%} of the direction pairs".replace("%", " %")
     text = f"{audit.name}: {audit.kind}, {audit.valid:,} valid, {covered} measured"
     figure.suptitle(text.replace("$", r"\$"), fontsize=12)  # $ begins a formula
 
 
-def _slice(figure, axes, data):
-    """The luminance over theta_h and theta_d; hatched and faint where nothing was measured."""
+def _draw_slice(figure, axes, data):
+    """Draw the luminance over theta_h and theta_d; hatched and faint where it was not measured."""
+    # the cells at phi_d ≈ 90°
     table = data.table
     across = int(np.argmin(np.abs(table.centres[-1] - np.pi / 2)))
     cells = (0,) * table.anisotropic + (slice(None), slice(None), across)
     values = luminance(table.filled_values[cells])
-    known = _known(data, table, cells)
+    known = _is_measured(data, table, cells)
+
+    # the picture; theta_h as in a table, by its square root
     axes.patch.set(facecolor="0.92", hatch="////", edgecolor="0.75", linewidth=0)
     norm = _norm(values[known] if known.any() else values)
     shown = axes.imshow(
-        np.maximum(values, 0.99 * norm.vmin).T,  # the colour of what is below the scale
+        np.maximum(values, 0.99 * norm.vmin).T,  # 0 gets the colour of values below the scale, too
         norm=norm,
         alpha=np.where(known, 1, FAINT).T,
         extent=(0, 1, 0, 90),
@@ -63,6 +67,8 @@ def _slice(figure, axes, data):
     axes.set_yticks(range(0, 91, 30), [f"{t}°" for t in range(0, 91, 30)])
     axes.set_xlabel(r"$\theta_h$")
     axes.set_ylabel(r"$\theta_d$")
+
+    # title and colour bar
     phi_d = np.degrees(table.centres[-1][across])
     hatched = "" if known.all() else "; hatched: not measured"
     what = "luminance" if data.channels in (RGB, ("Y",)) else "mean"
@@ -73,8 +79,8 @@ def _slice(figure, axes, data):
         bar.ax.yaxis.set_minor_formatter("{x:.2g}")
 
 
-def _known(data, table, cells):
-    """Which cells of a slice rest on a measurement."""
+def _is_measured(data, table, cells):
+    """Which cells of a slice were measured, or are near a sample."""
     if data.is_table:
         return np.isfinite(table.values[cells]).all(axis=-1)
     wi, wo = (w[cells].reshape(-1, 3) for w in table.directions())
@@ -82,6 +88,7 @@ def _known(data, table, cells):
 
 
 def _norm(values):
+    """Matplotlib's logarithmic scale for `values`, without the outermost 1 % on either side."""
     from matplotlib.colors import LogNorm
 
     positive = values[values > 0]
@@ -91,8 +98,9 @@ def _norm(values):
     return LogNorm(min(lowest, highest / 2), highest)
 
 
-def _albedo(axes, audit):
-    """The albedo over incidence, of the table and of the samples alone."""
+def _draw_albedo(axes, audit):
+    """Draw the albedo over the angle of incidence: of the lookup, and of the samples alone."""
+    # lines of the lookup, dotted where it is extrapolated
     albedo, samples = audit.albedo, audit.albedo_of_samples
     measured = albedo.theta_i <= albedo.measured_to + 1
     last = int(np.flatnonzero(measured)[-1])
@@ -103,12 +111,15 @@ def _albedo(axes, audit):
         axes.plot(albedo.theta_i[last:], values[last:], linestyle=":", **style)
     if not measured.all():
         axes.plot([], ":", color=GREY, linewidth=1.8, label="extrapolated")
+
+    # circles of the samples
     top = 1.12 * albedo.values.max() or 1.0
     if samples:
         top = max(top, 1.12 * min(samples.values.max(), MOST * albedo.values.max()))
-        _of_samples(axes, samples, top)
+        _draw_sample_albedo(axes, samples, top)
     if top > 0.9:
         axes.axhline(1, color="0.6", linewidth=0.8, zorder=0)
+
     axes.set(xlim=(0, 90), ylim=(0, top))
     axes.set_xticks(range(0, 91, 15), [f"{t}°" for t in range(0, 91, 15)])
     axes.set_xlabel(r"$\theta_i$")
@@ -118,10 +129,10 @@ def _albedo(axes, audit):
         axes.legend(loc="upper left", bbox_to_anchor=(1, 1), frameon=False, handlelength=1.2)
 
 
-def _of_samples(axes, samples, top):
-    """Circles at the albedo of the samples; what is out of range is a triangle at that edge.
+def _draw_sample_albedo(axes, samples, top):
+    """Draw circles at the albedos of the samples, and triangles at the edge for those out of range.
 
-    Triangles stand side by side, as those of all channels may be out of range together.
+    The triangles of the channels stand side by side, as they may be out of range together.
     """
     beside = 2.0 * (np.arange(len(samples.channels)) - (len(samples.channels) - 1) / 2)  # degrees
     for channel, values, aside in zip(samples.channels, samples.values.T, beside, strict=True):

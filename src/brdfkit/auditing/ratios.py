@@ -1,18 +1,20 @@
-"""Two ratios of medians: one tells what instruments do near the horizon, one retroreflection."""
+"""Two ratios of medians: of values near the horizon, and of values near the light."""
 
 import numpy as np
 
-LEAST = 10  # samples on either side
-GRAZING, STEEP = 80, (60, 70)  # degrees
-# degrees: from the light; away from it, from the mirror direction and from the horizon; incidence
-NEAR, FAR, OFF_MIRROR, TO_HORIZON, OBLIQUE = 5, 20, 30, 15, 29.5
+LEAST = 10  # samples that each of the two medians needs
+GRAZING, STEEP = 80, (60, 70)  # degrees from the normal
+NEAR = 5  # at most so many degrees from the light ...
+FAR, OFF_MIRROR, TO_HORIZON = 20, 30, 15  # ... against at least so many from light, mirror, horizon
+OBLIQUE = 29.5  # degrees of incidence, at least: a little below 30, for rounded angles
 
 
 def grazing(data):
-    """The BRDF beyond 80° over that between 60° and 70°, of the larger angle of a pair.
+    """The median BRDF beyond 80° over that between 60° and 70°; the larger angle of a pair counts.
 
-    Reflectances of surfaces hold or rise towards the horizon; a goniometer's fall where the spot
-    outgrows the sample or its rows are filled by a line down to 0. NaN where not both are measured.
+    The BRDF of most surfaces stays equal or rises towards the horizon. A goniometer's values fall
+    where its spot is larger than the sample, or where somebody filled rows by a line down to 0. NaN
+    where one of the two was not measured.
     """
     samples = data.samples
     cosine = np.minimum(samples.wi[:, 2], samples.wo[:, 2])
@@ -21,11 +23,11 @@ def grazing(data):
 
 
 def retroreflection(data):
-    """The BRDF within 5° of the light over that away from it, from the mirror direction and from
-    the horizon, at incidences of 30° and more.
+    """The median BRDF within 5° of the light over that far from it, at incidences from 30°.
 
-    About 1 for what is diffuse, at most 2 for the roughest plaster, 30 for a reflective tape. NaN
-    where not both are measured.
+    Far is also away from the mirror direction and from the horizon. About 1 for diffuse surfaces,
+    at most 2 for the roughest plaster, 30 for a reflective tape. NaN where one of the two was not
+    measured.
     """
     samples = data.samples
     to_light = np.einsum("nk,nk->n", samples.wi, samples.wo)
@@ -41,8 +43,9 @@ def _cos(degrees):
 
 
 def _ratio(samples, these, those):
+    """The median of the valid samples `these` over that of `those`, of their channels' means."""
     values = [samples.values[samples.valid & rows] for rows in (these, those)]
     if min(map(len, values)) < LEAST:
         return np.nan
-    one, other = (float(np.median(v.mean(axis=1))) for v in values)
-    return one / other if other > 0 else np.nan
+    above, below = (float(np.median(v.mean(axis=1))) for v in values)
+    return above / below if below > 0 else np.nan

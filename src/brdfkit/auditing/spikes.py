@@ -1,7 +1,7 @@
-"""Lone spikes: values far above all around them.
+"""Lone spikes: values far above all their neighbours.
 
-What is compared is f cos θi cos θo: towards the horizon the facets of a smooth surface make f grow
-as 1 / (4 cos θi cos θo), which is no spike.
+f cos θi cos θo is compared: the f of a smooth surface grows towards the horizon as
+1 / (4 cos θi cos θo), which is no spike.
 """
 
 from dataclasses import dataclass
@@ -11,14 +11,18 @@ import numpy as np
 from brdfkit.geometry.directions import to_angles
 from brdfkit.samples.coordinates import anisotropic_coordinates, isotropic_coordinates
 
-FACTOR = 4  # above the neighbours; rough and smooth paints, cloth and stone stay below 3.4
-NEIGHBOURS = 6
+FACTOR = 4  # over the largest neighbour; of rough and smooth paints, cloth and stone at most 3.4
+NEIGHBOURS = 6  # of a scattered sample
 
 
 @dataclass(frozen=True)
 class Spike:
-    """A suspicious sample: its angles [degrees], 180 the mirror's azimuth, its mean over the
-    channels [sr⁻¹], and the `factor` by which f cos θi cos θo is above the largest around it."""
+    """A suspicious sample.
+
+    `theta_i`, `theta_o`, `delta_phi`: degrees, 180 for the azimuth of the mirror direction;
+    `value`: its mean over the channels [sr⁻¹]; `factor`: its f cos θi cos θo over the largest of
+    its neighbours.
+    """
 
     theta_i: float
     theta_o: float
@@ -29,21 +33,28 @@ class Spike:
     def __str__(self):
         return (
             f"θi {self.theta_i:.1f}°, θo {self.theta_o:.1f}°, Δφ {self.delta_phi:.0f}°: "
-            f"{self.value:.4g} sr⁻¹, {self.factor:.1f} times what is around it"
+            f"{self.value:.4g} sr⁻¹, {self.factor:.1f} times its neighbours"
         )
 
 
 def spikes(data):
     """The `Spike`s of a `Measured`, the worst first.
 
-    Brighter than the median, and more than 4 times the neighbours: of a table's cell those that
-    share a side, of a sample the 6 with the nearest half and difference vectors.
+    A spike is brighter than the median, and more than 4 times its largest neighbour. The neighbours
+    of a table's cell share a side with it; those of a sample are the 6 with the nearest half and
+    difference vectors.
     """
+    # the values, and the largest of their neighbours; clipped zeros count as nearly 0
     samples = data.samples
     brightness = np.where(samples.valid, samples.values.mean(axis=1), np.nan)
     projected = brightness * samples.wi[:, 2] * samples.wo[:, 2]
-    around = _around_cells(data.table, projected) if data.is_table else _around(data, projected)
-    around = np.maximum(around, 1e-3 * abs(np.nanmedian(projected)))  # clipped zeros
+    if data.is_table:
+        around = _largest_adjacent(data.table, projected)
+    else:
+        around = _largest_nearby(data, projected)
+    around = np.maximum(around, 1e-3 * abs(np.nanmedian(projected)))
+
+    # the spikes, the worst first
     found = (projected > FACTOR * around) & (brightness > np.nanmedian(brightness))
     worst = np.flatnonzero(found)
     worst = worst[np.argsort(-projected[worst] / around[worst])]
@@ -53,8 +64,8 @@ def spikes(data):
     return tuple(Spike(*row) for row in np.transpose(columns).tolist())
 
 
-def _around_cells(table, values):
-    """The largest value in the cells that share a side; NaN without any."""
+def _largest_adjacent(table, values):
+    """For each cell the largest of `values` in the cells that share a side, or NaN; (n,)."""
     f = values.reshape(table.shape)
     around = np.full(f.shape, np.nan)
     for axis in range(f.ndim):
@@ -67,8 +78,8 @@ def _around_cells(table, values):
     return around.reshape(-1)
 
 
-def _around(data, values):
-    """The largest value of the nearest samples; NaN where none is valid."""
+def _largest_nearby(data, values):
+    """For each sample the largest of `values` of the nearest valid samples, or NaN; (n,)."""
     from scipy.spatial import cKDTree
 
     samples, valid = data.samples, np.flatnonzero(data.samples.valid)

@@ -1,16 +1,17 @@
-"""An `Audit` in words: the sentences of `brdfkit info`."""
+"""An `Audit` in words: the rows and sentences that `brdfkit info` prints."""
 
 import math
 
-RESULTS = 3  # spikes that are named
-SHARE = 0.01  # of negative or zero values, above which they are a finding
-NOT_RECIPROCAL, PAIRS = 0.1, 20
-BRIGHT = 1.001  # albedo; the quadrature is good to 10⁻³
-DARK_HORIZON, RETROREFLECTIVE = 0.5, 5
+MOST_SPIKES = 3  # spikes that are named; the others are counted
+# What is above, or for DARK_HORIZON below, is a finding:
+SHARE = 0.01  # the share of negative or of zero values
+NOT_RECIPROCAL, PAIRS = 0.1, 20  # the median difference, of at least so many pairs
+BRIGHT = 1.001  # the albedo; its quadrature is accurate to 10⁻³
+DARK_HORIZON, RETROREFLECTIVE = 0.5, 5  # the ratios of `ratios.py`
 
 
 def rows(audit):
-    """What was measured and how well, by heading."""
+    """What was measured and how well: texts by heading."""
     unit = "cells" if audit.data.is_table else "samples"
     below = audit.size - audit.above
     beneath = f"; {below:,} at or below the horizon" if below else ""
@@ -25,10 +26,10 @@ def rows(audit):
         "negative": f"{audit.negative:,} of {values:,} values; exactly 0: {audit.zero:,}",
         "BRDF": _range(audit),
         "angles": f"θi {_angles(audit.theta_i)}; θo {_angles(audit.theta_o)}",
-        "coverage": f"{_percent(reach.measured)} {how}, {_percent(reach.between)} between, "
-        f"{_percent(reach.beyond)} beyond (of all direction pairs, by solid angle)",
+        "coverage": f"of all direction pairs, by solid angle: {_percent(reach.measured)} {how}, "
+        f"{_percent(reach.between)} between measured angles, {_percent(reach.beyond)} beyond them",
         "reciprocity": _reciprocity(audit),
-        "mirror": _difference(audit.mirror, "no mirrored pairs"),
+        "mirror symmetry": _difference(audit.mirror, "no mirrored pairs"),
         "noise": _noise(audit.noise),
         **_albedos(audit),
         "a fit uses": f"{audit.used:,} {unit}, {_percent(audit.used / audit.valid)} of the valid: "
@@ -37,16 +38,17 @@ def rows(audit):
 
 
 def findings(audit):
-    """A sentence on each thing that is doubtful."""
+    """What is doubtful: a sentence on each finding."""
     found = [*_spikes(audit.spikes), *_energy(audit)]
     values = audit.valid * len(audit.channels)
     if audit.negative > SHARE * values:
         found.append(
             f"{_percent(audit.negative / values)} of the values are negative: the losses log and "
-            "cbrt take them as 0"
+            "cbrt treat them as 0"
         )
     if audit.zero > SHARE * values:
-        found.append(f"{_percent(audit.zero / values)} of the values are exactly 0: clipped")
+        share = _percent(audit.zero / values)
+        found.append(f"{share} of the values are exactly 0: probably clipped")
     if audit.reciprocity.pairs >= PAIRS and audit.reciprocity.median > NOT_RECIPROCAL:
         found.append(
             f"not reciprocal: exchanging wi and wo changes the value by "
@@ -54,13 +56,13 @@ def findings(audit):
         )
     if audit.grazing < DARK_HORIZON:
         found.append(
-            f"falls towards the horizon: beyond 80° the median is {audit.grazing:.2g} of that at "
-            "60° to 70°, as few surfaces do; fit with a small max_angle"
+            f"falls towards the horizon: the median beyond 80° is {audit.grazing:.2g} times that "
+            "between 60° and 70°, as of few surfaces; fit with a smaller max_angle"
         )
     if audit.retroreflection > RETROREFLECTIVE:
         found.append(
-            f"retroreflective: within 5° of the light the median is {audit.retroreflection:.2g} "
-            "times that elsewhere; no lobe about the mirror direction can fit it"
+            f"retroreflective: the median within 5° of the light is {audit.retroreflection:.2g} "
+            "times that elsewhere; no lobe about the mirror direction can fit this"
         )
     return tuple(found)
 
@@ -84,7 +86,7 @@ def _angles(angles):
 
 
 def _percent(share):
-    """In percent, to two digits; what is above 0 does not read as 0."""
+    """A share in percent, to two digits; one above 0 is never shown as 0."""
     percent = 100 * share
     if 0 < percent < 0.001:
         return "< 0.001 %"
@@ -101,17 +103,17 @@ def _difference(found, without):
     if not found:
         return f"not testable: {without}"
     return (
-        f"median {_percent(found.median)}, 95 % within {_percent(found.percentile_95)}, "
-        f"of {found.pairs:,} pairs of values"
+        f"{found.pairs:,} pairs of values differ by {_percent(found.median)} in the median, "
+        f"95 % of them by at most {_percent(found.percentile_95)}"
     )
 
 
 def _noise(noise):
-    told = [n for n in noise.relative if not math.isnan(n)]
-    if not told:
+    known = [n for n in noise.relative if not math.isnan(n)]
+    if not known:
         return noise.method
-    ends = dict.fromkeys(map(_percent, (min(told), max(told))))
-    return f"{' to '.join(ends)} of a value, by {noise.method}"
+    ends = dict.fromkeys(map(_percent, (min(known), max(known))))
+    return f"{' to '.join(ends)} of a value, from {noise.method}"
 
 
 def _albedos(audit):
@@ -119,7 +121,9 @@ def _albedos(audit):
     if audit.albedo_of_samples:
         low, high = audit.albedo_of_samples.theta_i[[0, -1]]
         ends = _ends(audit.albedo_of_samples)
-        rows["of samples"] = f"{ends}, over θi {low:g}° to {high:g}°, linear between the samples"
+        rows["albedo of samples"] = (
+            f"{ends}, over θi {low:g}° to {high:g}°, linear between the samples"
+        )
     return rows
 
 
@@ -129,7 +133,7 @@ def _ends(albedo):
 
 
 def _energy(audit):
-    """Where an albedo is above 1."""
+    """A sentence on each albedo that is above 1."""
     found = []
     for albedo, what in (
         (audit.albedo, "albedo, interpolated," if audit.albedo_of_samples else "albedo"),
@@ -144,12 +148,13 @@ def _energy(audit):
         beyond = " (extrapolated)" if theta_i > albedo.measured_to + 1 else ""
         found.append(
             f"{what} {most:.3f} at θi {theta_i:g}°{beyond}{side}, channel "
-            f"{channel}: more light leaves than comes"
+            f"{channel}: more light leaves than arrives"
         )
     return found
 
 
 def _spikes(spikes):
-    named = [f"spike at {spike}" for spike in spikes[:RESULTS]]
-    rest = len(spikes) - RESULTS
+    """A sentence on each of the worst spikes, and one on the number of the others."""
+    named = [f"spike at {spike}" for spike in spikes[:MOST_SPIKES]]
+    rest = len(spikes) - MOST_SPIKES
     return [*named, f"and {rest:,} more spikes"] if rest > 0 else named

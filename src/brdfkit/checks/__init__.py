@@ -1,8 +1,9 @@
-"""`check`: what every material and every plugin must fulfil; the tests run the same over all.
+"""`check`: the requirements on every material and every plugin; the tests hold all of them to it.
 
-A check is a function `(subject) -> (passed, figure)` with the decorator `checked(KIND)`, in a
-module of this folder. A material's checks are in `physics.py`, `sampling.py` and `derivatives.py`,
-with a `Subject`; those of other plugins in a file of their kind, with a `PluginSubject`.
+A check is a function `(subject) -> (passed, figure)` with the decorator `check_of(KIND)`, in a
+file of this folder. The checks of a material get a `Subject`; they are in `physics.py`,
+`sampling.py` and `derivatives.py`. The checks of another kind of plugin get a `PluginSubject`; they
+are in the file of their kind.
 """
 
 import importlib
@@ -11,7 +12,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from brdfkit import llvm
-from brdfkit.checks.failure import described
+from brdfkit.checks.failure import describe
 from brdfkit.checks.plugin import PluginSubject, example
 from brdfkit.checks.registry import Finding, checks
 from brdfkit.checks.subject import Subject
@@ -102,14 +103,14 @@ def check(
             raise no_such("check", wanted, checks[kind])
     findings = []
     for wanted in names:
-        findings.append(Finding(wanted, *_found(kind, wanted, subject)))
+        findings.append(Finding(wanted, *_run(kind, wanted, subject)))
         if progress:
             progress(len(findings), len(names))
     return Report(name, tuple(findings))
 
 
 def _subject(thing):
-    """What is checked, its kind, and its name."""
+    """The subject of the checks of `thing`, its kind of plugin, and its name."""
     name = thing.get("type") if isinstance(thing, dict) else thing
     kind = discovery.kind_of(name) if isinstance(name, str) else None
     if kind not in (None, MODELS):
@@ -118,8 +119,8 @@ def _subject(thing):
     return Subject(found), MODELS, found.name
 
 
-def _found(kind, name, subject):
-    """(passed, figure) of a check; a plugin whose lines raise an error has failed it."""
+def _run(kind, name, subject):
+    """(passed, figure) of one check; it has failed where a plugin's own code raises an error."""
     try:
         return checks[kind][name](subject)
     except BrdfkitError:
@@ -127,4 +128,4 @@ def _found(kind, name, subject):
     except Exception as error:
         if subject.source is None:
             raise
-        return False, described(error, subject.source)
+        return False, describe(error, subject.source)

@@ -1,7 +1,7 @@
-"""Checks that the samplers of directions over the whole sphere share: of light and of scattering.
+"""What the checks of emitters and of phase functions share: tests of samplers over the sphere.
 
-A sampler is given as two functions: `draw(u, v)` → (direction, weight, density) of the unit square,
-and `pdf(direction)`.
+A sampler is given as two functions: `draw(u, v)`, of a point of the unit square, returns
+(direction, weight, density), and `pdf(direction)` the density.
 """
 
 import numpy as np
@@ -10,12 +10,17 @@ from brdfkit.padding import pad
 
 SIGNIFICANCE = 0.01
 SAMPLES = 400_000
-CELLS, SUBCELLS = 101, 32  # of χ²'s histogram; fewer points in a cell reject a small sun
-RINGS, POINTS = 512, 1024  # of the quadrature: polar angles, azimuths
+# Cells of the χ² test's histogram, and points to integrate the density in a cell, both along each
+# axis; with fewer points the correct sampler of a small sun is rejected
+CELLS, SUBCELLS = 101, 32
+RINGS, POINTS = 512, 1024  # polar angles and azimuths of the quadrature
 
 
 def chi_squared(draw, pdf, tests):
-    """Pearson's p that directions follow their density, and whether that is accepted."""
+    """The p-value of Pearson's χ² test that directions follow their density; None if it rejects.
+
+    `tests`: how many such tests a check runs, which share the significance level.
+    """
     import drjit as dr
     import mitsuba as mi
     from mitsuba.chi2 import ChiSquareTest, SphericalDomain
@@ -28,16 +33,16 @@ def chi_squared(draw, pdf, tests):
     return test.p_value if test.run(SIGNIFICANCE, test_count=tests, quiet=True) else None
 
 
-def square(n, seed):
-    """Points of the unit square, (u, v), each a `mi.Float` of `n` numbers."""
+def random_points(n, seed):
+    """`n` random points (u, v) of the unit square, as two `mi.Float`."""
     import mitsuba as mi
 
     u = np.random.default_rng(seed).random((2, n), np.float32)
     return tuple(mi.Float(pad(row)) for row in u)
 
 
-def sphere():
-    """Directions over the whole sphere and their solid angles, for sums: (mi.Vector3f, (n,))."""
+def quadrature():
+    """Directions over the whole sphere, a `mi.Vector3f`, and their solid angles (n,)."""
     import mitsuba as mi
 
     theta = (np.arange(RINGS) + 0.5) / RINGS * np.pi
@@ -48,12 +53,16 @@ def sphere():
 
 
 def numbers(value, n):
-    """A number per direction (n,), of a constant, too."""
+    """`value` as an array (n,): a number per direction, also where Mitsuba returned a constant."""
     return np.broadcast_to(np.array(value, float).ravel(), n)
 
 
-def agreement(weights, expected):
-    """By how many standard errors the mean of `weights` (channels, n) is off `expected`."""
+def deviation(weights, expected):
+    """How many standard errors the mean of `weights` (channels, n) is off `expected` (channels,).
+
+    The largest over the channels.
+    """
     weights = np.asarray(weights, float)
+    # of the mean, and of the quadrature that gave `expected`
     error = np.hypot(weights.std(axis=1) / np.sqrt(weights.shape[1]), 1e-3 * np.abs(expected))
     return float(np.max(np.abs(weights.mean(axis=1) - expected) / np.maximum(error, 1e-12)))

@@ -1,17 +1,17 @@
-"""What to say where a check cannot run: a plugin's own lines went wrong."""
+"""Describes an error that a plugin's own code raised during a check: where, and what to do."""
 
 import traceback
 from pathlib import Path
 
-# What words of Dr.Jit mean to who writes a plugin
+# Words in an error of Dr.Jit's → what the plugin's author should write
 HINTS = {
-    "'bool'": "no if on values, but dr.select",
-    "'ndarray'": "no function of NumPy, but that of dr",
+    "'bool'": "write dr.select in place of `if` on values",
+    "'ndarray'": "write functions of dr in place of NumPy's",
 }
 
 
-def described(error, path):
-    """The line of the plugin's file (`Path`) where `error` came from, and its last words."""
+def describe(error, path):
+    """`error` in words: the plugin's file (`Path`) and the line that raised it, and the reason."""
     frames = traceback.extract_tb(error.__traceback__)
     lines = [f.lineno for f in frames if Path(f.filename) == path]
     place = f"{path.name}, line {lines[-1]}" if lines else path.name

@@ -1,17 +1,18 @@
-"""Checks of phase functions: density, weight and sampler belong together, and lose no light."""
+"""Checks of phase functions: samples follow their density, no light is lost."""
 
 import numpy as np
 
 from brdfkit.checks import directions
-from brdfkit.checks.registry import checked
+from brdfkit.checks.registry import check_of
 from brdfkit.checks.variants import columns
 
-# Where light goes, in two directions: a phase function may treat the axes differently
+# Two directions in which light travels: a phase function may treat the axes differently
 FORWARD = ((0.0, 0.0, 1.0), (0.6, 0.48, 0.64))
 
 
 def sampler(subject, forward):
-    """The sampler of `directions.py` for light that goes `forward`, and value and density of it."""
+    """(`draw` as in `directions.py`, a function direction → (value, density)) of light that travels
+    along `forward`."""
     import mitsuba as mi
 
     context, it = mi.PhaseFunctionContext(None), mi.MediumInteraction3f()
@@ -27,7 +28,7 @@ def sampler(subject, forward):
     return draw, value_and_pdf
 
 
-@checked("phase")
+@check_of("phase")
 def chi_squared(subject):
     """Samples follow the density that `eval_pdf` states (Pearson's χ² test)."""
     p_values = []
@@ -37,15 +38,14 @@ def chi_squared(subject):
         p_values.append(p)
     if None in p_values:
         return False, "rejected"
-    return True, f"least p {min(p_values):.3g}"
+    return True, f"smallest p-value {min(p_values):.3g}"
 
 
-@checked("phase")
+@check_of("phase")
 def weights(subject):
     """The weight of a sample = value / density, and its density is that of `eval_pdf`."""
-
     n, worst = 20_000, 0.0
-    u = directions.square(n, seed=1)
+    u = directions.random_points(n, seed=1)
     for forward in FORWARD:
         draw, value_and_pdf = sampler(subject, forward)
         wo, weight, stated = draw(*u)
@@ -57,31 +57,30 @@ def weights(subject):
     return worst < 1e-3, f"relative difference at most {worst:.1e}"
 
 
-@checked("phase")
+@check_of("phase")
 def normalisation(subject):
-    """∫ p dω = 1 over the sphere: nothing is gained or lost by scattering."""
-    w, solid_angle = directions.sphere()
+    """∫ p dω = 1 over the sphere: scattering neither gains nor loses light."""
+    w, solid_angle = directions.quadrature()
     densities = [sampler(subject, forward)[1](w)[1] for forward in FORWARD]
     totals = [directions.numbers(pdf, len(solid_angle)) @ solid_angle for pdf in densities]
     worst = max(totals, key=lambda t: abs(t - 1))
     return bool(abs(worst - 1) < 1e-3), f"integral {worst:.5f}"
 
 
-@checked("phase")
+@check_of("phase")
 def mean_cosine(subject):
-    """The mean of the samples' cosines, weighted = ∫ p μ dω: the sampler misses no direction."""
+    """The weighted mean cosine of the samples = ∫ p μ dω by quadrature: no direction is missed."""
     import mitsuba as mi
 
-    u = directions.square(directions.SAMPLES, seed=2)
-    w, solid_angle = directions.sphere()
+    u = directions.random_points(directions.SAMPLES, seed=2)
+    w, solid_angle = directions.quadrature()
     worst = 0.0
     for forward in FORWARD:
         draw, value_and_pdf = sampler(subject, forward)
         wo, weight, _ = draw(*u)
         cosine = np.array(mi.Vector3f(*forward)).ravel() @ np.array(wo)
-        straight = np.array(forward) @ np.array(w)
-        value = columns(value_and_pdf(w)[0], len(solid_angle))
-        expected = value @ (straight * solid_angle)
         found = columns(weight, directions.SAMPLES) * cosine
-        worst = max(worst, directions.agreement(found, expected))
-    return worst < 4.5, f"at most {worst:.1f} standard errors apart"
+        value = columns(value_and_pdf(w)[0], len(solid_angle))
+        expected = value @ (np.array(forward) @ np.array(w) * solid_angle)
+        worst = max(worst, directions.deviation(found, expected))
+    return worst < 4.5, f"samples and quadrature at most {worst:.1f} standard errors apart"

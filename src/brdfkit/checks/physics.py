@@ -1,8 +1,8 @@
-"""Checks that the BRDF is one: reciprocal, not negative, finite, not brighter than its light."""
+"""Checks of physics: the BRDF is reciprocal, finite and not negative, and it conserves energy."""
 
 import numpy as np
 
-from brdfkit.checks.registry import checked
+from brdfkit.checks.registry import check_of
 from brdfkit.checks.subject import AZIMUTH, incidences, random_pairs
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.undefined import require_finite, require_finite_slopes
@@ -13,7 +13,7 @@ from brdfkit.model.evaluation import lobe_values
 from brdfkit.plugins.discovery import MODELS
 
 
-@checked(MODELS)
+@check_of(MODELS)
 def reciprocity(subject):
     """f(wi, wo) = f(wo, wi), in double precision over 10,000 pairs."""
     wi, wo = random_pairs(10_000, seed=4)
@@ -24,7 +24,7 @@ def reciprocity(subject):
     ), f"relative difference at most {difference:.1e}"
 
 
-@checked(MODELS)
+@check_of(MODELS)
 def finite(subject):
     """Finite and not negative up to the horizon, 0 below it, in the renderer's precision."""
     heights = np.array([-1, -1e-3, 0, 1e-8, 1e-6, 1e-4, 1e-2, 0.1, 0.5, 1.0])
@@ -38,16 +38,19 @@ def finite(subject):
         "not black below the horizon": (value[below] != 0).sum(),
     }
     found = "; ".join(f"{count} {what}" for what, count in problems.items() if count)
-    return not found, found or f"{value.size} values to the horizon"
+    return not found, found or f"{value.size:,} values up to the horizon are finite"
 
 
-@checked(MODELS)
+@check_of(MODELS)
 def defined(subject):
-    """The formula and its derivatives are finite in double precision where a fit may ask for them:
-    at the normal, at mirror directions, whose half vector is the normal, and back to the light."""
+    """The formula and its derivatives are finite in double precision where a fit may need them.
+
+    These are the normal, mirror directions, whose half vector is the normal, and the directions
+    back to the light.
+    """
     model = subject.model
     if model is None:
-        return True, "no formula"
+        return True, "nothing to check: no formula"
     theta = np.linspace(0, np.radians(89.9), 2_000)
     wi = from_angles(theta, AZIMUTH)
     wi, wo = np.concatenate([wi, wi]), np.concatenate([wi * [-1, -1, 1], wi])
@@ -58,13 +61,14 @@ def defined(subject):
         require_finite(model, plain.T, *directions)
         require_finite_slopes(model, shapes, shapes, *directions)
     except BrdfkitError as error:
+        # the reason, between the model's name and the remedy
         return False, str(error).partition(": ")[2].partition(";")[0]
-    return True, f"{len(wi):,} pairs"
+    return True, f"formula and derivatives are finite at {len(wi):,} pairs"
 
 
-@checked(MODELS)
+@check_of(MODELS)
 def energy(subject):
-    """No more light is reflected than came: albedo ≤ 1 at every incidence to 85°."""
+    """No more light leaves than arrives: albedo ≤ 1 at every angle of incidence up to 85°."""
     f = subject.values
     figures = {degrees: directional_albedo(f, wi).max() for degrees, wi in incidences()}
     degrees = max(figures, key=lambda d: figures[d])

@@ -1,4 +1,4 @@
-"""The checks there are, by the kind of plugin that they are for; and what one finds."""
+"""The registry of the checks, by kind of plugin, and `Finding`, the result of one check."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,15 +10,18 @@ checks: dict[str, dict[str, Callable]] = {kind: {} for kind in KINDS}
 
 @dataclass(frozen=True)
 class Finding:
-    """What one check found: whether it passed, and the figure by which."""
+    """The result of one check: its name, whether it passed, and the measured `figure` in words."""
 
     check: str
     passed: bool
     figure: str
 
 
-def checked(*kinds):
-    """Make a function (subject) → (passed, figure) a check of these kinds, with its own name."""
+def check_of(*kinds):
+    """Register a function (subject) → (passed, figure) as a check of these kinds of plugins.
+
+    The check has the function's name, with spaces for underscores.
+    """
 
     def register(function):
         for kind in kinds:

@@ -1,29 +1,30 @@
-"""Checks of the sampling: its density, its weights, and that it reaches every lobe."""
+"""Checks of a BSDF's sampling: its density, its weights, and that it reaches every lobe."""
 
 import numpy as np
 
-from brdfkit.checks.registry import checked
+from brdfkit.checks.registry import check_of
 from brdfkit.checks.subject import INCIDENCES, incidences
 from brdfkit.checks.variants import columns
 from brdfkit.geometry.quadrature import TOLERANCE, directional_albedo
 from brdfkit.padding import pad
 from brdfkit.plugins.discovery import MODELS
 
-# All tests of one check together reject a right sampler once in a hundred runs; seeds are
-# fixed, so a check that passed goes on to pass.
+# All tests of one check together reject a correct sampler once in a hundred runs. Seeds are fixed:
+# a check that has passed will pass again.
 SIGNIFICANCE = 0.01
 SAMPLES = 1_000_000
-# Cells of the histogram along each axis, and points along each axis of a cell to integrate by:
-# the same samples are held against a finer integral, before a narrow lobe is called wrong
+# Cells of the histogram, and points to integrate the density in a cell, both along each axis. Where
+# the first number rejects, the same samples are compared with the finer integral: narrow lobes
+# need it.
 CELLS, SUBCELLS = 48, (64, 128)
 
 
-@checked(MODELS)
+@check_of(MODELS)
 def chi_squared(subject):
     """Samples follow the density that `pdf` states, at every incidence (Pearson's χ² test).
 
-    The histogram is one of half vectors: a narrow lobe is there as round at grazing incidence as
-    at the normal, and cells shrink towards it.
+    The histogram is over half vectors: there a narrow lobe is as round at grazing as at normal
+    incidence. Its cells shrink towards the normal.
     """
     import drjit as dr
     import mitsuba as mi
@@ -36,12 +37,13 @@ def chi_squared(subject):
 
         def sample(u, si=si):
             drawn, _ = subject.bsdf.sample(mi.BSDFContext(), si, u[0], mi.Point2f(u[1], u[2]))
-            return _from_half_vector(mi, drawn.wo, si.wi), dr.select(drawn.pdf > 0, mi.Float(1), 0)
+            return _to_square(mi, drawn.wo, si.wi), dr.select(drawn.pdf > 0, mi.Float(1), 0)
 
         def pdf(point, si=si):
             wo, jacobian = _to_direction(mi, point, si.wi)
             return subject.bsdf.pdf(mi.BSDFContext(), si, wo) * jacobian
 
+        # the finer integral decides where the coarser one rejects
         for subcells in SUBCELLS:
             test = ChiSquareTest(domain, sample, pdf, 3, SAMPLES, res=CELLS, ires=subcells)
             if test.run(SIGNIFICANCE, test_count=len(INCIDENCES), quiet=True):
@@ -49,23 +51,23 @@ def chi_squared(subject):
         else:
             rejected.append(f"rejected at {degrees}°")
         p_values.append(test.p_value)
-    return not rejected, "; ".join([f"least p {np.min(p_values):.3g}", *rejected])
+    return not rejected, "; ".join([f"smallest p-value {np.min(p_values):.3g}", *rejected])
 
 
-def _from_half_vector(mi, wo, wi):
-    """Point (φ_h, θ_h) of the unit square: θ_h = π/2 y³, so that cells are fine around h = n."""
+def _to_square(mi, wo, wi):
+    """The point (φ_h / 2π, y) of the unit square; θ_h = π/2 y³ makes cells fine around h = n."""
     import drjit as dr
 
     s = wi + wo
     s = s * dr.rsqrt(dr.maximum(dr.dot(s, s), 1e-20))
-    s = dr.select(s.z < 0, -s, s)  # below the surface: counts for nothing
+    s = dr.select(s.z < 0, -s, s)  # below the surface, where the density is 0
     theta = dr.atan2(dr.sqrt(s.x * s.x + s.y * s.y), s.z)
     phi = dr.atan2(s.y, s.x) / (2 * dr.pi)
     return mi.Point2f(dr.select(phi < 0, phi + 1, phi), (theta / (dr.pi / 2)) ** (1 / 3))
 
 
 def _to_direction(mi, point, wi):
-    """The direction at a point of the unit square, and d solid angle / d point."""
+    """The inverse of `_to_square`: wo at a point, and the Jacobian d solid angle / d area."""
     import drjit as dr
 
     sin_phi, cos_phi = dr.sincos(2 * dr.pi * point.x)
@@ -76,22 +78,23 @@ def _to_direction(mi, point, wi):
     return 2 * cos_d * h - wi, dr.select(cos_d > 0, jacobian, 0)
 
 
-@checked(MODELS)
+@check_of(MODELS)
 def coverage(subject):
-    """Mean weight of a sample = albedo by quadrature: no lobe is missed (χ² cannot see it)."""
+    """Mean weight of a sample = albedo by quadrature: no lobe is missed, which χ² cannot see."""
     worst, where = 0.0, ""
     for degrees, wi in incidences():
-        weights = _means(own_weights(subject, wi), SAMPLES)
+        weights = _means(sample_weights(subject, wi), SAMPLES)
         mean = float(weights.mean())
         expected = float(directional_albedo(subject.values, wi).mean())
         error = np.hypot(weights.std() / np.sqrt(len(weights)), TOLERANCE * expected)
         deviation = abs(mean - expected) / max(error, 1e-12)
         if deviation >= worst:
             worst, where = deviation, f" at {degrees}° ({mean:.4f} and {expected:.4f})"
-    return bool(worst < 4.5), f"at most {worst:.1f} standard errors apart{where}"
+    said = f"mean weight and albedo at most {worst:.1f} standard errors apart{where}"
+    return bool(worst < 4.5), said
 
 
-@checked(MODELS)
+@check_of(MODELS)
 def weights(subject):
     """The weight of a sample = eval / pdf, its density = pdf, and eval_pdf = both."""
     import mitsuba as mi
@@ -104,6 +107,8 @@ def weights(subject):
         value, pdf = subject.bsdf.eval_pdf(mi.BSDFContext(), si, drawn.wo)
         value_2 = subject.bsdf.eval(mi.BSDFContext(), si, drawn.wo)
         pdf_2 = subject.bsdf.pdf(mi.BSDFContext(), si, drawn.wo)
+
+        # samples that were not rejected
         kept = np.array(drawn.pdf) > 0
         value, value_2, weight = (columns(x, n)[:, kept] for x in (value, value_2, weight))
         pdf, pdf_2, stated = (np.array(x)[kept] for x in (pdf, pdf_2, drawn.pdf))
@@ -114,13 +119,13 @@ def weights(subject):
 
 
 def spread(subject, degrees, samples=SAMPLES):
-    """Standard deviation of the weight of a sample over its mean, at an incidence [degrees]."""
-    weights = _means(own_weights(subject, dict(incidences())[degrees], samples), samples)
+    """The standard deviation of the samples' weights over their mean, at an incidence [degrees]."""
+    weights = _means(sample_weights(subject, dict(incidences())[degrees], samples), samples)
     return float(weights.std() / weights.mean())
 
 
-def own_weights(subject, wi, samples=SAMPLES, seed=1):
-    """Weights of samples at one incidence, as the spectrum of the variant."""
+def sample_weights(subject, wi, samples=SAMPLES, seed=1):
+    """The weights of samples at one incidence, a spectrum of the variant."""
     import mitsuba as mi
 
     si = subject.interaction(np.tile(wi, (samples, 1)))
@@ -133,7 +138,7 @@ def _means(spectrum, n):
 
 
 def uniform(n, seed):
-    """Random numbers for `n` samples, (1D, 2D)."""
+    """Uniform random numbers for `n` samples: (mi.Float, mi.Point2f)."""
     import mitsuba as mi
 
     u = [pad(row) for row in np.random.default_rng(seed).random((3, n), np.float32)]

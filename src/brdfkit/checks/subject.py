@@ -1,7 +1,7 @@
-"""What is checked of a material: its formula and its Mitsuba BSDF, in the current variant.
+"""The subject of the checks of a material: its formula and its Mitsuba BSDF in the current variant.
 
-In spectral variants at fixed wavelengths. What a model reflects there is its lobes, in double
-precision, times the weights that Mitsuba's textures make of its numbers and colours.
+Spectral variants are checked at fixed wavelengths. The expected values of a model there are its
+lobes in double precision, times its weights as Mitsuba's textures give them at the wavelengths.
 """
 
 import sys
@@ -19,7 +19,7 @@ from brdfkit.measured import Measured
 from brdfkit.model import Model
 from brdfkit.model.evaluation import lobe_values
 
-# Incidence of every statistical check [degrees], up to grazing, at an azimuth off the axes
+# Angles of incidence of every statistical check [degrees], and an azimuth off the axes
 INCIDENCES = (0, 30, 60, 75, 85)
 AZIMUTH = 0.5
 
@@ -39,21 +39,23 @@ class Subject:
 
     @property
     def is_single(self):
-        """Whether its formula is that of a BSDF of Mitsuba's, in single precision."""
+        """Whether `values` come from a BSDF of Mitsuba's, in single precision."""
         return isinstance(self.thing, BsdfMaterial)
 
     @property
     def source(self):
-        """The file of the model's class, None for another material; a notebook has none, either,
-        but its class a name."""
+        """The file of the model's class; in a notebook, the name of the class. None where there is
+        no model."""
         if self.model is None:
             return None
         module = sys.modules[type(self.model).__module__]
         return Path(getattr(module, "__file__", None) or type(self.model).__name__)
 
     def values(self, wi, wo):
-        """What the BSDF should be without its cosine, (n, channels of the variant), in double
-        precision, of direction pairs (n, 3) above the surface."""
+        """Expected BRDF values (n, channels of the variant), without cosine, in double precision.
+
+        `wi`, `wo`: (n, 3), above the surface.
+        """
         if isinstance(self.thing, Measured):
             return in_variant(self.rendered.eval(wi, wo), self.rendered)
         if self.model is None:
@@ -64,7 +66,7 @@ class Subject:
 
     @property
     def rendered(self):
-        """The measured material as the variant renders it."""
+        """The measured material as it is rendered in the current variant."""
         import mitsuba as mi
 
         return (self.thing if mi.is_spectral else self.thing.rgb).rendered
@@ -105,13 +107,15 @@ class Subject:
 
 
 def incidences():
-    """(degrees, direction) of the incidences that are tested."""
+    """The angles of incidence that are checked, as a list of (degrees, direction)."""
     return [(degrees, from_angles(np.radians(degrees), AZIMUTH)) for degrees in INCIDENCES]
 
 
 def random_pairs(n, seed, max_degrees=89.0):
-    """Direction pairs, evenly over angles, so that grazing ones are not rare; half of them near
-    the mirror direction, where lobes are."""
+    """Random direction pairs, two arrays (n, 3), uniform in the angles: many are grazing.
+
+    Every second pair is near the mirror direction, where lobes are.
+    """
     rng = np.random.default_rng(seed)
     theta = rng.uniform(0, np.radians(max_degrees), (2, n))
     phi = rng.uniform(-np.pi, np.pi, (2, n))

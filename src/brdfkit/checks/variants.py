@@ -1,4 +1,4 @@
-"""Spectra of the current variant of Mitsuba as numbers: colours, one channel, or wavelengths."""
+"""Spectra of Mitsuba's current variant as arrays: RGB, one channel, or fixed wavelengths."""
 
 import numpy as np
 
@@ -17,15 +17,15 @@ def columns(spectrum, n):
 
 
 def in_variant(values, material):
-    """`values` (n, c) of a `Measured` as the variant has them, (n, channels).
+    """`values` (n, c) of a `Measured` in the channels of the current variant, (n, channels).
 
-    A colour in a spectral variant is that of three basis spectra [Mallett & Yuksel 2019].
+    In a spectral variant a colour is a sum of three basis spectra [Mallett & Yuksel 2019].
     """
     import mitsuba as mi
 
     if values.shape[1] == 1:
         return np.broadcast_to(values, (len(values), len(WAVELENGTHS) if mi.is_spectral else 1))
-    if material.channels != RGB:  # only in a spectral variant: elsewhere it comes as a colour
+    if material.channels != RGB:  # only in a spectral variant: in others, `rendered` is in RGB
         nm = wavelengths(material)
         order = np.argsort(nm)
         return np.stack([np.interp(WAVELENGTHS, nm[order], row) for row in values[:, order]])
@@ -39,7 +39,7 @@ def in_variant(values, material):
 
 
 def weights_of(bsdf, model):
-    """A model's weights (lobes, channels), as the textures of its BSDF give them in the variant."""
+    """A model's weights (lobes, channels), as the textures of its BSDF give them."""
     import drjit as dr
     import mitsuba as mi
 

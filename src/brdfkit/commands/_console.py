@@ -1,4 +1,4 @@
-"""How the commands print: tables for people, or JSON; a progress bar on the terminal."""
+"""Prints the results of commands: tables for people, or JSON; and a progress bar."""
 
 import json
 from contextlib import contextmanager
@@ -9,29 +9,30 @@ from threading import Timer
 from brdfkit.commands import _tables
 from brdfkit.records import plain
 
-# A bar that appears for a blink is noise
-PATIENCE = 1.0  # seconds
+PATIENCE = 1.0  # seconds until the bar shows: a bar that flashes up only disturbs
 
 
 @dataclass(frozen=True)
 class Console:
-    """Prints results; `as_json`: as JSON, for programs; `quiet`: no tables and no progress."""
+    """Prints results. `as_json`: as JSON, for programs; `quiet`: no tables and no progress bar."""
 
     as_json: bool = False
     quiet: bool = False
 
     @cached_property
     def out(self):
+        """Rich's console, which prints on standard output."""
         from rich.console import Console
 
-        # no markup: a name from a file may hold brackets
+        # no markup: names from files may hold brackets
         return Console(quiet=self.quiet, highlight=False, markup=False, emoji=False, soft_wrap=True)
 
     @contextmanager
     def progress(self, what):
-        """A callback (done, total) behind a bar with the time left, which shows after a second.
+        """Within the block a bar shows the progress of `what`; gives a function (done, total).
 
-        The bar waits in a thread of its own, so that it shows before the first call, too.
+        The bar appears after a second, from a thread of its own: also where the function has not
+        been called yet.
         """
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
@@ -55,14 +56,14 @@ class Console:
                 bar.stop()
 
     def json(self, record):
-        """The `record`, of whatever the result holds, as JSON."""
+        """Print a result as JSON; `record`: dictionaries, lists, arrays, paths and dataclasses."""
         print(json.dumps(plain(record), indent=2))
 
     def table(self, columns, *sections, title=None):
-        """Print a table: `columns`, their names; `sections`, each a list of rows of texts.
+        """Print a table. `columns`: their names; `sections`: lists of rows of texts.
 
-        A column whose name begins with ">" is flush right, for numbers. Where the terminal is too
-        narrow for a table, each row becomes a block of lines.
+        A column whose name begins with ">" is flush right, for numbers. On a terminal that is too
+        narrow each row becomes a block of lines.
         """
         found = _tables.table(columns, sections, self.out.width, title)
         if found is not None:
@@ -71,7 +72,7 @@ class Console:
         lines = _tables.blocks(columns, sections, self.out.width)
         self.out.print(title or "", *lines, "", sep="\n")
 
-    def written(self, paths):
-        """A line for each file that was written."""
+    def list_written(self, paths):
+        """Print a line for each file that was written."""
         for path in paths:
             self.out.print(f"written: {path}")

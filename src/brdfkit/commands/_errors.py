@@ -1,4 +1,4 @@
-"""How the command line tells errors: in one sentence."""
+"""Prints errors and warnings of the command line: one sentence on standard error."""
 
 import errno
 import os
@@ -8,25 +8,25 @@ from contextlib import contextmanager, nullcontext
 
 import click
 
-from brdfkit.commands._stopping import status, stoppable
+from brdfkit.commands._stopping import status, stop_on_sigterm
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.names import printable
 
-NO_ROOM = errno.ENOSPC, errno.EDQUOT, errno.EIO  # where standard output is a file
+NO_ROOM = errno.ENOSPC, errno.EDQUOT, errno.EIO  # writing to standard output, a file, failed
 
 
 class Group(click.Group):
-    """Tells errors that are meant for people in one sentence, with exit status 2."""
+    """Prints errors for people as one sentence, and ends with exit status 2."""
 
     def make_context(self, info_name, args, *others, **extra):
-        with told() if args else nullcontext():  # without any click shows the help
+        with tell_errors() if args else nullcontext():  # without args click shows the help
             return super().make_context(info_name, args, *others, **extra)
 
     def invoke(self, ctx):
-        for stream in (sys.stdout, sys.stderr):  # a terminal may not know θ: ? stands for it
+        for stream in (sys.stdout, sys.stderr):  # where a terminal does not know θ it shows ?
             if hasattr(stream, "reconfigure"):
                 stream.reconfigure(errors="replace")
-        with told(), stoppable(), warnings.catch_warnings():
+        with tell_errors(), stop_on_sigterm(), warnings.catch_warnings():
             warnings.showwarning = _say_warning
             try:
                 return super().invoke(ctx)
@@ -34,8 +34,8 @@ class Group(click.Group):
                 _flush()
 
 
-class Told(click.ClickException):
-    """Ends the program with one sentence."""
+class LastWords(click.ClickException):
+    """Ends the program with one sentence and an exit status."""
 
     def __init__(self, message, exit_code=2):
         super().__init__(message)
@@ -46,26 +46,29 @@ class Told(click.ClickException):
 
 
 @contextmanager
-def told():
-    """Turns errors for people and of click, a lost output, Ctrl-C and SIGTERM into `Told`."""
+def tell_errors():
+    """Within the block, what should end the program with a sentence becomes `LastWords`.
+
+    That is: errors for people, errors of click, an output that fails, Ctrl-C and SIGTERM.
+    """
     try:
         yield
     except BrdfkitError as error:
-        raise Told(str(error)) from error
+        raise LastWords(str(error)) from error
     except click.UsageError as error:
         command = error.ctx.command_path if error.ctx else "brdfkit"
-        raise Told(f"{_misused(error)}; see {command} --help.") from error
+        raise LastWords(f"{_describe_misuse(error)}; see {command} --help.") from error
     except OSError as error:
         if error.errno not in NO_ROOM or error.filename:
             raise
         _drop_output()
-        raise Told(f"the output cannot be written ({error.strerror}); make room.") from error
+        raise LastWords(f"the output cannot be written ({error.strerror}); make room.") from error
     except KeyboardInterrupt as error:
-        raise Told("interrupted.", status()) from error
+        raise LastWords("interrupted.", status()) from error
 
 
-def _misused(error):
-    """What click found wrong, an unknown name in the words that brdfkit has for all of them."""
+def _describe_misuse(error):
+    """click's message, without its full stop; for unknown names the message of `no_such`."""
     message = error.format_message()
     if isinstance(error, click.NoSuchCommand):
         message = str(no_such("command", error.command_name, error.ctx.command.commands))
@@ -77,17 +80,18 @@ def _misused(error):
 
 
 def _flush():
+    """Write out what was printed: where this fails, it should fail within `tell_errors`."""
     if sys.stdout:  # None, where it was closed
         sys.stdout.flush()
 
 
 def _drop_output():
-    """What could not be printed: or Python would try once more as it ends."""
+    """Forget what could not be printed: else Python would try again as it ends."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def say(message):
-    """One sentence for people, on stderr."""
+    """Print one sentence for people on standard error."""
     click.echo(f"brdfkit: {printable(' '.join(str(message).split()))}", err=True)
 
 

@@ -1,4 +1,4 @@
-"""What the words of `brdfkit measure` mean: a surface, its facets, a table and a file."""
+"""Turns words of `brdfkit measure` into a surface, its facets, a table's shape and a file."""
 
 import shlex
 
@@ -8,13 +8,13 @@ from brdfkit.goniometer import microgeometry
 
 
 def surface(geometry, **parameters):
-    """The microgeometry of that name, with those of its `parameters` that are not None."""
+    """The microgeometry of a name, with those of the `parameters` that are not None."""
     given = {name: value for name, value in parameters.items() if value is not None}
     return microgeometry.make(geometry, **given)
 
 
 def facets(words, alpha):
-    """Mitsuba's BSDFs of ``METAL``, ``paint:R,G,B`` and ``plastic:R,G,B``, one for each word.
+    """The dictionary of a BSDF for each of the words ``METAL``, ``paint:R,G,B``, ``plastic:R,G,B``.
 
     >>> facets(["paint:0.8,0.7,0.6"], alpha=0.2)[0]["type"]
     'diffuse'
@@ -25,12 +25,12 @@ def facets(words, alpha):
 
 
 def cells(text):
-    """The shape of a table from ``N,N,N`` or ``N,N,N,N``; None from None."""
+    """The shape of a table, of ``N,N,N`` or ``N,N,N,N``; None of None."""
     return text and _numbers(text, int, f"The cells {text!r} should read N,N,N or N,N,N,N.")
 
 
-def command(parameters):
-    """The command line in full: all parameters that say what is measured, and how."""
+def command_line(parameters):
+    """The command line with all `parameters` that determine the measurement."""
     words = ["brdfkit", "measure", parameters["geometry"]]
     for name, value in parameters.items():
         if name not in ("geometry", "output", "as_json", "quiet") and value is not None:
@@ -40,16 +40,17 @@ def command(parameters):
 
 
 def measurement_file(path):
-    """`path`, once it is sure that it can be written and is in a format that holds errors."""
+    """`path`; an error where it cannot be written, or where its format holds no standard errors."""
     if path.suffix.lower() != ".npz":
         raise BrdfkitError(
-            f"{path}: a measurement is written as .npz; `brdfkit convert` makes others of it."
+            f"{path}: a measurement is written as .npz; name such a file, and convert it later."
         )
     require_writable(path)
     return path
 
 
 def _bsdf(word, alpha):
+    """The dictionary of a BSDF for one word."""
     kind, colon, colour = word.partition(":")
     rough = {"distribution": "ggx", "alpha": alpha}
     if not colon:
@@ -66,6 +67,7 @@ def _bsdf(word, alpha):
 
 
 def _numbers(text, kind, wrong):
+    """The numbers of a text with commas, of type `kind`; `wrong`: the error's sentence."""
     try:
         return [kind(part) for part in text.split(",")]
     except ValueError as error:

@@ -6,10 +6,10 @@ import click
 
 
 def output_options(command):
-    """The options of every command that prints a result; it gets a `console`."""
+    """Adds --json and --quiet to a command that prints a result; it gets a `Console` instead."""
 
     @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-    @click.option("-q", "--quiet", is_flag=True, help="Print only errors, and JSON if asked for.")
+    @click.option("-q", "--quiet", is_flag=True, help="Print errors only, and JSON if asked for.")
     @functools.wraps(command)
     def with_output(*args, as_json, quiet, **kwargs):
         from brdfkit.commands._console import Console
@@ -20,7 +20,7 @@ def output_options(command):
 
 
 def render_options(command):
-    """The options of every command that renders."""
+    """Adds --spp, --size and --seed to a command that renders."""
     for name, default, least, meaning in (
         ("--seed", 0, 0, "Seed of the samples."),
         ("--size", 512, 1, "Side of a picture [pixels]."),
@@ -35,13 +35,13 @@ def render_options(command):
 
 
 def values_option(command):
-    """The option that sets parameters of models."""
+    """Adds --set, for the parameters of models."""
     option = click.option(
         "-p",
         "--set",
         "values",
         multiple=True,
         metavar="PARAMETER=VALUE",
-        help="Set a parameter of the models, to a number or R,G,B; repeat it for more.",
+        help="Set a parameter of the models to a number or R,G,B; repeat it for more.",
     )
     return option(command)

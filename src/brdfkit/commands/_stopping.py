@@ -1,4 +1,4 @@
-"""What ends a command early: Ctrl-C, and SIGTERM, which `kill` and batch systems send."""
+"""Ends a command early on Ctrl-C, and on SIGTERM, which `kill` and batch systems send."""
 
 import signal
 import threading
@@ -8,11 +8,11 @@ _received = signal.SIGINT  # the signal that ended the command, if any did
 
 
 @contextmanager
-def stoppable():
-    """Within the block SIGTERM does what Ctrl-C does, and raises KeyboardInterrupt."""
+def stop_on_sigterm():
+    """Within the block SIGTERM raises KeyboardInterrupt, as Ctrl-C does."""
     global _received
     _received = signal.SIGINT
-    if threading.current_thread() is not threading.main_thread():  # which alone gets signals
+    if threading.current_thread() is not threading.main_thread():  # only it gets signals
         yield
         return
     before = signal.signal(signal.SIGTERM, _terminate)
@@ -23,7 +23,7 @@ def stoppable():
 
 
 def status():
-    """Exit status of a command that was ended early: 130 by Ctrl-C, 143 by SIGTERM."""
+    """The exit status of a command that ended early: 130 by Ctrl-C, 143 by SIGTERM."""
     return 128 + _received
 
 

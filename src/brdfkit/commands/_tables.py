@@ -1,25 +1,28 @@
-"""Tables that lose no word, however narrow the terminal: columns fold, or rows become blocks."""
+"""Tables for terminals of any width: columns fold, or rows become blocks; no word is cut."""
 
 import textwrap
 
 
 def table(columns, sections, width, title=None):
-    """A Rich table at most `width` characters wide; None where a word would not fit.
+    """A Rich table at most `width` characters wide; None where it would have to cut a word.
 
-    `columns`: their names, flush right and in one piece behind ">", for numbers; `sections`: lists
-    of rows of texts. The first column, which holds names, is not folded either.
+    `columns`: their names; `sections`: lists of rows of texts. A column whose name begins with ">"
+    is flush right, for numbers. Such a column and the first, which holds names, are not folded.
     """
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
     from rich.text import Text
 
+    # names of the columns (a unit on a line of its own), and their widths
     headers = [column.removeprefix(">").replace(" [", "\n[") for column in columns]
     rows = [row for section in sections for row in section]
     cells = [[h, *texts] for h, *texts in zip(headers, *rows, strict=True)]
     whole = [k == 0 or column.startswith(">") for k, column in enumerate(columns)]
-    widths = _widths(cells, whole, width - 3 * len(columns) + 1)  # between and beside the columns
+    widths = _widths(cells, whole, width - 3 * len(columns) + 1)  # less the gaps
     if widths is None:
         return None
+
+    # the table
     title = title and Text(title)
     found = Table(box=SIMPLE_HEAD, title=title, title_justify="left", pad_edge=False)
     found.show_header = any(columns)
@@ -33,7 +36,7 @@ def table(columns, sections, width, title=None):
 
 
 def blocks(columns, sections, width):
-    """The same in lines: for each row its texts, one below the other, with their columns' names."""
+    """The lines of a narrow table: the texts of each row one below the other, with column names."""
     for row in (row for section in sections for row in section):
         for k, (column, text) in enumerate(zip(columns, row, strict=True)):
             name = column.removeprefix(">")
@@ -50,9 +53,10 @@ def blocks(columns, sections, width):
 
 
 def _widths(cells, whole, room):
-    """Widths of columns with these `cells` that have `room`, together; None where it is too little.
+    """The widths of columns in `room` characters together; None where that is too little.
 
-    What is left beside the longest words goes to the columns that have most to say.
+    `cells`: the texts of each column; `whole`: which columns are not folded. Each column is as wide
+    as its longest word at least. What is left is shared in proportion to what the columns lack.
     """
     from rich.cells import cell_len
 

@@ -1,4 +1,4 @@
-"""What a word on the command line means beyond what it means in Python; and where results go."""
+"""Turns words of the command line into materials, parameter values and files to write."""
 
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -13,25 +13,25 @@ FIGURES = ".png", ".pdf", ".svg"
 
 
 def material(name, settings=()):
-    """What can be rendered: a model by name with `settings`, a saved fit, a measured file."""
+    """The material of a name or a file; of a model with `settings`, see `model_values`."""
     if not settings:
         return materials.material(name)
     label = labels.read_files(name)
     if not labels.is_label(label):
-        raise BrdfkitError(f"{name} is no model: parameters can be set for models only.")
-    return labels.model(label)(**values(label, settings))
+        raise BrdfkitError(f"{name} is no model: --set works for models only.")
+    return labels.model(label)(**model_values(label, settings))
 
 
-def values(name, settings):
-    """Parameter values of a model, of ``PARAMETER=VALUE`` settings."""
-    found = numbers(settings)
-    for parameter in found:
-        labels.model(name).parameter(parameter)
-    return found
+def model_values(label, settings):
+    """The values by name of ``PARAMETER=VALUE`` settings; an error where the model lacks one."""
+    values = parse_settings(settings)
+    for parameter in values:
+        labels.model(label).parameter(parameter)
+    return values
 
 
-def numbers(settings):
-    """Values by name of ``PARAMETER=VALUE`` settings, VALUE a number or r,g,b."""
+def parse_settings(settings):
+    """The values by name of ``PARAMETER=VALUE`` settings; VALUE is a number or R,G,B."""
     parsed = {}
     for setting in settings:
         parameter, equals, text = setting.partition("=")
@@ -46,8 +46,8 @@ def numbers(settings):
 
 
 @contextmanager
-def results(path):
-    """Makes the folder `path`, unless None; it is gone again where nothing was written to it."""
+def results_folder(path):
+    """Make the folder `path`, unless None; after the block, remove it where it is empty."""
     if path is None:
         yield
         return
@@ -62,7 +62,7 @@ def results(path):
 
 
 def picture_file(name):
-    """The path of a picture, once it is sure that it can be written: rendering takes long."""
+    """The path of a picture; an error, before the long rendering, where it cannot be written."""
     path = Path(name)
     picture_suffix(path)
     require_writable(path)
@@ -71,10 +71,10 @@ def picture_file(name):
 
 
 def figure_file(name):
-    """The path of a matplotlib figure, once it is sure that it can be written."""
+    """The path of a matplotlib figure; an error where it cannot be written."""
     path = Path(name)
     if path.suffix.lower() not in FIGURES:
-        raise BrdfkitError(f"{path}: this picture is written as {', '.join(FIGURES)}; name one.")
+        raise BrdfkitError(f"{path}: this picture is written as {', '.join(FIGURES)}; choose one.")
     require_writable(path)
     return path
 
@@ -86,7 +86,7 @@ def write_figure(figure, path):
 
 
 def other_file(path, source):
-    """`path`, once it is sure that it can be written and is not the file that `source` names."""
+    """`path`; an error where it cannot be written, or is the file that `source` names."""
     require_writable(path)
     for read in (source, source.rpartition("#")[0]):
         if read and path.exists() and Path(read).exists() and path.samefile(read):
@@ -95,5 +95,5 @@ def other_file(path, source):
 
 
 def fit_file(output, fit):
-    """The file of a `Fit` in the folder `output`; a label's colon is not for every file system."""
+    """The file of a `Fit` in the folder `output`; no colons, which some file systems refuse."""
     return Path(output) / f"{fit.name.replace(':', '-')}.json"

@@ -1,4 +1,4 @@
-"""`brdfkit check`: whether materials are what a renderer and a fit need."""
+"""`brdfkit check`: checks that materials and plugins do what a renderer and a fit need."""
 
 import click
 
@@ -10,25 +10,26 @@ from brdfkit.commands._options import output_options, values_option
 @values_option
 @output_options
 def check(things, values, console):
-    """Check that materials sample, conserve energy and differentiate.
+    """Check materials, models and plugins.
 
-    Models, fits and measured files; and plugins of another kind for what their kind should do:
-    brdfkit plugins lists them. The exit status is 1 where one of them fails.
+    A material (a model, a fit or a measured file) should sample, conserve energy and
+    differentiate; a plugin of another kind should do what its kind needs: `brdfkit plugins` lists
+    them. The exit status is 1 where a check fails.
     """
     from brdfkit.checks import check as check_thing
 
     reports = []
-    for name, thing in [(name, _checked(name, values)) for name in things]:
+    for name, thing in [(name, _find_subject(name, values)) for name in things]:
         with console.progress(f"check {name}") as progress:
             reports.append(check_thing(thing, progress=progress))
     _print_reports(reports, console)
     click.get_current_context().exit(0 if all(reports) else 1)
 
 
-def _checked(name, settings):
+def _find_subject(name, settings):
     """The material of a name, or the dictionary of a plugin of another kind, with `settings`."""
     from brdfkit.checks.plugin import example
-    from brdfkit.commands._targets import material, numbers
+    from brdfkit.commands._targets import material, parse_settings
     from brdfkit.host.users_plugins import load_plugins
     from brdfkit.plugins.discovery import MODELS, kind_of
 
@@ -36,7 +37,7 @@ def _checked(name, settings):
         (name,) = load_plugins(name)
     if kind_of(name) in (None, MODELS):
         return material(name, settings)
-    return example(name, **numbers(settings))
+    return example(name, **parse_settings(settings))
 
 
 def _print_reports(reports, console):
@@ -48,7 +49,7 @@ def _print_reports(reports, console):
 
 
 def _record(report):
-    """What the checks of one material found, for JSON."""
+    """A `Report` for JSON."""
     findings = [
         {"check": f.check, "passed": bool(f.passed), "figure": f.figure} for f in report.findings
     ]

@@ -1,4 +1,4 @@
-"""`brdfkit convert`: a material in another file format."""
+"""`brdfkit convert`: writes a material in another file format."""
 
 from pathlib import Path
 
@@ -13,9 +13,10 @@ from brdfkit.commands._options import output_options, values_option
 @values_option
 @output_options
 def convert(thing, output, values, console):
-    """Write a material in the file format of OUTPUT's suffix.
+    """Write a material in another format.
 
-    Tells what that format cannot hold. A model or a fit is evaluated over the hemispheres.
+    The suffix of OUTPUT names the format. What the format cannot hold is printed. A model or a fit
+    is evaluated at the direction pairs of a table.
     """
     from brdfkit.commands._targets import material, other_file
     from brdfkit.converting import convert as convert_thing

@@ -1,4 +1,4 @@
-"""`brdfkit data`: public measurements, and their way here."""
+"""`brdfkit data`: lists public measurements and downloads them."""
 
 from dataclasses import fields
 
@@ -11,7 +11,7 @@ from brdfkit.commands._options import output_options
 @output_options
 @click.pass_context
 def data(context, console):
-    """List public measurements, and download them.
+    """List or download public measurements.
 
     \b
     brdfkit data                                the collections
@@ -19,7 +19,7 @@ def data(context, console):
     brdfkit data get merl/gold-metallic-paint   download a material
     brdfkit fit merl/gold-metallic-paint        use it by its name
 
-    Files are kept in your cache folder. Nothing else downloads anything.
+    Downloads are kept in your cache folder. Only `brdfkit data get` downloads anything.
     """
     from brdfkit.catalogue.public import cache, collections
     from brdfkit.catalogue.shipped import materials
@@ -32,7 +32,7 @@ def data(context, console):
 @click.argument("collection")
 @output_options
 def data_list(collection, console):
-    """List the materials of a COLLECTION, and how to get each."""
+    """List the materials of a COLLECTION."""
     from brdfkit.catalogue import public
 
     _print_collection(public.collection(collection), console)
@@ -42,10 +42,10 @@ def data_list(collection, console):
 @click.argument("names", nargs=-1, required=True, metavar="NAME...")
 @output_options
 def data_get(names, console):
-    """Download materials, and check their checksums.
+    """Download materials.
 
-    A NAME is as in merl/gold-metallic-paint. An interrupted download goes on where it stopped,
-    except that of a file out of an archive (merl).
+    A NAME has its collection before it, as in merl/gold-metallic-paint. Checksums are verified. An
+    interrupted download goes on where it stopped, unless the file is part of an archive (merl).
     """
     from brdfkit.catalogue.downloading import get
     from brdfkit.catalogue.public import collection
@@ -59,7 +59,7 @@ def data_get(names, console):
 
 
 def _print_collections(collections, materials, folder, console):
-    """The public collections, behind the `materials` that come with brdfkit."""
+    """Print the `materials` that come with brdfkit, and the public collections."""
     if console.as_json:
         console.json({name: _record(c) for name, c in collections.items()})
         return
@@ -75,7 +75,7 @@ def _print_collections(collections, materials, folder, console):
 
 
 def _print_collection(collection, console):
-    """The materials of a collection."""
+    """Print the materials of a collection."""
     if console.as_json:
         console.json(_record(collection))
         return
@@ -93,7 +93,7 @@ def _print_collection(collection, console):
 
 
 def _print_files(files, collections, console):
-    """Where the downloaded files are, and the terms of those who published them."""
+    """Print where the downloaded files are, and the terms of their publishers."""
     if console.as_json:
         console.json({"files": files, "terms": {c.name: c.terms for c in collections}})
         return
@@ -104,7 +104,7 @@ def _print_files(files, collections, console):
 
 
 def _record(collection):
-    """A collection, with where its files lie or are to be had, for JSON."""
+    """A collection for JSON, with the place of each file here, or where to get it."""
     here = collection.here()
     files = {
         name: {"file": listed.file, "bytes": listed.bytes or None, "url": listed.url or None}

@@ -1,4 +1,4 @@
-"""`brdfkit fit`: models fitted to a measured material, and compared."""
+"""`brdfkit fit`: fits models to a measured material, and compares them."""
 
 from pathlib import Path
 
@@ -18,32 +18,44 @@ from brdfkit.errors import BrdfkitError
     "--model",
     "names",
     multiple=True,
+    metavar="MODEL",
     help="A model, or FILE.py with one; repeat it for more. Default: all.",
 )
-@click.option("--loss", default="log", show_default=True, help="One of cosine, log, cbrt, plain.")
-@click.option("--robust", help="Weigh outliers down: bisquare, huber, cauchy ...")
+@click.option(
+    "--loss",
+    default="log",
+    metavar="LOSS",
+    show_default=True,
+    help="What the fit minimises: cosine, log, cbrt or plain.",
+)
+@click.option(
+    "--robust",
+    metavar="WEIGHTS",
+    help="Give outliers little weight: bisquare, huber, cauchy ...",
+)
 @click.option(
     "-o",
     "--output",
     type=click.Path(path_type=Path),
-    help="Folder for the results. Default: none; with --render, the material's name.",
+    help="Folder for the fits. Default: they are not written; with --render, the material's name.",
 )
 @click.option("--render", "rendered", is_flag=True, help="Path-trace the measurement and the fits.")
 @click.option(
     "--max-angle",
     default=80.0,
     show_default=True,
-    help="Leave out samples with an angle at or beyond it [degrees].",
+    help="Use the samples with both angles below this one [degrees].",
 )
 @render_options
 @output_options
 def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed, console):
-    """Fit models to a measured FILE, and compare them.
+    """Fit models to a measured material.
 
-    FILE may also be the name of a material that brdfkit knows. Ctrl-C keeps the fits that are
-    finished. Where a model cannot be fitted, the others go on; the exit status is then 2.
+    FILE is a measured file, or the name of a material that brdfkit knows. The errors of the models
+    are compared. Ctrl-C keeps the finished fits. Where a model cannot be fitted, the others go on;
+    the exit status is then 2.
     """
-    from brdfkit.commands._targets import fit_file, results
+    from brdfkit.commands._targets import fit_file, results_folder
     from brdfkit.comparing import compare
     from brdfkit.materials import measured_material
     from brdfkit.model import labels
@@ -61,7 +73,7 @@ def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed,
 
     how = {"loss": loss, "robust": robust, "max_angle": max_angle, "seed": seed}
     psnr = {}
-    with results(output):
+    with results_folder(output):
         fits, failed = _fit_each(names, material, how, output, console)
         interrupted = len(fits) + len(failed) < len(names)
         written = [fit_file(output, f) for f in fits] if output else []
@@ -79,10 +91,10 @@ def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed,
 
 
 def _fit_each(names, material, how, output, console):
-    """The fits, best first, and the errors of models that cannot be fitted, by name.
+    """The fits, best first, and by name the errors of the models that cannot be fitted.
 
-    Each fit is saved as soon as it is there; Ctrl-C leaves out the rest. Where no model can be
-    fitted the first error is raised.
+    Each fit is saved as soon as it is finished. Ctrl-C ends with the fits that are finished. Where
+    no model can be fitted, the first error is raised.
     """
     from brdfkit.commands._targets import fit_file
     from brdfkit.fits import fit as fit_model
@@ -128,11 +140,11 @@ def _print_fits(material, fits, failed, comparison, psnr, written, console):
         image = [f"{psnr[found.name]:.1f}"] if psnr else []
         rows.append((found.name, *errors, *image, f"{found.seconds:.2f}"))
     console.table(columns, rows, title=f"{material.name}: errors")
-    console.written(written)
+    console.list_written(written)
 
 
 def _record(found, comparison, psnr):
-    """A fit, with its errors under every loss and the PSNR of its picture, for JSON."""
+    """A fit for JSON, with its errors under every loss and the PSNR of its picture."""
     return {
         "model": found.name,
         "parameters": found.values,

@@ -1,4 +1,4 @@
-"""`brdfkit info`: the audit of a measured material."""
+"""`brdfkit info`: prints and draws the audit of a measured material."""
 
 from dataclasses import asdict, fields
 from pathlib import Path
@@ -19,10 +19,11 @@ from brdfkit.errors import BrdfkitError
 )
 @output_options
 def info(file, output, console):
-    """Audit a measured FILE: what it holds and what is doubtful.
+    """Audit a measured material.
 
-    How much of the hemisphere was measured, noise, reciprocity, albedo, spikes and more. Without
-    FILE, list the materials that brdfkit brings; `brdfkit data` lists public ones.
+    Prints what FILE holds (angles, coverage, reciprocity, noise, albedo and more), and what is
+    doubtful. FILE is a measured file, or the name of a material that brdfkit knows. Without FILE,
+    lists the materials that come with brdfkit; `brdfkit data` lists public ones.
     """
     from brdfkit.auditing import audit
     from brdfkit.catalogue import shipped
@@ -30,7 +31,7 @@ def info(file, output, console):
     from brdfkit.materials import measured_material
 
     if file is None and output:
-        raise BrdfkitError("A picture shows a measurement: name a FILE.")
+        raise BrdfkitError("--output draws a measurement: name a FILE.")
     if file is None:
         _print_materials(shipped.materials(), console)
         return
@@ -46,7 +47,7 @@ def info(file, output, console):
 
 
 def print_audit(found, written, console):
-    """What is in a measured material, and what is doubtful; then the files `written`."""
+    """Print an audit: what was measured, and what is doubtful; then the files `written`."""
     if console.as_json:
         console.json(record(found, written))
         return
@@ -55,11 +56,11 @@ def print_audit(found, written, console):
     console.table(["", ""], list(found.rows().items()), notes)
     for finding in found.findings():
         console.out.print(f"! {finding}")
-    console.written(written)
+    console.list_written(written)
 
 
 def record(found, written):
-    """An audit, and the files `written`, for JSON."""
+    """An audit for JSON, with the files `written`."""
     return {
         **{f.name: getattr(found, f.name) for f in fields(found) if f.name != "data"},
         "findings": found.findings(),

@@ -1,4 +1,4 @@
-"""`brdfkit measure`: the virtual goniometer."""
+"""`brdfkit measure`: measures microgeometry in a virtual goniometer."""
 
 from pathlib import Path
 
@@ -12,55 +12,63 @@ from brdfkit.commands.info import print_audit
 
 @click.command()
 @click.argument("geometry", metavar="gaussian|brushed|woven")
-@click.option("--slope", default=0.3, show_default=True, help="Root mean square of the slopes.")
-@click.option("--stretch", type=float, help="brushed: length of a groove, in widths of it.")
-@click.option("--thickness", type=float, help="woven: thickness of a yarn, in widths of it.")
+@click.option("--slope", default=0.3, show_default=True, help="Root-mean-square slope.")
+@click.option("--stretch", type=float, help="brushed: length of a groove over its width.")
+@click.option("--thickness", type=float, help="woven: thickness of a yarn over its width.")
 @click.option(
     "--facets",
     multiple=True,
     default=["Au"],
     show_default=True,
     metavar="MATERIAL",
-    help="A metal, paint:R,G,B or plastic:R,G,B; repeat it for warp and weft.",
+    help="A metal (Au, Al, Cu ...), paint:R,G,B or plastic:R,G,B; twice for warp and weft.",
 )
-@click.option("--facet-alpha", default=0.2, show_default=True, help="Roughness of the facets.")
+@click.option(
+    "--facet-alpha", default=0.2, show_default=True, help="Roughness of metal and plastic facets."
+)
 @click.option(
     "--specimen",
     default=0,
     type=click.IntRange(min=0),
     metavar="N",
     show_default=True,
-    help="Seed of the surface.",
+    help="Seed of the random surface.",
 )
 @click.option(
     "--cells",
     metavar="N,N,N",
-    help="Cells of the table in theta_h, theta_d, phi_d; phi_h before them, where it counts.",
+    help="Cells of the table in theta_h, theta_d, phi_d; brushed and woven: phi_h before them.",
 )
-@click.option("--error", default=0.05, show_default=True, help="Relative standard error wanted.")
+@click.option("--error", default=0.05, show_default=True, help="Relative standard error to reach.")
 @click.option("--spp", default=16384, show_default=True, help="Samples per cell, at most.")
 @click.option("--seed", default=0, show_default=True, help="Seed of the samples.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Default: GEOMETRY.npz.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="File to write, .npz. Default: GEOMETRY.npz.",
+)
 @output_options
 def measure(
     geometry, facets, facet_alpha, specimen, cells, error, spp, seed, output, console, **relief
 ):
-    """Measure a surface's BRDF by path-tracing its microgeometry.
+    """Measure the BRDF of microgeometry.
 
-    A virtual goniometer: it writes a table with a standard error for every value. The defaults
-    measure rough gold, in about a minute. Ctrl-C ends it early, with larger errors.
+    A virtual goniometer: it traces paths over a rough surface, and writes a table with a standard
+    error for every value. The defaults measure rough gold, in about a minute. Ctrl-C ends it early,
+    with larger errors.
     """
     from brdfkit.auditing import audit
     from brdfkit.commands import _measuring as words
     from brdfkit.goniometer import measure as measure_surface
     from brdfkit.loading import save
 
-    # relief: slope, stretch, thickness
+    # relief: --slope, --stretch, --thickness
     output = words.measurement_file(output or Path(f"{geometry}.npz"))
     surface = words.surface(geometry, **relief, seed=specimen)
     made_of, cells = words.facets(facets, facet_alpha), words.cells(cells)
     context = click.get_current_context()
-    notes = {"command": words.command(context.params)}
+    notes = {"command": words.command_line(context.params)}
     with console.progress(f"measure {geometry}") as progress:
         found = measure_surface(
             surface, made_of, cells, error, spp, seed, output.stem, notes, progress

@@ -1,4 +1,4 @@
-"""`brdfkit models`: the list of models, and the page of one."""
+"""`brdfkit models`: lists the models, or shows the page of one."""
 
 import math
 
@@ -11,7 +11,10 @@ from brdfkit.commands._options import output_options
 @click.argument("name", required=False, metavar="[NAME|FILE.py]")
 @output_options
 def models(name, console):
-    """List the models, or show the page of one."""
+    """List the models, or show one's page.
+
+    FILE.py is a model of yours.
+    """
     from brdfkit.model import labels
 
     if name is None:
@@ -32,7 +35,7 @@ def _print_list(models, console):
 
 
 def print_model(model, console):
-    """The page of a model, with its parameters and options."""
+    """Print the page of a model, with its parameters and options."""
     from brdfkit.plugins.pages import page
 
     if console.as_json:
@@ -58,7 +61,7 @@ def print_model(model, console):
 
 
 def print_references(page, console):
-    """The works that a page cites, in full."""
+    """Print the references of the works that a page cites."""
     for n, work in enumerate(page.references):
         console.out.print(f"\n{work}" if n == 0 else str(work))
 
@@ -87,7 +90,7 @@ def choices(option):
 
 
 def example(model, option):
-    """The label of a model with another choice."""
+    """A label of a model with another choice than the option's default."""
     declared = model.options[option]
     if declared.choices is None:
         return declared.default

@@ -1,4 +1,4 @@
-"""`brdfkit plugins`: the plugins of every kind, and the page of one."""
+"""`brdfkit plugins`: lists the plugins of every kind, or shows the page of one."""
 
 import math
 
@@ -11,7 +11,10 @@ from brdfkit.commands._options import output_options
 @click.argument("word", required=False, metavar="[KIND|NAME|FILE.py]")
 @output_options
 def plugins(word, console):
-    """List the plugins, those of one KIND, or show the page of one."""
+    """List the plugins, or show one's page.
+
+    With a KIND, lists the plugins of that kind. FILE.py is a plugin of yours.
+    """
     from brdfkit.errors import no_such
     from brdfkit.host.users_plugins import load_plugins
     from brdfkit.plugins.discovery import KINDS, kind_of, sources

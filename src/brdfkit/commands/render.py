@@ -1,4 +1,4 @@
-"""`brdfkit render`: path-traced pictures."""
+"""`brdfkit render`: renders materials or a scene."""
 
 from pathlib import Path
 
@@ -17,24 +17,24 @@ from brdfkit.errors import BrdfkitError
     "-o",
     "--output",
     type=click.Path(path_type=Path),
-    help="Picture to write, .exr (with a .png beside it) or .png. Default: NAME.png.",
+    help="Picture to write: .exr, with a .png beside it, or .png. Default: NAME.png.",
 )
 @click.option(
     "--plugins",
     "folders",
     multiple=True,
     metavar="PATH",
-    help="Load plugins of yours first: a folder or a file; repeat it for more.",
+    help="Folder or file with plugins of yours to load first; repeat it for more.",
 )
 @values_option
 @render_options
 @output_options
 def render(things, output, folders, values, spp, size, seed, console):
-    """Path-trace fits, models, measured files or a Mitsuba scene.
+    """Path-trace materials, or a scene.
 
-    Several are rendered side by side; the first is the reference of the differences. A scene is
-    rendered alone, in its own size, and without --spp with its own samples per pixel. Ctrl-C keeps
-    the samples that all pictures have.
+    Materials (fits, models, measured files) are rendered side by side. The others are compared to
+    the first. A scene of Mitsuba's is rendered alone, in its own size, and without --spp with its
+    own samples per pixel. Ctrl-C keeps the samples that all pictures have.
     """
     from brdfkit.commands._targets import material, picture_file
     from brdfkit.host.users_plugins import load_plugins
@@ -46,10 +46,10 @@ def render(things, output, folders, values, spp, size, seed, console):
     scenes = [t for t in things if t.lower().endswith(".xml")]
     if scenes:
         if len(things) > 1 or values:
-            raise BrdfkitError("A scene is rendered alone and as it is: name one SCENE.xml.")
+            raise BrdfkitError("A scene is rendered alone and without --set: name one SCENE.xml.")
         output = picture_file(output or Path(scenes[0]).with_suffix(".png").name)
         with console.progress("render") as progress:
-            picture = render_scene(scenes[0], _given("spp"), seed=seed, progress=progress)
+            picture = render_scene(scenes[0], _explicit_value("spp"), seed=seed, progress=progress)
         _write(picture, output)
     else:
         found = [material(thing, values) for thing in things]
@@ -61,7 +61,7 @@ def render(things, output, folders, values, spp, size, seed, console):
 
 
 def path_trace(things, output, spp, size, seed, console):
-    """Render `things` side by side, and write the picture; after Ctrl-C it has fewer spp."""
+    """Render `things` side by side and write the picture; returns a `Rendering`."""
     from brdfkit.rendering.rendering import render as render_things
 
     with console.progress("render") as progress:
@@ -70,21 +70,22 @@ def path_trace(things, output, spp, size, seed, console):
     return picture
 
 
-def _given(option):
-    """The value of an option of this command, None where it is only the default."""
+def _explicit_value(option):
+    """The value of an option of this command, None where it was not given."""
     context = click.get_current_context()
     default = context.get_parameter_source(option) is ParameterSource.DEFAULT
     return None if default else context.params[option]
 
 
 def _write(picture, output):
+    """Write a `Rendering`, and say so where it was interrupted."""
     picture.write(output)
     if picture.spp < picture.asked:
         say(f"interrupted; rendered with {picture.spp} of {picture.asked} samples per pixel.")
 
 
 def _print_picture(picture, path, console):
-    """What was rendered, and where it is."""
+    """Print what was rendered, and the files that were written."""
     written = [path]
     if path.suffix.lower() == ".exr":
         written += [path.with_suffix(".png")]
@@ -100,4 +101,4 @@ def _print_picture(picture, path, console):
         )
         return
     console.out.print(str(picture))
-    console.written(written)
+    console.list_written(written)

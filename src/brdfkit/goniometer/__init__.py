@@ -1,7 +1,8 @@
 """`measure`: a virtual goniometer, which path-traces light through microgeometry.
 
-`microgeometry.py`: the shapes of surfaces; `specimen.py`: a surface with its facets' material;
-`measuring.py`: the paths, and the table that they add up to.
+`microgeometry.py`: the shapes of surfaces; `specimen.py`: a surface with the BSDFs of its facets,
+and paths through it; `measuring.py`: how many paths each cell of the table needs; `tally.py`: their
+means and standard errors.
 """
 
 from brdfkit.goniometer.measuring import measure as measure

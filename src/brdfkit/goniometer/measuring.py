@@ -1,12 +1,12 @@
 """A virtual goniometer: measures the BRDF of microgeometry by tracing paths.
 
-A cell of the table holds the mean of its samples at the directions of its centre (`specimen.py`
-has the geometry and the normalisation), and that mean's standard error, from the samples'
-variance. A pilot tells how many samples each cell needs; its own are thrown away, for a mean of
-samples that also decided when to stop is biased.
+A cell of the table holds the mean of the samples at the directions of its centre, and the standard
+error of this mean, from the samples' variance. `specimen.py` explains one sample. A pilot run
+estimates how many samples each cell needs. Its samples are thrown away: a mean is biased where its
+own samples decided how many there are.
 
-By reciprocity the light may stand in either direction. It takes the steeper one: from there it
-reaches most of what is seen from the other, and fewer samples are 0.
+By reciprocity the light may come from either direction of a pair. It comes from the steeper one:
+then more of what the eye sees is lit, and fewer samples are 0.
 """
 
 import math
@@ -18,6 +18,7 @@ import numpy as np
 from brdfkit.errors import BrdfkitError
 from brdfkit.goniometer.microgeometry import HeightField
 from brdfkit.goniometer.specimen import Specimen
+from brdfkit.goniometer.tally import Tally
 from brdfkit.measured import Measured
 from brdfkit.samples import Table
 from brdfkit.threads import in_turn
@@ -26,11 +27,11 @@ from brdfkit.version import __version__
 ISOTROPIC = (30, 30, 60)
 ANISOTROPIC = (16, 20, 12, 24)
 PILOT = 64  # samples a cell
-LEAST = 256  # samples a cell: of fewer, the standard error itself is not known well
-PASSES = 8  # over all cells: when interrupted, each has its share
+LEAST = 256  # samples a cell: the standard error of fewer is itself too uncertain
+PASSES = 8  # over all cells: after Ctrl-C each cell has the same part of its samples
 BATCH = 2**20  # paths at once: bounds the memory
-MOST_CELLS = 2**22  # likewise: 1 GB; three times the cells of a MERL table
-MOST_SPP, LEAST_ERROR = 10**9, 1e-5  # weeks a cell
+MOST_CELLS = 2**22  # bounds the memory to 1 GB; three times the cells of a MERL table
+MOST_SPP, LEAST_ERROR = 10**9, 1e-5  # bounds of the arguments; there, a cell takes weeks
 
 
 @in_turn
@@ -95,12 +96,15 @@ def measure(
     shape = tuple(shape or (ISOTROPIC if surface.isotropic else ANISOTROPIC))
     _require_valid(surface, shape, error, spp, seed)
     specimen = Specimen(surface, facets, max_bounces)
-    above, light, eye = _positions(shape)
+    above, light, eye = _place_light_and_eye(shape)
     rng = np.random.default_rng(seed)
 
+    # the pilot run, and the samples that each cell gets in a pass
     pilot = Tally(len(light))
     _trace(specimen, light, eye, np.full(len(light), PILOT), rng, pilot)
-    share = -(-_needed(pilot, above, error, spp) // PASSES)
+    share = -(-_plan_samples(pilot, above, error, spp) // PASSES)
+
+    # the measurement
     tally, total = Tally(len(light)), PASSES * share.sum()
     try:
         for _ in range(PASSES):
@@ -109,47 +113,15 @@ def measure(
         if (tally.n < share).any():
             raise
 
+    # the table; NaN below the plane
     values, errors = np.full((2, *shape, 3), np.nan)
     values[above], errors[above] = tally.mean, tally.standard_error
     notes = _notes(tally, total) | dict(info or {})
     return Measured.from_table(values, name=name, info=notes, standard_error=errors)
 
 
-class Tally:
-    """Number (m,), sums and sums of squares (m, 3) of the samples of m pairs of directions."""
-
-    def __init__(self, pairs):
-        self.n = np.zeros(pairs, int)
-        self.sums, self.squares = np.zeros((2, pairs, 3))
-
-    def add(self, pair, samples):
-        """Counts `samples` (n, 3), one for each entry of `pair` (n,), indices that ascend."""
-        first = np.flatnonzero(np.diff(pair, prepend=-1))
-        rows = pair[first]
-        self.n[rows] += np.diff(first, append=len(pair))
-        self.sums[rows] += np.add.reduceat(samples, first)
-        self.squares[rows] += np.add.reduceat(samples**2, first)
-
-    @property
-    def mean(self):
-        return self.sums / self.n[:, None]
-
-    @property
-    def standard_error(self):
-        """Of the mean, (m, 3)."""
-        n = self.n[:, None]
-        variance = np.maximum(self.squares / n - self.mean**2, 0) * n / (n - 1)
-        return np.sqrt(variance / n)
-
-    @property
-    def relative_error(self):
-        """Of the channels' sum, (m,); infinite where that is 0."""
-        errors, means = self.standard_error.sum(axis=1), self.mean.sum(axis=1)
-        return np.divide(errors, means, out=np.full(len(means), np.inf), where=means > 0)
-
-
-def _positions(shape):
-    """The mask of a table's cells above the plane, and there the light and the eye (m, 3)."""
+def _place_light_and_eye(shape):
+    """Which cells of a table are above the plane; of these, the light and the eye, both (m, 3)."""
     wi, wo = Table(np.empty((*shape, 0))).directions()
     above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
     wi, wo = wi[above], wo[above]
@@ -157,29 +129,33 @@ def _positions(shape):
     return above, np.where(steeper, wi, wo), np.where(steeper, wo, wi)
 
 
-def _needed(pilot, above, error, spp):
-    """Samples (m,) that each cell needs for the relative standard error.
+def _plan_samples(pilot, above, error, spp):
+    """The number of samples (m,) that each cell needs for the relative standard error `error`.
 
-    Of a quantity that is now and then large, a cell's few samples often show too little: the
-    cells around it are asked, too.
+    Where a sample is rarely large, the few samples of the pilot in one cell often miss the large
+    ones: the cells around it are pooled with it.
     """
     from scipy.ndimage import uniform_filter
 
-    def pooled(values):
+    def pool(values):
+        """The mean over 3 × 3 × ... cells; cells below the plane count as 0."""
         grid = np.zeros(above.shape)
         grid[above] = values
         return uniform_filter(grid, 3)[above]
 
-    share, mean = pooled(1.0), pooled(pilot.mean.sum(axis=1))
-    # the channels rise and fall together: their errors add, not the errors' squares
-    variance = share * pooled(pilot.standard_error.sum(axis=1) ** 2)
+    # squared relative error of the pilot in the pooled cells; `share` of them is above the plane
+    share, mean = pool(1.0), pool(pilot.mean.sum(axis=1))
+    # the errors of the channels rise and fall together: they add up, not their squares
+    variance = share * pool(pilot.standard_error.sum(axis=1) ** 2)
     around = np.divide(variance, mean**2, out=np.ones_like(mean), where=mean > 0)
+
+    # the larger of it and of the cell's own falls as 1 / number of samples
     squares = np.maximum(around, np.minimum(pilot.relative_error, 1) ** 2)
     return np.ceil(np.clip(PILOT * squares / error**2, min(LEAST, spp), spp)).astype(int)
 
 
 def _trace(specimen, light, eye, counts, rng, tally, progress=None, total=None):
-    """Adds `counts` (m,) samples of each pair of directions to the tally."""
+    """Add `counts` (m,) samples of each pair of directions to the tally."""
     ends = np.cumsum(counts)
     for first in range(0, ends[-1], BATCH):
         numbers = np.arange(first, min(first + BATCH, ends[-1]))
@@ -190,7 +166,7 @@ def _trace(specimen, light, eye, counts, rng, tally, progress=None, total=None):
 
 
 def _notes(tally, total):
-    """What there is to say of a measurement that was to have `total` samples."""
+    """Notes on a measurement for which `total` samples were planned."""
     median, most = np.percentile(tally.relative_error, (50, 95))
     notes = {
         "made by": f"brdfkit {__version__}, virtual goniometer",
@@ -203,6 +179,7 @@ def _notes(tally, total):
 
 
 def _require_valid(surface, shape, error, spp, seed):
+    """Raise `BrdfkitError` for the first argument that is out of bounds."""
     dimensions = 3 if surface.isotropic else 4
     if len(shape) != dimensions or min(shape) < 1:
         raise BrdfkitError(f"The table's shape {shape} should be {dimensions} numbers above 0.")

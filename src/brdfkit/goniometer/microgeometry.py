@@ -1,10 +1,10 @@
 """Microgeometry: small periodic height fields, the specimens of the virtual goniometer.
 
 Lengths are in grid cells; x and y are the axes of the patch, z is up, the mean height is 0.
-A surface is exactly the triangles between its grid points, two a cell.
+A surface consists of the triangles between its grid points, two per cell.
 
-The Gaussian surface is that of [Beckmann & Spizzichino 1963]. Its slopes are those of Beckmann's
-microfacets of alpha = √2·slope.
+The Gaussian surface is that of [Beckmann & Spizzichino 1963]. Its slopes have the distribution of
+Beckmann's microfacets with alpha = √2·slope.
 """
 
 import inspect
@@ -21,9 +21,9 @@ SIZE = 512  # grid cells along a side of the tile
 class HeightField:
     """A square tile that repeats in x and y.
 
-    `heights`: (n, n), [i, j] at x = i, y = j; `parts`: names of what the surface is made of;
-    `part`: (n, n), which of them a cell belongs to; `isotropic`: True where the direction of the
-    patch should not matter, so that a measurement averages over it.
+    `heights`: (n, n), [i, j] at x = i, y = j; `isotropic`: whether a measurement averages over the
+    azimuth of the tile; `parts`: names of the materials that the surface is made of; `part`:
+    (n, n), the index in `parts` of each cell, None for one part.
 
     >>> HeightField(np.zeros((8, 8))).heights.shape
     (8, 8)
@@ -35,13 +35,13 @@ class HeightField:
     part: np.ndarray | None = field(default=None, repr=False)
 
     def vertices(self):
-        """Points ((n + 3)², 3) of the tile, centred, and of one cell more on every side."""
+        """The points ((n + 3)², 3) of the tile, centred, with one cell more on every side."""
         n = len(self.heights)
         i, j = np.mgrid[-1 : n + 2, -1 : n + 2]
         return np.stack([i - n / 2, j - n / 2, self.heights[i % n, j % n]], axis=-1).reshape(-1, 3)
 
     def faces(self, part):
-        """Triangles (m, 3), as indices of `vertices`, of the cells of a `part` (its number)."""
+        """The triangles (m, 3) of a part: indices of `vertices`; `part`: an index of `parts`."""
         n = len(self.heights)
         i, j = np.mgrid[: n + 2, : n + 2]
         if self.part is not None:
@@ -56,7 +56,7 @@ class HeightField:
 def gaussian(slope=0.3, seed=0):
     """An isotropic Gaussian surface, as of sandblasted metal or plaster.
 
-    `slope`: root mean square of its slope along any one axis, above 0, at most 2.
+    `slope`: its root-mean-square slope along any axis, above 0, at most 2.
 
     >>> gaussian(slope=0.2).isotropic
     True
@@ -67,8 +67,8 @@ def gaussian(slope=0.3, seed=0):
 def brushed(slope=0.3, stretch=8, seed=0):
     """A Gaussian surface of grooves along x, as of brushed metal.
 
-    `slope`: root mean square of the slope across the grooves, above 0, at most 2; along them it
-    is slope / stretch; `stretch`: length of a groove in its widths, 1 to 32.
+    `slope`: root-mean-square slope across the grooves, above 0, at most 2; along them it is
+    slope / stretch; `stretch`: length of a groove over its width, 1 to 32.
 
     >>> brushed(stretch=4).isotropic
     False
@@ -81,8 +81,8 @@ def brushed(slope=0.3, stretch=8, seed=0):
 def woven(slope=0.3, thickness=0.5, seed=0):
     """A plain weave of warp (along y) and weft (along x): yarns with a grain of fibres.
 
-    `slope`: root mean square of the slope across the fibres, above 0, at most 2; `thickness` of a
-    yarn, in its width, 0.1 to 1.
+    `slope`: root-mean-square slope across the fibres, above 0, at most 2; `thickness`: that of a
+    yarn over its width, 0.1 to 1.
 
     >>> woven().parts
     ('warp', 'weft')
@@ -92,10 +92,12 @@ def woven(slope=0.3, thickness=0.5, seed=0):
     yarns = 8  # along a side of the tile; even, or the weave would not repeat
     width = SIZE / yarns
     half = thickness * width / 2
-    # position across the yarns, in widths, at the grid points; the weave is the same along x and y
+    # position across the yarns [widths] at the grid points; it is the same along x and y
     s = (np.arange(SIZE) + 0.5) / width
+    # a yarn's round upper side, and its way over and under the yarns that it crosses
     crown = half * np.sqrt(1 - (2 * (s % 1) - 1) ** 2)
     over_under = half * np.outer((-1) ** s.astype(int), np.cos(np.pi * (s - 0.5)))
+    # the upper yarn is seen at each place; both have fibres along their length
     warp = crown[:, None] + over_under + _gaussian(slope, 4, 24, seed)
     weft = crown[None, :] - over_under.T + _gaussian(slope, 24, 4, seed + 1)
     heights = np.maximum(warp, weft)
@@ -120,20 +122,23 @@ def make(name, **parameters):
 
 
 def _gaussian(slope, length_x, length_y, seed):
-    """Heights with the autocorrelation exp(-(x/length_x)² - (y/length_y)²), periodic.
+    """Periodic heights (n, n) with the autocorrelation exp(-(x/length_x)² - (y/length_y)²).
 
-    White noise, filtered in the frequencies. `slope`, root mean square, is along the shorter
-    length and met exactly by the triangles.
+    `slope`: the triangles have exactly this root-mean-square slope along the axis of the shorter
+    length.
     """
     if not 0 < slope <= 2:
         raise BrdfkitError(f"slope = {slope:g} is out of bounds; give one above 0, at most 2.")
     if seed < 0:
         raise BrdfkitError(f"The surface's seed {seed} is out of bounds; give at least 0.")
+    # white noise, filtered in the frequency domain
     noise = np.fft.fft2(np.random.default_rng(seed).standard_normal((SIZE, SIZE)))
     k = 2 * np.pi * np.fft.fftfreq(SIZE)
     x, y = np.meshgrid(length_x * k, length_y * k, indexing="ij")
     heights = np.fft.ifft2(noise * np.exp(-(x * x + y * y) / 8)).real
     heights -= heights.mean()
+
+    # mean squared slope of the triangles along each axis, scaled to that along the shorter length
     shorter = min(length_x, length_y)
     squares = [
         np.mean((length / shorter * (np.roll(heights, -1, axis) - heights)) ** 2)

@@ -1,17 +1,17 @@
-"""A specimen under the goniometer: microgeometry with facets of a material, lit and seen.
+"""A specimen under the goniometer: microgeometry whose facets have BSDFs, and paths through it.
 
-A directional light from wi of irradiance E across its beam falls on the plane with E cosθ_i.
-The plane's radiance towards wo is the mean over the lines along wo that cross one tile of the
-plane evenly. So
+A directional light from wi, of irradiance E across its beam, falls on the plane of the mean height
+with the irradiance E cosθ_i. The plane's radiance towards wo is the mean ⟨L⟩ over lines along wo
+that are spread evenly over one tile of the plane. Hence
 
     f(wi, wo) = ⟨L⟩ / (E cosθ_i)
               = 1 / (A cosθ_i cosθ_o) ∫ f_facet (n·wi)⁺ (n·wo)⁺ V(wi) V(wo) dS + more bounces,
 
-A the area of the tile in the plane, S the surface, n its normal, V what is not in shadow. One
-sample is one such line, followed from above down to the surface and on by sampling the facets'
-BSDF; at every bounce a shadow ray asks for the light.
+with A the area of the tile in the plane, S the surface, n its normal, and V = 1 where nothing is in
+the way, else 0. One sample is one such line. A path follows it from above down to the surface, and
+goes on by sampling the facets' BSDF; at every bounce a shadow ray tests whether the light is seen.
 
-The tile repeats without end: what leaves it sideways comes in again on the other side.
+The tile repeats without end: a ray that leaves it sideways enters again on the other side.
 """
 
 import drjit as dr
@@ -21,17 +21,17 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.llvm import use_variant
 from brdfkit.padding import pad
 
-# Rays leave a point so much above it, in grid cells. Mitsuba's own offset, 20 times this, lets
-# grazing light reach 1 % too far; single precision asks for some 1e-4 here.
+# Offset, along the normal, of rays that leave a point [grid cells]. With Mitsuba's own, 20 times
+# larger, grazing light reaches 1 % too far; single precision needs about 1e-4 here.
 LIFT = 1e-3
-MOST_TILES = 1000  # that one ray may cross; then it counts as gone
+MOST_TILES = 1000  # tiles that a ray may cross; after them it counts as gone
 
 
 class Specimen:
     """The triangles of a `HeightField` with Mitsuba BSDFs, in the current variant.
 
-    `facets`: one BSDF's dictionary, or one for each of the surface's parts; `max_bounces`:
-    longer paths count as absorbed.
+    `facets`: one BSDF's dictionary, or one for each of the surface's parts; `max_bounces`: light of
+    longer paths is lost.
     """
 
     def __init__(self, surface, facets, max_bounces=8):
@@ -52,7 +52,7 @@ class Specimen:
         }
         self.scene = mi.load_dict({"type": "scene", **meshes}, parallel=False)
         self.isotropic, self.max_bounces = surface.isotropic, max_bounces
-        # opaque numbers: as literals, each specimen would compile a kernel of its own
+        # opaque to Dr.Jit: as literals in the kernel, every specimen would compile its own
         self.side = dr.opaque(mi.Float, len(surface.heights))
         self.bottom = dr.opaque(mi.Float, surface.heights.min())
         self.top = dr.opaque(mi.Float, surface.heights.max())
@@ -60,8 +60,9 @@ class Specimen:
     def samples(self, wi, wo, pair, seed):
         """One sample (n, 3) of the BRDF in sr⁻¹ for each entry of `pair` (n,).
 
-        `wi`, `wo`: (m, 3) unit vectors above the plane; `pair`: indices of their rows; `seed`:
-        0 to 2³² - 1. An isotropic patch lies at a random azimuth, mirrored in half of all cases.
+        `wi`, `wo`: (m, 3) unit vectors above the plane; `pair`: a row of both for each sample;
+        `seed`: 0 to 2³² - 1. An isotropic surface is rotated to a random azimuth for every sample,
+        and mirrored for half of them.
         """
         import mitsuba as mi
 
@@ -72,15 +73,16 @@ class Specimen:
             dr.gather(mi.Vector3f, mi.Vector3f(w.T.astype(np.float32)), pair) for w in (wi, wo)
         )
         if self.isotropic:
-            wi, wo = _turned(sampler, wi, wo)
+            wi, wo = _rotate_at_random(sampler, wi, wo)
         radiance = self._radiance(wi, wo, sampler, dr.opaque(mi.UInt32, self.max_bounces))
         return np.array(radiance / wi.z, float).T
 
     @dr.syntax
     def _radiance(self, wi, wo, sampler, bounces):
-        """What one line along wo brings of a light from wi with E = 1."""
+        """The radiance towards wo along one random line, of a light from wi with E = 1."""
         import mitsuba as mi
 
+        # a line through a random point of the tile, from above the surface
         context = mi.BSDFContext()
         xy = (sampler.next_2d() - 0.5) * self.side
         ray = mi.Ray3f(mi.Point3f(xy.x, xy.y, self.top + 1), -wo)
@@ -89,6 +91,8 @@ class Specimen:
         while active:
             si = self._first_hit(mi.Ray3f(ray), mi.Bool(active))
             active &= si.is_valid()
+
+            # the light, where nothing is in its way
             bsdf = si.bsdf()
             scattered = bsdf.eval(context, si, si.to_local(wi), active)
             lit = active & dr.any(scattered != 0)
@@ -96,6 +100,7 @@ class Specimen:
             shadow = self._first_hit(mi.Ray3f(start, wi), mi.Bool(lit)).is_valid()
             radiance += dr.select(lit & ~shadow, throughput * scattered, 0)
 
+            # the path goes on
             sample, weight = bsdf.sample(
                 context, si, sampler.next_1d(active), sampler.next_2d(active), active
             )
@@ -107,7 +112,7 @@ class Specimen:
 
     @dr.syntax
     def _first_hit(self, ray, active):
-        """Where a ray first meets the periodic surface, as if in the central tile."""
+        """The surface interaction where a ray first meets the surface, in the central tile."""
         import mitsuba as mi
 
         found = dr.zeros(mi.PreliminaryIntersection3f)
@@ -115,15 +120,20 @@ class Specimen:
         tiles = mi.UInt32(0)
         while active:
             found = self.scene.ray_intersect_preliminary(ray, active=active)
-            # where the ray crosses the tile's wall; a start behind it crosses at once
+
+            # where the ray crosses the wall of the tile; at once where it starts behind the wall
             side_x, side_y = dr.copysign(self.side, ray.d.x), dr.copysign(self.side, ray.d.y)
             to_x = (side_x / 2 - ray.o.x) / ray.d.x
             to_y = (side_y / 2 - ray.o.y) / ray.d.y
             wall = ray(dr.maximum(dr.minimum(to_x, to_y), 0))
+
+            # done where it hits the surface, or leaves the range of its heights
             above = (wall.z > self.top) & (ray.d.z > 0)
             below = (wall.z < self.bottom) & (ray.d.z < 0)
             tiles += 1
             active &= ~found.is_valid() & ~above & ~below & (tiles < MOST_TILES)
+
+            # elsewhere it enters the tile again through the opposite wall
             wall.x -= dr.select(to_x <= to_y, side_x, 0)
             wall.y -= dr.select(to_y < to_x, side_y, 0)
             ray.o = dr.select(active, wall, ray.o)
@@ -131,7 +141,7 @@ class Specimen:
 
 
 def _mitsuba():
-    """Mitsuba in a variant that traces many paths at once, in RGB."""
+    """The module `mitsuba`, in an RGB variant that traces many paths at once."""
     import mitsuba as mi
 
     variant = use_variant()
@@ -144,7 +154,7 @@ def _mitsuba():
 
 
 def _bsdf(facets):
-    """A Mitsuba BSDF, once it is sure that light from one direction finds it."""
+    """The Mitsuba BSDF of a dictionary; an error where a directional light cannot measure it."""
     import mitsuba as mi
 
     try:
@@ -161,7 +171,7 @@ def _bsdf(facets):
 
 
 def _mesh(name, vertices, faces, bsdf):
-    """Flat triangles as a Mitsuba mesh."""
+    """A Mitsuba mesh of flat triangles."""
     import mitsuba as mi
 
     properties = mi.Properties()
@@ -174,8 +184,8 @@ def _mesh(name, vertices, faces, bsdf):
     return mesh
 
 
-def _turned(sampler, wi, wo):
-    """Both directions as a patch sees them that is turned, and mirrored, by chance."""
+def _rotate_at_random(sampler, wi, wo):
+    """Both directions in the frame of a tile at a random azimuth, mirrored with probability ½."""
     import mitsuba as mi
 
     s, c = dr.sincos(2 * dr.pi * sampler.next_1d())

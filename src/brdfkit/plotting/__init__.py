@@ -1,4 +1,4 @@
-"""`plot`: the lobes of BRDFs, with matplotlib; the half disc of incidences for audits."""
+"""`plot`: the lobes of BRDFs in polar plots, with matplotlib."""
 
 from brdfkit.plotting.lobe_plots import Plot as Plot
 from brdfkit.plotting.lobe_plots import plot as plot

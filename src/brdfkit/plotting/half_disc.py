@@ -1,4 +1,4 @@
-"""Half a polar plot, the normal upwards, logarithmic: what lobes are drawn on."""
+"""The half disc that lobes are drawn on: half a polar plot, logarithmic, the normal upwards."""
 
 import math
 
@@ -9,7 +9,10 @@ MOST_DECADES = 5
 
 
 class Radius:
-    """The radius of a BRDF value, 0 to 1: its logarithm between a power of ten and the largest."""
+    """Maps BRDF values to radii by their logarithm: a power of ten to 0, the largest to nearly 1.
+
+    `curves`: the values (n,) of each lobe that is drawn. At most `MOST_DECADES` are shown.
+    """
 
     def __init__(self, curves):
         shown = [values[values > 0] for values in curves]
@@ -20,12 +23,14 @@ class Radius:
         self.decades = 1.03 * (highest - self.lowest)
 
     def __call__(self, values):
-        floor = 10.0**self.lowest  # NaN, not measured, stays NaN
+        floor = 10.0**self.lowest  # NaN, where nothing was measured, stays NaN
         return (np.log10(np.maximum(values, floor)) - self.lowest) / self.decades
 
     def ticks(self):
-        """Powers of ten from the centre to the rim, not so many that their labels would touch; in
-        less than two decades with what lies between."""
+        """Values to label from the centre to the rim: powers of ten, so few that no labels touch.
+
+        Where fewer than two decades are shown, 2 and 5 or 3 times these powers are labelled, too.
+        """
         step = math.ceil(self.decades / 4.5)
         powers = 10.0 ** np.arange(self.lowest, self.lowest + self.decades, step)
         between = (1, 2, 5) if self.decades < 1.2 else (1, 3) if self.decades < 2 else (1,)
@@ -33,8 +38,11 @@ class Radius:
         return ticks[np.log10(ticks) - self.lowest < self.decades]
 
 
-def half_disc(axes, radius):
-    """The axes and their labels; matplotlib's own half of a polar plot leaves half a page blank."""
+def draw_half_disc(axes, radius):
+    """Draw rim, grid and labels; `radius`: a `Radius`.
+
+    Matplotlib's own polar axes would leave half of the page blank.
+    """
     axes.set(aspect="equal", xlim=(-1.2, 1.2), ylim=(-0.27, 1.13))
     axes.set_axis_off()
     half = np.arange(-90, 91)
@@ -54,5 +62,5 @@ def half_disc(axes, radius):
 
 
 def xy(theta, radius):
-    """Where an angle to the normal [degrees], positive to the right, and a radius lie."""
+    """The place (x, y) of a radius at an angle to the normal [degrees], positive to the right."""
     return radius * np.sin(np.radians(theta)), radius * np.cos(np.radians(theta))

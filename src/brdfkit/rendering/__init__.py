@@ -1,5 +1,5 @@
-"""`render`: path-traced pictures of materials: the scene, the passes, the picture file."""
+"""`render`: path-traced pictures of materials; their scene, their passes and their files."""
 
-from brdfkit.rendering.rendering import Rendering as Rendering
 from brdfkit.rendering.rendering import render as render
 from brdfkit.rendering.rendering import render_scene as render_scene
+from brdfkit.rendering.result import Rendering as Rendering

@@ -1,19 +1,19 @@
-"""Whether pictures fit into the machine's memory: asked before any of it is taken."""
+"""Checks, before a rendering starts, that its pictures fit into the available memory."""
 
 import psutil
 
 from brdfkit.errors import BrdfkitError
 
-# Peaks of the resident memory [bytes per pixel] as measured from 2 to 9 million pixels: of one
-# picture, and of several, whose differences in colour take most
+# Peak of the resident memory [bytes per pixel], measured from 2 to 9 million pixels: ONE for a
+# single picture, SEVERAL + EACH·pictures for more, whose colour differences take most of it
 ONE = 125
 SEVERAL, EACH = 330, 75
 
 
 def require_memory(size, pictures, where=""):
-    """Raise `BrdfkitError` where the rendering is larger than the memory that is available.
+    """Raise `BrdfkitError` where a rendering would need more memory than is available.
 
-    `size`: (width, height) [pixels]; `pictures`: how many of them; `where`: a scene's file.
+    `size`: (width, height) [pixels]; `pictures`: their number; `where`: a scene's file, if any.
 
     >>> require_memory((100_000, 100_000), 1)
     Traceback (most recent call last):

@@ -1,4 +1,4 @@
-"""A rendering as files: everything as a multi-part OpenEXR, for people as a montage."""
+"""The files of a rendering: a multi-part OpenEXR with everything, and a montage to look at."""
 
 import json
 from math import ceil
@@ -15,11 +15,11 @@ COLUMNS = 4
 TILE = 320  # narrower pictures are enlarged to this width [pixels], so that captions fit
 GAP = 20
 INK, FAINT, PAPER = (26, 26, 26), (105, 105, 105), (255, 255, 255)
-MOST = 20  # ΔE of the brightest false colour, the same in all pictures: they can be compared
+MOST = 20  # ΔE of the brightest false colour; fixed, so that montages can be compared
 
 
 def picture_suffix(path):
-    """.exr or .png; an error for any other suffix of the `Path`."""
+    """The suffix of the `Path`, .exr or .png; an error for any other."""
     suffix = path.suffix.lower()
     if suffix not in (".exr", ".png"):
         raise BrdfkitError(f"{path}: pictures are written as .exr or .png; choose one of them.")
@@ -27,10 +27,11 @@ def picture_suffix(path):
 
 
 def write_exr(rendering, path):
-    """Write every picture and difference as a named part; `Rendering.write` says what is in it."""
+    """Write every picture and difference as a named part; see `Rendering.write`."""
     import OpenEXR
 
     parts = []
+    # title of a part → (name of the picture, its values)
     named = {name: (name, p) for name, p in rendering.pictures.items()}
     named |= {f"difference: {n}": (n, d) for n, d in rendering.differences.items()}
     for title, (name, picture) in named.items():
@@ -51,37 +52,41 @@ def write_exr(rendering, path):
 
 
 def montage(rendering):
-    """The pictures with captions as a `PIL.Image`, rows of up to four, differences below each.
+    """A `PIL.Image` of the pictures with captions, up to four in a row.
 
-    Differences are of colour, CIEDE2000, in false colours that a legend states.
+    Below each picture is its colour difference to the reference (CIEDE2000), in false colours that
+    a legend explains.
     """
     from PIL import Image, ImageDraw
 
     captions, differences = rendering.captions, colour_differences(rendering)
     names = list(rendering.pictures)
+
+    # sizes [pixels]
     zoom = ceil(TILE / rendering.pictures[names[0]].shape[1])
     height, width = (zoom * n for n in rendering.pictures[names[0]].shape[:2])
     text = max(15, width // 24)
     caption = round(3.2 * text)
     row = caption + height + GAP + (height + GAP if differences else 0)
     columns, rows = min(len(names), COLUMNS), ceil(len(names) / COLUMNS)
+
     page = Image.new("RGB", (GAP + columns * (width + GAP), GAP + rows * row), PAPER)
     draw = ImageDraw.Draw(page)
     for i, name in enumerate(names):
         x, y = GAP + i % COLUMNS * (width + GAP), GAP + i // COLUMNS * row
-        _caption(draw, (x, y), name, captions[name], width, text)
+        _draw_caption(draw, (x, y), name, captions[name], width, text)
         page.paste(_image(_srgb(rendering.pictures[name]), zoom), (x, y + caption))
         y += caption + height + GAP
         if name in differences:
             page.paste(_image(_false_colour(differences[name]), zoom), (x, y))
             draw.rectangle((x, y, x + width - 1, y + height - 1), outline=(200, 200, 200))
         elif differences:
-            _legend(page, draw, (x, y, width, height), text)
+            _draw_legend(page, draw, (x, y, width, height), text)
     return page
 
 
 def _image(rgb, zoom):
-    """A `PIL.Image` of (height, width, 3) in 0..1."""
+    """A `PIL.Image` of values (height, width, 3) in 0..1, each pixel `zoom` × `zoom` large."""
     from PIL import Image
 
     image = Image.fromarray((np.clip(rgb, 0, 1) * 255 + 0.5).astype(np.uint8))
@@ -89,17 +94,17 @@ def _image(rgb, zoom):
 
 
 def _srgb(linear):
-    """sRGB in 0..1 of linear values; magenta where they are not finite, to be seen."""
+    """sRGB in 0..1 of linear values; magenta, which stands out, where they are not finite."""
     x = np.clip(linear, 0, 1)
     x = np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
     return np.where(np.isfinite(linear).all(axis=-1, keepdims=True), x, (1, 0, 1))
 
 
 def colour_differences(rendering):
-    """Name → (height, width) ΔE of every other picture to the reference, by CIEDE2000.
+    """Colour difference ΔE to the reference (height, width), by the name of every other picture.
 
-    1 is about what is just seen, black to white is 100. Not clipped: highlights count as well.
-    [Luo et al. 2001]
+    By CIEDE2000 [Luo et al. 2001]: 1 is about the least that is seen, black to white is 100. Values
+    above white are not clipped, so that differences within highlights count.
     """
     names = rendering.differences
     if not names:
@@ -107,13 +112,14 @@ def colour_differences(rendering):
     colour = colour_science()
 
     to_xyz = colour.RGB_COLOURSPACES["sRGB"].matrix_RGB_to_XYZ
-    with np.errstate(invalid="ignore"):  # of what is not finite nothing becomes a number
+    with np.errstate(invalid="ignore"):  # what is not finite becomes NaN
         lab = {n: colour.XYZ_to_Lab(p @ to_xyz.T) for n, p in rendering.pictures.items()}
         reference = lab[rendering.reference]
         return {n: colour.delta_E(reference, lab[n], method="CIE 2000") for n in names}
 
 
 def _false_colour(difference):
+    """sRGB (height, width, 3) in 0..1 of differences ΔE (height, width)."""
     import matplotlib as mpl
 
     colours = mpl.colormaps["magma"].with_extremes(bad="magenta")  # not finite: as in `_srgb`
@@ -128,8 +134,8 @@ def _font(size, bold=False):
     return ImageFont.truetype(str(Path(mpl.get_data_path(), file)), size)
 
 
-def _caption(draw, corner, name, below, width, size):
-    """The name, shortened in its middle where it is too long, and a line below it."""
+def _draw_caption(draw, corner, name, below, width, size):
+    """Draw the name, shortened in its middle where it is too long, and the line `below` it."""
     x, y = corner
     bold = _font(size, bold=True)
     shown, keep = name, len(name)
@@ -140,8 +146,8 @@ def _caption(draw, corner, name, below, width, size):
     draw.text((x, y + round(1.4 * size)), below, FAINT, _font(size))
 
 
-def _legend(page, draw, box, size):
-    """What the colours of the differences mean, in the empty place below the reference."""
+def _draw_legend(page, draw, box, size):
+    """Draw the scale of the false colours, in the empty place below the reference."""
     x, y, width, height = box
     font, small = _font(size), _font(round(0.85 * size))
     middle = y + height // 2

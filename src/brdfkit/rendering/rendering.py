@@ -1,135 +1,23 @@
-"""Path-traced pictures of materials: the same scene, the same samples, their differences.
+"""`render`: path-traced pictures of materials, in the same scene and with the same samples.
 
-The first picture is the reference, as a rule the measured material. All pictures grow together,
-pass by pass, so that an interrupted render still compares like with like.
+The first picture is the reference, usually of the measured material. Each pass renders every
+picture once, so that after Ctrl-C all pictures have equally many samples.
 """
 
-import io
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
-from math import inf
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.files import write_safely
 from brdfkit.names import make_unique
 from brdfkit.rendering import scenes
 from brdfkit.rendering.memory import require_memory
-from brdfkit.rendering.montage import montage, picture_suffix, write_exr
-from brdfkit.rendering.subjects import Renderable, as_list, described, load_scene, mitsuba
+from brdfkit.rendering.result import Rendering
+from brdfkit.rendering.subjects import Renderable, as_list, describe, load_scene, mitsuba
 from brdfkit.rendering.tracing import trace
 from brdfkit.threads import in_turn
-
-
-@dataclass(frozen=True, eq=False)
-class Rendering:
-    """Pictures of one scene with several materials; the first is the reference. Made by `render`.
-
-    Attributes
-    ----------
-    pictures : dict of str to ndarray, shape (height, width, 3)
-        The pictures by name: float32, linear sRGB.
-    spp : int
-        Samples per pixel that every picture has; fewer than `asked` after Ctrl-C.
-    seconds : float
-        Wall-clock time.
-    seed : int
-        Seed of the samples.
-    parameters : dict of str to dict
-        The material's parameters by the picture's name, where it has any.
-    mask : ndarray of bool, shape (height, width), or None
-        Where the material shows; None for everywhere.
-    asked : int or None
-        Samples per pixel that were asked for.
-    """
-
-    pictures: dict[str, np.ndarray] = field(repr=False)
-    spp: int
-    seconds: float
-    seed: int = 0
-    parameters: dict[str, dict] = field(default_factory=dict)
-    mask: np.ndarray | None = field(default=None, repr=False)
-    asked: int | None = None
-
-    @property
-    def reference(self) -> str:
-        """Name of the picture that the others are compared to."""
-        return next(iter(self.pictures))
-
-    @property
-    def differences(self) -> dict[str, np.ndarray]:
-        """Picture minus reference, (height, width, 3), by the name of every other picture."""
-        first = self.pictures[self.reference]
-        return {n: p - first for n, p in self.pictures.items() if n != self.reference}
-
-    def psnr(self) -> dict[str, float]:
-        """Peak signal-to-noise ratio [dB] to the reference, by the name of every other picture.
-
-        10·log10(peak² / mean squared difference), linear values, all channels, over the pixels
-        that show the ball; peak is the 99.9th percentile of the reference there. inf for
-        equal pictures.
-
-        Examples
-        --------
-        >>> render(["car_paint", "ward"], spp=16, size=128).psnr()    # doctest: +SKIP
-        {'ward': 24.6}
-        """
-        mask = slice(None) if self.mask is None else self.mask
-        peak = np.percentile(self.pictures[self.reference][mask], 99.9)
-        errors = {n: np.square(d[mask], dtype=float).mean() for n, d in self.differences.items()}
-        with np.errstate(divide="ignore"):  # a black reference: -inf
-            return {n: float(10 * np.log10(peak**2 / e)) if e else inf for n, e in errors.items()}
-
-    def write(self, path: str | Path) -> None:
-        """Write the pictures to a file.
-
-        The EXR has one named part a picture and one a difference ("difference: NAME"), each
-        with R, G, B float32 and, in its header, spp, seed, brdfkit (the version) and parameters
-        (JSON). A difference is picture minus reference, linear. The PNG shows the pictures side
-        by side, captioned, over their differences in colour (CIEDE2000).
-
-        Parameters
-        ----------
-        path : str or Path
-            `.exr` for everything, with a `.png` of the same stem beside it, or `.png` alone.
-
-        Raises
-        ------
-        BrdfkitError
-            For another suffix, or where it cannot write; no file is half-written.
-
-        Examples
-        --------
-        >>> render(["car_paint", "ward"]).write("paint.exr")    # doctest: +SKIP
-        """
-        path = Path(path)
-        suffix = picture_suffix(path)
-        png = self._repr_png_()
-        if suffix == ".exr":
-            with write_safely(path) as beside:
-                write_exr(self, beside)
-        with write_safely(path.with_suffix(".png") if suffix == ".exr" else path) as beside:
-            beside.write_bytes(png)
-
-    def _repr_png_(self) -> bytes:
-        """The montage, which notebooks show."""
-        stream = io.BytesIO()
-        montage(self).save(stream, "PNG")
-        return stream.getvalue()
-
-    @property
-    def captions(self) -> dict[str, str]:
-        """A word or two on each picture, by its name."""
-        figures = {name: f"PSNR {value:.1f} dB" for name, value in self.psnr().items()}
-        return {self.reference: "reference" if figures else f"{self.spp} spp", **figures}
-
-    def __str__(self) -> str:
-        height, width = self.pictures[self.reference].shape[:2]
-        head = f"{width}×{height} pixels, {self.spp} spp, {self.seconds:.1f} s"
-        return "\n".join([head, *(f"  {name}: {said}" for name, said in self.captions.items())])
 
 
 def render(
@@ -185,18 +73,18 @@ def render(
         raise BrdfkitError(f"{size} pixels make no picture; give a size above 0.")
     subjects = as_list(things)
     require_memory(size, len(subjects))
-    mitsuba()  # in a variant: dictionaries depend on it
+    mitsuba()  # sets a variant, on which the dictionaries depend
     materials: dict[str, dict[str, Any]] = {}
     parameters: dict[str, dict[str, Any]] = {}
     for thing in subjects:
-        name, bsdf, values = described(thing)
+        name, bsdf, values = describe(thing)
         name = make_unique(name, materials)
         materials[name] = bsdf
         if values:
             parameters[name] = values
     build, mask = (scene, None) if scene else (scenes.ball, scenes.ball_mask(size))
     scenes_by_name = {name: build(bsdf, size) for name, bsdf in materials.items()}
-    pictures, reached, seconds = _traced(scenes_by_name, spp, seed, progress)
+    pictures, reached, seconds = _load_and_trace(scenes_by_name, spp, seed, progress)
     return Rendering(pictures, reached, seconds, seed, parameters, mask, asked=spp)
 
 
@@ -253,10 +141,11 @@ def render_scene(
 
 
 @in_turn
-def _traced(dictionaries, spp, seed, progress):
-    """What `trace` makes of scene dictionaries, name → dictionary.
+def _load_and_trace(dictionaries, spp, seed, progress):
+    """The result of `trace` for scene dictionaries by name.
 
-    The scenes end here, too: Mitsuba traces through the BSDFs of all that there are in the process.
+    The scenes are freed as this function returns, still in its turn: a kernel of Mitsuba's calls
+    the BSDFs of all scenes that exist in the process, also of one that another thread would free.
     """
     loaded = {name: load_scene(mitsuba().load_dict, d, name) for name, d in dictionaries.items()}
     return trace(loaded, spp, seed, progress)

@@ -1,4 +1,4 @@
-"""The scene every material is shown in: a ball on grey ground under a clear sky and one softbox.
+"""The scene of every picture: a ball on grey ground under a clear sky and one softbox.
 
 World: z up, metres; the ball has radius 1, stands on the plane z = 0 at the origin and is seen
 from the south (-y). Its parametrisation has z as its axis, so that an anisotropic material is
@@ -62,7 +62,7 @@ def ball_mask(size=(512, 512)):
     )
     ray /= np.linalg.norm(ray, axis=-1, keepdims=True)
     to_ball = np.subtract(BALL, CAMERA)
-    # a ray meets the unit ball when it passes its centre closer than 1
+    # a ray meets the ball, of radius 1, where it passes its centre at less than 1
     return to_ball @ to_ball - (ray @ to_ball) ** 2 < 1
 
 
@@ -76,6 +76,7 @@ def _axes():
 
 
 def _camera(at, size, spp):
+    """The sensor's dictionary; `at`: a `mitsuba.ScalarTransform4f`."""
     import mitsuba as mi
 
     return {
@@ -95,9 +96,9 @@ def _camera(at, size, spp):
 
 
 def _sky():
-    """Hosek-Wilkie sky, its glow behind the ball to the right: it draws the grazing rim.
+    """Hosek-Wilkie sky, brightest behind the ball to the right: it lights the ball's grazing rim.
 
-    The sun's disc is left out: half a degree of it makes fireflies of every path that a material
+    The sun's disc is left out: half a degree wide, it makes a firefly of every path that a material
     samples imperfectly, and the softbox is the better key light.
     """
     return {
@@ -113,19 +114,23 @@ def _sky():
 def _grey_sky(at):
     """A sky of the same brightness for mono variants, in which Mitsuba's own does not work.
 
-    CIE standard sky 13, clear over polluted air (ISO 15469:2004), on such a scale that the ground
-    receives as much light as from `_sky`, in luminance.
+    CIE standard sky 13, clear over polluted air (ISO 15469:2004), scaled so that the ground
+    receives the same illuminance as from `_sky`.
     """
     import mitsuba as mi
 
+    # direction of each pixel: rows over the polar angle, columns over the azimuth
     height, width = 129, 256
     theta = np.linspace(0, np.pi / 2, height // 2 + 1)[:, None]  # the first and last row are poles
     phi = (np.arange(width) + 0.5) / width * 2 * np.pi
     up, side = np.cos(theta), np.sin(theta)
     towards = np.stack(np.broadcast_arrays(side * np.sin(phi), side * np.cos(phi), up), axis=-1)
+
+    # the standard's gradation towards the horizon and its indicatrix about the sun
     from_sun = np.arccos(np.clip(towards @ SUN / np.linalg.norm(SUN), -1, 1))
     gradation = 1 - np.exp(-0.32 / np.maximum(up, 1e-6))
     glow = 16 * (np.exp(-3 * from_sun) - np.exp(-3 * np.pi / 2)) + 0.3 * np.cos(from_sun) ** 2
+
     luminance = np.zeros((height, width, 1), np.float32)  # black below the horizon
     luminance[: len(theta), :, 0] = GREY_SKY * gradation * (1 + glow)
     return {
@@ -136,7 +141,7 @@ def _grey_sky(at):
 
 
 def _softbox(at):
-    """A square light, upper left in front: the highlight and the terminator."""
+    """A square light at the upper left in front: it makes the highlight and the terminator."""
     return {
         "type": "rectangle",
         "to_world": at.look_at(list(SOFTBOX), list(BALL), [0, 0, 1]) @ at.scale(2.6),

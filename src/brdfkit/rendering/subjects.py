@@ -1,4 +1,4 @@
-"""What may be rendered, as Mitsuba takes it."""
+"""Turns what `render` is given into names, BSDF dictionaries and scenes of Mitsuba's."""
 
 from typing import Any, TypeAlias
 
@@ -12,7 +12,7 @@ Renderable: TypeAlias = MaterialLike | tuple[str, MaterialLike]
 
 
 def mitsuba():
-    """Mitsuba with a variant set."""
+    """The module `mitsuba`, with a variant set."""
     import mitsuba as mi
 
     use_variant()
@@ -29,24 +29,25 @@ def as_list(things: Any) -> list[Renderable]:
 
 
 def _is_pair(thing):
+    """Whether `thing` is a pair of a name and a material."""
     return isinstance(thing, tuple) and len(thing) == 2 and isinstance(thing[0], str)
 
 
-def described(thing):
-    """(name, BSDF dictionary, parameters' values by name) of whatever `render` takes."""
+def describe(thing):
+    """(name, BSDF dictionary, parameters' values by name) of a thing to render."""
     if _is_pair(thing):
-        return thing[0], *described(thing[1])[1:]
+        return thing[0], *describe(thing[1])[1:]
     found = material(thing)
     values = found.values if isinstance(found, Model | Fit) else {}
     return str(found.name), found.scene_dict(), dict(values)
 
 
 def load_scene(load, source, name):
-    """The scene that `load`, a function of Mitsuba's, makes of `source`; errors tell its name."""
+    """The scene that `load`, a function of Mitsuba's, makes of `source`; errors name it `name`."""
     try:
         return load(source, parallel=False)
     except (RuntimeError, TypeError) as error:
         lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-        # a plugin written in Python reports its traceback, of which people want the last line
+        # a plugin written in Python reports its whole traceback: people need its last line only
         reason = lines[-1] if any("Traceback" in line for line in lines) else " ".join(lines)
         raise BrdfkitError(f"{name}: Mitsuba cannot load it ({reason.rstrip('.')}).") from error
