@@ -145,7 +145,7 @@ def test_interrupted_then_resumed(server, lab):
     part = place.with_name("grey.binary.part")
     assert files(place.parent) == [part.name]
     assert "is not here" in fails(call=load)
-    assert not public.collection("lab").here()
+    assert not public.collection("lab").files_on_disk()
     have = part.stat().st_size
     assert 0 < have <= server.breaks
     server.breaks = None
@@ -313,7 +313,7 @@ def test_files_that_the_index_does_not_know(lab, cache):
     for name in (".DS_Store", "notes.txt", "SHA256SUMS", "._mine.binary", "half.binary.part"):
         (cache / "lab" / name).write_bytes(TABLE)
     assert load("lab/mine").name == "mine"
-    assert list(public.collection("lab").here()) == ["lab/mine"]
+    assert list(public.collection("lab").files_on_disk()) == ["lab/mine"]
 
 
 def test_a_sample_of_a_file_with_many(lab, cache):

@@ -87,6 +87,12 @@ def test_no_table_has_such_a_period(period):
         Measured.from_table(np.ones((2, 2, 2, 3)), period, name="grey")
 
 
+@pytest.mark.parametrize("shape", [7, (9, 9), (9, 9, 0), (9, 9, 2.5), (1, 2, 3, 4, 5)])
+def test_no_table_has_such_a_shape(shape):
+    with pytest.raises(BrdfkitError, match="was asked for; give three numbers of cells"):
+        table().resampled(shape)
+
+
 def test_numpy_opens_it(tmp_path):
     save(table(), tmp_path / "paint.npz")
     with np.load(tmp_path / "paint.npz") as arrays:

@@ -1,10 +1,69 @@
 """The public names as a type checker sees them: `make lint` runs mypy over this file."""
 
-from typing import assert_type
+from pathlib import Path
+from typing import Any, assert_type
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 import brdfkit as bk
+from brdfkit.checks import Report
+from brdfkit.goniometer.microgeometry import gaussian
+
+Floats = NDArray[np.float64]
+Values = dict[str, float | tuple[float, ...]]
+UP = np.array([[0.0, 0.0, 1.0]])
 
 
-def everything() -> None:
-    """Each verb once, with what it gives."""
+def read_and_write(path: Path) -> None:
+    """Files, in and out."""
+    loaded = bk.load(path)
+    assert_type(loaded, bk.Measured | bk.Fit)
+    bk.save(loaded, "copper.npz")
+    assert_type(bk.convert("cayman.brdf", path), bk.Conversion)
+
+
+def build() -> None:
+    """Materials made in Python."""
+    samples = bk.Measured.from_samples(UP, UP, [[0.2]], channels=("Y",))
+    assert_type(samples, bk.Measured)
+    assert_type(samples.eval(UP, UP), Floats)
+    assert_type(bk.Measured.from_table(np.ones((9, 9, 18, 3))).values, Floats)
+    ward = bk.models()["ward"](alpha_u=0.1, specular_reflectance=[0.3, 0.2, 0.1])
+    assert_type(ward, bk.Model)
+    assert_type(ward.changed(alpha_u=0.2), bk.Model)
+    assert_type(ward.values, Values)
+    assert_type(bk.measure(gaussian(slope=0.3), {"type": "diffuse"}), bk.Measured)
+
+
+def describe(paint: bk.Measured) -> None:
+    """What is said of a material."""
+    assert_type(bk.evaluate("ward", UP, UP), Floats)
+    assert_type(bk.albedo(paint, [0, 0, 1]), Floats)
+    assert_type(bk.audit(paint), bk.Audit)
+    assert_type(paint.audit().findings(), tuple[str, ...])
+    assert_type(bk.plot([paint, "ward"], theta_i=(15, 45)), Figure)
+    assert_type(bk.check("ward", only=["finite"]), Report)
+
+
+def fit_and_render(paint: bk.Measured) -> None:
+    """The way from a measurement to a picture."""
+    fits = [bk.fit(name, paint, bounds={"alpha_u": (0.01, 0.5)}) for name in ("ward", "ggx")]
+    assert_type(fits, list[bk.Fit])
+    assert_type(fits[0].model, bk.Model)
+    assert_type(bk.compare(paint, fits).best, str)
+    rendering = bk.render([paint, *fits, ("grey", {"type": "diffuse"})], size=(64, 32))
+    assert_type(rendering, bk.Rendering)
+    assert_type(rendering.psnr(), dict[str, float])
+    assert_type(bk.render_scene("kitchen.xml"), bk.Rendering)
+
+
+def extend() -> None:
+    """Plugins of one's own."""
+    assert_type(bk.load_models("my_models/"), dict[str, type[bk.Model]])
+    assert_type(bk.load_plugins("my_plugins/"), dict[str, str])
+    assert_type(bk.losses["log"].meaning, str)
+    dictionary: dict[str, Any] = bk.models()["ggx"]().scene_dict()
+    assert dictionary["type"] == "ggx"
     assert_type(bk.__version__, str)

@@ -1,5 +1,6 @@
-"""Materials known by name: those that brdfkit brings, public collections, and downloads.
+"""Materials known by name: brdfkit's own, those of public collections, and their download.
 
-`index.py`: all of them; `shipped.py`: brdfkit's own; `public.py`: collections, from `data/`;
-`downloading.py`: one file with its checksum; `remote.py`: a file out of an archive, by ranges.
+`index.py` reads `data/measured/index.toml`; `shipped.py`: brdfkit's own materials; `public.py`: the
+collections; `downloading.py`: fetches a file and checks it; `remote.py`: reads parts of a file on a
+server.
 """

@@ -1,7 +1,7 @@
-"""Files of public collections: from where they are published into the user's cache folder.
+"""Downloads files of public collections into the user's cache folder.
 
-`pooch` checks the checksum and puts a file in its place. What it lacks is here: an interrupted
-download of a file goes on where it stopped, and one file of a zip archive is fetched alone.
+`pooch` verifies the checksum and moves the file to its place. Two things that it lacks are here: an
+interrupted download resumes, and a single file of a zip archive is fetched without the rest.
 """
 
 import io
@@ -23,15 +23,16 @@ from brdfkit.catalogue.remote import BLOCK, PARTIAL, PLAIN, TIMEOUT, RemoteFile
 from brdfkit.errors import BrdfkitError
 
 CHUNK = 2**18  # bytes
-NOTHING_LEFT = 416  # HTTP's answer to a request for what is behind the end
+RANGE_NOT_SATISFIABLE = 416  # HTTP status where the requested part begins at the file's end
 
 
 def get(name, progress=None):
     """Download a material of a public collection; returns the path of its file.
 
-    `progress` is called with (done, total) bytes, the total None where it is not known. A file that
-    is here and right is left alone. Raises `BrdfkitError`: one sentence that says what to do
-    where there is no address to download from, no connection, or the wrong file comes.
+    `progress` is called with (done, total) bytes; the total is None where the server does not tell
+    it. A file that is in its place with the right checksum is not downloaded again. Raises
+    `BrdfkitError`, which says what to do, where no address is known, the connection fails, or
+    the server sends another file.
 
     >>> get("merl/alum-bronze").name    # doctest: +SKIP
     'alum-bronze.binary'
@@ -39,9 +40,9 @@ def get(name, progress=None):
     owner = public.collection(name)
     listed = owner.files.get(name)
     if listed is None or not listed.url:
-        return public.path(name)  # where a person put it, or the sentence to do so
+        return public.path(name)  # put there by hand; else the error says how
     pooch.get_logger().setLevel("WARNING")
-    with _told(listed, owner):
+    with _explain_errors(listed, owner):
         pooch.retrieve(
             listed.url,
             known_hash=f"sha256:{listed.sha256}" if listed.sha256 else None,
@@ -53,8 +54,8 @@ def get(name, progress=None):
 
 
 @contextmanager
-def _told(listed, owner):
-    """Turns what may go wrong into one sentence."""
+def _explain_errors(listed, owner):
+    """Turns the errors of a download into a `BrdfkitError` that says what to do."""
     by_hand = owner.by_hand(listed.file)
     try:
         yield
@@ -87,12 +88,13 @@ def _told(listed, owner):
 
 
 def _host(listed):
+    """The name of the server, as in the URL."""
     return urlsplit(listed.url).hostname
 
 
 @dataclass(frozen=True)
 class _Download:
-    """What pooch calls with the address and the file to write."""
+    """Pooch's `downloader`: called with the URL and the file to write."""
 
     listed: Listed
     progress: Callable
@@ -100,23 +102,24 @@ class _Download:
     def __call__(self, url, target, _pooch):
         archive, _, member = url.partition("#")
         if member:
-            self._member(archive, member, target)
+            self._fetch_member(archive, member, target)
         else:
-            self._file(url, Path(target))
+            self._fetch_file(url, Path(target))
 
-    def _file(self, url, target):
-        """The whole file, or what is missing of it."""
+    def _fetch_file(self, url, target):
+        """Writes the file at `url` to `target`; an interrupted download resumes."""
         part = self.listed.path.with_name(self.listed.file + PART)
-        # without a checksum nothing would tell whether two halves belong together
+        # without a checksum, nothing would show that the two parts are of the same file
         have = part.stat().st_size if self.listed.sha256 and part.is_file() else 0
         headers = PLAIN | ({"Range": f"bytes={have}-"} if have else {})
         with requests.get(url, headers=headers, stream=True, timeout=TIMEOUT) as answer:
-            if answer.status_code != NOTHING_LEFT:
+            if answer.status_code != RANGE_NOT_SATISFIABLE:
                 answer.raise_for_status()
                 self._write(answer, part, have if answer.status_code == PARTIAL else 0)
         os.replace(part, target)
 
     def _write(self, answer, part, have):
+        """Appends the server's `answer` to the file `part`, which holds `have` bytes already."""
         length = answer.headers.get("Content-Length")
         total = have + int(length) if length else None
         with part.open("ab" if have else "wb") as stream:
@@ -125,7 +128,8 @@ class _Download:
                 have += len(chunk)
                 self.progress(have, total)
 
-    def _member(self, url, member, target):
+    def _fetch_member(self, url, member, target):
+        """Writes one file of the zip archive at `url` to `target`."""
         with ZipFile(io.BufferedReader(RemoteFile(url), BLOCK)) as archive:
             total = archive.getinfo(member).file_size
             with archive.open(member) as source, open(target, "wb") as stream:

@@ -1,7 +1,7 @@
-"""Public collections of measurements: who published them where, and their files.
+"""Public collections of measurements: who published them, where, and their files.
 
-brdfkit brings none of them. The index knows names, checksums and addresses; the files lie in the
-user's cache folder, where `downloading.py` or the user put them.
+brdfkit ships none of these files. The index has their names, checksums and addresses; the files are
+in the user's cache folder, put there by `downloading.py` or by the user.
 """
 
 import csv
@@ -13,15 +13,15 @@ from brdfkit.catalogue import index
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.files import sha256
 
-PART = ".part"  # the suffix of a file that is not all here
+PART = ".part"  # suffix of a file whose download is not complete
 
 
 @dataclass(frozen=True)
 class Listed:
     """A file of a collection.
 
-    `name`: what `brdfkit.load` takes, as ``merl/alum-bronze``; `bytes`, `sha256`, `url`: where
-    they are known. What follows # in the URL is the file's name in a zip archive.
+    `name`: for `brdfkit.load`, as ``merl/alum-bronze``; `bytes`, `sha256` and `url`: 0 or "" where
+    the index does not have them. After # in the URL stands the file's name in a zip archive.
     """
 
     name: str
@@ -40,9 +40,9 @@ class Listed:
 class Collection:
     """An entry of the index.
 
-    `licence` in a word, `terms` in a sentence, as the owners state them; `page`: where they
-    publish the files; `note`: what else belongs to a file; `files`: the `Listed` by name, none
-    where the index knows none.
+    `licence` (a word) and `terms` (a sentence) are those of the owners; `page`: the web page of the
+    files; `note`: what to fetch together with a file; `files`: the `Listed` by name, empty where
+    the index lists none.
     """
 
     name: str
@@ -56,17 +56,19 @@ class Collection:
 
     @property
     def folder(self):
-        """Where its files lie."""
+        """The folder of its files in the user's cache folder."""
         return cache() / self.name
 
-    def here(self):
-        """The files that lie there by the names of their materials, with those that the index
-        does not know: a person may put more into the folder. Other files are no materials."""
-        there = sorted(self.folder.iterdir()) if self.folder.is_dir() else []
-        return {_named(self.name, f.name): f for f in there if f.is_file() and _is_material(f)}
+    def files_on_disk(self):
+        """The paths of the files in `folder` by the names of their materials; with files that the
+        user put there and the index does not list, without those of an unknown suffix."""
+        files = sorted(self.folder.iterdir()) if self.folder.is_dir() else []
+        return {
+            _material_name(self.name, f.name): f for f in files if f.is_file() and _is_material(f)
+        }
 
     def by_hand(self, file=""):
-        """Which file to fetch from which page, and where to put it: the end of a sentence."""
+        """The end of an error: which file to fetch by hand, from where, and where to put it."""
         note = f", {self.note}" if self.note else ""
         return f"fetch {file or 'its file'} from {self.page} and put it into {self.folder}{note}"
 
@@ -81,11 +83,11 @@ def collections():
     'alum-bronze.binary'
     """
     entries = index.entries()["collections"]
-    return {name: _collection(name, entry) for name, entry in entries.items()}
+    return {name: _make_collection(name, entry) for name, entry in entries.items()}
 
 
 def collection(name):
-    """The `Collection` of that name, or that of a material, ``merl`` or ``merl/alum-bronze``."""
+    """The `Collection` of a name, ``merl``, or of a material in it, ``merl/alum-bronze``."""
     first = name.partition("/")[0]
     if first not in collections():
         raise no_such("collection", first, collections(), where=name)
@@ -93,15 +95,15 @@ def collection(name):
 
 
 def path(name):
-    """The file of a material in a collection, once its checksum is right.
+    """The path of a material's file in a collection, after its checksum was verified.
 
-    Raises `BrdfkitError`, which says how to get it, for a file that is not here or was changed.
+    Raises `BrdfkitError`, which says how to get the file, where it is missing or was changed.
     """
     owner = collection(name)
     listed = owner.files.get(name)
     if listed is None:
-        if name in owner.here():
-            return owner.here()[name]
+        if name in owner.files_on_disk():
+            return owner.files_on_disk()[name]
         known = f"'brdfkit data list {owner.name}' names what is known, or " if owner.files else ""
         raise BrdfkitError(f"{name}: is not here; {known}{owner.by_hand()}.")
     remedy = f"run 'brdfkit data get {name}'" if listed.url else owner.by_hand(listed.file)
@@ -116,7 +118,7 @@ def path(name):
 
 
 def cache():
-    """The user's cache folder; it has a folder for each collection."""
+    """The user's cache folder, which has a folder for each collection."""
     import pooch
 
     return Path(pooch.os_cache("brdfkit"))
@@ -126,23 +128,25 @@ def _is_material(file):
     return formats.has_format(file) and not file.name.startswith(".")
 
 
-def _named(collection, file):
+def _material_name(collection, file):
     return f"{collection}/{file.partition('.')[0]}"
 
 
-def _collection(name, entry):
+def _make_collection(name, entry):
+    """The `Collection` of an `entry` of the index; its files are in the entry or in a table."""
     rows, url = entry.pop("files"), entry.pop("url", "")
     if isinstance(rows, str):
         with (index.folder() / rows).open(encoding="utf-8", newline="") as stream:
             rows = list(csv.DictReader(stream, delimiter="\t"))
-    listed = [_listed(name, url=row.get("url", url), row=row) for row in rows]
+    listed = [_make_listed(name, url=row.get("url", url), row=row) for row in rows]
     return Collection(name, **entry, files={found.name: found for found in listed})
 
 
-def _listed(collection, url, row):
+def _make_listed(collection, url, row):
+    """The `Listed` of a `row` of strings; `url` is a pattern with the row's columns in braces."""
     file = row["file"]
     return Listed(
-        name=_named(collection, file),
+        name=_material_name(collection, file),
         file=file,
         bytes=int(row.get("bytes") or 0),
         sha256=row.get("sha256", ""),

@@ -1,4 +1,4 @@
-"""The materials that come with brdfkit: what they were made from, their licence, their files."""
+"""The materials that come with brdfkit: their origin, licence and files."""
 
 from dataclasses import dataclass
 
@@ -11,8 +11,8 @@ from brdfkit.files import sha256
 class Material:
     """A material that comes with brdfkit.
 
-    `name`: what `brdfkit.load` takes; `title`, `what`: for people; `source`: what it was made
-    from, and by which command; `file`: in the index's folder; `sha256`: of that file.
+    `name`: for `brdfkit.load`; `title` and `what`: for people; `source`: the data and the command
+    that made it; `file`: its name in the index's folder; `sha256`: the file's checksum.
     """
 
     name: str
@@ -38,7 +38,7 @@ def materials():
 
 
 def path(name):
-    """The file of a material that comes with brdfkit, once its checksum is right.
+    """The path of a shipped material's file, after its checksum was verified.
 
     Raises `BrdfkitError` for an unknown name, and for a file that is missing or was changed.
 

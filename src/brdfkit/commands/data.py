@@ -67,8 +67,8 @@ def _print_collections(collections, materials, folder, console):
     licence = next(iter(materials.values())).licence
     rows = [("brdfkit's own", ", ".join(materials), str(len(materials)), "", licence)]
     for name, c in collections.items():
-        download = sum(bool(listed.url) for listed in c.files.values())
-        rows.append((name, c.title, str(len(c.here())), str(download or "by hand"), c.licence))
+        here, download = len(c.files_on_disk()), sum(bool(f.url) for f in c.files.values())
+        rows.append((name, c.title, str(here), str(download or "by hand"), c.licence))
     console.table(columns, rows)
     console.out.print("The materials of a collection: brdfkit data list NAME")
     console.out.print(f"Downloaded files lie in {folder}")
@@ -79,7 +79,7 @@ def _print_collection(collection, console):
     if console.as_json:
         console.json(_record(collection))
         return
-    files, here = collection.files, collection.here()
+    files, here = collection.files, collection.files_on_disk()
     rows = []
     for name in sorted({*files, *here}):
         size = files[name].bytes if name in files else here[name].stat().st_size
@@ -105,7 +105,7 @@ def _print_files(files, collections, console):
 
 def _record(collection):
     """A collection for JSON, with the place of each file here, or where to get it."""
-    here = collection.here()
+    here = collection.files_on_disk()
     files = {
         name: {"file": listed.file, "bytes": listed.bytes or None, "url": listed.url or None}
         for name, listed in collection.files.items()

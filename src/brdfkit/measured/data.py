@@ -1,10 +1,13 @@
 """`MeasuredData`: the samples or the table of a measurement; `Measured` adds the lookup."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from math import pi
+from typing import Self
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.colours import RGB
 from brdfkit.measured.validation import check_errors, check_table, make_printable
@@ -23,7 +26,7 @@ class MeasuredData:
     channels: tuple[str, ...]
     info: dict[str, str] = field(default_factory=dict)
     anisotropic: bool = False
-    standard_error: np.ndarray | None = field(default=None, repr=False)
+    standard_error: NDArray[np.float64] | None = field(default=None, repr=False)
     _samples: Samples | None = field(default=None, repr=False)
     _table: Table | None = field(default=None, repr=False)
     _lookup: Callable | None = field(default=None, repr=False)
@@ -31,84 +34,145 @@ class MeasuredData:
     @classmethod
     def from_samples(
         cls,
-        wi,
-        wo,
-        values,
-        valid=None,
-        channels=RGB,
-        name="samples",
-        info=None,
-        anisotropic=False,
-        standard_error=None,
-        lookup=None,
-    ):
-        """From direction pairs `wi`, `wo` (n, 3) and BRDF `values` (n, channels) in sr⁻¹.
+        wi: ArrayLike,
+        wo: ArrayLike,
+        values: ArrayLike,
+        valid: ArrayLike | None = None,
+        channels: Sequence[str] = RGB,
+        name: str = "samples",
+        info: Mapping[str, str] | None = None,
+        anisotropic: bool = False,
+        standard_error: ArrayLike | None = None,
+        lookup: Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]]
+        | None = None,
+    ) -> Self:
+        """A measured BRDF from samples: pairs of directions with the values measured there.
 
-        Directions need not be normalised. `valid` (n,) marks what was measured; without it
-        everything finite above the surface is. `standard_error`: of the values, likewise
-        (n, channels). `lookup(wi, wo)`: values between the samples, where the format defines them;
-        without it `interpolation.py` interpolates. One that has, as a `Table`, `scene_dict()` and
-        `mixed(weights)`, is rendered as it is; another one through the table that it gives.
+        Parameters
+        ----------
+        wi, wo : array_like, shape (n, 3)
+            Directions in the local frame, z along the normal; they need not be normalised.
+        values : array_like, shape (n, channels) or, of one channel, (n,)
+            BRDF [sr⁻¹], without a cosine.
+        valid : array_like of bool, shape (n,), optional
+            False where nothing was measured. Samples with a value that is not finite or with a
+            direction below the surface never count.
+        channels : sequence of str, default RGB
+            What the columns of `values` are: ``("R", "G", "B")``, linear sRGB; ``("Y",)``,
+            achromatic; or wavelengths, as ``("400nm", "410nm")``.
+        name : str, default "samples"
+            Name in pictures and tables.
+        info : dict of str to str, optional
+            Notes, as ``{"instrument": "gonioreflectometer"}``.
+        anisotropic : bool, default False
+            Whether the BRDF changes as the surface turns about its normal.
+        standard_error : array_like, the shape of `values`, optional
+            Standard errors of the values [sr⁻¹].
+        lookup : callable, optional
+            Gives the values (m, channels) between the samples for (wi, wo), both (m, 3); by default
+            they are interpolated. A lookup with `scene_dict()` and `mixed(weights)` is rendered
+            itself, any other as a table of its values.
+
+        Returns
+        -------
+        Measured
+            The material.
+
+        Raises
+        ------
+        BrdfkitError
+            For shapes that do not fit, and where no sample is valid.
+
+        Examples
+        --------
+        >>> up = [[0, 0, 1]]
+        >>> print(Measured.from_samples(up, up, [0.2], channels=("Y",), name="grey"))
+        grey: samples, 1 of 1 valid, channels Y
         """
-        name, channels, info = make_printable(name, channels, info)
+        words = make_printable(name, channels, info)
+        name = words[0]
         samples = Samples.from_arrays(wi, wo, values, valid, channels, name)
-        return cls(
-            name,
-            channels,
-            info,
-            anisotropic,
-            check_errors(standard_error, samples.values, name),
-            _samples=samples,
-            _lookup=lookup,
-        )
+        errors = check_errors(standard_error, samples.values, name)
+        return cls(*words, anisotropic, errors, _samples=samples, _lookup=lookup)
 
     @classmethod
     def from_table(
         cls,
-        values,
-        phi_d_period=np.pi,
-        channels=RGB,
-        name="table",
-        info=None,
-        standard_error=None,
-    ):
-        """From a table (n_theta_h, n_theta_d, n_phi_d, channels) in sr⁻¹, NaN = not measured.
+        values: ArrayLike,
+        phi_d_period: float = pi,
+        channels: Sequence[str] = RGB,
+        name: str = "table",
+        info: Mapping[str, str] | None = None,
+        standard_error: ArrayLike | None = None,
+    ) -> Self:
+        """A measured BRDF from a table over half/difference angles, as MERL's.
 
-        Its axes are those of `brdfkit.samples.Table`; an anisotropic one has n_phi_h before them.
-        An infinite value was not measured, either.
-        `standard_error`: of the values, in the same shape.
+        Axes: theta_h, square-root spaced from 0° to 90°; theta_d, even from 0° to 90°; phi_d, even
+        over `phi_d_period`; before them, in an anisotropic table, phi_h, even over 360°. A value
+        belongs to the centre of its cell.
+
+        Parameters
+        ----------
+        values : array_like, shape ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, channels)
+            BRDF [sr⁻¹], without a cosine; NaN where nothing was measured.
+        phi_d_period : float, default pi
+            π for a reciprocal table, 2π for another one [rad].
+        channels : sequence of str, default RGB
+            What the last axis is: ``("R", "G", "B")``, linear sRGB; ``("Y",)``, achromatic; or
+            wavelengths, as ``("400nm", "410nm")``.
+        name : str, default "table"
+            Name in pictures and tables.
+        info : dict of str to str, optional
+            Notes, as ``{"instrument": "gonioreflectometer"}``.
+        standard_error : array_like, the shape of `values`, optional
+            Standard errors of the values [sr⁻¹].
+
+        Returns
+        -------
+        Measured
+            The material.
+
+        Raises
+        ------
+        BrdfkitError
+            For another shape or period, and where no cell is measured.
+
+        Examples
+        --------
+        >>> print(Measured.from_table(np.full((9, 9, 18, 3), 0.1), name="grey"))
+        grey: 9×9×18 table, 966 of 1,458 valid, channels R G B
         """
-        name, channels, info = make_printable(name, channels, info)
-        values = check_table(values, phi_d_period, channels, name)
-        table = Table(values, phi_d_period)
-        errors = check_errors(standard_error, values, name)
-        return cls(name, channels, info, table.anisotropic, errors, _table=table)
+        words = make_printable(name, channels, info)
+        name = words[0]
+        table = Table(check_table(values, phi_d_period, channels, name), phi_d_period)
+        errors = check_errors(standard_error, table.values, name)
+        return cls(*words, table.anisotropic, errors, _table=table)
 
     @property
-    def is_table(self):
+    def is_table(self) -> bool:
         """True when the measurement came as a table, False when as scattered samples."""
         return self._table is not None
 
     @property
-    def has_lookup(self):
+    def has_lookup(self) -> bool:
         """True where the format itself defines the values between the samples."""
         return self._lookup is not None
 
     @cached_property
-    def samples(self):
+    def samples(self) -> Samples:
         """The direction pairs and values; those of a table are its cell centres."""
         if self._samples is not None:
             return self._samples
         return Samples.from_table(self._table)
 
     @property
-    def values(self):
+    def values(self) -> NDArray[np.float64]:
         """Measured BRDF (n, channels) in sr⁻¹ at `samples`."""
         return self.samples.values
 
-    def __str__(self):
+    def __str__(self) -> str:
         valid = self.samples.valid
-        size = "×".join(map(str, self._table.shape)) + " table" if self.is_table else "samples"
+        size = "×".join(map(str, self._table.shape)) + " table" if self._table else "samples"
         return (
             f"{self.name}: {size}, {valid.sum():,} of {len(valid):,} valid, "
             f"channels {' '.join(self.channels)}"

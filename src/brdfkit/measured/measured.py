@@ -1,9 +1,12 @@
 """`Measured`: a BRDF given by samples or by a table, looked up anywhere and rendered."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 import brdfkit  # for `audit`, which lies in a higher layer
 from brdfkit.colours import RGB
@@ -18,27 +21,42 @@ from brdfkit.measured.tabulation import (
     tabulate,
     tabulate_lookup,
 )
+from brdfkit.measured.validation import check_shape
 from brdfkit.samples import Table
 from brdfkit.threads import cached_in_turn, in_turn
+
+if TYPE_CHECKING:
+    from brdfkit.auditing import Audit
 
 
 @dataclass(frozen=True, eq=False)
 class Measured(MeasuredData):
-    """A measured BRDF. Make one with `brdfkit.load`, `from_samples` or `from_table`.
+    """A measured BRDF. Made by `brdfkit.load`, `from_samples` or `from_table`.
 
-    `name`: for people; `channels`: what the columns of the values are: ``("R", "G", "B")``,
-    ``("Y",)`` (one, achromatic) or wavelengths as ``("400nm", ...)``; `info`: notes of the
-    file and of its reader; `anisotropic`: whether the surface's azimuth counts;
-    `standard_error`: (n, channels) of `values`, where the measurement states it.
+    Attributes
+    ----------
+    name : str
+        Name in pictures and tables.
+    channels : tuple of str
+        What the columns of `values` are: ``("R", "G", "B")``, linear sRGB; ``("Y",)``, achromatic;
+        or wavelengths, as ``("400nm", "410nm")``.
+    info : dict of str to str
+        Notes of the file and of its reader.
+    anisotropic : bool
+        Whether the BRDF changes as the surface turns about its normal.
+    standard_error : ndarray, shape (n, channels), or None
+        Standard errors of `values` [sr⁻¹], where the measurement states them.
 
+    Examples
+    --------
     >>> wi = wo = np.array([[0, 0, 1.0]])
     >>> Measured.from_samples(wi, wo, [[0.2]], channels=("Y",), name="grey").values
     array([[0.2]])
     """
 
     @cached_in_turn
-    def table(self):
-        """The table to look up in; that of samples has what lies between them."""
+    def table(self) -> Table:
+        """The material as a table: its own, or one of the values interpolated between samples."""
         if self._table is not None:
             return self._table
         if isinstance(self._lookup, Table):
@@ -47,15 +65,34 @@ class Measured(MeasuredData):
             return tabulate_lookup(self._lookup, len(self.channels), self.anisotropic)
         return self.resampled(table_shape(self.anisotropic))
 
-    def resampled(self, shape):
-        """The BRDF in a reciprocal `Table` of `shape` ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d).
+    def resampled(self, shape: tuple[int, ...]) -> Table:
+        """The BRDF in a reciprocal table of another size.
 
-        Of a table or of samples it is what `eval` gives; of a format's own interpolation, what
-        `table` has where the lower direction is wi.
+        Its values are those of `eval`. Where the format itself defines the values between the
+        samples, it is asked with the more grazing direction as wi, and directions nearer than 2°
+        to the horizon have the values at 2°.
 
+        Parameters
+        ----------
+        shape : tuple of int
+            Cells ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d) of the table.
+
+        Returns
+        -------
+        Table
+            The table; its `values` are (*shape, channels) [sr⁻¹].
+
+        Raises
+        ------
+        BrdfkitError
+            For a shape that is not three or four whole numbers of at least 1.
+
+        Examples
+        --------
         >>> load("paint.bsdf").resampled((90, 90, 180)).shape    # doctest: +SKIP
         (90, 90, 180)
         """
+        check_shape(shape, self.name)
         brdf = self.eval
         if self.has_lookup and not isinstance(self._lookup, Table):
             brdf = reciprocal(bounded(self._lookup, self.anisotropic))
@@ -66,7 +103,7 @@ class Measured(MeasuredData):
         """The BRDF (wi, wo) → (n, channels) between the samples: the format's own or ours."""
         return self._lookup or Interpolant(self.samples, self.anisotropic)
 
-    def eval(self, wi, wo):
+    def eval(self, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
         """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3), interpolated, never negative."""
         wi, wo = np.asarray(wi, float), np.asarray(wo, float)
         if self._table is not None:
@@ -77,17 +114,19 @@ class Measured(MeasuredData):
         return values
 
     @cached_property
-    def rgb(self):
+    def rgb(self) -> "Measured":
         """The same material in linear sRGB, or itself where it is RGB or achromatic already."""
         if self.channels == RGB or len(self.channels) == 1:
             return self
         return to_rgb(self)
 
-    def mixed(self, weights, channels, **info):
+    def mixed(
+        self, weights: NDArray[np.float64], channels: Sequence[str], **info: str
+    ) -> "Measured":
         """The same material in other channels, the old ones mixed by `weights` (old, new)."""
         return mix(self, weights, channels, {**self.info, **info})
 
-    def audit(self):
+    def audit(self) -> "Audit":
         """How far the measurement reaches, how noisy it is and what is doubtful.
 
         `brdfkit.audit` of this material.
@@ -97,7 +136,7 @@ class Measured(MeasuredData):
         return brdfkit.audit(self)
 
     @cached_in_turn
-    def tabulated(self):
+    def tabulated(self) -> "Measured":
         """The same material given by its `table`."""
         if self.is_table:
             return self
@@ -105,19 +144,20 @@ class Measured(MeasuredData):
         return self.from_table(table.values, table.phi_d_period, self.channels, self.name, info)
 
     @property
-    def rendered(self):
-        """What the renderer computes: this material, or its table where it can only that."""
+    def rendered(self) -> "Measured":
+        """The material as the renderer shows it: itself, or its table for most lookups."""
         own = self.is_table or hasattr(self._lookup, "scene_dict")
         return self if own else self.tabulated
 
     @in_turn
-    def scene_dict(self):
-        """The dictionary for `mitsuba.load_dict`, in the current variant: of what is `rendered`."""
+    def scene_dict(self) -> dict[str, Any]:
+        """The dictionary of `rendered` for `mitsuba.load_dict`, for the current variant."""
         import mitsuba as mi
 
         spectral = mi.is_spectral and len(self.channels) > 1 and self.channels != RGB
         material = (self if spectral else self.rgb).rendered
-        entries = (material._table or material._lookup).scene_dict()
+        shown: Any = material._table or material._lookup
+        entries: dict[str, Any] = shown.scene_dict()
         if spectral:
             entries["wavelengths"] = mi.TensorXf(wavelengths(material).astype(np.float32))
         return entries

@@ -1,5 +1,7 @@
 """Checks the data of which a `Measured` is made: names and notes, a table, standard errors."""
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
@@ -7,7 +9,9 @@ from brdfkit.names import printable
 from brdfkit.samples.samples import require_some
 
 
-def make_printable(name, channels, info):
+def make_printable(
+    name: str, channels: Sequence[str], info: Mapping[str, str] | None
+) -> tuple[str, tuple[str, ...], dict[str, str]]:
     """The name, the channels and the notes `info`, as text that can be printed."""
     notes = {printable(key): printable(note, keep="\n\t") for key, note in (info or {}).items()}
     return printable(name), tuple(map(printable, channels)), notes
@@ -34,6 +38,17 @@ def check_table(values, phi_d_period, channels, name):
     if np.isinf(values).any():
         values = np.where(np.isinf(values), np.nan, values)
     return values
+
+
+def check_shape(shape, name):
+    """Raise `BrdfkitError` unless `shape` is ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d)."""
+    numbers = shape if isinstance(shape, tuple | list) else (shape,)
+    whole = all(isinstance(n, int | np.integer) and n >= 1 for n in numbers)
+    if not whole or len(numbers) not in (3, 4):
+        raise BrdfkitError(
+            f"{name}: a table of shape {shape} was asked for; give three numbers of cells "
+            "(n_theta_h, n_theta_d, n_phi_d), or four, with n_phi_h before them."
+        )
 
 
 def check_errors(standard_error, values, name):

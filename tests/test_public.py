@@ -1,0 +1,92 @@
+"""The public names: annotated, with arguments listed as numpydoc has them, and examples."""
+
+import inspect
+import math
+
+import pytest
+from docstring_parser import DocstringStyle, parse
+
+import brdfkit as bk
+from brdfkit.colours import RGB
+
+pytestmark = pytest.mark.quick
+
+PUBLIC = {name: getattr(bk, name) for name in bk.__all__ if not name.startswith("_")}
+FUNCTIONS = {name: thing for name, thing in PUBLIC.items() if inspect.isfunction(thing)}
+CLASSES = {
+    name: thing
+    for name, thing in PUBLIC.items()
+    if isinstance(thing, type) and not issubclass(thing, Exception)
+}
+# Constructors and methods that people call with arguments of their own
+METHODS = {
+    f"{cls.__name__}.{method}": getattr(cls, method)
+    for cls, names in {
+        bk.Measured: ["from_samples", "from_table", "resampled"],
+        bk.Model: ["changed"],
+        bk.Rendering: ["write"],
+    }.items()
+    for method in names
+}
+CALLED = FUNCTIONS | METHODS
+
+
+def documented(thing):
+    return parse(inspect.getdoc(thing), DocstringStyle.NUMPYDOC)
+
+
+def arguments(function):
+    """Name → parameter of a function, without self and cls."""
+    found = inspect.signature(function).parameters
+    return {n: p for n, p in found.items() if n not in ("self", "cls")}
+
+
+@pytest.mark.parametrize("name", CALLED)
+def test_every_argument_and_the_result_are_annotated(name):
+    signature = inspect.signature(CALLED[name])
+    bare = [n for n, p in arguments(CALLED[name]).items() if p.annotation is p.empty]
+    assert not bare
+    assert signature.return_annotation is not signature.empty
+
+
+@pytest.mark.parametrize("name", CALLED)
+def test_every_argument_is_listed_once_with_its_type_and_meaning(name):
+    listed = documented(CALLED[name]).params
+    names = [n.strip().lstrip("*") for entry in listed for n in entry.arg_name.split(",")]
+    assert names == list(arguments(CALLED[name]))
+    for entry in listed:
+        assert entry.type_name, entry.arg_name
+        assert entry.description.endswith("."), entry.arg_name
+
+
+@pytest.mark.parametrize("name", CALLED)
+def test_a_default_is_told(name):
+    for entry in documented(CALLED[name]).params:
+        for argument in entry.arg_name.split(","):
+            parameter = arguments(CALLED[name])[argument.strip().lstrip("*")]
+            if parameter.default is parameter.empty or parameter.kind is parameter.VAR_KEYWORD:
+                continue
+            assert entry.is_optional, argument
+            if parameter.default is not None:
+                assert eval(entry.default, {"pi": math.pi, "RGB": RGB}) == parameter.default
+
+
+@pytest.mark.parametrize("name", CALLED)
+def test_results_errors_and_an_example_are_told(name):
+    found = documented(CALLED[name])
+    if inspect.signature(CALLED[name]).return_annotation not in (None, "None"):
+        assert found.returns
+        assert found.returns.type_name
+    assert found.examples
+    if arguments(CALLED[name]):
+        assert [entry.type_name for entry in found.raises] == ["BrdfkitError"]
+
+
+@pytest.mark.parametrize("name", CLASSES)
+def test_a_class_lists_its_attributes_or_arguments(name):
+    cls = CLASSES[name]
+    listed = {
+        n.strip().lstrip("*") for entry in documented(cls).params for n in entry.arg_name.split(",")
+    }
+    fields = getattr(cls, "__dataclass_fields__", {"values": None})
+    assert listed == {n for n in fields if not n.startswith("_")}
