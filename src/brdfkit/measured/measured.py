@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-import brdfkit  # for `audit`, which lies in a higher layer
+import brdfkit  # for `audit`, of a higher layer, which is imported when it is called
 from brdfkit.colours import RGB
 from brdfkit.measured.data import MeasuredData
 from brdfkit.measured.interpolation import Interpolant
@@ -24,9 +24,6 @@ from brdfkit.measured.tabulation import (
 from brdfkit.measured.validation import check_shape
 from brdfkit.samples import Table
 from brdfkit.threads import cached_in_turn, in_turn
-
-if TYPE_CHECKING:
-    from brdfkit.auditing import Audit
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +123,7 @@ class Measured(MeasuredData):
         """The same material in other channels, the old ones mixed by `weights` (old, new)."""
         return mix(self, weights, channels, {**self.info, **info})
 
-    def audit(self) -> "Audit":
+    def audit(self) -> "brdfkit.Audit":
         """How far the measurement reaches, how noisy it is and what is doubtful.
 
         `brdfkit.audit` of this material.
