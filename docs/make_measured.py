@@ -17,8 +17,8 @@ from PIL import Image, ImageDraw, ImageFont
 
 import brdfkit as bk
 from brdfkit.catalogue import shipped
+from brdfkit.checks.material_subject import INCIDENCES, Subject
 from brdfkit.checks.sampling import spread
-from brdfkit.checks.subject import INCIDENCES, Subject
 from brdfkit.geometry.directions import from_angles
 from brdfkit.rendering import scenes
 

@@ -14,9 +14,9 @@ from rich.console import Console
 from rich.table import Table as Printed
 
 import brdfkit as bk
-from brdfkit import llvm
+from brdfkit.checks.material_subject import INCIDENCES, Subject, incidences
 from brdfkit.checks.sampling import spread
-from brdfkit.checks.subject import INCIDENCES, Subject, incidences
+from brdfkit.jit import llvm
 from brdfkit.samples import Table
 
 MERL = (90, 90, 180)

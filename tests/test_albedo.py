@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.checks.subject import random_pairs
+from brdfkit.checks.material_subject import random_pairs
 from brdfkit.errors import BrdfkitError
 from brdfkit.geometry.directions import from_angles
 from brdfkit.model import double_precision, labels
@@ -153,7 +153,7 @@ def test_an_albedo_is_of_one_unit_vector(wi):
 def test_ggx_is_mitsubas(llvm_variant):
     """`ggx` with F = 1 is roughconductor's GGX, whose masking is separable and not correlated."""
     mi = llvm_variant
-    from brdfkit.checks.subject import Subject, random_pairs
+    from brdfkit.checks.material_subject import Subject, random_pairs
 
     class Thing:
         name = "mirror"

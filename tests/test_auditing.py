@@ -13,18 +13,18 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import brdfkit as bk
 from brdfkit import models
-from brdfkit.auditing import pairs
+from brdfkit.auditing import symmetries
 from brdfkit.auditing.albedos import Albedo, albedo_of_samples
 from brdfkit.auditing.coverage import coverage, is_near
+from brdfkit.auditing.grazing_and_retro import grazing, retroreflection
 from brdfkit.auditing.noise import noise
-from brdfkit.auditing.ratios import grazing, retroreflection
 from brdfkit.auditing.spikes import spikes
-from brdfkit.checks.subject import random_pairs
+from brdfkit.checks.material_subject import random_pairs
 from brdfkit.commands.info import record
 from brdfkit.geometry.directions import from_angles
+from brdfkit.json_values import plain
 from brdfkit.loading import load
 from brdfkit.measured import Measured
-from brdfkit.records import plain
 from brdfkit.samples import Table
 
 SHAPE = 45, 23, 36
@@ -68,8 +68,8 @@ ANGLE, AZIMUTH = st.floats(0, np.pi / 2), st.floats(-np.pi, np.pi)
 
 @given(ANGLE, ANGLE, AZIMUTH, AZIMUTH)
 def test_turned_pairs_are_the_same_point(theta_i, theta_o, phi, turn):
-    a = pairs.points(from_angles(theta_i, [0.0]), from_angles(theta_o, [phi]))
-    b = pairs.points(from_angles(theta_i, [turn]), from_angles(theta_o, [phi + turn]))
+    a = symmetries.points(from_angles(theta_i, [0.0]), from_angles(theta_o, [phi]))
+    b = symmetries.points(from_angles(theta_i, [turn]), from_angles(theta_o, [phi + turn]))
     np.testing.assert_allclose(a, b, atol=1e-7)  # acos near 1
 
 
@@ -84,7 +84,7 @@ def test_a_distance_is_about_the_angle(theta_i, theta_o, phi, part, direction):
     wi_2, wo_2 = from_angles(other[0], turns), from_angles(other[1], further + turns)
     chords = np.sum((wi - wi_2) ** 2, axis=1) + np.sum((wo - wo_2) ** 2, axis=1)
     angle = np.sqrt(chords.min())
-    distance = np.linalg.norm(pairs.points(wi, wo) - pairs.points(wi_2[:1], wo_2[:1]))
+    distance = np.linalg.norm(symmetries.points(wi, wo) - symmetries.points(wi_2[:1], wo_2[:1]))
     # near the normal, where azimuths mean little, it is off most
     assert angle / np.sqrt(2) - 2e-3 <= distance <= 1.5 * angle + 2e-3
 
@@ -229,7 +229,7 @@ def test_reciprocity_of_samples(anisotropic):
     angles = 20, 40, 60
     for model, expected in ((GGX, 0), (OneWay(), DIFFERENCE)):
         data = scattered(model.eval, *grid(angles, angles), anisotropic=anisotropic)
-        found = pairs.by_reciprocity(data)
+        found = symmetries.by_reciprocity(data)
         assert found.pairs == (3 if anisotropic else 3 * 36)
         assert found.median == pytest.approx(expected, abs=1e-9)
 
@@ -237,24 +237,24 @@ def test_reciprocity_of_samples(anisotropic):
 def test_a_lookup_is_compared_with_itself_exchanged():
     wi, wo = grid()
     data = scattered(OneWay().eval, wi, wo, lookup=OneWay().eval)
-    found = pairs.by_reciprocity(data)
+    found = symmetries.by_reciprocity(data)
     assert found.pairs == data.samples.valid.sum()
     assert found.median == pytest.approx(DIFFERENCE, abs=1e-6)
-    assert pairs.by_mirror(data).percentile_95 == pytest.approx(0, abs=1e-9)
+    assert symmetries.by_mirror(data).percentile_95 == pytest.approx(0, abs=1e-9)
 
 
 def test_mirror_symmetry():
     data = scattered(LeftHanded().eval)
-    found = pairs.by_mirror(data)
+    found = symmetries.by_mirror(data)
     assert found.pairs == 3 * 25 * 17  # all but the plane itself
     assert found.median == pytest.approx(DIFFERENCE)
     for period, left in ((np.pi, slice(0, 18)), (2 * np.pi, slice(0, 36))):
         values = tabulated(shape=(20, 10, 2 * left.stop), period=period)
         values[..., left, :] *= 1.1
-        found = pairs.by_mirror(Measured.from_table(values, period))
+        found = symmetries.by_mirror(Measured.from_table(values, period))
         assert found.median == pytest.approx(DIFFERENCE)
-    assert not pairs.by_mirror(scattered(anisotropic=True))
-    assert not pairs.by_mirror(Measured.from_table(tabulated(shape=(4, 9, 9, 18))))
+    assert not symmetries.by_mirror(scattered(anisotropic=True))
+    assert not symmetries.by_mirror(Measured.from_table(tabulated(shape=(4, 9, 9, 18))))
 
 
 # Albedo
@@ -554,7 +554,7 @@ def test_white_paint_reflects_too_much(measured_data):
 def test_paints_are_reciprocal_within_a_few_percent(measured_data, name, low, high):
     """20°, 40°, 60° and 0° against each other, both azimuth sides measured."""
     data = load(measured_data / PAINTS / f"{name}.astm.xz")
-    found = pairs.by_reciprocity(data)
+    found = symmetries.by_reciprocity(data)
     assert found.pairs == 3 * 6 * 36
     assert low < found.median < high
     assert low < max(noise(data).relative) < 0.09

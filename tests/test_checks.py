@@ -8,9 +8,9 @@ from random_models import random_model
 
 import brdfkit as bk
 from brdfkit.catalogue import shipped
+from brdfkit.checks.material_subject import INCIDENCES, Subject
 from brdfkit.checks.registry import checks
 from brdfkit.checks.sampling import spread
-from brdfkit.checks.subject import INCIDENCES, Subject
 from brdfkit.geometry.vectors import half_vector
 from brdfkit.model import Model, follows, labels, shape, weight
 from brdfkit.model.lobes import Cosine, HalfVector, Lobe, lambertian

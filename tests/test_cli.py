@@ -472,7 +472,7 @@ def test_ctrl_c_keeps_the_finished_fits(cli, monkeypatch):
             raise KeyboardInterrupt
         return fitted(name, *args, **options)
 
-    monkeypatch.setattr("brdfkit.fits.fit", interrupted)
+    monkeypatch.setattr("brdfkit.verbs.fit.fit", interrupted)
     words = "fit", "paint.binary", "-m", "lambert", "-m", "ward", "-o", "out", "--render"
     result = cli(*words)
     assert result.exit_code == 130

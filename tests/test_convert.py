@@ -23,14 +23,14 @@ from small_files import (
 
 import brdfkit as bk
 from brdfkit.cli import main
-from brdfkit.converting import convert
 from brdfkit.errors import BrdfkitError
-from brdfkit.evaluating import albedo
 from brdfkit.formats import HEAD, formats
 from brdfkit.formats.rgl import encoding
 from brdfkit.geometry.directions import from_angles
 from brdfkit.loading import load, save
 from brdfkit.measured import Measured
+from brdfkit.verbs.convert import convert
+from brdfkit.verbs.evaluate import albedo
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("small_tables")]
 WRITERS = {m.__name__.rpartition(".")[2]: m for m in formats() if hasattr(m, "write")}

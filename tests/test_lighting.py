@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from brdfkit.checks.plugin import example
+from brdfkit.checks.plugin_subject import example
 from brdfkit.lighting.environment_tree import block_sums, blocks
 
 pytestmark = pytest.mark.quick

@@ -10,9 +10,9 @@ from small_files import adaptive, place, rgl_file, written
 
 import brdfkit as bk
 from brdfkit.catalogue import shipped
+from brdfkit.checks.material_subject import INCIDENCES, Subject, incidences, random_pairs
 from brdfkit.checks.registry import checks
 from brdfkit.checks.sampling import spread
-from brdfkit.checks.subject import INCIDENCES, Subject, incidences, random_pairs
 from brdfkit.colours import colour_science
 from brdfkit.geometry.directions import from_angles
 from brdfkit.model import labels

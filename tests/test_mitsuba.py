@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
+from brdfkit.checks.material_subject import random_pairs
 from brdfkit.checks.sampling import uniform
-from brdfkit.checks.subject import random_pairs
 from brdfkit.geometry.directions import from_angles, normalize
 from brdfkit.host.signed_sum import tabulate
 from brdfkit.model.lobes import components_of

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.checks.subject import random_pairs
+from brdfkit.checks.material_subject import random_pairs
 from brdfkit.errors import BrdfkitError
 from brdfkit.geometry.directions import from_angles
 from brdfkit.measured.selection import select_samples

@@ -8,7 +8,7 @@ import textwrap
 import numpy as np
 import pytest
 
-from brdfkit.padding import PACKET, pad
+from brdfkit.jit.padding import PACKET, pad
 
 
 @pytest.mark.quick

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.checks.plugin import example
+from brdfkit.checks.plugin_subject import example
 from brdfkit.checks.registry import checks
 from brdfkit.plugins import discovery
 from brdfkit.plugins.discovery import KINDS, MODELS, sources

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from test_cli import USER_MODEL
 
 import brdfkit as bk
-from brdfkit.checks.subject import random_pairs
+from brdfkit.checks.material_subject import random_pairs
 from brdfkit.cli import main
 from brdfkit.measured import Measured
 from brdfkit.plugins import discovery

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit import llvm
+from brdfkit.jit import llvm
 from brdfkit.plugins import discovery
 
 VARIANTS = ("llvm_ad_rgb", "llvm_ad_mono", "llvm_ad_spectral", "scalar_rgb", "scalar_spectral")

@@ -10,8 +10,8 @@ from small_files import adaptive, rgl_file, written
 
 import brdfkit as bk
 from brdfkit import checks
+from brdfkit.checks.material_subject import INCIDENCES, Subject, incidences, random_pairs
 from brdfkit.checks.sampling import spread, uniform
-from brdfkit.checks.subject import INCIDENCES, Subject, incidences, random_pairs
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit
 from brdfkit.formats.rgl import encoding, tensor_file

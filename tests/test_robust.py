@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.checks.subject import random_pairs
+from brdfkit.checks.material_subject import random_pairs
 from brdfkit.fitting.loss import losses
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.robust import WEIGHTS, robust_least_squares

@@ -14,8 +14,8 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 import brdfkit as bk
+from brdfkit.jit.threads import cached_in_turn, in_turn
 from brdfkit.rendering import render_scene, rendering
-from brdfkit.threads import cached_in_turn, in_turn
 
 THREADS = 8
 

@@ -6,13 +6,13 @@
 >>> bk.render([paint, *fits]).write("copper.exr")               # doctest: +SKIP
 
 Importing brdfkit is light and sets no Mitsuba variant. It makes the models known to Mitsuba as
-BSDF plugins in every variant, and chooses the LLVM that Dr.Jit loads (`brdfkit.llvm`).
+BSDF plugins in every variant, and chooses the LLVM that Dr.Jit loads (`brdfkit.jit.llvm`).
 """
 
 import lazy_loader
 
-from brdfkit import llvm
 from brdfkit.host import hook
+from brdfkit.jit import llvm
 from brdfkit.version import __version__ as __version__
 
 # The public names are listed in __init__.pyi alone, and imported when used

@@ -1,14 +1,7 @@
 from .auditing import Audit as Audit
 from .auditing import audit as audit
 from .checks import check as check
-from .comparing import Comparison as Comparison
-from .comparing import compare as compare
-from .converting import Conversion as Conversion
-from .converting import convert as convert
 from .errors import BrdfkitError as BrdfkitError
-from .evaluating import albedo as albedo
-from .evaluating import evaluate as evaluate
-from .fits import fit as fit
 from .fitting import Fit as Fit
 from .fitting import losses as losses
 from .goniometer import measure as measure
@@ -23,5 +16,12 @@ from .plotting import plot as plot
 from .rendering import Rendering as Rendering
 from .rendering import render as render
 from .rendering import render_scene as render_scene
+from .verbs.compare import Comparison as Comparison
+from .verbs.compare import compare as compare
+from .verbs.convert import Conversion as Conversion
+from .verbs.convert import convert as convert
+from .verbs.evaluate import albedo as albedo
+from .verbs.evaluate import evaluate as evaluate
+from .verbs.fit import fit as fit
 
 __version__: str

@@ -1,7 +1,7 @@
 """`audit`: what a measurement covers, how noisy it is and what is doubtful.
 
-One file answers one question. Besides, `pairs.py` finds the samples that should be equal,
-`picture.py` draws the audit, and `words.py` tells it in sentences.
+One file answers one question. Besides, `symmetries.py` finds the samples that should be equal,
+`picture.py` draws the audit, and `report.py` tells it in sentences.
 """
 
 from dataclasses import dataclass, field
@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from brdfkit.auditing import words
+from brdfkit.auditing import report
 from brdfkit.auditing.albedos import Albedo, albedo, albedo_of_samples
 from brdfkit.auditing.coverage import Coverage, coverage
+from brdfkit.auditing.grazing_and_retro import grazing, retroreflection
 from brdfkit.auditing.noise import Noise, noise
-from brdfkit.auditing.pairs import Difference, by_mirror, by_reciprocity
-from brdfkit.auditing.ratios import grazing, retroreflection
 from brdfkit.auditing.spikes import Spike, spikes
+from brdfkit.auditing.symmetries import Difference, by_mirror, by_reciprocity
 from brdfkit.materials import MaterialLike, measured_material
-from brdfkit.measured.spectra import rgb_or_mean
+from brdfkit.measured.spectrum_to_rgb import rgb_or_mean
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,7 +56,7 @@ class Audit:
     albedo, albedo_of_samples : Albedo
         Over the angle of incidence: as it is looked up, and of the samples alone.
     grazing, retroreflection : float
-        Two ratios of medians: see `brdfkit.auditing.ratios`.
+        Two ratios of medians: see `brdfkit.auditing.grazing_and_retro`.
     spikes : tuple of Spike
         Values far above all around them.
     data : Measured
@@ -95,11 +95,11 @@ class Audit:
 
     def rows(self) -> dict[str, str]:
         """The audit in words, by heading."""
-        return words.rows(self)
+        return report.rows(self)
 
     def findings(self) -> tuple[str, ...]:
         """Sentences on what is doubtful."""
-        return words.findings(self)
+        return report.findings(self)
 
     def picture(self) -> "Figure":
         """A slice of the BRDF, its lobes and its albedo, as a matplotlib `Figure`.

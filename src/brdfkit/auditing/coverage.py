@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.auditing.pairs import points
+from brdfkit.auditing.symmetries import points
 from brdfkit.geometry.directions import from_angles
 
 NEAR = np.radians(5)  # a pair this near to a sample counts as measured

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.auditing.pairs import find_mirrored, relative_differences
+from brdfkit.auditing.symmetries import find_mirrored, relative_differences
 
 TO_SIGMA = 1.4826  # standard deviation over median absolute deviation, for normal noise
 LEAST = 20  # differences that an estimate needs

@@ -6,7 +6,7 @@ import numpy as np
 
 from brdfkit.auditing.coverage import is_near
 from brdfkit.colours import RGB, luminance
-from brdfkit.measured.spectra import rgb_or_mean
+from brdfkit.measured.spectrum_to_rgb import rgb_or_mean
 from brdfkit.plotting import Plot
 from brdfkit.plotting.lobe_plots import draw
 from brdfkit.plotting.plane_of_incidence import usual_angles

@@ -11,16 +11,16 @@ import pkgutil
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from brdfkit import llvm
 from brdfkit.checks.failure import describe
-from brdfkit.checks.plugin import PluginSubject, example
+from brdfkit.checks.material_subject import Subject
+from brdfkit.checks.plugin_subject import PluginSubject, example
 from brdfkit.checks.registry import Finding, checks
-from brdfkit.checks.subject import Subject
 from brdfkit.errors import BrdfkitError, no_such
+from brdfkit.jit import llvm
+from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike, material
 from brdfkit.plugins import discovery
 from brdfkit.plugins.discovery import MODELS
-from brdfkit.threads import in_turn
 
 for _module in pkgutil.iter_modules(__path__):
     importlib.import_module(f"{__name__}.{_module.name}")

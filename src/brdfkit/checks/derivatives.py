@@ -5,6 +5,7 @@ from contextlib import contextmanager
 import drjit as dr
 import numpy as np
 
+from brdfkit.checks.material_subject import incidences, random_pairs
 from brdfkit.checks.model_derivatives import (
     exact_derivative,
     finite_difference,
@@ -13,7 +14,6 @@ from brdfkit.checks.model_derivatives import (
 )
 from brdfkit.checks.registry import check_of
 from brdfkit.checks.sampling import sample_weights, uniform
-from brdfkit.checks.subject import incidences, random_pairs
 from brdfkit.model.evaluation import weight_matrix
 from brdfkit.plugins.discovery import MODELS
 

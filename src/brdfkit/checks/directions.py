@@ -6,7 +6,7 @@ A sampler is given as two functions: `draw(u, v)`, of a point of the unit square
 
 import numpy as np
 
-from brdfkit.padding import pad
+from brdfkit.jit.padding import pad
 
 SIGNIFICANCE = 0.01
 SAMPLES = 400_000

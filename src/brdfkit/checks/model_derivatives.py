@@ -3,7 +3,7 @@
 import drjit as dr
 import numpy as np
 
-from brdfkit.checks.subject import random_pairs
+from brdfkit.checks.material_subject import random_pairs
 from brdfkit.model import double_precision
 from brdfkit.model.evaluation import lobe_values
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from brdfkit.checks.material_subject import AZIMUTH, incidences, random_pairs
 from brdfkit.checks.registry import check_of
-from brdfkit.checks.subject import AZIMUTH, incidences, random_pairs
 from brdfkit.errors import BrdfkitError
-from brdfkit.fitting.undefined import require_finite, require_finite_slopes
+from brdfkit.fitting.not_finite import require_finite, require_finite_slopes
 from brdfkit.geometry.directions import from_angles
 from brdfkit.geometry.quadrature import TOLERANCE, directional_albedo
 from brdfkit.model import double_precision

@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from brdfkit.checks.material_subject import INCIDENCES, incidences
 from brdfkit.checks.registry import check_of
-from brdfkit.checks.subject import INCIDENCES, incidences
 from brdfkit.checks.variants import columns
 from brdfkit.geometry.quadrature import TOLERANCE, directional_albedo
-from brdfkit.padding import pad
+from brdfkit.jit.padding import pad
 from brdfkit.plugins.discovery import MODELS
 
 # All tests of one check together reject a correct sampler once in a hundred runs. Seeds are fixed:

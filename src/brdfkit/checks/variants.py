@@ -3,7 +3,7 @@
 import numpy as np
 
 from brdfkit.colours import LUMINANCE, RGB, colour_science
-from brdfkit.measured.spectra import wavelengths
+from brdfkit.measured.spectrum_to_rgb import wavelengths
 
 WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)  # nm, at which spectral variants are checked
 

@@ -7,7 +7,7 @@ from functools import cached_property
 from threading import Timer
 
 from brdfkit.commands import _tables
-from brdfkit.records import plain
+from brdfkit.json_values import plain
 
 PATIENCE = 1.0  # seconds until the bar shows: a bar that flashes up only disturbs
 

@@ -28,7 +28,7 @@ def check(things, values, console):
 
 def _find_subject(name, settings):
     """The material of a name, or the dictionary of a plugin of another kind, with `settings`."""
-    from brdfkit.checks.plugin import example
+    from brdfkit.checks.plugin_subject import example
     from brdfkit.commands._targets import material, parse_settings
     from brdfkit.host.users_plugins import load_plugins
     from brdfkit.plugins.discovery import MODELS, kind_of

@@ -19,7 +19,7 @@ def convert(thing, output, values, console):
     is evaluated at the direction pairs of a table.
     """
     from brdfkit.commands._targets import material, other_file
-    from brdfkit.converting import convert as convert_thing
+    from brdfkit.verbs.convert import convert as convert_thing
 
     output = other_file(output, thing)
     with console.progress(f"convert {thing}"):

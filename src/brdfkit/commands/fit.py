@@ -56,11 +56,11 @@ def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed,
     the exit status is then 2.
     """
     from brdfkit.commands._targets import fit_file, results_folder
-    from brdfkit.comparing import compare
     from brdfkit.materials import measured_material
     from brdfkit.model import labels
     from brdfkit.names import slug
     from brdfkit.rendering.memory import require_memory
+    from brdfkit.verbs.compare import compare
 
     names = list(dict.fromkeys(map(labels.read_files, names or labels.models())))
     for name in names:
@@ -97,8 +97,8 @@ def _fit_each(names, material, how, output, console):
     no model can be fitted, the first error is raised.
     """
     from brdfkit.commands._targets import fit_file
-    from brdfkit.fits import fit as fit_model
     from brdfkit.loading import save
+    from brdfkit.verbs.fit import fit as fit_model
 
     fits, failed = [], {}
     try:
@@ -122,7 +122,7 @@ def _fit_each(names, material, how, output, console):
 
 
 def _print_fits(material, fits, failed, comparison, psnr, written, console):
-    from brdfkit.comparing import format_error
+    from brdfkit.verbs.compare import format_error
 
     if console.as_json:
         records = [_record(f, comparison, psnr) for f in fits]

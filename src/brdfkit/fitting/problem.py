@@ -12,8 +12,8 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.fitting.channel import Channel, add_up, to_float
-from brdfkit.fitting.undefined import require_finite, require_finite_slopes
+from brdfkit.fitting.channel_loss import Channel, add_up, to_float
+from brdfkit.fitting.not_finite import require_finite, require_finite_slopes
 from brdfkit.model import double_precision
 
 

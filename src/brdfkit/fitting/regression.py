@@ -5,11 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.fitting.parameter_space import Space
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.robust import robust_search
 from brdfkit.fitting.search import slsqp, squared_error_at
-from brdfkit.fitting.space import Space, start_points
-from brdfkit.threads import in_turn
+from brdfkit.fitting.starting_points import start_points
+from brdfkit.jit.threads import in_turn
 
 # If there are more than twice as many samples, the starts are compared, and searched from, on this
 # many random ones; one last search uses all samples

@@ -10,7 +10,7 @@ import numpy as np
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats._notes import note_lone_point, note_short_rings
 from brdfkit.formats._writing import require_measured, sample_angles, write_rows
-from brdfkit.measured.spectra import wavelengths
+from brdfkit.measured.spectrum_to_rgb import wavelengths
 
 NAME = "Cornell"
 SUFFIXES = (".brdf",)

@@ -19,9 +19,9 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.goniometer.microgeometry import HeightField
 from brdfkit.goniometer.specimen import Specimen
 from brdfkit.goniometer.tally import Tally
+from brdfkit.jit.threads import in_turn
 from brdfkit.measured import Measured
 from brdfkit.samples import Table
-from brdfkit.threads import in_turn
 from brdfkit.version import __version__
 
 ISOTROPIC = (30, 30, 60)

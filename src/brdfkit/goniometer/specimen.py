@@ -18,8 +18,8 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.llvm import use_variant
-from brdfkit.padding import pad
+from brdfkit.jit.llvm import use_variant
+from brdfkit.jit.padding import pad
 
 # Offset, along the normal, of rays that leave a point [grid cells]. With Mitsuba's own, 20 times
 # larger, grazing light reaches 1 % too far; single precision needs about 1e-4 here.

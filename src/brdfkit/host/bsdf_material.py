@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.llvm import use_variant
-from brdfkit.threads import in_turn
+from brdfkit.jit.llvm import use_variant
+from brdfkit.jit.threads import in_turn
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,8 +10,8 @@ import os
 import sys
 from contextlib import contextmanager
 
-from brdfkit import llvm
 from brdfkit.errors import BrdfkitError
+from brdfkit.jit import llvm
 
 
 def install():

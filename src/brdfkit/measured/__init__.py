@@ -1,9 +1,9 @@
 """`Measured`: a BRDF given by samples or by a table, and its values between and beyond them.
 
-`data.py`: samples and tables as they are given, checked by `validation.py`; `measured.py`: their
-lookup; `interpolation.py`: between scattered samples; `tabulation.py`: any BRDF as a table;
-`mixing.py` and `spectra.py`: channels, wavelengths and colours; `selection.py`: the samples that a
-fit uses.
+`measured_data.py`: samples and tables as they are given, checked by `validation.py`; `measured.py`:
+their lookup; `interpolation.py`: between scattered samples; `tabulation.py`: any BRDF as a table;
+`mixing.py` and `spectrum_to_rgb.py`: channels, wavelengths and colours; `selection.py`: the samples
+that a fit uses.
 """
 
 from brdfkit.measured.measured import Measured as Measured

@@ -23,6 +23,7 @@ import numpy as np
 from brdfkit.fitting import losses, regress
 from brdfkit.fitting.problem import Problem
 from brdfkit.geometry.directions import to_half_difference
+from brdfkit.jit.threads import in_turn
 from brdfkit.model import labels
 from brdfkit.model.evaluation import lobe_values
 from brdfkit.samples import Samples
@@ -32,7 +33,6 @@ from brdfkit.samples.coordinates import (
     anisotropic_coordinates,
     isotropic_coordinates,
 )
-from brdfkit.threads import in_turn
 
 NEIGHBOURS = 12
 # The guide counts as much as a sample at this distance

@@ -10,10 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 
 import brdfkit  # for `audit`, of a higher layer, which is imported when it is called
 from brdfkit.colours import RGB
-from brdfkit.measured.data import MeasuredData
+from brdfkit.jit.threads import cached_in_turn, in_turn
 from brdfkit.measured.interpolation import Interpolant
+from brdfkit.measured.measured_data import MeasuredData
 from brdfkit.measured.mixing import mix
-from brdfkit.measured.spectra import to_rgb, wavelengths
+from brdfkit.measured.spectrum_to_rgb import to_rgb, wavelengths
 from brdfkit.measured.tabulation import (
     bounded,
     reciprocal,
@@ -23,7 +24,6 @@ from brdfkit.measured.tabulation import (
 )
 from brdfkit.measured.validation import check_shape
 from brdfkit.samples import Table
-from brdfkit.threads import cached_in_turn, in_turn
 
 
 @dataclass(frozen=True, eq=False)

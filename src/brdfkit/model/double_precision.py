@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit import llvm
-from brdfkit.padding import pad
+from brdfkit.jit import llvm
+from brdfkit.jit.padding import pad
 
 
 @dataclass(frozen=True)

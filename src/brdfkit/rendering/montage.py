@@ -8,7 +8,7 @@ import numpy as np
 
 from brdfkit.colours import colour_science
 from brdfkit.errors import BrdfkitError
-from brdfkit.records import plain
+from brdfkit.json_values import plain
 from brdfkit.version import __version__
 
 COLUMNS = 4

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.jit.threads import in_turn
 from brdfkit.names import make_unique
 from brdfkit.rendering import scenes
+from brdfkit.rendering.inputs import Renderable, as_list, describe, load_scene, mitsuba
 from brdfkit.rendering.memory import require_memory
 from brdfkit.rendering.result import Rendering
-from brdfkit.rendering.subjects import Renderable, as_list, describe, load_scene, mitsuba
 from brdfkit.rendering.tracing import trace
-from brdfkit.threads import in_turn
 
 
 def render(

@@ -18,7 +18,7 @@ from brdfkit.formats.rgl.encoding import encode
 from brdfkit.formats.rgl.layout import check_fields
 from brdfkit.formats.rgl.parameterisation import AdaptiveTable, Parameterisation
 from brdfkit.measured import Measured
-from brdfkit.measured.spectra import wavelengths
+from brdfkit.measured.spectrum_to_rgb import wavelengths
 from brdfkit.version import __version__
 
 NAME = "RGL"

@@ -7,7 +7,7 @@ MOST_SPIKES = 3  # spikes that are named; the others are counted
 SHARE = 0.01  # the share of negative or of zero values
 NOT_RECIPROCAL, PAIRS = 0.1, 20  # the median difference, of at least so many pairs
 BRIGHT = 1.001  # the albedo; its quadrature is accurate to 10⁻³
-DARK_HORIZON, RETROREFLECTIVE = 0.5, 5  # the ratios of `ratios.py`
+DARK_HORIZON, RETROREFLECTIVE = 0.5, 5  # the ratios of `grazing_and_retro.py`
 
 
 def rows(audit):

@@ -1,4 +1,4 @@
-"""The search space of a fit: the shape parameters within their bounds, and the start points.
+"""The search space of a fit: the shape parameters within their bounds.
 
 A coordinate runs from 0 at the lower to 1 at the upper bound of its parameter, logarithmically for
 a parameter that is declared so.
@@ -81,14 +81,3 @@ def _check(model, shapes, bounds, fixed):
     if unknown := [name for name, value in fixed.items() if value is None]:
         raise BrdfkitError(f"{model.type_name()}: {unknown[0]} is fixed at None; give a number.")
     model(**fixed)  # raises for values beyond the bounds
-
-
-def start_points(space, default, count, seed):
-    """Start points (count, parameters), as coordinates: `default`, then points that Halton's
-    sequence spreads over the bounds."""
-    if count == 1:
-        return default[None, :]
-    from scipy.stats import qmc
-
-    spread = qmc.Halton(len(default), rng=seed).random(count - 1)
-    return np.vstack([default, spread])

@@ -4,7 +4,7 @@ from typing import Any, TypeAlias
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit
-from brdfkit.llvm import use_variant
+from brdfkit.jit.llvm import use_variant
 from brdfkit.materials import MaterialLike, material
 from brdfkit.model import Model
 

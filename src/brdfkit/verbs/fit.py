@@ -8,11 +8,11 @@ from brdfkit.errors import no_such
 from brdfkit.fitting import Fit, losses, regress
 from brdfkit.fitting.arguments import to_dictionary, to_pair, to_whole_number
 from brdfkit.fitting.robust import WEIGHTS
+from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike, measured_material
 from brdfkit.measured.selection import select_samples
 from brdfkit.model import Model, labels
 from brdfkit.model.evaluation import clamped_share
-from brdfkit.threads import in_turn
 
 
 @in_turn

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.fitting import losses
+from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike, materials, measured_material
 from brdfkit.measured.selection import select_samples
 from brdfkit.model import double_precision
 from brdfkit.names import make_unique
-from brdfkit.threads import in_turn
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ import warnings
 from pathlib import Path
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.threads import in_turn
+from brdfkit.jit.threads import in_turn
 
 VARIABLE = "DRJIT_LIBLLVM_PATH"
 OLDEST = 17

@@ -1,0 +1,1 @@
+"""The verbs that are one file each: `fit`, `compare`, `convert`, `evaluate` and `albedo`."""
