@@ -19,7 +19,7 @@ import requests
 
 from brdfkit.catalogue import public
 from brdfkit.catalogue.public import PART, Listed
-from brdfkit.catalogue.remote import BLOCK, PARTIAL, PLAIN, TIMEOUT, RemoteFile
+from brdfkit.catalogue.remote_file import BLOCK, PARTIAL, PLAIN, TIMEOUT, RemoteFile
 from brdfkit.errors import BrdfkitError
 
 CHUNK = 2**18  # bytes
