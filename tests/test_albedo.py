@@ -4,6 +4,7 @@ Kurt 2007, digest §2.12: quadrature over the hemisphere, at 0, 30, 60, 75 and 8
 """
 
 import importlib
+from functools import cache
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from brdfkit.geometry.directions import from_angles
 from brdfkit.model import double_precision, labels
 from brdfkit.model.microfacet import Beckmann
 
+gauss_legendre = cache(np.polynomial.legendre.leggauss)  # of 2,000 nodes, a second of work
 DEGREES = (0, 30, 60, 75, 85)
 # (model, shape parameters): albedo at each of DEGREES
 ALBEDOS = {
@@ -47,7 +49,7 @@ ALBEDOS = {
 
 def albedo(model, degrees, n_theta=400, n_phi=720):
     """Quadrature of f cosθ over one half of the hemisphere: Gauss-Legendre in θ, even in φ."""
-    x, w = np.polynomial.legendre.leggauss(n_theta)
+    x, w = gauss_legendre(n_theta)
     theta, w = (x + 1) * np.pi / 4, w * np.pi / 4
     phi = (np.arange(n_phi) + 0.5) * np.pi / n_phi
     wo = from_angles(theta[:, None], phi[None, :]).reshape(-1, 3)
@@ -107,7 +109,7 @@ def test_ward_duer_gains_energy_at_the_horizon():
 
 def slopes(alpha, n=1200):
     """Slopes of facets and their weights, close together below `alpha`."""
-    x, w = np.polynomial.legendre.leggauss(n)
+    x, w = gauss_legendre(n)
     most = np.arcsinh(60 / alpha)
     return alpha * np.sinh(most * x), alpha * np.cosh(most * x) * most * w
 
@@ -245,7 +247,7 @@ def test_ashikhmin_shirleys_diffuse_term():
     model = coupled(**values, f0=0)
     found = [albedo(model, degrees) for degrees in DEGREES]
     np.testing.assert_allclose(found, (0.9688, 0.9414, 0.7627, 0.4999, 0.1997), atol=1e-4)
-    x, w = np.polynomial.legendre.leggauss(8)
+    x, w = gauss_legendre(8)
     cosines = (x + 1) / 2
     albedos = [albedo(model, degrees, 100, 8) for degrees in np.degrees(np.arccos(cosines))]
     everywhere = np.sum(w * cosines * albedos)
@@ -293,7 +295,7 @@ def test_smooth_oren_nayar_is_lambert():
 
 def projected(D):
     """∫ D cosθ_h dω over the hemisphere, of a distribution's D, in log θ_h."""
-    x, w = np.polynomial.legendre.leggauss(2000)
+    x, w = gauss_legendre(2000)
     low, high = np.log(1e-9), np.log(np.pi / 2)
     theta, w = np.exp(low + (x + 1) / 2 * (high - low)), w * (high - low) / 2
     values = np.array(D(double_precision.vector(from_angles(theta, 0.0))))

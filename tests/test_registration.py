@@ -228,9 +228,10 @@ def test_a_users_folder(folder, llvm_variant):
 
 
 @pytest.mark.quick
-def test_an_edited_file_is_read_anew(folder, llvm_variant):
+def test_an_edited_file_is_read_anew(folder, llvm_variant, monkeypatch):
     """In a notebook a model is written step by step; Mitsuba must not keep the first try."""
     mi = llvm_variant
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)  # as for users
     file = folder / "users_wool.py"
     for albedo in (0.3, 0.6):
         file.write_text(FELT.replace("0.3", str(albedo)))

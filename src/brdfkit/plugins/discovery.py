@@ -9,6 +9,7 @@ import importlib.util
 import sys
 from collections.abc import Callable
 from functools import cache
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
 
 from brdfkit import plugins
@@ -103,9 +104,9 @@ def _own_files(kind):
 def _import_file(file, _modified):
     """The module of a user's file; the time of its last change makes the cache import it anew."""
     name = f"{USERS}.{file.stem}"
-    spec = importlib.util.spec_from_file_location(name, file)
-    if spec is None:
+    if file.suffix != ".py":
         raise BrdfkitError(f"{file} is not a Python file.")
+    spec = importlib.util.spec_from_file_location(name, file, loader=_Loader(name, str(file)))
     imported = importlib.util.module_from_spec(spec)
     sys.modules[name] = imported
     try:
@@ -114,6 +115,16 @@ def _import_file(file, _modified):
         del sys.modules[name]
         raise BrdfkitError(f"{file} cannot be imported: {str(error).rstrip('.')}.") from error
     return imported
+
+
+class _Loader(SourceFileLoader):
+    """Compiles a file whenever it is imported.
+
+    Python's cache of compiled files takes an edit of the same length within a second for none.
+    """
+
+    def get_code(self, fullname):
+        return self.source_to_code(self.get_data(self.path), self.path)
 
 
 def require_free(name, source):
