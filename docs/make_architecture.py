@@ -4,7 +4,7 @@ python docs/make_architecture.py
 
 The layers are those that `make lint` holds (pyproject.toml), the arrows the imports that the code
 has, at the top of a file or within a function. An import that other arrows lead to as well is left
-out. A room's width goes with the root of its lines. `house.md` has every file in one line: the
+out. A room is the wider the more lines it has. `house.md` has every file in one line: the
 first of its docstring.
 """
 
@@ -115,7 +115,7 @@ def draw():
     places = {}
     for number, rooms in enumerate(rows):
         y = ROW * (len(rows) - number) - 0.1
-        widths = [0.6 + 0.022 * np.sqrt(lines(room)) for room in rooms]
+        widths = [_width(room) for room in rooms]
         gap = 0.2
         x = (LABELS + WIDTH) / 2 - (sum(widths) + gap * (len(rooms) - 1)) / 2
         for room, width in zip(rooms, widths, strict=True):
@@ -136,6 +136,11 @@ def draw():
         va="center",
     )
     return figure
+
+
+def _width(room):
+    """The width of a room [inches], which its name fits into."""
+    return max(0.6 + 0.022 * np.sqrt(lines(room)), 0.3 + 0.08 * len(room))
 
 
 def _room(axes, room, x, y, width):
