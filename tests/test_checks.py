@@ -30,18 +30,25 @@ def test_default_model(configured, check):
 @pytest.mark.quick
 @pytest.mark.parametrize("variant", OTHER_VARIANTS)
 def test_every_model_in_other_variants(model, variant):
-    """At the defaults and with colours, of which no spectrum holds those below 0."""
+    """In colours; no spectrum holds those below 0."""
     import mitsuba as mi
 
     mi.set_variant(variant)
     channels = None if mi.is_spectral and model.signed() else 3
-    for thing in (model(), random_model(model, 1, channels)):
-        report = bk.check(thing, only=["weights", "plugin is formula", "plugin gradient", "finite"])
-        assert report, str(report)
+    own = ["weights", "plugin is formula", "plugin gradient", "finite"]
+    report = bk.check(random_model(model, 1, channels), only=own)
+    assert report, str(report)
 
 
-@pytest.mark.parametrize("variant", ["llvm_ad_mono", "llvm_ad_spectral_polarized"])
-@pytest.mark.parametrize("name", ["ggx", "koenderink", "oren_nayar:form=full", "brushed_aluminium"])
+@pytest.mark.parametrize(
+    ("name", "variant"),
+    [
+        ("ggx", "llvm_ad_spectral_polarized"),
+        ("koenderink", "llvm_ad_mono"),
+        ("oren_nayar:form=full", "llvm_ad_spectral_polarized"),
+        ("brushed_aluminium", "llvm_ad_mono"),
+    ],
+)
 def test_every_check_in_other_variants(name, variant):
     import mitsuba as mi
 
@@ -54,10 +61,9 @@ def test_every_check_in_other_variants(name, variant):
     assert report, str(report)
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_random_model(configured, seed):
+def test_random_model(configured):
     # Beyond 80° Ward-Dür gains energy by its formula, which is what `energy` would find
-    report = bk.check(random_model(configured, seed), only=set(checks[MODELS]) - {"energy"})
+    report = bk.check(random_model(configured, 0), only=set(checks[MODELS]) - {"energy"})
     assert report, str(report)
 
 

@@ -10,7 +10,8 @@ from small_files import adaptive, rgl_file
 
 # A right renderer is further off once in 7,000 tests, for some 100 tests
 SIGMA = 3.8 + 0.5
-COUNTS = {"BSDF": (1, 0), "emitter": (0, 1), "both": (1, 1), "3 to 1": (3, 1), "1 to 3": (1, 3)}
+COUNTS = {"BSDF": (1, 0), "emitter": (0, 1), "both": (1, 1)}
+UNEVEN = {"3 to 1": (3, 1), "1 to 3": (1, 3)}
 
 
 def radiance(mi, bsdf, counts, spp=2**15):
@@ -50,7 +51,8 @@ def materials():
 @pytest.mark.parametrize("name", materials())
 def test_the_light_is_the_same_by_any_samples(name, llvm_variant):
     bsdf = materials()[name].scene_dict()
-    found = {label: radiance(llvm_variant, bsdf, n) for label, n in COUNTS.items()}
+    counts = COUNTS | UNEVEN if name in ("ward", "dusty_gold") else COUNTS
+    found = {label: radiance(llvm_variant, bsdf, n) for label, n in counts.items()}
     light, error = found["both"]
     assert (light > 0.01).all()
     for label, (other, other_error) in found.items():
