@@ -66,10 +66,12 @@ def radiance(mi, emitter, w):
 
 @pytest.mark.parametrize("turned", [False, True])
 def test_it_shines_as_mitsubas(llvm_variant, turned):
-    """The same rows, columns and interpolation, however it is turned."""
+    """The same rows, columns and interpolation, over the map's edges too, however it is turned."""
     mi = llvm_variant
-    turn = mi.ScalarTransform4f().rotate([0.2, 1, 0.5], 70)
-    entries = example("kdtree_envmap", **({"to_world": turn} if turned else {}), scale=2.0)
+    turn = mi.ScalarTransform4f().rotate([0.48, 0.6, 0.64], 70)
+    pixels = np.random.default_rng(1).random((4, 6, 3)).astype(np.float32)
+    settings = {"bitmap": mi.Bitmap(pixels), "scale": 2.0} | ({"to_world": turn} if turned else {})
+    entries = example("kdtree_envmap", **settings)
     theirs = {k: v for k, v in entries.items() if k != "blocks"} | {"type": "envmap"}
     w = directions()
     found, expected = (radiance(mi, mi.load_dict(e), w) for e in (entries, theirs))
@@ -130,9 +132,9 @@ def test_the_gradient_by_the_map_is_that_of_mitsubas(llvm_variant):
     ("pixels", "said"),
     [
         (np.zeros((4, 8, 3)), "is black all over"),
-        (np.full((4, 8, 3), np.nan), "not finite or below 0"),
-        (np.full((4, 8, 3), -1.0), "not finite or below 0"),
-        (np.full((4, 8, 3), np.inf), "not finite or below 0"),
+        (np.full((4, 8, 3), np.nan), "not finite"),
+        (np.full((4, 8, 3), -1.0), "values below 0"),
+        (np.full((4, 8, 3), np.inf), "not finite"),
         (np.ones((1, 1, 3)), "has 1×1 pixels"),
     ],
 )
@@ -141,6 +143,20 @@ def test_a_map_that_lights_nothing_is_refused(llvm_variant, pixels, said):
     with pytest.raises(RuntimeError) as error:
         llvm_variant.load_dict({"type": "kdtree_envmap", "bitmap": bitmap})
     assert said in str(error.value).splitlines()[-1]
+
+
+def test_a_map_may_only_be_turned(llvm_variant):
+    scaled = llvm_variant.ScalarTransform4f().scale(3)
+    with pytest.raises(RuntimeError, match="to_world scales or shears"):
+        llvm_variant.load_dict(example("kdtree_envmap", to_world=scaled))
+
+
+@pytest.mark.parametrize(("value", "said"), [(0.0, "black all over"), (np.nan, "not finite")])
+def test_an_optimiser_s_map_lights_too(llvm_variant, value, said):
+    parameters = llvm_variant.traverse(llvm_variant.load_dict(example("kdtree_envmap")))
+    parameters["data"] = llvm_variant.TensorXf(np.full((4, 8, 3), value, np.float32))
+    with pytest.raises(ValueError, match=said):
+        parameters.update()
 
 
 def test_a_map_is_needed_once(llvm_variant):

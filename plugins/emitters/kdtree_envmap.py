@@ -6,7 +6,8 @@ takes the place of Mitsuba's `envmap`: latitude over longitude, y up, with the s
 rows and columns and the same bilinear interpolation. The map is cut into `blocks` of nearly
 constant power per angle (least sum of squared errors). A sample chooses a block by its exact share
 of the power, and a point of the block uniformly in both angles. The density is stored for every
-pixel, so that multiple importance sampling costs one look-up.
+pixel, so that multiple importance sampling costs one look-up. `to_world` may turn and mirror the
+map, nothing else.
 
 [Ergun 2015, chapter 6]. In spectral variants a colour of the map becomes a smooth spectrum under
 D65 [Mallett & Yuksel 2019], linear in the colour.
@@ -39,6 +40,7 @@ def define(mi):
 
     class KdtreeEnvmap(declared(mi.Emitter, PARAMETERS)):
         def __init__(self, props):
+            _require_rotation(props)
             super().__init__(props)
             self.m_flags = mi.EmitterFlags.Infinite | mi.EmitterFlags.SpatiallyVarying
             self.data = mi.TensorXf(_pixels(mi, self.filename, self.bitmap))
@@ -52,11 +54,13 @@ def define(mi):
 
         def parameters_changed(self, keys=()):
             if not keys or "data" in keys:
+                pixels = np.array(dr.detach(self.data), float)
+                _require_light("kdtree_envmap: data", pixels)
                 # The first row is at the polar angle 0, the last at π; a column is at the middle of
                 # its azimuths
-                self.texture = mi.Texture2f(self.data, True, False)
+                self.texture = mi.Texture2f(_close_circle(mi, self.data), True, False)
                 self.height, self.width = self.data.shape[0], self.data.shape[1]
-                self.cut(np.array(dr.detach(self.data), float))
+                self.cut(pixels)
 
         def cut(self, pixels):
             """Compute the blocks of a map, the probability of each, and the density of every cell.
@@ -64,7 +68,7 @@ def define(mi):
             A cell lies between four pixels and is as bright as their mean: it is black only where
             the interpolated map is black.
             """
-            bright = luminance(pixels)
+            bright = luminance(pixels).clip(0)  # an optimiser may step below 0
             between = bright + np.roll(bright, -1, axis=1)
             between = (between[:-1] + between[1:]) / 4
             theta = np.pi * (np.arange(self.height - 1) + 0.5) / (self.height - 1)
@@ -90,7 +94,8 @@ def define(mi):
 
         def radiance(self, direction, si, active):
             x, y = self.place(direction)
-            uv = mi.Point2f((x + 0.5) / self.width, (y + 0.5) / self.height)
+            x = dr.select(x < 0, x + self.width, x)
+            uv = mi.Point2f((x + 0.5) / (self.width + 1), (y + 0.5) / self.height)
             rgb = mi.Color3f(*self.texture.eval(uv, active))
             return dr.select(active, self.spectrum(rgb, si) * self.scale, 0)
 
@@ -149,15 +154,41 @@ def _pixels(mi, filename, bitmap):
     kind = mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32
     pixels = np.array(bitmap.convert(*kind, srgb_gamma=False))
     what = f"kdtree_envmap: {filename or 'the bitmap'}"
-    if min(pixels.shape[:2]) < 2:
-        raise BrdfkitError(
-            f"{what} has {pixels.shape[1]}×{pixels.shape[0]} pixels; give 2×2 or more."
-        )
-    if not np.isfinite(pixels).all() or pixels.min() < 0:
-        raise BrdfkitError(f"{what} has values that are not finite or below 0; mend them.")
-    if not pixels.any():
-        raise BrdfkitError(f"{what} is black all over and lights nothing; give another map.")
+    if pixels.min(initial=0) < 0:
+        raise BrdfkitError(f"{what} has values below 0; mend them.")
+    _require_light(what, pixels)
     return pixels
+
+
+def _require_light(what, pixels):
+    """Raise `BrdfkitError`, which begins with `what`, for pixels that no light can be drawn from."""
+    if pixels.ndim != 3 or min(pixels.shape[:2]) < 2:
+        size = "×".join(map(str, pixels.shape[1::-1]))
+        raise BrdfkitError(f"{what} has {size} pixels; give 2×2 or more.")
+    if not np.isfinite(pixels).all():
+        raise BrdfkitError(f"{what} has values that are not finite; mend them.")
+    if pixels.max() <= 0:
+        raise BrdfkitError(f"{what} is black all over and lights nothing; give another map.")
+
+
+def _require_rotation(props):
+    """Raise `BrdfkitError` for a `to_world` that changes angles."""
+    if "to_world" not in props:
+        return
+    matrix = np.array(props["to_world"].matrix, float).reshape(4, 4)[:3, :3]
+    if not np.allclose(matrix @ matrix.T, np.eye(3), atol=1e-4):
+        raise BrdfkitError(
+            "kdtree_envmap: to_world scales or shears; an environment can only be turned and "
+            "mirrored."
+        )
+
+
+def _close_circle(mi, data):
+    """A map (height, width, 3) with its first column again behind the last, for interpolation."""
+    if mi.variant().startswith("scalar"):
+        pixels = np.array(data)
+        return mi.TensorXf(np.concatenate([pixels, pixels[:, :1]], axis=1))
+    return dr.concat((data, data[:, :1]), axis=1)
 
 
 def example():
