@@ -120,3 +120,39 @@ def test_what_is_no_volume_is_refused(llvm_variant, wrong):
         wrong = llvm_variant.ScalarTransform4f().translate(wrong)
     with pytest.raises(RuntimeError, match=r"extinction = .* should be a volume"):
         llvm_variant.load_dict({"type": "emission_absorption", "extinction": wrong})
+
+
+@pytest.mark.parametrize("variant", ["llvm_ad_rgb", "llvm_ad_spectral"])
+def test_a_bright_colour_is_not_clipped(llvm_variant, variant, request):
+    """Ten times the colour gives ten times the light, also where colours become spectra."""
+    mi = llvm_variant
+    request.addfinalizer(lambda: mi.set_variant("llvm_ad_rgb"))
+    mi.set_variant(variant)
+    dim, bright = (
+        picture(mi, {"emission": {"type": "rgb", "value": [k, 2 * k, 3 * k]}}, spp=SPP)
+        - picture(mi, {}, spp=SPP)
+        for k in (0.3, 3.0)
+    )
+    np.testing.assert_allclose(bright.mean((0, 1)), 10 * dim.mean((0, 1)), rtol=1e-3)
+    np.testing.assert_allclose(dim.mean((0, 1)) / dim.mean(), [0.5, 1, 1.5], rtol=0.02)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("extinction", float("nan"), "should be a number at least 0"),
+        ("extinction", -1.0, "should be a number at least 0"),
+        ("emission", float("inf"), "should be a number at least 0"),
+        ("extinction", {"type": "rgb", "value": [1, 2, 3]}, "a gridvolume, or a number"),
+        ("emission", {"type": "rgb", "value": [1, -2, 3]}, "a colour of finite values"),
+        ("extinction", np.ones((2, 2, 2, 3)), "should be a volume of one channel"),
+        ("extinction", np.full((2, 2, 2, 1), np.nan), "a volume of finite values"),
+        ("emission", np.full((2, 2, 2, 3), -1.0), "a volume of finite values"),
+    ],
+)
+def test_values_without_a_meaning_are_refused(llvm_variant, name, value, said):
+    mi = llvm_variant
+    if isinstance(value, np.ndarray):
+        value = {"type": "gridvolume", "grid": mi.VolumeGrid(value.astype(np.float32))}
+    with pytest.raises(RuntimeError, match=said):
+        mi.load_dict({"type": "emission_absorption", name: value})

@@ -90,7 +90,7 @@ def test_what_is_out_of_bounds_is_refused_by_name(name, parameter, llvm_variant)
 @pytest.mark.parametrize("name", OTHERS)
 def test_a_misspelt_parameter_is_reported(name, llvm_variant):
     with pytest.raises(RuntimeError, match="misspelt"):
-        llvm_variant.load_dict(example(name, misspelt=1.0))
+        llvm_variant.load_dict({**example(name), "misspelt": 1.0})
 
 
 # A user's own, one of each kind
@@ -223,6 +223,9 @@ def test_a_model_may_lie_anywhere(tmp_path, no_user_plugins):
         ("users_lamp.py", FILES["emitters"], r"put it into one of bsdfs/, emitters/"),
         ("emitters/users_lamp.py", "x = 1", r"has no function define\(mi\)"),
         ("emitters/users_lamp.py", "1 / 0", "division by zero"),
+        ("emitters/users_lamp.py", "raise Exception", "cannot be imported: Exception"),
+        ("emitters/users_lamp.py", "raise SystemExit(3)", "ends the program"),
+        ("emiters/users_lamp.py", FILES["emitters"], r"emiters is no kind .* rename it emitters/"),
         ("emitters/schlick.py", FILES["emitters"], "brdfkit has a plugin 'schlick'"),
         ("emitters/envmap.py", FILES["emitters"], "Mitsuba has a plugin 'envmap'"),
     ],
@@ -237,6 +240,41 @@ def test_what_is_no_plugin_is_refused(tmp_path, no_user_plugins, path, text, sai
     with pytest.raises(bk.BrdfkitError, match=said):
         bk.load_plugins(tmp_path)
     assert not discovery._users  # nor any of the others
+
+
+@pytest.mark.quick
+def test_a_folder_may_be_loaded_by_another_path(folder):
+    first = bk.load_plugins(folder)
+    assert bk.load_plugins(folder / ".." / folder.name) == first
+    link = folder.with_name(f"{folder.name} again")
+    link.symlink_to(folder)
+    assert bk.load_plugins(link) == first
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [("pass", "returns None; it should"), ("raise ValueError('boom')", "raises ValueError: boom")],
+)
+def test_what_defines_nothing_is_named(tmp_path, no_user_plugins, variant, line, said):
+    import mitsuba as mi
+
+    variant("llvm_ad_rgb")
+    file = tmp_path / "textures" / "users_nothing.py"
+    file.parent.mkdir()
+    file.write_text(f"def define(mi):\n    {line}\n")
+    bk.load_plugins(file)
+    with pytest.raises(RuntimeError, match=rf"users_nothing\.py: define\(mi\) {said}"):
+        mi.load_dict({"type": "users_nothing"})
+    report = bk.check("users_nothing")
+    assert [finding.check for finding in report.findings] == ["loads"]
+    assert not report
+
+
+@pytest.mark.quick
+def test_a_bsdf_that_is_no_model_is_checked(variant):
+    variant("llvm_ad_rgb")
+    assert bk.check("measured_table", only=["weights", "finite", "plugin is formula"])
 
 
 # What the checks are for, done wrong

@@ -191,9 +191,12 @@ def test_what_cannot_be_written_leaves_nothing(pair, tmp_path, path):
         ({"things": bk.models()["ward"]}, r"Ward is a model without values; call it: Ward\(\)"),
         ({"things": {"name": "it"}}, 'no "type"'),
         ({"things": {"type": "no_such_bsdf"}}, "no_such_bsdf: Mitsuba cannot load it"),
-        ({"things": WHITE, "spp": 0}, "0 spp"),
-        ({"things": WHITE, "size": 0}, "size above 0"),
-        ({"things": WHITE, "seed": -1}, "seed -1"),
+        ({"things": WHITE, "spp": 0}, "spp = 0"),
+        ({"things": WHITE, "spp": float("inf")}, "spp = inf"),
+        ({"things": WHITE, "size": 0}, "pixels above 0"),
+        ({"things": WHITE, "size": (8,)}, "pixels above 0"),
+        ({"things": WHITE, "seed": 2**31}, "out of bounds"),
+        ({"things": WHITE, "seed": -1}, "seed = -1"),
     ],
 )
 def test_what_cannot_be_rendered_is_said(arguments, message):

@@ -3,6 +3,8 @@
 What is imported first, and by which thread, is tested in processes of their own.
 """
 
+import os
+import signal
 import subprocess
 import sys
 import textwrap
@@ -14,6 +16,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 import brdfkit as bk
+from brdfkit.jit.signals import hold_signals
 from brdfkit.jit.threads import cached_in_turn, in_turn
 from brdfkit.rendering import render_scene, rendering
 
@@ -158,3 +161,29 @@ def test_a_cached_property_waits_for_its_turn_without_a_lock_of_its_own():
         computing.wait(10)
         second = pool.submit(ask, other)
         assert (first.result(timeout=10), second.result(timeout=10)) == (1, 1)
+
+
+def load_while_a_signal_comes(received, done):
+    with hold_signals():
+        os.kill(os.getpid(), received)
+        done.append("loaded")
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("received", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_waits_until_a_library_is_loaded(received):
+    before = signal.signal(received, signal.default_int_handler)
+    done = []
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            load_while_a_signal_comes(received, done)
+    finally:
+        signal.signal(received, before)
+    assert done
+
+
+@pytest.mark.quick
+def test_every_module_can_be_imported_first():
+    """The one that imports Mitsuba at its beginning could not."""
+    command = [sys.executable, "-c", "import brdfkit.host.registration, brdfkit.host.bsdf"]
+    subprocess.run(command, check=True)

@@ -57,6 +57,13 @@ def define(mi):
     return MeasuredTable
 
 
+def example():
+    """A table of brdfkit's own, for the checks."""
+    from brdfkit.catalogue import shipped  # only here: listing the plugins should be quick
+
+    return {"type": "measured_table", "filename": str(shipped.path("plaster"))}
+
+
 def _table(props):
     """The `Table`, and its wavelengths [nm], None where the channels are colours."""
     if "filename" in props:

@@ -161,7 +161,7 @@ def _pixels(mi, filename, bitmap):
 
 
 def _require_light(what, pixels):
-    """Raise `BrdfkitError`, which begins with `what`, for pixels that no light can be drawn from."""
+    """Raise `BrdfkitError`, which begins with `what`, for pixels that give no light."""
     if pixels.ndim != 3 or min(pixels.shape[:2]) < 2:
         size = "×".join(map(str, pixels.shape[1::-1]))
         raise BrdfkitError(f"{what} has {size} pixels; give 2×2 or more.")

@@ -21,7 +21,7 @@ from brdfkit.host.declared import count, declared, volume
 from brdfkit.model.numerics import expm1
 
 PARAMETERS = {
-    "extinction": volume(1.0, "σ: what is absorbed per unit of length; its box bounds the volume"),
+    "extinction": volume(1.0, "σ: absorbed per unit of length; its box bounds all", coloured=False),
     "emission": volume(0.0, "e: radiance that is added per unit of length"),
     "steps": count(128, (1, 1_000_000), "parts that a ray is cut into"),
 }

@@ -25,4 +25,7 @@ def nearest(name, known):
     """The name among `known` that is most like `name`, None where none is similar."""
     import difflib  # only here: `--help` should be instant
 
-    return next(iter(difflib.get_close_matches(str(name), known, n=1)), None)
+    known = list(known)
+    lower = [str(n).lower() for n in known]
+    near = difflib.get_close_matches(str(name).lower(), lower, n=1)
+    return known[lower.index(near[0])] if near else None

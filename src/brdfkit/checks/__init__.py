@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from brdfkit.checks.failure import describe
 from brdfkit.checks.material_subject import Subject
-from brdfkit.checks.plugin_subject import PluginSubject, example
+from brdfkit.checks.plugin_subject import PluginSubject, example, is_no_model
 from brdfkit.checks.registry import Finding, checks
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.jit import llvm
@@ -101,6 +101,8 @@ def check(
     for wanted in names:
         if wanted not in checks[kind]:
             raise no_such("check", wanted, checks[kind])
+    if kind != MODELS and not _loads(subject):
+        names = ["loads"]  # the others would say the same
     findings = []
     for wanted in names:
         findings.append(Finding(wanted, *_run(kind, wanted, subject)))
@@ -111,12 +113,22 @@ def check(
 
 def _subject(thing):
     """The subject of the checks of `thing`, its kind of plugin, and its name."""
-    name = thing.get("type") if isinstance(thing, dict) else thing
+    if isinstance(thing, str) and is_no_model(thing):
+        thing = example(thing)
+    name = thing.get("type") if isinstance(thing, dict) else None
     kind = discovery.kind_of(name) if isinstance(name, str) else None
     if kind not in (None, MODELS):
-        return PluginSubject(kind, thing if isinstance(thing, dict) else example(name)), kind, name
+        return PluginSubject(kind, thing), kind, name
     found = material(thing)
     return Subject(found), MODELS, found.name
+
+
+def _loads(subject):
+    """Whether Mitsuba makes an instance of a plugin."""
+    try:
+        return subject.plugin is not None
+    except Exception:
+        return False
 
 
 def _run(kind, name, subject):

@@ -18,5 +18,6 @@ def describe(error, path):
     # Mitsuba puts a plugin's traceback into the message
     words = [line.strip() for line in str(error).splitlines() if line.strip()]
     reason = words[-1].rstrip(".") if words else type(error).__name__
+    reason = reason.removeprefix("BrdfkitError: ")
     hint = "".join(f"{hint}: " for word, hint in HINTS.items() if word in reason)
     return f"{place}: {hint}{reason}"

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from brdfkit.checks.registry import check_of
+from brdfkit.errors import no_such
+from brdfkit.model import labels
 from brdfkit.plugins import discovery
 from brdfkit.plugins.discovery import KINDS, MODELS
 
@@ -38,11 +40,31 @@ class PluginSubject:
         return mi.load_dict(self.entries, parallel=False)
 
 
+def is_no_model(name):
+    """Whether `name` is that of a plugin which is no `Model`, but may be another BSDF."""
+    kind = discovery.kind_of(name)
+    return kind is not None and (
+        kind != MODELS or labels.model_in(discovery.sources(MODELS)[name]) is None
+    )
+
+
+def require_declared(name, parameters):
+    """Raise `BrdfkitError` for one of the `parameters` that a plugin's file does not declare."""
+    declared = getattr(_module(name), "PARAMETERS", None)
+    for parameter in parameters if declared is not None else ():
+        if parameter not in declared:
+            raise no_such("parameter", parameter, declared, where=name)
+
+
 def example(name, **values):
     """The dictionary of a plugin by its name, as its file's `example` returns it, with `values`."""
-    module = discovery.module(discovery.sources(discovery.kind_of(name))[name])
+    module = _module(name)
     entries = module.example() if hasattr(module, "example") else {"type": name}
     return {**entries, **values}
+
+
+def _module(name):
+    return discovery.module(discovery.sources(discovery.kind_of(name))[name])
 
 
 @check_of(*(kind for kind in KINDS if kind != MODELS))
@@ -51,5 +73,7 @@ def loads(subject):
     import mitsuba as mi
 
     base, _ = KINDS[subject.kind]
-    right = isinstance(subject.plugin, getattr(mi, base))
-    return right and bool(str(subject.plugin)), type(subject.plugin).__name__
+    found = type(subject.plugin).__name__
+    if not isinstance(subject.plugin, getattr(mi, base)):
+        return False, f"{found} is no mitsuba.{base}"
+    return bool(str(subject.plugin)), found

@@ -27,17 +27,18 @@ def check(things, values, console):
 
 
 def _find_subject(name, settings):
-    """The material of a name, or the dictionary of a plugin of another kind, with `settings`."""
-    from brdfkit.checks.plugin_subject import example
+    """The material of a name, or the dictionary of a plugin that is no model, with `settings`."""
+    from brdfkit.checks.plugin_subject import example, is_no_model, require_declared
     from brdfkit.commands._targets import material, parse_settings
     from brdfkit.host.users_plugins import load_plugins
-    from brdfkit.plugins.discovery import MODELS, kind_of
 
     if name.endswith(".py"):
         (name,) = load_plugins(name)
-    if kind_of(name) in (None, MODELS):
-        return material(name, settings)
-    return example(name, **parse_settings(settings))
+    if is_no_model(name):
+        values = parse_settings(settings)
+        require_declared(name, values)
+        return example(name, **values)
+    return material(name, settings)
 
 
 def _print_reports(reports, console):

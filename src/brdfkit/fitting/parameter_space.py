@@ -73,6 +73,11 @@ def _check(model, shapes, bounds, fixed):
         raise BrdfkitError(f"{model.type_name()}: {both.pop()} is bounded and fixed; choose one.")
     for name, (low, high) in bounds.items():
         allowed = model.parameters[name].bounds
+        if low >= high:
+            raise BrdfkitError(
+                f"{model.type_name()}: the bounds of {name}, {low:g} and {high:g}, should be a low "
+                f"and a higher value within {allowed[0]:g}..{allowed[1]:g}."
+            )
         if not allowed[0] <= low < high <= allowed[1]:
             raise BrdfkitError(
                 f"{model.type_name()}: the bounds {low:g}..{high:g} of {name} should lie "

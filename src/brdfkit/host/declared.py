@@ -13,6 +13,7 @@ from typing import Any
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.host.properties import is_colour
+from brdfkit.host.volumes import constant_volume, require_volume
 
 
 @dataclass(frozen=True)
@@ -82,18 +83,22 @@ def picture(meaning):
     return Setting(None, None, meaning, read)
 
 
-def volume(default, meaning):
-    """A volume, such as Mitsuba's gridvolume; a number or a colour makes a constant one."""
+def volume(default, meaning, coloured=True):
+    """A volume of values ≥ 0, such as Mitsuba's gridvolume; a number or a colour makes a constant
+    one. Not `coloured`: of one channel."""
 
     def read(value):
         import mitsuba as mi
 
         if isinstance(value, mi.Volume):
+            require_volume(value, coloured)
             return value
-        if is_colour(value):
-            value = {"type": "rgb", "value": list(value)}
-        elif isinstance(value, bool) or not isinstance(value, int | float):
-            raise ValueError("a volume, such as a gridvolume, a number or a colour")
+        if coloured and is_colour(value):
+            return constant_volume(value)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            constant = "a number or a colour" if coloured else "or a number"
+            raise ValueError(f"a volume, such as a gridvolume, {constant}")
+        _require_within(value, (0, math.inf))
         return mi.load_dict({"type": "constvolume", "value": value}, parallel=False)
 
     return Setting(default, None, meaning, read, differentiable=True)
@@ -133,8 +138,9 @@ def declared(base, parameters):
 
 def _require_within(value, bounds):
     low, high = bounds
+    number = float(value) if isinstance(value, int | float) else math.nan
     # "not <=" refuses NaN as well
-    if isinstance(value, bool | str) or not low <= float(value) <= high or math.isinf(float(value)):
+    if isinstance(value, bool) or not low <= number <= high or math.isinf(number):
         limits = f"at least {low:g}" if math.isinf(high) else f"between {low:g} and {high:g}"
         raise ValueError(f"a number {limits}")
 

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.jit import llvm
+from brdfkit.jit.signals import hold_signals
 
 
 def install():
@@ -37,10 +38,11 @@ class _After:
             load = spec.loader.exec_module
 
             def exec_module(module):
-                with _without_llvm_noise():
-                    load(module)
-                _forward_to_successor(module)
-                self.then()
+                with hold_signals():
+                    with _without_llvm_noise():
+                        load(module)
+                    _forward_to_successor(module)
+                    self.then()
 
             spec.loader.exec_module = exec_module
         return spec

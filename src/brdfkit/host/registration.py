@@ -7,8 +7,7 @@ one of Mitsuba's for the current variant. Where Mitsuba allows no derived class,
 
 from functools import cache
 
-import mitsuba as mi
-
+from brdfkit.errors import BrdfkitError
 from brdfkit.host import bsdf
 from brdfkit.model import Model, labels
 from brdfkit.plugins import discovery
@@ -23,6 +22,8 @@ def register_all():
     Volumes are left out in scalar_rgb. Mitsuba 3.9 takes the kind of a plugin in all variants from
     its registration there, and refuses in dictionaries a volume that is registered as a texture.
     """
+    import mitsuba as mi
+
     variant = mi.variant()
     if variant is None:
         return
@@ -37,6 +38,8 @@ def register_all():
 
 def _make(kind, name, props):
     """An instance, in the current variant, of the class that the plugin's file defines now."""
+    import mitsuba as mi
+
     source = discovery.sources(kind)[name]
     model = labels.model_in(source) if kind == MODELS else None
     if model is None:
@@ -47,7 +50,24 @@ def _make(kind, name, props):
 
 @cache
 def _define(source, _variant):
-    """Mitsuba's class for a `Model`, or what the ``define(mi)`` of a module returns."""
+    """Mitsuba's class for a `Model`, or what the ``define(mi)`` of a module returns.
+
+    Raises `BrdfkitError` where a module's ``define`` raises an error or returns nothing to call.
+    """
+    import mitsuba as mi
+
     if isinstance(source, type) and issubclass(source, Model):
         return bsdf.define(mi, source)
-    return source.define(mi)
+    try:
+        found = source.define(mi)
+    except BrdfkitError:
+        raise
+    except Exception as error:
+        raise BrdfkitError(
+            f"{source.__file__}: define(mi) raises {type(error).__name__}: {error}."
+        ) from error
+    if not callable(found):
+        raise BrdfkitError(
+            f"{source.__file__}: define(mi) returns {found!r}; it should return the plugin's class."
+        )
+    return found

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from brdfkit.errors import BrdfkitError
+from brdfkit.errors import BrdfkitError, nearest
 from brdfkit.model import labels
 from brdfkit.plugins import discovery
 from brdfkit.plugins.discovery import KINDS, MODELS
@@ -35,6 +35,8 @@ def load_plugins(path: str | Path) -> dict[str, str]:
     {'softbox': 'emitters', 'velvet': 'bsdfs'}
     """
     files = {}
+    if not str(path):
+        raise BrdfkitError("The path is empty; name a folder of plugins, or a file.")
     for file in _files(Path(path).absolute()):
         discovery.require_free(file.stem, file)
         files[file] = _kind(file)
@@ -45,10 +47,19 @@ def load_plugins(path: str | Path) -> dict[str, str]:
 
 def _files(path):
     """The plugin files at `path`: a file, a folder of one kind, or a folder of such folders."""
+    _refuse_misspelt(path)
     folders = [path / kind for kind in KINDS if (path / kind).is_dir()]
     if not folders:
         return discovery.files_in(path)
     return sorted(file for f in (path, *folders) for file in f.glob("[!_]*.py"))
+
+
+def _refuse_misspelt(path):
+    """Raise `BrdfkitError` for a folder in `path` that is nearly named as a kind."""
+    for folder in sorted(path.iterdir()) if path.is_dir() else ():
+        kind = nearest(folder.name.lower(), KINDS)
+        if folder.is_dir() and folder.name not in KINDS and kind and any(folder.glob("*.py")):
+            raise BrdfkitError(f"{folder} is no kind of plugin; rename it {kind}/.")
 
 
 def _kind(file):

@@ -1,1 +1,1 @@
-"""What Dr.Jit needs of its surroundings: an LLVM that works, whole arrays, one thread at a time."""
+"""What Dr.Jit needs around it: an LLVM, whole arrays, one thread at a time, and no signals."""

@@ -18,6 +18,7 @@ import warnings
 from pathlib import Path
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.jit.signals import hold_signals
 from brdfkit.jit.threads import in_turn
 
 VARIABLE = "DRJIT_LIBLLVM_PATH"
@@ -114,7 +115,8 @@ def use_variant():
 
     if mi.variant() is None:
         usable = loaded_version() >= OLDEST
-        mi.set_variant(*(v for v in VARIANTS if usable or not v.startswith("llvm")))
+        with hold_signals():
+            mi.set_variant(*(v for v in VARIANTS if usable or not v.startswith("llvm")))
         if mi.variant() == "scalar_rgb":
             warnings.warn(
                 f"Mitsuba has no CUDA device and no LLVM {OLDEST} or newer: its slow variant "

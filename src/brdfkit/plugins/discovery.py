@@ -88,6 +88,8 @@ def module(file):
     for kind in KINDS:
         if _own_files(kind).get(file.stem) == file:
             return importlib.import_module(f"{OWN}.{kind}.{file.stem}")
+    if not file.exists():
+        raise BrdfkitError(f"{file} does not exist any more; write it again.")
     if not file.is_file():
         raise BrdfkitError(f"{file} is not a Python file.")
     return _import_file(file, file.stat().st_mtime_ns)
@@ -111,9 +113,12 @@ def _import_file(file, _modified):
     sys.modules[name] = imported
     try:
         spec.loader.exec_module(imported)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         del sys.modules[name]
-        raise BrdfkitError(f"{file} cannot be imported: {str(error).rstrip('.')}.") from error
+        reason = str(error).rstrip(".") or type(error).__name__
+        if isinstance(error, SystemExit):
+            reason = "it ends the program, by sys.exit"
+        raise BrdfkitError(f"{file} cannot be imported: {reason}.") from error
     return imported
 
 
@@ -137,12 +142,19 @@ def require_free(name, source):
         owner = "brdfkit has a plugin"
     elif name in _mitsuba_names():
         owner = "Mitsuba has a plugin"
-    elif isinstance(known, Path) and known != source:
+    elif isinstance(known, Path) and not _is_same_file(known, source):
         owner = f"{known} is loaded as"
     else:
         return
     what, remedy = (source, "file") if isinstance(source, Path) else (source.__name__, "class")
     raise BrdfkitError(f"{what}: {owner} {name!r}; rename the {remedy}.")
+
+
+def _is_same_file(known, source):
+    """Whether a new `source` is the file `known`, perhaps by another path."""
+    return known == source or (
+        isinstance(source, Path) and known.exists() and source.exists() and known.samefile(source)
+    )
 
 
 @cache

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.fitting.arguments import to_whole_number
 from brdfkit.jit.threads import in_turn
 from brdfkit.names import make_unique
 from brdfkit.rendering import scenes
@@ -67,10 +68,8 @@ def render(
     >>> pictures = render(["car_paint", ("grey", {"type": "diffuse"})], spp=16)    # doctest: +SKIP
     >>> pictures.write("paint.exr")    # doctest: +SKIP
     """
-    width, height = (size, size) if isinstance(size, int | np.integer) else size
-    size = width, height
-    if min(size) < 1:
-        raise BrdfkitError(f"{size} pixels make no picture; give a size above 0.")
+    spp, seed = to_whole_number("spp", spp, least=1), to_whole_number("seed", seed, least=0)
+    size = _to_size(size)
     subjects = as_list(things)
     require_memory(size, len(subjects))
     mitsuba()  # sets a variant, on which the dictionaries depend
@@ -125,7 +124,8 @@ def render_scene(
     --------
     >>> render_scene("kitchen.xml", spp=64).write("kitchen.exr")    # doctest: +SKIP
     """
-    path = Path(path)
+    spp = None if spp is None else to_whole_number("spp", spp, least=1)
+    seed, path = to_whole_number("seed", seed, least=0), Path(path)
     if not path.is_file():
         raise BrdfkitError(f"{path}: there is no such scene file; check the path.")
     scene = load_scene(mitsuba().load_file, str(path), path)
@@ -138,6 +138,18 @@ def render_scene(
         spp = scene.sensors()[0].sampler().sample_count()
     pictures, reached, seconds = trace({path.stem: scene}, spp, seed, progress)
     return Rendering(pictures, reached, seconds, seed, asked=spp)
+
+
+def _to_size(size: int | tuple[int, int]) -> tuple[int, int]:
+    """(width, height) of a picture; `BrdfkitError` for anything but whole numbers above 0."""
+    sides = (size, size) if isinstance(size, int | np.integer) else size
+    try:
+        width, height = (to_whole_number("size", side, least=1) for side in sides)
+    except (TypeError, ValueError):
+        raise BrdfkitError(
+            f"size = {size!r} should be a side, or (width, height), in whole pixels above 0."
+        ) from None
+    return width, height
 
 
 @in_turn

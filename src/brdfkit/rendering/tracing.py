@@ -18,9 +18,7 @@ def trace(loaded, spp, seed, progress):
     is raised where there is none. `progress`: called with (done, total) after each picture of a
     pass.
     """
-    if spp < 1:
-        raise BrdfkitError(f"{spp} spp make no picture; give a number above 0.")
-    if not 0 <= seed < 2**31:
+    if seed >= 2**31:
         raise BrdfkitError(f"The seed {seed} is out of bounds; give one from 0 to 2³¹ - 1.")
     start = time.perf_counter()
 

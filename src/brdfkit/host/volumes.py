@@ -1,0 +1,41 @@
+"""Volumes that a scene gives to a plugin: checks them, and makes one of a colour."""
+
+import numpy as np
+
+
+def require_volume(volume, coloured):
+    """Raise a ValueError, which says what a `mi.Volume` should be, unless its values are usable.
+
+    They are finite and not negative; unless `coloured`, there is one of them at a point.
+    """
+    import mitsuba as mi
+
+    parameters = mi.traverse(volume)
+    for name in parameters.keys():  # noqa: SIM118
+        if name != "data" and not name.endswith("value"):
+            continue
+        values = np.array(parameters[name], float)
+        channels = values.shape[-1] if values.ndim == 4 else values.size
+        if channels > 1 and not coloured:
+            raise ValueError("a volume of one channel")
+        if channels > 1 and mi.is_spectral:  # the coefficients of spectra
+            continue
+        if not np.isfinite(values).all() or values.min() < 0:
+            raise ValueError("a volume of finite values, not negative")
+
+
+def constant_volume(colour):
+    """A volume of one colour, in linear sRGB.
+
+    It is a grid: Mitsuba's constvolume clips a colour above 1 in spectral variants, unsaid.
+    """
+    import mitsuba as mi
+
+    colour = np.array(colour, np.float32).reshape(3)
+    if not np.isfinite(colour).all() or colour.min() < 0:
+        raise ValueError("a colour of finite values, not negative")
+    if not mi.is_spectral:
+        value = {"type": "rgb", "value": colour.tolist()}
+        return mi.load_dict({"type": "constvolume", "value": value}, parallel=False)
+    grid = mi.VolumeGrid(np.broadcast_to(colour, (2, 2, 2, 3)).copy())
+    return mi.load_dict({"type": "gridvolume", "grid": grid}, parallel=False)
