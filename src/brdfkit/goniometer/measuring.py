@@ -93,6 +93,11 @@ def measure(
     >>> measure(gaussian(slope=0.3), {"type": "diffuse"}).standard_error.shape  # doctest: +SKIP
     (54000, 3)
     """
+    if not isinstance(surface, HeightField):
+        raise BrdfkitError(
+            f"surface = {surface!r} is no height field; make one with "
+            "brdfkit.goniometer.microgeometry, such as gaussian()."
+        )
     shape = tuple(shape or (ISOTROPIC if surface.isotropic else ANISOTROPIC))
     _require_valid(surface, shape, error, spp, seed)
     specimen = Specimen(surface, facets, max_bounces)
