@@ -10,6 +10,14 @@ from brdfkit.model import labels
 from brdfkit.plugins import discovery
 
 
+def pytest_configure():
+    """Share the cores: the threads of Dr.Jit's in one worker would wait for those in another."""
+    import drjit as dr
+
+    workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", 1))
+    dr.set_thread_count(max(1, (os.cpu_count() or 1) // workers))
+
+
 @pytest.fixture
 def llvm_variant():
     """Mitsuba in llvm_ad_rgb."""
