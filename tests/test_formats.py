@@ -184,7 +184,7 @@ def test_merl_scale_order_and_negative_before_scaling(tmp_path):
     assert unknown[2, 1, 3].all()
     assert unknown.sum() == 3
     assert material.channels == RGB
-    assert material.info["cells not measured"] == "1 of 24"
+    assert material.info["cells without a value"] == "1 of 24"
     assert material.table.phi_d_period == pytest.approx(np.pi)
 
 

@@ -425,6 +425,8 @@ def test_ctrl_c_keeps_what_there_is(monkeypatch):
         ("from 2 to 1,000,000,000", {"spp": 10**20}),
         ("seed = -1", {"seed": -1}),
         ("max_bounces = 0", {"max_bounces": 0}),
+        ("surface = 3 should be", {"surface": 3}),
+        ("facets = 'Au' should be", {"facets": "Au"}),
         ("3 materials", {"facets": [GREY] * 3}),
         ("nope", {"facets": {"type": "nope"}}),
         ("mirror", {"facets": {"type": "conductor"}}),

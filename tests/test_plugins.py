@@ -296,13 +296,13 @@ def define(mi):
 
         def eval_pdf(self, ctx, interaction, wo, active=True):
             pdf = mi.Float({density} * dr.inv_four_pi)
-            return mi.Spectrum(pdf), pdf
+            return mi.Spectrum({value} * pdf), pdf
 
         def to_string(self):
             return "Even[]"
     return Even
 '''
-RIGHT = {"shape": "sphere", "weight": 1.0, "sampled": 1.0, "density": 1.0}
+RIGHT = {"shape": "sphere", "weight": 1.0, "sampled": 1.0, "density": 1.0, "value": 1.0}
 
 
 @pytest.mark.quick
@@ -311,6 +311,9 @@ RIGHT = {"shape": "sphere", "weight": 1.0, "sampled": 1.0, "density": 1.0}
     [
         ({}, set()),
         ({"density": 1.05, "sampled": 1.05}, {"chi squared", "normalisation"}),
+        ({"weight": 2.0, "value": 2.0}, {"normalisation"}),
+        ({"weight": "dr.nan"}, {"weights", "mean cosine"}),
+        ({"weight": "dr.nan", "value": "dr.nan"}, {"weights", "normalisation", "mean cosine"}),
         ({"sampled": 1.05}, {"weights"}),
         ({"weight": 0.9}, {"weights"}),
         ({"shape": "hemisphere"}, {"chi squared", "mean cosine"}),
@@ -382,3 +385,9 @@ def test_mean_cosine_of_schlick():
         turned = np.array(schlick.cosine(k, u))
         below = [2 * np.pi * p[mu < end] @ weight[mu < end] for end in turned]
         assert below == pytest.approx(u, abs=0.02)
+
+
+@pytest.mark.quick
+def test_the_nearest_plugin_is_proposed():
+    with pytest.raises(bk.BrdfkitError, match="no plugin 'schlik'; did you mean schlick"):
+        bk.check("schlik")

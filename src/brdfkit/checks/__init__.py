@@ -15,12 +15,12 @@ from brdfkit.checks.failure import describe
 from brdfkit.checks.material_subject import Subject
 from brdfkit.checks.plugin_subject import PluginSubject, example, is_no_model
 from brdfkit.checks.registry import Finding, checks
-from brdfkit.errors import BrdfkitError, no_such
+from brdfkit.errors import BrdfkitError, nearest, no_such
 from brdfkit.jit import llvm
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike, material
 from brdfkit.plugins import discovery
-from brdfkit.plugins.discovery import MODELS
+from brdfkit.plugins.discovery import KINDS, MODELS
 
 for _module in pkgutil.iter_modules(__path__):
     importlib.import_module(f"{__name__}.{_module.name}")
@@ -97,6 +97,7 @@ def check(
         remedy = "set llvm_ad_rgb" if usable else llvm.remedy()
         raise BrdfkitError(f"check needs an LLVM or CUDA variant of Mitsuba; {remedy}.")
     subject, kind, name = _subject(thing)
+    only = [only] if isinstance(only, str) else only
     names = list(checks[kind]) if only is None else list(only)
     for wanted in names:
         if wanted not in checks[kind]:
@@ -119,8 +120,19 @@ def _subject(thing):
     kind = discovery.kind_of(name) if isinstance(name, str) else None
     if kind not in (None, MODELS):
         return PluginSubject(kind, thing), kind, name
-    found = material(thing)
+    found = _material(thing)
     return Subject(found), MODELS, found.name
+
+
+def _material(thing):
+    """The material of `thing`; the error for an unknown name proposes plugins, too."""
+    try:
+        return material(thing)
+    except BrdfkitError:
+        others = [n for kind in KINDS if kind != MODELS for n in discovery.sources(kind)]
+        if isinstance(thing, str) and nearest(thing, others):
+            raise no_such("plugin", thing, others) from None
+        raise
 
 
 def _loads(subject):

@@ -5,6 +5,7 @@ from contextlib import contextmanager
 import drjit as dr
 import numpy as np
 
+from brdfkit.checks.figures import larger
 from brdfkit.checks.material_subject import incidences, random_pairs
 from brdfkit.checks.model_derivatives import (
     exact_derivative,
@@ -43,7 +44,7 @@ def gradient(subject):
     for name in free_shapes(model):
         exact = exact_derivative(model, weights, name, wi, wo)
         difference = np.abs(exact - finite_difference(model, name, wi, wo))
-        worst = max(worst, float(difference.max() / (np.abs(exact).max() + 1e-12)))
+        worst = larger(worst, float(difference.max() / (np.abs(exact).max() + 1e-12)))
     return worst < 1e-5, f"relative difference at most {worst:.1e}"
 
 
@@ -74,7 +75,7 @@ def plugin_gradient(subject):
             found = float(np.sum(np.array(dr.grad(value))))
         expected = exact_derivative(model, subject.weights, name, wi, wo) * wo[:, 2:]
         difference = abs(found - float(expected.sum()))
-        worst = max(worst, difference / max(float(np.abs(expected).sum()), 1e-6))
+        worst = larger(worst, difference / max(float(np.abs(expected).sum()), 1e-6))
 
     left_out = len(model.free_values) - len(names)
     but = f"; not checked: {left_out} colours that are spectra in this variant" if left_out else ""
@@ -108,7 +109,7 @@ def sampling_gradient(subject):
         exact = exact_derivative(model, subject.weights, name, np.tile(wi, (n, 1)), wo)
         cosine = np.pi * exact.mean(axis=1)
         error = np.hypot(own.std(), cosine.std()) / np.sqrt(n)
-        worst = max(worst, abs(own.mean() - cosine.mean()) / max(error, 1e-9))
+        worst = larger(worst, abs(own.mean() - cosine.mean()) / max(error, 1e-9))
     return worst < 4.5, f"at most {worst:.1f} standard errors apart"
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from brdfkit.checks import directions
+from brdfkit.checks.figures import larger
 from brdfkit.checks.registry import check_of
 from brdfkit.checks.variants import WAVELENGTHS, columns
 
@@ -58,7 +59,7 @@ def weights(subject):
     for a, b in ((weight * stated, radiance), (stated, pdf)):
         # a direction on the edge of two blocks belongs to either, by rounding: 0.1 % may be off
         off = np.abs(a - b) / np.maximum(np.abs(b), 1e-6)
-        worst = max(worst, float(np.percentile(off, 99.9)))
+        worst = larger(worst, float(np.percentile(off, 99.9)))
     return worst < 1e-3, f"relative difference at most {worst:.1e} in 999 of 1000 samples"
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from brdfkit.checks import directions
+from brdfkit.checks.figures import larger
 from brdfkit.checks.registry import check_of
 from brdfkit.checks.variants import columns
 
@@ -53,18 +54,22 @@ def weights(subject):
         weight, value = (columns(x, n) for x in (weight, value))
         pdf, stated = (directions.numbers(x, n) for x in (pdf, stated))
         for a, b in ((weight * pdf, value), (stated, pdf)):
-            worst = max(worst, float(np.max(np.abs(a - b) / np.maximum(np.abs(b), 1e-6))))
+            worst = larger(worst, float(np.max(np.abs(a - b) / np.maximum(np.abs(b), 1e-6))))
     return worst < 1e-3, f"relative difference at most {worst:.1e}"
 
 
 @check_of("phase")
 def normalisation(subject):
-    """∫ p dω = 1 over the sphere: scattering neither gains nor loses light."""
+    """∫ p dω = 1 over the sphere, of the density and of the value: no light is gained or lost."""
     w, solid_angle = directions.quadrature()
-    densities = [sampler(subject, forward)[1](w)[1] for forward in FORWARD]
-    totals = [directions.numbers(pdf, len(solid_angle)) @ solid_angle for pdf in densities]
-    worst = max(totals, key=lambda t: abs(t - 1))
-    return bool(abs(worst - 1) < 1e-3), f"integral {worst:.5f}"
+    n, totals = len(solid_angle), {"density": [], "value": []}
+    for forward in FORWARD:
+        value, pdf = sampler(subject, forward)[1](w)
+        totals["density"].append(directions.numbers(pdf, n) @ solid_angle)
+        totals["value"].extend(columns(value, n) @ solid_angle)
+    farthest = {name: max(t, key=lambda x: (np.isnan(x), abs(x - 1))) for name, t in totals.items()}
+    passed = all(abs(total - 1) < 1e-3 for total in farthest.values())
+    return passed, ", ".join(f"integral of the {n} {t:.5f}" for n, t in farthest.items())
 
 
 @check_of("phase")
@@ -82,5 +87,5 @@ def mean_cosine(subject):
         found = columns(weight, directions.SAMPLES) * cosine
         value = columns(value_and_pdf(w)[0], len(solid_angle))
         expected = value @ (np.array(forward) @ np.array(w) * solid_angle)
-        worst = max(worst, directions.deviation(found, expected))
+        worst = larger(worst, directions.deviation(found, expected))
     return worst < 4.5, f"samples and quadrature at most {worst:.1f} standard errors apart"

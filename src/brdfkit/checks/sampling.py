@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from brdfkit.checks.figures import larger
 from brdfkit.checks.material_subject import INCIDENCES, incidences
 from brdfkit.checks.registry import check_of
 from brdfkit.checks.variants import columns
@@ -114,7 +115,7 @@ def weights(subject):
         pdf, pdf_2, stated = (np.array(x)[kept] for x in (pdf, pdf_2, drawn.pdf))
         pairs = [(weight * pdf, value), (value, value_2), (pdf, pdf_2), (pdf, stated)]
         for a, b in pairs:
-            worst = max(worst, float(np.max(np.abs(a - b) / np.maximum(np.abs(b), 1e-6))))
+            worst = larger(worst, float(np.max(np.abs(a - b) / np.maximum(np.abs(b), 1e-6))))
     return worst < 1e-3, f"relative difference at most {worst:.1e}"
 
 

@@ -38,7 +38,7 @@ def _find_subject(name, settings):
         values = parse_settings(settings)
         require_declared(name, values)
         return example(name, **values)
-    return material(name, settings)
+    return material(name, settings) if settings else name
 
 
 def _print_reports(reports, console):

@@ -50,7 +50,7 @@ def read(source):
         raise source.error("every cell is marked as not measured; fetch the file again")
     values = np.multiply(np.moveaxis(raw, 0, -1), SCALE, order="C")
     values[unknown] = np.nan
-    info = {"format": NAME, "cells not measured": f"{unknown.sum():,} of {unknown.size:,}"}
+    info = {"format": NAME, "cells without a value": f"{unknown.sum():,} of {unknown.size:,}"}
     return Measured.from_table(values, _phi_d_period(shape), RGB, source.name, info)
 
 

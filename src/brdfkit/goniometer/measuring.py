@@ -94,10 +94,9 @@ def measure(
     (54000, 3)
     """
     if not isinstance(surface, HeightField):
-        raise BrdfkitError(
-            f"surface = {surface!r} is no height field; make one with "
-            "brdfkit.goniometer.microgeometry, such as gaussian()."
-        )
+        raise BrdfkitError(f"surface = {surface!r} should be a HeightField, such as gaussian().")
+    if isinstance(facets, str):
+        raise BrdfkitError(f"facets = {facets!r} should be the dictionary of a BSDF.")
     shape = tuple(shape or (ISOTROPIC if surface.isotropic else ANISOTROPIC))
     _require_valid(surface, shape, error, spp, seed)
     specimen = Specimen(surface, facets, max_bounces)

@@ -40,14 +40,3 @@ def describe(thing):
     found = material(thing)
     values = found.values if isinstance(found, Model | Fit) else {}
     return str(found.name), found.scene_dict(), dict(values)
-
-
-def load_scene(load, source, name):
-    """The scene that `load`, a function of Mitsuba's, makes of `source`; errors name it `name`."""
-    try:
-        return load(source, parallel=False)
-    except (RuntimeError, TypeError) as error:
-        lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-        # a plugin written in Python reports its whole traceback: people need its last line only
-        reason = lines[-1] if any("Traceback" in line for line in lines) else " ".join(lines)
-        raise BrdfkitError(f"{name}: Mitsuba cannot load it ({reason.rstrip('.')}).") from error

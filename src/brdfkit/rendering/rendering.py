@@ -12,10 +12,11 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.arguments import to_whole_number
+from brdfkit.host.loading import load
 from brdfkit.jit.threads import in_turn
 from brdfkit.names import make_unique
 from brdfkit.rendering import scenes
-from brdfkit.rendering.inputs import Renderable, as_list, describe, load_scene, mitsuba
+from brdfkit.rendering.inputs import Renderable, as_list, describe, mitsuba
 from brdfkit.rendering.memory import require_memory
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.tracing import trace
@@ -128,7 +129,7 @@ def render_scene(
     seed, path = to_whole_number("seed", seed, least=0), Path(path)
     if not path.is_file():
         raise BrdfkitError(f"{path}: there is no such scene file; check the path.")
-    scene = load_scene(mitsuba().load_file, str(path), path)
+    scene = load(mitsuba().load_file, str(path), path)
     if not scene.sensors():
         raise BrdfkitError(f"{path}: the scene has no sensor to see it with; add a <sensor>.")
     if scene.integrator() is None:
@@ -159,5 +160,5 @@ def _load_and_trace(dictionaries, spp, seed, progress):
     The scenes are freed as this function returns, still in its turn: a kernel of Mitsuba's calls
     the BSDFs of all scenes that exist in the process, also of one that another thread would free.
     """
-    loaded = {name: load_scene(mitsuba().load_dict, d, name) for name, d in dictionaries.items()}
+    loaded = {name: load(mitsuba().load_dict, d, name) for name, d in dictionaries.items()}
     return trace(loaded, spp, seed, progress)

@@ -1,0 +1,18 @@
+"""Loads scenes and plugins by Mitsuba; what it refuses becomes one sentence."""
+
+from brdfkit.errors import BrdfkitError
+
+
+def load(function, source, name):
+    """The object that a `function` of Mitsuba's, such as `load_dict`, makes of `source`.
+
+    Raises `BrdfkitError`, which names it `name`, where Mitsuba cannot.
+    """
+    try:
+        return function(source, parallel=False)
+    except (RuntimeError, TypeError) as error:
+        lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+        # a plugin written in Python reports its whole traceback: people need its last line only
+        reason = lines[-1] if any("Traceback" in line for line in lines) else " ".join(lines)
+        reason = reason.removeprefix("BrdfkitError: ")
+        raise BrdfkitError(f"{name}: Mitsuba cannot load it ({reason.rstrip('.')}).") from error
