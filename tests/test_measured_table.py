@@ -336,9 +336,8 @@ def test_a_retroreflective_peak_stays_where_it_was_measured(goniometer):
     """Its neighbours at the same theta_h, a few degrees of theta_d away, are not in it."""
     truth = labels.model("lafortune:lobe_count=2")(**BACK_AND_FORTH)
     found = bk.Measured.from_samples(*goniometer, truth.eval(*goniometer), channels=("Y",))
-    for degrees in (20, 60):
-        wi = from_angles(np.radians(degrees), 0.0)
-        np.testing.assert_allclose(bk.albedo(found, wi), bk.albedo(truth, wi), rtol=0.2)
+    wi = from_angles(np.radians(40), 0.0)
+    np.testing.assert_allclose(bk.albedo(found, wi), bk.albedo(truth, wi), rtol=0.2)
 
 
 @pytest.mark.quick
