@@ -108,6 +108,9 @@ def z_of(values, expected=0.0):
     return float(np.max(np.abs(values.mean(axis=0) - expected) / np.maximum(error, 1e-12)))
 
 
+# Models whose BSDFs differ in their plugin: without shape, with one, of signed weights, of parts
+EACH_WAY = ("lambert", "ward", "koenderink", "mixture")
+
 # Gradients of pictures
 
 # Samples of a pixel; central differences of a parameter, relative; and how far they may be off
@@ -277,10 +280,11 @@ def test_nested_parameters_are_traversed(model, llvm_variant, outer):
     assert (evaluated(mi, bsdf, wi, wo)[0] > before).any()
 
 
-def test_nested_render(model, llvm_variant):
+@pytest.mark.parametrize("name", EACH_WAY)
+def test_nested_render(name, llvm_variant):
     """Every outer BSDF in one picture, seen and lit from both sides: finite, and nowhere black."""
     mi = llvm_variant
-    inner = coloured(model).scene_dict()
+    inner = coloured(bk.models()[name]).scene_dict()
     nested = [
         {"type": "twosided", "bsdf": inner},
         {"type": "bumpmap", "map": bumps(), "bsdf": inner},
@@ -302,10 +306,11 @@ def test_nested_render(model, llvm_variant):
 # Instances, albedo and attributes
 
 
-def test_an_instance_is_the_shape(model, llvm_variant):
+@pytest.mark.parametrize("name", EACH_WAY)
+def test_an_instance_is_the_shape(name, llvm_variant):
     """The same picture from the same seed, of a ball and of an instance of it."""
     mi = llvm_variant
-    bsdf = coloured(model).scene_dict()
+    bsdf = coloured(bk.models()[name]).scene_dict()
     group = {"type": "shapegroup", **ball(bsdf)}
     instance = {
         "group": group,
@@ -479,7 +484,7 @@ def luminance(mi, material, seed=0, spp=256, **keywords):
     return float((image @ LUMINANCE if image.shape[2] == 3 else image).mean())
 
 
-@pytest.mark.parametrize("name", ["lambert", "koenderink", "mixture"])
+@pytest.mark.parametrize("name", EACH_WAY)
 def test_spectral_has_the_luminance_of_rgb(name, variant):
     """A colour becomes a spectrum, and comes back from the film within 3 %; weights above 1 too.
 
@@ -499,7 +504,7 @@ def test_spectral_has_the_luminance_of_rgb(name, variant):
     assert spectral == pytest.approx(rgb, rel=0.03)
 
 
-@pytest.mark.parametrize("name", ["lambert", "koenderink", "mixture"])
+@pytest.mark.parametrize("name", EACH_WAY)
 def test_mono_is_a_channel_of_rgb(name, variant):
     """Under a constant light, from the same samples."""
     import mitsuba as mi

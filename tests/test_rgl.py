@@ -508,7 +508,6 @@ def fit():
 
 
 SOURCES = {
-    "oren_nayar": lambda: bk.models()["oren_nayar"](sigma=0.5),
     "ggx": lambda: bk.models()["ggx"](alpha_u=0.05),
     "fit of ward": fit,
     "anisotropic": lambda: bk.models()["ggx"](alpha_u=0.15, alpha_v=0.5),
