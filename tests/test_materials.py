@@ -87,3 +87,11 @@ def test_weights_have_as_many_channels():
             bk.BrdfkitError, match=r"ward: specular_reflectance = \[.*three for R, G"
         ):
             WARD(specular_reflectance=weight)
+
+
+@pytest.mark.quick
+def test_load_proposes_the_nearest_material():
+    with pytest.raises(
+        bk.BrdfkitError, match="'car_pant'; did you mean car_paint"
+    ):
+        bk.load("car_pant")

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from brdfkit import formats
 from brdfkit.catalogue import index, public, shipped
-from brdfkit.errors import BrdfkitError
+from brdfkit.errors import BrdfkitError, nearest, no_such
 from brdfkit.files import contents, write_safely
 from brdfkit.fitting import Fit
 from brdfkit.measured import Measured
@@ -91,11 +91,16 @@ def save_and_read(obj: Measured, path: str | Path) -> Measured:
 
 
 def _find_known(name: str) -> Path | None:
-    """The file of the material that brdfkit knows by `name`, None for another name."""
+    """The file of the material that brdfkit knows by `name`, None for another name.
+
+    Raises `BrdfkitError` for a name that is no path and like that of a material.
+    """
     if name in shipped.materials():
         return shipped.path(name)
     if name.partition("/")[0] in index.entries()["collections"] and "/" in name:
         return public.path(name)
+    if not os.path.exists(name) and not Path(name).suffix and nearest(name, shipped.materials()):
+        raise no_such("file or material", name, shipped.materials())
     return None
 
 

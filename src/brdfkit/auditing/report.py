@@ -26,7 +26,7 @@ def rows(audit):
         "negative": f"{audit.negative:,} of {values:,} values; exactly 0: {audit.zero:,}",
         "BRDF": _range(audit),
         "angles": f"θi {_angles(audit.theta_i)}; θo {_angles(audit.theta_o)}",
-        "coverage": f"of all direction pairs, by solid angle: {_percent(reach.measured)} {how}, "
+        "coverage": f"{_percent(reach.measured)} of the pairs of directions {how}, "
         f"{_percent(reach.between)} between measured angles, {_percent(reach.beyond)} beyond them",
         "reciprocity": _reciprocity(audit),
         "mirror symmetry": _difference(audit.mirror, "no mirrored pairs"),
