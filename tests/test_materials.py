@@ -91,7 +91,5 @@ def test_weights_have_as_many_channels():
 
 @pytest.mark.quick
 def test_load_proposes_the_nearest_material():
-    with pytest.raises(
-        bk.BrdfkitError, match="'car_pant'; did you mean car_paint"
-    ):
+    with pytest.raises(bk.BrdfkitError, match="'car_pant'; did you mean car_paint"):
         bk.load("car_pant")
