@@ -64,6 +64,11 @@ def radiance(mi, emitter, w):
     return np.array(emitter.eval(si))
 
 
+def as_envmap(entries):
+    """The dictionary of Mitsuba's `envmap` with the same map."""
+    return {k: v for k, v in entries.items() if k != "blocks"} | {"type": "envmap"}
+
+
 @pytest.mark.parametrize("turned", [False, True])
 def test_it_shines_as_mitsubas(llvm_variant, turned):
     """The same rows, columns and interpolation, over the map's edges too, however it is turned."""
@@ -72,9 +77,8 @@ def test_it_shines_as_mitsubas(llvm_variant, turned):
     pixels = np.random.default_rng(1).random((4, 6, 3)).astype(np.float32)
     settings = {"bitmap": mi.Bitmap(pixels), "scale": 2.0} | ({"to_world": turn} if turned else {})
     entries = example("kdtree_envmap", **settings)
-    theirs = {k: v for k, v in entries.items() if k != "blocks"} | {"type": "envmap"}
     w = directions()
-    found, expected = (radiance(mi, mi.load_dict(e), w) for e in (entries, theirs))
+    found, expected = (radiance(mi, mi.load_dict(e), w) for e in (entries, as_envmap(entries)))
     np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-4)
 
 
@@ -95,10 +99,8 @@ def scene(mi, emitter):
 def test_pictures_are_those_of_mitsubas(llvm_variant):
     """Means of 64 renders within 3 standard errors, by multiple importance sampling."""
     mi = llvm_variant
-    theirs = example("kdtree_envmap") | {"type": "envmap"}
-    del theirs["blocks"]
-    means = {}
-    for name, entries in {"ours": example("kdtree_envmap"), "theirs": theirs}.items():
+    means, ours = {}, example("kdtree_envmap")
+    for name, entries in {"ours": ours, "theirs": as_envmap(ours)}.items():
         loaded = scene(mi, entries)
         pictures = [np.array(mi.render(loaded, spp=8, seed=seed)).mean() for seed in range(64)]
         means[name] = np.mean(pictures), np.std(pictures) / 8
@@ -111,10 +113,8 @@ def test_the_gradient_by_the_map_is_that_of_mitsubas(llvm_variant):
     import drjit as dr
 
     mi = llvm_variant
-    theirs = example("kdtree_envmap") | {"type": "envmap"}
-    del theirs["blocks"]
-    found = {}
-    for name, entries in {"ours": example("kdtree_envmap"), "theirs": theirs}.items():
+    found, ours = {}, example("kdtree_envmap")
+    for name, entries in {"ours": ours, "theirs": as_envmap(ours)}.items():
         loaded = scene(mi, entries)
         parameters = mi.traverse(loaded)
         key = next(k for k in parameters.keys() if k.endswith("data"))  # noqa: SIM118

@@ -30,7 +30,7 @@ class PluginSubject:
     @property
     def module(self):
         """The file of the plugin, as a module."""
-        return discovery.module(self.source)
+        return _module(self.name)
 
     @cached_property
     def plugin(self):

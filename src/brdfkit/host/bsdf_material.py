@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.host.loading import load
+from brdfkit.host.load_by_mitsuba import load_by_mitsuba
 from brdfkit.jit.llvm import use_variant
 from brdfkit.jit.threads import in_turn
 
@@ -54,7 +54,7 @@ class BsdfMaterial:
         wi, wo = (np.asarray(w, np.float32) for w in (wi, wo))
         si = dr.zeros(mi.SurfaceInteraction3f, len(wi))
         si.wi, si.sh_frame, si.n = mi.Vector3f(wi.T), mi.Frame3f([0, 0, 1]), mi.Normal3f(0, 0, 1)
-        bsdf = load(mi.load_dict, self.entries, self.name)
+        bsdf = load_by_mitsuba(mi.load_dict, self.entries, self.name)
         value = bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(wo.T))
         value = np.array(mi.unpolarized_spectrum(value)).T
         above = (wi[:, 2:] > 0) & (wo[:, 2:] > 0)

@@ -13,7 +13,7 @@ from typing import Any
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.host.properties import is_colour
-from brdfkit.host.volumes import constant_volume, require_volume
+from brdfkit.host.volumes import constant_volume, require_volume, volume_of_colour
 
 
 @dataclass(frozen=True)
@@ -94,12 +94,12 @@ def volume(default, meaning, coloured=True):
             require_volume(value, coloured)
             return value
         if coloured and is_colour(value):
-            return constant_volume(value)
+            return volume_of_colour(value)
         if isinstance(value, bool) or not isinstance(value, int | float):
             constant = "a number or a colour" if coloured else "or a number"
             raise ValueError(f"a volume, such as a gridvolume, {constant}")
         _require_within(value, (0, math.inf))
-        return mi.load_dict({"type": "constvolume", "value": value}, parallel=False)
+        return constant_volume(value)
 
     return Setting(default, None, meaning, read, differentiable=True)
 

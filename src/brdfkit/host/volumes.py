@@ -24,10 +24,17 @@ def require_volume(volume, coloured):
             raise ValueError("a volume of finite values, not negative")
 
 
-def constant_volume(colour):
+def constant_volume(value):
+    """A volume of one `value`, a number or a dictionary of Mitsuba's."""
+    import mitsuba as mi
+
+    return mi.load_dict({"type": "constvolume", "value": value}, parallel=False)
+
+
+def volume_of_colour(colour):
     """A volume of one colour, in linear sRGB.
 
-    It is a grid: Mitsuba's constvolume clips a colour above 1 in spectral variants, unsaid.
+    In spectral variants it is a grid: Mitsuba's constvolume clips a colour above 1 there, unsaid.
     """
     import mitsuba as mi
 
@@ -35,7 +42,6 @@ def constant_volume(colour):
     if not np.isfinite(colour).all() or colour.min() < 0:
         raise ValueError("a colour of finite values, not negative")
     if not mi.is_spectral:
-        value = {"type": "rgb", "value": colour.tolist()}
-        return mi.load_dict({"type": "constvolume", "value": value}, parallel=False)
+        return constant_volume({"type": "rgb", "value": colour.tolist()})
     grid = mi.VolumeGrid(np.broadcast_to(colour, (2, 2, 2, 3)).copy())
     return mi.load_dict({"type": "gridvolume", "grid": grid}, parallel=False)

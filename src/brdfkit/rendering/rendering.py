@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from brdfkit.arguments import to_whole_number
 from brdfkit.errors import BrdfkitError
-from brdfkit.fitting.arguments import to_whole_number
-from brdfkit.host.loading import load
+from brdfkit.host.load_by_mitsuba import load_by_mitsuba
 from brdfkit.jit.threads import in_turn
 from brdfkit.names import make_unique
 from brdfkit.rendering import scenes
@@ -129,7 +129,7 @@ def render_scene(
     seed, path = to_whole_number("seed", seed, least=0), Path(path)
     if not path.is_file():
         raise BrdfkitError(f"{path}: there is no such scene file; check the path.")
-    scene = load(mitsuba().load_file, str(path), path)
+    scene = load_by_mitsuba(mitsuba().load_file, str(path), path)
     if not scene.sensors():
         raise BrdfkitError(f"{path}: the scene has no sensor to see it with; add a <sensor>.")
     if scene.integrator() is None:
@@ -160,5 +160,7 @@ def _load_and_trace(dictionaries, spp, seed, progress):
     The scenes are freed as this function returns, still in its turn: a kernel of Mitsuba's calls
     the BSDFs of all scenes that exist in the process, also of one that another thread would free.
     """
-    loaded = {name: load(mitsuba().load_dict, d, name) for name, d in dictionaries.items()}
+    loaded = {
+        name: load_by_mitsuba(mitsuba().load_dict, d, name) for name, d in dictionaries.items()
+    }
     return trace(loaded, spp, seed, progress)

@@ -4,9 +4,9 @@ import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from brdfkit.arguments import to_dictionary, to_pair, to_whole_number
 from brdfkit.errors import no_such
 from brdfkit.fitting import Fit, losses, regress
-from brdfkit.fitting.arguments import to_dictionary, to_pair, to_whole_number
 from brdfkit.fitting.robust import WEIGHTS
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike, measured_material

@@ -3,7 +3,7 @@
 from brdfkit.errors import BrdfkitError
 
 
-def load(function, source, name):
+def load_by_mitsuba(function, source, name):
     """The object that a `function` of Mitsuba's, such as `load_dict`, makes of `source`.
 
     Raises `BrdfkitError`, which names it `name`, where Mitsuba cannot.

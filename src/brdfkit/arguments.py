@@ -1,4 +1,4 @@
-"""Checks the arguments of `fit`: a wrong one is an error that names it."""
+"""Checks arguments of public verbs: a wrong one is an error that names it."""
 
 from collections.abc import Mapping
 
