@@ -10,7 +10,7 @@ from random_models import random_model
 
 import brdfkit as bk
 from brdfkit.errors import BrdfkitError
-from brdfkit.fitting.weights import minimise_quadratic
+from brdfkit.fitting.box_quadratic import minimise_in_box
 from brdfkit.geometry.directions import from_angles
 from brdfkit.geometry.vectors import half_vector
 from brdfkit.model import Model, shape, weight
@@ -342,18 +342,22 @@ def test_bad_requests_are_refused(arguments, words):
 
 
 @pytest.mark.quick
-def test_minimise_quadratic_meets_the_optimality_conditions():
+def test_minimise_in_box_meets_the_optimality_conditions():
+    """Columns of unlike sizes, several problems at a time, bounds of both kinds and of none."""
     rng = np.random.default_rng(0)
-    for _ in range(200):
-        n = rng.integers(1, 5)
-        factor = rng.normal(size=(n + 2, n)) * 10.0 ** rng.integers(-4, 4, n)
-        hessian, moment = factor.T @ factor, factor.T @ rng.normal(size=n + 2)
-        a = minimise_quadratic(hessian, moment)
-        scale = np.sqrt(np.diag(hessian))
-        gradient = (hessian @ a - moment) / scale
-        assert (a >= 0).all()
-        assert (gradient > -1e-8).all()
-        assert np.abs(gradient[a > 0]).max(initial=0) < 1e-8
+    for n in range(1, 9):
+        factor = rng.normal(size=(100, n + 2, n)) * 10.0 ** rng.integers(-4, 4, (100, 1, n))
+        hessian = factor.transpose(0, 2, 1) @ factor
+        scale = np.sqrt(hessian.diagonal(axis1=1, axis2=2))
+        gradient = rng.normal(size=(100, n)) * scale
+        low = np.where(rng.random((100, n)) < 0.3, -np.inf, rng.normal(size=(100, n)) / scale)
+        high = np.where(rng.random((100, n)) < 0.3, np.inf, low + 1 / scale)
+        z = minimise_in_box(hessian, gradient, low, high)
+        z, low, high = (x * scale for x in (z, low, high))
+        assert ((low <= z + 1e-12) & (z <= high + 1e-12)).all()
+        slope = (hessian @ (z / scale)[..., None])[..., 0] / scale + gradient / scale
+        assert (slope[z < high - 1e-9] > -1e-7).all()
+        assert (slope[z > low + 1e-9] < 1e-7).all()
 
 
 class Undefined(Model):

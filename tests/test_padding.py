@@ -8,7 +8,7 @@ import textwrap
 import numpy as np
 import pytest
 
-from brdfkit.jit.padding import PACKET, pad
+from brdfkit.jit.padding import ALIGNMENT, PACKET, pad
 
 
 @pytest.mark.quick
@@ -25,13 +25,14 @@ def test_behind_an_array_a_packet_is_readable(n, dtype):
         found = pad(values)
         np.testing.assert_array_equal(found, values)
         assert (found.dtype, found.flags.c_contiguous) == (dtype, True)
+        assert found.ctypes.data % ALIGNMENT == 0
         if found is values:
             last = values.ctypes.data + values.nbytes - 1
             assert (last + PACKET * itemsize) // mmap.PAGESIZE == last // mmap.PAGESIZE
         else:
             copies += 1
-            assert found.base.size == n + PACKET
-    assert copies == PACKET
+            assert found.base.size >= n + PACKET
+    assert copies < mmap.PAGESIZE // itemsize
     strided = np.arange(2 * n, dtype=dtype)[::2]
     np.testing.assert_array_equal(pad(strided), strided)
 

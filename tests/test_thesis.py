@@ -66,7 +66,7 @@ class Sample:
     @classmethod
     def of(cls, data):
         samples = select_samples(data, 80)
-        cosines, weights = losses["cosine"].factors(samples)
+        weights, cosines = losses["cosine"].weights(samples.wi[:, 2]), samples.wi[:, 2]
         return cls(samples.wi, samples.wo, samples.values[:, 0], cosines, weights)
 
     def solve(self, lobes, weights=None):

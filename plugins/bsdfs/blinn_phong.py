@@ -14,9 +14,8 @@ Shows plastics; no Fresnel effect, no retro-reflection.
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import half_vector
 from brdfkit.model import Model, follows, option, shape, weight
-from brdfkit.model.lobes import HalfVector, Lobe, lambertian
+from brdfkit.model.lobes import HalfVector, factored, lambertian
 from brdfkit.model.microfacet import CosinePower, Visible
 
 
@@ -35,11 +34,12 @@ class BlinnPhong(Model):
             return (n + 2) / (2 * dr.pi)
         return (n + 2) * (n + 4) / (8 * dr.pi * (dr.exp(-n / 2 * dr.log(2.0)) + n))
 
-    def specular(self, wi, wo):
-        facets = CosinePower(self.exponent, self.exponent_v)
-        return self.constant() * facets.power(half_vector(wi, wo))
+    def facets(self, h, cos_d):
+        return self.constant() * CosinePower(self.exponent, self.exponent_v).power(h)
 
     def lobes(self):
         sampling = HalfVector(Visible(CosinePower(self.exponent, self.exponent_v)))
         brightest = 4 if self.normalisation == "printed" else 1
-        return lambertian(), Lobe(self.specular, sampling, lambda wi: brightest * wi.z)
+        return lambertian(), factored(
+            self.facets, lambda wi, wo: 1.0, sampling, lambda wi: brightest * wi.z
+        )

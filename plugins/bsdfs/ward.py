@@ -9,9 +9,8 @@ grazing angles, has no Fresnel effect and no retro-reflection.
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import half_vector
 from brdfkit.model import Model, follows, shape, weight
-from brdfkit.model.lobes import HalfVector, Lobe, lambertian
+from brdfkit.model.lobes import HalfVector, factored, lambertian
 from brdfkit.model.microfacet import Beckmann, Visible
 
 
@@ -21,10 +20,13 @@ class Ward(Model):
     alpha_u = shape(0.2, (0.001, 1.0), "α_u: width of the slopes along x", log=True, width=1)
     alpha_v = follows("alpha_u", alpha_u, "α_v: width of the slopes along y")
 
-    def specular(self, wi, wo):
-        gauss = Beckmann(self.alpha_u, self.alpha_v).gauss(half_vector(wi, wo))
-        return gauss / (4 * dr.pi * self.alpha_u * self.alpha_v * dr.sqrt(wi.z * wo.z))
+    def facets(self, h, cos_d):
+        gauss = Beckmann(self.alpha_u, self.alpha_v).gauss(h)
+        return gauss / (4 * dr.pi * self.alpha_u * self.alpha_v)
+
+    def geometry(self, wi, wo):
+        return dr.rsqrt(wi.z * wo.z)
 
     def lobes(self):
         sampling = HalfVector(Visible(Beckmann(self.alpha_u, self.alpha_v)))
-        return lambertian(), Lobe(self.specular, sampling)
+        return lambertian(), factored(self.facets, self.geometry, sampling)

@@ -11,9 +11,9 @@ form stays below 1.
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import cos_theta_d, half_vector
+from brdfkit.geometry.vectors import cos_theta_d
 from brdfkit.model import Model, follows, option, shape, weight
-from brdfkit.model.lobes import HalfVector, Lobe, lambertian
+from brdfkit.model.lobes import HalfVector, factored, lambertian
 from brdfkit.model.microfacet import Beckmann, Visible
 
 
@@ -24,15 +24,16 @@ class WardDuer(Model):
     alpha_u = shape(0.2, (0.001, 1.0), "α_u: width of the slopes along x", log=True, width=1)
     alpha_v = follows("alpha_u", alpha_u, "α_v: width of the slopes along y")
 
-    def specular(self, wi, wo):
-        gauss = Beckmann(self.alpha_u, self.alpha_v).gauss(half_vector(wi, wo))
-        gauss = gauss / (dr.pi * self.alpha_u * self.alpha_v)
+    def facets(self, h, cos_d):
+        gauss = Beckmann(self.alpha_u, self.alpha_v).gauss(h)
+        return gauss / (dr.pi * self.alpha_u * self.alpha_v)
+
+    def geometry(self, wi, wo):
         if self.form == "printed":
-            return gauss / (4 * wi.z * wo.z)
+            return 1 / (4 * wi.z * wo.z)
         # 1 + L·V = 2 cos²θ_d, which does not cancel
-        ratio = 2 * cos_theta_d(wi, wo) / dr.square(wi.z + wo.z)
-        return gauss * dr.square(ratio)
+        return dr.square(2 * cos_theta_d(wi, wo) / dr.square(wi.z + wo.z))
 
     def lobes(self):
         sampling = HalfVector(Visible(Beckmann(self.alpha_u, self.alpha_v)))
-        return lambertian(), Lobe(self.specular, sampling)
+        return lambertian(), factored(self.facets, self.geometry, sampling)

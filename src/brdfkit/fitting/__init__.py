@@ -1,9 +1,12 @@
 """The numeric core of a fit: a model regressed on samples, without files and without Mitsuba.
 
-`loss.py`: the error E that a fit minimises; `problem.py`: E² as a function of the shape parameters,
-with the best weights for each of their values (`weights.py`); `parameter_space.py`: the bounds of
-the search; `starting_points.py`: where it starts; `search.py`: SQP from one start; `robust.py`:
-outliers; `regression.py`: runs these one after the other; `result.py`: `Fit`.
+From the ground up: `loss.py` is the error E that a fit minimises. `columns.py` evaluates the lobes
+of a model and their derivatives, on `blocks.py` of samples; `sums.py` adds them up, `expansion.py`
+makes of the sums E² to second order, and `problem.py` all this of a model on samples (`folding.py`:
+quicker, on a table with a linear loss). `levenberg_marquardt.py` searches, in the bounds of
+`parameter_space.py`, from `starting_points.py`, on a `part.py` of many samples first; its steps are
+`box_quadratic.py`. `robust.py` weighs outliers, `robust_search.py` until weights and solution give
+each other back. `regression.py` runs these one after the other; `result.py` is `Fit`.
 """
 
 from brdfkit.fitting.loss import losses as losses

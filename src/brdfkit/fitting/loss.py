@@ -1,12 +1,13 @@
 """Losses: the errors E that a fit minimises.
 
-    E² = Σ_n w_n Σ_c [g(κ_n R_nc) - g(κ_n M_nc)]² / N
+    E² = Σ_n w_n Σ_c d(M_nc, R_nc, cosθ_i, cosθ_o)² / N
 
-R is the measured BRDF and M the model's, at sample n in channel c. κ is a product of cosines, w the
-sample's weight, and N normalises. The transform g decides how much dark values count beside bright
-ones. Samples with an angle beyond 80° are left out, where measurements are least reliable
-[Ngan et al. 2005]. A measured value may be negative (noise, or a colour out of gamut): the cosine
-and the plain loss take it as it is, the others as 0, because their g needs values ≥ 0.
+R is the measured BRDF and M the model's, at sample n in channel c. d is their difference, that of
+the values times a product of cosines, or of a function of it, which decides how much dark values
+count beside bright ones. w is the sample's weight, and N normalises. Samples with an angle beyond
+80° are left out, where measurements are least reliable [Ngan et al. 2005]. A measured value may be
+negative (noise, or a colour out of gamut): the cosine and the plain loss take it as it is, the
+others as 0, because their functions need values ≥ 0.
 """
 
 from collections.abc import Callable
@@ -24,38 +25,39 @@ CBRT_OFFSET = 1e-6
 
 @dataclass(frozen=True)
 class Loss:
-    """One loss. `g`, its derivative `dg` and second derivative `ddg` take Dr.Jit arrays.
+    """One loss. `difference(model, measured, cos_i, cos_o)` takes arrays of Dr.Jit's.
 
-    `cosines(cos_i, cos_o)` gives κ, `weights(wi)` gives w; `linear`: whether g is the identity;
-    `channel_mean`: whether E² is a mean over the channels, otherwise their sum.
+    `weights(cos_i)`: w of NumPy's cosines (n,); `linear`: whether the difference is linear in the
+    model's value; `channel_mean`: whether E² is a mean over the channels, otherwise their sum.
     """
 
     name: str
     meaning: str
-    g: Callable
-    dg: Callable
-    ddg: Callable
-    cosines: Callable
-    weights: Callable
+    difference: Callable
+    weights: Callable = np.ones_like
     linear: bool = False
     channel_mean: bool = True
 
-    def factors(self, samples):
-        """(κ, w), each (n,), of `Samples`; w includes how much each sample counts."""
-        cosines = self.cosines(samples.wi[:, 2], samples.wo[:, 2])
-        return cosines, self.weights(samples.wi) * samples.weight
-
-    def target(self, values):
-        """The values (n, channels) that g takes: negative ones are 0 unless g is the identity."""
-        return values if self.linear else np.maximum(values, 0)
-
-    def normaliser(self, weights, channels):
-        """N: Σ w, times the number of channels where E is a mean over them."""
-        return weights.sum() * (channels if self.channel_mean else 1)
+    def importance(self, samples):
+        """w (n,) of `Samples`, with how much each sample counts, so that Σ_n is a mean."""
+        weights = self.weights(samples.wi[:, 2]) * samples.weight
+        total = weights.sum() * (samples.values.shape[1] if self.channel_mean else 1)
+        return weights / total if total else weights
 
 
-def _sin_theta(w):
-    return np.sqrt(np.maximum(1 - w[:, 2] ** 2, 0))
+def _difference_of(g, cosines):
+    """The difference of g(κ f) between the model's f, which is ≥ 0, and the measured one, which
+    counts as 0 where it is not; κ = `cosines(cos_i, cos_o)`."""
+
+    def difference(model, measured, cos_i, cos_o):
+        kappa = cosines(cos_i, cos_o)
+        return g(kappa * model) - g(kappa * dr.maximum(measured, 0))
+
+    return difference
+
+
+def _sine(cosine):
+    return np.sqrt(np.maximum(1 - cosine**2, 0))
 
 
 class Losses(dict[str, Loss]):
@@ -76,40 +78,29 @@ losses = Losses(
         Loss(
             name="cosine",
             meaning="cosine-weighted L2, w = sin θ_i, channels summed [Kurt 2007, eq. 5.13]",
-            g=lambda x: x,
-            dg=lambda x: 1,
-            ddg=lambda x: 0,
-            cosines=lambda cos_i, cos_o: cos_i,
-            weights=_sin_theta,
+            difference=lambda model, measured, cos_i, cos_o: cos_i * (model - measured),
+            weights=_sine,
             linear=True,
             channel_mean=False,
         ),
         Loss(
             name="log",
             meaning="RMS difference of ln(f cos θ_i cos θ_o + 0.001): relative error, dark counts",
-            g=lambda x: dr.log(x + LOG_OFFSET),
-            dg=lambda x: 1 / (x + LOG_OFFSET),
-            ddg=lambda x: -1 / dr.square(x + LOG_OFFSET),
-            cosines=lambda cos_i, cos_o: cos_i * cos_o,
-            weights=lambda wi: np.ones(len(wi)),
+            difference=_difference_of(
+                lambda x: dr.log(x + LOG_OFFSET), lambda cos_i, cos_o: cos_i * cos_o
+            ),
         ),
         Loss(
             name="cbrt",
             meaning="RMS difference of the cube root of f cos θ_i: between cosine and log",
-            g=lambda x: dr.cbrt(x + CBRT_OFFSET),
-            dg=lambda x: 1 / (3 * dr.square(dr.cbrt(x + CBRT_OFFSET))),
-            ddg=lambda x: -2 / (9 * dr.cbrt(x + CBRT_OFFSET) ** 5),
-            cosines=lambda cos_i, cos_o: cos_i,
-            weights=lambda wi: np.ones(len(wi)),
+            difference=_difference_of(
+                lambda x: dr.cbrt(x + CBRT_OFFSET), lambda cos_i, cos_o: cos_i
+            ),
         ),
         Loss(
             name="plain",
             meaning="RMS difference of f: what is bright counts",
-            g=lambda x: x,
-            dg=lambda x: 1,
-            ddg=lambda x: 0,
-            cosines=lambda cos_i, cos_o: np.ones(len(cos_i)),
-            weights=lambda wi: np.ones(len(wi)),
+            difference=lambda model, measured, cos_i, cos_o: model - measured,
             linear=True,
         ),
     )

@@ -14,14 +14,44 @@ from brdfkit.model import double_precision
 REMEDY = "keep the formula finite there, as by dr.maximum, or leave the direction out of the data"
 
 
+def require_finite_columns(columns, values, block, space, u):
+    """The arrays `values` (points, n) of the `Columns` at the samples of a `Block`, all finite.
+
+    Raises `BrdfkitError` where one is not. Slopes that are finite backwards, as those of 0^p by p,
+    become 0: forwards, Dr.Jit has NaN there. `u` (points, shapes): coordinates in the `space`.
+    """
+    if all(np.isfinite(value.sum()) for value in values):  # quick: one sum per column
+        return values
+    count = len(columns.lobes)
+    for lobe, value in zip(columns.lobes, values, strict=False):
+        if not np.isfinite(value).all():
+            row = np.argwhere(~np.isfinite(value))[0][1]
+            _raise_for_lobe(
+                columns.model,
+                lobe,
+                value[~np.isfinite(value)][0],
+                describe_pair(*block.first(), row),
+            )
+    for point in np.flatnonzero(
+        [not np.isfinite([v[k] for v in values]).all() for k in range(len(u))]
+    ):
+        shapes = space.values(u[point])
+        require_finite_slopes(columns.model, shapes, space.names, *block.first())
+    return [*values[:count], *(np.nan_to_num(v, posinf=0, neginf=0) for v in values[count:])]
+
+
 def require_finite(model, columns, wi, wo):
     """Raise `BrdfkitError` where a lobe's values, `columns` (lobes, n), are not finite."""
     if np.isfinite(columns.sum(axis=1)).all():  # quick: one sum per lobe
         return
     lobe, row = np.argwhere(~np.isfinite(columns))[0]
+    _raise_for_lobe(model, lobe, columns[lobe, row], describe_pair(wi, wo, row))
+
+
+def _raise_for_lobe(model, lobe, value, pair):
     raise BrdfkitError(
-        f"{model.type_name()}: the lobe of {model.weights()[lobe]} is {columns[lobe, row]:g} at "
-        f"{describe_pair(wi, wo, row)}; {REMEDY}."
+        f"{model.type_name()}: the lobe of {model.weights()[lobe]} is {value:g} at {pair}; "
+        f"{REMEDY}."
     )
 
 
@@ -29,8 +59,8 @@ def require_finite_slopes(model, values, names, wi, wo):
     """Raise `BrdfkitError` where a lobe's derivative by one of the parameters `names` is not
     finite, at `values` of the shape parameters; `wi`, `wo`: `double_precision.Vector`.
 
-    The derivatives are taken in reverse mode, as in a fit: in forward mode Dr.Jit gives no finite
-    derivative of 0^p by p, which is 0.
+    The derivatives are taken in reverse mode: in forward mode Dr.Jit gives no finite derivative of
+    0^p by p, which is 0.
     """
     bound = {n: double_precision.scalar(v) for n, v in values.items()}
     for name in names:

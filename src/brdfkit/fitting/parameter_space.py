@@ -36,13 +36,17 @@ class Space:
         log = np.array([model.parameters[n].log for n in names], bool)
         return cls(names, low, high, log, {k: float(v) for k, v in fixed.items()})
 
-    def values(self, u):
-        """The parameters by name at coordinates `u`."""
+    def table(self, u):
+        """The parameters (points, shapes) at coordinates `u`, of the same shape."""
         linear = self.low + u * (self.high - self.low)
-        return dict(zip(self.names, np.where(self.log, self._geometric(u), linear), strict=True))
+        return np.where(self.log, self._geometric(u), linear)
+
+    def values(self, u):
+        """The parameters by name, with the fixed ones, at the coordinates `u` (shapes,)."""
+        return dict(zip(self.names, map(float, self.table(u)), strict=True)) | self.fixed
 
     def coordinates(self, values):
-        """The coordinates of parameters by name, clamped to [0, 1]."""
+        """The coordinates (shapes,) of parameters by name, clamped to [0, 1]."""
         x = np.array([values[name] for name in self.names])
         linear = (x - self.low) / (self.high - self.low)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -50,7 +54,7 @@ class Space:
         return np.clip(np.where(self.log, log, linear), 0, 1)
 
     def slopes(self, u):
-        """The derivative of each parameter by its coordinate, at coordinates `u`."""
+        """The derivative of each parameter by its coordinate, at coordinates `u`; as `table`."""
         with np.errstate(divide="ignore", invalid="ignore"):
             log = self._geometric(u) * np.log(self.high / self.low)
         return np.where(self.log, log, self.high - self.low)

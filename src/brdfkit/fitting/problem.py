@@ -1,162 +1,199 @@
-"""What a fit minimises: E² of a model on samples, as a function of the shape parameters.
+"""What a fit minimises: E² of a model on samples, as a function of its shapes and weights.
 
-For given shape parameters x, `solve` computes the best weights of each channel (variable
-projection), so that the search runs over x alone. At the best weights, the derivative of E² by x
-equals the partial derivative with the weights held fixed (envelope theorem). Dr.Jit computes it
-exactly.
+A point is the coordinates u of the searched shape parameters and the weights of all channels. Many
+points are evaluated together, each with all samples, by one kernel.
 """
-
-import copy
 
 import drjit as dr
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.fitting.channel_loss import Channel, add_up, to_float
-from brdfkit.fitting.not_finite import require_finite, require_finite_slopes
+from brdfkit.fitting.blocks import Blocks
+from brdfkit.fitting.columns import Columns
+from brdfkit.fitting.expansion import Expansion
+from brdfkit.fitting.not_finite import require_finite_columns
+from brdfkit.fitting.sums import Sums, move_weights, solve_weights
 from brdfkit.model import double_precision
 
 
 class Problem:
-    """E² of a model on `Samples`, all of them valid, divided by the E² of a black model.
+    """E² of a model class on `Samples`, all of them valid.
 
-    Arguments called `values` are the shape parameters by name.
+    Weights that may be negative can make the model negative, where it is clamped at 0; where E² is
+    `extended`, it goes on below 0 with the slope of the loss at 0.
+
+    `space`: the search space of its shape parameters. Arguments: coordinates `u` (points, shapes)
+    and `weights` (points, channels, lobes).
     """
 
-    def __init__(self, model, samples, loss):
-        cosines, importance = loss.factors(samples)
-        array = double_precision.array
-        self.model, self.loss = model, loss
-        self.bounded = np.array([model.parameters[n].bounds[0] >= 0 for n in model.weights()])
-        self.wi, self.wo = double_precision.vector(samples.wi), double_precision.vector(samples.wo)
-        self.cosines = array(cosines)
-        # κR (channels, n), and g(κR) of each channel
-        self.measured = np.ascontiguousarray((loss.target(samples.values) * cosines[:, None]).T)
-        self.channels = len(self.measured)
-        self.targets = [loss.g(array(m)) for m in self.measured]
+    def __init__(self, model, samples, loss, space, extended=False):
+        self.model, self.samples, self.loss, self.space = model, samples, loss, space
+        self.columns = Columns.of(model, space.names, space.fixed)
+        self.channels = samples.values.shape[1]
+        bounds = [model.parameters[name].bounds for name in model.weights()]
+        self.least = np.array([low for low, _ in bounds])
+        self.clamped = not loss.linear and bool((self.least < 0).any())
+        self.extended = extended
+        self.linear = loss.linear and (self.columns.powers == 1).all()
+        self.factors = None
 
-        # A sample's importance is w / N, divided by the E² of a black model; the loss E is then
-        # `scale` times the root of `squared_error`
-        normaliser = loss.normaliser(importance, self.channels)
-        if normaliser == 0:
+        importance = loss.importance(samples)
+        if not importance.any():
             raise BrdfkitError(
                 f"The {loss.name} loss weighs no sample, for all are seen at normal incidence; "
                 "choose another loss."
             )
-        importance = importance / normaliser
-        black = loss.g(double_precision.float64()(0.0))
-        squares = sum(add_up(array(importance) * dr.square(black - t)) for t in self.targets)
-        self.scale = squares**0.5 or 1.0
-        self.importance = importance / self.scale**2
-        self.importances = [array(self.importance)] * self.channels
-        dr.eval(self.targets, self.importances)
+        self.blocks = Blocks(samples, importance)
 
-    def reweighted(self, weights):
-        """The same problem, in which each sample counts `weights` (channels, n) times as much."""
-        other = copy.copy(self)
-        other.importances = [double_precision.array(self.importance * w) for w in weights]
-        return other
+    def on(self, samples):
+        """The same problem on other `Samples`."""
+        return Problem(self.model, samples, self.loss, self.space)
 
-    def lobes(self, values):
-        """Two lists of one array (n,) per lobe, times κ: the factor of the weight, and that of the
-        squared weight, which is None for a lobe without a quadratic term."""
-        terms = self.model.bind(values).terms()
-        plain = [self.cosines * lobe.eval(self.wi, self.wo) for _, lobe in terms]
-        squared = [
-            None if lobe.quadratic is None else self.cosines * lobe.quadratic(self.wi, self.wo)
-            for _, lobe in terms
-        ]
-        return plain, squared
+    def black(self):
+        """What each sample adds to E² of a black model (n,)."""
+        squares = []
+        for block in self.blocks(1):
+            total = sum(dr.square(self._difference(block, 0.0, c)[0]) for c in range(self.channels))
+            squares.append(np.asarray(block.importance * total))
+        return np.concatenate(squares)
 
-    def solve(self, values):
-        """The best weights (channels, lobes) at `values`, which are numbers."""
-        plain, squared = self.columns(values)
-        return np.array([self._channel(plain, squared, c).solve() for c in range(self.channels)])
+    def start(self, u):
+        """The weights with the least E² where the loss is linearised at the measured values: exact
+        for a linear one, otherwise where a search begins."""
+        sums = Sums.zeros(len(u), self.channels, len(self.columns))
+        for block in self.blocks(len(u)):
+            columns = self._columns(block, u)
+            moments, weights = [], []
+            for c, measured in enumerate(block.measured):
+                value = measured if self.loss.linear else dr.maximum(measured, 0)
+                _, slope = self._difference(block, value, c)
+                weights.append(block.importance * slope * slope)
+                moments.append(-weights[-1] * value)
+            self._add(sums, block, u, columns, [0 * block.importance], moments, weights)
+        return solve_weights(self.columns, sums, self.least)
 
-    def columns(self, values):
-        """`lobes` as two NumPy arrays (lobes, n) at `values`, which are numbers; the second is None
-        if no lobe has a quadratic term."""
-        plain, squared = self.lobes(_bind(values))
-        dr.eval(plain, squared)
-        plain = np.stack([np.asarray(lobe) for lobe in plain])
-        require_finite(self.model, plain, self.wi, self.wo)
-        if all(lobe is None for lobe in squared):
-            return plain, None
-        none = np.zeros(plain.shape[1])
-        return plain, np.stack([none if q is None else np.asarray(q) for q in squared])
+    def expand(self, u, weights, curvature=True):
+        """The `Expansion` of E² about points, by Gauss and Newton; its Hessian is None without
+        `curvature`. Where E² is quadratic in the weights, the best ones replace `weights`."""
+        solve = self.linear and curvature and self.factors is None
+        if solve:
+            weights = np.zeros_like(weights)
+        sums = self.sums(u, weights, curvature)
+        if solve:
+            weights = solve_weights(self.columns, sums, self.least)
+            sums = move_weights(self.columns, sums, weights)
+        return Expansion.of(self.columns, self.space, sums, u, weights)
 
-    def residuals(self, values, weights):
-        """Two lists by channel: residuals (n,), and their derivatives by the weights (lobes, n).
+    def sums(self, u, weights, curvature=True):
+        """The `Sums` at points."""
+        sums = Sums.zeros(len(u), self.channels, len(self.columns), curvature)
+        for block in self.blocks(len(u)):
+            columns = self._columns(block, u)
+            model = self._mix(block, columns, weights)
+            squares, moments, grams = [], [], []
+            for c, value in enumerate(model):
+                difference, slope = self._difference(block, value, c)
+                importance = block.importance
+                if self.factors is not None:
+                    importance = importance * double_precision.array(self.factors[c][block.rows])
+                squares.append(importance * dr.square(difference))
+                moments.append(importance * difference * slope)
+                grams.append(importance * slope * slope)
+            self._add(sums, block, u, columns, squares, moments, grams)
+        return sums
 
-        The sum of the squared residuals is E², as long as the problem is not reweighted.
-        """
-        plain, squared = self.columns(values)
-        root, residuals, derivatives = np.sqrt(self.importance), [], []
-        for c, target in enumerate(self.targets):
-            model, columns = self._channel(plain, squared, c).mix(weights[c])
-            residuals.append(root * np.asarray(self.loss.g(model) - target))
-            derivatives.append(columns * (root * np.asarray(self.loss.dg(model) + 0 * model)))
-        return residuals, derivatives
+    def expand_here(self, u, weights):
+        """The `Expansion` at these very `weights`."""
+        sums = self.sums(u, weights)
+        return Expansion.of(self.columns, self.space, sums, u, weights)
 
-    def _channel(self, plain, squared, c):
-        return Channel(
-            self.loss,
-            plain,
-            squared,
-            self.measured[c],
-            self.targets[c],
-            self.importances[c],
-            self.bounded,
+    def residuals(self, u, weights):
+        """The residuals at one point, an array (n,) per channel; their squares add up to E²."""
+        parts = []
+        for block in self.blocks(1):
+            model = self._mix(block, self._columns(block, u), weights)
+            root = dr.sqrt(block.importance)
+            parts.append([root * self._difference(block, m, c)[0] for c, m in enumerate(model)])
+            dr.eval(parts[-1])
+        return [np.concatenate([np.asarray(p) for p in part]) for part in zip(*parts, strict=True)]
+
+    def by_weights(self, u, weights):
+        """The derivatives of the residuals by the weights, at one point: block by block, (rows, a
+        list by channel of arrays (lobes, n))."""
+        powers, lobes = self.columns.powers, self.columns.lobes
+        for block in self.blocks(1):
+            columns = self._columns(block, u)
+            model = self._mix(block, columns, weights)
+            roots = [
+                dr.sqrt(block.importance) * self._difference(block, value, c)[1]
+                for c, value in enumerate(model)
+            ]
+            dr.eval(columns, roots)
+            by_channel = []
+            for own, root in zip(weights[0], roots, strict=True):
+                factors = powers * own[lobes] ** (powers - 1)
+                derivatives = np.zeros((len(self.least), len(np.asarray(root))))
+                for lobe, factor, column in zip(lobes, factors, columns, strict=False):
+                    derivatives[lobe] += factor * np.asarray(column)
+                by_channel.append(derivatives * np.asarray(root))
+            yield block.rows, by_channel
+
+    def _columns(self, block, u):
+        values = self.space.table(u)
+        shapes = block.spread(values) if values.size else []
+        return self.columns.eval(shapes, block.wi, block.wo)
+
+    def _mix(self, block, columns, weights):
+        """The model at a block's samples, an array per channel."""
+        factors = weights[:, :, self.columns.lobes] ** self.columns.powers
+        points, channels, values = factors.shape
+        spread = block.spread(factors.reshape(points, -1))
+        mixed = []
+        for c in range(channels):
+            own = spread[c * values : (c + 1) * values]
+            mixed.append(sum(f * column for f, column in zip(own, columns, strict=False)))
+        return mixed
+
+    def _difference(self, block, value, c):
+        """The loss's difference, and its derivative by the model's `value`, in channel `c`."""
+
+        def difference(value):
+            return self.loss.difference(value, block.measured[c], block.wi.z, block.wo.z)
+
+        def clamped(value):
+            return difference(dr.select(value < 0, 0, value))
+
+        def extended(value):
+            return clamped(value) + slope * dr.minimum(value, 0)
+
+        value = double_precision.float64()(value) + 0 * block.wi.z
+        if not self.clamped:
+            return _differentiate(difference, value)
+        if not self.extended:
+            return _differentiate(clamped, value)
+        _, slope = _differentiate(difference, 0 * value)
+        return _differentiate(extended, value)
+
+    def _add(self, sums, block, u, columns, squares, moments, weights):
+        """Evaluate a block in one kernel, and add it to `sums`."""
+        total = sum(squares)
+        dr.eval(columns, total, moments, weights)
+        values = [block.fold(column) for column in columns]
+        values = require_finite_columns(self.columns, values, block, self.space, u)
+        sums.add(
+            values,
+            block.fold(total),
+            [block.fold(m) for m in moments],
+            [block.fold(w) for w in weights],
         )
 
-    def squared_error(self, values, weights):
-        """E² at `values` and `weights` (channels, lobes)."""
-        return add_up(self._squared_errors(_bind(values), weights))
 
-    def squared_error_and_gradient(self, values, fixed, weights):
-        """E² and its derivatives by `values`, with the shape parameters `fixed` and the `weights`
-        (channels, lobes) held."""
-        if not double_precision.differentiable():
-            gradient = self._finite_differences(values, fixed, weights)
-            return self.squared_error(values | fixed, weights), gradient
-        bound = _bind(values | fixed)
-        for name in values:
-            dr.enable_grad(bound[name])
-        total = dr.sum(self._squared_errors(bound, weights))
-        dr.backward(total)
-        gradient = np.array([to_float(dr.grad(bound[n])) for n in values])
-        if not np.isfinite(gradient).all():
-            require_finite_slopes(self.model, values | fixed, values, self.wi, self.wo)
-        return to_float(dr.detach(total)), gradient
-
-    def _squared_errors(self, bound, weights):
-        """What each sample adds to E² (n,), as Dr.Jit; at values that `_bind` gave."""
-        plain, squared = self.lobes(bound)
-        squares = 0
-        for c in range(self.channels):
-            model = 0
-            for a, lobe, quadratic in zip(weights[c], plain, squared, strict=True):
-                a = double_precision.scalar(a)
-                model = model + a * lobe + (0 if quadratic is None else a * a * quadratic)
-            if not self.loss.linear:
-                model = dr.maximum(model, 0)
-            residual = self.loss.g(model) - self.targets[c]
-            squares = squares + self.importances[c] * dr.square(residual)
-        return squares
-
-    def _finite_differences(self, values, fixed, weights):
-        """The derivatives of E² by `values`, for a backend that has none: central differences,
-        one-sided at a bound."""
-        gradient = []
-        for name, value in values.items():
-            low, high = self.model.parameters[name].bounds
-            h = 1e-6 * max(abs(value), 1e-3)
-            ends = max(value - h, low), min(value + h, high)
-            below, above = (self.squared_error(values | fixed | {name: v}, weights) for v in ends)
-            gradient.append((above - below) / (ends[1] - ends[0]))
-        return np.array(gradient)
-
-
-def _bind(values):
-    """Numbers by name as Dr.Jit's."""
-    return {name: double_precision.scalar(v) for name, v in values.items()}
+def _differentiate(function, x):
+    """A function of arrays at `x`, and its derivative there."""
+    if not double_precision.differentiable():
+        h = 1e-6 * dr.maximum(x, 1e-3)
+        return function(x), (function(x + h) - function(x - h)) / (2 * h)
+    dr.enable_grad(x)
+    y = function(x)
+    dr.forward_from(x)
+    return dr.detach(y), dr.grad(y)

@@ -1,22 +1,28 @@
 """Regresses a model on samples: compares starts, searches from the best, weighs down outliers."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from brdfkit.fitting.folding import fold
+from brdfkit.fitting.levenberg_marquardt import levenberg_marquardt
 from brdfkit.fitting.parameter_space import Space
+from brdfkit.fitting.part import draw_part
 from brdfkit.fitting.problem import Problem
-from brdfkit.fitting.robust import robust_search
-from brdfkit.fitting.search import slsqp, squared_error_at
-from brdfkit.fitting.starting_points import start_points
+from brdfkit.fitting.robust_search import settle
+from brdfkit.fitting.starting_points import start_points, usual_starts
 from brdfkit.jit.threads import in_turn
 
-# If there are more than twice as many samples, the starts are compared, and searched from, on this
-# many random ones; one last search uses all samples
-PART = 20_000
-# A search runs from this many starts, those with the least loss
-FOLLOWED = 3
+# Many samples are searched by parts: all starts on the smallest, those that end best on the next,
+# and the best on all; no part is more than half of what it is drawn from
+PARTS = 40_000, 3_000
+# How many starts go on after so many steps
+EXPLORING = (16, 3), (6, 5)
+MOST_STEPS, FEW_STEPS = 200, 10
+# A search has ended where the next step would lower E² by less than this share of it; the second:
+# on a part
+TOLERANCE, LOOSE = 1e-11, 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +50,7 @@ def regress(
     loss,
     *,
     robust=None,
-    starts=16,
+    starts=None,
     bounds=None,
     fixed=None,
     anisotropic=False,
@@ -53,73 +59,116 @@ def regress(
 ):
     """The `Solution` of a model class on valid `Samples` under a `Loss`.
 
-    `robust`: a name in `fitting.robust.WEIGHTS`; `starts`: how many points the search may begin at,
-    the model's defaults and points spread over the bounds; `bounds`: (low, high), and `fixed`: a
-    value, by shape parameter; `anisotropic`: search the second parameter of an anisotropic model,
-    such as ``alpha_v``, too; `seed`: for the start points, and for the random part of a large table
-    on which they are compared; `report`: called with (done, total).
+    `robust`: a name in `fitting.robust.WEIGHTS`; `starts`: how many points the search begins at,
+    the model's defaults and points spread over the bounds, by default `usual_starts`; `bounds`:
+    (low, high), and `fixed`: a value, by shape parameter; `anisotropic`: search the second
+    parameter of an anisotropic model, such as ``alpha_v``, too; `seed`: for the start points, and
+    for the parts of many samples by which they are compared; `report`: called with (done, total).
     """
     bounds, report = bounds or {}, report or (lambda done, total: None)
     # What is searched: neither fixed nor determined by the measured directions
     given = {n: v for n, v in model.determined(samples).items() if n not in bounds} | (fixed or {})
     space = Space.of(model, bounds, given, anisotropic)
-    whole = part = Problem(model, samples, loss)
-    if len(samples.wi) > 2 * PART:
-        rng = np.random.default_rng(seed)
-        rows = np.sort(rng.choice(len(samples.wi), PART, replace=False))
-        part = Problem(model, samples.at(rows), loss)
-
-    # Search, first on a part of a large table, then on all of it
-    best, evaluations = _search(part, space, model, starts if space.names else 1, seed, report)
-    if part is not whole:
-        best = slsqp(whole, space, best.u)
-        evaluations += best.evaluations
+    whole = Problem(model, samples, loss, space)
+    rng = np.random.default_rng(seed)
+    folded = fold(whole)
+    problems = [folded] if folded else with_parts(whole, rng)
+    default = space.coordinates(model().values)
+    points = start_points(space, default, starts or usual_starts(len(space.names)), seed)
+    end, converged, evaluations = search(problems, points, report)
+    message = "converged" if converged else f"stopped after {MOST_STEPS} steps"
+    error, u, weights, notes = end.error[0], end.u, end.weights, ()
     # Weigh down outliers, from the optimum where all samples count alike
-    u, weights, message, notes = best.u, None, best.message, ()
     if robust:
-        u, weights, message, notes = _search_robustly(whole, space, best.u, robust, report)
-    shapes = {k: float(v) for k, v in (space.values(u) | space.fixed).items()}
-    weights = whole.solve(shapes) if weights is None else weights
+        u, weights, message, notes = settle(whole, u, weights, robust, rng, report)
+        error = whole.sums(u, weights, curvature=False).error[0]
     return Solution(
-        shapes,
-        weights,
-        whole.scale * math.sqrt(whole.squared_error(shapes, weights)),
+        space.values(u[0]),
+        weights[0],
+        math.sqrt(error),
         evaluations,
         message,
-        _find_at_bounds(space, u, model, weights),
+        _find_at_bounds(space, u[0], model, weights[0]),
         notes,
     )
 
 
-def _search(problem, space, model, count, seed, report):
-    """The best `Outcome` of searches from the starts with the least loss, and the number of
-    evaluations for all starts and searches."""
-    points = start_points(space, space.coordinates(model().values), count, seed)
-    total = len(points) + min(FOLLOWED, len(points))
-    # Compare the starts
-    errors = []
-    if len(points) > 1:
-        for k, u in enumerate(points):
-            errors.append(squared_error_at(problem, space, u))
-            report(k + 1, total)
-        points = points[np.argsort(errors, kind="stable")[:FOLLOWED]]
-    # Search from the best
-    outcomes = []
-    for k, u in enumerate(points):
-        outcomes.append(slsqp(problem, space, u))
-        report(len(errors) + k + 1, total)
-    evaluations = len(errors) + sum(o.evaluations for o in outcomes)
-    return min(outcomes, key=lambda o: o.squared_error), evaluations
+def with_parts(whole, rng):
+    """The problems of a search: `whole`, and before it those on ever smaller parts of its samples,
+    where these are many."""
+    problems = [whole]
+    for size in PARTS:
+        samples = problems[0].samples
+        if 2 * size < len(samples.wi):
+            part, _ = draw_part(samples, problems[0].black(), size, rng)
+            problems.insert(0, whole.on(part))
+    return problems
 
 
-def _search_robustly(problem, space, u, name, report):
-    """The coordinates and weights of a fit with the robust weight `name`, a message and notes."""
-    found = robust_search(problem, space, u, name, report)
-    light = (found.weights < 0.5).mean()
-    note = f"{name}: {light:.1%} of the samples count less than half; the loss is of all"
-    settled = "settled" if found.converged else "did not settle"
-    weights = found.solution[len(u) :].reshape(problem.channels, -1)
-    return found.solution[: len(u)], weights, f"{settled} in {found.passes} passes", (note,)
+def search(problems, u, report):
+    """The `Expansion` about the one point where the search of `problems`, on ever more of the
+    samples, ends, whether it converged, and the number of evaluations; `u` (starts, shapes): where
+    it begins."""
+    first, last = problems[0], problems[-1]
+    weights, evaluations = first.start(u), 0
+    if first.clamped:
+        u, weights = _avoid_clamping(first, u, weights)
+    # A few steps from all starts, a few more from the best of these, and so on
+    for count, steps in EXPLORING:
+        found = levenberg_marquardt(first.expand, u, weights, first.least, steps)
+        evaluations += found.evaluations
+        ends = found.ends.at(found.best(count))
+        u, weights = ends.u, ends.weights
+    for number, problem in enumerate(problems):
+        report(number, len(problems))
+        if number:
+            ends = found.ends.at(found.best(1 if problem is last else len(ends.u)))
+        tolerance = TOLERANCE if problem is last else LOOSE
+        part = problems[number - 1] if number else None
+        found, count = _descend(problem, part, ends, tolerance)
+        evaluations += count
+    report(len(problems), len(problems))
+    (best,) = found.best(1)
+    return found.ends.at([best]), bool(found.converged[best]), evaluations
+
+
+def _avoid_clamping(problem, u, weights):
+    """Twice the starts, the second time with weights by which less of the model is clamped at 0:
+    where much is, a search may rest."""
+    extended = Problem(problem.model, problem.samples, problem.loss, problem.space, extended=True)
+    found = levenberg_marquardt(extended.expand, u, weights, problem.least, MOST_STEPS)
+    ends = found.ends
+    return np.concatenate([u, ends.u]), np.concatenate([weights, ends.weights])
+
+
+def _descend(problem, part, ends, tolerance):
+    """The `Search` of a problem from the points of an `Expansion`, and the number of evaluations;
+    `part`: a problem on some of its samples, at whose ends it begins, or None."""
+    evaluations, damping = 0, 1e-4
+    if part is not None:
+        # The Hessian of all samples is nearly that of a part, if the part is like them
+        expand, damping = _borrow_curvature(problem, part), 1e-7
+        found = levenberg_marquardt(
+            expand, ends.u, ends.weights, problem.least, FEW_STEPS, tolerance, damping
+        )
+        if found.converged.all():
+            return found, found.evaluations
+        ends, evaluations = found.ends, found.evaluations
+    found = levenberg_marquardt(
+        problem.expand, ends.u, ends.weights, problem.least, MOST_STEPS, tolerance, damping
+    )
+    return found, evaluations + found.evaluations
+
+
+def _borrow_curvature(whole, part):
+    """The function `whole.expand` with the Hessian of `part`, a problem on some of its samples."""
+
+    def expand(u, weights):
+        expansion = whole.expand(u, weights, curvature=False)
+        near = part.expand_here(u, weights)
+        return replace(expansion, hessian=near.hessian, gram=near.gram)
+
+    return expand
 
 
 def _find_at_bounds(space, u, model, weights):

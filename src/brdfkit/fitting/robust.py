@@ -17,7 +17,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.fitting.search import slsqp
 
 PASSES = 50
 TOLERANCE = np.sqrt(np.finfo(float).eps)
@@ -31,16 +30,33 @@ def _tanh(r):
     return np.tanh(r) / np.where(r == 0, 1, r) + (r == 0)
 
 
-# Name → (weight of r, tune: larger is gentler)
+def _beyond(limit, inside, outside):
+    """A function of |r|: `inside` up to `limit`, `outside` beyond."""
+    return lambda r: np.where(np.abs(r) < limit, inside(np.abs(r)), outside(np.abs(r)))
+
+
+# Name → (weight ω of r, tune: larger is gentler, ρ: the integral of ω r)
 WEIGHTS = {
-    "andrews": (_sine, 1.339),
-    "bisquare": (lambda r: np.where(np.abs(r) < 1, (1 - r**2) ** 2, 0), 4.685),
-    "cauchy": (lambda r: 1 / (1 + r**2), 2.385),
-    "fair": (lambda r: 1 / (1 + np.abs(r)), 1.4),
-    "huber": (lambda r: 1 / np.maximum(1, np.abs(r)), 1.345),
-    "logistic": (_tanh, 1.205),
-    "talwar": (lambda r: (np.abs(r) < 1).astype(float), 2.795),
-    "welsch": (lambda r: np.exp(-(r**2)), 2.985),
+    "andrews": (_sine, 1.339, _beyond(np.pi, lambda r: 1 - np.cos(r), lambda r: 2.0)),
+    "bisquare": (
+        lambda r: np.where(np.abs(r) < 1, (1 - r**2) ** 2, 0),
+        4.685,
+        _beyond(1, lambda r: (1 - (1 - r**2) ** 3) / 6, lambda r: 1 / 6),
+    ),
+    "cauchy": (lambda r: 1 / (1 + r**2), 2.385, lambda r: np.log1p(r**2) / 2),
+    "fair": (lambda r: 1 / (1 + np.abs(r)), 1.4, lambda r: np.abs(r) - np.log1p(np.abs(r))),
+    "huber": (
+        lambda r: 1 / np.maximum(1, np.abs(r)),
+        1.345,
+        _beyond(1, lambda r: r**2 / 2, lambda r: r - 0.5),
+    ),
+    "logistic": (_tanh, 1.205, lambda r: np.logaddexp(r, -r) - np.log(2)),
+    "talwar": (
+        lambda r: (np.abs(r) < 1).astype(float),
+        2.795,
+        _beyond(1, lambda r: r**2 / 2, lambda r: 0.5),
+    ),
+    "welsch": (lambda r: np.exp(-(r**2)), 2.985, lambda r: (1 - np.exp(-(r**2))) / 2),
 }
 
 
@@ -78,13 +94,20 @@ def sample_weights(residuals, name, rank, least, tune=None):
     nearly zero by construction and are left out of the scale; `least`: the least scale: smaller
     residuals are rounding errors; `tune`: replaces the constant of the weight.
     """
-    function, usual = WEIGHTS[name]
-    ordered = np.sort(np.abs(residuals))
-    scale = max(np.median(ordered[max(rank - 1, 0) :]) / 0.6745, least)
-    return function(residuals / (scale * (tune or usual)))
+    function, usual, _ = WEIGHTS[name]
+    return function(residuals / (scale_of(residuals, rank, least) * (tune or usual)))
 
 
-def _require_more_samples(samples, rank):
+def scale_of(residuals, rank, least):
+    """The scale s of `residuals` (n,); see `sample_weights`."""
+    left = len(residuals) - max(rank - 1, 0)
+    # The median of the others is the mean of these one or two in the order of all
+    middle = len(residuals) - left + (left - 1) // 2, len(residuals) - left + left // 2
+    ordered = np.partition(np.abs(residuals), middle)
+    return max((ordered[middle[0]] + ordered[middle[1]]) / 2 / 0.6745, least)
+
+
+def require_more_samples(samples, rank):
     """Raise `BrdfkitError` unless there are more `samples` than parameters: with as few, the model
     can meet every sample, and no residual tells the scale of the noise."""
     if samples <= rank:
@@ -102,8 +125,9 @@ def least_scale(values):
 def leverages(columns):
     """The leverages h (n,) of `columns` (parameters, n): the diagonal of the projection onto them,
     kept below 1."""
-    gram = columns @ columns.T
-    return np.minimum(np.einsum("in,in->n", columns, np.linalg.pinv(gram) @ columns), 0.9999)
+    u, values, _ = np.linalg.svd(columns.T, full_matrices=False)
+    u = u[:, values > values.max(initial=0) * len(u) * np.finfo(float).eps]
+    return np.minimum((u * u).sum(axis=1), 0.9999)
 
 
 def robust_least_squares(design, values, name="bisquare", tune=None):
@@ -117,7 +141,7 @@ def robust_least_squares(design, values, name="bisquare", tune=None):
     array([-0.,  2.])
     """
     design, values = np.asarray(design, float), np.asarray(values, float)
-    _require_more_samples(*design.shape)
+    require_more_samples(*design.shape)
     lever = np.sqrt(1 - leverages(design.T))
     rank, least = np.linalg.matrix_rank(design), least_scale(values)
 
@@ -129,47 +153,3 @@ def robust_least_squares(design, values, name="bisquare", tune=None):
         return sample_weights((values - design @ solution) / lever, name, rank, least, tune)
 
     return reweight(solve, weigh, solve(np.ones(len(values))))
-
-
-def robust_search(problem, space, u, name, report):
-    """The `Reweighted` of a fit; `u`: its optimum where all samples count alike.
-
-    A solution is the coordinates u, then the model's weights (channels, lobes). The weights of the
-    samples are (channels, n): a sample may count less in one channel than in another. The leverages
-    are those of the linear parameters.
-    """
-
-    def split(solution):
-        return solution[: len(u)], solution[len(u) :].reshape(problem.channels, -1)
-
-    def residuals_at(solution):
-        u, weights = split(solution)
-        return problem.residuals(space.values(u) | space.fixed, weights)
-
-    def add_weights(problem, u):
-        return np.concatenate([u, problem.solve(space.values(u) | space.fixed).ravel()])
-
-    # Leverages and the least scale do not change from pass to pass
-    start, root = add_weights(problem, u), np.sqrt(problem.importance)
-    rank = len(start) // problem.channels
-    _require_more_samples(len(root), rank)
-    levers = [np.sqrt(1 - leverages(columns)) for columns in residuals_at(start)[1]]
-    least = [least_scale(root * np.asarray(target)) for target in problem.targets]
-    passes = iter(range(1, PASSES + 1))
-
-    def weigh(solution):
-        report(next(passes), PASSES)
-        residuals, _ = residuals_at(solution)
-        return np.array(
-            [
-                sample_weights(r / lever, name, rank, floor)
-                for r, lever, floor in zip(residuals, levers, least, strict=True)
-            ]
-        )
-
-    def solve(weights, before):
-        again = problem.reweighted(weights)
-        return add_weights(again, slsqp(again, space, split(before)[0]).u if space.names else u)
-
-    # A search is less precise than the solution of a linear problem
-    return reweight(solve, weigh, start, 1e-5 if space.names else TOLERANCE)

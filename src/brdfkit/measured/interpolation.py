@@ -21,7 +21,6 @@ import functools
 import numpy as np
 
 from brdfkit.fitting import losses, regress
-from brdfkit.fitting.problem import Problem
 from brdfkit.geometry.directions import to_half_difference
 from brdfkit.jit.threads import in_turn
 from brdfkit.model import labels
@@ -144,12 +143,9 @@ def _fit_guide(samples, anisotropic):
         f0 = min(f0 * specular / _remaining(diffuse), 1.0)
         found = regress(model, inside, losses["log"], **how, fixed={"f0": f0})
     # The weights of each channel, with the same shape parameters
-    shapes = model(**found.shapes).values
-    diffuse, specular = (
-        Problem(model, samples, losses["log"])
-        .solve({name: shapes[name] for name in model.shapes(anisotropic=True)})
-        .T
-    )
+    diffuse, specular = regress(
+        model, samples, losses["log"], anisotropic=anisotropic, fixed=found.shapes
+    ).weights.T
     rise = np.inf if too_bright else (1 - f0) * specular
     return _limit_rise(model, found.shapes, diffuse, f0 * specular, rise)
 

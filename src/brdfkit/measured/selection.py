@@ -3,6 +3,7 @@
 from numbers import Real
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.samples import Samples
 
 
 def select_samples(data, max_angle):
@@ -16,10 +17,13 @@ def select_samples(data, max_angle):
             f"max_angle = {max_angle!r} should be an angle above 0° and at most 90°."
         )
     data = data.rgb
-    rows = data.samples.within(max_angle)
-    if not rows.any():
+    if data.is_table:
+        samples = Samples.of_cells(data.table, max_angle)
+    else:
+        samples = data.samples.at(data.samples.within(max_angle))
+    if not len(samples.wi):
         raise BrdfkitError(
             f"{data.name}: no valid sample has both angles below {max_angle:g}°; "
             "give a larger max_angle."
         )
-    return data.samples.at(rows)
+    return samples

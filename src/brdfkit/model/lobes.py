@@ -36,7 +36,8 @@ class Lobe:
     `energy(wi)`: about the lobe's albedo; lobes are chosen in proportion to weight times energy;
     `quadratic(wi, wo)`: a value to be multiplied by the weight's square, as of light that is
     scattered twice;
-    `diffuse`: whether Mitsuba counts the lobe as diffuse, else as glossy.
+    `diffuse`: whether Mitsuba counts the lobe as diffuse, else as glossy;
+    `factors`: the two functions of `factored`, for a lobe that it made.
     """
 
     eval: Callable
@@ -44,6 +45,20 @@ class Lobe:
     energy: Callable = lambda wi: 1.0
     quadratic: Callable | None = None
     diffuse: bool = False
+    factors: tuple[Callable, Callable] | None = None
+
+
+def factored(facets, geometry, sampling, energy=lambda wi: 1.0):
+    """The lobe `facets(h, cos_d)` · `geometry(wi, wo)`, with h the half vector and cos_d = wi·h.
+
+    A fit to a table with a linear loss sums over the cells once and for all where the shape
+    parameters are in `facets` alone; it finds out by itself whether they are.
+    """
+
+    def value(wi, wo):
+        return facets(half_vector(wi, wo), cos_theta_d(wi, wo)) * geometry(wi, wo)
+
+    return Lobe(value, sampling, energy, factors=(facets, geometry))
 
 
 def components_of(lobes):

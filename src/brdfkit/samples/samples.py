@@ -1,11 +1,11 @@
 """Samples of a BRDF: direction pairs with the values measured there."""
 
-import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.samples.cells import as_columns, directions_within, least_cosine
 
 
 @dataclass(frozen=True, eq=False)
@@ -16,7 +16,8 @@ class Samples:
     included; `valid`: (n,), False where the reader or the format says that nothing was measured;
     `weight`: (n,), the weight of each sample in a loss: 1 for a scattered sample, the cell's width
     in theta_h for a table's cell. So a table counts evenly over Rusinkiewicz's angles, however
-    finely it divides the highlight.
+    finely it divides the highlight. `cells`: of a table's cells, the numbers (n,) of the half
+    vector and of its pair with theta_d, each in order; else None.
     """
 
     wi: np.ndarray
@@ -24,6 +25,7 @@ class Samples:
     values: np.ndarray
     valid: np.ndarray
     weight: np.ndarray
+    cells: tuple[np.ndarray, np.ndarray] | None = None
 
     @classmethod
     def from_arrays(cls, wi, wo, values, valid, channels, name):
@@ -60,14 +62,29 @@ class Samples:
         weight = np.broadcast_to(table.theta_h_widths, table.shape).reshape(-1)
         return cls(wi, wo, values, _find_usable(wi, wo, values), weight)
 
+    @classmethod
+    def of_cells(cls, table, max_angle):
+        """As `from_table`, of the known cells with both angles below `max_angle` [degrees]."""
+        axes = tuple(tuple(axis.tolist()) for axis in table.centres)
+        cells, wi, wo = directions_within(axes, float(max_angle))
+        values = table.values.reshape(-1, table.values.shape[-1])
+        weight = np.broadcast_to(table.theta_h_widths, table.shape).ravel()[cells]
+        values = as_columns(values, cells)
+        known = np.isfinite(values).all(axis=1)
+        n_d, n_p = table.shape[-2:]
+        samples = cls(wi, wo, values, known, weight, (cells // (n_d * n_p), cells // n_p))
+        return samples if known.all() else samples.at(known)
+
     def within(self, max_angle):
         """A mask (n,) of the valid samples with θ_i and θ_o below `max_angle` [degrees]."""
-        cos_min = math.cos(math.radians(max_angle)) * (1 + 1e-12)
+        cos_min = least_cosine(max_angle)
         return self.valid & (self.wi[:, 2] > cos_min) & (self.wo[:, 2] > cos_min)
 
     def at(self, rows):
         """The `Samples` of these `rows` (a mask or indices)."""
-        return Samples(*(getattr(self, f.name)[rows] for f in fields(self)))
+        vectors = (as_columns(a, rows) for a in (self.wi, self.wo, self.values))
+        cells = self.cells and tuple(numbers[rows] for numbers in self.cells)
+        return Samples(*vectors, self.valid[rows], self.weight[rows], cells)
 
 
 def require_some(valid, name):

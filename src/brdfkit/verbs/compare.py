@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+import drjit as dr
 import numpy as np
 
 from brdfkit.fitting import losses
@@ -98,17 +99,20 @@ def error(thing, data, loss, max_angle=80.0):
     """
     loss = losses[loss]
     samples = select_samples(data, max_angle)
-    cosines, weights = loss.factors(samples)
-    target = loss.target(samples.values)
-    values = np.broadcast_to(thing.eval(samples.wi, samples.wo), target.shape)
-    squares = np.square(_transform(loss, values, cosines) - _transform(loss, target, cosines))
-    total = weights @ squares.sum(axis=1)
-    normaliser = loss.normaliser(weights, target.shape[1])
-    return math.sqrt(total / normaliser) if normaliser else math.nan
+    importance = loss.importance(samples)
+    if not importance.any():
+        return math.nan
+    values = np.broadcast_to(thing.eval(samples.wi, samples.wo), samples.values.shape)
+    return math.sqrt(importance @ _squares(loss, values, samples))
 
 
 @in_turn
-def _transform(loss, values, cosines):
-    """g(κf) (n, channels) of BRDF `values` (n, channels) and `cosines` κ (n,)."""
-    columns = [loss.g(double_precision.array(v * cosines)) for v in values.T]
-    return np.stack([np.asarray(c) for c in columns], axis=1)
+def _squares(loss, values, samples):
+    """Squared differences (n,) of `values` (n, channels) from the `samples`, channels summed."""
+    array = double_precision.array
+    cosines = [array(w[:, 2]) for w in (samples.wi, samples.wo)]
+    differences = [
+        loss.difference(array(value), array(measured), *cosines)
+        for value, measured in zip(values.T, samples.values.T, strict=True)
+    ]
+    return np.asarray(sum(dr.square(difference) for difference in differences))

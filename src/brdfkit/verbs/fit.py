@@ -22,7 +22,7 @@ def fit(
     loss: str = "log",
     *,
     robust: str | None = None,
-    starts: int = 16,
+    starts: int | None = None,
     bounds: Mapping[str, tuple[float, float]] | None = None,
     fixed: Mapping[str, float] | None = None,
     anisotropic: bool | None = None,
@@ -32,10 +32,10 @@ def fit(
 ) -> Fit:
     """Fit a model to a measured material.
 
-    Sequential quadratic programming (SQP) searches the shape parameters from several starts, in
-    double precision with exact derivatives; the weights are solved inside every step, per channel.
-    Spectral measurements are fitted as linear sRGB. Fits of several threads run one after the
-    other.
+    A damped Gauss-Newton search (Levenberg-Marquardt) from several starts at once, in double
+    precision with exact derivatives: the shape parameters, and the weights of every channel, which
+    follow them. Spectral measurements are fitted as linear sRGB. Fits of several threads run one
+    after the other.
 
     Parameters
     ----------
@@ -49,8 +49,9 @@ def fit(
     robust : str, optional
         The weight by which outliers lose their say, as ``"bisquare"`` [Kurt 2007, eq. 5.14]; the
         others are in `brdfkit.fitting.robust.WEIGHTS`. By default all samples count.
-    starts : int, default 16
-        Points from which the search begins: the defaults and others, spread over the bounds.
+    starts : int, optional
+        Points from which the search begins: the defaults and others, spread over the bounds. By
+        default 16 for each searched parameter, at most 48.
     bounds : dict of str to (float, float), optional
         Narrower bounds of shape parameters, as ``{"alpha_u": (0.01, 0.5)}``.
     fixed : dict of str to float, optional
@@ -88,7 +89,8 @@ def fit(
         raise no_such("loss", loss, losses)
     if robust not in (None, *WEIGHTS):
         raise no_such("robust weight", robust, WEIGHTS)
-    starts = to_whole_number("starts", starts, least=1)
+    if starts is not None:
+        starts = to_whole_number("starts", starts, least=1)
     seed = to_whole_number("seed", seed, least=0)
     bounds, fixed = to_dictionary("bounds", bounds), to_dictionary("fixed", fixed)
     bounds = {n: to_pair(f"{model.type_name()}: the bounds of {n}", v) for n, v in bounds.items()}

@@ -1,0 +1,146 @@
+"""A linear loss folded: sums over the samples that share a half vector, made once for a whole fit.
+
+Where each lobe is a factor S, which holds the shape parameters and depends on the half vector and
+theta_d alone, times a factor A without parameters, the sums of a linear loss,
+
+    Σ w κ² S S A A,   Σ w κ² S A R,   Σ w κ² R²,
+
+are sums over the half vectors of a table, 90 of MERL's, of S S or S times sums that are made once.
+"""
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.fitting.expansion import Expansion
+from brdfkit.fitting.sums import Sums, move_weights, solve_weights
+from brdfkit.geometry.vectors import cos_theta_d, half_vector
+from brdfkit.model import double_precision
+
+# Folding is worth its sums where nodes are so many times fewer than samples
+WORTHWHILE = 20
+
+
+def fold(problem):
+    """The `Folded` problem of a `Problem`, or None where it does not fold."""
+    cells = problem.samples.cells
+    if not problem.linear or cells is None or not double_precision.differentiable():
+        return None
+    pairs = _depend_on_cos_d(problem)
+    if pairs is None:
+        return None
+    numbers = cells[1 if pairs else 0]
+    starts = np.flatnonzero(np.diff(numbers, prepend=-1))
+    if len(starts) * WORTHWHILE > len(numbers):
+        return None
+    return Folded(problem, starts)
+
+
+def _depend_on_cos_d(problem):
+    """Whether a factor S depends on cosθ_d, beside the half vector; None where a factor A, or a
+    lobe that has no factors, depends on a parameter."""
+    space, up = problem.space, double_precision.vector(np.array([[0.0, 0.0, 1.0]]))
+    shapes = [
+        double_precision.scalar(x) for x in space.table(np.full((1, len(space.names)), 0.5))[0]
+    ]
+    cos_d = double_precision.scalar(1.0)
+    fixed = problem.columns.bind(shapes).lobes()
+    dr.enable_grad(cos_d)
+    depends = any(dr.grad_enabled(l.factors[0](up, cos_d)) for l in fixed if l.factors)
+    for shape in shapes:
+        dr.enable_grad(shape)
+    for lobe in problem.columns.bind(shapes).lobes():
+        constant = lobe.factors[1] if lobe.factors else lobe.eval
+        if dr.grad_enabled(constant(up, up)):
+            return None
+    return depends
+
+
+class Folded:
+    """A `Problem` of a linear loss, as sums over nodes, which begin at the samples `starts`."""
+
+    clamped = False
+
+    def __init__(self, problem, starts):
+        self.problem, self.space, self.least = problem, problem.space, problem.least
+        self.columns, self.channels = problem.columns, problem.channels
+        self.wi, self.wo = (
+            double_precision.vector(np.asarray(w)[starts])
+            for w in (problem.samples.wi, problem.samples.wo)
+        )
+        lobes, channels = len(self.columns.lobes), self.channels
+        grams = np.zeros((lobes, lobes, len(starts)))
+        moments = np.zeros((lobes, channels, len(starts)))
+        self.squares = 0.0
+        for block in problem.blocks(1):
+            inside = starts[(starts >= block.rows.start) & (starts < block.rows.stop)]
+            first = int(np.searchsorted(starts, block.rows.start, "right")) - 1
+            edges = np.concatenate([[block.rows.start], inside[inside > block.rows.start]])
+            nodes = slice(first, first + len(edges))
+            products, by_channel, squares = self._products(block)
+            dr.eval(products, by_channel, squares)
+            at = edges - block.rows.start
+            for (a, b), product in products.items():
+                sums = np.add.reduceat(np.asarray(product), at)
+                grams[a, b, nodes] += sums
+                if a != b:
+                    grams[b, a, nodes] += sums
+            for (a, c), product in by_channel.items():
+                moments[a, c, nodes] += np.add.reduceat(np.asarray(product), at)
+            self.squares += float(np.asarray(squares).sum())
+        values = [*range(lobes), *(value for value, _ in self.columns.slopes)]
+        self.grams, self.moments = grams[np.ix_(values, values)], moments[values]
+
+    def _products(self, block):
+        """What is summed over a block: w κ² A A and -w κ² A R by lobes, and w κ² R²."""
+        columns, problem = self.columns, self.problem
+        middle = self.space.table(np.full((1, len(self.space.names)), 0.5))[0]
+        lobes = columns.bind([double_precision.scalar(x) for x in middle]).lobes()
+        none = 0 * block.wi.z
+        constants = [
+            (l.factors[1] if l.factors else l.eval)(block.wi, block.wo) + none for l in lobes
+        ]
+        products, by_channel, squares = {}, {}, none
+        for c in range(self.channels):
+            difference, kappa = problem._difference(block, 0.0, c)
+            weighted = block.importance * kappa
+            for a, constant in enumerate(constants):
+                by_channel[a, c] = weighted * difference * constant
+            squares = squares + block.importance * dr.square(difference)
+        for a, first in enumerate(constants):
+            for b, second in enumerate(constants[: a + 1]):
+                products[a, b] = weighted * kappa * first * second
+        return products, by_channel, squares
+
+    def start(self, u):
+        """As `Problem.start`."""
+        return solve_weights(self.columns, self._sums(u), self.least)
+
+    def expand(self, u, weights, curvature=True):
+        """As `Problem.expand`."""
+        sums = self._sums(u)
+        weights = solve_weights(self.columns, sums, self.least)
+        sums = move_weights(self.columns, sums, weights)
+        return Expansion.of(self.columns, self.space, sums, u, weights)
+
+    def _sums(self, u):
+        """The `Sums` at weights of 0."""
+        points, nodes = len(u), len(self.wi.x)
+        table = self.space.table(u)
+        shapes = [double_precision.array(np.repeat(x, nodes)) for x in table.T]
+        wi, wo = (
+            double_precision.Vector(*(dr.tile(x, points) for x in (w.x, w.y, w.z)))
+            for w in (self.wi, self.wo)
+        )
+        columns = self.columns.eval(shapes, wi, wo, factor=lambda lobe: _facets(lobe, wi, wo))
+        dr.eval(columns)
+        T = np.stack([np.asarray(column).reshape(points, nodes) for column in columns], axis=1)
+        gram = np.einsum("pai,pbi,abi->pab", T, T, self.grams)[:, None]
+        moment = np.einsum("pai,aci->pca", T, self.moments)
+        error = np.full(points, self.squares)
+        gram = np.repeat(gram, self.channels, axis=1)
+        return Sums(error, moment, gram)
+
+
+def _facets(lobe, wi, wo):
+    """The factor S of a lobe, 1 where its parameters are fixed."""
+    return lobe.factors[0](half_vector(wi, wo), cos_theta_d(wi, wo)) if lobe.factors else 1.0

@@ -1,0 +1,34 @@
+"""Parts of many samples, by which starts are compared."""
+
+from dataclasses import replace
+
+import numpy as np
+
+
+def draw_part(samples, influence, size, rng):
+    """About `size` of some `Samples`, with larger weights that make up for the others, and their
+    numbers.
+
+    Half are drawn evenly, half in proportion to `influence` (n,), at even steps in the order of
+    theta_h, beginning where the generator `rng` says: so a highlight is in the part as it is in the
+    whole, however few samples show it.
+    """
+    n = len(influence)
+    share = 0.5 / n + 0.5 * influence / (influence.sum() or 1.0)
+    share /= share.sum()
+    order = _order(samples)
+    heights = np.cumsum(share if order is None else share[order])
+    steps = (np.arange(size) + rng.random()) / size * heights[-1]
+    rows, counts = np.unique(np.searchsorted(heights, steps), return_counts=True)
+    rows = rows if order is None else order[rows]
+    part = samples.at(rows)
+    return replace(part, weight=part.weight * counts / (size * share[rows])), rows
+
+
+def _order(samples):
+    """The order of theta_h; None where the samples are in it, as a table's cells."""
+    x, y, z = (samples.wi + samples.wo).T
+    cosine = z / np.sqrt(x * x + y * y + z * z)
+    if np.diff(cosine).max(initial=0) <= 1e-12:
+        return None
+    return np.argsort(-cosine, kind="stable")

@@ -1,0 +1,268 @@
+"""A robust fit: weights of the samples and parameters of the model that give each other back.
+
+A pass weighs the samples by their residuals, then takes one step towards the best parameters for
+these weights. Far from the end it is the step of MATLAB's robustfit, which solves for the
+parameters with the weights held. That step creeps where much of a highlight is an outlier; near the
+end it is replaced by Newton's, which knows how the weights change with the parameters. The end is
+the same: there, recomputed weights give the solution back.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from brdfkit.fitting.box_quadratic import minimise_in_box
+from brdfkit.fitting.expansion import Expansion
+from brdfkit.fitting.part import draw_part
+from brdfkit.fitting.robust import WEIGHTS, least_scale, leverages, require_more_samples, scale_of
+
+PASSES = 150
+# So many samples settle on half as many first
+MANY = 80_000
+# Settled: the next pass would change the fitted values by this share of their spread (rms)
+SETTLED = 3e-7
+# Few samples settle to this share
+EXACTLY = 1e-9
+# The same for a part, whose end is only a start
+LOOSE = 1e-5
+# Where a pass changes them by less than this share, steps are mixed
+NEAR = 1e-3
+# Newton's steps are at most so many times longer than ordinary ones, in each direction
+LEAST_CURVATURE = 0.02
+# How many steps are mixed
+MIXED = 5
+# So many passes are ordinary ones first, that the end is MATLAB's; the second: of many samples
+ORDINARY, FEW = 60, 0
+RETURN = 10
+# Step of the central difference in r for the derivative of a weight
+SMALL = 1e-4
+
+
+@dataclass(eq=False)
+class Settled:
+    """Where the passes ended: coordinates `u` (shapes,), `weights` (channels, lobes), the share of
+    samples that are `light`, the number of `passes`, and the change of the last one, as a share of
+    the spread."""
+
+    u: np.ndarray
+    weights: np.ndarray
+    light: float
+    passes: int
+    change: float
+
+    @property
+    def converged(self):
+        return self.change <= SETTLED  # of few samples, too: some go round in small circles
+
+
+class Robust:
+    """The passes of a robust fit of a `Problem` by the weight `name`.
+
+    `u`, `weights`: the optimum where all samples count alike, (1, shapes) and (1, channels, lobes);
+    `part`, `rows`: a problem on some of the samples and their numbers, which gives the Hessians; by
+    default the problem itself.
+    """
+
+    def __init__(self, problem, u, weights, name, part=None, rows=slice(None)):
+        self.problem, self.part, self.rows = problem, part or problem, rows
+        self.function, self.tune, self.rho = WEIGHTS[name]
+        self.rank = u.shape[1] + weights.shape[2]
+        residuals = problem.residuals(u, weights)
+        require_more_samples(len(residuals[0]), self.rank)
+        here = self.part.expand_here(u, weights)
+        # Neither leverages, least scales nor the metric of fitted values change from pass to pass
+        self.metric = here.hessian[0]
+        self.levers = [np.sqrt(1 - h) for h in self._leverages(u, weights)]
+        black = problem.residuals(u, 0 * weights)
+        self.least = [least_scale(target) for target in black]
+        self.spread = np.sqrt(sum(len(t) * np.var(t) for t in black))
+
+    def _leverages(self, u, weights):
+        """The leverages (n,) of the linear parameters, by channel: exact, or of a part's size."""
+        if self.part is self.problem:
+            blocks = [by_channel for _, by_channel in self.problem.by_weights(u, weights)]
+            return [leverages(np.concatenate(own, axis=1)) for own in zip(*blocks, strict=True)]
+        # A part's columns, as many times as it is smaller than the whole
+        blocks = [by_channel for _, by_channel in self.part.by_weights(u, weights)]
+        inverses = []
+        for own in zip(*blocks, strict=True):
+            gram = sum(columns @ columns.T for columns in own)
+            inverses.append(np.linalg.pinv(gram, hermitian=True))
+        found = [np.empty(len(self.problem.samples.wi)) for _ in inverses]
+        for rows, by_channel in self.problem.by_weights(u, weights):
+            for h, inverse, columns in zip(found, inverses, by_channel, strict=True):
+                h[rows] = np.minimum((columns * (inverse @ columns)).sum(axis=0), 0.9999)
+        return found
+
+    def scale(self, residuals):
+        """The tuned scale of the residuals over levers, by channel."""
+        adjusted = [r / lever for r, lever in zip(residuals, self.levers, strict=True)]
+        return [
+            self.tune * scale_of(r, self.rank, least)
+            for r, least in zip(adjusted, self.least, strict=True)
+        ]
+
+    def ratios(self, residuals, scales):
+        """r of the weights: residuals over levers and scales, by channel."""
+        both = zip(residuals, self.levers, scales, strict=True)
+        return [residual / (lever * scale) for residual, lever, scale in both]
+
+    def merit(self, residuals, scales):
+        """What a pass makes small: Σ ρ(r), in units of the squared residuals."""
+        both = zip(self.ratios(residuals, scales), scales, strict=True)
+        return sum(scale**2 * self.rho(r).sum() for r, scale in both)
+
+    def settle(self, u, weights, report, tolerance=SETTLED, patience=ORDINARY):
+        """The `Settled` end of the passes from `u` and `weights`: the next would change the fitted
+        values by less than the `tolerance`, or there were too many. The first `patience` passes are
+        ordinary ones."""
+        best, mixing = None, Anderson(self.metric)
+        residuals = self.problem.residuals(u, weights)
+        for number in range(1, PASSES + 1):
+            report(number, PASSES)
+            scales = self.scale(residuals)
+            ratios = self.ratios(residuals, scales)
+            factors = [self.function(r) for r in ratios]
+            # The step of an ordinary pass, and the change of fitted values that it brings
+            gradient, hessian = self._weigh(u, weights, factors)
+            step = ordinary = self._step(hessian, gradient, u, weights)
+            change = np.sqrt(max(ordinary @ self.metric @ ordinary, 0)) / (self.spread or 1.0)
+            if best is None or change < best.change:
+                light = float(np.mean([f < 0.5 for f in factors]))
+                best = Settled(u[0], weights[0], light, number, change)
+            if change <= tolerance:
+                break
+            if number <= patience or change >= NEAR:
+                if number > patience:
+                    step = self._newton(u, weights, ratios, hessian, gradient)
+                u, weights, residuals = self._descend(u, weights, residuals, scales, step, ordinary)
+            elif change > 3 * best.change:
+                # The steps went astray: back, and some ordinary ones
+                u, weights, patience = best.u[None], best.weights[None], number + RETURN
+                residuals, mixing = self.problem.residuals(u, weights), Anderson(self.metric)
+            else:
+                # The scale decides now: the merit, in which it is held, does not
+                step = self._newton(u, weights, ratios, hessian, gradient)
+                u, weights = self._move(u, weights, mixing.mix(_join(u, weights), step))
+                residuals = self.problem.residuals(u, weights)
+        best.passes = number
+        return best
+
+    def _newton(self, u, weights, ratios, hessian, gradient):
+        """Newton's step, that knows how the weights of the samples change."""
+        slopes = [_slope(self.function, r[self.rows]) for r in ratios]
+        newton = _make_convex(self._curvature(u, weights, slopes)[0], hessian)
+        return self._step(newton, gradient, u, weights)
+
+    def _descend(self, u, weights, residuals, scales, step, ordinary):
+        """The point after `step` or a shorter one, or else after the `ordinary` one, with the
+        merit at held `scales` smaller there, and its residuals."""
+        before = self.merit(residuals, scales)
+        for tried in (step, step / 2, step / 8, ordinary, ordinary / 2, ordinary / 8):
+            u_, weights_ = self._move(u, weights, tried)
+            residuals = self.problem.residuals(u_, weights_)
+            if self.merit(residuals, scales) <= before:
+                break
+        return u_, weights_, residuals
+
+    def _weigh(self, u, weights, factors):
+        """Gradient (n,) and Hessian (n, n) of E² with the samples weighted by `factors`."""
+        own = self.part is self.problem
+        here = self._expand(self.problem, u, weights, factors, own)
+        if own:
+            return here.gradient[0], here.hessian[0]
+        return here.gradient[0], self._curvature(u, weights, [f[self.rows] for f in factors])[0]
+
+    def _expand(self, problem, u, weights, factors, curvature=True):
+        """The `Expansion` of E² with the samples weighted by `factors`."""
+        problem.factors = factors
+        sums = problem.sums(u, weights, curvature)
+        problem.factors = None
+        return Expansion.of(problem.columns, problem.space, sums, u, weights)
+
+    def _curvature(self, u, weights, factors):
+        """The Hessians (1, n, n) of the part with its samples weighted by `factors`."""
+        return self._expand(self.part, u, weights, factors).hessian
+
+    def _step(self, hessian, gradient, u, weights):
+        """The step (n,) within the bounds that minimises the quadratic model."""
+        z = np.concatenate([u[0], weights[0].ravel()])
+        low = np.concatenate([np.zeros(u.shape[1]), np.tile(self.problem.least, weights.shape[1])])
+        high = np.concatenate([np.ones(u.shape[1]), np.full(weights[0].size, np.inf)])
+        return minimise_in_box(hessian[None], gradient[None], low - z, high - z)[0]
+
+    def _move(self, u, weights, step):
+        """The point after a step."""
+        shapes = u.shape[1]
+        moved = weights + step[shapes:].reshape(weights.shape)
+        return np.clip(u + step[:shapes], 0, 1), np.maximum(moved, self.problem.least)
+
+
+def _join(u, weights):
+    return np.concatenate([u[0], weights[0].ravel()])
+
+
+def _slope(function, r):
+    """The derivative of weight times r."""
+    ends = [function(r + step) * (r + step) for step in (-SMALL, SMALL)]
+    return (ends[1] - ends[0]) / (2 * SMALL)
+
+
+def _make_convex(newton, hessian):
+    """Newton's matrix with eigenvalues that are positive and not small beside those of `hessian`,
+    an ordinary pass's."""
+    scale = 1 / np.sqrt(np.maximum(np.diag(hessian), 1e-300))
+    scaled = hessian * np.outer(scale, scale) + 1e-10 * np.eye(len(hessian))
+    root = np.linalg.cholesky(scaled)
+    inner = np.linalg.solve(root, np.linalg.solve(root, newton * np.outer(scale, scale)).T)
+    values, vectors = np.linalg.eigh((inner + inner.T) / 2)
+    both = root @ vectors
+    positive = np.clip(np.abs(values), LEAST_CURVATURE, 1)
+    return (both * positive) @ both.T / np.outer(scale, scale)
+
+
+class Anderson:
+    """Anderson's mixing of the last steps of a fixed-point iteration [Walker & Ni 2011]; lengths
+    are those of `metric`."""
+
+    def __init__(self, metric):
+        self.metric, self.points, self.steps = metric, [], []
+
+    def mix(self, point, step):
+        """The step from `point` (n,), mixed of `step` and those before."""
+        self.points, self.steps = [*self.points[-MIXED:], point], [*self.steps[-MIXED:], step]
+        if len(self.points) == 1:
+            return step
+        by_point, by_step = (np.diff(np.array(a), axis=0) for a in (self.points, self.steps))
+        gram = by_step @ self.metric @ by_step.T
+        share = np.linalg.lstsq(
+            gram + 1e-12 * np.trace(gram) * np.eye(len(gram)),
+            by_step @ self.metric @ step,
+            rcond=None,
+        )[0]
+        return step - share @ (by_point + by_step)
+
+
+def settle(problem, u, weights, name, rng, report):
+    """The end (u, weights) of a robust fit from the optimum where all samples count alike, a
+    message and notes. Many samples settle on a part of them first, drawn by the generator `rng`."""
+    samples = problem.samples
+    many = len(samples.wi) > MANY
+    if many:
+        samples, rows = draw_part(samples, np.ones(len(samples.wi)), MANY // 2, rng)
+        part = problem.on(samples)
+        found = Robust(part, u, weights, name).settle(u, weights, report, LOOSE, FEW)
+        passes = Robust(problem, u, weights, name, part, rows)
+        u, weights = found.u[None], found.weights[None]
+    else:
+        passes = Robust(problem, u, weights, name)
+    how = (SETTLED, 0) if many else (EXACTLY, ORDINARY)
+    found = passes.settle(u, weights, report, *how)
+    note = f"{name}: {found.light:.1%} of the samples count less than half; the loss is of all"
+    message = f"settled in {found.passes} passes"
+    if not found.converged:
+        message = (
+            f"did not settle in {found.passes} passes: the next would change the fitted values by "
+            f"{found.change:.1g} of their spread"
+        )
+    return found.u[None], found.weights[None], message, (note,)
