@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy import stats
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
@@ -320,6 +321,44 @@ def test_constants_of_the_distributions():
         for p in (0.0, 1.0, 2.0):
             facets = file_of("sgd").ShiftedGamma(*map(double_precision.scalar, (alpha, p)))
             assert projected(facets.D) == pytest.approx(1, abs=2e-3)
+    for alpha in (0.01, 1.0):
+        for gamma in (1.8, 3.0, 40.0):
+            assert projected(student_slopes(alpha, gamma).D) == pytest.approx(1, abs=1e-5)
+
+
+def student_slopes(alpha, gamma):
+    alpha, gamma = double_precision.scalar(alpha), double_precision.scalar(gamma)
+    return file_of("student_t").StudentSlopes(alpha, alpha, gamma)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("gamma", [1.6, 1.9, 2.0, 2.5, 4.0, 12.0, 40.0])
+def test_shadowing_of_students_slopes(gamma):
+    """G₁ against the integral over Student's t, in one dimension of 2γ - 2 degrees of freedom."""
+    x, w = gauss_legendre(2000)
+    logs = 50 * x  # of t - cotθ
+    theta = np.radians([1, 10, 30, 50, 70, 80, 85, 88, 89])
+    for alpha in (0.01, 0.1, 0.3, 1.0):
+        distribution = stats.t(2 * gamma - 2, scale=alpha / np.sqrt(2))
+        found = student_slopes(alpha, gamma).Lambda(double_precision.vector(from_angles(theta, 1)))
+        above = np.exp(logs)
+        cot = 1 / np.tan(theta)[:, None]
+        expected = (above**2 * distribution.pdf(cot + above) / cot) @ w * 50
+        np.testing.assert_allclose(1 / (1 + np.array(found)), 1 / (1 + expected), atol=2e-4)
+
+
+@pytest.mark.quick
+def test_students_slopes_end_at_ggx_and_beckmann():
+    """γ = 2 is GGX, D and G₂; for large γ the D of one slope goes to Beckmann's."""
+    wi, wo = random_pairs(5_000, seed=0)
+    for shape in ({"alpha_u": 0.3}, {"alpha_u": 0.02, "alpha_v": 0.5}):
+        ggx = bk.models()["ggx"](**shape).eval(wi, wo)
+        student = bk.models()["student_t"](gamma=2, **shape).eval(wi, wo)
+        np.testing.assert_allclose(student, ggx, rtol=5e-6)
+    h = double_precision.vector(from_angles(np.arctan(np.linspace(0, 0.6, 50)), 0.4))
+    beckmann = np.array(Beckmann(0.3, 0.3).D(h))
+    for gamma, tolerance in ((40.0, 0.2), (4000.0, 0.002)):
+        np.testing.assert_allclose(student_slopes(0.3, gamma).D(h), beckmann, rtol=tolerance)
 
 
 @pytest.mark.quick
