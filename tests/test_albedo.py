@@ -294,6 +294,48 @@ def test_smooth_oren_nayar_is_lambert():
     np.testing.assert_allclose(model.eval(wi, wo), 1 / np.pi, rtol=1e-12)
 
 
+@pytest.mark.quick
+@pytest.mark.parametrize("roughness", [0, 0.5, 1])
+def test_white_eon_reflects_all(roughness):
+    model = bk.models()["eon"](diffuse_reflectance=1, roughness=roughness)
+    for degrees in (*DEGREES, 89):
+        assert albedo(model, degrees) == pytest.approx(1, abs=1e-5)
+
+
+@pytest.mark.quick
+def test_eon_is_as_printed():
+    """With ρ² for the light that is scattered again, which at ρ = 1 is the paper's factor."""
+    wi, wo = random_pairs(1_000, seed=0)
+    r, (cos_i, cos_o) = 0.7, (wi[:, 2], wo[:, 2])
+
+    def G(mu):
+        theta, sine = np.arccos(mu), np.sqrt(1 - mu**2)
+        return sine * (theta - sine * mu) + 2 / 3 * (sine / mu * (1 - sine**3) - sine)
+
+    A = 1 / (1 + (1 / 2 - 2 / (3 * np.pi)) * r)
+    mean = A * (1 + (2 / 3 - 28 / (15 * np.pi)) * r)
+    s = (wi * wo).sum(axis=1) - cos_i * cos_o
+    once = A * (1 + r * np.where(s > 0, s / np.maximum(cos_i, cos_o), s)) / np.pi
+    again = (1 - A - r * A * G(cos_i) / np.pi) * (1 - A - r * A * G(cos_o) / np.pi)
+    again /= np.pi * (1 - mean)
+    for rho in (1, 0.01):
+        model = bk.models()["eon"](diffuse_reflectance=rho, roughness=r)
+        expected = rho * once + rho**2 * again
+        np.testing.assert_allclose(model.eval(wi, wo)[:, 0], expected, rtol=1e-9)
+
+
+@pytest.mark.quick
+def test_burley_is_as_printed():
+    wi, wo = random_pairs(1_000, seed=0)
+    h = (wi + wo) / np.linalg.norm(wi + wo, axis=1, keepdims=True)
+    F90 = 0.5 + 2 * 0.8 * (wi * h).sum(axis=1) ** 2
+    expected = 0.6 / np.pi
+    for w in (wi, wo):
+        expected = expected * (1 + (F90 - 1) * (1 - w[:, 2]) ** 5)
+    model = bk.models()["burley"](diffuse_reflectance=0.6, roughness=0.8)
+    np.testing.assert_allclose(model.eval(wi, wo)[:, 0], expected, rtol=1e-9)
+
+
 def projected(D):
     """∫ D cosθ_h dω over the hemisphere, of a distribution's D, in log θ_h."""
     x, w = gauss_legendre(2000)
