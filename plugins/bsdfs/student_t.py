@@ -17,10 +17,11 @@ from typing import Any
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import cos_theta_d, half_vector
-from brdfkit.model import Model, follows, shape, weight
-from brdfkit.model.lobes import HalfVector, Lobe, lambertian
-from brdfkit.model.microfacet import Visible, schlick
+from brdfkit.geometry.vectors import half_vector
+from brdfkit.model import follows, shape, weight
+from brdfkit.model.fresnel import FresnelModel
+from brdfkit.model.lobes import HalfVector, lambertian
+from brdfkit.model.microfacet import Visible
 from brdfkit.model.numerics import expm1, log1p
 
 
@@ -85,7 +86,7 @@ class StudentSlopes:
         return self.D(h) * h.z
 
 
-class StudentT(Model):
+class StudentT(FresnelModel):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.5, "k_s: strength of the highlight")
     alpha_u = shape(0.2, (0.001, 1.0), "α_u: width of the slopes along x", log=True, width=1)
@@ -93,14 +94,12 @@ class StudentT(Model):
     gamma = shape(3.0, (1.51, 40.0), "γ: fall of the tails", log=True)
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def specular(self, wi, wo):
+    def facets(self, wi, wo):
         # The parameters as one value per direction: a fit then sums each derivative once
         one = wi.z / wi.z
-        facets = StudentSlopes(self.alpha_u * one, self.alpha_v * one, self.gamma * one)
-        h = half_vector(wi, wo)
-        F = schlick(self.f0, cos_theta_d(wi, wo))
-        return facets.D(h) * facets.G2(wi, wo) * F / (4 * wi.z * wo.z)
+        slopes = StudentSlopes(self.alpha_u * one, self.alpha_v * one, self.gamma * one)
+        return slopes.D(half_vector(wi, wo)) * slopes.G2(wi, wo) / (4 * wi.z * wo.z)
 
     def lobes(self):
         sampling = HalfVector(Visible(StudentSlopes(self.alpha_u, self.alpha_v, self.gamma)))
-        return lambertian(), Lobe(self.specular, sampling, lambda wi: schlick(self.f0, wi.z))
+        return lambertian(), *self.fresnel_lobes(self.facets, sampling)
