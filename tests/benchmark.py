@@ -17,13 +17,14 @@ import brdfkit as bk
 from brdfkit.checks.material_subject import INCIDENCES, Subject, incidences
 from brdfkit.checks.sampling import spread
 from brdfkit.jit import llvm
+from brdfkit.plugins.pages import page
 from brdfkit.samples import Table
 
 MERL = (90, 90, 180)
 ROUNDS = 5
 SIZE, SPP = 256, 64
-# Those of Kurt 2007; the others are of later papers
-THESIS = [name for name in bk.models() if name not in ("ggx", "abc", "sgd", "mixture")]
+# The models of Kurt 2007; the others are of later papers
+THESIS = [n for n, m in bk.models().items() if n != "mixture" and "[Kurt 2007" in str(page(m))]
 
 
 def full_table():

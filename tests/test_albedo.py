@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy import stats
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
@@ -293,6 +294,48 @@ def test_smooth_oren_nayar_is_lambert():
     np.testing.assert_allclose(model.eval(wi, wo), 1 / np.pi, rtol=1e-12)
 
 
+@pytest.mark.quick
+@pytest.mark.parametrize("roughness", [0, 0.5, 1])
+def test_white_eon_reflects_all(roughness):
+    model = bk.models()["eon"](diffuse_reflectance=1, roughness=roughness)
+    for degrees in (*DEGREES, 89):
+        assert albedo(model, degrees) == pytest.approx(1, abs=1e-5)
+
+
+@pytest.mark.quick
+def test_eon_is_as_printed():
+    """With ρ² for the light that is scattered again, which at ρ = 1 is the paper's factor."""
+    wi, wo = random_pairs(1_000, seed=0)
+    r, (cos_i, cos_o) = 0.7, (wi[:, 2], wo[:, 2])
+
+    def G(mu):
+        theta, sine = np.arccos(mu), np.sqrt(1 - mu**2)
+        return sine * (theta - sine * mu) + 2 / 3 * (sine / mu * (1 - sine**3) - sine)
+
+    A = 1 / (1 + (1 / 2 - 2 / (3 * np.pi)) * r)
+    mean = A * (1 + (2 / 3 - 28 / (15 * np.pi)) * r)
+    s = (wi * wo).sum(axis=1) - cos_i * cos_o
+    once = A * (1 + r * np.where(s > 0, s / np.maximum(cos_i, cos_o), s)) / np.pi
+    again = (1 - A - r * A * G(cos_i) / np.pi) * (1 - A - r * A * G(cos_o) / np.pi)
+    again /= np.pi * (1 - mean)
+    for rho in (1, 0.01):
+        model = bk.models()["eon"](diffuse_reflectance=rho, roughness=r)
+        expected = rho * once + rho**2 * again
+        np.testing.assert_allclose(model.eval(wi, wo)[:, 0], expected, rtol=1e-9)
+
+
+@pytest.mark.quick
+def test_burley_is_as_printed():
+    wi, wo = random_pairs(1_000, seed=0)
+    h = (wi + wo) / np.linalg.norm(wi + wo, axis=1, keepdims=True)
+    F90 = 0.5 + 2 * 0.8 * (wi * h).sum(axis=1) ** 2
+    expected = 0.6 / np.pi
+    for w in (wi, wo):
+        expected = expected * (1 + (F90 - 1) * (1 - w[:, 2]) ** 5)
+    model = bk.models()["burley"](diffuse_reflectance=0.6, roughness=0.8)
+    np.testing.assert_allclose(model.eval(wi, wo)[:, 0], expected, rtol=1e-9)
+
+
 def projected(D):
     """∫ D cosθ_h dω over the hemisphere, of a distribution's D, in log θ_h."""
     x, w = gauss_legendre(2000)
@@ -320,6 +363,44 @@ def test_constants_of_the_distributions():
         for p in (0.0, 1.0, 2.0):
             facets = file_of("sgd").ShiftedGamma(*map(double_precision.scalar, (alpha, p)))
             assert projected(facets.D) == pytest.approx(1, abs=2e-3)
+    for alpha in (0.01, 1.0):
+        for gamma in (1.8, 3.0, 40.0):
+            assert projected(student_slopes(alpha, gamma).D) == pytest.approx(1, abs=1e-5)
+
+
+def student_slopes(alpha, gamma):
+    alpha, gamma = double_precision.scalar(alpha), double_precision.scalar(gamma)
+    return file_of("student_t").StudentSlopes(alpha, alpha, gamma)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("gamma", [1.6, 1.9, 2.0, 2.5, 4.0, 12.0, 40.0])
+def test_shadowing_of_students_slopes(gamma):
+    """G₁ against the integral over Student's t, in one dimension of 2γ - 2 degrees of freedom."""
+    x, w = gauss_legendre(2000)
+    logs = 50 * x  # of t - cotθ
+    theta = np.radians([1, 10, 30, 50, 70, 80, 85, 88, 89])
+    for alpha in (0.01, 0.1, 0.3, 1.0):
+        distribution = stats.t(2 * gamma - 2, scale=alpha / np.sqrt(2))
+        found = student_slopes(alpha, gamma).Lambda(double_precision.vector(from_angles(theta, 1)))
+        above = np.exp(logs)
+        cot = 1 / np.tan(theta)[:, None]
+        expected = (above**2 * distribution.pdf(cot + above) / cot) @ w * 50
+        np.testing.assert_allclose(1 / (1 + np.array(found)), 1 / (1 + expected), atol=2e-4)
+
+
+@pytest.mark.quick
+def test_students_slopes_end_at_ggx_and_beckmann():
+    """γ = 2 is GGX, D and G₂; for large γ the D of one slope goes to Beckmann's."""
+    wi, wo = random_pairs(5_000, seed=0)
+    for shape in ({"alpha_u": 0.3}, {"alpha_u": 0.02, "alpha_v": 0.5}):
+        ggx = bk.models()["ggx"](**shape).eval(wi, wo)
+        student = bk.models()["student_t"](gamma=2, **shape).eval(wi, wo)
+        np.testing.assert_allclose(student, ggx, rtol=5e-6)
+    h = double_precision.vector(from_angles(np.arctan(np.linspace(0, 0.6, 50)), 0.4))
+    beckmann = np.array(Beckmann(0.3, 0.3).D(h))
+    for gamma, tolerance in ((40.0, 0.2), (4000.0, 0.002)):
+        np.testing.assert_allclose(student_slopes(0.3, gamma).D(h), beckmann, rtol=tolerance)
 
 
 @pytest.mark.quick

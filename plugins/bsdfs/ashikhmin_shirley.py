@@ -7,7 +7,7 @@
     diffuse=coupled   f_d = 28 k_d / 23π (1 - F₀) (1 - (1 - N·L/2)⁵) (1 - (1 - N·V/2)⁵)
 
 [Ashikhmin & Shirley 2000]; [Kurt 2007, eqs. 3.13-3.17]. The paper has the coupled f_d, which dims
-as the highlight brightens, and no k_s.
+as the highlight brightens, and no k_s. With fresnel=coloured, the factor 1 - F₀ of f_d is in k_d.
 Shows metals, brushed or not, and varnished surfaces; no retro-reflection. Where F₀ is about 1,
 measurements determine only the product k_s F₀.
 """
@@ -15,12 +15,13 @@ measurements determine only the product k_s F₀.
 import drjit as dr
 
 from brdfkit.geometry.vectors import cos_theta_d, half_vector
-from brdfkit.model import Model, follows, option, shape, weight
+from brdfkit.model import follows, option, shape, weight
+from brdfkit.model.fresnel import FresnelModel
 from brdfkit.model.lobes import Cosine, HalfVector, Lobe, lambertian
-from brdfkit.model.microfacet import CosinePower, Visible, fifth_power, schlick
+from brdfkit.model.microfacet import CosinePower, Visible, fifth_power
 
 
-class AshikhminShirley(Model):
+class AshikhminShirley(FresnelModel):
     diffuse = option("lambert", ("lambert", "coupled"), "form of the diffuse term")
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.5, "k_s: strength of the highlight")
@@ -31,24 +32,27 @@ class AshikhminShirley(Model):
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
     def coupled_diffuse(self, wi, wo):
-        return 28 / (23 * dr.pi) * (1 - self.f0) * entering_share(wi.z) * entering_share(wo.z)
+        return 28 / (23 * dr.pi) * self.rest() * entering_share(wi.z) * entering_share(wo.z)
 
     def coupled_albedo(self, wi):
-        return (1 - self.f0) * entering_share(wi.z)
+        return self.rest() * entering_share(wi.z)
 
-    def specular(self, wi, wo):
+    def rest(self):
+        """1 - F₀, which k_d includes where F is coloured."""
+        return 1 - self.f0 if self.fresnel == "schlick" else 1
+
+    def facets(self, wi, wo):
         h = half_vector(wi, wo)
         cos_d = cos_theta_d(wi, wo)
         power = CosinePower(self.exponent_u, self.exponent_v).pdf(wi, h, cos_d)
-        return power * schlick(self.f0, cos_d) / (4 * cos_d * dr.maximum(wi.z, wo.z))
+        return power / (4 * cos_d * dr.maximum(wi.z, wo.z))
 
     def lobes(self):
         sampling = HalfVector(Visible(CosinePower(self.exponent_u, self.exponent_v)))
-        specular = Lobe(self.specular, sampling, lambda wi: schlick(self.f0, wi.z))
-        if self.diffuse == "lambert":
-            return lambertian(), specular
-        diffuse = Lobe(self.coupled_diffuse, Cosine(), self.coupled_albedo, diffuse=True)
-        return diffuse, specular
+        diffuse = lambertian()
+        if self.diffuse == "coupled":
+            diffuse = Lobe(self.coupled_diffuse, Cosine(), self.coupled_albedo, diffuse=True)
+        return diffuse, *self.fresnel_lobes(self.facets, sampling)
 
 
 def entering_share(cosine):

@@ -7,24 +7,24 @@ is four times today's D G F / 4(N·L)(N·V): energy is conserved only for about 
 metals and plastics of one roughness; no anisotropy.
 """
 
-from brdfkit.geometry.vectors import cos_theta_d, half_vector
-from brdfkit.model import Model, shape, weight
-from brdfkit.model.lobes import HalfVector, Lobe, lambertian
-from brdfkit.model.microfacet import Beckmann, Visible, schlick, v_groove
+from brdfkit.geometry.vectors import half_vector
+from brdfkit.model import shape, weight
+from brdfkit.model.fresnel import FresnelModel
+from brdfkit.model.lobes import HalfVector, lambertian
+from brdfkit.model.microfacet import Beckmann, Visible, v_groove
 
 
-class CookTorrance(Model):
+class CookTorrance(FresnelModel):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.1, "k_s: strength of the highlight")
     alpha = shape(0.2, (0.001, 1.0), "m: rms slope of the facets", log=True, width=1)
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def specular(self, wi, wo):
+    def facets(self, wi, wo):
         h = half_vector(wi, wo)
         D = Beckmann(self.alpha, self.alpha).D(h)  # holds the 1/π of (3.28)
-        F = schlick(self.f0, cos_theta_d(wi, wo))
-        return D * v_groove(wi, wo, h) * F / (wi.z * wo.z)
+        return D * v_groove(wi, wo, h) / (wi.z * wo.z)
 
     def lobes(self):
         sampling = HalfVector(Visible(Beckmann(self.alpha, self.alpha)))
-        return lambertian(), Lobe(self.specular, sampling, lambda wi: 4 * schlick(self.f0, wi.z))
+        return lambertian(), *self.fresnel_lobes(self.facets, sampling, albedo=4)

@@ -6,25 +6,24 @@ D is that of [Walter et al. 2007], G₂ that of [Heitz 2014], F Schlick's. Its l
 metals, paints and plastics; no retro-reflection, no scattering between facets.
 """
 
-from brdfkit.geometry.vectors import cos_theta_d, half_vector
-from brdfkit.model import Model, follows, shape, weight
-from brdfkit.model.lobes import HalfVector, Lobe, lambertian
-from brdfkit.model.microfacet import TrowbridgeReitz, schlick
+from brdfkit.geometry.vectors import half_vector
+from brdfkit.model import follows, shape, weight
+from brdfkit.model.fresnel import FresnelModel
+from brdfkit.model.lobes import HalfVector, lambertian
+from brdfkit.model.microfacet import TrowbridgeReitz
 
 
-class GGX(Model):
+class GGX(FresnelModel):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.5, "k_s: strength of the highlight")
     alpha_u = shape(0.2, (0.001, 1.0), "α_u: width of the slopes along x", log=True, width=1)
     alpha_v = follows("alpha_u", alpha_u, "α_v: width of the slopes along y")
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def specular(self, wi, wo):
-        facets = TrowbridgeReitz(self.alpha_u, self.alpha_v)
-        h = half_vector(wi, wo)
-        F = schlick(self.f0, cos_theta_d(wi, wo))
-        return facets.D(h) * facets.G2(wi, wo) * F / (4 * wi.z * wo.z)
-
     def lobes(self):
-        sampling = HalfVector(TrowbridgeReitz(self.alpha_u, self.alpha_v))
-        return lambertian(), Lobe(self.specular, sampling, lambda wi: schlick(self.f0, wi.z))
+        slopes = TrowbridgeReitz(self.alpha_u, self.alpha_v)
+
+        def facets(wi, wo):
+            return slopes.D(half_vector(wi, wo)) * slopes.G2(wi, wo) / (4 * wi.z * wo.z)
+
+        return lambertian(), *self.fresnel_lobes(facets, HalfVector(slopes))

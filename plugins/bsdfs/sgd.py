@@ -19,10 +19,11 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from brdfkit.geometry.vectors import cos_theta_d, half_vector
-from brdfkit.model import Model, shape, weight
-from brdfkit.model.lobes import HalfVector, Lobe, lambertian
-from brdfkit.model.microfacet import Visible, schlick
+from brdfkit.geometry.vectors import half_vector
+from brdfkit.model import shape, weight
+from brdfkit.model.fresnel import FresnelModel
+from brdfkit.model.lobes import HalfVector, lambertian
+from brdfkit.model.microfacet import Visible
 from brdfkit.model.numerics import expm1, log1p
 
 # Gauss-Legendre; the integrals over slopes end where the Gaussian has fallen to exp(-END)
@@ -103,23 +104,20 @@ def _slope_squared(w):
     return (w.x * w.x + w.y * w.y) / (w.z * w.z)
 
 
-class SGD(Model):
+class SGD(FresnelModel):
     diffuse_reflectance = weight(0.4, "ρ_d: albedo of the diffuse term")
     specular_reflectance = weight(0.4, "ρ_s: strength of the highlight")
     alpha = shape(0.05, (1e-4, 1.0), "α: squared width of the slopes", log=True, width=1)
     p = shape(0.5, (0.0, 2.0), "p: fall of the power law between α and √α")
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def specular(self, wi, wo):
+    def facets(self, wi, wo):
         # α and p as one value per direction: a fit then sums derivatives once, not at every slope
         one = wi.z / wi.z
-        facets = ShiftedGamma(self.alpha * one, self.p * one)
-        h = half_vector(wi, wo)
-        G = facets.G1(wi) * facets.G1(wo)
-        return facets.D(h) * G * schlick(self.f0, cos_theta_d(wi, wo)) / (dr.pi * wi.z * wo.z)
+        slopes = ShiftedGamma(self.alpha * one, self.p * one)
+        G = slopes.G1(wi) * slopes.G1(wo)
+        return slopes.D(half_vector(wi, wo)) * G / (dr.pi * wi.z * wo.z)
 
     def lobes(self):
         sampling = HalfVector(Visible(ShiftedGamma(self.alpha, self.p)))
-        return lambertian(), Lobe(
-            self.specular, sampling, lambda wi: 4 / dr.pi * schlick(self.f0, wi.z)
-        )
+        return lambertian(), *self.fresnel_lobes(self.facets, sampling, albedo=4 / dr.pi)

@@ -14,10 +14,11 @@ from typing import Any
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import cos_theta_d, half_vector
-from brdfkit.model import Model, shape, weight
-from brdfkit.model.lobes import HalfVector, Lobe, lambertian
-from brdfkit.model.microfacet import Visible, schlick, v_groove
+from brdfkit.geometry.vectors import half_vector
+from brdfkit.model import shape, weight
+from brdfkit.model.fresnel import FresnelModel
+from brdfkit.model.lobes import HalfVector, lambertian
+from brdfkit.model.microfacet import Visible, v_groove
 from brdfkit.model.numerics import log1p
 
 
@@ -55,17 +56,16 @@ def _angle(h):
     return dr.atan2(_sine(h), h.z)
 
 
-class TorranceSparrow(Model):
+class TorranceSparrow(FresnelModel):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.5, "k_s: strength of the highlight")
     alpha = shape(0.2, (0.001, 1.0), "m: rms inclination of the facets [rad]", log=True, width=1)
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def specular(self, wi, wo):
+    def facets(self, wi, wo):
         h = half_vector(wi, wo)
-        F = schlick(self.f0, cos_theta_d(wi, wo))
-        return GaussianAngle(self.alpha).D(h) * v_groove(wi, wo, h) * F / (4 * wi.z * wo.z)
+        return GaussianAngle(self.alpha).D(h) * v_groove(wi, wo, h) / (4 * wi.z * wo.z)
 
     def lobes(self):
         sampling = HalfVector(Visible(GaussianAngle(self.alpha)))
-        return lambertian(), Lobe(self.specular, sampling, lambda wi: schlick(self.f0, wi.z))
+        return lambertian(), *self.fresnel_lobes(self.facets, sampling)

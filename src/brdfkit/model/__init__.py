@@ -1,8 +1,9 @@
 """What a BRDF model is made of: all that the author of a model reads.
 
 `model.py`: the class `Model`; `parameters.py`: what it declares; `lobes.py`: its terms and how
-they are drawn; `microfacet.py`: distributions of normals; `numerics.py`: accurate functions. The
-rest serves all models: `labels.py` finds a model by its label, `evaluation.py` computes its values.
+they are drawn; `microfacet.py`: distributions of normals; `fresnel.py`: the models of facets with
+Schlick's F; `numerics.py`: accurate functions. The rest serves all models: `labels.py` finds a
+model by its label, `evaluation.py` computes its values.
 """
 
 from brdfkit.model.model import Model as Model

@@ -21,12 +21,18 @@ class Declaration:
             setattr(cls, name, option.default)
         cls.options = {**cls.options, **options}
         parameters = {name: p for name, p in own.items() if isinstance(p, Parameter)}
+        for name in parameters:  # an attribute is the value that an object has
+            delattr(cls, name)
         cls._declared = {**getattr(cls, "_declared", {}), **parameters}
-        cls.parameters = {**cls._declared, **cls.more_parameters()}
+        all_of_them = {**cls._declared, **cls.more_parameters()}
+        cls.parameters = {name: p for name, p in all_of_them.items() if p is not None}
 
     @classmethod
-    def more_parameters(cls) -> dict[str, Parameter]:
-        """The parameters, by name, that depend on the options; those are attributes of `cls`."""
+    def more_parameters(cls) -> dict[str, Parameter | None]:
+        """The parameters, by name, that depend on the options; those are attributes of `cls`.
+
+        None stands for a declared parameter that is left out.
+        """
         return {}
 
     @classmethod

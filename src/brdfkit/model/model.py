@@ -11,7 +11,7 @@ it is a double with derivatives. So a model uses `dr.*` and no Python `if` on va
 
 A choice that is not a number to fit, such as a form or an order, is an `option`: a plain Python
 value. Each of its values makes a class of its own (`Model.configured`). `more_parameters` adds the
-parameters that depend on options.
+parameters that depend on options, and leaves declared ones out.
 """
 
 from typing import TYPE_CHECKING, Any, Self
