@@ -11,10 +11,7 @@ def select_samples(data, max_angle):
     Spectral samples are converted to linear sRGB. Raises `BrdfkitError` for an angle that is not
     above 0° and at most 90°, and where no sample is left.
     """
-    if not isinstance(max_angle, Real) or not 0 < max_angle <= 90:
-        raise BrdfkitError(
-            f"max_angle = {max_angle!r} should be an angle above 0° and at most 90°."
-        )
+    require_max_angle(max_angle)
     data = data.rgb
     rows = data.samples.within(max_angle)
     if not rows.any():
@@ -23,3 +20,11 @@ def select_samples(data, max_angle):
             "give a larger max_angle."
         )
     return data.samples.at(rows)
+
+
+def require_max_angle(max_angle):
+    """Raise `BrdfkitError` unless `max_angle` is above 0° and at most 90°."""
+    if not isinstance(max_angle, Real) or not 0 < max_angle <= 90:
+        raise BrdfkitError(
+            f"max_angle = {max_angle!r} should be an angle above 0° and at most 90°."
+        )
