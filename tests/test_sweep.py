@@ -327,7 +327,7 @@ def test_parquet(swept, monkeypatch):
     with Path("out/table.csv").open(encoding="utf-8") as stream:
         assert list(table) == next(csv.reader(stream))
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    with pytest.raises(bk.BrdfkitError, match=r"other.parquet: .* pip install"):
+    with pytest.raises(bk.BrdfkitError, match=r"other.parquet: .*pip install pyarrow"):
         swept.to_parquet("other.parquet")
     assert not Path("other.parquet").exists()
 
