@@ -8,7 +8,7 @@ import brdfkit as bk
 KNOWN = optima.read()
 
 
-@pytest.mark.parametrize("name", (*optima.SHIPPED, *optima.MEASURED, *optima.RECONSTRUCTED))
+@pytest.mark.parametrize("name", [*optima.SHIPPED, *optima.MEASURED, *optima.RECONSTRUCTED])
 def test_optima(name):
     data = optima.material(name)
     if data is None:

@@ -25,6 +25,7 @@ METHODS = {
         bk.Measured: ["from_samples", "from_table", "resampled"],
         bk.Model: ["changed"],
         bk.Rendering: ["write"],
+        bk.Sweep: ["to_csv", "to_html", "to_parquet"],
     }.items()
     for method in names
 }

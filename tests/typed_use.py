@@ -59,6 +59,15 @@ def fit_and_render(paint: bk.Measured) -> None:
     assert_type(bk.render_scene("kitchen.xml"), bk.Rendering)
 
 
+def fit_many(files: list[Path]) -> None:
+    """Many materials at once."""
+    found = bk.sweep(files, ["ward", "ggx"], {"loss": "cbrt"}, output="fits", workers=2)
+    assert_type(found, bk.Sweep)
+    assert_type(found.fits, list[bk.Fit])
+    assert_type(found.best, dict[str, bk.Fit])
+    assert_type(found.rows[0].error, float)
+
+
 def extend() -> None:
     """Plugins of one's own."""
     assert_type(bk.load_models("my_models/"), dict[str, type[bk.Model]])

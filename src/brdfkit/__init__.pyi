@@ -16,6 +16,8 @@ from .plotting import plot as plot
 from .rendering import Rendering as Rendering
 from .rendering import render as render
 from .rendering import render_scene as render_scene
+from .sweeping import Sweep as Sweep
+from .sweeping import sweep as sweep
 from .verbs.compare import Comparison as Comparison
 from .verbs.compare import compare as compare
 from .verbs.convert import Conversion as Conversion

@@ -95,9 +95,29 @@ def contents(path):
     b'Z\\x00\\x00\\x00'
     """
     path = Path(path)
+    with _reading(path):
+        data = _read(path)
+    if not data:
+        raise BrdfkitError(f"{path}: the file is empty; fetch it again.")
+    return data
+
+
+def sha256(path):
+    """The SHA-256 of a file, in hexadecimal.
+
+    Raises `BrdfkitError` when it is missing, no regular file or unreadable.
+    """
+    path = Path(path)
+    with _reading(path), path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+@contextmanager
+def _reading(path):
+    """Within the block the file at `path` is read; what then fails is a `BrdfkitError`."""
     try:
         _require_file(path)
-        data = _read(path)
+        yield
     except (gzip.BadGzipFile, zlib.error, lzma.LZMAError, EOFError) as error:
         raise BrdfkitError(
             f"{path}: the compressed data are damaged or cut short ({_reason(error)}); "
@@ -107,15 +127,6 @@ def contents(path):
         raise BrdfkitError(
             f"{path}: cannot be read ({_reason(error)}); check its permissions."
         ) from error
-    if not data:
-        raise BrdfkitError(f"{path}: the file is empty; fetch it again.")
-    return data
-
-
-def sha256(file):
-    """The SHA-256 of a file (`Path`), in hexadecimal."""
-    with file.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 def _require_file(path):

@@ -40,11 +40,28 @@ def load(path: str | Path) -> Measured | Fit:
     >>> print(load("gold-metallic-paint.binary.xz"))    # doctest: +SKIP
     gold-metallic-paint: 90×90×180 table, 1,048,000 of 1,458,000 valid, channels R G B
     """
+    return read(*locate(path))
+
+
+def locate(path: str | Path) -> tuple[Path, str | None]:
+    """The file that `load` reads for a path or a name, and the sample named behind '#', if any.
+
+    Raises `BrdfkitError` for a name that is no path and like that of a material; whether there is
+    such a file shows when it is read.
+
+    >>> locate("abrdf.dat#12")
+    (PosixPath('abrdf.dat'), '12')
+    """
     if not str(path):
         raise BrdfkitError("The path is empty; name a file, or a material that brdfkit knows.")
     path, sample = _split(path)
     if not os.path.isfile(path):  # isfile is False, too, for text that cannot be a path
         path = _find_known(path.as_posix()) or path
+    return path, sample
+
+
+def read(path: Path, sample: str | None = None) -> Measured | Fit:
+    """What the file at `path` holds; `sample`: which one, of a file that holds many."""
     return formats.read(formats.Source(path, sample, contents(path)))
 
 

@@ -1,5 +1,7 @@
 """Makes names unique, printable, and fit for a file."""
 
+from pathlib import Path
+
 CONTROL = {chr(c) for c in (*range(32), *range(127, 160))}  # ASCII, ISO 6429: a terminal obeys
 RESERVED = '/\\:*?"<>|'  # not allowed in a file name, here or on another system
 LONGEST = 100  # bytes: a file system takes 255, with suffix and all
@@ -38,3 +40,12 @@ def slug(name):
     fit = "".join("-" if c in RESERVED or not c.isprintable() else c for c in name)
     short = fit.strip(". ").encode()[:LONGEST].decode(errors="ignore")
     return short.rstrip(". ") or "material"
+
+
+def fit_file(folder, label):
+    """The path in `folder` of a saved fit; no colons, which some file systems refuse.
+
+    >>> fit_file("copper", "koenderink:order=8").name
+    'koenderink-order=8.json'
+    """
+    return Path(folder) / f"{label.replace(':', '-')}.json"

@@ -10,6 +10,7 @@ from brdfkit.commands import _tables
 from brdfkit.json_values import plain
 
 PATIENCE = 1.0  # seconds until the bar shows: a bar that flashes up only disturbs
+MEMORY = 3600.0  # seconds of which the time left is estimated: one fit of a sweep may take minutes
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class Console:
         terminal = Console(stderr=True)
         text = TextColumn("{task.description}", markup=False)
         columns = text, BarColumn(), TimeRemainingColumn(compact=True)
-        bar = Progress(*columns, console=terminal, transient=True)
+        bar = Progress(*columns, console=terminal, transient=True, speed_estimate_period=MEMORY)
         task = bar.add_task(what, total=None)
         patience = Timer(PATIENCE, bar.start)
         patience.daemon = True

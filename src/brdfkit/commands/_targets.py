@@ -92,8 +92,3 @@ def other_file(path, source):
         if read and path.exists() and Path(read).exists() and path.samefile(read):
             raise BrdfkitError(f"{path} is the file to read; name another to write.")
     return path
-
-
-def fit_file(output, fit):
-    """The file of a `Fit` in the folder `output`; no colons, which some file systems refuse."""
-    return Path(output) / f"{fit.name.replace(':', '-')}.json"

@@ -1,4 +1,4 @@
-"""`brdfkit fit`: fits models to a measured material, and compares them."""
+"""`brdfkit fit`: fits models to measured materials, and compares them."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from brdfkit.errors import BrdfkitError
 
 
 @click.command()
-@click.argument("file")
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @click.option(
     "-m",
     "--model",
@@ -39,6 +39,13 @@ from brdfkit.errors import BrdfkitError
     type=click.Path(path_type=Path),
     help="Folder for the fits. Default: they are not written; with --render, the material's name.",
 )
+@click.option(
+    "-j",
+    "--jobs",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Processes, for several FILEs. Default: one for each core.",
+)
 @click.option("--render", "rendered", is_flag=True, help="Path-trace the measurement and the fits.")
 @click.option(
     "--max-angle",
@@ -48,35 +55,45 @@ from brdfkit.errors import BrdfkitError
 )
 @render_options
 @output_options
-def fit(file, names, loss, robust, output, rendered, max_angle, spp, size, seed, console):
-    """Fit models to a measured material.
+def fit(files, names, loss, robust, output, jobs, rendered, max_angle, spp, size, seed, console):
+    """Fit models to measured materials.
 
     FILE is a measured file, or the name of a material that brdfkit knows. The errors of the models
     are compared. Ctrl-C keeps the finished fits. Where a model cannot be fitted, the others go on;
     the exit status is then 2.
+
+    Several FILEs are fitted in several processes, past those that cannot be read. With -o a page
+    and a table are written, too, and the same command goes on where it was stopped.
     """
-    from brdfkit.commands._targets import fit_file, results_folder
+    from brdfkit.commands._many_files import fit_many
+    from brdfkit.commands._targets import results_folder
     from brdfkit.materials import measured_material
     from brdfkit.model import labels
-    from brdfkit.names import slug
+    from brdfkit.names import fit_file, slug
     from brdfkit.rendering.memory import require_memory
     from brdfkit.verbs.compare import compare
 
     names = list(dict.fromkeys(map(labels.read_files, names or labels.models())))
     for name in names:
         labels.model(name)
+    how = {"loss": loss, "robust": robust, "max_angle": max_angle, "seed": seed}
+    if len(files) > 1:
+        if rendered:
+            raise BrdfkitError("--render shows one material; name one FILE, or leave it out.")
+        fit_many(files, names, how, output, jobs, console)
+        return
+    (file,) = files
     with console.progress(f"read {file}"):
         material = measured_material(file)
     if rendered:
         require_memory((size, size), 1 + len(names))
         output = output or Path(slug(material.name))
 
-    how = {"loss": loss, "robust": robust, "max_angle": max_angle, "seed": seed}
     psnr = {}
     with results_folder(output):
         fits, failed = _fit_each(names, material, how, output, console)
         interrupted = len(fits) + len(failed) < len(names)
-        written = [fit_file(output, f) for f in fits] if output else []
+        written = [fit_file(output, f.name) for f in fits] if output else []
         if rendered and not interrupted:
             picture = path_trace([material, *fits], output / "render.exr", spp, size, seed, console)
             psnr, interrupted = picture.psnr(), picture.spp < picture.asked
@@ -96,8 +113,8 @@ def _fit_each(names, material, how, output, console):
     Each fit is saved as soon as it is finished. Ctrl-C ends with the fits that are finished. Where
     no model can be fitted, the first error is raised.
     """
-    from brdfkit.commands._targets import fit_file
     from brdfkit.loading import save
+    from brdfkit.names import fit_file
     from brdfkit.verbs.fit import fit as fit_model
 
     fits, failed = [], {}
@@ -110,7 +127,7 @@ def _fit_each(names, material, how, output, console):
                 failed[name] = error
                 continue
             if output is not None:
-                save(found, fit_file(output, found))
+                save(found, fit_file(output, found.name))
             fits.append(found)
     except KeyboardInterrupt:
         if not fits:

@@ -37,3 +37,11 @@ class cached_in_turn(functools.cached_property[R]):
     def __get__(self, instance: object, owner: type[Any] | None = None) -> Any:
         with TURN:
             return super().__get__(instance, owner)
+
+
+@in_turn
+def use_threads(count: int) -> None:
+    """Run the kernels of this process in `count` threads, where other processes run beside it."""
+    import drjit as dr
+
+    dr.set_thread_count(count)

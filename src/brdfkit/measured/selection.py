@@ -12,10 +12,7 @@ def select_samples(data, max_angle):
     Spectral samples are converted to linear sRGB. Raises `BrdfkitError` for an angle that is not
     above 0° and at most 90°, and where no sample is left.
     """
-    if not isinstance(max_angle, Real) or not 0 < max_angle <= 90:
-        raise BrdfkitError(
-            f"max_angle = {max_angle!r} should be an angle above 0° and at most 90°."
-        )
+    require_max_angle(max_angle)
     data = data.rgb
     if data.is_table:
         samples = Samples.of_cells(data.table, max_angle)
@@ -27,3 +24,11 @@ def select_samples(data, max_angle):
             "give a larger max_angle."
         )
     return samples
+
+
+def require_max_angle(max_angle):
+    """Raise `BrdfkitError` unless `max_angle` is above 0° and at most 90°."""
+    if not isinstance(max_angle, Real) or not 0 < max_angle <= 90:
+        raise BrdfkitError(
+            f"max_angle = {max_angle!r} should be an angle above 0° and at most 90°."
+        )

@@ -1,8 +1,10 @@
 """`fit`: a model fitted to a measured material."""
 
+import inspect
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 from brdfkit.arguments import to_dictionary, to_pair, to_whole_number
 from brdfkit.errors import no_such
@@ -10,7 +12,7 @@ from brdfkit.fitting import Fit, losses, regress
 from brdfkit.fitting.robust import WEIGHTS
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike, measured_material
-from brdfkit.measured.selection import select_samples
+from brdfkit.measured.selection import require_max_angle, select_samples
 from brdfkit.model import Model, labels
 from brdfkit.model.evaluation import clamped_share
 
@@ -85,19 +87,12 @@ def fit(
     """
     began = time.perf_counter()
     model, data = labels.model(labels.read_files(name)), measured_material(data)
-    if not isinstance(loss, str) or loss not in losses:
-        raise no_such("loss", loss, losses)
-    if robust not in (None, *WEIGHTS):
-        raise no_such("robust weight", robust, WEIGHTS)
-    if starts is not None:
-        starts = to_whole_number("starts", starts, least=1)
-    seed = to_whole_number("seed", seed, least=0)
-    bounds, fixed = to_dictionary("bounds", bounds), to_dictionary("fixed", fixed)
-    bounds = {n: to_pair(f"{model.type_name()}: the bounds of {n}", v) for n, v in bounds.items()}
-    anisotropic = data.anisotropic if anisotropic is None else anisotropic
-    samples = select_samples(data, max_angle)
     how = {"seed": seed, "starts": starts, "bounds": bounds, "fixed": fixed}
-    how["anisotropic"] = anisotropic
+    how["anisotropic"] = data.anisotropic if anisotropic is None else anisotropic
+    given = {"loss": loss, "robust": robust, "max_angle": max_angle, **how}
+    checked = check_settings(given, f"{model.type_name()}: ")
+    how = {name: checked[name] for name in how}
+    samples = select_samples(data, max_angle)
 
     found = regress(model, samples, losses[loss], robust=robust, **how, report=progress)
     weights = dict(zip(model.weights(), map(tuple, found.weights.T), strict=True))
@@ -115,6 +110,42 @@ def fit(
         notes=(*found.notes, *_list_notes(data, samples, losses[loss], found, fitted)),
         settings={"robust": robust, "max_angle": float(max_angle), **how},
     )
+
+
+# The settings: all arguments but the model, its material and the progress
+SETTINGS = {
+    name: parameter.default
+    for name, parameter in inspect.signature(fit).parameters.items()
+    if name not in ("name", "data", "progress")
+}
+
+
+def check_settings(given: Mapping[str, Any], where: str = "") -> dict[str, Any]:
+    """All `SETTINGS` of a fit: those `given` by name, and the others' defaults.
+
+    Raises the `BrdfkitError` that `fit` raises for any model and any material; in it `where` stands
+    before the names of bounds.
+
+    >>> check_settings({"loss": "cbrt"})["max_angle"]
+    80.0
+    """
+    for name in given:
+        if name not in SETTINGS:
+            raise no_such("setting of a fit", name, SETTINGS)
+    settings = {**SETTINGS, **given}
+    loss, robust = settings["loss"], settings["robust"]
+    if not isinstance(loss, str) or loss not in losses:
+        raise no_such("loss", loss, losses)
+    if robust not in (None, *WEIGHTS):
+        raise no_such("robust weight", robust, WEIGHTS)
+    if settings["starts"] is not None:
+        settings["starts"] = to_whole_number("starts", settings["starts"], least=1)
+    settings["seed"] = to_whole_number("seed", settings["seed"], least=0)
+    bounds = to_dictionary("bounds", settings["bounds"])
+    settings["bounds"] = {n: to_pair(f"{where}the bounds of {n}", v) for n, v in bounds.items()}
+    settings["fixed"] = to_dictionary("fixed", settings["fixed"])
+    require_max_angle(settings["max_angle"])
+    return settings
 
 
 def _list_notes(data, samples, loss, found, fitted):

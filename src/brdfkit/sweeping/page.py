@@ -1,0 +1,166 @@
+"""The page of a sweep: one HTML file without scripts, for a light and for a dark screen."""
+
+import math
+import os
+from html import escape
+from pathlib import Path
+from urllib.parse import quote
+
+from brdfkit.files import write_safely
+from brdfkit.fitting import losses
+from brdfkit.names import printable
+from brdfkit.sweeping import tables
+from brdfkit.verbs.compare import format_error
+from brdfkit.version import __version__
+
+STYLE = """
+:root { color-scheme: light dark; --paper: #fff; --ink: #1d1d1f; --soft: #6b6b70; --line: #dcdce0;
+  --tint: #b9dfc0; --bad: #b3261e; }
+@media (prefers-color-scheme: dark) {
+  :root { --paper: #17181a; --ink: #e8e8ea; --soft: #a0a0a8; --line: #3a3b40;
+    --tint: #2c6a3c; --bad: #ff8a80; }
+}
+body { margin: 2rem auto; max-width: 75rem; padding: 0 1rem; background: var(--paper);
+  color: var(--ink); font: 15px/1.5 system-ui, sans-serif; }
+h1 { font-size: 1.5rem; margin: 0; } h2 { font-size: 1.1rem; margin: 2rem 0 .5rem; }
+p { margin: .3rem 0; } .soft, footer { color: var(--soft); }
+.wide { overflow-x: auto; margin-top: .6rem; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
+th, td { padding: .25rem .7rem; text-align: left; border-bottom: 1px solid var(--line);
+  white-space: nowrap; vertical-align: top; }
+th { font-weight: 600; }
+.number, .failed { text-align: right; }
+.errors th:first-child { position: sticky; left: 0; background: var(--paper); }
+tfoot, tfoot th { color: var(--soft); font-weight: 400; }
+td.best { font-weight: 600; }
+td.near { background: color-mix(in srgb, var(--tint) calc(var(--near) * 1%), transparent); }
+td.failed, li { color: var(--bad); }
+td.remarks { white-space: normal; min-width: 20rem; }
+a { color: inherit; text-decoration-color: var(--line); text-underline-offset: .2em; }
+a:hover { text-decoration-color: currentColor; }
+footer { margin-top: 2rem; font-size: .9rem; }
+"""
+NUMBER = "number"  # the class of a cell
+FAR = 4.0  # times the error of the best: from there a cell has no tint
+
+
+def write(sweep, path):
+    """Write the page of a `Sweep` to the file `path`."""
+    path = Path(path)
+    with write_safely(path) as beside:
+        beside.write_text(page(sweep, path.parent), encoding="utf-8")
+
+
+def page(sweep, folder):
+    """The page as text; `folder`: where it will be, for its links."""
+    materials = tables.by_material(sweep)
+    models = list(dict.fromkeys(row.model for row in sweep.rows))
+    title = f"{_count(models, 'model')} fitted to {_count(materials, 'material')}"
+    loss = sweep.rows[0].loss
+    parts = [
+        f"<h1>{title}</h1>",
+        f'<p class="soft">{_text(sweep.summary)}</p>',
+        "<h2>Errors</h2>",
+        f'<p class="soft">Loss {loss}: {_text(losses[loss].meaning)}. The best of a row is bold, '
+        "the others have the more colour the nearer they come to it.</p>",
+        _errors(sweep, materials, models, folder),
+    ]
+    if sweep.problems:
+        items = "".join(f"<li>{_text(problem)}</li>" for problem in sweep.problems)
+        parts += ["<h2>Failures</h2>", f"<ul>{items}</ul>"]
+    if sweep.fits:
+        parts += ["<h2>Every fit</h2>", _fits(sweep)]
+    return (
+        '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width">'
+        f"<title>{title}</title><style>{STYLE}</style></head>\n<body>\n"
+        + "\n".join(parts)
+        + f"\n<footer>Made by brdfkit {__version__}.</footer>\n</body></html>\n"
+    )
+
+
+def _errors(sweep, materials, models, folder):
+    """The errors, materials by models."""
+    columns, _, foot = tables.errors(sweep)
+    body = []
+    for material, found in materials.items():
+        least = min((row.error for row in found.values() if row.fit), default=math.nan)
+        cells = "".join(_error(found.get(model), least, folder) for model in models)
+        best = sweep.best[material].name if material in sweep.best else ""
+        file = _text(next(iter(found.values())).file)
+        name = f'<th scope="row" title="{file}">{_text(material)}</th>'
+        body.append(f"<tr>{name}{cells}{_cells([best])}</tr>")
+    sums = [f'<tr><th scope="row">{name}</th>{_cells(texts, NUMBER)}</tr>' for name, *texts in foot]
+    return _table("errors", columns, body, sums)
+
+
+def _error(row, least, folder):
+    """The cell of one fit; `least`: the error of the best fit to the same material."""
+    if row is None:
+        return "<td></td>"
+    if not row.fit:
+        return f'<td class="failed" title="{_text(row.message)}">failed</td>'
+    ratio = row.error / least if least else math.inf if row.error else 1.0
+    near = round(100 * max(0.0, 1 - math.log(ratio) / math.log(FAR)))
+    kind = f"{NUMBER} near best" if row.error == least else f"{NUMBER} near"
+    text = format_error(row.error)
+    if row.saved:
+        link = quote(Path(os.path.relpath(row.saved, folder)).as_posix())
+        text = f'<a href="{link}">{text}</a>'
+    return f'<td class="{kind}" style="--near: {near}" title="{row.error:.9g}">{text}</td>'
+
+
+def _fits(sweep):
+    """Every fit with its values."""
+    columns = "material", "model", ">error", ">parameters", ">samples", ">time [s]", "remarks", ""
+    body = []
+    for row in sweep.rows:
+        if row.fit:
+            numbers = (
+                format_error(row.error),
+                row.parameters,
+                f"{row.samples:,}",
+                f"{row.seconds:.2f}",
+            )
+            bounds = [f"on a bound: {', '.join(row.at_bounds)}"] if row.at_bounds else []
+            remarks = "; ".join([*bounds, *row.fit.notes, row.message])
+            values = "<br>".join(_text(f"{n} = {_short(v)}") for n, v in row.fit.values.items())
+            body.append(
+                f"<tr>{_cells([row.material, row.model])}{_cells(numbers, NUMBER)}"
+                f"{_cells([remarks], 'remarks')}"
+                f"<td><details><summary>values</summary>{values}</details></td></tr>"
+            )
+    return _table("fits", columns, body)
+
+
+def _table(kind, columns, body, foot=()):
+    """A table of rows; a column whose name begins with ">" is one of numbers."""
+    head = "".join(
+        f'<th scope="col" class="{NUMBER if name.startswith(">") else ""}">'
+        f"{_text(name.removeprefix('>'))}</th>"
+        for name in columns
+    )
+    end = "<tfoot>" + "\n".join(foot) + "</tfoot>" if foot else ""
+    return (
+        f'<div class="wide"><table class="{kind}"><thead><tr>{head}</tr></thead>\n<tbody>'
+        + "\n".join(body)
+        + f"</tbody>{end}</table></div>"
+    )
+
+
+def _cells(texts, kind=""):
+    return "".join(f'<td class="{kind}">{_text(text)}</td>' for text in texts)
+
+
+def _short(value):
+    """A value as text."""
+    return "  ".join(f"{v:.5g}" for v in (value if isinstance(value, tuple) else [value]))
+
+
+def _count(things, what):
+    return f"{len(things)} {what}{'' if len(things) == 1 else 's'}"
+
+
+def _text(text):
+    """Any text, escaped for the page."""
+    return escape(printable(text))

@@ -1,0 +1,598 @@
+"""Sweeps: many materials in several processes and on a cluster, past what fails, and resumed."""
+
+import csv
+import functools
+import itertools
+import json
+import multiprocessing
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote
+
+import psutil
+import pytest
+from click.testing import CliRunner
+
+import brdfkit as bk
+from brdfkit.checks.material_subject import random_pairs
+from brdfkit.cli import main
+from brdfkit.plugins import discovery
+from brdfkit.sweeping import sweeping
+from brdfkit.sweeping.planning import plan, split
+from brdfkit.sweeping.tasks import fit_models
+from brdfkit.verbs.fit import check_settings
+
+TRUTHS = {
+    "chalk": bk.models()["lambert"](diffuse_reflectance=(0.5, 0.4, 0.3)),
+    "copper": bk.models()["ggx"](alpha_u=0.3, specular_reflectance=(0.9, 0.6, 0.4)),
+    "paint": bk.models()["ward"](alpha_u=0.2, diffuse_reflectance=(0.1, 0.2, 0.3)),
+}
+FILES = [f"{name}.npz" for name in TRUTHS]
+LINEAR = ["lambert", "koenderink"]  # fitted in no time
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """The files of three small materials, by name."""
+    folder = tmp_path_factory.mktemp("materials")
+    for seed, (name, truth) in enumerate(TRUTHS.items()):
+        wi, wo = random_pairs(200, seed=seed, max_degrees=75)
+        bk.save(bk.Measured.from_samples(wi, wo, truth.eval(wi, wo)), folder / f"{name}.npz")
+    return {file: (folder / file).read_bytes() for file in FILES}
+
+
+@pytest.fixture
+def here(made, tmp_path, monkeypatch):
+    """A current folder with the files."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(discovery, "_users", {})
+    for file, data in made.items():
+        Path(file).write_bytes(data)
+    return tmp_path
+
+
+@pytest.fixture
+def fitted(monkeypatch):
+    """Sweeps run in this process; gives the list of (material, model) that were fitted."""
+    done = []
+    monkeypatch.setattr(sweeping, "run_in_processes", functools.partial(run_here, done=done))
+    return done
+
+
+def run_here(tasks, workers, done=None):
+    """`run_in_processes` without any; what is finished is added to the list `done`."""
+    for outcome in itertools.chain.from_iterable(map(fit_models, tasks)):
+        if done is not None:
+            done.append((outcome.material, outcome.model))
+        yield outcome
+
+
+def tree(folder="."):
+    return sorted(p.relative_to(folder).as_posix() for p in Path(folder).rglob("*"))
+
+
+# What comes out
+
+
+@pytest.mark.quick
+def test_rows_and_the_best(here, fitted):
+    found = bk.sweep(FILES, LINEAR)
+    assert [(r.material, r.model) for r in found.rows] == [(m, n) for m in TRUTHS for n in LINEAR]
+    assert found.asked == len(found.fits) == 6
+    assert found.failed == []
+    for row in found.rows:
+        assert row.fit == bk.fit(row.model, row.file)
+        assert row.error == row.fit.loss
+        assert row.parameters == {"lambert": 3, "koenderink": 15}[row.model]
+    for material, best in found.best.items():
+        assert best.loss == min(r.error for r in found.rows if r.material == material)
+    assert [line.split()[0] for line in str(found).splitlines()[:4]] == ["material", *TRUTHS]
+    assert str(found).splitlines()[-1].startswith("6 of 6 fits; ")
+
+
+@pytest.mark.quick
+def test_settings_are_those_of_a_fit(here, fitted):
+    settings = {"loss": "cbrt", "robust": "bisquare", "max_angle": 60, "fixed": {"alpha_u": 0.1}}
+    row = bk.sweep("paint.npz", "ward", settings).rows[0]
+    assert row.fit == bk.fit("ward", "paint.npz", **settings)
+    assert (row.loss, row.parameters) == ("cbrt", 6)
+
+
+@pytest.mark.quick
+def test_what_fails_does_not_stop_the_others(here, fitted):
+    Path("short.npz").write_bytes(b"PK")
+    bk.save(bk.fit("lambert", "chalk.npz"), "fit.json")
+    found = bk.sweep(["missing.npz", *FILES, "short.npz", "fit.json", "crapet"], LINEAR)
+    assert [r.material for r in found.failed[::2]] == ["missing", "short", "fit", "crapet"]
+    assert len(found.fits) == 6
+    assert len(found.problems) == 4
+    bad = "missing.npz", "short.npz", "fit.json", "crapet"
+    for file, said in zip(bad, found.problems, strict=True):
+        assert said.count(file) == 1, said
+    assert str(here) not in str(found)
+    assert found.problems[0] in str(found)
+
+
+@pytest.mark.quick
+def test_a_name_counts_once_and_names_are_made_unlike(here, fitted):
+    Path("old").mkdir()
+    Path("old/paint.npz").write_bytes(Path("chalk.npz").read_bytes())
+    files = ["paint.npz", "./paint.npz", Path("old/paint.npz")]
+    found = bk.sweep(files, ["lambert", "lambert"])
+    assert [(r.material, r.file) for r in found.rows] == [
+        ("paint", "paint.npz"),
+        ("paint (2)", "old/paint.npz"),
+    ]
+
+
+@pytest.mark.quick
+def test_an_error_that_is_not_for_people_fails_one_fit(here, fitted, monkeypatch):
+    def broken(name, data, **settings):
+        return {}[name] if name == "lambert" else bk.fit(name, data, **settings)
+
+    monkeypatch.setattr("brdfkit.sweeping.tasks.fit", broken)
+    found = bk.sweep("chalk.npz", LINEAR)
+    assert found.problems == ["chalk.npz: lambert fails with KeyError ('lambert')."]
+    assert len(found.fits) == 1
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ((FILES, "wrad"), "did you mean ward"),
+        ((FILES, []), "no model here"),
+        (([], "ward"), "no file here"),
+        ((FILES, "ward", {"los": "log"}), "no setting of a fit 'los'; did you mean loss?"),
+        ((FILES, "ward", {"loss": "lgo"}), "did you mean log"),
+        ((FILES, "ward", {"max_angle": 300}), "max_angle = 300"),
+        (([TRUTHS["chalk"]], "ward"), "takes files"),
+        ((FILES, type("Felt", (bk.Model,), {})), "Felt is defined in no file"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_wrong_arguments_are_told_before_the_work(here, fitted, arguments, said):
+    with pytest.raises(bk.BrdfkitError, match=said.replace("?", r"\?")):
+        bk.sweep(*arguments, output="new")
+    assert fitted == []
+    assert not Path("new").exists()
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"workers": 0}, "workers = 0"),
+        ({"client": "tcp://here"}, "should be a dask.distributed.Client"),
+        ({"client": "tcp://here", "workers": 2}, "either workers or a client"),
+        ({"output": "chalk.npz"}, "cannot be made a folder"),
+    ],
+)
+def test_wrong_options_are_told_before_the_work(here, fitted, options, said):
+    with pytest.raises(bk.BrdfkitError, match=said):
+        bk.sweep(FILES, LINEAR, **options)
+    assert fitted == []
+
+
+# Saved, and resumed
+
+
+@pytest.mark.quick
+def test_a_later_sweep_does_the_rest(here, fitted):
+    first = bk.sweep(FILES[:2], "lambert", output="out")
+    assert tree("out") == sorted(
+        ["chalk", "chalk/lambert.json", "copper", "copper/lambert.json", "index.html", "table.csv"]
+    )
+    assert [bk.load(row.saved) for row in first.rows] == first.fits
+    fitted.clear()
+    reports = []
+    more = bk.sweep(
+        FILES, LINEAR, {"loss": "log"}, output="out", progress=lambda *step: reports.append(step)
+    )
+    assert set(fitted) == {(m, n) for m in TRUTHS for n in LINEAR} - {
+        ("chalk", "lambert"),
+        ("copper", "lambert"),
+    }
+    assert reports == [(done, 4) for done in range(5)]
+    assert (more.found, len(more.fits)) == (2, 6)
+    assert more.rows[0] == first.rows[0]
+    fitted.clear()
+    again = bk.sweep(FILES, LINEAR, output="out")
+    assert fitted == []
+    assert again.rows == more.rows
+    assert "6 of 6 fits, 6 of them saved before" in str(again)
+
+
+@pytest.mark.quick
+def test_what_has_changed_is_fitted_again(here, fitted, monkeypatch):
+    def changed(**settings):
+        fitted.clear()
+        bk.sweep(FILES, "lambert", settings, output="out")
+        return [material for material, _ in fitted]
+
+    assert changed() == ["chalk", "copper", "paint"]
+    Path("copper.npz").write_bytes(Path("chalk.npz").read_bytes())
+    assert changed() == ["copper"]
+    assert changed(max_angle=70) == ["chalk", "copper", "paint"]
+    Path("out/paint/lambert.json").write_text("{")
+    Path("out/chalk/lambert.json").write_text("[1]")
+    assert changed(max_angle=70) == ["chalk", "paint"]
+    bk.save(bk.fit("lambert", "chalk.npz", max_angle=70), "out/chalk/lambert.json")
+    assert changed(max_angle=70) == ["chalk"]  # of which nobody knows that it is this one
+    monkeypatch.setattr("brdfkit.sweeping.tasks.Task.__init__.__defaults__", ("", "0.0.9"))
+    assert changed(max_angle=70) == ["chalk", "copper", "paint"]
+
+
+FELT = '''"""Felt: dull."""
+
+from brdfkit.model import Model, weight
+from brdfkit.model.lobes import lambertian
+
+
+class Felt(Model):
+    diffuse_reflectance = weight(0.3, "k_d")
+
+    def lobes(self):
+        return (lambertian(),)
+'''
+
+
+@pytest.mark.quick
+def test_a_model_of_ones_own_is_fitted_again_when_its_file_changes(here, fitted):
+    Path("felt.py").write_text(FELT)
+    for expected in (["felt"], [], ["felt+ward", "felt"]):
+        fitted.clear()
+        bk.sweep("chalk.npz", ["lambert", *expected[:-1], "felt.py"], output="out")
+        assert [model for _, model in fitted if model != "lambert"] == expected
+        if not expected:
+            Path("felt.py").write_text(FELT + "\n")
+
+
+@pytest.mark.quick
+def test_a_file_that_changes_meanwhile_fails(here):
+    (task,) = plan("chalk.npz", "lambert", check_settings({}))
+    Path("chalk.npz").write_bytes(Path("paint.npz").read_bytes())
+    (outcome,) = fit_models(task)
+    assert outcome.failure == "chalk.npz: has changed since the sweep began; begin it again."
+    (outcome,) = fit_models(replace(task, version="0.0.9"))
+    assert "the worker has brdfkit" in outcome.failure
+
+
+@pytest.mark.quick
+def test_a_task_is_plain_data_and_is_cut_where_there_are_few(here):
+    tasks = plan(FILES, [*LINEAR, "ward"], check_settings({}))
+    assert pickle.loads(pickle.dumps(tasks)) == tasks
+    for workers, parts in ((1, 6), (2, 9), (8, 9)):
+        cut = split(tasks, workers)
+        assert len(cut) == parts
+        assert [(t.file, m) for t in cut for m in t.models] == [
+            (t.file, m) for t in tasks for m in t.models
+        ]
+
+
+@pytest.mark.quick
+def test_ctrl_c_ends_with_what_is_finished(here, fitted):
+    def progress(done, total):
+        if done == stop:
+            raise KeyboardInterrupt
+
+    stop = 2
+    found = bk.sweep(FILES, LINEAR, output="out", progress=progress)
+    assert (len(found.rows), found.asked) == (2, 6)
+    assert "2 of 6 fits" in str(found)
+    assert {"index.html", "table.csv"} < set(tree("out"))
+    stop = 0
+    with pytest.raises(KeyboardInterrupt):
+        bk.sweep(FILES, LINEAR, progress=progress)
+
+
+# Written
+
+
+@pytest.fixture
+def swept(here, fitted):
+    """A sweep with a failure and a name that is markup."""
+    Path("<i>&.npz").write_bytes(Path("paint.npz").read_bytes())
+    return bk.sweep(["chalk.npz", "<i>&.npz", "missing.npz"], LINEAR, output="out")
+
+
+@pytest.mark.quick
+def test_the_table(swept):
+    with Path("out/table.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert [r["material"] for r in rows] == [r.material for r in swept.rows]
+    for written, row in zip(rows, swept.rows, strict=True):
+        assert written["message"] == row.message
+        if row.fit:
+            assert float(written["error"]) == row.error
+            assert json.loads(written["values"]) == {k: list(v) for k, v in row.fit.values.items()}
+        else:
+            assert written["error"] == written["seconds"] == written["values"] == ""
+
+
+@pytest.mark.quick
+def test_parquet(swept, monkeypatch):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    swept.to_parquet("table.parquet")
+    table = parquet.read_table("table.parquet").to_pydict()
+    assert table["error"] == [row.error if row.fit else None for row in swept.rows]
+    with Path("out/table.csv").open(encoding="utf-8") as stream:
+        assert list(table) == next(csv.reader(stream))
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(bk.BrdfkitError, match=r"other.parquet: .*pip install pyarrow"):
+        swept.to_parquet("other.parquet")
+    assert not Path("other.parquet").exists()
+
+
+class Page(HTMLParser):
+    """The tags and the text of a page; fails where a tag is not closed."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.tags, self.links, self.text = [], [], [], ""
+        self.feed(text)
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        self.links += [value for name, value in attrs if name == "href"]
+        if tag not in ("meta", "br"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text += data
+
+
+@pytest.mark.quick
+def test_the_page(swept):
+    text = Path("out/index.html").read_text(encoding="utf-8")
+    page = Page(text)
+    assert not {"script", "i", "img", "link"} & set(page.tags)
+    assert "prefers-color-scheme: dark" in text
+    assert "http" not in text
+    assert swept.problems[0] in page.text
+    assert all(f"{row.error:.5f}" in page.text for row in swept.rows if row.fit)
+    assert len(page.links) == len(swept.fits) == 4
+    assert all(bk.load(Path("out", unquote(link))) in swept.fits for link in page.links)
+    Path("elsewhere").mkdir()
+    swept.to_html("elsewhere/page.html")
+    links = Page(Path("elsewhere/page.html").read_text(encoding="utf-8")).links
+    assert all(Path("elsewhere", unquote(link)).is_file() for link in links)
+
+
+# In processes
+
+DEADLY = '''"""Deadly: ends its process."""
+
+import multiprocessing
+import os
+import signal
+from pathlib import Path
+
+from brdfkit.model import Model, weight
+from brdfkit.model.lobes import lambertian
+
+
+class Deadly(Model):
+    diffuse_reflectance = weight(0.3, "k_d")
+
+    def lobes(self):
+        if multiprocessing.parent_process() and ALWAYS_OR_ONCE:
+            Path("died").touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+        return (lambertian(),)
+'''
+
+
+@pytest.mark.parametrize("always", [False, True])
+def test_a_process_that_dies_takes_nothing_with_it(here, always):
+    condition = "True" if always else 'not Path("died").exists()'
+    Path("deadly.py").write_text(DEADLY.replace("ALWAYS_OR_ONCE", condition))
+    found = bk.sweep("chalk.npz", ["lambert", "deadly.py", "koenderink"], workers=1, output="out")
+    assert [row.model for row in found.rows] == ["lambert", "deadly", "koenderink"]
+    assert Path("died").exists()
+    assert [row.model for row in found.failed] == (["deadly"] if always else [])
+    if always:
+        assert found.problems == [
+            "chalk.npz: deadly ended its process 2 times (SIGKILL); give fewer workers if memory "
+            "is short."
+        ]
+    assert multiprocessing.active_children() == []
+
+
+SLOW = FELT.replace("Felt", "Slow").replace(
+    "        return",
+    "        time.sleep(60 if multiprocessing.parent_process() else 0)\n        return",
+)
+SWEEPS = """
+import brdfkit.cli
+
+models = ["-m", "lambert", "-m", "slow.py"]
+brdfkit.cli.main(["fit", "chalk.npz", "paint.npz", *models, "-o", "out", "-j", "2"])
+"""
+
+
+def test_ctrl_c_ends_the_processes_and_keeps_what_is_finished(here):
+    """Typed in a terminal, a Ctrl-C reaches all processes. The script has no guard that keeps its
+    processes from running it, too."""
+    Path("slow.py").write_text("import multiprocessing\nimport time\n" + SLOW)
+    Path("script.py").write_text(SWEEPS)
+    command = [sys.executable, "-W", "error", "script.py"]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen(command, text=True, start_new_session=True, **pipes) as process:
+        while len([name for name in tree() if name.endswith("lambert.json")]) < 2:
+            time.sleep(0.05)
+            assert process.poll() is None
+        children = psutil.Process(process.pid).children()
+        workers = [child for child in children if "spawn_main" in " ".join(child.cmdline())]
+        os.killpg(process.pid, signal.SIGINT)
+        printed, told = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert told == (
+        "brdfkit: interrupted; 2 of 4 fits are finished; the same command goes on from there.\n"
+    )
+    assert "2 of 4 fits; " in printed
+    assert "out/index.html" in printed
+    assert [worker.is_running() for worker in workers] == [False, False]
+    assert len(tree("out")) == 6
+
+
+# On the command line
+
+
+@pytest.fixture
+def cli(here, fitted):
+    """A function that runs the command line, which gives its status and output."""
+    return lambda *words: CliRunner().invoke(main, [str(w) for w in words])
+
+
+MODELS = [word for name in LINEAR for word in ("-m", name)]
+
+
+@pytest.mark.quick
+def test_the_command(cli):
+    result = cli("fit", *FILES, *MODELS, "-o", "out")
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert all(name in result.stdout for name in [*TRUTHS, *LINEAR, "median", "6 of 6 fits"])
+    assert result.stdout.count("written: ") == 3
+    assert {"chalk/lambert.json", "index.html", "table.csv"} < set(tree("out"))
+    record = json.loads(cli("fit", *FILES, *MODELS, "-o", "out", "--json").stdout)
+    assert record["failed"] == []
+    for fit, row in zip(record["fits"], bk.sweep(FILES, LINEAR, output="out").rows, strict=True):
+        assert (fit["material"], fit["model"], fit["error"]) == (row.material, row.model, row.error)
+    assert set(record["written"]) == {f"out/{name}" for name in tree("out") if "." in name}
+
+
+@pytest.mark.quick
+def test_the_command_goes_past_bad_files(cli):
+    Path("short.npz").write_bytes(b"PK")
+    result = cli("fit", "short.npz", *FILES, "missing.npz", *MODELS, "--json")
+    assert result.exit_code == 2
+    first, second = result.stderr.splitlines()
+    assert first.startswith("brdfkit: short.npz: ")
+    assert second.startswith("brdfkit: missing.npz: ")
+    record = json.loads(result.stdout)
+    assert len(record["fits"]) == 6
+    assert [f["file"] for f in record["failed"]] == ["short.npz"] * 2 + ["missing.npz"] * 2
+    nothing = cli("fit", "short.npz", "missing.npz", *MODELS, "-o", "new")
+    assert (nothing.exit_code, nothing.stdout) == (2, "")
+    assert sorted(nothing.stderr.splitlines()) == sorted([first, second])
+    assert not Path("new").exists()
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--render"], "--render shows one material"),
+        (["-j", "0"], "--jobs"),
+        (["--loss", "nope"], "nope"),
+        (["-m", "nope"], "nope"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)
+def test_the_command_refuses_in_one_sentence(cli, fitted, words, said):
+    result = cli("fit", *FILES, *words, "-o", "new")
+    assert (result.exit_code, result.stdout, fitted) == (2, "", [])
+    assert result.stderr.startswith("brdfkit: ")
+    assert result.stderr.count("\n") == 1
+    assert said in result.stderr
+    assert not Path("new").exists()
+
+
+# On a cluster
+
+WAITS = FELT.replace("Felt", "Waits").replace(
+    "        return",
+    """        if multiprocessing.parent_process() and not BEGAN.exists():
+            BEGAN.write_text(str(os.getpid()))
+            time.sleep(60)
+        return""",
+)
+BEGAN = """
+import multiprocessing
+import os
+import time
+from pathlib import Path
+
+BEGAN = Path(__file__).with_name("began")
+"""
+
+
+@pytest.fixture
+def client(request):
+    """A client of a cluster of processes on this machine; the parameter: how many workers, and how
+    many of them may die of a task."""
+    dask, distributed = pytest.importorskip("dask"), pytest.importorskip("distributed")
+    workers, deaths = request.param
+    options = {"n_workers": workers, "threads_per_worker": 1, "processes": True}
+    with (
+        dask.config.set({"distributed.scheduler.allowed-failures": deaths}),
+        distributed.LocalCluster(**options, dashboard_address=":0") as cluster,
+        distributed.Client(cluster) as found,
+    ):
+        yield found
+
+
+def kill_the_first_that_began(killed):
+    """Kill the process whose number is in the file `began`, once there is one."""
+    for _ in range(600):
+        time.sleep(0.05)
+        if Path("began").exists() and (pid := Path("began").read_text()):
+            os.kill(int(pid), signal.SIGKILL)
+            killed.append(int(pid))
+            return
+
+
+@pytest.mark.parametrize("client", [(2, 3)], indirect=True)
+def test_a_cluster_loses_nothing_where_a_worker_is_killed(here, client, monkeypatch):
+    """In the middle of a fit. The results are those without a cluster, to 1e-10."""
+    head, line, rest = WAITS.partition("\n\n")
+    Path("waits.py").write_text(head + line + BEGAN + rest)
+    models, killed = ["lambert", "ward", "waits.py", "koenderink"], []
+    workers = client.run(os.getpid)
+    killer = threading.Thread(target=kill_the_first_that_began, args=(killed,))
+    killer.start()
+    found = bk.sweep([*FILES, "missing.npz"], models, client=client, output="out")
+    killer.join()
+    assert killed[0] in workers.values()
+    assert len(found.fits) == 12
+    assert {row.file for row in found.failed} == {"missing.npz"}
+    monkeypatch.setattr(sweeping, "run_in_processes", run_here)
+    alone = bk.sweep(FILES, models)
+    for row, other in zip(found.rows, alone.rows, strict=False):
+        assert (row.material, row.model) == (other.material, other.model)
+        assert row.error == pytest.approx(other.error, rel=1e-10, abs=1e-10)
+        for name, value in other.fit.values.items():
+            assert row.fit.values[name] == pytest.approx(value, rel=1e-10, abs=1e-10)
+    assert bk.sweep(FILES, models, output="out").found == 12
+
+
+@pytest.mark.parametrize("client", [(1, 0)], indirect=True)
+def test_only_the_fit_fails_of_which_every_worker_dies(here, client):
+    Path("deadly.py").write_text(DEADLY.replace("ALWAYS_OR_ONCE", "True"))
+    found = bk.sweep("chalk.npz", ["lambert", "deadly.py"], client=client)
+    assert [row.model for row in found.failed] == ["deadly"]
+    assert "chalk.npz: deadly ended every worker that tried it" in found.problems[0]
+
+
+@pytest.mark.parametrize("client", [(1, 0)], indirect=True)
+def test_ctrl_c_leaves_nothing_to_do_on_the_cluster(here, client):
+    def interrupt(done, total):
+        if done:
+            raise KeyboardInterrupt
+
+    found = bk.sweep(FILES, LINEAR, client=client, progress=interrupt)
+    assert (len(found.rows), found.asked) == (1, 6)
+    assert not any(client.processing().values())
