@@ -93,11 +93,8 @@ class Right(Model):
     alpha = shape(0.3, (0.01, 1.0), "")
 
     def specular(self, wi, wo):
-        return (
-            bk.models()["ward"]
-            .bind({"alpha_u": self.alpha, "alpha_v": self.alpha})
-            .specular(wi, wo)
-        )
+        ward = bk.models()["ward"].bind({"alpha_u": self.alpha, "alpha_v": self.alpha})
+        return ward.lobes()[1].eval(wi, wo)
 
     def lobes(self):
         facets = HalfVector(Beckmann(self.alpha, self.alpha))

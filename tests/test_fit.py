@@ -350,8 +350,9 @@ def test_minimise_in_box_meets_the_optimality_conditions():
         hessian = factor.transpose(0, 2, 1) @ factor
         scale = np.sqrt(hessian.diagonal(axis1=1, axis2=2))
         gradient = rng.normal(size=(100, n)) * scale
-        low = np.where(rng.random((100, n)) < 0.3, -np.inf, rng.normal(size=(100, n)) / scale)
-        high = np.where(rng.random((100, n)) < 0.3, np.inf, low + 1 / scale)
+        middle = rng.normal(size=(100, n)) / scale
+        low = np.where(rng.random((100, n)) < 0.3, -np.inf, middle)
+        high = np.where(rng.random((100, n)) < 0.3, np.inf, middle + 1 / scale)
         z = minimise_in_box(hessian, gradient, low, high)
         z, low, high = (x * scale for x in (z, low, high))
         assert ((low <= z + 1e-12) & (z <= high + 1e-12)).all()

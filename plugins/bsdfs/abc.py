@@ -15,9 +15,9 @@ from typing import Any
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import cos_theta_d, half_vector
+from brdfkit.geometry.vectors import half_vector
 from brdfkit.model import Model, shape, weight
-from brdfkit.model.lobes import HalfVector, Lobe, lambertian
+from brdfkit.model.lobes import HalfVector, factored, lambertian
 from brdfkit.model.microfacet import Visible, v_groove
 from brdfkit.model.numerics import expm1, log1p
 
@@ -74,16 +74,17 @@ class ABC(Model):
     c = shape(1.5, (0.05, 5.0), "C: steepness of its tails", log=True)
     ior = shape(1.5, (1.01, 100.0), "η: index of refraction", log=True)
 
-    def specular(self, wi, wo):
-        h = half_vector(wi, wo)
-        D = PowerOfHeight(self.b, self.c).power(h)
-        F = fresnel(self.ior, cos_theta_d(wi, wo))
-        return D * v_groove(wi, wo, h) * F / (dr.pi * wi.z * wo.z)
+    def geometry(self, wi, wo):
+        return v_groove(wi, wo, half_vector(wi, wo)) / (dr.pi * wi.z * wo.z)
 
     def lobes(self):
-        facets = PowerOfHeight(self.b, self.c)
+        heights = PowerOfHeight(self.b, self.c)
+
+        def facets(h, cos_d):
+            return heights.power(h) * fresnel(self.ior, cos_d)
 
         def energy(wi):
-            return 4 / dr.pi * facets.integral() * fresnel(self.ior, wi.z)
+            return 4 / dr.pi * heights.integral() * fresnel(self.ior, wi.z)
 
-        return lambertian(), Lobe(self.specular, HalfVector(Visible(facets)), energy)
+        sampling = HalfVector(Visible(heights))
+        return lambertian(), factored(facets, self.geometry, sampling, energy)

@@ -14,7 +14,7 @@ measurements determine only the product k_s F₀.
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import cos_theta_d, half_vector
+from brdfkit.geometry.vectors import cos_theta_d
 from brdfkit.model import follows, option, shape, weight
 from brdfkit.model.fresnel import FresnelModel
 from brdfkit.model.lobes import Cosine, HalfVector, Lobe, lambertian
@@ -41,18 +41,16 @@ class AshikhminShirley(FresnelModel):
         """1 - F₀, which k_d includes where F is coloured."""
         return 1 - self.f0 if self.fresnel == "schlick" else 1
 
-    def facets(self, wi, wo):
-        h = half_vector(wi, wo)
-        cos_d = cos_theta_d(wi, wo)
-        power = CosinePower(self.exponent_u, self.exponent_v).pdf(wi, h, cos_d)
-        return power / (4 * cos_d * dr.maximum(wi.z, wo.z))
+    def geometry(self, wi, wo):
+        return 1 / (4 * cos_theta_d(wi, wo) * dr.maximum(wi.z, wo.z))
 
     def lobes(self):
-        sampling = HalfVector(Visible(CosinePower(self.exponent_u, self.exponent_v)))
+        powers = CosinePower(self.exponent_u, self.exponent_v)
         diffuse = lambertian()
         if self.diffuse == "coupled":
             diffuse = Lobe(self.coupled_diffuse, Cosine(), self.coupled_albedo, diffuse=True)
-        return diffuse, *self.fresnel_lobes(self.facets, sampling)
+        sampling = HalfVector(Visible(powers))
+        return diffuse, *self.fresnel_lobes(powers.density, self.geometry, sampling)
 
 
 def entering_share(cosine):

@@ -20,11 +20,10 @@ class CookTorrance(FresnelModel):
     alpha = shape(0.2, (0.001, 1.0), "m: rms slope of the facets", log=True, width=1)
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def facets(self, wi, wo):
-        h = half_vector(wi, wo)
-        D = Beckmann(self.alpha, self.alpha).D(h)  # holds the 1/π of (3.28)
-        return D * v_groove(wi, wo, h) / (wi.z * wo.z)
+    def geometry(self, wi, wo):
+        return v_groove(wi, wo, half_vector(wi, wo)) / (wi.z * wo.z)
 
     def lobes(self):
-        sampling = HalfVector(Visible(Beckmann(self.alpha, self.alpha)))
-        return lambertian(), *self.fresnel_lobes(self.facets, sampling, albedo=4)
+        slopes = Beckmann(self.alpha, self.alpha)  # its D holds the 1/π of (3.28)
+        sampling = HalfVector(Visible(slopes))
+        return lambertian(), *self.fresnel_lobes(slopes.D, self.geometry, sampling, albedo=4)

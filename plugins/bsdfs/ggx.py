@@ -6,7 +6,6 @@ D is that of [Walter et al. 2007], G₂ that of [Heitz 2014], F Schlick's. Its l
 metals, paints and plastics; no retro-reflection, no scattering between facets.
 """
 
-from brdfkit.geometry.vectors import half_vector
 from brdfkit.model import follows, shape, weight
 from brdfkit.model.fresnel import FresnelModel
 from brdfkit.model.lobes import HalfVector, lambertian
@@ -23,7 +22,7 @@ class GGX(FresnelModel):
     def lobes(self):
         slopes = TrowbridgeReitz(self.alpha_u, self.alpha_v)
 
-        def facets(wi, wo):
-            return slopes.D(half_vector(wi, wo)) * slopes.G2(wi, wo) / (4 * wi.z * wo.z)
+        def geometry(wi, wo):
+            return slopes.G2(wi, wo) / (4 * wi.z * wo.z)
 
-        return lambertian(), *self.fresnel_lobes(facets, HalfVector(slopes))
+        return lambertian(), *self.fresnel_lobes(slopes.D, geometry, HalfVector(slopes))

@@ -19,7 +19,6 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from brdfkit.geometry.vectors import half_vector
 from brdfkit.model import shape, weight
 from brdfkit.model.fresnel import FresnelModel
 from brdfkit.model.lobes import HalfVector, lambertian
@@ -111,13 +110,11 @@ class SGD(FresnelModel):
     p = shape(0.5, (0.0, 2.0), "p: fall of the power law between α and √α")
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def facets(self, wi, wo):
-        # α and p as one value per direction: a fit then sums derivatives once, not at every slope
-        one = wi.z / wi.z
-        slopes = ShiftedGamma(self.alpha * one, self.p * one)
-        G = slopes.G1(wi) * slopes.G1(wo)
-        return slopes.D(half_vector(wi, wo)) * G / (dr.pi * wi.z * wo.z)
-
     def lobes(self):
-        sampling = HalfVector(Visible(ShiftedGamma(self.alpha, self.p)))
-        return lambertian(), *self.fresnel_lobes(self.facets, sampling, albedo=4 / dr.pi)
+        slopes = ShiftedGamma(self.alpha, self.p)
+
+        def geometry(wi, wo):
+            return slopes.G1(wi) * slopes.G1(wo) / (dr.pi * wi.z * wo.z)
+
+        sampling = HalfVector(Visible(slopes))
+        return lambertian(), *self.fresnel_lobes(slopes.D, geometry, sampling, albedo=4 / dr.pi)

@@ -17,7 +17,6 @@ from typing import Any
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import half_vector
 from brdfkit.model import follows, shape, weight
 from brdfkit.model.fresnel import FresnelModel
 from brdfkit.model.lobes import HalfVector, lambertian
@@ -94,12 +93,11 @@ class StudentT(FresnelModel):
     gamma = shape(3.0, (1.51, 40.0), "γ: fall of the tails", log=True)
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def facets(self, wi, wo):
-        # The parameters as one value per direction: a fit then sums each derivative once
-        one = wi.z / wi.z
-        slopes = StudentSlopes(self.alpha_u * one, self.alpha_v * one, self.gamma * one)
-        return slopes.D(half_vector(wi, wo)) * slopes.G2(wi, wo) / (4 * wi.z * wo.z)
-
     def lobes(self):
-        sampling = HalfVector(Visible(StudentSlopes(self.alpha_u, self.alpha_v, self.gamma)))
-        return lambertian(), *self.fresnel_lobes(self.facets, sampling)
+        slopes = StudentSlopes(self.alpha_u, self.alpha_v, self.gamma)
+
+        def geometry(wi, wo):
+            return slopes.G2(wi, wo) / (4 * wi.z * wo.z)
+
+        sampling = HalfVector(Visible(slopes))
+        return lambertian(), *self.fresnel_lobes(slopes.D, geometry, sampling)

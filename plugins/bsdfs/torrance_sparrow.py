@@ -62,10 +62,10 @@ class TorranceSparrow(FresnelModel):
     alpha = shape(0.2, (0.001, 1.0), "m: rms inclination of the facets [rad]", log=True, width=1)
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def facets(self, wi, wo):
-        h = half_vector(wi, wo)
-        return GaussianAngle(self.alpha).D(h) * v_groove(wi, wo, h) / (4 * wi.z * wo.z)
+    def geometry(self, wi, wo):
+        return v_groove(wi, wo, half_vector(wi, wo)) / (4 * wi.z * wo.z)
 
     def lobes(self):
-        sampling = HalfVector(Visible(GaussianAngle(self.alpha)))
-        return lambertian(), *self.fresnel_lobes(self.facets, sampling)
+        angles = GaussianAngle(self.alpha)
+        sampling = HalfVector(Visible(angles))
+        return lambertian(), *self.fresnel_lobes(angles.D, self.geometry, sampling)

@@ -11,7 +11,7 @@ def minimise_in_box(hessian, gradient, low, high):
 
     `hessian` H (b, n, n): positive semidefinite; `gradient` g, `low`, `high`: (b, n), or what
     broadcasts to it. The active sets follow the signs of the solution and of its multipliers, in
-    all entries at once [Kunisch & Rendl 2003], then by the least index [Murty 1974].
+    all entries at once [Hintermüller et al. 2002], then by the least index [Murty 1974].
 
     >>> minimise_in_box(np.eye(2)[None], np.array([[-1.0, 1.0]]), 0.0, np.inf)
     array([[1., 0.]])

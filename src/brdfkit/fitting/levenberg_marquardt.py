@@ -14,7 +14,9 @@ from brdfkit.fitting.expansion import Expansion
 
 # A search goes on while so many times its next gain could bring it below the best one
 PATIENCE = 10
-ROUNDING = 1e-24
+# Relative difference of E² below which two ends are one; and E² that is rounding, beside that of a
+# start
+SAME, ROUNDING = 1e-4, 1e-24
 LEAST_DAMPING, MOST_DAMPING = 1e-15, 1e9
 
 
@@ -28,13 +30,11 @@ class Search:
     evaluations: int
 
     def best(self, count):
-        """The numbers of the `count` points with the least E² that differ from each other."""
+        """The numbers of the `count` points with the least E² that differ in it."""
         order = np.argsort(self.ends.error, kind="stable")
-        u, error = self.ends.u[order], self.ends.error[order]
-        apart = np.abs(u[:, None] - u).max(axis=2, initial=0)
-        # A point is left out where a better one is near
-        near = (apart < 1e-3) & (error[:, None] <= (1 + 1e-3) * error)
-        new = ~np.tril(near, -1).any(axis=1)
+        error = self.ends.error[order]
+        # Equal ends are one end: a sum of equal models has it in each order of its lobes
+        new = np.diff(error, prepend=-1) > SAME * error
         return order[new][:count]
 
 

@@ -57,9 +57,9 @@ class Problem:
             squares.append(np.asarray(block.importance * total))
         return np.concatenate(squares)
 
-    def start(self, u):
-        """The weights with the least E² where the loss is linearised at the measured values: exact
-        for a linear one, otherwise where a search begins."""
+    def start(self, u, evenly=False):
+        """The weights with the least E² where the loss is linearised at the measured values, or
+        `evenly`, by their differences: exact for a linear one, otherwise where a search begins."""
         sums = Sums.zeros(len(u), self.channels, len(self.columns))
         for block in self.blocks(len(u)):
             columns = self._columns(block, u)
@@ -67,6 +67,7 @@ class Problem:
             for c, measured in enumerate(block.measured):
                 value = measured if self.loss.linear else dr.maximum(measured, 0)
                 _, slope = self._difference(block, value, c)
+                slope = 0 * slope + 1 if evenly else slope
                 weights.append(block.importance * slope * slope)
                 moments.append(-weights[-1] * value)
             self._add(sums, block, u, columns, [0 * block.importance], moments, weights)

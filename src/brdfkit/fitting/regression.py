@@ -18,7 +18,9 @@ from brdfkit.jit.threads import in_turn
 # and the best on all; no part is more than half of what it is drawn from
 PARTS = 40_000, 3_000
 # How many starts go on after so many steps
-EXPLORING = (16, 3), (6, 5)
+EXPLORING = (24, 4), (8, 6)
+# Ends on a part within this share of the least E² are followed to all samples, up to so many
+CLOSE, FINALISTS = 0.02, 3
 MOST_STEPS, FEW_STEPS = 200, 10
 # A search has ended where the next step would lower E² by less than this share of it; the second:
 # on a part
@@ -122,7 +124,9 @@ def search(problems, u, report):
     for number, problem in enumerate(problems):
         report(number, len(problems))
         if number:
-            ends = found.ends.at(found.best(1 if problem is last else len(ends.u)))
+            rows = found.best(FINALISTS)
+            error = found.ends.error
+            ends = found.ends.at(rows[error[rows] <= (1 + CLOSE) * error[rows[0]]])
         tolerance = TOLERANCE if problem is last else LOOSE
         part = problems[number - 1] if number else None
         found, count = _descend(problem, part, ends, tolerance)
@@ -133,12 +137,13 @@ def search(problems, u, report):
 
 
 def _avoid_clamping(problem, u, weights):
-    """Twice the starts, the second time with weights by which less of the model is clamped at 0:
-    where much is, a search may rest."""
+    """More starts, with weights by which more or less of the model is clamped at 0: where much is,
+    a search may rest."""
     extended = Problem(problem.model, problem.samples, problem.loss, problem.space, extended=True)
-    found = levenberg_marquardt(extended.expand, u, weights, problem.least, MOST_STEPS)
-    ends = found.ends
-    return np.concatenate([u, ends.u]), np.concatenate([weights, ends.weights])
+    ends = levenberg_marquardt(extended.expand, u, weights, problem.least, MOST_STEPS).ends
+    evenly = problem.start(u, evenly=True)
+    starts = [(u, weights), (ends.u, ends.weights), (u, evenly), (u, (evenly + weights) / 2)]
+    return [np.concatenate(parts) for parts in zip(*starts, strict=True)]
 
 
 def _descend(problem, part, ends, tolerance):

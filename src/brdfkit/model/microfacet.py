@@ -144,8 +144,11 @@ class CosinePower:
         sin_theta = dr.sqrt(complement * (2 - complement))
         return type(wi)(sin_theta * x, sin_theta * y, 1 - complement)
 
-    def pdf(self, wi, h, cos_d):
+    def density(self, h):
         return dr.sqrt((self.n_u + 1) * (self.n_v + 1)) / (2 * dr.pi) * self.power(h)
+
+    def pdf(self, wi, h, cos_d):
+        return self.density(h)
 
 
 @dataclass(frozen=True)
