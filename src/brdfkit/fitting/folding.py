@@ -18,6 +18,8 @@ from brdfkit.model import double_precision
 
 # Folding is worth its sums where nodes are so many times fewer than samples
 WORTHWHILE = 20
+# Nodes of so many samples are multiplied one by one
+LONG = 1000
 
 
 def fold(problem):
@@ -29,10 +31,10 @@ def fold(problem):
     if pairs is None:
         return None
     numbers = cells[1 if pairs else 0]
+    if not problem.columns.slopes:  # nothing changes: a single node
+        numbers = np.zeros_like(numbers)
     starts = np.flatnonzero(np.diff(numbers, prepend=-1))
-    if len(starts) * WORTHWHILE > len(numbers):
-        return None
-    return Folded(problem, starts)
+    return Folded(problem, starts) if len(starts) * WORTHWHILE <= len(numbers) else None
 
 
 def _depend_on_cos_d(problem):
@@ -68,48 +70,32 @@ class Folded:
             for w in (problem.samples.wi, problem.samples.wo)
         )
         lobes, channels = len(self.columns.lobes), self.channels
-        grams = np.zeros((lobes, lobes, len(starts)))
-        moments = np.zeros((lobes, channels, len(starts)))
-        self.squares = 0.0
+        sums = np.zeros((len(starts), lobes + channels, lobes + channels))
         for block in problem.blocks(1):
-            inside = starts[(starts >= block.rows.start) & (starts < block.rows.stop)]
+            inside = starts[(starts > block.rows.start) & (starts < block.rows.stop)]
             first = int(np.searchsorted(starts, block.rows.start, "right")) - 1
-            edges = np.concatenate([[block.rows.start], inside[inside > block.rows.start]])
-            nodes = slice(first, first + len(edges))
-            products, by_channel, squares = self._products(block)
-            dr.eval(products, by_channel, squares)
-            at = edges - block.rows.start
-            for (a, b), product in products.items():
-                sums = np.add.reduceat(np.asarray(product), at)
-                grams[a, b, nodes] += sums
-                if a != b:
-                    grams[b, a, nodes] += sums
-            for (a, c), product in by_channel.items():
-                moments[a, c, nodes] += np.add.reduceat(np.asarray(product), at)
-            self.squares += float(np.asarray(squares).sum())
+            edges = np.concatenate([[block.rows.start], inside]) - block.rows.start
+            sums[first : first + len(edges)] += _multiply(self._constants(block), edges)
+        by_node = sums.transpose(1, 2, 0)
         values = [*range(lobes), *(value for value, _ in self.columns.slopes)]
-        self.grams, self.moments = grams[np.ix_(values, values)], moments[values]
+        self.grams = by_node[np.ix_(values, values)]
+        self.moments = by_node[np.ix_(values, range(lobes, lobes + channels))]
+        self.squares = float(np.trace(by_node[lobes:, lobes:].sum(axis=2)))
 
-    def _products(self, block):
-        """What is summed over a block: w κ² A A and -w κ² A R by lobes, and w κ² R²."""
+    def _constants(self, block):
+        """The factors κ A of the lobes, and -κ R by channel, times √w: NumPy's (..., n)."""
         columns, problem = self.columns, self.problem
         middle = self.space.table(np.full((1, len(self.space.names)), 0.5))[0]
         lobes = columns.bind([double_precision.scalar(x) for x in middle]).lobes()
-        none = 0 * block.wi.z
-        constants = [
-            (l.factors[1] if l.factors else l.eval)(block.wi, block.wo) + none for l in lobes
-        ]
-        products, by_channel, squares = {}, {}, none
+        root, constants, differences = dr.sqrt(block.importance), [], []
         for c in range(self.channels):
             difference, kappa = problem._difference(block, 0.0, c)
-            weighted = block.importance * kappa
-            for a, constant in enumerate(constants):
-                by_channel[a, c] = weighted * difference * constant
-            squares = squares + block.importance * dr.square(difference)
-        for a, first in enumerate(constants):
-            for b, second in enumerate(constants[: a + 1]):
-                products[a, b] = weighted * kappa * first * second
-        return products, by_channel, squares
+            differences.append(root * difference)
+        for lobe in lobes:
+            constant = lobe.factors[1] if lobe.factors else lobe.eval
+            constants.append(root * kappa * constant(block.wi, block.wo))
+        dr.eval(constants, differences)
+        return np.stack([np.asarray(array) for array in constants + differences])
 
     def start(self, u):
         """As `Problem.start`."""
@@ -144,3 +130,16 @@ class Folded:
 def _facets(lobe, wi, wo):
     """The factor S of a lobe, 1 where its parameters are fixed."""
     return lobe.factors[0](half_vector(wi, wo), cos_theta_d(wi, wo)) if lobe.factors else 1.0
+
+
+def _multiply(rows, edges):
+    """The products of `rows` (k, n) with each other, summed from edge to edge: (edges, k, k)."""
+    count, n = rows.shape
+    if n > LONG * len(edges):
+        parts = np.split(rows, edges[1:], axis=1)
+        return np.stack([part @ part.T for part in parts])
+    products = np.empty((len(edges), count, count))
+    for a, first in enumerate(rows):
+        for b, second in enumerate(rows[: a + 1]):
+            products[:, a, b] = products[:, b, a] = np.add.reduceat(first * second, edges)
+    return products

@@ -22,9 +22,9 @@ EXPLORING = (24, 4), (8, 6)
 # Ends on a part within this share of the least E² are followed to all samples, up to so many
 CLOSE, FINALISTS = 0.02, 3
 MOST_STEPS, FEW_STEPS = 200, 10
-# A search has ended where the next step would lower E² by less than this share of it; the second:
-# on a part
-TOLERANCE, LOOSE = 1e-11, 1e-8
+# A search ends where the next step would lower E² by less than this share of it: of few samples, of
+# many, and of a part of them
+EXACT, TIGHT, LOOSE = 1e-11, 1e-9, 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +127,7 @@ def search(problems, u, report):
             rows = found.best(FINALISTS)
             error = found.ends.error
             ends = found.ends.at(rows[error[rows] <= (1 + CLOSE) * error[rows[0]]])
-        tolerance = TOLERANCE if problem is last else LOOSE
+        tolerance = LOOSE if problem is not last else TIGHT if number else EXACT
         part = problems[number - 1] if number else None
         found, count = _descend(problem, part, ends, tolerance)
         evaluations += count

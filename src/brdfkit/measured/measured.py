@@ -110,11 +110,14 @@ class Measured(MeasuredData):
         values[above] = np.maximum(self._interpolant(wi[above], wo[above]), 0)
         return values
 
-    @cached_property
+    @property
     def rgb(self) -> "Measured":
         """The same material in linear sRGB, or itself where it is RGB or achromatic already."""
-        if self.channels == RGB or len(self.channels) == 1:
-            return self
+        # Itself is not cached in itself: such a circle would keep its memory for long
+        return self if self.channels == RGB or len(self.channels) == 1 else self._in_rgb
+
+    @cached_property
+    def _in_rgb(self):
         return to_rgb(self)
 
     def mixed(

@@ -30,7 +30,7 @@ def directions_within(axes, max_angle):
         wi, wo = (w.reshape(-1, 3) for w in pair)
         cos_min = least_cosine(max_angle)
         rows = np.flatnonzero((wi[:, 2] > cos_min) & (wo[:, 2] > cos_min))
-        parts.append((number * size + rows, wi[rows], wo[rows]))
+        parts.append(((number * size + rows).astype(np.int32), wi[rows], wo[rows]))
     cells, wi, wo = (np.concatenate(part) for part in zip(*parts, strict=True))
     return cells, as_columns(wi), as_columns(wo)
 

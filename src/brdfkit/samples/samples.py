@@ -68,11 +68,13 @@ class Samples:
         axes = tuple(tuple(axis.tolist()) for axis in table.centres)
         cells, wi, wo = directions_within(axes, float(max_angle))
         values = table.values.reshape(-1, table.values.shape[-1])
-        weight = np.broadcast_to(table.theta_h_widths, table.shape).ravel()[cells]
         values = as_columns(values, cells)
         known = np.isfinite(values).all(axis=1)
-        n_d, n_p = table.shape[-2:]
-        samples = cls(wi, wo, values, known, weight, (cells // (n_d * n_p), cells // n_p))
+        n_h, n_d, n_p = table.shape[-3:]
+        pairs = cells // n_p
+        half_vectors = pairs // n_d
+        weight = table.theta_h_widths.ravel()[half_vectors % n_h]
+        samples = cls(wi, wo, values, known, weight, (half_vectors, pairs))
         return samples if known.all() else samples.at(known)
 
     def within(self, max_angle):
