@@ -31,6 +31,7 @@ lint: $(VENV)/.ready
 
 bench: $(VENV)/.ready
 	DRJIT_CACHE_DIR=$$(mktemp -d) $(RUN)/python tests/benchmark.py
+	$(RUN)/python tests/benchmark_fits.py
 
 docs: $(VENV)/.ready
 	$(RUN)/python docs/make_models.py

@@ -1,0 +1,115 @@
+"""How long fits take: `make bench`. Seconds of this machine, beside plain NumPy and SciPy in one run.
+
+A full table is a shipped material at the resolution of a MERL file, its cells below 80°. Files under
+BRDFKIT_DATA, where it is set: 10,804 goniometer samples, and 52 CUReT materials times 7 models.
+"""
+
+import os
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import psutil
+from benchmark import full_table
+from rich.console import Console
+from rich.table import Table as Printed
+from scipy.optimize import minimize
+
+import brdfkit as bk
+from brdfkit.measured.selection import select_samples
+
+# (model, loss, robust) of a full table
+TABLE = (
+    ("ward_duer", "cosine", None),
+    ("ward", "cosine", None),
+    ("blinn_phong", "cosine", None),
+    ("cook_torrance", "cosine", None),
+    ("ggx", "cosine", None),
+    *((name, "log", None) for name in bk.models() if name != "mixture"),
+    ("ggx", "cbrt", None),
+    ("ggx+ggx", "log", None),
+    ("ggx+student_t", "log", None),
+    ("ggx+ggx", "cbrt", None),
+    ("pca_polynomial:degree=7", "plain", "bisquare"),
+    ("koenderink:order=8", "plain", "bisquare"),
+    ("ggx", "log", "bisquare"),
+    ("ggx", "cosine", "bisquare"),
+)
+GONIOMETER = ("ggx", "student_t", "sgd", "lafortune", "ggx+ggx", "abc+ward")
+# Kurt 2007: the 52 isotropic samples, and the models of the appendix
+ANISOTROPIC = (38, 40, 42, 44, 46, 51, 54, 56, 58)
+THESIS = (
+    "ashikhmin_shirley",
+    "blinn_phong",
+    "cook_torrance",
+    "lafortune",
+    "oren_nayar",
+    "ward",
+    "ward_duer",
+)
+
+
+def plain_ward_duer(samples):
+    """The cosine fit of `ward_duer` in a few lines of NumPy, by one start of SciPy's SLSQP."""
+    h = samples.wi + samples.wo
+    tan2 = (h[:, 0] ** 2 + h[:, 1] ** 2) / h[:, 2] ** 2
+    cos_i, cos_o = samples.wi[:, 2], samples.wo[:, 2]
+    w = np.sqrt(1 - cos_i**2) * samples.weight * cos_i**2
+
+    def error(x):
+        alpha = np.exp(x[0])
+        S = np.exp(-tan2 / alpha**2) / (4 * np.pi * alpha**2 * cos_i * cos_o)
+        T = np.stack([np.full_like(S, 1 / np.pi), S])
+        gram, moment = (T * w) @ T.T, (T * w) @ samples.values
+        return (w @ samples.values**2).sum() - (moment * np.linalg.solve(gram, moment)).sum()
+
+    return minimize(error, [np.log(0.2)], method="SLSQP", bounds=[(np.log(0.001), 0)])
+
+
+def best_seconds(function, times=2):
+    """Least seconds of a warm call."""
+    function()
+    seconds = []
+    for _ in range(times):
+        began = time.perf_counter()
+        function()
+        seconds.append(time.perf_counter() - began)
+    return min(seconds)
+
+
+def main():
+    process = psutil.Process()
+    before = process.memory_info().rss
+    out, data = Console(width=120), full_table()
+    plain = best_seconds(lambda: plain_ward_duer(select_samples(data, 80.0)))
+    table = Printed("full table", "loss", "seconds", "plain SciPy's", "loss reached", "message")
+    for model, loss, robust in TABLE:
+        seconds = best_seconds(lambda: bk.fit(model, data, loss, robust=robust))  # noqa: B023
+        fit = bk.fit(model, data, loss, robust=robust)
+        share = f"{plain / seconds:.1f} ×" if (model, loss) == ("ward_duer", "cosine") else ""
+        name = " ".join(filter(None, (model, robust)))
+        table.add_row(name, loss, f"{seconds:.3f}", share, f"{fit.loss:.6g}", fit.message)
+    out.print(table)
+    grown = (process.memory_info().rss - before) / 2**20
+    out.print(f"memory that the process holds after these fits: {grown:.0f} MB more than before")
+    if folder := os.environ.get("BRDFKIT_DATA"):
+        goniometer = bk.load(Path(folder) / "minidiff_paints" / "C8_Silver.astm.xz")
+        table = Printed("10,804 samples, log", "seconds")
+        for model in GONIOMETER:
+            table.add_row(model, f"{best_seconds(lambda: bk.fit(model, goniometer)):.3f}")  # noqa: B023
+        out.print(table)
+        numbers = [k for k in range(1, 62) if k not in ANISOTROPIC]
+        curet = [bk.load(Path(folder) / "curet" / f"abrdf.dat#{k}") for k in numbers]
+        for model in THESIS:
+            bk.fit(model, curet[0], "cosine")
+        began = time.perf_counter()
+        for model in THESIS:
+            for sample in curet:
+                bk.fit(model, sample, "cosine")
+        out.print(f"364 fits of CUReT: {time.perf_counter() - began:.1f} s")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
