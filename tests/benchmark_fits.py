@@ -1,7 +1,7 @@
-"""How long fits take: `make bench`. Seconds of this machine, beside plain NumPy and SciPy in one run.
+"""How long fits take: `make bench`. Seconds of this machine, beside plain NumPy's in one run.
 
-A full table is a shipped material at the resolution of a MERL file, its cells below 80°. Files under
-BRDFKIT_DATA, where it is set: 10,804 goniometer samples, and 52 CUReT materials times 7 models.
+A full table is a shipped material at the resolution of a MERL file, its cells below 80°. Of files
+under BRDFKIT_DATA, where it is set: 10,804 goniometer samples, and 52 CUReT materials × 7 models.
 """
 
 import os

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.fitting.acceleration import Anderson, make_convex
 from brdfkit.fitting.box_quadratic import minimise_in_box
 from brdfkit.fitting.expansion import Expansion
 from brdfkit.fitting.part import draw_part
@@ -27,10 +28,6 @@ EXACTLY = 1e-9
 LOOSE = 1e-5
 # Where a pass changes them by less than this share, steps are mixed
 NEAR = 1e-3
-# Newton's steps are at most so many times longer than ordinary ones, in each direction
-LEAST_CURVATURE = 0.02
-# How many steps are mixed
-MIXED = 5
 # So many passes are ordinary ones first, that the end is MATLAB's; the second: of many samples
 ORDINARY, FEW = 60, 0
 RETURN = 10
@@ -151,7 +148,7 @@ class Robust:
     def _newton(self, u, weights, ratios, hessian, gradient):
         """Newton's step, that knows how the weights of the samples change."""
         slopes = [_slope(self.function, r[self.rows]) for r in ratios]
-        newton = _make_convex(self._curvature(u, weights, slopes)[0], hessian)
+        newton = make_convex(self._curvature(u, weights, slopes)[0], hessian)
         return self._step(newton, gradient, u, weights)
 
     def _descend(self, u, weights, residuals, scales, step, ordinary):
@@ -206,41 +203,6 @@ def _slope(function, r):
     """The derivative of weight times r."""
     ends = [function(r + step) * (r + step) for step in (-SMALL, SMALL)]
     return (ends[1] - ends[0]) / (2 * SMALL)
-
-
-def _make_convex(newton, hessian):
-    """Newton's matrix with eigenvalues that are positive and not small beside those of `hessian`,
-    an ordinary pass's."""
-    scale = 1 / np.sqrt(np.maximum(np.diag(hessian), 1e-300))
-    scaled = hessian * np.outer(scale, scale) + 1e-10 * np.eye(len(hessian))
-    root = np.linalg.cholesky(scaled)
-    inner = np.linalg.solve(root, np.linalg.solve(root, newton * np.outer(scale, scale)).T)
-    values, vectors = np.linalg.eigh((inner + inner.T) / 2)
-    both = root @ vectors
-    positive = np.clip(np.abs(values), LEAST_CURVATURE, 1)
-    return (both * positive) @ both.T / np.outer(scale, scale)
-
-
-class Anderson:
-    """Anderson's mixing of the last steps of a fixed-point iteration [Walker & Ni 2011]; lengths
-    are those of `metric`."""
-
-    def __init__(self, metric):
-        self.metric, self.points, self.steps = metric, [], []
-
-    def mix(self, point, step):
-        """The step from `point` (n,), mixed of `step` and those before."""
-        self.points, self.steps = [*self.points[-MIXED:], point], [*self.steps[-MIXED:], step]
-        if len(self.points) == 1:
-            return step
-        by_point, by_step = (np.diff(np.array(a), axis=0) for a in (self.points, self.steps))
-        gram = by_step @ self.metric @ by_step.T
-        share = np.linalg.lstsq(
-            gram + 1e-12 * np.trace(gram) * np.eye(len(gram)),
-            by_step @ self.metric @ step,
-            rcond=None,
-        )[0]
-        return step - share @ (by_point + by_step)
 
 
 def settle(problem, u, weights, name, rng, report):
