@@ -2,7 +2,7 @@
 
 import numpy as np
 
-# Newton's steps are at most so many times longer than ordinary ones, in each direction
+# Newton's steps are at most 1 / this times longer than ordinary ones, in each direction
 LEAST_CURVATURE = 0.02
 # How many steps are mixed
 MIXED = 5
