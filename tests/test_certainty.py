@@ -55,7 +55,7 @@ def test_intervals_hold_the_truth(model, loss, noise):
 
 
 def test_intervals_of_a_robust_fit_hold_the_truth():
-    inside, _ = held("lambert", "log", "even", 40, n=100, robust="huber")
+    inside, _ = held("lambert", "log", "even", 30, n=100, robust="huber")
     assert 0.90 < np.nanmean(inside) < 0.99
     assert not significantly_few(inside).any()
 

@@ -5,10 +5,10 @@ of a model and their derivatives, on `blocks.py` of samples; `sums.py` adds them
 makes of the sums E² to second order, and `problem.py` all this of a model on samples (`folding.py`:
 quicker, on a table with a linear loss). `levenberg_marquardt.py` searches in the bounds of
 `parameter_space.py`, by steps that `box_quadratic.py` finds; `search.py` has it go from many
-`starting_points.py` and a `part.py` of many samples to one end and all. `robust.py` weighs outliers,
-`robust_search.py` until weights and solution give each other back, which `acceleration.py` speeds
-up. `certainty.py` says how certain the parameters are. `regression.py` runs these one after the
-other; `result.py` is `Fit`.
+`starting_points.py` and a `part.py` of many samples to one end and all. `robust.py` weighs
+outliers, `robust_search.py` until weights and solution give each other back, which
+`acceleration.py` speeds up. `certainty.py` says how certain the parameters are. `regression.py`
+runs these one after the other; `result.py` is `Fit`.
 """
 
 from brdfkit.fitting.loss import losses as losses
