@@ -140,7 +140,9 @@ def test_fit(cli):
         saved = bk.load(f"out/{fit['model']}.json")
         assert fit["error"] == pytest.approx(saved.loss)
         assert fit["error"] == pytest.approx(fit["errors"][fit["loss"]])
-        assert fit["parameters"].keys() == saved.values.keys()
+        assert fit["parameters"].keys() == fit["standard_errors"].keys() == saved.values.keys()
+        assert fit["degrees_of_freedom"] == saved.degrees_of_freedom
+        assert fit["bic"] == saved.bic
 
 
 UNDEFINED_MODEL = '''"""Fog: not a number at normal incidence."""

@@ -165,6 +165,11 @@ def _record(found, comparison, psnr):
     return {
         "model": found.name,
         "parameters": found.values,
+        "standard_errors": found.standard_errors,
+        "intervals": found.intervals,
+        "degrees_of_freedom": found.degrees_of_freedom,
+        "aic": found.aic,
+        "bic": found.bic,
         "loss": found.loss_name,
         "error": found.loss,
         "errors": comparison.errors[found.name],

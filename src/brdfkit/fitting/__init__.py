@@ -7,7 +7,8 @@ quicker, on a table with a linear loss). `levenberg_marquardt.py` searches in th
 `parameter_space.py`, by steps that `box_quadratic.py` finds; `search.py` has it go from many
 `starting_points.py` and a `part.py` of many samples to one end and all. `robust.py` weighs down
 outliers, `robust_search.py` until weights and solution give each other back, which
-`acceleration.py` speeds up. `regression.py` runs these one after the other; `result.py` is `Fit`.
+`acceleration.py` speeds up. `certainty.py` says how certain the parameters are. `regression.py`
+runs these one after the other; `result.py` is `Fit`.
 """
 
 from brdfkit.fitting.loss import losses as losses

@@ -32,7 +32,7 @@ class Expansion:
         """The expansion that `Sums` at the points give."""
         points, channels, lobes = weights.shape
         shapes = len(columns.names)
-        change = _combine(columns, weights, space.slopes(u))
+        change = combine(columns, weights, space.slopes(u))
         by_channel = (change @ sums.moment[..., None])[..., 0]
         gradient = np.zeros((points, shapes + channels * lobes))
         gradient[:, :shapes] = by_channel[:, :, :shapes].sum(axis=1)
@@ -91,7 +91,7 @@ class Expansion:
 ARRAYS = [f.name for f in fields(Expansion) if f.name not in ("columns", "space")]
 
 
-def _combine(columns, weights, slopes):
+def combine(columns, weights, slopes):
     """The model's derivatives (points, channels, shapes + lobes, columns), by coordinates, then by
     weights, as combinations of the columns; `slopes`: of the parameters by coordinates."""
     points, channels, lobes = weights.shape

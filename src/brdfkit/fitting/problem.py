@@ -10,7 +10,7 @@ import numpy as np
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.blocks import Blocks
 from brdfkit.fitting.columns import Columns
-from brdfkit.fitting.expansion import Expansion
+from brdfkit.fitting.expansion import Expansion, combine
 from brdfkit.fitting.not_finite import require_finite_columns
 from brdfkit.fitting.sums import Sums, move_weights, solve_weights
 from brdfkit.model import double_precision
@@ -43,7 +43,7 @@ class Problem:
                 f"The {loss.name} loss weighs no sample, for all are seen at normal incidence; "
                 "choose another loss."
             )
-        self.blocks = Blocks(samples, importance)
+        self.importance, self.blocks = importance, Blocks(samples, importance)
 
     def on(self, samples):
         """The same problem on other `Samples`."""
@@ -70,7 +70,8 @@ class Problem:
                 slope = 0 * slope + 1 if evenly else slope
                 weights.append(block.importance * slope * slope)
                 moments.append(-weights[-1] * value)
-            self._add(sums, block, u, columns, [0 * block.importance], moments, weights)
+            squares = [0 * block.importance]
+            sums.add(*self._evaluate(block, u, columns, squares, moments, weights))
         return solve_weights(self.columns, sums, self.least)
 
     def expand(self, u, weights, curvature=True):
@@ -88,6 +89,31 @@ class Problem:
     def sums(self, u, weights, curvature=True):
         """The `Sums` at points."""
         sums = Sums.zeros(len(u), self.channels, len(self.columns), curvature)
+        for evaluated in self._evaluate_blocks(u, weights):
+            sums.add(*evaluated)
+        return sums
+
+    def jacobians(self, u, weights):
+        """At one point, by channel: the residuals (n,), where they have a slope, and their
+        derivatives (shapes + lobes, n) by the parameters, not by their coordinates."""
+        change = combine(self.columns, weights, np.ones_like(u))[0]
+        parts = []
+        for columns, _, moments, grams in self._evaluate_blocks(u, weights):
+            roots = [np.sqrt(gram[0]) for gram in grams]
+            own = [
+                moment[0] / np.where(root > 0, root, 1)
+                for moment, root in zip(moments, roots, strict=True)
+            ]
+            T = np.stack([column[0] for column in columns])
+            parts.append((own, [(by @ T) * root for by, root in zip(change, roots, strict=True)]))
+        residuals, jacobians = zip(*parts, strict=True)
+        return [
+            [np.concatenate(own, axis=-1) for own in zip(*blocks, strict=True)]
+            for blocks in (residuals, jacobians)
+        ]
+
+    def _evaluate_blocks(self, u, weights):
+        """What `Sums.add` takes, block by block."""
         for block in self.blocks(len(u)):
             columns = self._columns(block, u)
             model = self._mix(block, columns, weights)
@@ -100,8 +126,7 @@ class Problem:
                 squares.append(importance * dr.square(difference))
                 moments.append(importance * difference * slope)
                 grams.append(importance * slope * slope)
-            self._add(sums, block, u, columns, squares, moments, grams)
-        return sums
+            yield self._evaluate(block, u, columns, squares, moments, grams)
 
     def expand_here(self, u, weights):
         """The `Expansion` at these very `weights`."""
@@ -175,13 +200,13 @@ class Problem:
         _, slope = _differentiate(difference, 0 * value)
         return _differentiate(extended, value)
 
-    def _add(self, sums, block, u, columns, squares, moments, weights):
-        """Evaluate a block in one kernel, and add it to `sums`."""
+    def _evaluate(self, block, u, columns, squares, moments, weights):
+        """What `Sums.add` takes, of a block, in one kernel."""
         total = sum(squares)
         dr.eval(columns, total, moments, weights)
         values = [block.fold(column) for column in columns]
         values = require_finite_columns(self.columns, values, block, self.space, u)
-        sums.add(
+        return (
             values,
             block.fold(total),
             [block.fold(m) for m in moments],

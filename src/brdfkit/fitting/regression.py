@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.fitting.certainty import Certainty, certify, explain_end
 from brdfkit.fitting.folding import fold
 from brdfkit.fitting.parameter_space import Space
 from brdfkit.fitting.problem import Problem
@@ -20,7 +21,7 @@ class Solution:
 
     `shapes`: the shape parameters by name; `weights`: (channels, lobes); `loss`: E; `evaluations`:
     how often E was computed; `message`: why the search stopped; `at_bounds`: parameters that ended
-    on a bound; `notes`: what else one should know.
+    on a bound; `notes`: what else one should know; `certainty`: how certain the parameters are.
     """
 
     shapes: dict[str, float]
@@ -30,6 +31,7 @@ class Solution:
     message: str
     at_bounds: tuple[str, ...]
     notes: tuple[str, ...]
+    certainty: Certainty
 
 
 @in_turn
@@ -66,19 +68,21 @@ def regress(
     points = start_points(space, default, starts or usual_starts(len(space.names)), seed)
     end, converged, evaluations = search(problems, points, report)
     message = "converged" if converged else f"stopped after {MOST_STEPS} steps"
-    error, u, weights, notes = end.error[0], end.u, end.weights, ()
+    error, u, weights, notes, passes = end.error[0], end.u, end.weights, (), None
     # Weigh down outliers, from the optimum where all samples count alike
     if robust:
-        u, weights, message, notes = settle(whole, u, weights, robust, rng, report)
+        u, weights, message, notes, passes = settle(whole, u, weights, robust, rng, report)
         error = whole.sums(u, weights, curvature=False).error[0]
+    certainty = certify(whole, u, weights, passes, rng)
     return Solution(
         space.values(u[0]),
         weights[0],
         math.sqrt(error),
         evaluations,
-        message,
+        explain_end(certainty) or message,
         _find_at_bounds(space, u[0], model, weights[0]),
         notes,
+        certainty,
     )
 
 

@@ -6,7 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from brdfkit.fitting.certainty import Certainty
 from brdfkit.model import Model
+
+NAN = float("nan")
 
 
 @dataclass(frozen=True)
@@ -37,6 +40,17 @@ class Fit:
         What else one should know of the fit.
     settings : dict
         The other arguments of `fit`.
+    certainty : Certainty, optional
+        What the data say of the parameters: the ``names`` of those that they determine (weights as
+        ``"diffuse_reflectance[0]"``), their ``covariance``, the degrees of ``freedom`` of each
+        variance, and what is ``undetermined``; None in fits saved by earlier versions.
+
+    Notes
+    -----
+    Standard errors, intervals and covariances suppose that the samples are independent and that the
+    model is right up to noise. Neighbouring cells of a table are not independent, and there the
+    misfit of the model is larger than the noise: of a whole table, standard errors say how sharply
+    the loss determines the parameters, not how near they are to a truth.
     """
 
     model: Model
@@ -50,6 +64,7 @@ class Fit:
     at_bounds: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     settings: dict[str, Any] = field(default_factory=dict, hash=False)
+    certainty: Certainty | None = None
 
     @property
     def name(self) -> str:
@@ -60,6 +75,72 @@ class Fit:
     def values(self) -> dict[str, float | tuple[float, ...]]:
         """The parameters' values by name; a weight is a tuple with one number per channel."""
         return self.model.values
+
+    @property
+    def standard_errors(self) -> dict[str, float | tuple[float, ...]]:
+        """The standard errors of `values`; NaN for what is fixed, on a bound or undetermined."""
+        return self._per_value(self.certainty.standard_errors() if self.certainty else {})
+
+    @property
+    def intervals(self) -> dict[str, tuple[float, float] | tuple[tuple[float, float], ...]]:
+        """The 95 % confidence intervals (low, high) of `values`, by Student's t."""
+        half = self._per_value(self.certainty.half_widths() if self.certainty else {})
+        found: dict[str, Any] = {}
+        for name, value in self.values.items():
+            if isinstance(value, tuple):
+                pairs = zip(value, half[name], strict=True)
+                found[name] = tuple((v - h, v + h) for v, h in pairs)
+            else:
+                found[name] = (value - half[name], value + half[name])
+        return found
+
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """The covariance (n, n) of ``certainty.names``."""
+        return self.certainty.matrix() if self.certainty else np.zeros((0, 0))
+
+    @property
+    def correlation(self) -> NDArray[np.float64]:
+        """The correlation (n, n) of ``certainty.names``."""
+        return self.certainty.correlation() if self.certainty else np.zeros((0, 0))
+
+    @property
+    def degrees_of_freedom(self) -> int | None:
+        """The measured numbers less the searched parameters; below 0 where these are more."""
+        return self.certainty.numbers - self.certainty.parameters if self.certainty else None
+
+    @property
+    def aic(self) -> float:
+        """Akaike's criterion, N ln(E²) + 2 k, of N numbers and k parameters: of models fitted to
+        the same data under the same loss, less is better. It supposes independent samples and noise
+        that is Gaussian and equal in the loss's differences, no robust weight, and no table."""
+        return self._criterion(2.0)
+
+    @property
+    def bic(self) -> float:
+        """The Bayesian criterion, N ln(E²) + k ln N; see `aic`."""
+        return self._criterion(np.log(self.certainty.numbers)) if self.certainty else NAN
+
+    def _per_value(self, known):
+        """Numbers by the names of `Certainty` in the form of `values`, NaN where there is none."""
+        found: dict[str, Any] = {}
+        for name, value in self.values.items():
+            # What follows another parameter is as certain, unless it was given a value of its own
+            other = self.model.parameters[name].follows
+            if isinstance(value, tuple):
+                found[name] = tuple(known.get(f"{name}[{c}]", NAN) for c in range(len(value)))
+            elif other and name not in known and value == self.values[other]:
+                found[name] = known.get(other, NAN)
+            else:
+                found[name] = known.get(name, NAN)
+        return found
+
+    def _criterion(self, price):
+        if not self.certainty:
+            return NAN
+        with np.errstate(divide="ignore"):
+            deviance = self.certainty.numbers * 2 * np.log(self.loss)
+        return float(deviance + price * self.certainty.parameters)
 
     def eval(self, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
         """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3)."""
@@ -73,9 +154,8 @@ class Fit:
         width = max(map(len, self.values))
         lines = [f"{self.name} fitted to {self.data}: {self.loss_name} loss {self.loss:.6g}"]
         for name, value in self.values.items():
-            numbers = "  ".join(
-                f"{v:.6g}" for v in (value if isinstance(value, tuple) else [value])
-            )
+            both = np.atleast_1d(value), np.atleast_1d(self.standard_errors[name])
+            numbers = "  ".join(map(_with_error, *both))
             note = "   on its bound" if name in self.at_bounds else ""
             lines.append(f"  {name:<{width}}  {numbers}{note}")
         lines += [f"  {note}" for note in self.notes]
@@ -84,3 +164,19 @@ class Fit:
             f"{self.seconds:.2f} s"
         )
         return "\n".join(lines)
+
+
+def by_channel(values):
+    """Parameters by the names that `Certainty` has, weights as "diffuse_reflectance[0]"."""
+    plain = {}
+    for name, value in values.items():
+        if isinstance(value, tuple):
+            plain |= {f"{name}[{c}]": v for c, v in enumerate(value)}
+        else:
+            plain[name] = value
+    return plain
+
+
+def _with_error(value, error):
+    """A value with its standard error, if it has one."""
+    return f"{value:.6g}" if np.isnan(error) else f"{value:.6g} ± {error:.2g}"

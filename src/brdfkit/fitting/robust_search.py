@@ -104,6 +104,12 @@ class Robust:
         both = zip(residuals, self.levers, scales, strict=True)
         return [residual / (lever * scale) for residual, lever, scale in both]
 
+    def say(self, u, weights):
+        """By channel, the weights ω of the samples, and the derivatives of ω r by r."""
+        residuals = self.problem.residuals(u, weights)
+        ratios = self.ratios(residuals, self.scale(residuals))
+        return [self.function(r) for r in ratios], [_slope(self.function, r) for r in ratios]
+
     def merit(self, residuals, scales):
         """What a pass makes small: Σ ρ(r), in units of the squared residuals."""
         both = zip(self.ratios(residuals, scales), scales, strict=True)
@@ -207,7 +213,10 @@ def _slope(function, r):
 
 def settle(problem, u, weights, name, rng, report):
     """The end (u, weights) of a robust fit from the optimum where all samples count alike, a
-    message and notes. Many samples settle on a part of them first, drawn by the generator `rng`."""
+    message, notes, and what each sample has to say, as `Robust.say`.
+
+    Many samples settle on a part of them first, drawn by the generator `rng`.
+    """
     samples = problem.samples
     many = len(samples.wi) > MANY
     if many:
@@ -227,4 +236,5 @@ def settle(problem, u, weights, name, rng, report):
             f"did not settle in {found.passes} passes: the next would change the fitted values by "
             f"{found.change:.1g} of their spread"
         )
-    return found.u[None], found.weights[None], message, (note,)
+    u, weights = found.u[None], found.weights[None]
+    return u, weights, message, (note,), passes.say(u, weights)

@@ -5,6 +5,7 @@ from dataclasses import fields
 from typing import get_origin
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.fitting.certainty import Certainty
 from brdfkit.fitting.result import Fit
 from brdfkit.model import labels
 from brdfkit.version import __version__
@@ -12,7 +13,7 @@ from brdfkit.version import __version__
 NAME = "brdfkit fit"
 SUFFIXES = (".json",)
 KEY = "brdfkit"
-FIELDS = [f for f in fields(Fit) if f.name != "model"]
+FIELDS = [f for f in fields(Fit) if f.name not in ("model", "certainty")]
 
 
 def sniff(head):
@@ -26,6 +27,9 @@ def read(source):
         record = json.loads(source.data)
         label, values = _to_type(str, record["model"]), dict(record["parameters"])
         found = {f.name: _to_type(f.type, record["fit"][f.name]) for f in FIELDS}
+        bounds = found["settings"].get("bounds") or {}
+        found["settings"] |= {"bounds": {n: tuple(pair) for n, pair in bounds.items()}}
+        found["certainty"] = _to_certainty(record["fit"].get("certainty"))
     except (ValueError, KeyError, TypeError, RecursionError):
         raise source.error("is no fit that brdfkit saved, or is damaged; fit it again") from None
     try:
@@ -46,13 +50,41 @@ def write(fit, stream):
         raise BrdfkitError(
             f"the format {NAME} holds a fit, not a {type(fit).__name__}; choose another suffix."
         )
+    values = {f.name: getattr(fit, f.name) for f in FIELDS}
     record = {
         KEY: __version__,
         "model": fit.model.label(),
         "parameters": fit.values,
-        "fit": {f.name: getattr(fit, f.name) for f in FIELDS},
+        "fit": values | {"certainty": _from_certainty(fit.certainty)},
     }
     stream.write(json.dumps(record, indent=2).encode() + b"\n")
+
+
+def _from_certainty(certainty):
+    """A `Certainty` for JSON: of its symmetric covariance a text per row, up to the diagonal."""
+    if certainty is None:
+        return None
+    rows = certainty.covariance
+    lower = [" ".join(map(repr, row[: k + 1])) for k, row in enumerate(rows)]
+    return {**vars(certainty), "covariance": lower}
+
+
+def _to_certainty(record):
+    """The `Certainty` of `_from_certainty`; fits of earlier versions have none."""
+    if record is None:
+        return None
+    names = _to_type(tuple, record["names"])
+    lower = [tuple(map(float, row.split())) for row in record["covariance"]]
+    if [len(row) for row in lower] != [*range(1, len(names) + 1)]:
+        raise ValueError
+    size = range(len(names))
+    rows = tuple(tuple(lower[max(i, j)][min(i, j)] for j in size) for i in size)
+    freedom = tuple(map(float, record["freedom"]))
+    if len(freedom) != len(names):
+        raise ValueError
+    undetermined = _to_type(tuple, record["undetermined"])
+    counts = (_to_type(int, record[name]) for name in ("numbers", "parameters"))
+    return Certainty(names, rows, freedom, undetermined, *counts)
 
 
 def _to_type(kind, value):

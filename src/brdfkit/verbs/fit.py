@@ -9,6 +9,8 @@ from typing import Any
 from brdfkit.arguments import to_dictionary, to_pair, to_whole_number
 from brdfkit.errors import no_such
 from brdfkit.fitting import Fit, losses, regress
+from brdfkit.fitting.certainty import explain
+from brdfkit.fitting.result import by_channel
 from brdfkit.fitting.robust import WEIGHTS
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike, measured_material
@@ -107,6 +109,7 @@ def fit(
         seconds=time.perf_counter() - began,
         message=found.message,
         at_bounds=found.at_bounds,
+        certainty=found.certainty,
         notes=(*found.notes, *_list_notes(data, samples, losses[loss], found, fitted)),
         settings={"robust": robust, "max_angle": float(max_angle), **how},
     )
@@ -151,7 +154,7 @@ def check_settings(given: Mapping[str, Any], where: str = "") -> dict[str, Any]:
 def _list_notes(data, samples, loss, found, fitted):
     """Notes on a fit, in words: too few measured numbers, negative values, a clamped model."""
     notes = []
-    known, sought = samples.values.size, found.weights.size + len(found.shapes)
+    known, sought = found.certainty.numbers, found.certainty.parameters
     if known < sought:
         notes.append(
             f"{known} numbers were measured for {sought} that are sought: other values fit as well"
@@ -162,7 +165,7 @@ def _list_notes(data, samples, loss, found, fitted):
     if fitted.signed():
         clamped = clamped_share(fitted)
         notes.append(f"{clamped:.1%} of the hemisphere's direction pairs are clamped at 0")
-    return tuple(notes)
+    return (*notes, *explain(found.certainty, by_channel(fitted.values)))
 
 
 def _explain_negative(data):
