@@ -10,7 +10,6 @@ from brdfkit.files import write_safely
 from brdfkit.reproducing.claims import Claim, count
 
 HEAD = "claim", "where", "printed", "ours", "verdict"
-COLOURS = 64  # of a PNG: a drawing has few
 RESOLUTION = 90  # dots per inch
 
 
@@ -104,7 +103,11 @@ def _png(figure):
 
     drawn = io.BytesIO()
     figure.savefig(drawn, format="png", dpi=RESOLUTION)
-    image = Image.open(drawn).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
+    image = (
+        Image.open(drawn)
+        .convert("RGB")
+        .quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=3, dither=Image.Dither.NONE)
+    )
     small = io.BytesIO()
     image.save(small, format="png", optimize=True)
     return small.getvalue()

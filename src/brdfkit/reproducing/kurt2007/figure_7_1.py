@@ -13,7 +13,7 @@ from brdfkit.verbs.fit import fit
 
 SECONDS = 4
 DEGREE = 5
-LIMIT = 0.25  # sr⁻¹: the figure's, below which are most samples
+LIMIT = 0.12  # sr⁻¹: the figure's, below which are most samples
 DEGREES = 2, 3, 4, 7
 TEXT = """Z₁ and Z₂ are the principal components of W₁ = l_x v_x + l_y v_y and W₂ = l_z v_z over
 the measured directions. The thesis shows Mystique lacquer, whose file is not at hand: this is
@@ -86,11 +86,13 @@ def _components(wi, wo, angle):
 
 
 def _draw(data):
+    from matplotlib.ticker import MaxNLocator
+
     found = fit(f"pca_polynomial:degree={DEGREE}", data, "plain", robust="bisquare")
     shown, angle = select_samples(data, 80), found.values["angle_1_2"]
     z, f = _components(shown.wi, shown.wo, angle), shown.values[:, 1]
     betas = weight_matrix(found.model)[:, 1]
-    drawn = figure(6.4, 4.4)
+    drawn = figure(6.0, 4.6)
     axes = drawn.add_subplot(projection="3d", computed_zorder=False)
     steps = [np.linspace(a, b, 33) for a, b in zip(z.min(axis=0), z.max(axis=0), strict=True)]
     grid = np.meshgrid(*steps, indexing="ij")
@@ -100,9 +102,14 @@ def _draw(data):
     surface = np.where(_reached(grid, angle) & (surface <= LIMIT), surface, np.nan)
     low = f <= LIMIT
     axes.scatter(*z[low].T, f[low], s=3, color="#d55e00", alpha=0.6, label="samples")
-    axes.plot_wireframe(*grid, surface, rstride=1, cstride=1, linewidth=0.5, color="#0072b2")
+    axes.plot_wireframe(
+        *grid, surface, rstride=1, cstride=1, linewidth=0.5, color="#0072b2", label="polynomial"
+    )
     axes.set(xlabel="Z₁", ylabel="Z₂", zlabel="f [sr⁻¹], green", zlim=(0, LIMIT))
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.set_major_locator(MaxNLocator(4))
     axes.view_init(22, -58)
+    axes.legend(loc="upper left", frameon=False)
     caption = (
         f"Cayman lacquer, p = {DEGREE}; the {(~low).sum()} of {len(f):,} samples above {LIMIT} "
         "sr⁻¹, those of the highlight, are not shown: for bisquare they are outliers."

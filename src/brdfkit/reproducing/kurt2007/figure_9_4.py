@@ -66,13 +66,13 @@ def _claim(against_ours, against_printed):
     counted = (against_printed or against_ours)["bisquare"]
     return Claim(
         "The polynomial of degree 7 has the lowest of eight errors on 35 of 52 samples.",
-        "9.3, Figure 9.4",
+        "Figure 9.4",
         f"{WON} of 52",
         (f"against the printed errors {printed}; " if printed else "") + f"against ours {ours}",
         verdict(abs(counted - WON) <= TOLERANCE),
-        f"By bisquare, which the thesis names, {counted} (tolerance ±{TOLERANCE}). The count hangs on "
-        "how the polynomial is fitted: plain least squares comes nearest to the printed one. It has "
-        "the lowest error on most samples by each of the three.",
+        f"By bisquare, which the thesis names, {counted} (tolerance ±{TOLERANCE}). The count hangs "
+        "on how the polynomial is fitted: plain least squares comes nearest to the printed one. "
+        "It has the lowest error on most samples by each of the three.",
     )
 
 

@@ -9,7 +9,7 @@ from brdfkit.reproducing.kurt2007.curet import BISQUARE, NUMBERS, OLS, WLS, erro
 from brdfkit.reproducing.page import Picture, Section, Table
 
 SECONDS = 25
-WHERE = "9.4, Figure 9.5"
+WHERE = "Figure 9.5"
 LINEAR = {
     "polynomial, degree 2": ("pca_polynomial:degree=2", BISQUARE),
     "Koenderink, order 2": ("koenderink:order=2", OLS),

@@ -32,7 +32,7 @@ def run(sources, report):
     claims = [
         Claim(
             "With light and view exchanged the polynomial gives the same picture.",
-            "9.5, Figure 9.6",
+            "Figure 9.6",
             "identical",
             f"largest relative difference {difference:.1g}",
             verdict(difference <= 1e-12),
@@ -40,7 +40,7 @@ def run(sources, report):
         ),
         Claim(
             "All models of chapter 3 are reciprocal.",
-            "3",
+            "chapter 3",
             "reciprocal",
             f"largest relative difference {worst:.1g}",
             verdict(worst <= 1e-12),

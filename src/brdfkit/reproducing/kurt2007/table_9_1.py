@@ -115,11 +115,11 @@ def _claims(rows):
         ),
         Claim(
             "The picture of Cayman improves with p.",
-            "9.1, Figure 9.1",
+            "Figure 9.1",
             "no figure",
             f"E without the peak {rows['calm'][0]:.3f} to {rows['calm'][-1]:.3f}",
             UNSTATED,
-            "The thesis shows pictures. Neither its error nor ours without the peak tells of them: to "
-            "bisquare the highlight as a whole is outliers, whatever the degree.",
+            "The thesis shows pictures. Neither its error nor ours without the peak tells of them: "
+            "to bisquare the highlight as a whole is outliers, whatever the degree.",
         ),
     ]  # fmt: skip
