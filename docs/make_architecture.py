@@ -30,6 +30,7 @@ the top folder [`plugins/`](plugins/README.md). Made by `make docs` of the first
 """
 GROUPS = {  # what a row of rooms is for, by one of them
     "cli": "what people type",
+    "reproducing": "theses, run again",
     "sweeping": "many at once",
     "checks": "verbs: what people call",
     "materials": "what a name stands for",

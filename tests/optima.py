@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 import brdfkit as bk
-from brdfkit.samples import Table
+from brdfkit.samples.neural import decode_network
 
 LIST = Path(__file__).with_name("optima.csv")
 LOSSES = "log", "cosine"
@@ -61,17 +61,7 @@ def material(name):
 
 def reconstruction(weights, name, shape=SHAPE):
     """The table of a network [Sztrajman et al. 2021] of 675 `weights`, 6-21-21-3, with ReLU."""
-    table = Table(np.full((*shape, 3), np.nan))
-    wi, wo = table.directions()
-    above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
-    theta_h, theta_d, phi_d = (a[above] for a in np.meshgrid(*table.centres, indexing="ij"))
-    half = np.sin(theta_h), 0 * theta_h, np.cos(theta_h)
-    difference = np.sin(theta_d) * np.cos(phi_d), np.sin(theta_d) * np.sin(phi_d), np.cos(theta_d)
-    x = np.stack([*half, *difference], axis=1)
-    k1, b1, k2, b2, k3, b3 = np.split(weights, np.cumsum([126, 21, 441, 21, 63]))
-    x = np.maximum(x @ k1.reshape(6, 21) + b1, 0)
-    x = np.maximum(x @ k2.reshape(21, 21) + b2, 0)
-    table.values[above] = np.maximum(np.expm1(x @ k3.reshape(21, 3) + b3), 0)
+    table = decode_network(weights, shape)
     return bk.Measured.from_table(table.values, name=name)
 
 

@@ -26,7 +26,7 @@ class AshikhminShirley(FresnelModel):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.5, "k_s: strength of the highlight")
     exponent_u = shape(
-        100.0, (0.1, 1e4), "n_u: sharpness of the highlight along x", log=True, width=-0.5
+        100.0, (1e-4, 1e4), "n_u: sharpness of the highlight along x", log=True, width=-0.5
     )
     exponent_v = follows("exponent_u", exponent_u, "n_v: sharpness of the highlight along y")
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")

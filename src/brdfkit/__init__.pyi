@@ -16,6 +16,8 @@ from .plotting import plot as plot
 from .rendering import Rendering as Rendering
 from .rendering import render as render
 from .rendering import render_scene as render_scene
+from .reproducing import Reproduction as Reproduction
+from .reproducing import reproduce as reproduce
 from .sweeping import Sweep as Sweep
 from .sweeping import sweep as sweep
 from .verbs.compare import Comparison as Comparison

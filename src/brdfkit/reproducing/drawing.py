@@ -1,0 +1,32 @@
+"""Figures of a page: matplotlib's, without pyplot, in one look."""
+
+COLOURS = "#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8c6d31", "#222222"
+GRID = "#dddddd"
+
+
+def figure(width, height):
+    """An empty figure of a size in inches."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def tidy(axes, title, ylabel):
+    """Title, label and a quiet grid."""
+    axes.set_title(title, size=10)
+    axes.set_ylabel(ylabel)
+    axes.grid(color=GRID, linewidth=0.6)
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def draw_curves(axes, curves, title, ylabel):
+    """Curves over the number of the sample, on a logarithmic scale; the last is thick."""
+    last = list(curves)[-1]
+    colours = {**dict(zip(curves, COLOURS, strict=False)), last: COLOURS[-1]}
+    for name, values in curves.items():
+        thick = {"linewidth": 2.2, "zorder": 3} if name == last else {"linewidth": 1.0}
+        axes.plot(range(1, len(values) + 1), values, label=name, color=colours[name], **thick)
+    axes.set_yscale("log")
+    axes.margins(x=0.01)
+    tidy(axes, title, ylabel)

@@ -1,0 +1,43 @@
+"""Kurt (2007): BRDF models fitted to CUReT, Cornell and MERL, and a polynomial of its own."""
+
+TITLE = "Kurt 2007, reproduced"
+INTRODUCTION = """M. Kurt, *A new illumination model in computer graphics*, MSc thesis, Ege
+University, 2007 [Kurt 2007]. Made by `brdfkit reproduce kurt2007`, which runs each claim again and
+sets what came out beside what is printed.
+
+The measurements, which brdfkit does not ship, and what is not as it was in the thesis:
+
+- **CUReT**: the thesis fitted R, G and B; the file at hand is an average over them, on a scale of
+  its own in each sample. So errors are compared after one factor per sample, or without a unit.
+- **Weights below 0**: the thesis let k_d and k_s have any sign and printed the negative ones as 0;
+  brdfkit's are never negative. Where the thesis's best k_s is below 0, our error is larger.
+- **MERL**: none of its tables is at hand. The five materials are *neural reconstructions* of them
+  [Sztrajman et al. 2021], smooth and without noise, in tables of 30 × 30 × 60 cells.
+- **Cornell**: Cayman is there, Mystique is not.
+
+E is eq. 5.13: cosine-weighted, w = sin θ_i, squares summed over the channels, both angles below
+80°. A claim is *confirmed* where our figures agree to the tolerance that is told with it, *not
+confirmed* where they do not, or where the thesis's own table or a proof speaks against it, *not
+stated* where the thesis gives no figure to compare ours to, *not run* where a file is missing."""
+
+# The measured files, and where they come from
+NEEDS = {
+    "curet/abrdf.dat": "abrdf.dat of CUReT (brdfkit data list curet)",
+    "curet/table.txt": "the table of directions of CUReT (brdfkit data list curet) as table.txt",
+    "cornell/cayman.brdf": "it by 'brdfkit data get cornell/cayman'",
+    "nbrdf_derived/merl_nbrdf.npz": (
+        "the networks of github.com/asztr/Neural-BRDF, one array of 675 weights by material"
+    ),
+}
+PARTS = (
+    "table_9_1",
+    "table_9_2",
+    "appendix_3",
+    "figure_9_4",
+    "figure_9_5",
+    "table_9_3",
+    "table_9_4",
+    "figure_7_1",
+    "figure_9_6",
+    "energy",
+)

@@ -1,0 +1,136 @@
+"""`reproduce`: runs the claims of a thesis and writes a page of them."""
+
+import importlib
+import pkgutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+from brdfkit import reproducing
+from brdfkit.errors import no_such
+from brdfkit.files import make_folder
+from brdfkit.reproducing.claims import Claim, count
+from brdfkit.reproducing.page import write_page
+from brdfkit.reproducing.sources import find_sources
+
+
+@dataclass(frozen=True)
+class Reproduction:
+    """The claims of a thesis, run; prints as a list of them. Made by `reproduce`.
+
+    Attributes
+    ----------
+    name : str
+        The thesis.
+    claims : tuple of Claim
+        What it says, what is printed, what came out and the verdict, in the order of the page.
+    written : tuple of Path
+        The page, and its figures.
+    unfinished : tuple of str
+        Parts that Ctrl-C left out.
+    """
+
+    name: str
+    claims: tuple[Claim, ...]
+    written: tuple[Path, ...] = ()
+    unfinished: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        lines = [f"{self.name}: {len(self.claims)} claims: {count(self.claims)}"]
+        lines += [
+            f"  {c.verdict}: {c.says} ({c.where}): {c.printed} | {c.ours}" for c in self.claims
+        ]
+        return "\n".join(lines)
+
+
+def theses() -> dict[str, str]:
+    """The theses that can be reproduced: name → title.
+
+    >>> list(theses())
+    ['kurt2007']
+    """
+    found = pkgutil.iter_modules(reproducing.__path__)
+    return {f.name: _thesis(f.name).TITLE for f in found if f.ispkg}
+
+
+def reproduce(
+    name: str,
+    output: str | Path | None = None,
+    *,
+    data: str | Path | None = None,
+    tables: str | Path | None = None,
+    parts: list[str] | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> Reproduction:
+    """Run the claims of a thesis, and write them as a page.
+
+    The measurements are third-party files, which brdfkit does not ship. Ctrl-C ends with the parts
+    that are finished.
+
+    Parameters
+    ----------
+    name : str
+        The thesis, as ``"kurt2007"``.
+    output : str or Path, optional
+        A folder for the page, ``kurt2007.md``, and its figures; by default none is written.
+    data : str or Path, optional
+        The folder of measurements, by default that which the variable BRDFKIT_DATA names.
+    tables : str or Path, optional
+        The folder of tables transcribed from theses, by default ``thesis`` beside `data`. Claims
+        that need one are not run where it is missing.
+    parts : list of str, optional
+        Only these parts, as ``["table_9_1"]``; by default all.
+    progress : callable, optional
+        Called with (done, total) as the claims are run.
+
+    Returns
+    -------
+    Reproduction
+        The claims with their verdicts; prints as a list.
+
+    Raises
+    ------
+    BrdfkitError
+        For an unknown thesis or part, and for a measured file that is missing.
+
+    Examples
+    --------
+    >>> print(reproduce("kurt2007", "docs/reproduce"))    # doctest: +SKIP
+    """
+    if name not in theses():
+        raise no_such("thesis", name, theses())
+    thesis = _thesis(name)
+    for part in parts or ():
+        if part not in thesis.PARTS:
+            raise no_such("part", part, thesis.PARTS, where=name)
+    sources = find_sources(data, tables, thesis.NEEDS)
+    if output is not None:
+        make_folder(output)
+
+    chosen = [part for part in thesis.PARTS if parts is None or part in parts]
+    modules = [importlib.import_module(f"{thesis.__name__}.{part}") for part in chosen]
+    total, sections, written = sum(m.SECONDS for m in modules), [], []
+    report = progress or (lambda done, total: None)
+    try:
+        for number, module in enumerate(modules):
+            before = sum(m.SECONDS for m in modules[:number])
+            report(before, total)
+            sections.append(module.run(sources, _share(report, before, module.SECONDS, total)))
+    except KeyboardInterrupt:
+        if not sections:
+            raise
+    if output is not None:
+        page, left = Path(output) / f"{name}.md", chosen[len(sections) :]
+        written = write_page(page, thesis.TITLE, thesis.INTRODUCTION, sections, left)
+    claims = tuple(claim for section in sections for claim in section.claims)
+    return Reproduction(name, claims, tuple(written), tuple(chosen[len(sections) :]))
+
+
+def _thesis(name: str) -> ModuleType:
+    return importlib.import_module(f"{reproducing.__name__}.{name}")
+
+
+def _share(report, before, seconds, total):
+    """The progress of a part as that of all: the parts count by how long they take."""
+    return lambda done, of: report(before + seconds * done / of, total)

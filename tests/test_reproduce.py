@@ -1,0 +1,131 @@
+"""Theses reproduced: the page of claims, what is said where data are missing, and some claims."""
+
+import pytest
+from click.testing import CliRunner
+from PIL import Image
+
+import brdfkit as bk
+from brdfkit.cli import main
+from brdfkit.reproducing import Claim, theses
+from brdfkit.reproducing.claims import count
+from brdfkit.reproducing.drawing import draw_curves, figure
+from brdfkit.reproducing.kurt2007 import NEEDS, PARTS
+from brdfkit.reproducing.kurt2007.appendix_3 import read_rows
+from brdfkit.reproducing.kurt2007.printed import SEVEN, printed
+from brdfkit.reproducing.page import Picture, Section, Table, write_page
+from brdfkit.reproducing.sources import find_sources
+
+CLAIMS = [
+    Claim("Water is wet.", "Table 1", "1.00", "0.99", "confirmed", "Tolerance 2 %."),
+    Claim("a | b", "p. 7", "2", "3", "not confirmed"),
+    Claim("It looks good.", "Figure 2", "no figure", "12 dB", "not stated"),
+]
+
+
+@pytest.mark.quick
+def test_a_page_has_every_claim_table_and_figure(tmp_path):
+    drawn = figure(3, 2)
+    draw_curves(drawn.add_subplot(), {"one": [1, 2, 3], "two": [3, 2, 4]}, "curves", "E")
+    table = Table(("model", "E"), [("ward", "0.1")], "By eq. 5.")
+    section = Section("Table 1", "Some text.", CLAIMS, [table], [Picture("curves", drawn)])
+    page, picture = write_page(tmp_path / "x.md", "A thesis", "By hand.", [section], ["part_2"])
+    text = page.read_text(encoding="utf-8")
+    assert "3 claims: 1 confirmed, 1 not confirmed, 1 not stated." in text
+    assert "| Water is wet. | Table 1 | 1.00 | 0.99 | **confirmed** |" in text
+    assert "| a ∣ b |" in text
+    assert "| ward | 0.1 |" in text
+    assert "**Not finished**: part_2." in text
+    assert f"]({picture.name})" in text
+    assert len(Image.open(picture).convert("RGB").getcolors(1000)) > 10
+    assert sorted(tmp_path.iterdir()) == [page, picture]
+
+
+@pytest.mark.quick
+def test_a_verdict_is_one_of_four():
+    assert count(CLAIMS[:1] * 2) == "2 confirmed"
+    with pytest.raises(ValueError, match="perhaps"):
+        Claim("", "", "", "", "perhaps")
+
+
+@pytest.mark.quick
+def test_the_theses_are_listed():
+    assert "kurt2007" in theses()
+    listed = CliRunner().invoke(main, ["reproduce"])
+    assert listed.exit_code == 0
+    assert "kurt2007" in listed.output
+
+
+@pytest.mark.quick
+def test_missing_data_are_named_with_their_source(tmp_path, monkeypatch):
+    monkeypatch.delenv("BRDFKIT_DATA", raising=False)
+    with pytest.raises(bk.BrdfkitError, match="set BRDFKIT_DATA to one, or give --data"):
+        bk.reproduce("kurt2007")
+    with pytest.raises(bk.BrdfkitError, match=r"abrdf\.dat: is not there; fetch .* put it there"):
+        bk.reproduce("kurt2007", data=tmp_path)
+    with pytest.raises(bk.BrdfkitError, match="did you mean kurt2007"):
+        bk.reproduce("kurt2008", data=tmp_path)
+    with pytest.raises(bk.BrdfkitError, match="did you mean table_9_1"):
+        bk.reproduce("kurt2007", data=tmp_path, parts=["table_91"])
+
+
+@pytest.fixture
+def empty_files(tmp_path):
+    """A folder that has every measured file by its name."""
+    for name in NEEDS:
+        (tmp_path / "data" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "data" / name).touch()
+    return tmp_path / "data"
+
+
+@pytest.mark.quick
+def test_without_the_appendix_its_claims_are_not_run(empty_files):
+    found = bk.reproduce("kurt2007", data=empty_files, parts=["appendix_3"])
+    assert [claim.verdict for claim in found.claims] == ["not run"]
+    assert "curet_fits.csv" in found.claims[0].why
+
+
+@pytest.mark.quick
+def test_ctrl_c_keeps_what_is_finished(empty_files, tmp_path, monkeypatch):
+    from brdfkit.reproducing.kurt2007 import figure_9_4
+
+    def stop(sources, report):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(figure_9_4, "run", stop)
+    parts = ["appendix_3", "figure_9_4"]
+    found = bk.reproduce("kurt2007", tmp_path, data=empty_files, parts=parts)
+    assert found.unfinished == ("figure_9_4",)
+    assert "**Not finished**: figure_9_4." in (tmp_path / "kurt2007.md").read_text("utf-8")
+
+
+def test_the_printed_tables_agree(measured_data):
+    """The seven models of Table 9.2 have the errors of Appendix 3, where that is at hand."""
+    table = printed("table_9_2")
+    assert set(SEVEN) < set(table["errors"])
+    assert all(len(row) == 5 for row in table["errors"].values())
+    rows = read_rows(find_sources(measured_data, None, NEEDS))
+    if rows is None:
+        pytest.skip("the thesis's table of parameters is not beside the measurements")
+    listed = {(row.model, row.number): row.error for row in rows}
+    for name, label in SEVEN.items():
+        found = [listed[label, number] for number in table["materials"].values()]
+        assert found == table["errors"][name]
+
+
+def test_two_parts_on_real_data(measured_data, tmp_path):
+    """Table 9.2: 34 of 35 errors within 10 %; the progress ends at its end."""
+    seen = []
+    found = bk.reproduce(
+        "kurt2007",
+        tmp_path,
+        data=measured_data,
+        parts=["table_9_2", "energy"],
+        progress=lambda done, total: seen.append(done / total),
+    )
+    verdicts = {claim.says: claim.verdict for claim in found.claims}
+    assert verdicts["The errors of the seven nonlinear models."] == "confirmed"
+    assert verdicts["Blinn-Phong with (n + 2)/2π is physically plausible."] == "not confirmed"
+    assert seen == sorted(seen)
+    assert seen[-1] == pytest.approx(1)
+    assert "0.0190 /" in (tmp_path / "kurt2007.md").read_text(encoding="utf-8")
+    assert set(PARTS) >= {"table_9_2", "energy"}
