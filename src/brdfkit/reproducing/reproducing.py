@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
-from brdfkit import reproducing
 from brdfkit.errors import no_such
 from brdfkit.files import make_folder
 from brdfkit.reproducing.claims import Claim, count
@@ -50,7 +49,7 @@ def theses() -> dict[str, str]:
     >>> list(theses())
     ['kurt2007']
     """
-    found = pkgutil.iter_modules(reproducing.__path__)
+    found = pkgutil.iter_modules([str(Path(__file__).parent)])
     return {f.name: _thesis(f.name).TITLE for f in found if f.ispkg}
 
 
@@ -128,7 +127,7 @@ def reproduce(
 
 
 def _thesis(name: str) -> ModuleType:
-    return importlib.import_module(f"{reproducing.__name__}.{name}")
+    return importlib.import_module(f"{__package__}.{name}")
 
 
 def _share(report, before, seconds, total):

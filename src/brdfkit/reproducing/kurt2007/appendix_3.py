@@ -182,6 +182,6 @@ def _table(rows, factors):
         lines.append((name, *(f"{f(theirs):.4f} / {f(ours):.4f}" for f in (np.mean, np.median))))
     caption = (
         f"E over {len(NUMBERS)} samples, printed / ours, ours brought to the printed albedo. Ours "
-        "are the larger where the thesis has a k_s below 0, as Blinn-Phong often."
+        "are larger where the thesis has a k_s below 0, as Blinn-Phong often."
     )
     return Table(("model", "mean", "median"), lines, caption)

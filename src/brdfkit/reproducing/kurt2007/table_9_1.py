@@ -19,7 +19,7 @@ WIDEST = 80.5  # degrees: Cornell measured at 80°, which the thesis's rule, "be
 TEXT = """By bisquare without a cosine, as the thesis fits; E by eq. 5.13. Quarry tile is
 multiplied by the factor of its sample, which the seven nonlinear models of Table 9.2 have. Cayman
 is read as linear sRGB, so that its unit is not the thesis's; *without the peak* leaves out the
-one pair at θ_i 80°, θ_r 79°, φ 180°, which is 36 times the next largest value."""
+one pair at θ_i 80°, θ_r 79°, φ 180°, which is 34 times the next largest value."""
 
 
 def run(sources, report):
