@@ -113,6 +113,15 @@ def test_what_trades_off_is_said():
 
 
 @pytest.mark.quick
+def test_few_samples_for_many_weights_do_not_trade_off():
+    """A sandwich of fewer samples than parameters is singular; what was measured is not."""
+    data = noisy(bk.models()["ggx"](diffuse_reflectance=(1, 2, 3)), 16)
+    fit = bk.fit("koenderink", data, "plain")
+    assert fit.samples < len(fit.certainty.names)
+    assert not any("trade off" in note for note in fit.notes)
+
+
+@pytest.mark.quick
 def test_what_is_not_determined_is_said():
     """Of Lafortune's lobe the lengths, of a hundred equal directions all but one number."""
     fit = bk.fit("lafortune", noisy(bk.models()["lafortune"]()), starts=1)

@@ -28,14 +28,15 @@ class Certainty:
 
     `names`: parameters that they determine; `covariance`: of these, in rows; `freedom`: the degrees
     of freedom of their variances; `undetermined`: what they leave open, in sentences; what is on a
-    bound or fixed is in neither. `numbers`: how many were measured, of samples that count;
-    `parameters`: how many were searched.
+    bound or fixed is in neither. `trades`: what they hardly tell apart, in sentences. `numbers`:
+    how many were measured, of samples that count; `parameters`: how many were searched.
     """
 
     names: tuple[str, ...]
     covariance: tuple[tuple[float, ...], ...]
     freedom: tuple[float, ...]
     undetermined: tuple[str, ...]
+    trades: tuple[str, ...]
     numbers: int
     parameters: int
 
@@ -70,7 +71,7 @@ def certify(problem, u, weights, passes=None, rng=None):
     at = np.concatenate([problem.space.table(u)[0], weights[0].ravel()])
     counted = problem.importance > 0
     numbers = int(counted.sum()) * problem.channels
-    nothing = Certainty((), (), (), (), numbers, len(names))
+    nothing = Certainty((), (), (), (), (), numbers, len(names))
     if numbers <= len(names) or not free.any():
         return nothing
     shares = np.ones(len(counted))
@@ -94,6 +95,7 @@ def certify(problem, u, weights, passes=None, rng=None):
         tuple(map(tuple, covariance[np.ix_(~loose, ~loose)].tolist())),
         tuple(freedom[~loose].tolist()),
         _describe_open(own, vectors[:, open_] * scale[:, None], at[free], vectors[:, open_]),
+        _describe_trades(own, inner, scale, at[free], ~loose),
         numbers,
         len(names),
     )
@@ -196,32 +198,30 @@ def explain_end(certainty):
     return None
 
 
-def explain(certainty, values):
-    """Sentences on what the data leave open; `values`: of the parameters, as in `names`."""
-    if certainty.numbers <= certainty.parameters:
-        return ()
-    said = list(certainty.undetermined)
-    if not certainty.names:
-        return tuple(said)
-    correlation, errors = certainty.correlation(), certainty.standard_errors()
+def _describe_trades(names, inverse, scale, at, closed):
+    """Sentences on the parameters that the Hessian, of this `inverse` (n, n) in units of `scale`,
+    hardly tells apart: of the directions that were measured, whatever their noise. `at`: where they
+    are; `closed`: those that are determined."""
+    (rows,) = np.nonzero(closed)
+    errors = np.sqrt(np.diagonal(inverse))[rows]
+    correlation = inverse[np.ix_(rows, rows)] / np.outer(errors, errors)
+    relative = errors * scale[rows] / np.maximum(np.abs(at[rows]), 1e-300)
+    plain = [_plain(names[row]) for row in rows]
     pairs = {}
     for i, j in zip(*np.nonzero(np.triu(np.abs(correlation) > CLOSE, 1)), strict=True):
-        pair = certainty.names[i], certainty.names[j]
-        plain = tuple(map(_plain, pair))
-        if plain[0] != plain[1] and abs(correlation[i, j]) > abs(pairs.get(plain, [0])[0]):
-            share = [errors[n] / max(abs(values[n]), 1e-300) for n in pair]
-            pairs[plain] = correlation[i, j], share[0] / max(share[1], 1e-300)
-    worst = sorted(pairs.items(), key=lambda item: -abs(item[1][0]))
+        pair, size = (plain[i], plain[j]), correlation[i, j]
+        if plain[i] != plain[j] and abs(size) > abs(pairs.get(pair, [0])[0]):
+            pairs[pair] = size, relative[i] / relative[j]
+    worst, said = sorted(pairs.items(), key=lambda item: -abs(item[1][0])), []
     for pair, (size, share) in worst[:3]:
         trade = _describe_trade(pair, np.copysign(share, size))
         said.append(f"{trade} (correlation {size:.4f})")
     if len(worst) > 3:
         said.append(f"so do {len(worst) - 3} more pairs of parameters")
-    lowest, vectors = np.linalg.eigh(correlation)
-    if not worst and lowest[0] < NARROW:
+    if not worst and len(rows):
+        values, vectors = np.linalg.eigh(correlation)
         strong = np.abs(vectors[:, 0]) > 0.1 * np.abs(vectors[:, 0]).max()
-        held = [n for n, is_in in zip(certainty.names, strong, strict=True) if is_in]
-        several = list(dict.fromkeys(map(_plain, held)))
-        if len(several) > 1:
+        several = list(dict.fromkeys(n for n, is_in in zip(plain, strong, strict=True) if is_in))
+        if values[0] < NARROW and len(several) > 1:
             said.append(_describe_trade(several, np.nan))
     return tuple(said)

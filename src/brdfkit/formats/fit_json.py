@@ -82,9 +82,9 @@ def _to_certainty(record):
     freedom = tuple(map(float, record["freedom"]))
     if len(freedom) != len(names):
         raise ValueError
-    undetermined = _to_type(tuple, record["undetermined"])
+    said = (_to_type(tuple, record[name]) for name in ("undetermined", "trades"))
     counts = (_to_type(int, record[name]) for name in ("numbers", "parameters"))
-    return Certainty(names, rows, freedom, undetermined, *counts)
+    return Certainty(names, rows, freedom, *said, *counts)
 
 
 def _to_type(kind, value):

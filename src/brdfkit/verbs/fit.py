@@ -9,8 +9,6 @@ from typing import Any
 from brdfkit.arguments import to_dictionary, to_pair, to_whole_number
 from brdfkit.errors import no_such
 from brdfkit.fitting import Fit, losses, regress
-from brdfkit.fitting.certainty import explain
-from brdfkit.fitting.result import by_channel
 from brdfkit.fitting.robust import WEIGHTS
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike, measured_material
@@ -165,7 +163,7 @@ def _list_notes(data, samples, loss, found, fitted):
     if fitted.signed():
         clamped = clamped_share(fitted)
         notes.append(f"{clamped:.1%} of the hemisphere's direction pairs are clamped at 0")
-    return (*notes, *explain(found.certainty, by_channel(fitted.values)))
+    return (*notes, *found.certainty.undetermined, *found.certainty.trades)
 
 
 def _explain_negative(data):
