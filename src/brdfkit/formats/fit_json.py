@@ -27,8 +27,8 @@ def read(source):
         record = json.loads(source.data)
         label, values = _to_type(str, record["model"]), dict(record["parameters"])
         found = {f.name: _to_type(f.type, record["fit"][f.name]) for f in FIELDS}
-        bounds = found["settings"].get("bounds") or {}
-        found["settings"] |= {"bounds": {n: tuple(pair) for n, pair in bounds.items()}}
+        if bounds := found["settings"].get("bounds"):
+            found["settings"] |= {"bounds": {n: tuple(pair) for n, pair in bounds.items()}}
         found["certainty"] = _to_certainty(record["fit"].get("certainty"))
     except (ValueError, KeyError, TypeError, RecursionError):
         raise source.error("is no fit that brdfkit saved, or is damaged; fit it again") from None
