@@ -42,7 +42,6 @@ def point(problem, seed, points=2):
     return u, weights
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("loss", losses)
 @pytest.mark.parametrize("name", MODELS_WITHOUT_SUMS)
 def test_squared_error_and_gradient(name, loss):
