@@ -18,6 +18,8 @@ from scipy.optimize import minimize
 
 import brdfkit as bk
 from brdfkit.measured.selection import select_samples
+from brdfkit.reproducing.kurt2007.curet import NUMBERS
+from brdfkit.reproducing.kurt2007.printed import SEVEN
 
 # (model, loss, robust) of a full table
 TABLE = (
@@ -37,17 +39,6 @@ TABLE = (
     ("ggx", "cosine", "bisquare"),
 )
 GONIOMETER = ("ggx", "student_t", "sgd", "lafortune", "ggx+ggx", "abc+ward")
-# Kurt 2007: the 52 isotropic samples, and the models of the appendix
-ANISOTROPIC = (38, 40, 42, 44, 46, 51, 54, 56, 58)
-THESIS = (
-    "ashikhmin_shirley",
-    "blinn_phong",
-    "cook_torrance",
-    "lafortune",
-    "oren_nayar",
-    "ward",
-    "ward_duer",
-)
 
 
 def plain_ward_duer(samples):
@@ -108,12 +99,11 @@ def main():
             seconds, _ = best_seconds(lambda: bk.fit(model, goniometer))  # noqa: B023
             table.add_row(model, f"{seconds:.3f}")
         out.print(table)
-        numbers = [k for k in range(1, 62) if k not in ANISOTROPIC]
-        curet = [bk.load(Path(folder) / "curet" / f"abrdf.dat#{k}") for k in numbers]
-        for model in THESIS:
+        curet = [bk.load(Path(folder) / "curet" / f"abrdf.dat#{k}") for k in NUMBERS]
+        for model in SEVEN.values():
             bk.fit(model, curet[0], "cosine")
         began = time.perf_counter()
-        for model in THESIS:
+        for model in SEVEN.values():
             for sample in curet:
                 bk.fit(model, sample, "cosine")
         out.print(f"364 fits of CUReT: {time.perf_counter() - began:.1f} s")

@@ -17,20 +17,11 @@ import brdfkit as bk
 from brdfkit.fitting.loss import losses
 from brdfkit.geometry.directions import from_angles
 from brdfkit.measured.selection import select_samples
-from brdfkit.model import double_precision
 from brdfkit.model.lobes import HalfVector
 from brdfkit.model.microfacet import Beckmann
+from brdfkit.reproducing.kurt2007.appendix_3 import SHAPES
+from brdfkit.reproducing.kurt2007.curet import lobes_at
 
-# The thesis's p₀, p₁, p₂ by the names of ours
-SHAPES = {
-    "ashikhmin_shirley": ("f0", "exponent_u"),
-    "blinn_phong": ("exponent",),
-    "cook_torrance": ("f0", "alpha"),
-    "lafortune": ("c_x", "c_z", "exponent"),
-    "oren_nayar": ("sigma",),
-    "ward": ("alpha_u",),
-    "ward_duer": ("alpha_u",),
-}
 TWO_LOBES = sorted(set(SHAPES) - {"oren_nayar"})
 
 
@@ -104,16 +95,8 @@ def row_of(line, data):
     weights = ("kd",) if name == "oren_nayar" else ("kd", "ks")
     printed = np.array([[float(line[f"{k}_{c}"]) for c in "rgb"] for k in weights])
     error = float(line["l2_error"] or "nan")
-    lobes = lobes_at(name, shapes, data.wi, data.wo)
+    lobes = lobes_at(name, shapes, data.wi, data.wo).T
     return Row(int(line["curet_sample"]), name, shapes, printed, error, data, lobes)
-
-
-def lobes_at(name, shapes, wi, wo):
-    """Lobes (lobes, n), unchecked: the thesis lets exponents be 0, which our bounds do not."""
-    bound = bk.models()[name].bind({n: double_precision.scalar(v) for n, v in shapes.items()})
-    wi, wo = double_precision.vector(wi), double_precision.vector(wo)
-    values = [np.asarray(lobe.eval(wi, wo)) for _, lobe in bound.terms()]
-    return np.stack([np.broadcast_to(v, len(np.asarray(wi.x))) for v in values])
 
 
 def scales(rows, weights=None):
@@ -191,7 +174,7 @@ def misprinted(row):
 
 def turned(row):
     """Our lobes with φ_r + 180°, as if the mirror direction were at Δφ = 0."""
-    return lobes_at(row.model, row.shapes, row.data.wi, row.data.wo * [-1, -1, 1])
+    return lobes_at(row.model, row.shapes, row.data.wi, row.data.wo * [-1, -1, 1]).T
 
 
 def test_misprinted_oren_nayar_misses_the_errors(rows):

@@ -89,31 +89,34 @@ class Problem:
     def sums(self, u, weights, curvature=True):
         """The `Sums` at points."""
         sums = Sums.zeros(len(u), self.channels, len(self.columns), curvature)
-        for evaluated in self._evaluate_blocks(u, weights):
+        for _, evaluated in self._evaluate_blocks(u, weights):
             sums.add(*evaluated)
         return sums
 
     def jacobians(self, u, weights):
         """At one point, by channel: the residuals (n,), where they have a slope, and their
         derivatives (shapes + lobes, n) by the parameters, not by their coordinates."""
-        change = combine(self.columns, weights, np.ones_like(u))[0]
-        parts = []
-        for columns, _, moments, grams in self._evaluate_blocks(u, weights):
-            roots = [np.sqrt(gram[0]) for gram in grams]
-            own = [
-                moment[0] / np.where(root > 0, root, 1)
-                for moment, root in zip(moments, roots, strict=True)
-            ]
-            T = np.stack([column[0] for column in columns])
-            parts.append((own, [(by @ T) * root for by, root in zip(change, roots, strict=True)]))
-        residuals, jacobians = zip(*parts, strict=True)
+        _, residuals, jacobians = zip(*self.jacobian_blocks(u, weights), strict=True)
         return [
             [np.concatenate(own, axis=-1) for own in zip(*blocks, strict=True)]
             for blocks in (residuals, jacobians)
         ]
 
+    def jacobian_blocks(self, u, weights):
+        """The rows of a block, and its `jacobians`, block by block."""
+        change = combine(self.columns, weights, np.ones_like(u))[0]
+        for block, (columns, _, moments, grams) in self._evaluate_blocks(u, weights):
+            roots = [np.sqrt(gram[0]) for gram in grams]
+            residuals = [
+                moment[0] / np.where(root > 0, root, 1)
+                for moment, root in zip(moments, roots, strict=True)
+            ]
+            T = np.stack([column[0] for column in columns])
+            jacobians = [(by @ T) * root for by, root in zip(change, roots, strict=True)]
+            yield block.rows, residuals, jacobians
+
     def _evaluate_blocks(self, u, weights):
-        """What `Sums.add` takes, block by block."""
+        """Each block, and what `Sums.add` takes of it."""
         for block in self.blocks(len(u)):
             columns = self._columns(block, u)
             model = self._mix(block, columns, weights)
@@ -126,7 +129,7 @@ class Problem:
                 squares.append(importance * dr.square(difference))
                 moments.append(importance * difference * slope)
                 grams.append(importance * slope * slope)
-            yield self._evaluate(block, u, columns, squares, moments, grams)
+            yield block, self._evaluate(block, u, columns, squares, moments, grams)
 
     def expand_here(self, u, weights):
         """The `Expansion` at these very `weights`."""
@@ -142,27 +145,6 @@ class Problem:
             parts.append([root * self._difference(block, m, c)[0] for c, m in enumerate(model)])
             dr.eval(parts[-1])
         return [np.concatenate([np.asarray(p) for p in part]) for part in zip(*parts, strict=True)]
-
-    def by_weights(self, u, weights):
-        """The derivatives of the residuals by the weights, at one point: block by block, (rows, a
-        list by channel of arrays (lobes, n))."""
-        powers, lobes = self.columns.powers, self.columns.lobes
-        for block in self.blocks(1):
-            columns = self._columns(block, u)
-            model = self._mix(block, columns, weights)
-            roots = [
-                dr.sqrt(block.importance) * self._difference(block, value, c)[1]
-                for c, value in enumerate(model)
-            ]
-            dr.eval(columns, roots)
-            by_channel = []
-            for own, root in zip(weights[0], roots, strict=True):
-                factors = powers * own[lobes] ** (powers - 1)
-                derivatives = np.zeros((len(self.least), len(np.asarray(root))))
-                for lobe, factor, column in zip(lobes, factors, columns, strict=False):
-                    derivatives[lobe] += factor * np.asarray(column)
-                by_channel.append(derivatives * np.asarray(root))
-            yield block.rows, by_channel
 
     def _columns(self, block, u):
         values = self.space.table(u)

@@ -71,22 +71,6 @@ class Reweighted:
     converged: bool
 
 
-def reweight(solve, weigh, start, tolerance=TOLERANCE):
-    """Repeat solution = `solve(weigh(solution), solution)` from `start` until it converges.
-
-    A solution is an array. It has converged when no entry changes by more than `tolerance` times
-    itself.
-    """
-    solution = start
-    for number in range(1, PASSES + 1):
-        weights = weigh(solution)
-        before, solution = solution, solve(weights, solution)
-        limit = tolerance * np.maximum(np.abs(solution), np.abs(before))
-        if np.all(np.abs(solution - before) <= limit):
-            return Reweighted(solution, weights, number, True)
-    return Reweighted(solution, weights, number, False)
-
-
 def sample_weights(residuals, name, rank, least, tune=None):
     """Weights (n,) of samples by their `residuals` (n,), already divided by √(1 - h).
 
@@ -145,11 +129,16 @@ def robust_least_squares(design, values, name="bisquare", tune=None):
     lever = np.sqrt(1 - leverages(design.T))
     rank, least = np.linalg.matrix_rank(design), least_scale(values)
 
-    def solve(weights, _before=None):
+    def solve(weights):
         root = np.sqrt(weights)
         return np.linalg.lstsq(design * root[:, None], values * root, rcond=None)[0]
 
-    def weigh(solution):
-        return sample_weights((values - design @ solution) / lever, name, rank, least, tune)
-
-    return reweight(solve, weigh, solve(np.ones(len(values))))
+    solution = solve(np.ones(len(values)))
+    for number in range(1, PASSES + 1):
+        weights = sample_weights((values - design @ solution) / lever, name, rank, least, tune)
+        before, solution = solution, solve(weights)
+        # Converged: no entry changes by more than the tolerance times itself
+        limit = TOLERANCE * np.maximum(np.abs(solution), np.abs(before))
+        if np.all(np.abs(solution - before) <= limit):
+            return Reweighted(solution, weights, number, True)
+    return Reweighted(solution, weights, number, False)

@@ -28,8 +28,9 @@ EXACTLY = 1e-9
 LOOSE = 1e-5
 # Where a pass changes them by less than this share, steps are mixed
 NEAR = 1e-3
-# So many passes are ordinary ones first, that the end is MATLAB's; the second: of many samples
-ORDINARY, FEW = 60, 0
+# So many passes of few samples are ordinary ones first, that the end is MATLAB's
+ORDINARY = 60
+# So many are where steps went astray
 RETURN = 10
 # Step of the central difference in r for the derivative of a weight
 SMALL = 1e-4
@@ -64,11 +65,9 @@ class Robust:
         self.problem, self.part, self.rows = problem, part or problem, rows
         self.function, self.tune, self.rho = WEIGHTS[name]
         self.rank = u.shape[1] + weights.shape[2]
-        residuals = problem.residuals(u, weights)
-        require_more_samples(len(residuals[0]), self.rank)
-        here = self.part.expand_here(u, weights)
+        require_more_samples(len(problem.samples.wi), self.rank)
         # Neither leverages, least scales nor the metric of fitted values change from pass to pass
-        self.metric = here.hessian[0]
+        self.metric = self.part.expand_here(u, weights).hessian[0]
         self.levers = [np.sqrt(1 - h) for h in self._leverages(u, weights)]
         black = problem.residuals(u, 0 * weights)
         self.least = [least_scale(target) for target in black]
@@ -77,16 +76,16 @@ class Robust:
     def _leverages(self, u, weights):
         """The leverages (n,) of the linear parameters, by channel: exact, or of a part's size."""
         if self.part is self.problem:
-            blocks = [by_channel for _, by_channel in self.problem.by_weights(u, weights)]
+            blocks = [own for _, own in _by_weights(self.problem, u, weights)]
             return [leverages(np.concatenate(own, axis=1)) for own in zip(*blocks, strict=True)]
         # A part's columns, as many times as it is smaller than the whole
-        blocks = [by_channel for _, by_channel in self.part.by_weights(u, weights)]
+        blocks = [own for _, own in _by_weights(self.part, u, weights)]
         inverses = []
         for own in zip(*blocks, strict=True):
             gram = sum(columns @ columns.T for columns in own)
             inverses.append(np.linalg.pinv(gram, hermitian=True))
         found = [np.empty(len(self.problem.samples.wi)) for _ in inverses]
-        for rows, by_channel in self.problem.by_weights(u, weights):
+        for rows, by_channel in _by_weights(self.problem, u, weights):
             for h, inverse, columns in zip(found, inverses, by_channel, strict=True):
                 h[rows] = np.minimum((columns * (inverse @ columns)).sum(axis=0), 0.9999)
         return found
@@ -201,6 +200,12 @@ class Robust:
         return np.clip(u + step[:shapes], 0, 1), np.maximum(moved, self.problem.least)
 
 
+def _by_weights(problem, u, weights):
+    """The rows of each block, and by channel the residuals' derivatives (lobes, n) by weights."""
+    for rows, _, jacobians in problem.jacobian_blocks(u, weights):
+        yield rows, [jacobian[u.shape[1] :] for jacobian in jacobians]
+
+
 def _join(u, weights):
     return np.concatenate([u[0], weights[0].ravel()])
 
@@ -222,7 +227,7 @@ def settle(problem, u, weights, name, rng, report):
     if many:
         samples, rows = draw_part(samples, np.ones(len(samples.wi)), MANY // 2, rng)
         part = problem.on(samples)
-        found = Robust(part, u, weights, name).settle(u, weights, report, LOOSE, FEW)
+        found = Robust(part, u, weights, name).settle(u, weights, report, LOOSE, patience=0)
         passes = Robust(problem, u, weights, name, part, rows)
         u, weights = found.u[None], found.weights[None]
     else:

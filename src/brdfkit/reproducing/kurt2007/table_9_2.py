@@ -65,16 +65,16 @@ def _claims(theirs, ours, materials):
         Claim(
             "The errors of Koenderink's basis of order 8.",
             where,
-            " ".join(f"{e:.4f}" for e in theirs[KOENDERINK]),
-            " ".join(f"{e:.4f}" for e in ours[KOENDERINK]),
+            _list(theirs[KOENDERINK]),
+            _list(ours[KOENDERINK]),
             verdict((np.abs(koenderink - 1) <= 0.15).all()),
             "By plain least squares; tolerance 15 %.",
         ),
         Claim(
             "The errors of the polynomial, p = 7.",
             where,
-            " ".join(f"{e:.4f}" for e in theirs[POLYNOMIAL]),
-            " ".join(f"{e:.4f}" for e in ours[POLYNOMIAL]),
+            _list(theirs[POLYNOMIAL]),
+            _list(ours[POLYNOMIAL]),
             verdict((np.abs(polynomial - 1) <= 0.2).all()),
             "By bisquare, 50 passes at most; tolerance 20 %.",
         ),
@@ -104,6 +104,10 @@ def _won(errors, names, materials):
     table = np.array([errors[name] for name in names])
     return ", ".join(m for m, best in zip(materials, table.argmin(axis=0), strict=True)
                      if best == len(names) - 1) or "none"  # fmt: skip
+
+
+def _list(errors):
+    return " ".join(f"{e:.4f}" for e in errors)
 
 
 def _yes(answer):
