@@ -1,6 +1,7 @@
 """Shared by all tests: the variant, the models, and where third-party measurements lie."""
 
 import os
+import signal
 from pathlib import Path
 
 import pytest
@@ -11,9 +12,12 @@ from brdfkit.plugins import discovery
 
 
 def pytest_configure():
-    """Share the cores: the threads of Dr.Jit's in one worker would wait for those in another."""
+    """Share the cores: the threads of Dr.Jit's in one worker would wait for those in another. And
+    hear Ctrl-C, as what the tests start should, where a shell in the background ignores it."""
     import drjit as dr
 
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", 1))
     dr.set_thread_count(max(1, (os.cpu_count() or 1) // workers))
 

@@ -437,7 +437,11 @@ def test_ctrl_c_ends_the_processes_and_keeps_what_is_finished(here):
         children = psutil.Process(process.pid).children()
         workers = [child for child in children if "spawn_main" in " ".join(child.cmdline())]
         os.killpg(process.pid, signal.SIGINT)
-        printed, told = process.communicate(timeout=30)
+        try:
+            printed, told = process.communicate(timeout=30)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)  # or the block would wait for it without end
+            raise
     assert process.returncode == 130
     assert told == (
         "brdfkit: interrupted; 2 of 4 fits are finished; the same command goes on from there.\n"
