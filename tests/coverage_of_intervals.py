@@ -20,7 +20,7 @@ import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.fitting.certainty import certify
 from brdfkit.fitting.levenberg_marquardt import levenberg_marquardt
-from brdfkit.fitting.loss import LOG_OFFSET
+from brdfkit.fitting.named_losses import OFFSET
 from brdfkit.fitting.parameter_space import Space
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.robust_search import settle
@@ -42,7 +42,7 @@ def even(rng, values, wi, wo, loss):
     cos_i = wi[:, 2:]
     both = cos_i * wo[:, 2:]
     if loss == "log":
-        return ((both * values + LOG_OFFSET) * np.exp(0.02 * noise) - LOG_OFFSET) / both
+        return ((both * values + OFFSET) * np.exp(0.02 * noise) - OFFSET) / both
     if loss == "cbrt":
         root = np.cbrt(values * cos_i)
         return (root + 0.005 * root.mean() * noise) ** 3 / cos_i

@@ -81,7 +81,8 @@ def main():
             data = material(name)
             for model in models():
                 for loss in LOSSES:
-                    rows.writerow([name, model, loss, f"{bk.fit(model, data, loss).loss:.12g}"])
+                    found = bk.fit(model, data, loss, use_standard_error=False)
+                    rows.writerow([name, model, loss, f"{found.loss:.12g}"])
             file.flush()
             print(name)
     return 0

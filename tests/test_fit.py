@@ -63,8 +63,7 @@ def assert_same_parameters(found, truth):
         np.testing.assert_allclose(own, value, rtol=1e-4, err_msg=name)
 
 
-@pytest.mark.parametrize("loss", bk.losses)
-@pytest.mark.parametrize("starts", [1, 16])
+@pytest.mark.parametrize(("loss", "starts"), [("log", 16), *((loss, 1) for loss in bk.losses)])
 def test_known_parameters_come_back(model, loss, starts):
     """To 1e-4, from the default start alone and with the usual several ones."""
     truth = isotropic(model)
@@ -225,7 +224,8 @@ def test_one_sample_is_fitted():
     compared = bk.compare(data, found)
     assert np.isnan(compared.errors["lambert"].pop("cosine"))
     assert max(compared.errors["lambert"].values()) < 1e-9
-    assert str(bk.compare(data, found)).split()[6:8] == ["-", "0.00000"]
+    row = str(bk.compare(data, found)).splitlines()[1].split()
+    assert row[:3] == ["lambert", "-", "0.00000"]
     with pytest.raises(BrdfkitError, match="cosine loss weighs no sample"):
         bk.fit("lambert", data, "cosine")
 

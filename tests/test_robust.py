@@ -5,7 +5,7 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
-from brdfkit.fitting.loss import losses
+from brdfkit.fitting import losses
 from brdfkit.fitting.robust import WEIGHTS, robust_least_squares
 from brdfkit.measured.selection import select_samples
 from brdfkit.model.evaluation import lobe_values

@@ -14,7 +14,7 @@ import pytest
 from random_models import random_model
 
 import brdfkit as bk
-from brdfkit.fitting.loss import losses
+from brdfkit.fitting import losses
 from brdfkit.geometry.directions import from_angles
 from brdfkit.measured.selection import select_samples
 from brdfkit.model.lobes import HalfVector

@@ -3,6 +3,7 @@ from .auditing import audit as audit
 from .checks import check as check
 from .errors import BrdfkitError as BrdfkitError
 from .fitting import Fit as Fit
+from .fitting import Loss as Loss
 from .fitting import losses as losses
 from .goniometer import measure as measure
 from .host.users_plugins import load_plugins as load_plugins

@@ -26,7 +26,7 @@ from brdfkit.errors import BrdfkitError
     default="log",
     metavar="LOSS",
     show_default=True,
-    help="What the fit minimises: cosine, log, cbrt or plain.",
+    help="What the fit minimises: log, cbrt, cosine, plain, relative ...",
 )
 @click.option(
     "--robust",

@@ -1,6 +1,7 @@
 """The numeric core of a fit: a model regressed on samples, without files and without Mitsuba.
 
-From the ground up: `loss.py` is the error E that a fit minimises. `columns.py` evaluates the lobes
+From the ground up: `loss.py` is the error E that a fit minimises, `named_losses.py` the usual
+ones. `columns.py` evaluates the lobes
 of a model and their derivatives, on `blocks.py` of samples; `sums.py` adds them up, `expansion.py`
 makes of the sums E² to second order, and `problem.py` all this of a model on samples (`folding.py`:
 quicker, on a table with a linear loss). `levenberg_marquardt.py` searches in the bounds of
@@ -11,6 +12,8 @@ outliers, `robust_search.py` until weights and solution give each other back, wh
 runs these one after the other; `result.py` is `Fit`.
 """
 
-from brdfkit.fitting.loss import losses as losses
+from brdfkit.fitting.loss import Loss as Loss
+from brdfkit.fitting.named_losses import as_loss as as_loss
+from brdfkit.fitting.named_losses import losses as losses
 from brdfkit.fitting.regression import regress as regress
 from brdfkit.fitting.result import Fit as Fit

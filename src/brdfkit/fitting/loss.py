@@ -1,107 +1,113 @@
-"""Losses: the errors E that a fit minimises.
+"""`Loss`: the error E that a fit minimises.
 
     E² = Σ_n w_n Σ_c d(M_nc, R_nc, cosθ_i, cosθ_o)² / N
 
 R is the measured BRDF and M the model's, at sample n in channel c. d is their difference, that of
 the values times a product of cosines, or of a function of it, which decides how much dark values
 count beside bright ones. w is the sample's weight, and N normalises. Samples with an angle beyond
-80° are left out, where measurements are least reliable [Ngan et al. 2005]. A measured value may be
-negative (noise, or a colour out of gamut): the cosine and the plain loss take it as it is, the
-others as 0, because their functions need values ≥ 0.
+80° are left out, where measurements are least reliable [Ngan et al. 2005].
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
-import drjit as dr
 import numpy as np
+from numpy.typing import NDArray
 
-# Added inside the logarithm, which is nearly linear for smaller values: about the noise of a
-# measured table [sr⁻¹]
-LOG_OFFSET = 1e-3
-# Added inside the cube root, which has no derivative at 0
-CBRT_OFFSET = 1e-6
+from brdfkit.errors import BrdfkitError
+from brdfkit.model import double_precision
 
 
 @dataclass(frozen=True)
 class Loss:
-    """One loss. `difference(model, measured, cos_i, cos_o)` takes arrays of Dr.Jit's.
+    """A loss E, by which a fit judges a model: the root of a weighted mean of squared differences.
 
-    `weights(cos_i)`: w of NumPy's cosines (n,); `linear`: whether the difference is linear in the
-    model's value; `channel_mean`: whether E² is a mean over the channels, otherwise their sum.
+    Parameters
+    ----------
+    name : str
+        What fits and tables call it.
+    meaning : str
+        The same in a sentence.
+    difference : callable
+        The difference of a model's value from the measured one, both f [sr⁻¹]: called with the
+        arrays (model, measured, cos_i, cos_o) of Dr.Jit's, the last two cosines of the angles to
+        the normal, and written with Dr.Jit's functions, as ``dr.log``.
+    weights : callable, optional
+        The weights (n,) of samples by NumPy's cosines cos_i (n,); by default all weigh the same.
+    channel_mean : bool, default True
+        Whether E² is a mean over the channels, or else their sum.
+
+    Examples
+    --------
+    >>> def sqrt(model, measured, cos_i, cos_o):
+    ...     return dr.sqrt(model * cos_i) - dr.sqrt(dr.maximum(measured, 0) * cos_i)
+    >>> Loss("sqrt", "RMS difference of the square root of f cos θ_i", sqrt).linear
+    False
     """
 
     name: str
     meaning: str
-    difference: Callable
-    weights: Callable = np.ones_like
-    linear: bool = False
+    difference: Callable[..., Any]
+    weights: Callable[[NDArray[np.float64]], NDArray[np.float64]] = np.ones_like
     channel_mean: bool = True
 
-    def importance(self, samples):
+    @cached_property
+    def linear(self) -> bool:
+        """Whether the difference is κ (model - measured), with κ a function of the cosines."""
+        known = np.array([-3.0, -1e-4, 0.0, 1e-5, 0.02, 0.5, 4.0, 3e3])
+        model, measured = (pairs.ravel() for pairs in np.meshgrid(known, known))
+        found, kappa = (_at_oblique(self, m, r) for m, r in ((model, measured), (1 + 0 * model, 0)))
+        if not np.isfinite(found).all():
+            return False
+        tolerance = 1e-12 * np.abs(kappa) * np.maximum(np.abs(model), np.abs(measured))
+        return bool((np.abs(found - kappa * (model - measured)) <= tolerance).all())
+
+    def importance(self, samples: Any) -> NDArray[np.float64]:
         """w (n,) of `Samples`, with how much each sample counts, so that Σ_n is a mean."""
         weights = self.weights(samples.wi[:, 2]) * samples.weight
         total = weights.sum() * (samples.values.shape[1] if self.channel_mean else 1)
         return weights / total if total else weights
 
 
-def _difference_of(g, cosines):
-    """The difference of g(κ f) between the model's f, which is ≥ 0, and the measured one, which
-    counts as 0 where it is not; κ = `cosines(cos_i, cos_o)`."""
+def loss_of(difference: Callable[..., Any]) -> Loss:
+    """The `Loss` of a difference that a user wrote as a function; see `Loss`.
 
-    def difference(model, measured, cos_i, cos_o):
-        kappa = cosines(cos_i, cos_o)
-        return g(kappa * model) - g(kappa * dr.maximum(measured, 0))
-
-    return difference
-
-
-def _sine(cosine):
-    return np.sqrt(np.maximum(1 - cosine**2, 0))
-
-
-class Losses(dict[str, Loss]):
-    """The losses by name, "cosine", "log", "cbrt" and "plain": what `fit` makes small.
-
-    A loss E is a root mean square of differences: of f cos θ_i [sr⁻¹] for "cosine", of its cube
-    root [sr^(-1/3)] for "cbrt", of f [sr⁻¹] for "plain", and of the logarithm of f cos θ_i cos θ_o
-    for "log" [no unit: 0.1 is about 10 %]. ``losses[name].meaning`` says more of one.
-
-    >>> losses["plain"].meaning
-    'RMS difference of f: what is bright counts'
+    Raises `BrdfkitError` for a function that fails on Dr.Jit's arrays.
     """
+    name = getattr(difference, "__name__", type(difference).__name__).strip("<>")
+    lines = (difference.__doc__ or "a loss of the user's").strip().splitlines()
+    loss = Loss(name, lines[0].rstrip("."), difference)
+    require_working(loss)
+    return loss
 
 
-losses = Losses(
-    (loss.name, loss)
-    for loss in (
-        Loss(
-            name="cosine",
-            meaning="cosine-weighted L2, w = sin θ_i, channels summed [Kurt 2007, eq. 5.13]",
-            difference=lambda model, measured, cos_i, cos_o: cos_i * (model - measured),
-            weights=_sine,
-            linear=True,
-            channel_mean=False,
-        ),
-        Loss(
-            name="log",
-            meaning="RMS difference of ln(f cos θ_i cos θ_o + 0.001): relative error, dark counts",
-            difference=_difference_of(
-                lambda x: dr.log(x + LOG_OFFSET), lambda cos_i, cos_o: cos_i * cos_o
-            ),
-        ),
-        Loss(
-            name="cbrt",
-            meaning="RMS difference of the cube root of f cos θ_i: between cosine and log",
-            difference=_difference_of(
-                lambda x: dr.cbrt(x + CBRT_OFFSET), lambda cos_i, cos_o: cos_i
-            ),
-        ),
-        Loss(
-            name="plain",
-            meaning="RMS difference of f: what is bright counts",
-            difference=lambda model, measured, cos_i, cos_o: model - measured,
-            linear=True,
-        ),
-    )
-)
+def require_working(loss: Loss) -> None:
+    """Raise `BrdfkitError` for a loss that fails on Dr.Jit's arrays, gives too few numbers, or does
+    not change with the model."""
+    model = np.array([0.1, 0.5, 1.0, 3.0])
+    try:
+        found = _at_oblique(loss, model, 0.4)
+    except Exception as error:
+        raise BrdfkitError(
+            f"The loss {loss.name} fails with {type(error).__name__} ({error}); it is called with "
+            "arrays (model, measured, cos_i, cos_o) of Dr.Jit's and is written with its functions, "
+            "as dr.log."
+        ) from error
+    if found.shape != model.shape:
+        raise BrdfkitError(
+            f"The loss {loss.name} gives {found.size} numbers for {model.size} samples; it should "
+            "give one for each."
+        )
+    if (found == found[0]).all():
+        raise BrdfkitError(f"The loss {loss.name} is {found[0]:g} whatever the model's value is.")
+
+
+def _at_oblique(loss, model, measured):
+    """The differences (n,) of a loss, as NumPy's, where cosθ_i is 0.75 and cosθ_o 0.5."""
+    values = (model, measured + 0 * model, 0.75 + 0 * model, 0.5 + 0 * model)
+    found = loss.difference(*map(double_precision.array, values))
+    if isinstance(found, np.ndarray):
+        raise TypeError("it gives an array of NumPy's")
+    return np.array(found)

@@ -40,6 +40,23 @@ def require_finite_columns(columns, values, block, space, u):
     return [*values[:count], *(np.nan_to_num(v, posinf=0, neginf=0) for v in values[count:])]
 
 
+def require_finite_loss(loss, block, model, measured, difference, slope):
+    """Raise `BrdfkitError` where the `difference` of a `Loss`, or its `slope`, is not finite at one
+    of the samples of a `Block`; all arrays of Dr.Jit's."""
+    found, by = np.array(difference), np.array(slope)
+    rows = np.flatnonzero(~(np.isfinite(found) & np.isfinite(by)))
+    if not len(rows):
+        return
+    row = rows[0]
+    what = "is" if not np.isfinite(found[row]) else "has the derivative"
+    value = by[row] if np.isfinite(found[row]) else found[row]
+    raise BrdfkitError(
+        f"The loss {loss.name} {what} {value:g} at {describe_pair(block.wi, block.wo, row)}, where "
+        f"the measured value is {np.array(measured)[row]:.4g} and the model's "
+        f"{np.array(model)[row]:.4g}; keep it finite for all of these, as by dr.maximum."
+    )
+
+
 def require_finite(model, columns, wi, wo):
     """Raise `BrdfkitError` where a lobe's values, `columns` (lobes, n), are not finite."""
     if np.isfinite(columns.sum(axis=1)).all():  # quick: one sum per lobe

@@ -10,8 +10,9 @@ import numpy as np
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.blocks import Blocks
 from brdfkit.fitting.columns import Columns
+from brdfkit.fitting.derivative import differentiate
 from brdfkit.fitting.expansion import Expansion, combine
-from brdfkit.fitting.not_finite import require_finite_columns
+from brdfkit.fitting.not_finite import require_finite_columns, require_finite_loss
 from brdfkit.fitting.sums import Sums, move_weights, solve_weights
 from brdfkit.model import double_precision
 
@@ -55,7 +56,11 @@ class Problem:
         for block in self.blocks(1):
             total = sum(dr.square(self._difference(block, 0.0, c)[0]) for c in range(self.channels))
             squares.append(np.asarray(block.importance * total))
-        return np.concatenate(squares)
+        found = np.concatenate(squares)
+        if not np.isfinite(found).all():
+            black = np.zeros((1, self.channels, len(self.least)))
+            self._explain_not_finite(np.full((1, len(self.space.names)), 0.5), black)
+        return found
 
     def start(self, u, evenly=False):
         """The weights with the least E² where the loss is linearised at the measured values, or
@@ -72,6 +77,8 @@ class Problem:
                 moments.append(-weights[-1] * value)
             squares = [0 * block.importance]
             sums.add(*self._evaluate(block, u, columns, squares, moments, weights))
+        if not sums.finite():
+            self._explain_not_finite(u)
         return solve_weights(self.columns, sums, self.least)
 
     def expand(self, u, weights, curvature=True):
@@ -91,6 +98,8 @@ class Problem:
         sums = Sums.zeros(len(u), self.channels, len(self.columns), curvature)
         for _, evaluated in self._evaluate_blocks(u, weights):
             sums.add(*evaluated)
+        if not sums.finite():
+            self._explain_not_finite(u, weights)
         return sums
 
     def jacobians(self, u, weights):
@@ -176,11 +185,22 @@ class Problem:
 
         value = double_precision.float64()(value) + 0 * block.wi.z
         if not self.clamped:
-            return _differentiate(difference, value)
+            return differentiate(difference, value)
         if not self.extended:
-            return _differentiate(clamped, value)
-        _, slope = _differentiate(difference, 0 * value)
-        return _differentiate(extended, value)
+            return differentiate(clamped, value)
+        _, slope = differentiate(difference, 0 * value)
+        return differentiate(extended, value)
+
+    def _explain_not_finite(self, u, weights=None):
+        """Raise `BrdfkitError` for a loss that is not finite somewhere, with the model's `weights`
+        or, by default, where the model meets the measured values."""
+        for block in self.blocks(len(u)):
+            model = block.measured
+            if weights is not None:
+                model = self._mix(block, self._columns(block, u), weights)
+            for c, value in enumerate(model):
+                found = self._difference(block, value, c)
+                require_finite_loss(self.loss, block, value, block.measured[c], *found)
 
     def _evaluate(self, block, u, columns, squares, moments, weights):
         """What `Sums.add` takes, of a block, in one kernel."""
@@ -194,14 +214,3 @@ class Problem:
             [block.fold(m) for m in moments],
             [block.fold(w) for w in weights],
         )
-
-
-def _differentiate(function, x):
-    """A function of arrays at `x`, and its derivative there."""
-    if not double_precision.differentiable():
-        h = 1e-6 * dr.maximum(x, 1e-3)
-        return function(x), (function(x + h) - function(x - h)) / (2 * h)
-    dr.enable_grad(x)
-    y = function(x)
-    dr.forward_from(x)
-    return dr.detach(y), dr.grad(y)

@@ -29,6 +29,11 @@ class Sums:
         gram = np.zeros((points, channels, columns, columns)) if curvature else None
         return cls(np.zeros(points), np.zeros((points, channels, columns)), gram)
 
+    def finite(self):
+        """Whether they are finite."""
+        return bool(np.isfinite(self.error).all() and np.isfinite(self.moment).all())
+
+    @np.errstate(invalid="ignore")  # `finite` tells
     def add(self, columns, squares, moments, weights):
         """Add samples: `columns`, a list of T (points, n); `squares` Σ_c w d² (points, n);
         `moments` w d d' and `weights` w d'², lists by channel of (points, n)."""

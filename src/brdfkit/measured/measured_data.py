@@ -92,7 +92,8 @@ class MeasuredData:
         words = make_printable(name, channels, info)
         name = words[0]
         samples = Samples.from_arrays(wi, wo, values, valid, channels, name)
-        errors = check_errors(standard_error, samples.values, name)
+        valid_values = np.where(samples.valid[:, None], samples.values, np.nan)
+        errors = check_errors(standard_error, valid_values, name)
         return cls(*words, anisotropic, errors, _samples=samples, _lookup=lookup)
 
     @classmethod

@@ -1,26 +1,40 @@
 """Selects the samples of a measured material that fits and comparisons use."""
 
+from dataclasses import replace
 from numbers import Real
+
+import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.samples import Samples
 
 
-def select_samples(data, max_angle):
+def select_samples(data, max_angle, weights=None, errors=False):
     """The valid `Samples` of a `Measured` with both angles below `max_angle` [degrees].
 
-    Spectral samples are converted to linear sRGB. Raises `BrdfkitError` for an angle that is not
-    above 0° and at most 90°, and where no sample is left.
+    Spectral samples are converted to linear sRGB. `weights`: of all samples of the material (n,),
+    or of a table's cells in its shape; samples of weight 0 are left out. `errors`:
+    whether the samples carry the standard errors of the material, where it has them. Raises
+    `BrdfkitError` for an angle that is not above 0° and at most 90°, for weights that are none, and
+    where no sample is left.
     """
     require_max_angle(max_angle)
     data = data.rgb
+    if weights is not None:
+        weights = _check_weights(weights, data)
+    own = data.standard_error if errors else None
     if data.is_table:
-        samples = Samples.of_cells(data.table, max_angle)
+        samples = Samples.of_cells(data.table, max_angle, weights, own)
     else:
-        samples = data.samples.at(data.samples.within(max_angle))
+        factors = 1 if weights is None else weights
+        samples = replace(data.samples, weight=data.samples.weight * factors, errors=own)
+        samples = samples.at(samples.within(max_angle))
+    if weights is not None:
+        samples = samples.at(samples.weight > 0)
     if not len(samples.wi):
+        more = "" if weights is None else " and a weight above 0"
         raise BrdfkitError(
-            f"{data.name}: no valid sample has both angles below {max_angle:g}°; "
+            f"{data.name}: no valid sample has both angles below {max_angle:g}°{more}; "
             "give a larger max_angle."
         )
     return samples
@@ -32,3 +46,21 @@ def require_max_angle(max_angle):
         raise BrdfkitError(
             f"max_angle = {max_angle!r} should be an angle above 0° and at most 90°."
         )
+
+
+def _check_weights(given, data):
+    """Weights (n,) of all samples of a `Measured`, or `BrdfkitError`."""
+    n = data.table.values[..., 0].size if data.is_table else len(data.samples.wi)
+    try:
+        weights = np.array(given, float)
+    except (TypeError, ValueError):
+        weights = np.array(np.nan)
+    shapes = [(n,), data.table.shape] if data.is_table else [(n,)]
+    if weights.shape not in shapes:
+        several = " or ".join(map(str, shapes))
+        raise BrdfkitError(
+            f"{data.name}: weights {weights.shape} should be {several}, one for each sample."
+        )
+    if not (np.isfinite(weights) & (weights >= 0)).all():
+        raise BrdfkitError(f"{data.name}: weights should be finite numbers of at least 0.")
+    return weights.ravel()

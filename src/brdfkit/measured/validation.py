@@ -54,7 +54,8 @@ def check_shape(shape, name):
 def check_errors(standard_error, values, name):
     """Standard errors (n, channels), or None where none are given.
 
-    Raises `BrdfkitError` unless they have the shape of `values`; those of one channel may be (n,).
+    Raises `BrdfkitError` unless they have the shape of `values`, those of one channel may be (n,),
+    and are finite and not negative wherever these are finite.
     """
     if standard_error is None:
         return None
@@ -65,5 +66,11 @@ def check_errors(standard_error, values, name):
         raise BrdfkitError(
             f"{name}: standard errors {given.shape} should have the shape {values.shape} of "
             "the values."
+        )
+    bad = np.isfinite(values) & ~((errors >= 0) & np.isfinite(errors))
+    if bad.any():
+        raise BrdfkitError(
+            f"{name}: a standard error is {errors[bad][0]:g}; it should be a finite number of at "
+            "least 0 wherever a value was measured."
         )
     return errors.reshape(-1, values.shape[-1])

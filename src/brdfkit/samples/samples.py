@@ -17,7 +17,8 @@ class Samples:
     `weight`: (n,), the weight of each sample in a loss: 1 for a scattered sample, the cell's width
     in theta_h for a table's cell. So a table counts evenly over Rusinkiewicz's angles, however
     finely it divides the highlight. `cells`: of a table's cells, the numbers (n,) of the half
-    vector and of its pair with theta_d, each in order; else None.
+    vector and of its pair with theta_d, each in order; else None. `errors`: the standard errors of
+    the values (n, channels), where they are known and count.
     """
 
     wi: np.ndarray
@@ -26,6 +27,7 @@ class Samples:
     valid: np.ndarray
     weight: np.ndarray
     cells: tuple[np.ndarray, np.ndarray] | None = None
+    errors: np.ndarray | None = None
 
     @classmethod
     def from_arrays(cls, wi, wo, values, valid, channels, name):
@@ -63,8 +65,12 @@ class Samples:
         return cls(wi, wo, values, _find_usable(wi, wo, values), weight)
 
     @classmethod
-    def of_cells(cls, table, max_angle):
-        """As `from_table`, of the known cells with both angles below `max_angle` [degrees]."""
+    def of_cells(cls, table, max_angle, factors=None, errors=None):
+        """As `from_table`, of the known cells with both angles below `max_angle` [degrees].
+
+        `factors`: of the weights, (cells,), and `errors` (cells, channels): of all cells, in C
+        order.
+        """
         axes = tuple(tuple(axis.tolist()) for axis in table.centres)
         cells, wi, wo = directions_within(axes, float(max_angle))
         values = table.values.reshape(-1, table.values.shape[-1])
@@ -74,7 +80,10 @@ class Samples:
         pairs = cells // n_p
         half_vectors = pairs // n_d
         weight = table.theta_h_widths.ravel()[half_vectors % n_h]
-        samples = cls(wi, wo, values, known, weight, (half_vectors, pairs))
+        if factors is not None:
+            weight = weight * factors[cells]
+        own = None if errors is None else errors[cells]
+        samples = cls(wi, wo, values, known, weight, (half_vectors, pairs), own)
         return samples if known.all() else samples.at(known)
 
     def within(self, max_angle):
@@ -86,7 +95,8 @@ class Samples:
         """The `Samples` of these `rows` (a mask or indices)."""
         vectors = (as_columns(a, rows) for a in (self.wi, self.wo, self.values))
         cells = self.cells and tuple(numbers[rows] for numbers in self.cells)
-        return Samples(*vectors, self.valid[rows], self.weight[rows], cells)
+        errors = None if self.errors is None else self.errors[rows]
+        return Samples(*vectors, self.valid[rows], self.weight[rows], cells, errors)
 
 
 def require_some(valid, name):

@@ -6,9 +6,12 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from numpy.typing import ArrayLike
+
 from brdfkit.arguments import to_dictionary, to_pair, to_whole_number
-from brdfkit.errors import no_such
-from brdfkit.fitting import Fit, losses, regress
+from brdfkit.errors import BrdfkitError, no_such
+from brdfkit.fitting import Fit, Loss, as_loss, regress
+from brdfkit.fitting.measurement_noise import regress_noisy
 from brdfkit.fitting.robust import WEIGHTS
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike, measured_material
@@ -21,9 +24,11 @@ from brdfkit.model.evaluation import clamped_share
 def fit(
     name: str | Path | type[Model],
     data: MaterialLike,
-    loss: str = "log",
+    loss: str | Loss | Callable[..., Any] = "log",
     *,
     robust: str | None = None,
+    weights: ArrayLike | None = None,
+    use_standard_error: bool = True,
     starts: int | None = None,
     bounds: Mapping[str, tuple[float, float]] | None = None,
     fixed: Mapping[str, float] | None = None,
@@ -46,11 +51,19 @@ def fit(
         defines one; or a class derived from `Model`.
     data : Measured, str or Path
         The measured material, or the name or path of one.
-    loss : str, default "log"
-        What is made small: a name in `brdfkit.losses`.
+    loss : str, Loss or callable, default "log"
+        What is made small: a name in `brdfkit.losses`, a `Loss`, or your own difference of a
+        model's value from the measured one, a function (model, measured, cos_i, cos_o) of Dr.Jit's
+        arrays.
     robust : str, optional
         The weight by which outliers lose their say, as ``"bisquare"`` [Kurt 2007, eq. 5.14]; the
         others are in `brdfkit.fitting.robust.WEIGHTS`. By default all samples count.
+    weights : array_like, shape (n,), optional
+        How much each sample of the measurement counts; of a table, each cell, in the table's shape
+        or flat. By default all samples count alike, and cells by their width in theta_h.
+    use_standard_error : bool, default True
+        Whether samples count by their standard errors, where the measurement states them: those
+        whose noise is more than the model's own error, less.
     starts : int, optional
         Points from which the search begins: the defaults and others, spread over the bounds. By
         default 16 for each searched parameter, at most 48.
@@ -79,7 +92,8 @@ def fit(
     BrdfkitError
         For an unknown model, loss or robust weight; for a parameter that is not searched, or bounds
         and values beyond the model's; where `data` was not measured or no sample is left; for a
-        formula that is not finite; and for a robust fit without more samples than parameters.
+        formula or loss that is not finite; for weights or standard errors that do not fit; and for
+        a robust fit without more samples than parameters.
 
     Examples
     --------
@@ -89,18 +103,20 @@ def fit(
     model, data = labels.model(labels.read_files(name)), measured_material(data)
     how = {"seed": seed, "starts": starts, "bounds": bounds, "fixed": fixed}
     how["anisotropic"] = data.anisotropic if anisotropic is None else anisotropic
-    given = {"loss": loss, "robust": robust, "max_angle": max_angle, **how}
-    checked = check_settings(given, f"{model.type_name()}: ")
+    given = {"robust": robust, "max_angle": max_angle, "use_standard_error": use_standard_error}
+    checked = check_settings({**given, **how}, f"{model.type_name()}: ")
     how = {name: checked[name] for name in how}
-    samples = select_samples(data, max_angle)
+    loss = as_loss(loss)
+    samples = select_samples(data, max_angle, weights, use_standard_error)
 
-    found = regress(model, samples, losses[loss], robust=robust, **how, report=progress)
-    weights = dict(zip(model.weights(), map(tuple, found.weights.T), strict=True))
-    fitted = model(**found.shapes, **weights)
+    solve = regress if samples.errors is None else regress_noisy
+    found = solve(model, samples, loss, robust=robust, **how, report=progress)
+    linear = dict(zip(model.weights(), map(tuple, found.weights.T), strict=True))
+    fitted = model(**found.shapes, **linear)
     return Fit(
         model=fitted,
         data=data.name,
-        loss_name=loss,
+        loss_name=loss.name,
         loss=found.loss,
         samples=len(samples.wi),
         evaluations=found.evaluations,
@@ -108,16 +124,16 @@ def fit(
         message=found.message,
         at_bounds=found.at_bounds,
         certainty=found.certainty,
-        notes=(*found.notes, *_list_notes(data, samples, losses[loss], found, fitted)),
-        settings={"robust": robust, "max_angle": float(max_angle), **how},
+        notes=(*found.notes, *_list_notes(data, samples, loss, found, fitted)),
+        settings={**given, "max_angle": float(max_angle), **how},
     )
 
 
-# The settings: all arguments but the model, its material and the progress
+# The settings: all arguments but the model, the material with its weights, and the progress
 SETTINGS = {
     name: parameter.default
     for name, parameter in inspect.signature(fit).parameters.items()
-    if name not in ("name", "data", "progress")
+    if name not in ("name", "data", "weights", "progress")
 }
 
 
@@ -135,8 +151,12 @@ def check_settings(given: Mapping[str, Any], where: str = "") -> dict[str, Any]:
             raise no_such("setting of a fit", name, SETTINGS)
     settings = {**SETTINGS, **given}
     loss, robust = settings["loss"], settings["robust"]
-    if not isinstance(loss, str) or loss not in losses:
-        raise no_such("loss", loss, losses)
+    if not isinstance(loss, str):
+        raise BrdfkitError(
+            f"loss = {loss!r} is code; where other processes fit, it should be a name, one of "
+            "brdfkit.losses."
+        )
+    as_loss(loss)
     if robust not in (None, *WEIGHTS):
         raise no_such("robust weight", robust, WEIGHTS)
     if settings["starts"] is not None:

@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 
-from brdfkit.fitting.loss import losses
+from brdfkit.fitting.named_losses import losses
 from brdfkit.loading import load
 from brdfkit.measured.selection import select_samples
 from brdfkit.model import double_precision, labels

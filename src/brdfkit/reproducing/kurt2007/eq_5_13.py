@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from brdfkit.fitting.loss import losses
+from brdfkit.fitting.named_losses import losses
 from brdfkit.model.evaluation import lobe_values, weight_matrix
 
 

@@ -1,0 +1,108 @@
+"""The losses by name.
+
+A measured value may be negative (noise, or a colour out of gamut): the losses that are linear in
+the model take it as it is, the others as 0, because their functions need values ≥ 0.
+"""
+
+from typing import Any
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.errors import no_such
+from brdfkit.fitting.loss import Loss, loss_of, require_working
+
+# Added inside the logarithm, which is nearly linear for smaller values, and to the measured value
+# below a relative difference: about the noise of a measured table [sr⁻¹]
+OFFSET = 1e-3
+# Added inside the cube root, which has no derivative at 0
+CBRT_OFFSET = 1e-6
+
+
+def _difference_of(g, cosines):
+    """The difference of g(κ f) between the model's f, which is ≥ 0, and the measured one, which
+    counts as 0 where it is not; κ = `cosines(cos_i, cos_o)`."""
+
+    def difference(model, measured, cos_i, cos_o):
+        kappa = cosines(cos_i, cos_o)
+        return g(kappa * model) - g(kappa * dr.maximum(measured, 0))
+
+    return difference
+
+
+def _relative(model, measured, cos_i, cos_o):
+    return (model - measured) / (dr.maximum(measured, 0) + OFFSET)
+
+
+def _sine(cosine):
+    return np.sqrt(np.maximum(1 - cosine**2, 0))
+
+
+class Losses(dict[str, Loss]):
+    """The losses by name, "cosine", "log", "cbrt" and "plain": what `fit` makes small.
+
+    A loss E is a root mean square of differences: of f cos θ_i [sr⁻¹] for "cosine", of its cube
+    root [sr^(-1/3)] for "cbrt", of f [sr⁻¹] for "plain", and of the logarithm of f cos θ_i cos θ_o
+    for "log" [no unit: 0.1 is about 10 %]. ``losses[name].meaning`` says more of one.
+
+    >>> losses["plain"].meaning
+    'RMS difference of f: what is bright counts'
+    """
+
+
+losses = Losses(
+    (loss.name, loss)
+    for loss in (
+        Loss(
+            name="cosine",
+            meaning="cosine-weighted L2, w = sin θ_i, channels summed [Kurt 2007, eq. 5.13]",
+            difference=lambda model, measured, cos_i, cos_o: cos_i * (model - measured),
+            weights=_sine,
+            channel_mean=False,
+        ),
+        Loss(
+            name="log",
+            meaning="RMS difference of ln(f cos θ_i cos θ_o + 0.001): relative error, dark counts",
+            difference=_difference_of(
+                lambda x: dr.log(x + OFFSET), lambda cos_i, cos_o: cos_i * cos_o
+            ),
+        ),
+        Loss(
+            name="cbrt",
+            meaning="RMS difference of the cube root of f cos θ_i: between cosine and log",
+            difference=_difference_of(
+                lambda x: dr.cbrt(x + CBRT_OFFSET), lambda cos_i, cos_o: cos_i
+            ),
+        ),
+        Loss(
+            name="plain",
+            meaning="RMS difference of f: what is bright counts",
+            difference=lambda model, measured, cos_i, cos_o: model - measured,
+        ),
+        Loss(
+            name="lafortune",
+            meaning="RMS difference of f cos θ_i cos θ_o [Lafortune et al. 1997]",
+            difference=lambda model, measured, cos_i, cos_o: cos_i * cos_o * (model - measured),
+        ),
+        Loss(
+            name="relative",
+            meaning="RMS difference of f as a share of the measured f + 0.001: dark counts",
+            difference=_relative,
+        ),
+    )
+)
+
+
+def as_loss(given: Any) -> Loss:
+    """The `Loss` of a name in `losses`, of a difference written as a function, or a loss itself.
+
+    Raises `BrdfkitError` for an unknown name, and for a function that fails on Dr.Jit's arrays.
+    """
+    if isinstance(given, str) and given in losses:
+        return losses[given]
+    if isinstance(given, Loss):
+        require_working(given)
+        return given
+    if callable(given):
+        return loss_of(given)
+    raise no_such("loss", given, losses)

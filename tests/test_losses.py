@@ -1,0 +1,137 @@
+"""Losses of one's own, weights of samples and standard errors: what a fit makes small."""
+
+import drjit as dr
+import numpy as np
+import pytest
+
+import brdfkit as bk
+from brdfkit.checks.material_subject import random_pairs
+from brdfkit.errors import BrdfkitError
+from brdfkit.samples import Table
+
+N = 400
+
+
+def measured(model, seed=0, noise=0.0, **details):
+    """A model measured at random directions, with noise of the standard error `noise` (n, 3)."""
+    wi, wo = random_pairs(N, seed=seed, max_degrees=79)
+    noise = np.broadcast_to(noise, (N, 3))
+    values = model.eval(wi, wo) + np.random.default_rng(seed).normal(size=(N, 3)) * noise
+    return bk.Measured.from_samples(wi, wo, values, **details)
+
+
+def assert_same(found, other, rtol=1e-10):
+    for name, value in other.values.items():
+        np.testing.assert_allclose(found.values[name], value, rtol=rtol, err_msg=name)
+
+
+@pytest.mark.quick
+def test_a_loss_tells_itself_whether_it_is_linear():
+    """Not by a flag: by its values, over eight decades of the model's and the measured one."""
+    linear = {name for name, loss in bk.losses.items() if loss.linear}
+    assert linear == {"cosine", "plain", "lafortune"}
+
+    def bent(model, measured, cos_i, cos_o):
+        return dr.minimum(model, 100.0) - dr.minimum(measured, 100.0)
+
+    assert not bk.Loss("bent", "linear up to 100", bent).linear
+
+
+@pytest.mark.quick
+def test_a_loss_of_ones_own_is_as_good():
+    """Written by the user, the log loss gives the same fit, and is named after its function."""
+
+    def own_log(model, measured, cos_i, cos_o):
+        """Mine."""
+        kappa = cos_i * cos_o
+        return dr.log(kappa * model + 1e-3) - dr.log(kappa * dr.maximum(measured, 0) + 1e-3)
+
+    data = measured(bk.models()["ward"](alpha_u=0.3), noise=0.01)
+    found, known = bk.fit("ggx", data, own_log), bk.fit("ggx", data, "log")
+    assert found.loss_name == "own_log"
+    assert found.loss == pytest.approx(known.loss, rel=1e-12)
+    assert_same(found, known)
+    both = bk.Loss("both", "with weights", own_log, weights=lambda cos_i: cos_i)
+    assert bk.fit("ggx", data, both).loss != pytest.approx(known.loss, rel=1e-3)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("loss", "words"),
+    [
+        ("lgo", "There is no loss 'lgo'; did you mean log"),
+        (7, "There is no loss 7"),
+        (lambda model, measured: model - measured, "loss lambda fails with TypeError.*cos_i, cos"),
+        (lambda m, r, ci, co: np.log(m), "fails with TypeError.*array of NumPy's"),
+        (lambda m, r, ci, co: dr.sum(m - r), "gives 1 numbers for 4 samples"),
+        (lambda m, r, ci, co: r * ci, "whatever the model's value is"),
+        (lambda m, r, ci, co: dr.log(m) - dr.log(r + 1), "is -inf at theta_i.*the model's 0; keep"),
+        (lambda m, r, ci, co: dr.log(m + 1) - dr.log(r), "is inf at theta_i.*measured value is 0"),
+        (lambda m, r, ci, co: dr.sqrt(m) - dr.sqrt(r), "the derivative inf at theta_i"),
+    ],
+)
+def test_a_bad_loss_is_refused(loss, words):
+    with np.errstate(all="ignore"), pytest.raises(BrdfkitError, match=words):
+        bk.fit("ward", measured(bk.models()["lambert"](diffuse_reflectance=0.0)), loss, starts=2)
+
+
+@pytest.mark.quick
+def test_weights_count_samples():
+    """A weight of 0 leaves a sample out, and a weight of 2 is the sample twice."""
+    data = measured(bk.models()["ggx"](), noise=0.02)
+    weights = np.random.default_rng(5).integers(0, 3, N)
+    rows = np.repeat(np.arange(N), weights)
+    wi, wo, values = data.samples.wi[rows], data.samples.wo[rows], data.values[rows]
+    repeated = bk.fit("ward", bk.Measured.from_samples(wi, wo, values), "cbrt")
+    found = bk.fit("ward", data, "cbrt", weights=weights)
+    assert found.loss == pytest.approx(repeated.loss, rel=1e-10)
+    assert_same(found, repeated, rtol=1e-6)
+    assert found.samples == np.count_nonzero(weights)
+
+
+@pytest.mark.quick
+def test_weights_of_cells_have_the_tables_shape():
+    """Of a table, too, they are its cells', in its shape or flat."""
+    table = Table(np.random.default_rng(0).uniform(0.1, 1, (8, 6, 10, 3)))
+    data, weights = bk.Measured.from_table(table.values), np.ones(table.shape)
+    weights[3:] = 0
+    left = bk.Measured.from_table(np.where(weights[..., None] > 0, table.values, np.nan))
+    expected = bk.fit("ward", left)
+    for given in (weights, weights.ravel()):
+        assert_same(bk.fit("ward", data, weights=given), expected)
+    with pytest.raises(BrdfkitError, match=r"weights \(8, 6\) should be \(480,\) or \(8, 6, 10\)"):
+        bk.fit("ward", data, weights=weights[..., 0])
+    with pytest.raises(BrdfkitError, match="finite numbers of at least 0"):
+        bk.fit("ward", data, weights=-weights)
+
+
+def test_standard_errors_bring_the_fit_nearer():
+    """Half of the samples are 20 times as noisy: weights of 1 / σ² would lower the mean squared
+    error to mean(σ²) mean(1 / σ²) = 100 times less; over a few noises it is 30 times less."""
+    truth = bk.models()["ward"](diffuse_reflectance=0.3, specular_reflectance=0.1, alpha_u=0.3)
+    noise = np.where(np.arange(N) % 2, 0.002, 0.04)[:, None]
+    squares = {True: 0.0, False: 0.0}
+    for seed in range(12):
+        data = measured(truth, seed, noise, standard_error=np.broadcast_to(noise, (N, 3)))
+        for use in squares:
+            found = bk.fit("ward", data, "plain", starts=1, use_standard_error=use)
+            squares[use] += (found.values["alpha_u"] - 0.3) ** 2
+            assert any("standard errors" in note for note in found.notes) == use
+    assert squares[True] < squares[False] / 30
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("size", [0.0, 1e-6, 0.3])
+def test_standard_errors_that_say_nothing_change_nothing(size):
+    """Equal ones in the loss's differences, and such as are small beside the model's own error."""
+    data = measured(bk.models()["ggx"](), noise=0.05, standard_error=np.full((N, 3), size))
+    found, other = (bk.fit("ward", data, "plain", use_standard_error=use) for use in (True, False))
+    assert found.values == other.values
+    assert found.loss == other.loss
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("bad", [-0.1, np.nan, np.inf])
+def test_bad_standard_errors_are_refused(bad):
+    with pytest.raises(BrdfkitError, match=r"a standard error is .*; it should be a finite"):
+        measured(bk.models()["ward"](), standard_error=np.full((N, 3), bad))
