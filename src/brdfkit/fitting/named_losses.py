@@ -39,15 +39,20 @@ def _sine(cosine):
 
 
 class Losses(dict[str, Loss]):
-    """The losses by name, "cosine", "log", "cbrt" and "plain": what `fit` makes small.
+    """The losses by name: what `fit` makes small. Prints as a table of their meanings.
 
     A loss E is a root mean square of differences: of f cos θ_i [sr⁻¹] for "cosine", of its cube
-    root [sr^(-1/3)] for "cbrt", of f [sr⁻¹] for "plain", and of the logarithm of f cos θ_i cos θ_o
-    for "log" [no unit: 0.1 is about 10 %]. ``losses[name].meaning`` says more of one.
+    root [sr^(-1/3)] for "cbrt", of f [sr⁻¹] for "plain", of f cos θ_i cos θ_o [sr⁻¹] for
+    "lafortune", and without a unit, 0.1 being about 10 %, of the logarithm of f cos θ_i cos θ_o for
+    "log" and of f as a share of the measured one for "relative".
 
     >>> losses["plain"].meaning
     'RMS difference of f: what is bright counts'
     """
+
+    def __repr__(self) -> str:
+        width = max(map(len, self))
+        return "\n".join(f"{name:<{width}}  {loss.meaning}" for name, loss in self.items())
 
 
 losses = Losses(
