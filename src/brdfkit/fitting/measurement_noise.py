@@ -17,7 +17,7 @@ from brdfkit.model import double_precision
 # The least τ², as a share of the mean σ²: a σ of 0 is not trusted beyond it
 LEAST = 0.01
 # Weights within this share of each other are alike
-ALIKE = 0.01
+ALIKE = 0.05
 
 
 def regress_noisy(model, samples, loss, **how):
@@ -27,8 +27,8 @@ def regress_noisy(model, samples, loss, **how):
     if shares.min() > (1 - ALIKE) * shares.max():
         return found
     found = regress(model, replace(samples, weight=samples.weight * shares), loss, **how)
-    light = (shares < 0.5 * shares.max()).mean()
-    note = f"samples count by their standard errors, {light:.1%} less than half; so in the loss"
+    least = shares.min() / shares.max()
+    note = f"samples count by their standard errors, the noisiest {least:.0%}; so in the loss"
     return replace(found, notes=(*found.notes, note))
 
 
