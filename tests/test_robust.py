@@ -112,6 +112,25 @@ def test_the_thesis_polynomial(measured_data):
         )
 
 
+def test_one_sample_of_cayman_makes_its_error(measured_data):
+    """Kurt 2007, digest 22: whatever the degree, bisquare gives no weight to the one sample at
+    θ_i 80°, θ_o 79°, φ 180°, whose residual makes E; without it E is 12 times smaller."""
+    data = bk.load(measured_data / "cornell" / "cayman.brdf")
+    wavelengths = np.array([float(name.removesuffix("nm")) for name in data.channels])
+    blue, red = wavelengths < 500, wavelengths >= 600
+    bands = [data.values[:, band].mean(axis=1) for band in (red, ~(blue | red), blue)]
+    wi, wo, values = data.samples.wi, data.samples.wo, np.stack(bands, axis=1)
+    data = bk.Measured.from_samples(wi, wo, values)
+    others = np.arange(len(values)) != values.sum(axis=1).argmax()
+    for degree in (1, 4):
+        found = bk.fit(
+            f"pca_polynomial:degree={degree}", data, "plain", robust="bisquare", max_angle=90
+        )
+        squares = (((found.eval(wi, wo) - values) * wi[:, 2:]) ** 2).sum(axis=1)
+        assert np.sqrt(squares.mean()) == pytest.approx(4.9566, abs=5e-4)
+        assert np.sqrt(squares[others].mean()) == pytest.approx(0.4094, abs=2e-3)
+
+
 @pytest.mark.quick
 @pytest.mark.parametrize("robust", ["bisquare", "huber"])
 @pytest.mark.parametrize(

@@ -217,6 +217,23 @@ def test_refitted_exponents_of_the_digest(name, digest, rows, measured_data):
     assert refitted(measured_data, name) == pytest.approx(digest, abs=0.01)
 
 
+@pytest.mark.parametrize(("loss", "expected"), [("plain", 36), ("cosine", 39)])
+def test_on_how_many_samples_the_polynomial_wins(loss, expected, rows, measured_data):
+    """Degree 7 has the lowest error of eight, ± 2; the thesis prints 35 of 52. By bisquare, which
+    takes longer, see docs/reproduce/kurt2007.md."""
+    won = 0
+    for row in of_model(rows, "oren_nayar"):
+        data = bk.load(measured_data / "curet" / f"abrdf.dat#{row.sample}")
+        values = bk.fit("pca_polynomial:degree=7", data, loss).eval(row.data.wi, row.data.wo)
+        others = [r for r in rows if r.sample == row.sample]
+        # To the thesis's scale: by the errors at its shape parameters, with the best weights
+        ours = [r.data.error(r.data.values - r.data.solve(r.lobes) @ r.lobes) for r in others]
+        scale = np.nanmedian([r.error for r in others] / np.array(ours))
+        error = scale * row.data.error(values[:, 0] - row.data.values)
+        won += error < np.nanmin([r.error for r in others])
+    assert won == pytest.approx(expected, abs=2)
+
+
 def test_reciprocity(configured):
     """To 1e-12 of the value over 10⁴ pairs up to the horizon; a polynomial to the last digit."""
     rng = np.random.default_rng(9)
