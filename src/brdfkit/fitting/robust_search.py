@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.fitting.acceleration import Anderson, make_convex
+from brdfkit.fitting.acceleration import make_convex
 from brdfkit.fitting.box_quadratic import minimise_in_box
 from brdfkit.fitting.expansion import Expansion
 from brdfkit.fitting.part import draw_part
@@ -23,15 +23,15 @@ MANY = 80_000
 # Settled: the next pass would change the fitted values by this share of their spread (rms)
 SETTLED = 3e-7
 # Few samples settle to this share
-EXACTLY = 1e-9
+EXACTLY = 1e-11
 # The same for a part, whose end is only a start
 LOOSE = 1e-5
 # Where a pass changes them by less than this share, steps are mixed
 NEAR = 1e-3
 # So many passes of few samples are ordinary ones first, that the end is MATLAB's
 ORDINARY = 60
-# So many are where steps went astray
-RETURN = 10
+# One of so many samples, those with residuals next to the median, tell how it changes
+NEXT = 200
 # Step of the central difference in r for the derivative of a weight
 SMALL = 1e-4
 
@@ -118,7 +118,7 @@ class Robust:
         """The `Settled` end of the passes from `u` and `weights`: the next would change the fitted
         values by less than the `tolerance`, or there were too many. The first `patience` passes are
         ordinary ones."""
-        best, mixing = None, Anderson(self.metric)
+        best, near, rooted = None, NEAR, False
         residuals = self.problem.residuals(u, weights)
         for number in range(1, PASSES + 1):
             report(number, PASSES)
@@ -127,45 +127,103 @@ class Robust:
             factors = [self.function(r) for r in ratios]
             # The step of an ordinary pass, and the change of fitted values that it brings
             gradient, hessian = self._weigh(u, weights, factors)
-            step = ordinary = self._step(hessian, gradient, u, weights)
+            ordinary = self._step(hessian, gradient, u, weights)
             change = np.sqrt(max(ordinary @ self.metric @ ordinary, 0)) / (self.spread or 1.0)
+            astray = rooted and change > best.change
             if best is None or change < best.change:
                 light = float(np.mean([f < 0.5 for f in factors]))
                 best = Settled(u[0], weights[0], light, number, change)
             if change <= tolerance:
                 break
-            if number <= patience or change >= NEAR:
-                if number > patience:
-                    step = self._newton(u, weights, ratios, hessian, gradient)
-                u, weights, residuals = self._descend(u, weights, residuals, scales, step, ordinary)
-            elif change > 3 * best.change:
-                # The steps went astray: back, and some ordinary ones
-                u, weights, patience = best.u[None], best.weights[None], number + RETURN
-                residuals, mixing = self.problem.residuals(u, weights), Anderson(self.metric)
-            else:
-                # The scale decides now: the merit, in which it is held, does not
-                step = self._newton(u, weights, ratios, hessian, gradient)
-                u, weights = self._move(u, weights, mixing.mix(_join(u, weights), step))
+            rooted = False
+            if astray:  # back, and nearer to the end by smaller merits first
+                u, weights, near = best.u[None], best.weights[None], best.change / 3
+                self.part, self.rows = self.problem, slice(None)  # a part's Hessian is too rough
                 residuals = self.problem.residuals(u, weights)
+                continue
+            if number <= patience:
+                steps, further = (ordinary,), None
+            else:
+                newton = self._newton(u, weights, ratios)
+                convex, concave = make_convex(newton, hessian)
+                step = self._step(convex, gradient, u, weights)
+                steps, further = (step, ordinary), None if concave is None else concave @ step
+                rooted = change < near
+            if rooted:
+                # The merit, in which the scales are held, does not decide any more
+                step = self._solve(u, weights, residuals, scales, newton, gradient, step)
+                u, weights = self._move(u, weights, step)
+                residuals = self.problem.residuals(u, weights)
+            else:
+                u, weights, residuals = self._descend(u, weights, residuals, scales, steps, further)
         best.passes = number
         return best
 
-    def _newton(self, u, weights, ratios, hessian, gradient):
-        """Newton's step, that knows how the weights of the samples change."""
+    def _newton(self, u, weights, ratios):
+        """Newton's matrix, that knows how the weights of the samples change, at held scales."""
         slopes = [_slope(self.function, r[self.rows]) for r in ratios]
-        newton = make_convex(self._curvature(u, weights, slopes)[0], hessian)
-        return self._step(newton, gradient, u, weights)
+        return self._curvature(u, weights, slopes)[0]
 
-    def _descend(self, u, weights, residuals, scales, step, ordinary):
-        """The point after `step` or a shorter one, or else after the `ordinary` one, with the
-        merit at held `scales` smaller there, and its residuals."""
+    def _solve(self, u, weights, residuals, scales, newton, gradient, step):
+        """Newton's step v to where an ordinary pass changes nothing, with the change of the scales;
+        what a `step` brings to a bound stays there.
+
+        g + H v + A (B v) = 0, with the columns ∂g/∂ln s of A and the rows ∂ln s/∂z of B.
+        """
+        by_scale, of_scale = [], []
+        for c, r in enumerate(self.ratios(residuals, scales)):
+            r = r[self.rows]
+            factors = self.function(r) - _slope(self.function, r)
+            by_scale.append(self._gradient(u, weights, c, factors))
+            of_scale.append(self._gradient(u, weights, c, self._about_median(c, r, scales[c])))
+        moved = _join(*self._move(u, weights, step))
+        free = np.isclose(moved, _join(u, weights) + step, rtol=0, atol=1e-14)
+        A, B = np.array(by_scale).T[free], np.array(of_scale)[:, free]
+        found = step.copy()
+        found[free] = np.linalg.lstsq(newton[np.ix_(free, free)] + A @ B, -gradient[free])[0]
+        return found
+
+    def _gradient(self, u, weights, channel, factors):
+        """The gradient (n,) of the part's E² in one channel, its samples weighted by `factors`."""
+        every = [0 * factors for _ in weights[0]]
+        every[channel] = factors
+        return self._expand(self.part, u, weights, every, curvature=False).gradient[0]
+
+    def _about_median(self, channel, r, scale):
+        """Weights of the part's samples by which the gradient is that of ln s: of those whose
+        residuals, of the ratios `r`, are near the median, which s is of."""
+        found = np.zeros(len(r))
+        if scale <= self.tune * self.least[channel] * (1 + 1e-9):
+            return found
+        median, count = 0.6745 / self.tune, max(len(r) // NEXT, 2)
+        next_ = np.argpartition(np.abs(np.abs(r) - median), count - 1)[:count]
+        levers = self.levers[channel]
+        size = np.abs(r[next_]) * median * (scale * levers[self.rows][next_]) ** 2
+        found[next_] = 1 / (size * count * (len(levers) / len(r)))
+        return found
+
+    def _descend(self, u, weights, residuals, scales, steps, further):
+        """The point after the first of the `steps`, or shorter ones, by which the merit at held
+        `scales` is smaller, and its residuals; `further`: the part of a step, or None, along which
+        the merit bends down: it is repeated, and doubled, while the merit falls."""
         before = self.merit(residuals, scales)
-        for tried in (step, step / 2, step / 8, ordinary, ordinary / 2, ordinary / 8):
-            u_, weights_ = self._move(u, weights, tried)
-            residuals = self.problem.residuals(u_, weights_)
-            if self.merit(residuals, scales) <= before:
+        for tried in (step / share for step in steps for share in (1, 2, 8)):
+            found = self._try(u, weights, tried, scales)
+            if found[-1] <= before:
                 break
-        return u_, weights_, residuals
+        while further is not None and np.any(further):
+            tried, further = tried + further, 2 * further
+            longer = self._try(u, weights, tried, scales)
+            if longer[-1] >= found[-1]:
+                break
+            found = longer
+        return found[:-1]
+
+    def _try(self, u, weights, step, scales):
+        """The point after a step, its residuals and its merit."""
+        u, weights = self._move(u, weights, step)
+        residuals = self.problem.residuals(u, weights)
+        return u, weights, residuals, self.merit(residuals, scales)
 
     def _weigh(self, u, weights, factors):
         """Gradient (n,) and Hessian (n, n) of E² with the samples weighted by `factors`."""
