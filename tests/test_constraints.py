@@ -51,6 +51,18 @@ def test_lambert_ends_at_the_limit():
 
 
 @pytest.mark.quick
+@pytest.mark.parametrize("loss", ["log", "plain"])
+def test_the_limit_is_met_from_a_perfect_fit(loss):
+    """Where E is 0 without the constraint."""
+    data = synthetic(bk.models()["ward"](diffuse_reflectance=0.8))
+    found = bk.fit("ward", data, loss, starts=4, constraints=bk.AlbedoAtMost(0.6))
+    assert albedos(found.model, 128).max() == pytest.approx(0.6, abs=1e-6)
+    # A little less light is not better: the limit holds it
+    less = found.model.changed(diffuse_reflectance=found.model.diffuse_reflectance[0] - 1e-3)
+    assert bk.compare(data, less).errors["ward"][loss] > found.loss
+
+
+@pytest.mark.quick
 def test_what_meets_the_constraints_is_returned_as_it_is():
     data = synthetic(bk.models()["ggx"](), noise=0.1)
     found, free = bk.fit("ggx", data, constraints=[bk.AlbedoAtMost(1.0)]), bk.fit("ggx", data)

@@ -15,6 +15,8 @@ from brdfkit.fitting.solvers.several_starts import best_starts, descend
 
 # A search is repeated from its end, so often, in new units: in those of its start it may end early
 REPEATED = 8
+# E², as a share of that of a black model, below which it is not the unit
+SMALL = 1e-6
 
 
 @dataclass(frozen=True)
@@ -60,28 +62,27 @@ class SLSQP:
 
     def _search(self, objective, z):
         """The `End` of the search from one point."""
-        message = f"stopped after {REPEATED} searches"
+        u, weights = objective.split(z[None])
+        least = SMALL * objective.error(objective.join(u, 0 * weights))[0]
         for _ in range(REPEATED):
             here = objective.expand(z)
-            if here.error[0] == 0:
-                break
-            z, error = self._search_once(objective, z, here)
-            if here.error[0] - error <= self.tolerance * here.error[0]:
-                message = "converged"
-                break
-        return End(z, error, message)
+            if not (scale := max(here.error[0], least)):
+                return End(z, 0.0)
+            z, error = self._search_once(objective, z, here.hessian[0] / scale, scale)
+            if abs(here.error[0] - error) <= self.tolerance * scale:
+                return End(z, error)
+        return End(z, error, f"stopped after {REPEATED} searches")
 
-    def _search_once(self, objective, start, here):
-        """The end (z, E²) of SciPy's search from a point, about which E² expands so `here`."""
+    def _search_once(self, objective, start, hessian, scale):
+        """The end (z, E²) of SciPy's search from a point with the Hessian of E² / scale."""
         from scipy.optimize import Bounds, minimize
 
-        # In units by which E² is 1 and curves alike along all axes, as steps of 1 should be
-        curvature = here.hessian[0].diagonal() / here.error[0]
-        unit = 1 / np.sqrt(np.maximum(curvature, 1))
+        # In units by which E² is about 1 and curves alike along all axes, as steps of 1 should be
+        unit = 1 / np.sqrt(np.maximum(hessian.diagonal(), 1))
 
         def error(y):
             there = objective.expand(objective.clip(y * unit), curvature=False)
-            return there.error[0] / here.error[0], 2 * there.gradient[0] * unit / here.error[0]
+            return there.error[0] / scale, 2 * there.gradient[0] * unit / scale
 
         constraints = objective.constraints
         limits = {
@@ -98,4 +99,4 @@ class SLSQP:
             constraints=[limits] if constraints else [],
             options={"maxiter": self.iterations, "ftol": self.tolerance / 100},
         )
-        return objective.clip(found.x * unit), found.fun * here.error[0]
+        return objective.clip(found.x * unit), found.fun * scale

@@ -3,7 +3,7 @@
 Its method "trf" [Branch et al. 1999] takes residuals and their Jacobian, which for a full table
 would be a gigabyte. It needs their products alone; so it is given the few residuals r and the small
 Jacobian J that have the same ones: E² = rᵀr, g = Jᵀr and H = JᵀJ. SciPy's "trust-constr" with the
-same Hessian ends where "trf" does, after four to seven times as many evaluations.
+same Hessian ends where "trf" does, after three to seven times as many evaluations.
 """
 
 from dataclasses import dataclass
