@@ -54,7 +54,7 @@ def regress(
     """The `Solution` of a model class on valid `Samples` under a `Loss`.
 
     `robust`: a name in `fitting.robust.WEIGHTS`; `solver`: a `Solver`, by default
-    `default_solver`; `constraints`: objects with `evaluate`, or a user's functions of the model;
+    `default_solver`; `constraints`: of `solvers`, or a user's functions of the model;
     `starts`: how many points the search begins at, the model's defaults and points spread over the
     bounds, by default `usual_starts`; `bounds`: (low, high), and `fixed`: a value, by shape
     parameter; `anisotropic`: search the second parameter of an anisotropic model, such as

@@ -45,33 +45,45 @@ class AlbedoAtMost:
         object.__setattr__(self, "theta", _to_angles("theta", self.theta, 0, 90))
         object.__setattr__(self, "phi", _to_angles("phi", self.phi, -np.inf, np.inf))
 
-    def evaluate(self, problem, u, weights):
-        """The values (m,) at a point, not negative where the constraint is met, and their slopes
-        (m, n)."""
-        columns, shapes = problem.columns, u.shape[1]
-        change = combine(columns, weights, problem.space.slopes(u))[0]
-        factors = (weights[:, :, columns.lobes] ** columns.powers)[0]
-        channels, lobes = weights.shape[1:]
-        wi, wo, rules = _place_nodes(self.theta, self.phi)
-        T = _evaluate_columns(problem, u, wi, wo)
-        values, slopes = [], []
-        ends = np.cumsum([len(rule) for rule in rules])
-        for rule, own in zip(rules, np.split(T, ends[:-1], axis=1), strict=True):
-            model = factors @ own[: len(columns.lobes)]
-            for c in range(channels):
-                # A model with negative weights is clamped at 0
-                counted = rule * (model[c] >= 0)
-                values.append(self.limit - model[c] @ counted)
+    def values(self, problem, u, weights):
+        """The values (m,) at a point, not negative where the constraint is met: by directions, then
+        channels."""
+        found = []
+        for rule, T in self._integrate(problem, problem.columns.values, u):
+            # A model with negative weights is clamped at 0
+            found.append(self.limit - np.maximum(_mix(problem, weights, T), 0) @ rule)
+        return np.concatenate(found)
+
+    def slopes(self, problem, u, weights):
+        """Their derivatives (m, n) by coordinates, then by weights."""
+        change = combine(problem.columns, weights, problem.space.slopes(u))[0]
+        shapes, (channels, lobes) = u.shape[1], weights.shape[1:]
+        slopes = []
+        for rule, T in self._integrate(problem, problem.columns.eval, u):
+            for c, model in enumerate(_mix(problem, weights, T)):
                 slope = np.zeros(shapes + channels * lobes)
-                places = np.r_[0:shapes, shapes + c * lobes : shapes + (c + 1) * lobes]
-                slope[places] = -change[c] @ (own @ counted)
+                own = np.r_[0:shapes, shapes + c * lobes : shapes + (c + 1) * lobes]
+                slope[own] = -change[c] @ (T @ (rule * (model >= 0)))
                 slopes.append(slope)
-        return np.array(values), np.array(slopes)
+        return np.array(slopes)
 
     def describe(self, rows, channels):
         """What the values of these numbers limit, in words."""
         angles = np.repeat(self.theta, len(self.phi))[rows // channels]
         return f"the albedo at {', '.join(dict.fromkeys(f'{angle:g}°' for angle in angles))}"
+
+    def _integrate(self, problem, evaluate, u):
+        """Yield for each direction of incidence the weights (n,) of the quadrature's nodes, and the
+        columns (columns, n) that `evaluate` gives there."""
+        wi, wo, rules = _place_nodes(self.theta, self.phi)
+        shapes = [double_precision.array(np.full(len(wi.z), x)) for x in problem.space.table(u)[0]]
+        T = np.stack([np.asarray(column) for column in evaluate(shapes, wi, wo)])
+        values = len(problem.columns.lobes)
+        require_finite(problem.model, T[: problem.columns.lobes.max() + 1], wi, wo)
+        # Forwards, Dr.Jit has NaN where 0^p has a slope of 0 by p
+        T[values:] = np.nan_to_num(T[values:], posinf=0, neginf=0)
+        ends = np.cumsum([len(rule) for rule in rules])
+        yield from zip(rules, np.split(T, ends[:-1], axis=1), strict=True)
 
 
 @lru_cache(maxsize=4)
@@ -85,15 +97,11 @@ def _place_nodes(theta, phi):
     return double_precision.vector(wi), double_precision.vector(np.concatenate(nodes)), rules
 
 
-def _evaluate_columns(problem, u, wi, wo):
-    """The columns (columns, n) at one point of the search."""
-    size, values = len(wi.z), len(problem.columns.lobes)
-    shapes = [double_precision.array(np.full(size, x)) for x in problem.space.table(u)[0]]
-    T = np.stack([np.asarray(column) for column in problem.columns.eval(shapes, wi, wo)])
-    require_finite(problem.model, T[: problem.columns.lobes.max() + 1], wi, wo)
-    # Forwards, Dr.Jit has NaN where 0^p has a slope of 0 by p
-    T[values:] = np.nan_to_num(T[values:], posinf=0, neginf=0)
-    return T
+def _mix(problem, weights, T):
+    """The model (channels, n), not clamped, of its columns (columns, n)."""
+    columns = problem.columns
+    factors = (weights[0][:, columns.lobes]) ** columns.powers
+    return factors @ T[: len(columns.lobes)]
 
 
 def _to_angles(name, given, low, high):

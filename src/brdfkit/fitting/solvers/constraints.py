@@ -33,13 +33,15 @@ class WeightsAtMost:
     def __post_init__(self) -> None:
         object.__setattr__(self, "limit", to_positive("WeightsAtMost: limit", self.limit))
 
-    def evaluate(self, problem, u, weights):
-        """The values (m,) at a point, not negative where the constraint is met, and their slopes
-        (m, n)."""
+    def values(self, problem, u, weights):
+        """The values (m,) at a point, not negative where the constraint is met."""
+        return self.limit - weights[0].sum(axis=1)
+
+    def slopes(self, problem, u, weights):
+        """Their derivatives (m, n) by coordinates, then by weights."""
         _, channels, lobes = weights.shape
-        slopes = np.kron(np.eye(channels), np.ones(lobes))
-        slopes = np.hstack([np.zeros((channels, u.shape[1])), -slopes])
-        return self.limit - weights[0].sum(axis=1), slopes
+        by_weights = np.kron(np.eye(channels), np.ones(lobes))
+        return np.hstack([np.zeros((channels, u.shape[1])), -by_weights])
 
     def describe(self, rows, channels):
         """What the values of these numbers limit, in words."""
@@ -52,19 +54,23 @@ class Custom:
     def __init__(self, function):
         self.function = function
 
-    def evaluate(self, problem, u, weights):
-        """As `WeightsAtMost.evaluate`, with slopes by central differences."""
+    def values(self, problem, u, weights):
+        """As `WeightsAtMost.values`."""
+        return self._values(problem, np.concatenate([u[0], weights[0].ravel()]))
+
+    def slopes(self, problem, u, weights):
+        """As `WeightsAtMost.slopes`, by central differences."""
         z = np.concatenate([u[0], weights[0].ravel()])
         low = np.concatenate([0 * u[0], np.tile(problem.least, problem.channels)])
         high = np.concatenate([0 * u[0] + 1, np.full(weights.size, np.inf)])
-        here, slopes = self._values(problem, z), []
+        slopes = []
         for k in range(len(z)):
             below, above = z.copy(), z.copy()
             step = SMALL * max(1.0, abs(z[k]))
             below[k], above[k] = max(z[k] - step, low[k]), min(z[k] + step, high[k])
             change = self._values(problem, above) - self._values(problem, below)
             slopes.append(change / (above[k] - below[k]))
-        return here, np.stack(slopes, axis=1)
+        return np.stack(slopes, axis=1)
 
     def _values(self, problem, z):
         shapes, model = len(problem.space.names), problem.columns.model
@@ -91,16 +97,16 @@ class Constraints:
     """All constraints of a fit, as one vector of values that shall not be negative."""
 
     def __init__(self, constraints, problem):
-        self.each = [c if hasattr(c, "evaluate") else Custom(c) for c in constraints]
-        self.problem, self._last = problem, (None, [])
+        self.each = [c if hasattr(c, "slopes") else Custom(c) for c in constraints]
+        self.problem = problem
 
     def values(self, z: Any) -> Any:
         """The values (m,) at a point z (n,)."""
-        return np.concatenate([values for values, _ in self._evaluate(z)])
+        return np.concatenate([c.values(self.problem, *self._split(z)) for c in self.each])
 
     def slopes(self, z: Any) -> Any:
         """Their derivatives (m, n)."""
-        return np.concatenate([slopes for _, slopes in self._evaluate(z)])
+        return np.concatenate([c.slopes(self.problem, *self._split(z)) for c in self.each])
 
     def met(self, z):
         """Whether a point meets all constraints."""
@@ -128,17 +134,13 @@ class Constraints:
     def _describe(self, z, spare):
         """What has less than so much to spare."""
         found = []
-        for constraint, (values, _) in zip(self.each, self._evaluate(z), strict=True):
-            (rows,) = np.nonzero(values < spare)
+        for constraint in self.each:
+            (rows,) = np.nonzero(constraint.values(self.problem, *self._split(z)) < spare)
             if len(rows):
                 found.append(constraint.describe(rows, self.problem.channels))
         return found
 
-    def _evaluate(self, z):
-        """Values and slopes of each constraint at a point; the last one is remembered."""
-        if self._last[0] != z.tobytes():
-            shapes = len(self.problem.space.names)
-            given = z[None, :shapes], z[shapes:].reshape(1, self.problem.channels, -1)
-            found = [constraint.evaluate(self.problem, *given) for constraint in self.each]
-            self._last = z.tobytes(), found
-        return self._last[1]
+    def _split(self, z):
+        """Coordinates (1, shapes) and weights (1, channels, lobes) of a point."""
+        shapes = len(self.problem.space.names)
+        return z[None, :shapes], z[shapes:].reshape(1, self.problem.channels, -1)

@@ -36,7 +36,7 @@ def to_solver(given: Any) -> Any:
 
 
 def to_constraints(given: Any) -> tuple[Any, ...]:
-    """The constraints that an argument means: objects with `evaluate`, and functions."""
+    """The constraints that an argument means: our objects, and functions."""
     if given is None:
         return ()
     several = isinstance(given, Iterable) and not isinstance(given, Mapping | str)
@@ -46,7 +46,7 @@ def to_constraints(given: Any) -> tuple[Any, ...]:
 def _to_constraint(given):
     if isinstance(given, Mapping):
         return _make("constraint", CONSTRAINTS, given)
-    if isinstance(given, type) or not (callable(given) or hasattr(given, "evaluate")):
+    if isinstance(given, type) or not (callable(given) or hasattr(given, "slopes")):
         raise BrdfkitError(
             f"{given!r} is no constraint; give one such as AlbedoAtMost(1.0), or a function of the "
             "model that returns a number ≥ 0 where it is met."
