@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from scipy.optimize import minimize_scalar, nnls
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
+from brdfkit.cli import main
 from brdfkit.fitting import losses
 from brdfkit.fitting.parameter_space import Space
 from brdfkit.fitting.problem import Problem
@@ -162,3 +164,14 @@ def test_a_fit_that_gains_light_is_kept_from_it():
     assert albedos(free.model).max() == pytest.approx(1.779, abs=1e-3)
     assert albedos(found.model).max() == pytest.approx(1, abs=1e-6)
     assert found.loss / free.loss == pytest.approx(1.024, abs=1e-3)
+
+
+@pytest.mark.quick
+def test_the_command_line_knows_solvers_and_constraints():
+    words = ["fit", "plaster", "-m", "lambert", "--loss", "plain", "--albedo-at-most", "0.3"]
+    done = CliRunner().invoke(main, words)
+    assert done.exit_code == 0
+    assert "is at its limit" in done.output
+    refused = CliRunner().invoke(main, [*words, "--solver", "trust_region"])
+    assert refused.exit_code == 2
+    assert "TrustRegion takes no constraints" in refused.output

@@ -125,6 +125,17 @@ def test_the_solver_that_the_documentation_shows_works(noisy):
 
 
 @pytest.mark.quick
+@pytest.mark.parametrize("end", [None, [0.1], solvers.End(np.zeros(2), 0.1)], ids=repr)
+def test_an_end_that_is_none_is_explained(noisy, end):
+    class Hasty:
+        def minimise(self, objective):
+            return end
+
+    with pytest.raises(BrdfkitError, match="it should return an End"):
+        bk.fit("ward", noisy, solver=Hasty())
+
+
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

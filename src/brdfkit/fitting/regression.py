@@ -73,7 +73,8 @@ def regress(
     points = start_points(space, default, starts or usual_starts(len(space.names)), seed)
     limits = Constraints(constraints, whole) if constraints else None
     objective = Objective.of(problems, points, seed, report, limits)
-    end = (solver or default_solver(constraints)).minimise(objective)
+    solver = solver or default_solver(constraints)
+    end = objective.require_end(solver.minimise(objective))
     (u, weights), passes = objective.split(end.point[None]), None
     error, message, notes = end.error, end.message, limits.notes(end.point) if limits else ()
     # Weigh down outliers, from the optimum where all samples count alike

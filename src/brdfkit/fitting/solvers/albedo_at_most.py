@@ -14,8 +14,8 @@ from brdfkit.geometry.directions import from_angles
 from brdfkit.geometry.quadrature import ring_rule
 from brdfkit.model import double_precision
 
-# Half the rings of a quadrature, and the points on each: albedos are exact to 1e-6
-POINTS = 96
+# Half the rings of a quadrature, and the points on each: albedos are exact to 1e-7
+POINTS = 128
 
 
 @dataclass(frozen=True)

@@ -46,9 +46,8 @@ class DifferentialEvolution:
 
     def minimise(self, objective: Objective) -> End:
         """The end of the search."""
-        if objective.shapes:
-            objective.coordinates = self._explore(objective)
-        return LevenbergMarquardt().minimise(objective)
+        coordinates = self._explore(objective) if objective.shapes else objective.coordinates
+        return LevenbergMarquardt().find_ends(objective, coordinates)[0]
 
     def _explore(self, objective):
         """The coordinates (points, shapes) of the last population, the best first."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.fitting.search import EXACT, MOST_STEPS, search
-from brdfkit.fitting.solvers.objective import End, Objective
+from brdfkit.fitting.solvers.objective import End, Floats, Objective
 from brdfkit.fitting.solvers.parameters import check_numbers
 
 
@@ -37,13 +37,13 @@ class LevenbergMarquardt:
 
     def minimise(self, objective: Objective) -> End:
         """The end of the search."""
-        return self.find_ends(objective)[0]
+        return self.find_ends(objective, objective.coordinates)[0]
 
-    def find_ends(self, objective: Objective) -> list[End]:
-        """The best ends of the search, the very best first."""
+    def find_ends(self, objective: Objective, coordinates: Floats) -> list[End]:
+        """The best ends of the search from `coordinates` (count, shapes), the very best first."""
         problems = [stage.problem for stage in objective.stages()]
         ends, converged, evaluations = search(
-            problems, objective.coordinates, objective.report, self.iterations, self.tolerance
+            problems, coordinates, objective.report, self.iterations, self.tolerance
         )
         objective.evaluations += evaluations
         points = objective.join(ends.u, ends.weights)

@@ -11,6 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.expansion import Expansion
 
 Floats = NDArray[np.float64]
@@ -94,6 +95,16 @@ class Objective:
     def count(self) -> int:
         """The evaluations on all samples and on parts of them."""
         return self.evaluations + sum(part.evaluations for part in self.parts)
+
+    def require_end(self, end: Any) -> End:
+        """What a user's solver returned, if it is an `End` within the bounds, or `BrdfkitError`."""
+        inside = isinstance(end, End) and np.shape(end.point) == self.low.shape
+        if not (inside and np.all((self.low <= end.point) & (end.point <= self.high))):
+            raise BrdfkitError(
+                f"The solver returned {end!r:.200}; it should return an End, whose point has "
+                f"{len(self.low)} numbers within objective.low and objective.high."
+            )
+        return End(np.array(end.point, float), float(end.error), end.message)
 
     def stages(self) -> tuple[Any, ...]:
         """The objectives of a search on ever more samples: the parts, then this one."""

@@ -53,7 +53,7 @@ class SLSQP:
         if objective.constraints is None:
             return descend(objective, self._search, best_starts(objective, self.starts))
         # Where the optimum without constraints meets them, it is the answer
-        free = LevenbergMarquardt().find_ends(objective)
+        free = LevenbergMarquardt().find_ends(objective, objective.coordinates)
         if objective.constraints.met(free[0].point):
             return free[0]
         end = descend(objective, self._search, [end.point for end in free])
