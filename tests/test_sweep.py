@@ -101,6 +101,7 @@ def test_rows_and_the_best(here, fitted):
 @pytest.mark.quick
 def test_settings_are_those_of_a_fit(here, fitted):
     settings = {"loss": "cbrt", "robust": "bisquare", "max_angle": 60, "fixed": {"alpha_u": 0.1}}
+    settings |= {"solver": "trust_region"}
     row = bk.sweep("paint.npz", "ward", settings).rows[0]
     assert row.fit == bk.fit("ward", "paint.npz", **settings)
     assert (row.loss, row.parameters) == ("cbrt", 6)

@@ -51,6 +51,8 @@ def fit_and_render(paint: bk.Measured) -> None:
     """The way from a measurement to a picture."""
     fits = [bk.fit(name, paint, bounds={"alpha_u": (0.01, 0.5)}) for name in ("ward", "ggx")]
     assert_type(fits, list[bk.Fit])
+    bk.fit("ggx", paint, solver=bk.TrustRegion(starts=4))
+    bk.fit("ggx", paint, solver="slsqp", constraints=[bk.AlbedoAtMost(0.9), lambda m: 1 - m.f0])
     assert_type(fits[0].model, bk.Model)
     assert_type(bk.compare(paint, fits).best, str)
     rendering = bk.render([paint, *fits, ("grey", {"type": "diffuse"})], size=(64, 32))

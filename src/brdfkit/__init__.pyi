@@ -5,6 +5,12 @@ from .errors import BrdfkitError as BrdfkitError
 from .fitting import Fit as Fit
 from .fitting import Loss as Loss
 from .fitting import losses as losses
+from .fitting.solvers import SLSQP as SLSQP
+from .fitting.solvers import AlbedoAtMost as AlbedoAtMost
+from .fitting.solvers import DifferentialEvolution as DifferentialEvolution
+from .fitting.solvers import LevenbergMarquardt as LevenbergMarquardt
+from .fitting.solvers import TrustRegion as TrustRegion
+from .fitting.solvers import WeightsAtMost as WeightsAtMost
 from .goniometer import measure as measure
 from .host.users_plugins import load_plugins as load_plugins
 from .loading import load as load

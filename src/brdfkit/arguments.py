@@ -28,3 +28,10 @@ def to_pair(what, given):
     except (TypeError, ValueError):
         raise BrdfkitError(f"{what} = {given!r} should be two numbers, (low, high).") from None
     return low, high
+
+
+def to_positive(what, value):
+    """`value` as a float above 0 and finite."""
+    if not isinstance(value, int | float | np.number) or not 0 < value < np.inf:
+        raise BrdfkitError(f"{what} = {value!r} should be a number above 0.")
+    return float(value)

@@ -34,6 +34,17 @@ from brdfkit.errors import BrdfkitError
     help="Give outliers little weight: bisquare, huber, cauchy ...",
 )
 @click.option(
+    "--solver",
+    metavar="SOLVER",
+    help="What searches: levenberg_marquardt, slsqp, trust_region or differential_evolution.",
+)
+@click.option(
+    "--albedo-at-most",
+    type=float,
+    metavar="LIMIT",
+    help="Let no model reflect more than this share of the light at 0°, 30°, 60° or 80°.",
+)
+@click.option(
     "-o",
     "--output",
     type=click.Path(path_type=Path),
@@ -55,7 +66,22 @@ from brdfkit.errors import BrdfkitError
 )
 @render_options
 @output_options
-def fit(files, names, loss, robust, output, jobs, rendered, max_angle, spp, size, seed, console):
+def fit(
+    files,
+    names,
+    loss,
+    robust,
+    solver,
+    albedo_at_most,
+    output,
+    jobs,
+    rendered,
+    max_angle,
+    spp,
+    size,
+    seed,
+    console,
+):
     """Fit models to measured materials.
 
     FILE is a measured file, or the name of a material that brdfkit knows. The errors of the models
@@ -67,6 +93,7 @@ def fit(files, names, loss, robust, output, jobs, rendered, max_angle, spp, size
     """
     from brdfkit.commands._many_files import fit_many
     from brdfkit.commands._targets import results_folder
+    from brdfkit.fitting.solvers import AlbedoAtMost
     from brdfkit.materials import measured_material
     from brdfkit.model import labels
     from brdfkit.names import fit_file, slug
@@ -76,7 +103,8 @@ def fit(files, names, loss, robust, output, jobs, rendered, max_angle, spp, size
     names = list(dict.fromkeys(map(labels.read_files, names or labels.models())))
     for name in names:
         labels.model(name)
-    how = {"loss": loss, "robust": robust, "max_angle": max_angle, "seed": seed}
+    how = {"loss": loss, "robust": robust, "max_angle": max_angle, "seed": seed, "solver": solver}
+    how["constraints"] = () if albedo_at_most is None else AlbedoAtMost(albedo_at_most)
     if len(files) > 1:
         if rendered:
             raise BrdfkitError("--render shows one material; name one FILE, or leave it out.")

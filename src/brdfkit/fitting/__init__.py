@@ -1,15 +1,15 @@
 """The numeric core of a fit: a model regressed on samples, without files and without Mitsuba.
 
 From the ground up: `loss.py` is the error E that a fit minimises, `named_losses.py` the usual
-ones. `columns.py` evaluates the lobes
-of a model and their derivatives, on `blocks.py` of samples; `sums.py` adds them up, `expansion.py`
-makes of the sums E² to second order, and `problem.py` all this of a model on samples (`folding.py`:
-quicker, on a table with a linear loss). `levenberg_marquardt.py` searches in the bounds of
-`parameter_space.py`, by steps that `box_quadratic.py` finds; `search.py` has it go from many
-`starting_points.py` and a `part.py` of many samples to one end and all. `robust.py` weighs down
-outliers, `robust_search.py` until weights and solution give each other back, which
-`acceleration.py` speeds up. `certainty.py` says how certain the parameters are. `regression.py`
-runs these one after the other; `result.py` is `Fit`.
+ones. `columns.py` evaluates the lobes of a model and their derivatives, on `blocks.py` of samples;
+`sums.py` adds them up, `expansion.py` makes of the sums E² to second order, and `problem.py` all
+this of a model on samples (`folding.py`: quicker, on a table with a linear loss).
+`levenberg_marquardt.py` searches in the bounds of `parameter_space.py`, by steps that
+`box_quadratic.py` finds; `search.py` has it go from many `starting_points.py` and a `part.py` of
+many samples to one end and all. This and other ways to search are the `solvers/`, where constraints
+are, too. `robust.py` weighs down outliers, `robust_search.py` until weights and solution give each
+other back, which `acceleration.py` speeds up. `certainty.py` says how certain the parameters are.
+`regression.py` runs these one after the other; `result.py` is `Fit`.
 """
 
 from brdfkit.fitting.loss import Loss as Loss

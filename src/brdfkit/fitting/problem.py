@@ -140,9 +140,9 @@ class Problem:
                 grams.append(importance * slope * slope)
             yield block, self._evaluate(block, u, columns, squares, moments, grams)
 
-    def expand_here(self, u, weights):
+    def expand_here(self, u, weights, curvature=True):
         """The `Expansion` at these very `weights`."""
-        sums = self.sums(u, weights)
+        sums = self.sums(u, weights, curvature)
         return Expansion.of(self.columns, self.space, sums, u, weights)
 
     def residuals(self, u, weights):

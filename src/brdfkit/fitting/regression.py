@@ -10,7 +10,8 @@ from brdfkit.fitting.folding import fold
 from brdfkit.fitting.parameter_space import Space
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.robust_search import settle
-from brdfkit.fitting.search import MOST_STEPS, search, with_parts
+from brdfkit.fitting.search import with_parts
+from brdfkit.fitting.solvers import SLSQP, Constraints, LevenbergMarquardt, Objective
 from brdfkit.fitting.starting_points import start_points, usual_starts
 from brdfkit.jit.threads import in_turn
 
@@ -41,6 +42,8 @@ def regress(
     loss,
     *,
     robust=None,
+    solver=None,
+    constraints=(),
     starts=None,
     bounds=None,
     fixed=None,
@@ -50,11 +53,13 @@ def regress(
 ):
     """The `Solution` of a model class on valid `Samples` under a `Loss`.
 
-    `robust`: a name in `fitting.robust.WEIGHTS`; `starts`: how many points the search begins at,
-    the model's defaults and points spread over the bounds, by default `usual_starts`; `bounds`:
-    (low, high), and `fixed`: a value, by shape parameter; `anisotropic`: search the second
-    parameter of an anisotropic model, such as ``alpha_v``, too; `seed`: for the start points, and
-    for the parts of many samples by which they are compared; `report`: called with (done, total).
+    `robust`: a name in `fitting.robust.WEIGHTS`; `solver`: a `Solver`, by default
+    `default_solver`; `constraints`: of `solvers`, or a user's functions of the model;
+    `starts`: how many points the search begins at, the model's defaults and points spread over the
+    bounds, by default `usual_starts`; `bounds`: (low, high), and `fixed`: a value, by shape
+    parameter; `anisotropic`: search the second parameter of an anisotropic model, such as
+    ``alpha_v``, too; `seed`: for the start points, and for the parts of many samples by which they
+    are compared; `report`: called with (done, total).
     """
     bounds, report = bounds or {}, report or (lambda done, total: None)
     # What is searched: neither fixed nor determined by the measured directions
@@ -66,9 +71,12 @@ def regress(
     problems = [folded] if folded else with_parts(whole, rng)
     default = space.coordinates(model().values)
     points = start_points(space, default, starts or usual_starts(len(space.names)), seed)
-    end, converged, evaluations = search(problems, points, report)
-    message = "converged" if converged else f"stopped after {MOST_STEPS} steps"
-    error, u, weights, notes, passes = end.error[0], end.u, end.weights, (), None
+    limits = Constraints(constraints, whole) if constraints else None
+    objective = Objective.of(problems, points, seed, report, limits)
+    solver = solver or default_solver(constraints)
+    end = objective.require_end(solver.minimise(objective))
+    (u, weights), passes = objective.split(end.point[None]), None
+    error, message, notes = end.error, end.message, limits.notes(end.point) if limits else ()
     # Weigh down outliers, from the optimum where all samples count alike
     if robust:
         u, weights, message, notes, passes = settle(whole, u, weights, robust, rng, report)
@@ -78,12 +86,17 @@ def regress(
         space.values(u[0]),
         weights[0],
         math.sqrt(error),
-        evaluations,
+        objective.count(),
         explain_end(certainty) or message,
         _find_at_bounds(space, u[0], model, weights[0]),
         notes,
         certainty,
     )
+
+
+def default_solver(constraints):
+    """The solver of a fit that names none."""
+    return SLSQP() if constraints else LevenbergMarquardt()
 
 
 def _find_at_bounds(space, u, model, weights):

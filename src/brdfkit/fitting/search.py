@@ -16,9 +16,9 @@ EXPLORING = (24, 4), (8, 6)
 # Ends on a part within this share of the least E² are followed to all samples, up to so many
 CLOSE, FINALISTS = 0.02, 3
 MOST_STEPS, FEW_STEPS = 200, 10
-# A search ends where the next step would lower E² by less than this share of it: of few samples, of
-# many, and of a part of them
-EXACT, TIGHT, LOOSE = 1e-11, 1e-9, 1e-6
+# A search ends where the next step would lower E² by less than this share of it: of few samples, so
+# many times as much of many, and of a part of them
+EXACT, MANY, LOOSE = 1e-11, 100, 1e-6
 
 
 def with_parts(whole, rng):
@@ -34,10 +34,10 @@ def with_parts(whole, rng):
     return problems
 
 
-def search(problems, u, report):
-    """The `Expansion` about the one point where the search of `problems`, on ever more of the
-    samples, ends, whether it converged, and the number of evaluations; `u` (starts, shapes): where
-    it begins."""
+def search(problems, u, report, iterations=MOST_STEPS, tolerance=EXACT):
+    """The `Expansion` about the points, the best first, where the search of `problems`, on ever
+    more of the samples, ends, which of them converged, and the number of evaluations; `u`
+    (starts, shapes): where it begins; `iterations`, `tolerance`: see `levenberg_marquardt`."""
     first, last = problems[0], problems[-1]
     weights, evaluations = first.start(u), 0
     if first.clamped:
@@ -55,14 +55,15 @@ def search(problems, u, report):
             error = found.ends.error
             ends = found.ends.at(rows[error[rows] <= (1 + CLOSE) * error[rows[0]]])
         # A clamped model creeps from kink to kink: let it do so on a part
-        loose = TIGHT if problem.clamped else LOOSE
-        tolerance = loose if problem is not last else TIGHT if number else EXACT
+        tight = MANY * tolerance
+        loose = tight if problem.clamped else max(LOOSE, tight)
+        limit = loose if problem is not last else tight if number else tolerance
         part = problems[number - 1] if number else None
-        found, count = _descend(problem, part, ends, tolerance)
+        found, count = _descend(problem, part, ends, iterations, limit)
         evaluations += count
     report(len(problems), len(problems))
-    (best,) = found.best(1)
-    return found.ends.at([best]), bool(found.converged[best]), evaluations
+    best = found.best(FINALISTS)
+    return found.ends.at(best), found.converged[best], evaluations
 
 
 def _avoid_clamping(problem, u, weights):
@@ -76,7 +77,7 @@ def _avoid_clamping(problem, u, weights):
     return [np.concatenate(parts) for parts in zip(*starts, strict=True)]
 
 
-def _descend(problem, part, ends, tolerance):
+def _descend(problem, part, ends, iterations, tolerance):
     """The `Search` of a problem from the points of an `Expansion`, and the number of evaluations;
     `part`: a problem on some of its samples, at whose ends it begins, or None."""
     evaluations, damping = 0, 1e-4
@@ -90,7 +91,7 @@ def _descend(problem, part, ends, tolerance):
             return found, found.evaluations
         ends, evaluations = found.ends, found.evaluations
     found = levenberg_marquardt(
-        problem.expand, ends.u, ends.weights, problem.least, MOST_STEPS, tolerance, damping
+        problem.expand, ends.u, ends.weights, problem.least, iterations, tolerance, damping
     )
     return found, evaluations + found.evaluations
 

@@ -36,6 +36,13 @@ def directional_albedo(f, wi):
 
 def _sum(f, wi, points):
     """The integral (channels,) by 2 `points` rings of `points` points."""
+    wo, weight = ring_rule(wi, points)
+    return weight @ f(np.broadcast_to(wi, wo.shape), wo)
+
+
+def ring_rule(wi, points):
+    """The directions wo (n, 3) of 2 `points` rings of `points` points, for light from `wi` (3,),
+    and their solid angles times cosθ_o (n,)."""
     mirror = wi * [-1, -1, 1]
     cos_theta, sin_theta = mirror[2], np.hypot(mirror[0], mirror[1])
     # Angle gamma of each ring to the mirror direction: as many rings lie wholly above the horizon
@@ -58,7 +65,7 @@ def _sum(f, wi, points):
     solid_angle = np.outer(np.sin(gamma) * width * 2 * half, weight)
     above = (wo[..., 2] > 0) & (solid_angle > 0)
     wo, solid_angle = wo[above], solid_angle[above]
-    return (wo[:, 2] * solid_angle) @ f(np.broadcast_to(wi, wo.shape), wo)
+    return wo, wo[:, 2] * solid_angle
 
 
 @cache

@@ -11,6 +11,7 @@ from brdfkit.arguments import to_dictionary, to_whole_number
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import make_folder
 from brdfkit.fitting import Fit
+from brdfkit.fitting.solvers.settings import require_plain
 from brdfkit.model import Model
 from brdfkit.sweeping import saved_fits
 from brdfkit.sweeping.cluster import count_slots, run_on_cluster
@@ -76,6 +77,7 @@ def sweep(
     """
     began = time.perf_counter()
     settings = check_settings(to_dictionary("settings", settings))
+    require_plain(settings["solver"], settings["constraints"])
     slots = _count_slots(workers, client)
     tasks = plan(files, models, settings)
     folder = None if output is None else Path(output)

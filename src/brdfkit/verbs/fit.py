@@ -2,7 +2,7 @@
 
 import inspect
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +13,20 @@ from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.fitting import Fit, Loss, as_loss, regress
 from brdfkit.fitting.measurement_noise import regress_noisy
 from brdfkit.fitting.robust import WEIGHTS
+from brdfkit.fitting.solvers import AlbedoAtMost, Solver, WeightsAtMost
+from brdfkit.fitting.solvers.settings import (
+    require_suitable,
+    to_constraints,
+    to_plain,
+    to_solver,
+)
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike, measured_material
 from brdfkit.measured.selection import require_max_angle, select_samples
 from brdfkit.model import Model, labels
 from brdfkit.model.evaluation import clamped_share
+
+Constraint = AlbedoAtMost | WeightsAtMost | Callable[[Model], ArrayLike]
 
 
 @in_turn
@@ -29,6 +38,8 @@ def fit(
     robust: str | None = None,
     weights: ArrayLike | None = None,
     use_standard_error: bool = True,
+    solver: str | Solver | None = None,
+    constraints: Constraint | Iterable[Constraint] | None = None,
     starts: int | None = None,
     bounds: Mapping[str, tuple[float, float]] | None = None,
     fixed: Mapping[str, float] | None = None,
@@ -39,10 +50,10 @@ def fit(
 ) -> Fit:
     """Fit a model to a measured material.
 
-    A damped Gauss-Newton search (Levenberg-Marquardt) from several starts at once, in double
-    precision with exact derivatives: the shape parameters, and the weights of every channel, which
-    follow them. Spectral measurements are fitted as linear sRGB. Fits of several threads run one
-    after the other.
+    Unless another solver is given, a damped Gauss-Newton search (Levenberg-Marquardt) from several
+    starts at once, in double precision with exact derivatives: the shape parameters, and the
+    weights of every channel, which follow them. Spectral measurements are fitted as linear sRGB.
+    Fits of several threads run one after the other.
 
     Parameters
     ----------
@@ -64,6 +75,14 @@ def fit(
     use_standard_error : bool, default True
         Whether samples count by their standard errors, where the measurement states them: those
         whose noise is more than the model's own error, less.
+    solver : solver or str, optional
+        What searches: `LevenbergMarquardt`, `SLSQP`, `TrustRegion` or `DifferentialEvolution`, as
+        ``SLSQP(starts=4)``, its name, as ``"slsqp"``, or an object of yours with their method. By
+        default `LevenbergMarquardt`, and `SLSQP` where there are constraints.
+    constraints : constraint or several, optional
+        What the model has to meet: `AlbedoAtMost`, `WeightsAtMost`, or functions of the model with
+        its values, each of which returns one or several numbers that are not negative where it is
+        met. Derivatives of functions are taken by differences.
     starts : int, optional
         Points from which the search begins: the defaults and others, spread over the bounds. By
         default 16 for each searched parameter, at most 48.
@@ -90,10 +109,11 @@ def fit(
     Raises
     ------
     BrdfkitError
-        For an unknown model, loss or robust weight; for a parameter that is not searched, or bounds
-        and values beyond the model's; where `data` was not measured or no sample is left; for a
-        formula or loss that is not finite; for weights or standard errors that do not fit; and for
-        a robust fit without more samples than parameters.
+        For an unknown model, loss, robust weight or solver; for constraints that the solver or a
+        robust fit does not take, or that no parameters meet; for a parameter that is not searched,
+        or bounds and values beyond the model's; where `data` was not measured or no sample is left;
+        for a formula or loss that is not finite; for weights or standard errors that do not fit;
+        and for a robust fit without more samples than parameters.
 
     Examples
     --------
@@ -101,7 +121,8 @@ def fit(
     """
     began = time.perf_counter()
     model, data = labels.model(labels.read_files(name)), measured_material(data)
-    how = {"seed": seed, "starts": starts, "bounds": bounds, "fixed": fixed}
+    how: dict[str, Any] = {"seed": seed, "starts": starts, "bounds": bounds, "fixed": fixed}
+    how |= {"solver": solver, "constraints": constraints}
     how["anisotropic"] = data.anisotropic if anisotropic is None else anisotropic
     given = {"robust": robust, "max_angle": max_angle, "use_standard_error": use_standard_error}
     checked = check_settings({**given, **how}, f"{model.type_name()}: ")
@@ -125,7 +146,13 @@ def fit(
         at_bounds=found.at_bounds,
         certainty=found.certainty,
         notes=(*found.notes, *_list_notes(data, samples, loss, found, fitted)),
-        settings={**given, "max_angle": float(max_angle), **how},
+        settings={
+            **given,
+            **how,
+            "max_angle": float(max_angle),
+            "solver": to_plain(how["solver"]),
+            "constraints": list(map(to_plain, how["constraints"])),
+        },
     )
 
 
@@ -159,6 +186,9 @@ def check_settings(given: Mapping[str, Any], where: str = "") -> dict[str, Any]:
     as_loss(loss)
     if robust not in (None, *WEIGHTS):
         raise no_such("robust weight", robust, WEIGHTS)
+    settings["solver"] = to_solver(settings["solver"])
+    settings["constraints"] = to_constraints(settings["constraints"])
+    require_suitable(settings["solver"], settings["constraints"], robust)
     if settings["starts"] is not None:
         settings["starts"] = to_whole_number("starts", settings["starts"], least=1)
     settings["seed"] = to_whole_number("seed", settings["seed"], least=0)

@@ -1,0 +1,186 @@
+"""Solvers: each ends where the others do, is plain data, and may be a user's own."""
+
+import pickle
+import textwrap
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+
+import brdfkit as bk
+from brdfkit.checks.material_subject import random_pairs
+from brdfkit.errors import BrdfkitError
+from brdfkit.fitting import solvers
+from brdfkit.fitting.solvers.settings import SOLVERS, to_plain, to_solver
+
+N = 300
+# The solvers other than the default, with less effort than usual
+QUICK = {
+    "slsqp": {"starts": 3},
+    "trust_region": {"starts": 3},
+    "differential_evolution": {"population": 6, "iterations": 20},
+}
+
+
+@pytest.fixture(scope="module")
+def noisy():
+    """A material that no model meets exactly: GGX in three colours, with noise of 10 %."""
+    wi, wo = random_pairs(N, seed=0, max_degrees=79)
+    truth = bk.models()["ggx"](alpha_u=0.3, specular_reflectance=[0.5, 0.4, 0.3])
+    values = truth.eval(wi, wo) * np.random.default_rng(0).lognormal(sigma=0.1, size=(N, 3))
+    return bk.Measured.from_samples(wi, wo, values)
+
+
+@pytest.mark.parametrize(
+    ("model", "loss"), [("ward", "log"), ("ggx", "cosine"), ("cook_torrance", "cbrt")]
+)
+def test_all_solvers_end_alike(noisy, model, loss):
+    least = bk.fit(model, noisy, loss, starts=8).loss
+    for name, fewer in QUICK.items():
+        found = bk.fit(model, noisy, loss, starts=8, solver={"name": name, **fewer})
+        assert found.loss == pytest.approx(least, rel=1e-6), name
+        assert found.message == "converged", name
+
+
+@pytest.mark.parametrize("solver", QUICK)
+def test_all_solvers_end_alike_on_a_table(solver):
+    """Of which they see parts first."""
+    least = bk.fit("cook_torrance", "satin_plastic", "cosine")
+    how = {"name": solver, **QUICK[solver]}
+    found = bk.fit("cook_torrance", "satin_plastic", "cosine", solver=how)
+    assert found.loss == pytest.approx(least.loss, rel=1e-6)
+    np.testing.assert_allclose(found.values["alpha"], least.values["alpha"], rtol=1e-4)
+
+
+def test_slsqp_ends_where_scipy_does_by_itself(noisy):
+    """In NumPy, with differences for derivatives, from the parameters that made the data."""
+    wi, wo, measured = noisy.samples.wi, noisy.samples.wo, noisy.samples.values
+    cosines = (wi[:, 2] * wo[:, 2])[:, None]
+
+    def error(x):
+        weights = {"diffuse_reflectance": x[1:4], "specular_reflectance": x[4:7]}
+        model = bk.models()["ward_duer"](alpha_u=x[0], **weights)
+        logs = [np.log(cosines * f + 1e-3) for f in (model.eval(wi, wo), measured)]
+        return np.mean((logs[0] - logs[1]) ** 2)
+
+    start = [0.3, *[0.4] * 3, *[0.2] * 3]
+    bounds = [(0.001, 1), *[(0, None)] * 6]
+    direct = minimize(error, start, method="SLSQP", bounds=bounds, options={"ftol": 1e-14})
+    found = bk.fit("ward_duer", noisy, "log", solver=bk.SLSQP(starts=2))
+    assert found.loss == pytest.approx(np.sqrt(direct.fun), rel=1e-6)
+    assert found.values["alpha_u"] == pytest.approx(direct.x[0], rel=1e-3)
+
+
+def test_differential_evolution_does_not_depend_on_its_start():
+    """Lafortune's lobe lies far from where the single start looks for it."""
+    truth = bk.models()["lafortune"](c_x=-0.6, c_y=0.9, c_z=0.7, exponent=20)
+    wi, wo = random_pairs(N, seed=1, max_degrees=79)
+    data = bk.Measured.from_samples(wi, wo, truth.eval(wi, wo), channels=("Y",))
+    how = {"anisotropic": True, "starts": 1}
+    assert bk.fit("lafortune", data, **how).loss > 0.01
+    evolution = bk.DifferentialEvolution(population=6, iterations=20)
+    assert bk.fit("lafortune", data, solver=evolution, **how).loss < 1e-9
+
+
+def test_a_fit_by_any_solver_is_reproducible(noisy):
+    for name, fewer in QUICK.items():
+        solver = {"name": name, **fewer}
+        first, second = (bk.fit("ward", noisy, solver=solver, starts=4) for _ in range(2))
+        assert first == second
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", SOLVERS)
+def test_a_solver_is_plain_data(name):
+    solver = SOLVERS[name]()
+    assert solver == to_solver(name) == to_solver(to_plain(solver))
+    assert solver == pickle.loads(pickle.dumps(solver)) == eval(repr(solver), vars(solvers))
+    assert solver != SOLVERS[name](iterations=3)
+
+
+@pytest.mark.quick
+def test_a_saved_fit_knows_its_solver(noisy, tmp_path):
+    solver = bk.SLSQP(starts=2)
+    limits = [bk.AlbedoAtMost(5.0, theta=10), lambda model: 1.0]
+    found = bk.fit("lambert", noisy, solver=solver, constraints=limits)
+    bk.save(found, tmp_path / "lambert.json")
+    loaded = bk.load(tmp_path / "lambert.json")
+    assert loaded == found
+    assert to_solver(loaded.settings["solver"]) == solver
+    unconstrained = loaded.settings | {"constraints": None}
+    assert bk.fit("lambert", noisy, **unconstrained).loss == pytest.approx(found.loss, rel=1e-9)
+
+
+@pytest.mark.quick
+def test_the_solver_that_the_documentation_shows_works(noisy):
+    """It is not good, but the loss is the one that it reports."""
+    code = textwrap.dedent(solvers.__doc__.partition("too:\n\n")[2])
+    scope = {"np": np, "End": solvers.End}
+    exec(code, scope)
+    found = bk.fit("ward", noisy, solver=scope["RandomSearch"]())
+    assert found.loss < 1.1 * bk.fit("ward", noisy).loss
+    assert bk.compare(noisy, found).errors["ward"]["log"] == pytest.approx(found.loss, rel=1e-9)
+    assert found.message == "as good as chance had it"
+    assert found.evaluations > 10_000
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("end", [None, [0.1], solvers.End(np.zeros(2), 0.1)], ids=repr)
+def test_an_end_that_is_none_is_explained(noisy, end):
+    class Hasty:
+        def minimise(self, objective):
+            return end
+
+    with pytest.raises(BrdfkitError, match="it should return an End"):
+        bk.fit("ward", noisy, solver=Hasty())
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"solver": "slsq"}, ["'slsq'", "did you mean slsqp?"]),
+        ({"solver": 3}, ["solver = 3", "SLSQP()"]),
+        ({"solver": bk.SLSQP}, ["SLSQP()", "slsqp"]),
+        ({"solver": {"name": "slsqp", "steps": 3}}, ["parameter of slsqp", "iterations"]),
+        ({"constraints": "energy"}, ["'energy' is no constraint", "AlbedoAtMost"]),
+        ({"constraints": [bk.AlbedoAtMost]}, ["no constraint", "AlbedoAtMost(1.0)"]),
+        (
+            {"constraints": bk.WeightsAtMost(), "solver": "trust_region"},
+            ["TrustRegion takes no constraints", "SLSQP"],
+        ),
+        ({"constraints": bk.WeightsAtMost(), "robust": "huber"}, ["robust", "no constraints"]),
+        ({"constraints": lambda model: -1.0}, ["lambert", "<lambda>", "beyond the limit"]),
+        ({"constraints": lambda model: "no"}, ["<lambda>", "'no'", "a finite number"]),
+        ({"constraints": lambda model: np.nan}, ["<lambda>", "nan"]),
+    ],
+    ids=str,
+)
+def test_bad_solvers_and_constraints_are_explained(noisy, arguments, words):
+    with pytest.raises(BrdfkitError) as error:
+        bk.fit("lambert", noisy, **arguments)
+    assert all(word in str(error.value) for word in words), error.value
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: bk.SLSQP(iterations=0), "SLSQP: iterations = 0"),
+        (lambda: bk.TrustRegion(tolerance=-1), "TrustRegion: tolerance = -1"),
+        (lambda: bk.DifferentialEvolution(population=2.5), "population = 2.5"),
+        (lambda: bk.AlbedoAtMost(0), "limit = 0"),
+        (lambda: bk.AlbedoAtMost(theta=90), "theta = 90"),
+        (lambda: bk.AlbedoAtMost(phi="x"), "phi = 'x'"),
+        (lambda: bk.WeightsAtMost("1"), "limit = '1'"),
+    ],
+)
+def test_bad_numbers_are_explained(make, words):
+    with pytest.raises(BrdfkitError, match=words):
+        make()
+
+
+@pytest.mark.quick
+def test_a_sweep_takes_no_code():
+    with pytest.raises(BrdfkitError, match="<lambda> is code"):
+        bk.sweep("plaster", "lambert", {"constraints": [lambda model: 1.0]})
