@@ -180,4 +180,6 @@ def _record(found, comparison, psnr):
         "samples": found.samples,
         "seconds": found.seconds,
         "message": found.message,
+        "checksum": found.checksum,
+        "versions": found.versions,
     }

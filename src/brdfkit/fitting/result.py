@@ -45,6 +45,10 @@ class Fit:
         ``"diffuse_reflectance[0]"``), their ``covariance``, the degrees of ``freedom`` of each
         variance, and in words what is ``undetermined`` and what ``trades``
         off; None in fits saved by earlier versions.
+    checksum : str
+        `Measured.checksum` of the material, by which it is known again; empty as `certainty`.
+    versions : dict of str to str
+        The versions of brdfkit, Mitsuba, Dr.Jit, NumPy and SciPy that made the fit.
 
     Notes
     -----
@@ -67,6 +71,8 @@ class Fit:
     notes: tuple[str, ...] = ()
     settings: dict[str, Any] = field(default_factory=dict, hash=False)
     certainty: Certainty | None = None
+    checksum: str = ""
+    versions: dict[str, str] = field(default_factory=dict, compare=False)
 
     @property
     def name(self) -> str:

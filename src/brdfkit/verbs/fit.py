@@ -18,6 +18,7 @@ from brdfkit.materials import MaterialLike, measured_material
 from brdfkit.measured.selection import require_max_angle, select_samples
 from brdfkit.model import Model, labels
 from brdfkit.model.evaluation import clamped_share
+from brdfkit.version import versions
 
 
 @in_turn
@@ -126,6 +127,8 @@ def fit(
         certainty=found.certainty,
         notes=(*found.notes, *_list_notes(data, samples, loss, found, fitted)),
         settings={**given, "max_angle": float(max_angle), **how},
+        checksum=data.checksum,
+        versions=dict(versions()),
     )
 
 
