@@ -9,6 +9,7 @@ import pytest
 from test_fit import synthetic
 
 import brdfkit as bk
+from brdfkit.errors import BrdfkitError
 
 pytestmark = pytest.mark.quick
 
@@ -64,3 +65,45 @@ def test_the_checksum_is_of_what_was_measured(tmp_path):
     others = [changed(name) for name in ("", "wi", "wo", "values", "valid")]
     others.append(changed(channels=("400nm", "500nm", "600nm")))
     assert len({*others, table.checksum}) == 7
+
+
+def test_residuals_are_measured_less_modelled():
+    """Of samples and of a table, at what was fitted; rendered and plotted as any material."""
+    for data in (synthetic(bk.models()["ggx"](), n=300), bk.load("red_plastic")):
+        fit = bk.fit("lambert", data, "cosine", max_angle=70)
+        left = fit.residuals(data)
+        assert left.is_table == data.is_table
+        assert left.samples.valid.sum() == fit.samples
+        rows = left.samples.valid
+        wi, wo = left.samples.wi[rows], left.samples.wo[rows]
+        np.testing.assert_allclose(left.values[rows] + fit.eval(wi, wo), data.values[rows])
+        assert (left.values[rows] < 0).any()
+        loss = bk.losses["cosine"].importance(left.samples.at(rows)) @ (
+            (wi[:, 2:] * left.values[rows]) ** 2
+        )
+        assert loss.sum() == pytest.approx(fit.loss**2)
+        bk.plot(left)
+        assert bk.render(left, spp=1, size=4).pictures[f"{data.name} - lambert"].min() >= 0
+    turned = left.mixed(-np.eye(3), ("R", "G", "B"))
+    assert (left.eval(wi, wo) * turned.eval(wi, wo)).max() == 0
+
+
+def test_residuals_keep_what_is_known_of_the_data():
+    wi = wo = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.999, 0.0, 0.04]])
+    errors = np.full((3, 1), 0.01)
+    data = bk.Measured.from_samples(wi, wo, [1, 2, 3], channels=("Y",), standard_error=errors)
+    left = bk.fit("lambert", data, "plain").residuals(data)
+    np.testing.assert_allclose(left.values[:, 0], [-0.5, 0.5, np.nan])
+    np.testing.assert_array_equal(left.standard_error, errors)
+    assert str(left) == "samples - lambert: samples, 2 of 3 valid, channels Y"
+
+
+def test_what_cannot_be_subtracted_is_refused():
+    data = synthetic(bk.models()["lambert"](), n=20)
+    fit = bk.fit("lambert", data)
+    with pytest.raises(BrdfkitError, match="lambert need the measured material, not a str; load"):
+        fit.residuals("car_paint")
+    with pytest.raises(BrdfkitError, match="3 channels cannot be subtracted from 1"):
+        data.minus(bk.load("car_paint"))
+    with pytest.raises(BrdfkitError, match="max_angle = 100"):
+        data.minus(fit, 100)

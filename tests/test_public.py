@@ -22,7 +22,8 @@ CLASSES = {
 METHODS = {
     f"{cls.__name__}.{method}": getattr(cls, method)
     for cls, names in {
-        bk.Measured: ["from_samples", "from_table", "resampled"],
+        bk.Fit: ["residuals"],
+        bk.Measured: ["from_samples", "from_table", "minus", "resampled"],
         bk.Model: ["changed"],
         bk.Rendering: ["write"],
         bk.Sweep: ["to_csv", "to_html", "to_parquet"],

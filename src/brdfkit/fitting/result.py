@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.certainty import Certainty
 from brdfkit.model import Model
 
@@ -153,6 +154,39 @@ class Fit:
     def eval(self, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
         """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3)."""
         return self.model.eval(wi, wo)
+
+    def residuals(self, data: Any) -> Any:
+        """What the fit leaves of a measurement: measured less modelled values, where it was fitted.
+
+        They are signed, above 0 where the fit is too dark. Plots and pictures show values below 0
+        as 0; `Measured.mixed` with ``-np.eye(3)`` shows where the fit is too bright.
+
+        Parameters
+        ----------
+        data : Measured
+            The material that was fitted: its ``checksum`` is the fit's. Of another one the
+            residuals tell how the fit predicts it.
+
+        Returns
+        -------
+        Measured
+            The residuals [sr⁻¹] of the samples, or of the cells of a table.
+
+        Raises
+        ------
+        BrdfkitError
+            Where `data` was not measured, or none of its samples was fitted.
+
+        Examples
+        --------
+        >>> plot(fit("ward", paint).residuals(paint))    # doctest: +SKIP
+        """
+        if not hasattr(data, "minus"):
+            raise BrdfkitError(
+                f"The residuals of {self.name} need the measured material, not a "
+                f"{type(data).__name__}; load it first."
+            )
+        return data.rgb.minus(self, self.settings.get("max_angle", 80.0))
 
     def scene_dict(self) -> dict[str, Any]:
         """The dictionary for `mitsuba.load_dict`."""
