@@ -53,9 +53,24 @@ from brdfkit.errors import BrdfkitError
     show_default=True,
     help="Use the samples with both angles below this one [degrees].",
 )
+@click.option("--spectral", is_flag=True, help="Fit a weight for each measured wavelength.")
 @render_options
 @output_options
-def fit(files, names, loss, robust, output, jobs, rendered, max_angle, spp, size, seed, console):
+def fit(
+    files,
+    names,
+    loss,
+    robust,
+    output,
+    jobs,
+    rendered,
+    max_angle,
+    spectral,
+    spp,
+    size,
+    seed,
+    console,
+):
     """Fit models to measured materials.
 
     FILE is a measured file, or the name of a material that brdfkit knows. The errors of the models
@@ -77,6 +92,7 @@ def fit(files, names, loss, robust, output, jobs, rendered, max_angle, spp, size
     for name in names:
         labels.model(name)
     how = {"loss": loss, "robust": robust, "max_angle": max_angle, "seed": seed}
+    how["spectral"] = spectral
     if len(files) > 1:
         if rendered:
             raise BrdfkitError("--render shows one material; name one FILE, or leave it out.")
@@ -99,7 +115,7 @@ def fit(files, names, loss, robust, output, jobs, rendered, max_angle, spp, size
             psnr, interrupted = picture.psnr(), picture.spp < picture.asked
             written += [output / "render.exr", output / "render.png"]
     with console.progress("compare"):
-        comparison = compare(material, fits, max_angle)
+        comparison = compare(material, fits, max_angle, spectral)
     _print_fits(material, fits, failed, comparison, psnr, written, console)
     for error in failed.values():
         say(error)
@@ -165,6 +181,7 @@ def _record(found, comparison, psnr):
     return {
         "model": found.name,
         "parameters": found.values,
+        "wavelengths": found.wavelengths,
         "standard_errors": found.standard_errors,
         "intervals": found.intervals,
         "degrees_of_freedom": found.degrees_of_freedom,

@@ -8,7 +8,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.fitting.blocks import Blocks
+from brdfkit.fitting.blocks import GROUP, Blocks
 from brdfkit.fitting.columns import Columns
 from brdfkit.fitting.derivative import differentiate
 from brdfkit.fitting.expansion import Expansion, combine
@@ -31,6 +31,8 @@ class Problem:
         self.model, self.samples, self.loss, self.space = model, samples, loss, space
         self.columns = Columns.of(model, space.names, space.fixed)
         self.channels = samples.values.shape[1]
+        numbers = range(self.channels)
+        self.groups = [numbers[k : k + GROUP] for k in numbers[::GROUP]]
         bounds = [model.parameters[name].bounds for name in model.weights()]
         self.least = np.array([low for low, _ in bounds])
         self.clamped = not loss.linear and bool((self.least < 0).any())
@@ -69,12 +71,16 @@ class Problem:
         for block in self.blocks(len(u)):
             columns = self._columns(block, u)
             moments, weights = [], []
-            for c, measured in enumerate(block.measured):
-                value = measured if self.loss.linear else dr.maximum(measured, 0)
-                _, slope = self._difference(block, value, c)
-                slope = 0 * slope + 1 if evenly else slope
-                weights.append(block.importance * slope * slope)
-                moments.append(-weights[-1] * value)
+            for group in self.groups:
+                for c in group:
+                    value = block.measured[c]
+                    value = value if self.loss.linear else dr.maximum(value, 0)
+                    _, slope = self._difference(block, value, c)
+                    slope = 0 * slope + 1 if evenly else slope
+                    weights.append(block.importance * slope * slope)
+                    moments.append(-weights[-1] * value)
+                if len(self.groups) > 1:
+                    dr.eval(columns, moments, weights)
             squares = [0 * block.importance]
             sums.add(*self._evaluate(block, u, columns, squares, moments, weights))
         if not sums.finite():
@@ -128,16 +134,22 @@ class Problem:
         """Each block, and what `Sums.add` takes of it."""
         for block in self.blocks(len(u)):
             columns = self._columns(block, u)
-            model = self._mix(block, columns, weights)
             squares, moments, grams = [], [], []
-            for c, value in enumerate(model):
-                difference, slope = self._difference(block, value, c)
-                importance = block.importance
-                if self.factors is not None:
-                    importance = importance * double_precision.array(self.factors[c][block.rows])
-                squares.append(importance * dr.square(difference))
-                moments.append(importance * difference * slope)
-                grams.append(importance * slope * slope)
+            for group in self.groups:
+                own = []
+                model = self._mix(block, columns, weights[:, group])
+                for c, value in zip(group, model, strict=True):
+                    difference, slope = self._difference(block, value, c)
+                    importance = block.importance
+                    if self.factors is not None:
+                        factors = double_precision.array(self.factors[c][block.rows])
+                        importance = importance * factors
+                    own.append(importance * dr.square(difference))
+                    moments.append(importance * difference * slope)
+                    grams.append(importance * slope * slope)
+                squares.append(sum(own))
+                if len(self.groups) > 1:
+                    dr.eval(columns, squares, moments, grams)
             yield block, self._evaluate(block, u, columns, squares, moments, grams)
 
     def expand_here(self, u, weights):

@@ -8,6 +8,7 @@ import numpy as np
 from brdfkit.fitting.certainty import Certainty, certify, explain_end
 from brdfkit.fitting.folding import fold
 from brdfkit.fitting.parameter_space import Space
+from brdfkit.fitting.part import mix_bands
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.robust_search import settle
 from brdfkit.fitting.search import MOST_STEPS, search, with_parts
@@ -66,7 +67,13 @@ def regress(
     problems = [folded] if folded else with_parts(whole, rng)
     default = space.coordinates(model().values)
     points = start_points(space, default, starts or usual_starts(len(space.names)), seed)
-    end, converged, evaluations = search(problems, points, report)
+    evaluations = 0
+    if len(whole.groups) > 1:  # compare the starts on few channels
+        bands = with_parts(whole.on(mix_bands(samples)), rng)
+        found, _, evaluations = search(bands, points, report)
+        points = found.u
+    end, converged, more = search(problems, points, report)
+    evaluations += more
     message = "converged" if converged else f"stopped after {MOST_STEPS} steps"
     error, u, weights, notes, passes = end.error[0], end.u, end.weights, (), None
     # Weigh down outliers, from the optimum where all samples count alike

@@ -11,6 +11,7 @@ from brdfkit.fitting.certainty import Certainty
 from brdfkit.model import Model
 
 NAN = float("nan")
+MOST_PRINTED = 3  # numbers of a weight; of more the least and the most
 
 
 @dataclass(frozen=True)
@@ -84,6 +85,16 @@ class Fit:
     def values(self) -> dict[str, float | tuple[float, ...]]:
         """The parameters' values by name; a weight is a tuple with one number per channel."""
         return self.model.values
+
+    @property
+    def wavelengths(self) -> tuple[float, ...]:
+        """The wavelengths [nm] of the weights of a spectral fit; none of one in linear sRGB."""
+        return self.model.wavelengths
+
+    @property
+    def rgb(self) -> Model:
+        """The model in linear sRGB: `Model.rgb`."""
+        return self.model.rgb
 
     @property
     def standard_errors(self) -> dict[str, float | tuple[float, ...]]:
@@ -186,18 +197,22 @@ class Fit:
                 f"The residuals of {self.name} need the measured material, not a "
                 f"{type(data).__name__}; load it first."
             )
-        return data.rgb.minus(self, self.settings.get("max_angle", 80.0))
+        shown = data if self.wavelengths else data.rgb
+        return shown.minus(self, self.settings.get("max_angle", 80.0))
 
     def scene_dict(self) -> dict[str, Any]:
         """The dictionary for `mitsuba.load_dict`."""
         return self.model.scene_dict()
 
     def __str__(self) -> str:
-        width = max(map(len, self.values))
+        width, errors = max(map(len, self.values)), self.standard_errors
         lines = [f"{self.name} fitted to {self.data}: {self.loss_name} loss {self.loss:.6g}"]
         for name, value in self.values.items():
-            both = np.atleast_1d(value), np.atleast_1d(self.standard_errors[name])
-            numbers = "  ".join(map(_with_error, *both))
+            both = np.atleast_1d(value), np.atleast_1d(errors[name])
+            if len(both[0]) > MOST_PRINTED:
+                numbers = _summarise(*both, self.wavelengths)
+            else:
+                numbers = "  ".join(map(_with_error, *both))
             note = "   on its bound" if name in self.at_bounds else ""
             lines.append(f"  {name:<{width}}  {numbers}{note}")
         lines += [f"  {note}" for note in self.notes]
@@ -206,6 +221,16 @@ class Fit:
             f"{self.seconds:.2f} s"
         )
         return "\n".join(lines)
+
+
+def _summarise(values, errors, wavelengths):
+    """Many numbers as the least and the most of them."""
+    least, most = (
+        f"{values[k]:.4g} at {wavelengths[k]:g} nm" for k in (np.argmin(values), np.argmax(values))
+    )
+    known = errors[np.isfinite(errors)]
+    error = f", ± {np.median(known):.2g} in the median" if len(known) else ""
+    return f"{least} to {most}{error}"
 
 
 def _with_error(value, error):

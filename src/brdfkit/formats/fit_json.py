@@ -58,7 +58,7 @@ def write(fit, stream):
     record = {
         KEY: __version__,
         "model": fit.model.label(),
-        "parameters": fit.values,
+        "parameters": fit.model.arguments,
         "fit": values | {"certainty": _from_certainty(fit.certainty)},
     }
     stream.write(json.dumps(record, indent=2).encode() + b"\n")

@@ -16,6 +16,7 @@ from brdfkit.fitting.robust import WEIGHTS
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike, measured_material
 from brdfkit.measured.selection import require_max_angle, select_samples
+from brdfkit.measured.spectrum_to_rgb import wavelengths
 from brdfkit.model import Model, labels
 from brdfkit.model.evaluation import clamped_share
 from brdfkit.version import versions
@@ -35,6 +36,7 @@ def fit(
     fixed: Mapping[str, float] | None = None,
     anisotropic: bool | None = None,
     max_angle: float = 80.0,
+    spectral: bool = False,
     seed: int = 0,
     progress: Callable[[int, int], object] | None = None,
 ) -> Fit:
@@ -42,8 +44,7 @@ def fit(
 
     A damped Gauss-Newton search (Levenberg-Marquardt) from several starts at once, in double
     precision with exact derivatives: the shape parameters, and the weights of every channel, which
-    follow them. Spectral measurements are fitted as linear sRGB. Fits of several threads run one
-    after the other.
+    follow them. Fits of several threads run one after the other.
 
     Parameters
     ----------
@@ -77,6 +78,9 @@ def fit(
         they are where the measurement is anisotropic.
     max_angle : float, default 80
         Samples with an angle to the normal at or beyond it [degrees, above 0 to 90] are left out.
+    spectral : bool, default False
+        Whether a measurement of wavelengths is fitted at these, with a weight for each, or else as
+        linear sRGB. Every wavelength counts alike.
     seed : int, default 0
         Seed of the starts, and of the part of a large table by which they are compared; equal seeds
         give equal fits.
@@ -92,9 +96,9 @@ def fit(
     ------
     BrdfkitError
         For an unknown model, loss or robust weight; for a parameter that is not searched, or bounds
-        and values beyond the model's; where `data` was not measured or no sample is left; for a
-        formula or loss that is not finite; for weights or standard errors that do not fit; and for
-        a robust fit without more samples than parameters.
+        and values beyond the model's; where `data` was not measured, has no wavelengths for a
+        spectral fit, or no sample is left; for a formula or loss that is not finite; for weights or
+        standard errors that do not fit; and for a robust fit without more samples than parameters.
 
     Examples
     --------
@@ -108,12 +112,12 @@ def fit(
     checked = check_settings({**given, **how}, f"{model.type_name()}: ")
     how = {name: checked[name] for name in how}
     loss = as_loss(loss)
-    samples = select_samples(data, max_angle, weights, use_standard_error)
+    samples = select_samples(data, max_angle, weights, use_standard_error, spectral)
 
     solve = regress if samples.errors is None else regress_noisy
     found = solve(model, samples, loss, robust=robust, **how, report=progress)
     linear = dict(zip(model.weights(), map(tuple, found.weights.T), strict=True))
-    fitted = model(**found.shapes, **linear)
+    fitted = model(wavelengths=wavelengths(data) if spectral else (), **found.shapes, **linear)
     return Fit(
         model=fitted,
         data=data.name,
@@ -126,7 +130,7 @@ def fit(
         at_bounds=found.at_bounds,
         certainty=found.certainty,
         notes=(*found.notes, *_list_notes(data, samples, loss, found, fitted)),
-        settings={**given, "max_angle": float(max_angle), **how},
+        settings={**given, "max_angle": float(max_angle), "spectral": bool(spectral), **how},
         checksum=data.checksum,
         versions=dict(versions()),
     )
@@ -191,7 +195,7 @@ def _list_notes(data, samples, loss, found, fitted):
 
 def _explain_negative(data):
     """The end of a note in words: which values are negative, and what this does to the fit."""
-    if data.rgb is not data and (data.values[data.samples.valid] >= 0).all():
+    if (data.values[data.samples.valid] >= 0).all():
         return (
             "values in linear sRGB are negative and count as 0, though none was measured so: these "
             "colours are more saturated than sRGB holds, and the fit shows them less so"
