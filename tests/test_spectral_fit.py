@@ -84,6 +84,18 @@ def test_its_rgb_is_the_fit_in_rgb():
 
 
 @pytest.mark.quick
+def test_standard_errors_count_at_every_wavelength():
+    data = measured(spectral("ward"), noise=0.1)
+    errors = np.where(np.arange(len(data.values)) % 2, 0.2, 1e-3)[:, None] * np.ones(10)
+    noisy = data.values + errors * np.random.default_rng(0).normal(size=errors.shape)
+    given = {"channels": data.channels, "standard_error": errors}
+    data = bk.Measured.from_samples(data.samples.wi, data.samples.wo, noisy, **given)
+    fit = bk.fit("ward", data, "plain", spectral=True)
+    assert any(note.startswith("samples count by their standard errors") for note in fit.notes)
+    assert fit.values["alpha_u"] == pytest.approx(0.2, rel=0.1)
+
+
+@pytest.mark.quick
 def test_it_is_rendered_as_the_measurement(llvm_variant):
     """A Lambertian material, which a fit meets exactly, at wavelengths within and beyond."""
     import drjit as dr

@@ -56,7 +56,10 @@ class Problem:
         """What each sample adds to E² of a black model (n,)."""
         squares = []
         for block in self.blocks(1):
-            total = sum(dr.square(self._difference(block, 0.0, c)[0]) for c in range(self.channels))
+            total = 0
+            for group in self.groups:
+                total += sum(dr.square(self._difference(block, 0.0, c)[0]) for c in group)
+                self._end_group(total)
             squares.append(np.asarray(block.importance * total))
         found = np.concatenate(squares)
         if not np.isfinite(found).all():
@@ -79,8 +82,7 @@ class Problem:
                     slope = 0 * slope + 1 if evenly else slope
                     weights.append(block.importance * slope * slope)
                     moments.append(-weights[-1] * value)
-                if len(self.groups) > 1:
-                    dr.eval(columns, moments, weights)
+                self._end_group(columns, moments, weights)
             squares = [0 * block.importance]
             sums.add(*self._evaluate(block, u, columns, squares, moments, weights))
         if not sums.finite():
@@ -148,8 +150,7 @@ class Problem:
                     moments.append(importance * difference * slope)
                     grams.append(importance * slope * slope)
                 squares.append(sum(own))
-                if len(self.groups) > 1:
-                    dr.eval(columns, squares, moments, grams)
+                self._end_group(columns, squares, moments, grams)
             yield block, self._evaluate(block, u, columns, squares, moments, grams)
 
     def expand_here(self, u, weights):
@@ -161,11 +162,20 @@ class Problem:
         """The residuals at one point, an array (n,) per channel; their squares add up to E²."""
         parts = []
         for block in self.blocks(1):
-            model = self._mix(block, self._columns(block, u), weights)
-            root = dr.sqrt(block.importance)
-            parts.append([root * self._difference(block, m, c)[0] for c, m in enumerate(model)])
+            columns, root = self._columns(block, u), dr.sqrt(block.importance)
+            parts.append([])
+            for group in self.groups:
+                model = self._mix(block, columns, weights[:, group])
+                pairs = zip(group, model, strict=True)
+                parts[-1] += [root * self._difference(block, m, c)[0] for c, m in pairs]
+                self._end_group(columns, parts[-1])
             dr.eval(parts[-1])
         return [np.concatenate([np.asarray(p) for p in part]) for part in zip(*parts, strict=True)]
+
+    def _end_group(self, *arrays):
+        """Evaluate what a group of channels gives, so that the next has a kernel of its own."""
+        if len(self.groups) > 1:
+            dr.eval(*arrays)
 
     def _columns(self, block, u):
         values = self.space.table(u)

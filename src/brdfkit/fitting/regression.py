@@ -7,6 +7,7 @@ import numpy as np
 
 from brdfkit.fitting.certainty import Certainty, certify, explain_end
 from brdfkit.fitting.folding import fold
+from brdfkit.fitting.levenberg_marquardt import ROUNDING
 from brdfkit.fitting.parameter_space import Space
 from brdfkit.fitting.part import mix_bands
 from brdfkit.fitting.problem import Problem
@@ -74,6 +75,8 @@ def regress(
         points = found.u
     end, converged, more = search(problems, points, report)
     evaluations += more
+    if not converged:  # a model that meets the data exactly, and the search goes on in rounding
+        converged = end.error[0] <= ROUNDING * whole.black().sum()
     message = "converged" if converged else f"stopped after {MOST_STEPS} steps"
     error, u, weights, notes, passes = end.error[0], end.u, end.weights, (), None
     # Weigh down outliers, from the optimum where all samples count alike

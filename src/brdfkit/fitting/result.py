@@ -217,7 +217,8 @@ class Fit:
             lines.append(f"  {name:<{width}}  {numbers}{note}")
         lines += [f"  {note}" for note in self.notes]
         lines.append(
-            f"  {self.message}; {self.samples:,} samples, {self.evaluations} evaluations, "
+            f"  {self.message}; {self.samples:,} sample{'s' * (self.samples != 1)}, "
+            f"{self.evaluations} evaluations, "
             f"{self.seconds:.2f} s"
         )
         return "\n".join(lines)

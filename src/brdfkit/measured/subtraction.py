@@ -27,7 +27,7 @@ def subtract(data, brdf, max_angle):
     values = np.full(samples.values.shape, np.nan)
     values[inside] = samples.values[inside] - known
     valid = np.isfinite(values).all(axis=1)
-    require_some(valid, name)
+    require_some(valid, name, values, data.channels)
     if not data.is_table:
         left = replace(samples, values=values, valid=valid)
         return replace(data, name=name, _samples=left, _lookup=None)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from brdfkit.arguments import to_dictionary, to_pair, to_whole_number
@@ -184,6 +185,8 @@ def _list_notes(data, samples, loss, found, fitted):
         notes.append(
             f"{known} numbers were measured for {sought} that are sought: other values fit as well"
         )
+    if len(samples.wi) > 1 and not np.ptp(samples.values, axis=0).any():
+        notes.append("all measured values are equal: they tell nothing of a highlight's shape")
     negative = (samples.values < 0).mean()
     if negative and not loss.linear:
         notes.append(f"{negative:.1%} of the {_explain_negative(data)}")
