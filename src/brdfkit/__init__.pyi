@@ -28,5 +28,7 @@ from .verbs.convert import convert as convert
 from .verbs.evaluate import albedo as albedo
 from .verbs.evaluate import evaluate as evaluate
 from .verbs.fit import fit as fit
+from .verbs.prediction_error import PredictionError as PredictionError
+from .verbs.prediction_error import prediction_error as prediction_error
 
 __version__: str
