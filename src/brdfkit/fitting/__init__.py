@@ -9,7 +9,8 @@ quicker, on a table with a linear loss). `levenberg_marquardt.py` searches in th
 `starting_points.py` and a `part.py` of many samples to one end and all. `robust.py` weighs down
 outliers, `robust_search.py` until weights and solution give each other back, which
 `acceleration.py` speeds up. `certainty.py` says how certain the parameters are. `regression.py`
-runs these one after the other; `result.py` is `Fit`.
+runs these one after the other; `result.py` is `Fit`. `refitting.py` fits again from the end of one,
+and `profiling.py` follows its loss over a parameter.
 """
 
 from brdfkit.fitting.loss import Loss as Loss
