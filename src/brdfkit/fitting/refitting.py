@@ -34,7 +34,7 @@ class Refit:
         loss = math.sqrt(problem.sums(u, self.weights, curvature=False).error[0])
         if not math.isclose(loss, self.fit.loss, rel_tol=1e-6, abs_tol=1e-9):
             raise BrdfkitError(
-                f"{self.fit.name}: its loss here is {loss:.6g}, and {self.fit.loss:.6g} in the fit; "
+                f"{self.fit.name}: its loss is {loss:.6g} here, {self.fit.loss:.6g} in the fit; "
                 "give the material that was fitted, and fit it without weights of your own."
             )
 

@@ -185,7 +185,7 @@ def _list_notes(data, samples, loss, found, fitted):
         notes.append(
             f"{known} numbers were measured for {sought} that are sought: other values fit as well"
         )
-    if len(samples.wi) > 1 and not np.ptp(samples.values, axis=0).any():
+    if len(samples.wi) > 1 and fitted.shapes() and not np.ptp(samples.values, axis=0).any():
         notes.append("all measured values are equal: they tell nothing of a highlight's shape")
     negative = (samples.values < 0).mean()
     if negative and not loss.linear:
