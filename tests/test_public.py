@@ -22,7 +22,8 @@ CLASSES = {
 METHODS = {
     f"{cls.__name__}.{method}": getattr(cls, method)
     for cls, names in {
-        bk.Measured: ["from_samples", "from_table", "resampled"],
+        bk.Fit: ["residuals"],
+        bk.Measured: ["from_samples", "from_table", "minus", "resampled"],
         bk.Model: ["changed"],
         bk.Rendering: ["write"],
         bk.Sweep: ["to_csv", "to_html", "to_parquet"],
@@ -89,5 +90,5 @@ def test_a_class_lists_its_attributes_or_arguments(name):
     listed = {
         n.strip().lstrip("*") for entry in documented(cls).params for n in entry.arg_name.split(",")
     }
-    fields = getattr(cls, "__dataclass_fields__", {"values": None})
+    fields = getattr(cls, "__dataclass_fields__", {"values", "wavelengths"})
     assert listed == {n for n in fields if not n.startswith("_")}

@@ -93,7 +93,7 @@ class PCAPolynomial(Model):
         data = samples.wi * samples.wo
         if cls.components() == 2:
             data = np.stack([data[:, 0] + data[:, 1], data[:, 2]], axis=1)
-        variances, axes = np.linalg.eigh(np.cov(data.T))
+        variances, axes = np.linalg.eigh(np.cov(data.T, ddof=0))
         axes = axes[:, np.argsort(-variances)].T
         axes = axes * np.sign(axes[range(len(axes)), np.abs(axes).argmax(axis=1)])[:, None]
         return dict(zip(cls.angle_names(), angles_of(axes), strict=True))

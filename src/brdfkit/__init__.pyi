@@ -27,6 +27,8 @@ from .reproducing import Reproduction as Reproduction
 from .reproducing import reproduce as reproduce
 from .sweeping import Sweep as Sweep
 from .sweeping import sweep as sweep
+from .verbs.bootstrap import Bootstrap as Bootstrap
+from .verbs.bootstrap import bootstrap as bootstrap
 from .verbs.compare import Comparison as Comparison
 from .verbs.compare import compare as compare
 from .verbs.convert import Conversion as Conversion
@@ -34,5 +36,9 @@ from .verbs.convert import convert as convert
 from .verbs.evaluate import albedo as albedo
 from .verbs.evaluate import evaluate as evaluate
 from .verbs.fit import fit as fit
+from .verbs.prediction_error import PredictionError as PredictionError
+from .verbs.prediction_error import prediction_error as prediction_error
+from .verbs.profile import Profile as Profile
+from .verbs.profile import profile as profile
 
 __version__: str

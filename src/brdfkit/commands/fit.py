@@ -26,7 +26,7 @@ from brdfkit.errors import BrdfkitError
     default="log",
     metavar="LOSS",
     show_default=True,
-    help="What the fit minimises: log, cbrt, cosine, plain, relative ...",
+    help="What the fit minimises: cosine, log, cbrt, plain, lafortune or relative.",
 )
 @click.option(
     "--robust",
@@ -64,6 +64,7 @@ from brdfkit.errors import BrdfkitError
     show_default=True,
     help="Use the samples with both angles below this one [degrees].",
 )
+@click.option("--spectral", is_flag=True, help="Fit a weight for each measured wavelength.")
 @render_options
 @output_options
 def fit(
@@ -77,6 +78,7 @@ def fit(
     jobs,
     rendered,
     max_angle,
+    spectral,
     spp,
     size,
     seed,
@@ -105,6 +107,7 @@ def fit(
         labels.model(name)
     how = {"loss": loss, "robust": robust, "max_angle": max_angle, "seed": seed, "solver": solver}
     how["constraints"] = () if albedo_at_most is None else AlbedoAtMost(albedo_at_most)
+    how["spectral"] = spectral
     if len(files) > 1:
         if rendered:
             raise BrdfkitError("--render shows one material; name one FILE, or leave it out.")
@@ -127,7 +130,7 @@ def fit(
             psnr, interrupted = picture.psnr(), picture.spp < picture.asked
             written += [output / "render.exr", output / "render.png"]
     with console.progress("compare"):
-        comparison = compare(material, fits, max_angle)
+        comparison = compare(material, fits, max_angle, spectral)
     _print_fits(material, fits, failed, comparison, psnr, written, console)
     for error in failed.values():
         say(error)
@@ -193,6 +196,7 @@ def _record(found, comparison, psnr):
     return {
         "model": found.name,
         "parameters": found.values,
+        "wavelengths": found.wavelengths,
         "standard_errors": found.standard_errors,
         "intervals": found.intervals,
         "degrees_of_freedom": found.degrees_of_freedom,
@@ -208,4 +212,6 @@ def _record(found, comparison, psnr):
         "samples": found.samples,
         "seconds": found.seconds,
         "message": found.message,
+        "checksum": found.checksum,
+        "versions": found.versions,
     }

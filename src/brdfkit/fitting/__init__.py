@@ -9,7 +9,8 @@ this of a model on samples (`folding.py`: quicker, on a table with a linear loss
 many samples to one end and all. This and other ways to search are the `solvers/`, where constraints
 are, too. `robust.py` weighs down outliers, `robust_search.py` until weights and solution give each
 other back, which `acceleration.py` speeds up. `certainty.py` says how certain the parameters are.
-`regression.py` runs these one after the other; `result.py` is `Fit`.
+`regression.py` runs these one after the other; `result.py` is `Fit`. `refitting.py` fits again from
+the end of one, and `profiling.py` follows its loss over a parameter.
 """
 
 from brdfkit.fitting.loss import Loss as Loss

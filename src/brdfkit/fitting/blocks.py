@@ -9,7 +9,9 @@ import numpy as np
 from brdfkit.jit.padding import pad
 from brdfkit.model import double_precision
 
-# Samples of a block, times the points at which it is evaluated
+# Channels that one kernel evaluates: of more, one group after the other goes through the same one
+GROUP = 8
+# Samples of a block, times the points at which it is evaluated, times the groups of channels
 SIZE = 2**17
 
 
@@ -77,7 +79,8 @@ class Blocks:
 
     def __call__(self, count):
         """The blocks for `count` points."""
-        n, step = len(self.importance), max(SIZE // count, 1)
+        groups = -(-self.samples.values.shape[1] // GROUP)
+        n, step = len(self.importance), max(SIZE // (count * groups), 1)
         if n > step:
             for start in range(0, n, step):
                 rows = slice(start, min(start + step, n))

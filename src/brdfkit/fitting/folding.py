@@ -25,7 +25,8 @@ LONG = 1000
 def fold(problem):
     """The `Folded` problem of a `Problem`, or None where it does not fold."""
     cells = problem.samples.cells
-    if not problem.linear or cells is None or not double_precision.differentiable():
+    few = len(problem.groups) == 1  # a node has the products of all channels
+    if not (problem.linear and few) or cells is None or not double_precision.differentiable():
         return None
     pairs = _depend_on_cos_d(problem)
     if pairs is None:

@@ -13,6 +13,7 @@ import numpy as np
 from brdfkit.fitting.derivative import differentiate
 from brdfkit.fitting.regression import regress
 from brdfkit.model import double_precision
+from brdfkit.model.evaluation import mix_lobes
 
 # The least τ², as a share of the mean σ²: a σ of 0 is not trusted beyond it
 LEAST = 0.01
@@ -62,5 +63,4 @@ def _variance(samples, loss, model, measured, sigma):
 
 def _evaluate(model, found, samples):
     """The values (n, channels) of the model of a `Solution` at `Samples`."""
-    weights = dict(zip(model.weights(), map(tuple, found.weights.T), strict=True))
-    return model(**found.shapes, **weights).eval(samples.wi, samples.wo)
+    return mix_lobes(model(**found.shapes), found.weights.T, samples.wi, samples.wo)

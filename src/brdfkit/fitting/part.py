@@ -1,8 +1,16 @@
-"""Parts of many samples, by which starts are compared."""
+"""Parts of many samples, and bands of many channels, by which starts are compared."""
 
 from dataclasses import replace
 
 import numpy as np
+
+BANDS = 4
+
+
+def mix_bands(samples):
+    """`Samples` with few channels, the means of neighbouring ones."""
+    bands = np.array_split(samples.values, BANDS, axis=1)
+    return replace(samples, values=np.stack([band.mean(axis=1) for band in bands], axis=1))
 
 
 def draw_part(samples, influence, size, rng):

@@ -8,7 +8,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.fitting.blocks import Blocks
+from brdfkit.fitting.blocks import GROUP, Blocks
 from brdfkit.fitting.columns import Columns
 from brdfkit.fitting.derivative import differentiate
 from brdfkit.fitting.expansion import Expansion, combine
@@ -31,6 +31,8 @@ class Problem:
         self.model, self.samples, self.loss, self.space = model, samples, loss, space
         self.columns = Columns.of(model, space.names, space.fixed)
         self.channels = samples.values.shape[1]
+        numbers = range(self.channels)
+        self.groups = [numbers[k : k + GROUP] for k in numbers[::GROUP]]
         bounds = [model.parameters[name].bounds for name in model.weights()]
         self.least = np.array([low for low, _ in bounds])
         self.clamped = not loss.linear and bool((self.least < 0).any())
@@ -54,7 +56,10 @@ class Problem:
         """What each sample adds to E² of a black model (n,)."""
         squares = []
         for block in self.blocks(1):
-            total = sum(dr.square(self._difference(block, 0.0, c)[0]) for c in range(self.channels))
+            total = 0
+            for group in self.groups:
+                total += sum(dr.square(self._difference(block, 0.0, c)[0]) for c in group)
+                self._end_group(total)
             squares.append(np.asarray(block.importance * total))
         found = np.concatenate(squares)
         if not np.isfinite(found).all():
@@ -69,12 +74,15 @@ class Problem:
         for block in self.blocks(len(u)):
             columns = self._columns(block, u)
             moments, weights = [], []
-            for c, measured in enumerate(block.measured):
-                value = measured if self.loss.linear else dr.maximum(measured, 0)
-                _, slope = self._difference(block, value, c)
-                slope = 0 * slope + 1 if evenly else slope
-                weights.append(block.importance * slope * slope)
-                moments.append(-weights[-1] * value)
+            for group in self.groups:
+                for c in group:
+                    value = block.measured[c]
+                    value = value if self.loss.linear else dr.maximum(value, 0)
+                    _, slope = self._difference(block, value, c)
+                    slope = 0 * slope + 1 if evenly else slope
+                    weights.append(block.importance * slope * slope)
+                    moments.append(-weights[-1] * value)
+                self._end_group(columns, moments, weights)
             squares = [0 * block.importance]
             sums.add(*self._evaluate(block, u, columns, squares, moments, weights))
         if not sums.finite():
@@ -128,16 +136,21 @@ class Problem:
         """Each block, and what `Sums.add` takes of it."""
         for block in self.blocks(len(u)):
             columns = self._columns(block, u)
-            model = self._mix(block, columns, weights)
             squares, moments, grams = [], [], []
-            for c, value in enumerate(model):
-                difference, slope = self._difference(block, value, c)
-                importance = block.importance
-                if self.factors is not None:
-                    importance = importance * double_precision.array(self.factors[c][block.rows])
-                squares.append(importance * dr.square(difference))
-                moments.append(importance * difference * slope)
-                grams.append(importance * slope * slope)
+            for group in self.groups:
+                own = []
+                model = self._mix(block, columns, weights[:, group])
+                for c, value in zip(group, model, strict=True):
+                    difference, slope = self._difference(block, value, c)
+                    importance = block.importance
+                    if self.factors is not None:
+                        factors = double_precision.array(self.factors[c][block.rows])
+                        importance = importance * factors
+                    own.append(importance * dr.square(difference))
+                    moments.append(importance * difference * slope)
+                    grams.append(importance * slope * slope)
+                squares.append(sum(own))
+                self._end_group(columns, squares, moments, grams)
             yield block, self._evaluate(block, u, columns, squares, moments, grams)
 
     def expand_here(self, u, weights, curvature=True):
@@ -149,11 +162,20 @@ class Problem:
         """The residuals at one point, an array (n,) per channel; their squares add up to E²."""
         parts = []
         for block in self.blocks(1):
-            model = self._mix(block, self._columns(block, u), weights)
-            root = dr.sqrt(block.importance)
-            parts.append([root * self._difference(block, m, c)[0] for c, m in enumerate(model)])
+            columns, root = self._columns(block, u), dr.sqrt(block.importance)
+            parts.append([])
+            for group in self.groups:
+                model = self._mix(block, columns, weights[:, group])
+                pairs = zip(group, model, strict=True)
+                parts[-1] += [root * self._difference(block, m, c)[0] for c, m in pairs]
+                self._end_group(columns, parts[-1])
             dr.eval(parts[-1])
         return [np.concatenate([np.asarray(p) for p in part]) for part in zip(*parts, strict=True)]
+
+    def _end_group(self, *arrays):
+        """Evaluate what a group of channels gives, so that the next has a kernel of its own."""
+        if len(self.groups) > 1:
+            dr.eval(*arrays)
 
     def _columns(self, block, u):
         values = self.space.table(u)

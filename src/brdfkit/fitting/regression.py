@@ -7,10 +7,12 @@ import numpy as np
 
 from brdfkit.fitting.certainty import Certainty, certify, explain_end
 from brdfkit.fitting.folding import fold
+from brdfkit.fitting.levenberg_marquardt import ROUNDING
 from brdfkit.fitting.parameter_space import Space
+from brdfkit.fitting.part import mix_bands
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.robust_search import settle
-from brdfkit.fitting.search import with_parts
+from brdfkit.fitting.search import search, with_parts
 from brdfkit.fitting.solvers import SLSQP, Constraints, LevenbergMarquardt, Objective
 from brdfkit.fitting.starting_points import start_points, usual_starts
 from brdfkit.jit.threads import in_turn
@@ -71,12 +73,19 @@ def regress(
     problems = [folded] if folded else with_parts(whole, rng)
     default = space.coordinates(model().values)
     points = start_points(space, default, starts or usual_starts(len(space.names)), seed)
+    counted = 0
+    if len(whole.groups) > 1:  # compare the starts on few channels
+        bands = with_parts(whole.on(mix_bands(samples)), rng)
+        found, _, counted = search(bands, points, report)
+        points = found.u
     limits = Constraints(constraints, whole) if constraints else None
     objective = Objective.of(problems, points, seed, report, limits)
     solver = solver or default_solver(constraints)
     end = objective.require_end(solver.minimise(objective))
     (u, weights), passes = objective.split(end.point[None]), None
     error, message, notes = end.error, end.message, limits.notes(end.point) if limits else ()
+    if message != "converged" and error <= ROUNDING * whole.black().sum():
+        message = "converged"  # a model that meets the data: the search went on in rounding
     # Weigh down outliers, from the optimum where all samples count alike
     if robust:
         u, weights, message, notes, passes = settle(whole, u, weights, robust, rng, report)
@@ -86,7 +95,7 @@ def regress(
         space.values(u[0]),
         weights[0],
         math.sqrt(error),
-        objective.count(),
+        counted + objective.count(),
         explain_end(certainty) or message,
         _find_at_bounds(space, u[0], model, weights[0]),
         notes,

@@ -6,10 +6,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.certainty import Certainty
 from brdfkit.model import Model
 
 NAN = float("nan")
+MOST_PRINTED = 3  # numbers of a weight; of more the least and the most
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,10 @@ class Fit:
         ``"diffuse_reflectance[0]"``), their ``covariance``, the degrees of ``freedom`` of each
         variance, and in words what is ``undetermined`` and what ``trades``
         off; None in fits saved by earlier versions.
+    checksum : str
+        `Measured.checksum` of the material, by which it is known again; empty as `certainty`.
+    versions : dict of str to str
+        The versions of brdfkit, Mitsuba, Dr.Jit, NumPy and SciPy that made the fit.
 
     Notes
     -----
@@ -67,6 +73,8 @@ class Fit:
     notes: tuple[str, ...] = ()
     settings: dict[str, Any] = field(default_factory=dict, hash=False)
     certainty: Certainty | None = None
+    checksum: str = ""
+    versions: dict[str, str] = field(default_factory=dict, compare=False)
 
     @property
     def name(self) -> str:
@@ -77,6 +85,16 @@ class Fit:
     def values(self) -> dict[str, float | tuple[float, ...]]:
         """The parameters' values by name; a weight is a tuple with one number per channel."""
         return self.model.values
+
+    @property
+    def wavelengths(self) -> tuple[float, ...]:
+        """The wavelengths [nm] of the weights of a spectral fit; none of one in linear sRGB."""
+        return self.model.wavelengths
+
+    @property
+    def rgb(self) -> Model:
+        """The model in linear sRGB: `Model.rgb`."""
+        return self.model.rgb
 
     @property
     def standard_errors(self) -> dict[str, float | tuple[float, ...]]:
@@ -148,24 +166,72 @@ class Fit:
         """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3)."""
         return self.model.eval(wi, wo)
 
+    def residuals(self, data: Any) -> Any:
+        """What the fit leaves of a measurement: measured less modelled values, where it was fitted.
+
+        They are signed, above 0 where the fit is too dark. Plots and pictures show values below 0
+        as 0; `Measured.mixed` with ``-np.eye(3)`` shows where the fit is too bright.
+
+        Parameters
+        ----------
+        data : Measured
+            The material that was fitted: its ``checksum`` is the fit's. Of another one the
+            residuals tell how the fit predicts it.
+
+        Returns
+        -------
+        Measured
+            The residuals [sr⁻¹] of the samples, or of the cells of a table.
+
+        Raises
+        ------
+        BrdfkitError
+            Where `data` was not measured, or none of its samples was fitted.
+
+        Examples
+        --------
+        >>> plot(fit("ward", paint).residuals(paint))    # doctest: +SKIP
+        """
+        if not hasattr(data, "minus"):
+            raise BrdfkitError(
+                f"The residuals of {self.name} need the measured material, not a "
+                f"{type(data).__name__}; load it first."
+            )
+        shown = data if self.wavelengths else data.rgb
+        return shown.minus(self, self.settings.get("max_angle", 80.0))
+
     def scene_dict(self) -> dict[str, Any]:
         """The dictionary for `mitsuba.load_dict`."""
         return self.model.scene_dict()
 
     def __str__(self) -> str:
-        width = max(map(len, self.values))
+        width, errors = max(map(len, self.values)), self.standard_errors
         lines = [f"{self.name} fitted to {self.data}: {self.loss_name} loss {self.loss:.6g}"]
         for name, value in self.values.items():
-            both = np.atleast_1d(value), np.atleast_1d(self.standard_errors[name])
-            numbers = "  ".join(map(_with_error, *both))
+            both = np.atleast_1d(value), np.atleast_1d(errors[name])
+            if len(both[0]) > MOST_PRINTED:
+                numbers = _summarise(*both, self.wavelengths)
+            else:
+                numbers = "  ".join(map(_with_error, *both))
             note = "   on its bound" if name in self.at_bounds else ""
             lines.append(f"  {name:<{width}}  {numbers}{note}")
         lines += [f"  {note}" for note in self.notes]
         lines.append(
-            f"  {self.message}; {self.samples:,} samples, {self.evaluations} evaluations, "
+            f"  {self.message}; {self.samples:,} sample{'s' * (self.samples != 1)}, "
+            f"{self.evaluations} evaluations, "
             f"{self.seconds:.2f} s"
         )
         return "\n".join(lines)
+
+
+def _summarise(values, errors, wavelengths):
+    """Many numbers as the least and the most of them."""
+    least, most = (
+        f"{values[k]:.4g} at {wavelengths[k]:g} nm" for k in (np.argmin(values), np.argmax(values))
+    )
+    known = errors[np.isfinite(errors)]
+    error = f", ± {np.median(known):.2g} in the median" if len(known) else ""
+    return f"{least} to {most}{error}"
 
 
 def _with_error(value, error):

@@ -14,6 +14,8 @@ NAME = "brdfkit fit"
 SUFFIXES = (".json",)
 KEY = "brdfkit"
 FIELDS = [f for f in fields(Fit) if f.name not in ("model", "certainty")]
+# What fits of earlier versions lack
+LATER = ("checksum", "versions")
 
 
 def sniff(head):
@@ -26,10 +28,12 @@ def read(source):
     try:
         record = json.loads(source.data)
         label, values = _to_type(str, record["model"]), dict(record["parameters"])
-        found = {f.name: _to_type(f.type, record["fit"][f.name]) for f in FIELDS}
+        given = record["fit"]
+        there = [f for f in FIELDS if f.name in given or f.name not in LATER]
+        found = {f.name: _to_type(f.type, given[f.name]) for f in there}
         if bounds := found["settings"].get("bounds"):
             found["settings"] |= {"bounds": {n: tuple(pair) for n, pair in bounds.items()}}
-        found["certainty"] = _to_certainty(record["fit"].get("certainty"))
+        found["certainty"] = _to_certainty(given.get("certainty"))
     except (ValueError, KeyError, TypeError, RecursionError):
         raise source.error("is no fit that brdfkit saved, or is damaged; fit it again") from None
     try:
@@ -54,7 +58,7 @@ def write(fit, stream):
     record = {
         KEY: __version__,
         "model": fit.model.label(),
-        "parameters": fit.values,
+        "parameters": fit.model.arguments,
         "fit": values | {"certainty": _from_certainty(fit.certainty)},
     }
     stream.write(json.dumps(record, indent=2).encode() + b"\n")

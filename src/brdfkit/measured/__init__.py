@@ -2,8 +2,8 @@
 
 `measured_data.py`: samples and tables as they are given, checked by `validation.py`; `measured.py`:
 their lookup; `interpolation.py`: between scattered samples; `tabulation.py`: any BRDF as a table;
-`mixing.py` and `spectrum_to_rgb.py`: channels, wavelengths and colours; `selection.py`: the samples
-that a fit uses.
+`mixing.py` and `spectrum_to_rgb.py`: channels, wavelengths and colours; `subtraction.py`: what a
+BRDF leaves of it; `selection.py`: the samples that a fit uses; `checksum.py`: knows it again.
 """
 
 from brdfkit.measured.measured import Measured as Measured

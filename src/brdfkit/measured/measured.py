@@ -15,6 +15,7 @@ from brdfkit.measured.interpolation import Interpolant
 from brdfkit.measured.measured_data import MeasuredData
 from brdfkit.measured.mixing import mix
 from brdfkit.measured.spectrum_to_rgb import to_rgb, wavelengths
+from brdfkit.measured.subtraction import subtract
 from brdfkit.measured.tabulation import (
     bounded,
     reciprocal,
@@ -125,6 +126,35 @@ class Measured(MeasuredData):
     ) -> "Measured":
         """The same material in other channels, the old ones mixed by `weights` (old, new)."""
         return mix(self, weights, channels, {**self.info, **info})
+
+    def minus(self, brdf: Any, max_angle: float = 90.0) -> "Measured":
+        """The measured values less those of another BRDF: signed residuals, as a measurement.
+
+        Parameters
+        ----------
+        brdf : Measured, Fit or Model
+            What is subtracted, with the same channels or with one.
+        max_angle : float, default 90
+            Samples with an angle to the normal at or beyond it [degrees, above 0 to 90] are left
+            out.
+
+        Returns
+        -------
+        Measured
+            The differences [sr⁻¹] of the samples, or of the cells of a table. `eval`, plots and
+            pictures show those below 0 as 0.
+
+        Raises
+        ------
+        BrdfkitError
+            For an angle out of range, other channels, and where no sample is left.
+
+        Examples
+        --------
+        >>> load("car_paint").minus(models()["ward"]()).values.min() < 0    # doctest: +SKIP
+        True
+        """
+        return subtract(self, brdf, max_angle)
 
     def audit(self) -> "brdfkit.Audit":
         """How far the measurement reaches, how noisy it is and what is doubtful.

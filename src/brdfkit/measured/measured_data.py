@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.colours import RGB
+from brdfkit.measured.checksum import checksum
 from brdfkit.measured.validation import check_errors, check_table, make_printable
 from brdfkit.samples import Samples, Table
 
@@ -170,6 +171,11 @@ class MeasuredData:
     def values(self) -> NDArray[np.float64]:
         """Measured BRDF (n, channels) in sr⁻¹ at `samples`."""
         return self.samples.values
+
+    @cached_property
+    def checksum(self) -> str:
+        """The SHA-256 of the directions and values: equal data have it, whatever their file."""
+        return checksum(self)
 
     def __str__(self) -> str:
         valid = self.samples.valid

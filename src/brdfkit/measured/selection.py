@@ -6,20 +6,27 @@ from numbers import Real
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.measured.spectrum_to_rgb import has_wavelengths
 from brdfkit.samples import Samples
 
 
-def select_samples(data, max_angle, weights=None, errors=False):
+def select_samples(data, max_angle, weights=None, errors=False, spectral=False):
     """The valid `Samples` of a `Measured` with both angles below `max_angle` [degrees].
 
-    Spectral samples are converted to linear sRGB. `weights`: of all samples of the material (n,),
-    or of a table's cells in its shape; samples of weight 0 are left out. `errors`:
-    whether the samples carry the standard errors of the material, where it has them. Raises
-    `BrdfkitError` for an angle that is not above 0° and at most 90°, for weights that are none, and
-    where no sample is left.
+    Spectral samples are converted to linear sRGB unless they are to be `spectral`. `weights`: of
+    all samples of the material (n,), or of a table's cells in its shape; samples of weight 0 are
+    left out. `errors`: whether the samples carry the standard errors of the material, where it has
+    them. Raises `BrdfkitError` for an angle that is not above 0° and at most 90°, for weights that
+    are none, for `spectral` without wavelengths, and where no sample is left.
     """
     require_max_angle(max_angle)
-    data = data.rgb
+    if not spectral:
+        data = data.rgb
+    elif not has_wavelengths(data):
+        raise BrdfkitError(
+            f"{data.name} was measured in the channels {' '.join(data.channels)[:80]}, not at "
+            "wavelengths; leave spectral out."
+        )
     if weights is not None:
         weights = _check_weights(weights, data)
     own = data.standard_error if errors else None

@@ -34,7 +34,7 @@ def check_table(values, phi_d_period, channels, name):
             f"{name}: phi_d_period is {phi_d_period:g}; give π or, for a table that is not "
             "reciprocal, 2π."
         )
-    require_some(np.isfinite(values).all(axis=-1), name)
+    require_some(np.isfinite(values).all(axis=-1), name, values, channels)
     if np.isinf(values).any():
         values = np.where(np.isinf(values), np.nan, values)
     return values

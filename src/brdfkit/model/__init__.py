@@ -3,7 +3,7 @@
 `model.py`: the class `Model`; `parameters.py`: what it declares; `lobes.py`: its terms and how
 they are drawn; `microfacet.py`: distributions of normals; `fresnel.py`: the models of facets with
 Schlick's F; `numerics.py`: accurate functions. The rest serves all models: `labels.py` finds a
-model by its label, `evaluation.py` computes its values.
+model by its label, `weights.py` reads weights of any channels, `evaluation.py` computes values.
 """
 
 from brdfkit.model.model import Model as Model

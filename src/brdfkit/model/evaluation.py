@@ -16,10 +16,14 @@ def evaluate_model(model, wi, wo):
     above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
     up = np.array([0.0, 0.0, 1.0])
     wi, wo = np.where(above[:, None], wi, up), np.where(above[:, None], wo, up)
+    return np.where(above[:, None], mix_lobes(model, weight_matrix(model), wi, wo), 0.0)
+
+
+def mix_lobes(model, weights, wi, wo):
+    """As `evaluate_model`, with other `weights` (lobes, channels), above the surface."""
     plain, squared = lobe_values(model, wi, wo)
-    weights = weight_matrix(model)
     values = plain @ weights + squared @ weights**2
-    return np.where(above[:, None], np.maximum(values, 0) if model.signed() else values, 0.0)
+    return np.maximum(values, 0) if model.signed() else values
 
 
 def clamped_share(model, n=20_000):
@@ -38,7 +42,7 @@ def clamped_share(model, n=20_000):
 def weight_matrix(model):
     """The weights (lobes, channels) of a model with values."""
     weights = [np.atleast_1d(getattr(model, name)) for name in model.weights()]
-    channels = max(len(w) for w in weights)
+    channels = max(len(model.wavelengths), *(len(w) for w in weights))
     return np.array([np.broadcast_to(w, channels) for w in weights])
 
 

@@ -24,8 +24,13 @@ from brdfkit.model.declaration import Declaration
 from brdfkit.model.evaluation import evaluate_model
 from brdfkit.model.lobes import Lobe
 from brdfkit.model.pickling import reduce_model
-
-CHANNELS = 1, 3  # how many a weight may have: achromatic, linear sRGB
+from brdfkit.model.weights import (
+    check_wavelengths,
+    mitsuba_entries,
+    read_value,
+    rgb_values,
+    short,
+)
 
 
 class Model(Declaration):
@@ -36,9 +41,11 @@ class Model(Declaration):
 
     Parameters
     ----------
+    wavelengths : sequence of float, optional
+        Wavelengths [nm] for which weights have one number each. By default weights are linear sRGB.
     **values : float or sequence of float
         Values by the parameters' names; the others have their default. A weight takes one number,
-        or one for each of R, G, B.
+        or one for each of R, G, B, or of the wavelengths.
 
     Raises
     ------
@@ -52,6 +59,8 @@ class Model(Declaration):
     0.1
     """
 
+    wavelengths: tuple[float, ...] = ()
+
     if TYPE_CHECKING:  # the parameters, of which a type checker cannot know
 
         def __getattr__(self, name: str) -> Any: ...
@@ -62,7 +71,8 @@ class Model(Declaration):
             if hasattr(Model, name):
                 raise BrdfkitError(f"{cls.__name__}: no parameter can be named {name!r}.")
 
-    def __init__(self, **values: ArrayLike | None) -> None:
+    def __init__(self, *, wavelengths: ArrayLike = (), **values: ArrayLike | None) -> None:
+        self.__dict__["wavelengths"] = check_wavelengths(wavelengths, self.type_name())
         for name in values:
             self.parameter(name)
         for name, parameter in self.parameters.items():
@@ -71,9 +81,10 @@ class Model(Declaration):
                 value = getattr(self, parameter.follows)
             elif value is None:
                 value = parameter.default
-            value = _number(value, parameter.linear, f"{self.type_name()}: {name}")
+            what = f"{self.type_name()}: {name}"
+            value = read_value(value, parameter.linear, self.wavelengths, what)
             if problem := parameter.problem_with(value):
-                raise BrdfkitError(f"{self.type_name()}: {name} = {problem}.")
+                raise BrdfkitError(f"{what} = {problem}.")
             self.__dict__[name] = value
 
     def changed(self, **values: ArrayLike | None) -> Self:
@@ -99,7 +110,8 @@ class Model(Declaration):
         >>> models()["ward"](alpha_u=0.1).changed(alpha_u=0.2).alpha_v
         0.2
         """
-        return type(self)(**{**self.free_values, **values})
+        given: dict[str, Any] = {**self.free_values, **values}
+        return type(self)(wavelengths=self.wavelengths, **given)
 
     def __setattr__(self, name, value):
         raise BrdfkitError(
@@ -149,6 +161,21 @@ class Model(Declaration):
         return {n: v for n, v in values.items() if n not in followed or v != values[followed[n]]}
 
     @property
+    def arguments(self) -> dict[str, Any]:
+        """What makes an equal model of the class: the `values`, and the wavelengths if any."""
+        known = {"wavelengths": self.wavelengths} if self.wavelengths else {}
+        return {**known, **self.values}
+
+    @property
+    def rgb(self) -> Self:
+        """The model with weights in linear sRGB, as RGB pictures show it, or itself where they are.
+
+        A colour outside sRGB is clipped to the weight's bounds. Lobes with squares of weights
+        (``oren_nayar``, ``eon``) have the square of the colour, not the colour of the square.
+        """
+        return type(self)(**rgb_values(self)) if self.wavelengths else self
+
+    @property
     def name(self) -> str:
         """What pictures and tables call it."""
         return self.label()
@@ -158,45 +185,28 @@ class Model(Declaration):
         return evaluate_model(self, wi, wo)
 
     def scene_dict(self) -> dict[str, Any]:
-        """The dictionary for `mitsuba.load_dict`."""
+        """The dictionary for `mitsuba.load_dict`; of a spectral model for the current variant."""
         self.make_known()
         entries = {"type": self.type_name(), **self.chosen()}
-        for name, value in self.free_values.items():
-            entries[name] = _rgb(value) if isinstance(value, tuple) else value
-        return entries
+        shown = self if self.wavelengths and _is_spectral() else self.rgb
+        return entries | mitsuba_entries(shown)
 
     def __eq__(self, other: object) -> bool:
-        return type(self) is type(other) and self.values == other.values
+        return type(self) is type(other) and self.arguments == other.arguments
 
     def __hash__(self) -> int:
-        return hash((type(self), *self.values.values()))
+        return hash((type(self), *self.arguments.values()))
 
     def __reduce__(self):
         return reduce_model(self)
 
     def __repr__(self) -> str:
-        values = ", ".join(f"{name}={_short(value)}" for name, value in self.values.items())
+        values = ", ".join(f"{name}={short(value)}" for name, value in self.arguments.items())
         return f"{self.label()}({values})"
 
 
-def _number(value, per_channel, what):
-    """`value` as a float, or as a tuple of floats if `per_channel` and given so."""
-    try:
-        if np.ndim(value) == 0:
-            return float(value)
-        if per_channel and np.ndim(value) == 1 and len(value) in CHANNELS:
-            return tuple(float(v) for v in value)
-    except (TypeError, ValueError):
-        pass
-    expected = "a number, or three for R, G, B" if per_channel else "a number"
-    raise BrdfkitError(f"{what} = {value!r} should be {expected}.")
+def _is_spectral():
+    """Whether Mitsuba's current variant is spectral."""
+    import mitsuba as mi
 
-
-def _rgb(value):
-    return {"type": "rgb", "value": list(value * 3 if len(value) == 1 else value)}
-
-
-def _short(value):
-    if isinstance(value, tuple):
-        return "[" + ", ".join(f"{v:.4g}" for v in value) + "]"
-    return f"{value:.4g}"
+    return mi.is_spectral

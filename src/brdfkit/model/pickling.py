@@ -48,11 +48,12 @@ class UsersClass:
 def reduce_model(model):
     """What `pickle` stores of a model, as `object.__reduce__` returns it."""
     classes = tuple(map(_portable, model.made_of()))
-    return restored, (classes, model.chosen(), model.values)
+    return restored, (classes, model.chosen(), model.arguments)
 
 
 def restored(classes, options, values):
-    """The model that was pickled; `classes`: its own, then those of its terms."""
+    """The model that was pickled; `classes`: its own, then those of its terms; `values`: its
+    `Model.arguments`."""
     own, *_ = (c.load() if isinstance(c, UsersClass) else c for c in classes)
     return own.configured(**options)(**values)
 

@@ -74,9 +74,9 @@ class Plot(Figure):
 
 
 def _find_materials(things):
-    """The materials of what `plot` was given; measured ones in linear sRGB."""
+    """The materials of what `plot` was given; those of wavelengths in linear sRGB."""
     found = materials(things, needed=("name", "eval"))
-    return [thing.rgb if isinstance(thing, Measured) else thing for thing in found]
+    return [getattr(thing, "rgb", thing) for thing in found]
 
 
 def _make_figure(things, angles):

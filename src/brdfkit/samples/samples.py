@@ -53,7 +53,7 @@ class Samples:
         usable = _find_usable(wi, wo, values)
         if valid is not None:
             usable &= _check_mask(valid, len(wi), name)
-        require_some(usable, name)
+        require_some(usable, name, values, channels)
         return cls(wi, wo, values, usable, np.ones(len(usable)))
 
     @classmethod
@@ -99,9 +99,17 @@ class Samples:
         return Samples(*vectors, self.valid[rows], self.weight[rows], cells, errors)
 
 
-def require_some(valid, name):
-    """Raise `BrdfkitError` where no sample is valid, by the mask `valid` (n,)."""
+def require_some(valid, name, values, channels):
+    """Raise `BrdfkitError` where no sample is valid, by the mask `valid` (...); it names the
+    `channels` that have no finite one among the `values` (..., channels)."""
     if not valid.any():
+        known = np.isfinite(values).reshape(-1, len(channels)).any(axis=0)
+        blank = [channel for channel, has in zip(channels, known, strict=True) if not has]
+        if 0 < len(blank) < len(channels):
+            raise BrdfkitError(
+                f"{name}: no value of the channel {', '.join(blank)} is finite; give the other "
+                "channels alone."
+            )
         raise BrdfkitError(
             f"{name}: no valid measurement is left (all masked, not finite or below the surface)."
         )

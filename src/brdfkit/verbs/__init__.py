@@ -1,1 +1,1 @@
-"""The verbs that are one file each: `fit`, `compare`, `convert`, `evaluate` and `albedo`."""
+"""The verbs that are one file each: `fit` and what says more of one, `compare`, `convert` ..."""

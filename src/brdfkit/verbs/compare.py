@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import drjit as dr
 import numpy as np
 
+from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import losses
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike, materials, measured_material
@@ -51,7 +52,10 @@ def format_error(error):
 
 
 def compare(
-    data: MaterialLike, things: MaterialLike | Iterable[MaterialLike], max_angle: float = 80.0
+    data: MaterialLike,
+    things: MaterialLike | Iterable[MaterialLike],
+    max_angle: float = 80.0,
+    spectral: bool = False,
 ) -> Comparison:
     """Compare fits, models or other materials to a measured one, under every loss.
 
@@ -64,6 +68,9 @@ def compare(
     max_angle : float, default 80
         Samples with an angle to the normal at or beyond it [degrees, above 0 to 90] are left out,
         as in `fit`.
+    spectral : bool, default False
+        Whether to compare at the measured wavelengths, which `things` should have, too, or else in
+        linear sRGB.
 
     Returns
     -------
@@ -73,7 +80,8 @@ def compare(
     Raises
     ------
     BrdfkitError
-        Where `data` was not measured, one of `things` is no material, or no sample is left.
+        Where `data` was not measured, one of `things` is no material or has other channels, or no
+        sample is left.
 
     Examples
     --------
@@ -83,26 +91,33 @@ def compare(
     errors: dict[str, dict[str, float]] = {}
     for thing in found:
         errors[make_unique(thing.name, errors)] = {
-            loss: error(thing, data, loss, max_angle) for loss in losses
+            loss: error(thing, data, loss, max_angle, spectral) for loss in losses
         }
     return Comparison(data.name, dict(sorted(errors.items(), key=lambda item: item[1]["log"])))
 
 
-def error(thing, data, loss, max_angle=80.0):
+def error(thing, data, loss, max_angle=80.0, spectral=False):
     """E of the loss named `loss` between `thing` (anything with `.eval`) and a `Measured`.
 
-    E is computed over the samples with both angles below `max_angle` [degrees]; its units:
-    `brdfkit.losses`. It is nan where the loss weighs none of them, as the cosine loss does for
-    samples at normal incidence.
+    E is computed over the samples with both angles below `max_angle` [degrees], at the measured
+    wavelengths if `spectral`, else in linear sRGB; its units: `brdfkit.losses`. It is nan where the
+    loss weighs none of them, as the cosine loss does for samples at normal incidence.
 
     >>> error(models()["lambert"](), load("paint.binary"), "log")    # doctest: +SKIP
     """
     loss = losses[loss]
-    samples = select_samples(data, max_angle)
+    samples = select_samples(data, max_angle, spectral=spectral)
     importance = loss.importance(samples)
     if not importance.any():
         return math.nan
-    values = np.broadcast_to(thing.eval(samples.wi, samples.wo), samples.values.shape)
+    shown = thing if spectral else getattr(thing, "rgb", thing)
+    values = shown.eval(samples.wi, samples.wo)
+    if values.shape[1] not in (1, samples.values.shape[1]):
+        raise BrdfkitError(
+            f"{thing.name} has {values.shape[1]} channels and {data.name} "
+            f"{samples.values.shape[1]}; compare what has the same ones."
+        )
+    values = np.broadcast_to(values, samples.values.shape)
     return math.sqrt(importance @ _squares(loss, values, samples))
 
 

@@ -85,7 +85,8 @@ def evaluate_on_grid(thing: Material) -> Measured:
     wi, wo = (w.reshape(-1, 3) for w in table.directions())
     values = table.values.reshape(-1, channels)
     above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
-    names = ("Y",) if channels == 1 else ("R", "G", "B")
+    names = tuple(f"{nm:g}nm" for nm in getattr(model, "wavelengths", ()))
+    names = names or (("Y",) if channels == 1 else ("R", "G", "B"))
     return Measured.from_samples(
         wi[above],
         wo[above],

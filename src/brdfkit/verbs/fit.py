@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from brdfkit.arguments import to_dictionary, to_pair, to_whole_number
@@ -23,8 +24,10 @@ from brdfkit.fitting.solvers.settings import (
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike, measured_material
 from brdfkit.measured.selection import require_max_angle, select_samples
+from brdfkit.measured.spectrum_to_rgb import wavelengths
 from brdfkit.model import Model, labels
 from brdfkit.model.evaluation import clamped_share
+from brdfkit.version import versions
 
 Constraint = AlbedoAtMost | WeightsAtMost | Callable[[Model], ArrayLike]
 
@@ -45,6 +48,7 @@ def fit(
     fixed: Mapping[str, float] | None = None,
     anisotropic: bool | None = None,
     max_angle: float = 80.0,
+    spectral: bool = False,
     seed: int = 0,
     progress: Callable[[int, int], object] | None = None,
 ) -> Fit:
@@ -52,8 +56,7 @@ def fit(
 
     Unless another solver is given, a damped Gauss-Newton search (Levenberg-Marquardt) from several
     starts at once, in double precision with exact derivatives: the shape parameters, and the
-    weights of every channel, which follow them. Spectral measurements are fitted as linear sRGB.
-    Fits of several threads run one after the other.
+    weights of every channel, which follow them. Fits of several threads run one after the other.
 
     Parameters
     ----------
@@ -95,6 +98,9 @@ def fit(
         they are where the measurement is anisotropic.
     max_angle : float, default 80
         Samples with an angle to the normal at or beyond it [degrees, above 0 to 90] are left out.
+    spectral : bool, default False
+        Whether a measurement of wavelengths is fitted at these, with a weight for each, or else as
+        linear sRGB. Every wavelength counts alike.
     seed : int, default 0
         Seed of the starts, and of the part of a large table by which they are compared; equal seeds
         give equal fits.
@@ -111,9 +117,10 @@ def fit(
     BrdfkitError
         For an unknown model, loss, robust weight or solver; for constraints that the solver or a
         robust fit does not take, or that no parameters meet; for a parameter that is not searched,
-        or bounds and values beyond the model's; where `data` was not measured or no sample is left;
-        for a formula or loss that is not finite; for weights or standard errors that do not fit;
-        and for a robust fit without more samples than parameters.
+        or bounds and values beyond the model's; where `data` was not measured, has no wavelengths
+        for a spectral fit, or no sample is left; for a formula or loss that is not finite; for
+        weights or standard errors that do not fit; and for a robust fit without more samples than
+        parameters.
 
     Examples
     --------
@@ -128,12 +135,12 @@ def fit(
     checked = check_settings({**given, **how}, f"{model.type_name()}: ")
     how = {name: checked[name] for name in how}
     loss = as_loss(loss)
-    samples = select_samples(data, max_angle, weights, use_standard_error)
+    samples = select_samples(data, max_angle, weights, use_standard_error, spectral)
 
     solve = regress if samples.errors is None else regress_noisy
     found = solve(model, samples, loss, robust=robust, **how, report=progress)
     linear = dict(zip(model.weights(), map(tuple, found.weights.T), strict=True))
-    fitted = model(**found.shapes, **linear)
+    fitted = model(wavelengths=wavelengths(data) if spectral else (), **found.shapes, **linear)
     return Fit(
         model=fitted,
         data=data.name,
@@ -150,9 +157,12 @@ def fit(
             **given,
             **how,
             "max_angle": float(max_angle),
+            "spectral": bool(spectral),
             "solver": to_plain(how["solver"]),
             "constraints": list(map(to_plain, how["constraints"])),
         },
+        checksum=data.checksum,
+        versions=dict(versions()),
     )
 
 
@@ -207,6 +217,8 @@ def _list_notes(data, samples, loss, found, fitted):
         notes.append(
             f"{known} numbers were measured for {sought} that are sought: other values fit as well"
         )
+    if len(samples.wi) > 1 and fitted.shapes() and not np.ptp(samples.values, axis=0).any():
+        notes.append("all measured values are equal: they tell nothing of a highlight's shape")
     negative = (samples.values < 0).mean()
     if negative and not loss.linear:
         notes.append(f"{negative:.1%} of the {_explain_negative(data)}")
@@ -218,7 +230,7 @@ def _list_notes(data, samples, loss, found, fitted):
 
 def _explain_negative(data):
     """The end of a note in words: which values are negative, and what this does to the fit."""
-    if data.rgb is not data and (data.values[data.samples.valid] >= 0).all():
+    if (data.values[data.samples.valid] >= 0).all():
         return (
             "values in linear sRGB are negative and count as 0, though none was measured so: these "
             "colours are more saturated than sRGB holds, and the fit shows them less so"

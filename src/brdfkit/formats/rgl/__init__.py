@@ -90,7 +90,8 @@ def write(obj, stream):
 
 def _value_fields(obj, values):
     """The fields `rgb`, or `wavelengths` and `spectra`, of `values` (a, b, channels, y, x)."""
-    channels = obj.channels if isinstance(obj, Measured) else RGB
+    spectral = getattr(obj, "wavelengths", ())
+    channels = obj.channels if isinstance(obj, Measured) else spectral or RGB
     if values.shape[2] == 1:
         return {"rgb": np.repeat(values, 3, axis=2)}
     if channels == RGB and values.shape[2] == 3:
@@ -100,7 +101,7 @@ def _value_fields(obj, values):
             f"{values.shape[2]} channels without wavelengths, where one or three belong; save the "
             "measured spectra."
         )
-    nanometres = wavelengths(obj)
+    nanometres = np.array(spectral) if spectral else wavelengths(obj)
     if len(set(nanometres.astype(np.float32))) != len(nanometres) or nanometres.min() <= 0:
         raise BrdfkitError(
             f"the wavelengths of {obj.name} repeat or are not above 0 nm; mend them."

@@ -1,0 +1,71 @@
+"""Fits again from the end of a `Fit`: its problem, on other samples or with a parameter held."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.fitting.levenberg_marquardt import levenberg_marquardt
+from brdfkit.fitting.named_losses import as_loss
+from brdfkit.fitting.parameter_space import Space
+from brdfkit.fitting.problem import Problem
+from brdfkit.fitting.robust_search import settle
+from brdfkit.fitting.search import EXACT, MOST_STEPS
+from brdfkit.model.evaluation import weight_matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Refit:
+    """A `Fit` and the `Samples` that were fitted, ready to be fitted again."""
+
+    fit: Any
+    samples: Any
+
+    def __post_init__(self):
+        if self.samples.errors is not None:
+            raise BrdfkitError(
+                f"{self.fit.name} was fitted by the standard errors of the measurement, whose "
+                "weights are not repeated; fit with use_standard_error=False first."
+            )
+        problem = self.problem()
+        u = problem.space.coordinates(self.fit.values)[None]
+        loss = math.sqrt(problem.sums(u, self.weights, curvature=False).error[0])
+        if not math.isclose(loss, self.fit.loss, rel_tol=1e-6, abs_tol=1e-9):
+            raise BrdfkitError(
+                f"{self.fit.name}: its loss is {loss:.6g} here, {self.fit.loss:.6g} in the fit; "
+                "give the material that was fitted, and fit it without weights of your own."
+            )
+
+    @property
+    def weights(self):
+        """The weights (1, channels, lobes) of the fit."""
+        channels = self.samples.values.shape[1]
+        matrix = weight_matrix(self.fit.model)
+        return np.broadcast_to(matrix, (len(matrix), channels)).T[None].copy()
+
+    def problem(self, **held):
+        """The `Problem` of the fit, with parameters `held` at values, by name."""
+        model, settings = type(self.fit.model), self.fit.settings
+        bounds = {n: v for n, v in settings.get("bounds", {}).items() if n not in held}
+        determined = model.determined(self.samples).items()
+        given = {n: v for n, v in determined if n not in bounds} | settings.get("fixed", {}) | held
+        space = Space.of(model, bounds, given, settings.get("anisotropic", False))
+        return Problem(model, self.samples, as_loss(self.fit.loss_name), space)
+
+    def descend(self, problem, values, weights, rng=None):
+        """(values, weights, E²) of the end that a `problem` has near shape parameters `values`, by
+        name, and `weights`; of a robust fit by passes, for which `rng` is a generator."""
+        u = problem.space.coordinates(values)[None]
+        given = problem.expand, u, weights, problem.least
+        ends = levenberg_marquardt(*given, MOST_STEPS, EXACT).ends
+        u, weights, error = ends.u, ends.weights, ends.error[0]
+        if robust := self.fit.settings.get("robust"):
+            u, weights, *_ = settle(problem, u, weights, robust, rng, lambda done, total: None)
+        return problem.space.values(u[0]), weights, error
+
+    def values(self, shapes, weights):
+        """All values of the model by name, of `shapes` by name and `weights`."""
+        named = dict(zip(self.fit.model.weights(), map(tuple, weights[0].T), strict=True))
+        return type(self.fit.model)(wavelengths=self.fit.wavelengths, **shapes, **named).values

@@ -1,0 +1,97 @@
+"""The values of a model's weights: one number, linear R, G, B, or one number per wavelength."""
+
+import numpy as np
+
+from brdfkit.colours import rgb_of_wavelengths
+from brdfkit.errors import BrdfkitError
+
+CHANNELS = 1, 3  # how many a weight may have without wavelengths: achromatic, linear sRGB
+VISIBLE = 360.0, 830.0  # nm, where Mitsuba's spectral variants look
+MOST_PRINTED = 3  # numbers
+
+
+def check_wavelengths(wavelengths, what):
+    """`wavelengths` [nm] as a tuple of floats; `BrdfkitError` unless they differ and are above 0.
+
+    `what`: names the model in the error.
+    """
+    try:
+        found = tuple(map(float, wavelengths))
+    except (TypeError, ValueError):
+        found = (np.nan,)
+    if len(set(found)) != len(found) or not all(0 < w < np.inf for w in found):
+        raise BrdfkitError(
+            f"{what}: wavelengths = {wavelengths!r} should be different numbers above 0 [nm]."
+        )
+    return found
+
+
+def read_value(value, per_channel, wavelengths, what):
+    """`value` as a float, or as a tuple of floats if `per_channel` and given so."""
+    lengths = (1, len(wavelengths)) if wavelengths else CHANNELS
+    try:
+        if np.ndim(value) == 0:
+            return float(value)
+        if per_channel and np.ndim(value) == 1 and len(value) in lengths:
+            return tuple(float(v) for v in value)
+    except (TypeError, ValueError):
+        pass
+    expected = "a number"
+    if per_channel:
+        several = f"{len(wavelengths)}, one per wavelength" if wavelengths else "three for R, G, B"
+        expected = f"a number, or {several}"
+    given = repr(value)
+    given = given if len(given) < 200 else f"{given[:200]}…"
+    raise BrdfkitError(f"{what} = {given} should be {expected}.")
+
+
+def rgb_values(model):
+    """The values by name of a model with wavelengths, its weights in linear sRGB.
+
+    A colour outside sRGB is clipped to the bounds of its weight.
+    """
+    mix, values = rgb_of_wavelengths(model.wavelengths, model.name), dict(model.free_values)
+    for name, value in values.items():
+        if isinstance(value, tuple) and len(value) > 1:
+            low, high = model.parameters[name].bounds
+            values[name] = np.clip(value @ mix, low, high)
+    return values
+
+
+def mitsuba_entries(model):
+    """The values of a model by name, as Mitsuba takes them: a colour, a spectrum or a number."""
+    entries = {}
+    for name, value in model.free_values.items():
+        if isinstance(value, tuple) and model.wavelengths:
+            value = _spectrum(value, model.wavelengths, f"{model.type_name()}: {name}")
+        elif isinstance(value, tuple):
+            value = {"type": "rgb", "value": list(value * 3 if len(value) == 1 else value)}
+        entries[name] = value
+    return entries
+
+
+def _spectrum(value, wavelengths, what):
+    """The spectrum of one number per wavelength: linear between these, constant beyond."""
+    if min(value) < 0:
+        raise BrdfkitError(
+            f"{what} is a spectrum with a value below 0, which Mitsuba does not hold; use an rgb "
+            "or mono variant, or save the material as .bsdf."
+        )
+    if len(value) == 1 or max(value) == 0:  # Mitsuba refuses a spectrum that is 0 everywhere
+        return value[0]
+    nodes, values = zip(*sorted(zip(wavelengths, value, strict=True)), strict=True)
+    ends = min(VISIBLE[0], nodes[0] - 1), max(VISIBLE[1], nodes[-1] + 1)
+    return {
+        "type": "irregular",
+        "wavelengths": ", ".join(map(repr, (ends[0], *nodes, ends[1]))),
+        "values": ", ".join(map(repr, (values[0], *values, values[-1]))),
+    }
+
+
+def short(value):
+    """A value as a short text."""
+    if not isinstance(value, tuple):
+        return f"{value:.4g}"
+    if len(value) > MOST_PRINTED:
+        return f"[{len(value)} from {min(value):.4g} to {max(value):.4g}]"
+    return "[" + ", ".join(f"{v:.4g}" for v in value) + "]"

@@ -1,0 +1,131 @@
+"""`prediction_error`: how far a linear model is from the truth, by noise and by bias."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.fitting import Fit
+from brdfkit.fitting.named_losses import as_loss
+from brdfkit.jit.threads import in_turn
+from brdfkit.materials import MaterialLike, material, measured_material
+from brdfkit.measured.selection import select_samples
+from brdfkit.model import double_precision
+from brdfkit.model.evaluation import lobe_values
+
+
+@dataclass(frozen=True, eq=False)
+class PredictionError:
+    """The expected error of a linear model's prediction at each fitted sample [Kurt 2007, eq. 7.8].
+
+    Attributes
+    ----------
+    variance : ndarray, shape (n, channels)
+        What noise brings, the variance z (Z'Z)⁻¹ z' σ² of the prediction [sr⁻²].
+    bias : ndarray, shape (n, channels)
+        What no repetition lessens, z (Z'Z)⁻¹ Z'η - η(z): the model lacks it [sr⁻¹].
+    """
+
+    variance: NDArray[np.float64]
+    bias: NDArray[np.float64]
+
+    @property
+    def mean_square(self) -> NDArray[np.float64]:
+        """The mean squared error (n, channels) in sr⁻²: variance + bias²."""
+        return self.variance + self.bias**2
+
+    @property
+    def largest(self) -> NDArray[np.float64]:
+        """δ_max, the largest squared bias of each channel [Kurt 2007, eq. 7.10] in sr⁻²."""
+        return (self.bias**2).max(axis=0)
+
+    def __str__(self) -> str:
+        noise, bias = (np.sqrt(np.mean(part)) for part in (self.variance, self.bias**2))
+        most = np.sqrt(self.largest.max())
+        return f"by noise {noise:.3g} sr⁻¹ (rms), by bias {bias:.3g} (rms), {most:.3g} at most"
+
+
+@in_turn
+def prediction_error(
+    fit: Fit,
+    data: MaterialLike,
+    truth: MaterialLike | None = None,
+    sigma: ArrayLike | None = None,
+) -> PredictionError:
+    """The expected error of a fit's prediction: variance and bias, at the samples fitted.
+
+    It is known where the fit is linear in the data: a model without searched shapes, as
+    ``koenderink`` and ``pca_polynomial``, a linear loss and no robust weight. A prediction that is
+    clamped at 0, or a weight on its bound, is not linear; here it counts as if it were.
+
+    Parameters
+    ----------
+    fit : Fit
+        The fit.
+    data : Measured, str or Path
+        The material that was fitted, or the name or path of it.
+    truth : Measured, Fit, Model, str or Path, optional
+        The true BRDF η. By default the measured values: then the bias is minus the residuals.
+    sigma : float or array_like, shape (channels,), optional
+        Standard deviation of the noise [sr⁻¹], equal at all samples. By default it follows from the
+        residuals.
+
+    Returns
+    -------
+    PredictionError
+        Variance and bias; prints as a line.
+
+    Raises
+    ------
+    BrdfkitError
+        For a fit that is not linear, and where `data` was not measured or `truth` is no material.
+
+    Examples
+    --------
+    >>> print(prediction_error(fit("koenderink", "plaster", "plain"), "plaster"))  # doctest: +SKIP
+    """
+    data = measured_material(data)
+    samples = select_samples(
+        data, fit.settings.get("max_angle", 80.0), spectral=bool(fit.wavelengths)
+    )
+    _require_linear(fit, samples)
+    Z = lobe_values(fit.model, samples.wi, samples.wo)[0]
+    # (Z'WZ)⁻¹ Z'W, of the weights W of the loss
+    root = _root_weights(as_loss(fit.loss_name), samples)
+    solve = np.linalg.pinv(root[:, None] * Z) * root
+    values = samples.values if truth is None else material(truth).eval(samples.wi, samples.wo)
+    bias = Z @ (solve @ values) - values
+    if sigma is None:
+        left = Z @ (solve @ samples.values) - samples.values
+        sigma = np.sqrt((left**2).sum(axis=0) / max(len(Z) - Z.shape[1], 1))
+    spread = ((Z @ (solve @ solve.T)) * Z).sum(axis=1, keepdims=True)
+    return PredictionError(spread * np.broadcast_to(sigma, values.shape[1:]) ** 2, bias)
+
+
+def _require_linear(fit, samples):
+    """Raise `BrdfkitError` unless the values of a fit are linear in the measured ones."""
+    model, settings = type(fit.model), fit.settings
+    given = {*model.determined(samples), *settings.get("fixed", ())}
+    sought = [name for name in model.shapes(settings.get("anisotropic")) if name not in given]
+    reason = None
+    if sought:
+        reason = f"it was searched for {', '.join(sought)}"
+    elif any(lobe.quadratic for lobe in fit.model.lobes()):
+        reason = "it holds squares of weights"
+    elif not as_loss(fit.loss_name).linear:
+        reason = f"the {fit.loss_name} loss is not linear"
+    elif settings.get("robust"):
+        reason = f"{settings['robust']} weighs samples by their values"
+    if reason:
+        raise BrdfkitError(
+            f"{fit.name}: its prediction is not linear in the data ({reason}); fit a linear model, "
+            "such as koenderink, by a linear loss, such as plain."
+        )
+
+
+def _root_weights(loss, samples):
+    """√W (n,) of a linear loss, whose squared differences are W (model - measured)²."""
+    one, zero = (double_precision.array(np.full(len(samples.wi), x)) for x in (1.0, 0.0))
+    cosines = [double_precision.array(w[:, 2]) for w in (samples.wi, samples.wo)]
+    return np.sqrt(loss.importance(samples)) * np.abs(loss.difference(one, zero, *cosines))

@@ -1,0 +1,125 @@
+"""`profile`: the loss over one parameter, the others being the best for each of its values."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from brdfkit.arguments import to_whole_number
+from brdfkit.errors import BrdfkitError
+from brdfkit.fitting import Fit
+from brdfkit.fitting.profiling import follow
+from brdfkit.jit.threads import in_turn
+from brdfkit.materials import MaterialLike
+from brdfkit.plotting.lobe_plots import Plot
+from brdfkit.verbs.bootstrap import refit
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """The least loss at each value of a parameter; prints as a line.
+
+    Attributes
+    ----------
+    fit : Fit
+        The fit in question.
+    parameter : str
+        Name of the shape parameter.
+    values : ndarray, shape (points,)
+        Its values, that of the fit among them.
+    losses : ndarray, shape (points,)
+        The least E at each.
+    level : float
+        E up to which values are in the 95 % interval.
+    interval : tuple of float
+        Where E crosses the level (low, high), or a bound that it does not cross before.
+    """
+
+    fit: Fit
+    parameter: str
+    values: NDArray[np.float64]
+    losses: NDArray[np.float64]
+    level: float
+    interval: tuple[float, float]
+
+    @property
+    def value(self) -> float:
+        """The parameter's value in the fit."""
+        return float(np.ravel(self.fit.values[self.parameter])[0])
+
+    def plot(self) -> Figure:
+        """The loss over the parameter, with the level and the interval."""
+        figure = Plot(figsize=(5, 3.2), layout="constrained")
+        axes = figure.add_subplot(xlabel=self.parameter, ylabel=f"{self.fit.loss_name} loss")
+        axes.plot(self.values, self.losses, color="#0072b2")
+        axes.axhline(self.level, color="0.45", linestyle="--", linewidth=1)
+        axes.axvspan(*self.interval, color="#0072b2", alpha=0.15, linewidth=0)
+        axes.axvline(self.value, color="black", linewidth=1)
+        axes.set_title(f"{self.fit.name} fitted to {self.fit.data}: 95 % by the profile", size=10)
+        return figure
+
+    def __str__(self) -> str:
+        low, high = self.interval
+        return f"{self.parameter} = {self.value:.6g}, 95 %: {low:.6g} to {high:.6g}, by its profile"
+
+
+@in_turn
+def profile(fit: Fit, data: MaterialLike, parameter: str, points: int = 25) -> Profile:
+    """The profile of the loss over a shape parameter, and the 95 % interval that it gives.
+
+    At each value of the parameter the loss is minimised over all others. With N numbers and k
+    parameters, the interval is where E² ≤ E²_min (1 + t² / (N - k)), of Student's t [Bates & Watts
+    1988]: for noise that is Gaussian and equal in the loss's differences, also where the model is
+    far from linear and `Fit.intervals` are not to be trusted.
+
+    Parameters
+    ----------
+    fit : Fit
+        The fit, without a robust weight, ``weights`` or standard errors of the measurement.
+    data : Measured, str or Path
+        The material that was fitted, or the name or path of it.
+    parameter : str
+        A shape parameter that was searched, as ``"alpha_u"``.
+    points : int, default 25
+        How many values of the parameter, at least 5.
+
+    Returns
+    -------
+    Profile
+        The losses and the interval; prints as a line, and plots.
+
+    Raises
+    ------
+    BrdfkitError
+        For a parameter that was not searched, a robust fit or one by standard errors, where `data`
+        was not measured, and where no number is left beyond the parameters.
+
+    Examples
+    --------
+    >>> profile(fit("ward", "plaster"), "plaster", "alpha_u").interval    # doctest: +SKIP
+    (0.23, 0.25)
+    """
+    from scipy.special import stdtrit
+
+    points = to_whole_number("points", points, least=5)
+    again = refit(fit, data)
+    space = again.problem().space
+    if parameter not in space.names:
+        raise BrdfkitError(
+            f"{fit.name}: {parameter} was not searched, so it has no profile; searched were "
+            f"{', '.join(space.names) or 'none'}."
+        )
+    freedom = fit.degrees_of_freedom or 0
+    if fit.settings.get("robust") or freedom < 1:
+        why = "is robust, and minimises no loss" if freedom >= 1 else "has no number to spare"
+        raise BrdfkitError(f"{fit.name}: the fit {why}, so it has no profile; try bootstrap.")
+    middle = fit.values[parameter]
+    level = fit.loss * np.sqrt(1 + stdtrit(freedom, 0.975) ** 2 / freedom)
+    k = space.names.index(parameter)
+    (low, below), (high, above) = (
+        follow(again, parameter, middle, bound, level, points // 2)
+        for bound in (float(space.low[k]), float(space.high[k]))
+    )
+    values, losses = np.array(sorted([*below, (middle, fit.loss), *above])).T
+    return Profile(fit, parameter, values, losses, float(level), (low, high))

@@ -1,0 +1,109 @@
+"""A fit knows its data again: checksums, versions, and what it left of them."""
+
+import json
+import pickle
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from test_fit import synthetic
+
+import brdfkit as bk
+from brdfkit.errors import BrdfkitError
+
+pytestmark = pytest.mark.quick
+
+
+def test_a_fit_remembers_its_data_and_what_made_it(tmp_path):
+    data = bk.load("blasted_gold")
+    fit = bk.fit("lambert", data)
+    assert fit.checksum == data.checksum
+    assert len(bytes.fromhex(fit.checksum)) == 32
+    assert fit.versions["brdfkit"] == bk.__version__
+    assert fit.versions["numpy"] == np.__version__
+    assert sorted(fit.versions) == ["brdfkit", "drjit", "mitsuba", "numpy", "scipy"]
+    bk.save(fit, tmp_path / "fit.json")
+    for again in (bk.load(tmp_path / "fit.json"), pickle.loads(pickle.dumps(fit))):
+        assert again == fit
+        assert again.versions == fit.versions
+        assert not [f.name for f in fields(fit) if getattr(fit, f.name) != getattr(again, f.name)]
+
+
+def test_a_fit_of_other_versions_is_read(tmp_path):
+    file = tmp_path / "fit.json"
+    fit = bk.fit("lambert", synthetic(bk.models()["lambert"](), n=50))
+    bk.save(replace(fit, versions={"brdfkit": "0.0.1", "mitsuba": "3.5.0"}), file)
+    other = bk.load(file)
+    assert other == fit
+    assert other.versions["mitsuba"] == "3.5.0"
+    record = json.loads(file.read_text())
+    del record["fit"]["checksum"], record["fit"]["versions"]
+    file.write_text(json.dumps(record))
+    older = bk.load(file)
+    assert (older.checksum, older.versions) == ("", {})
+    assert older.values == fit.values
+
+
+def test_the_checksum_is_of_what_was_measured(tmp_path):
+    """The same in any file that loses nothing; another one for another value, direction or mask."""
+    data = synthetic(bk.models()["ward"](diffuse_reflectance=(0.1, 0.2, 0.3)), n=50)
+    bk.save(data, tmp_path / "other name.npz")
+    assert bk.load(tmp_path / "other name.npz").checksum == data.checksum
+    table = bk.load("red_plastic")
+    bk.save(table, tmp_path / "table.npz.xz")
+    assert bk.load(tmp_path / "table.npz.xz").checksum == table.checksum
+
+    def changed(name="", **more):
+        arrays = {n: np.array(getattr(data.samples, n)) for n in ("wi", "wo", "values", "valid")}
+        if name == "valid":
+            arrays[name][7] = False
+        elif name:
+            arrays[name][7] = arrays[name][8]
+        return bk.Measured.from_samples(**arrays, **more).checksum
+
+    assert changed() == changed(anisotropic=True)
+    others = [changed(name) for name in ("", "wi", "wo", "values", "valid")]
+    others.append(changed(channels=("400nm", "500nm", "600nm")))
+    assert len({*others, table.checksum}) == 7
+
+
+def test_residuals_are_measured_less_modelled():
+    """Of samples and of a table, at what was fitted; rendered and plotted as any material."""
+    for data in (synthetic(bk.models()["ggx"](), n=300), bk.load("red_plastic")):
+        fit = bk.fit("lambert", data, "cosine", max_angle=70)
+        left = fit.residuals(data)
+        assert left.is_table == data.is_table
+        assert left.samples.valid.sum() == fit.samples
+        rows = left.samples.valid
+        wi, wo = left.samples.wi[rows], left.samples.wo[rows]
+        np.testing.assert_allclose(left.values[rows] + fit.eval(wi, wo), data.values[rows])
+        assert (left.values[rows] < 0).any()
+        loss = bk.losses["cosine"].importance(left.samples.at(rows)) @ (
+            (wi[:, 2:] * left.values[rows]) ** 2
+        )
+        assert loss.sum() == pytest.approx(fit.loss**2)
+        bk.plot(left)
+        assert bk.render(left, spp=1, size=4).pictures[f"{data.name} - lambert"].min() >= 0
+    turned = left.mixed(-np.eye(3), ("R", "G", "B"))
+    assert (left.eval(wi, wo) * turned.eval(wi, wo)).max() == 0
+
+
+def test_residuals_keep_what_is_known_of_the_data():
+    wi = wo = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.999, 0.0, 0.04]])
+    errors = np.full((3, 1), 0.01)
+    data = bk.Measured.from_samples(wi, wo, [1, 2, 3], channels=("Y",), standard_error=errors)
+    left = bk.fit("lambert", data, "plain").residuals(data)
+    np.testing.assert_allclose(left.values[:, 0], [-0.5, 0.5, np.nan])
+    np.testing.assert_array_equal(left.standard_error, errors)
+    assert str(left) == "samples - lambert: samples, 2 of 3 valid, channels Y"
+
+
+def test_what_cannot_be_subtracted_is_refused():
+    data = synthetic(bk.models()["lambert"](), n=20)
+    fit = bk.fit("lambert", data)
+    with pytest.raises(BrdfkitError, match="lambert need the measured material, not a str; load"):
+        fit.residuals("car_paint")
+    with pytest.raises(BrdfkitError, match="3 channels cannot be subtracted from 1"):
+        data.minus(bk.load("car_paint"))
+    with pytest.raises(BrdfkitError, match="max_angle = 100"):
+        data.minus(fit, 100)
