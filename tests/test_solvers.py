@@ -125,7 +125,7 @@ def test_the_solver_that_the_documentation_shows_works(noisy):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("end", [None, [0.1], solvers.End(np.zeros(2), 0.1)], ids=repr)
+@pytest.mark.parametrize("end", [None, [0.1], solvers.End(np.zeros(2), 0.1)])
 def test_an_end_that_is_none_is_explained(noisy, end):
     class Hasty:
         def minimise(self, objective):
@@ -154,7 +154,6 @@ def test_an_end_that_is_none_is_explained(noisy, end):
         ({"constraints": lambda model: "no"}, ["<lambda>", "'no'", "a finite number"]),
         ({"constraints": lambda model: np.nan}, ["<lambda>", "nan"]),
     ],
-    ids=str,
 )
 def test_bad_solvers_and_constraints_are_explained(noisy, arguments, words):
     with pytest.raises(BrdfkitError) as error:
