@@ -3,9 +3,11 @@
 import drjit as dr
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
+from brdfkit.cli import main
 from brdfkit.errors import BrdfkitError
 from brdfkit.samples import Table
 
@@ -135,3 +137,47 @@ def test_standard_errors_that_say_nothing_change_nothing(size):
 def test_bad_standard_errors_are_refused(bad):
     with pytest.raises(BrdfkitError, match=r"a standard error is .*; it should be a finite"):
         measured(bk.models()["ward"](), standard_error=np.full((N, 3), bad))
+
+
+def stopping(after):
+    """The log loss; its call number `after` is hit by Ctrl-C."""
+    log, calls = bk.losses["log"], []
+
+    def difference(*arrays):
+        calls.append(1)
+        if len(calls) == after:
+            raise KeyboardInterrupt
+        return log.difference(*arrays)
+
+    return bk.Loss("log", log.meaning, difference)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(("robust", "after"), [(None, 60), ("bisquare", 400)])
+def test_ctrl_c_keeps_the_best_fit_so_far(robust, after):
+    """In an exception, by which loops end; its loss is that of its model."""
+    data = measured(bk.models()["ward"](alpha_u=0.3), noise=0.01)
+    with pytest.raises(bk.Interrupted, match="the best fit so far has the loss") as stop:
+        bk.fit("ggx", data, stopping(after), robust=robust)
+    best = stop.value.best
+    assert isinstance(stop.value, KeyboardInterrupt)
+    assert best.message == "interrupted: the best so far"
+    assert best.loss == pytest.approx(bk.compare(data, best).errors["ggx"]["log"], rel=1e-9)
+    assert best.loss < bk.compare(data, bk.models()["ggx"]()).errors["ggx"]["log"]
+
+
+@pytest.mark.quick
+def test_ctrl_c_on_the_command_line_prints_it(tmp_path, monkeypatch):
+    """After the finished fits, which alone are saved; the status is that of Ctrl-C."""
+    bk.save(measured(bk.models()["ward"](alpha_u=0.3), noise=0.01), tmp_path / "ward.npz")
+    monkeypatch.chdir(tmp_path)
+    lambert = CliRunner().invoke(main, ["fit", "ward.npz", "-m", "lambert"])
+    assert lambert.exit_code == 0
+    monkeypatch.setitem(bk.losses, "log", stopping(60))
+    found = CliRunner().invoke(
+        main, ["fit", "ward.npz", "-m", "lambert", "-m", "ggx", "-m", "ward", "-o", "fits"]
+    )
+    assert found.exit_code == 130
+    assert "interrupted; 1 of 3 fits are finished, the last one is not" in found.stderr
+    assert "interrupted: the best so far" in found.stdout
+    assert [file.name for file in (tmp_path / "fits").iterdir()] == ["lambert.json"]

@@ -2,6 +2,7 @@ from .auditing import Audit as Audit
 from .auditing import audit as audit
 from .checks import check as check
 from .errors import BrdfkitError as BrdfkitError
+from .errors import Interrupted as Interrupted
 from .fitting import Fit as Fit
 from .fitting import Loss as Loss
 from .fitting import losses as losses

@@ -8,7 +8,7 @@ from brdfkit.commands._errors import say
 from brdfkit.commands._options import output_options, render_options
 from brdfkit.commands._stopping import status
 from brdfkit.commands.render import path_trace
-from brdfkit.errors import BrdfkitError
+from brdfkit.errors import BrdfkitError, Interrupted
 
 
 @click.command()
@@ -122,9 +122,9 @@ def fit(
 
     psnr = {}
     with results_folder(output):
-        fits, failed = _fit_each(names, material, how, output, console)
-        interrupted = len(fits) + len(failed) < len(names)
-        written = [fit_file(output, f.name) for f in fits] if output else []
+        fits, failed, interrupted = _fit_each(names, material, how, output, console)
+        files = [fit_file(output, f.name) for f in fits] if output else []
+        written = [file for file in files if file.is_file()]
         if rendered and not interrupted:
             picture = path_trace([material, *fits], output / "render.exr", spp, size, seed, console)
             psnr, interrupted = picture.psnr(), picture.spp < picture.asked
@@ -139,10 +139,12 @@ def fit(
 
 
 def _fit_each(names, material, how, output, console):
-    """The fits, best first, and by name the errors of the models that cannot be fitted.
+    """The fits, best first, by name the errors of the models that cannot be fitted, and whether
+    Ctrl-C ended them.
 
-    Each fit is saved as soon as it is finished. Ctrl-C ends with the fits that are finished. Where
-    no model can be fitted, the first error is raised.
+    Each fit is saved as soon as it is finished. Ctrl-C ends with the fits that are finished and, as
+    the last one, with what another one had come to. Where no model can be fitted, the first error
+    is raised.
     """
     from brdfkit.loading import save
     from brdfkit.names import fit_file
@@ -160,13 +162,17 @@ def _fit_each(names, material, how, output, console):
             if output is not None:
                 save(found, fit_file(output, found.name))
             fits.append(found)
+    except Interrupted as stop:
+        say(f"interrupted; {len(fits)} of {len(names)} fits are finished, the last one is not.")
+        return [*sorted(fits, key=lambda f: f.loss), stop.best], failed, True
     except KeyboardInterrupt:
         if not fits:
             raise
         say(f"interrupted; {len(fits)} of {len(names)} fits are finished.")
+        return sorted(fits, key=lambda f: f.loss), failed, True
     if not fits:
         raise next(iter(failed.values()))
-    return sorted(fits, key=lambda f: f.loss), failed
+    return sorted(fits, key=lambda f: f.loss), failed, False
 
 
 def _print_fits(material, fits, failed, comparison, psnr, written, console):

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.errors import Interrupted
 from brdfkit.fitting.box_quadratic import minimise_in_box
 from brdfkit.fitting.expansion import Expansion
 
@@ -44,7 +45,8 @@ def levenberg_marquardt(expand, u, weights, least, iterations, tolerance=1e-6, d
     `expand(u, weights)` gives an `Expansion`; `least` (lobes,): the least weights; a search takes
     at most `iterations` steps, ends where the next would lower E² by less than `tolerance` of it,
     or where E² is rounding beside that of the worst start; `damping`: of its first step. A search
-    ends, too, that would not come below one that has converged.
+    ends, too, that would not come below one that has converged. On Ctrl-C `Interrupted` has the
+    `Expansion` about where the searches are.
     """
     now = expand(u, weights)
     points, shapes = now.u.shape
@@ -56,54 +58,57 @@ def levenberg_marquardt(expand, u, weights, least, iterations, tolerance=1e-6, d
     exact = ROUNDING * now.error.max()
     converged = now.error <= exact
     searching = ~converged
-    for _ in range(iterations):
-        # The best step within the bounds, by the damped quadratic model
-        (rows,) = np.nonzero(searching)
-        if not len(rows):
-            break
-        here = now.at(rows)
-        H, g = _correct(here.hessian, correction[rows]), here.gradient
-        diagonal = H.diagonal(axis1=1, axis2=2)
-        floor = 1e-12 * diagonal.max(axis=1, keepdims=True) + 1e-300
-        damped = H + np.eye(H.shape[1]) * (damping[rows, None] * (diagonal + floor))[:, None, :]
-        at = _join(here)
-        step = minimise_in_box(damped, g, low - at, high - at)
-        gain = -((2 * g + (H @ step[:, :, None])[:, :, 0]) * step).sum(axis=1)
-        # Where nothing is to be gained, the search is over; elsewhere the step is tried
-        over = gain <= tolerance * here.error
-        converged[rows[over]] = True
-        leader = now.error[converged].min(initial=np.inf)
-        over |= here.error - PATIENCE * gain > leader * (1 - 1e-7)
-        searching[rows[over]] = False
-        rows, here, step, gain = rows[~over], here.at(~over), step[~over], gain[~over]
-        if not len(rows):
-            break
-        u = np.clip(here.u + step[:, :shapes], 0, 1)
-        if (here.columns.powers == 1).all():
-            weights = here.follow(u, least)
-        else:
-            moved = here.weights.reshape(len(rows), -1) + step[:, shapes:]
-            weights = np.maximum(moved.reshape(here.weights.shape), least)
-        trial = expand(u, weights)
-        evaluations += len(rows)
-        share = (here.error - trial.error) / gain
-        damping[rows] *= np.where(share > 0.75, 0.1, np.where(share > 0.25, 1, growth[rows]))
-        damping = np.maximum(damping, LEAST_DAMPING)
-        growth[rows] = np.where(share > 0, 4, 4 * growth[rows])
-        searching[rows[damping[rows] > MOST_DAMPING]] = False
-        better = trial.error < here.error
-        good, bad = rows[better], rows[~better]
-        here, trial = here.at(better), trial.at(better)
-        correction[bad] = 0
-        correction[good] = _secant(
-            correction[good],
-            _join(trial) - _join(here),
-            trial.gradient - here.gradient,
-            trial.hessian,
-        )
-        now.put(good, trial)
-        converged |= now.error <= exact
-        searching &= ~converged
+    try:
+        for _ in range(iterations):
+            # The best step within the bounds, by the damped quadratic model
+            (rows,) = np.nonzero(searching)
+            if not len(rows):
+                break
+            here = now.at(rows)
+            H, g = _correct(here.hessian, correction[rows]), here.gradient
+            diagonal = H.diagonal(axis1=1, axis2=2)
+            floor = 1e-12 * diagonal.max(axis=1, keepdims=True) + 1e-300
+            damped = H + np.eye(H.shape[1]) * (damping[rows, None] * (diagonal + floor))[:, None, :]
+            at = _join(here)
+            step = minimise_in_box(damped, g, low - at, high - at)
+            gain = -((2 * g + (H @ step[:, :, None])[:, :, 0]) * step).sum(axis=1)
+            # Where nothing is to be gained, the search is over; elsewhere the step is tried
+            over = gain <= tolerance * here.error
+            converged[rows[over]] = True
+            leader = now.error[converged].min(initial=np.inf)
+            over |= here.error - PATIENCE * gain > leader * (1 - 1e-7)
+            searching[rows[over]] = False
+            rows, here, step, gain = rows[~over], here.at(~over), step[~over], gain[~over]
+            if not len(rows):
+                break
+            u = np.clip(here.u + step[:, :shapes], 0, 1)
+            if (here.columns.powers == 1).all():
+                weights = here.follow(u, least)
+            else:
+                moved = here.weights.reshape(len(rows), -1) + step[:, shapes:]
+                weights = np.maximum(moved.reshape(here.weights.shape), least)
+            trial = expand(u, weights)
+            evaluations += len(rows)
+            share = (here.error - trial.error) / gain
+            damping[rows] *= np.where(share > 0.75, 0.1, np.where(share > 0.25, 1, growth[rows]))
+            damping = np.maximum(damping, LEAST_DAMPING)
+            growth[rows] = np.where(share > 0, 4, 4 * growth[rows])
+            searching[rows[damping[rows] > MOST_DAMPING]] = False
+            better = trial.error < here.error
+            good, bad = rows[better], rows[~better]
+            here, trial = here.at(better), trial.at(better)
+            correction[bad] = 0
+            correction[good] = _secant(
+                correction[good],
+                _join(trial) - _join(here),
+                trial.gradient - here.gradient,
+                trial.hessian,
+            )
+            now.put(good, trial)
+            converged |= now.error <= exact
+            searching &= ~converged
+    except KeyboardInterrupt:
+        raise Interrupted(now) from None
     return Search(now, converged, evaluations)
 
 

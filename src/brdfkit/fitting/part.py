@@ -35,8 +35,18 @@ def draw_part(samples, influence, size, rng):
 
 def _order(samples):
     """The order of theta_h; None where the samples are in it, as a table's cells."""
-    x, y, z = (samples.wi + samples.wo).T
-    cosine = z / np.sqrt(x * x + y * y + z * z)
-    if np.diff(cosine).max(initial=0) <= 1e-12:
-        return None
-    return np.argsort(-cosine, kind="stable")
+    if samples.cells is not None:  # one of each half vector tells
+        first = np.flatnonzero(np.diff(samples.cells[0], prepend=-1))
+        if _falls(_cos_theta_h(samples.wi[first], samples.wo[first])):
+            return None
+    cosine = _cos_theta_h(samples.wi, samples.wo)
+    return None if _falls(cosine) else np.argsort(-cosine, kind="stable")
+
+
+def _cos_theta_h(wi, wo):
+    x, y, z = (wi + wo).T
+    return z / np.sqrt(x * x + y * y + z * z)
+
+
+def _falls(cosine):
+    return np.diff(cosine).max(initial=0) <= 1e-12

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.errors import Interrupted
 from brdfkit.fitting.certainty import Certainty, certify, explain_end
 from brdfkit.fitting.folding import fold
 from brdfkit.fitting.levenberg_marquardt import ROUNDING
@@ -61,7 +62,8 @@ def regress(
     bounds, by default `usual_starts`; `bounds`: (low, high), and `fixed`: a value, by shape
     parameter; `anisotropic`: search the second parameter of an anisotropic model, such as
     ``alpha_v``, too; `seed`: for the start points, and for the parts of many samples by which they
-    are compared; `report`: called with (done, total).
+    are compared; `report`: called with (done, total). On Ctrl-C `Interrupted` has the best
+    `Solution` so far.
     """
     bounds, report = bounds or {}, report or (lambda done, total: None)
     # What is searched: neither fixed nor determined by the measured directions
@@ -81,26 +83,37 @@ def regress(
     limits = Constraints(constraints, whole) if constraints else None
     objective = Objective.of(problems, points, seed, report, limits)
     solver = solver or default_solver(constraints)
-    end = objective.require_end(solver.minimise(objective))
+    stopped = False
+    try:
+        end = objective.require_end(solver.minimise(objective))
+    except Interrupted as stop:
+        end, stopped = objective.end_at_best(stop.best), True
     (u, weights), passes = objective.split(end.point[None]), None
     error, message, notes = end.error, end.message, limits.notes(end.point) if limits else ()
     if message != "converged" and error <= ROUNDING * whole.black().sum():
         message = "converged"  # a model that meets the data: the search went on in rounding
     # Weigh down outliers, from the optimum where all samples count alike
-    if robust:
-        u, weights, message, notes, passes = settle(whole, u, weights, robust, rng, report)
+    if robust and not stopped:
+        try:
+            u, weights, message, notes, passes = settle(whole, u, weights, robust, rng, report)
+        except Interrupted as stop:
+            u, weights, stopped = stop.best.u[None], stop.best.weights[None], True
         error = whole.sums(u, weights, curvature=False).error[0]
     certainty = certify(whole, u, weights, passes, rng)
-    return Solution(
+    message = "interrupted: the best so far" if stopped else explain_end(certainty) or message
+    found = Solution(
         space.values(u[0]),
         weights[0],
         math.sqrt(error),
         counted + objective.count(),
-        explain_end(certainty) or message,
+        message,
         _find_at_bounds(space, u[0], model, weights[0]),
         notes,
         certainty,
     )
+    if stopped:
+        raise Interrupted(found)
+    return found
 
 
 def default_solver(constraints):

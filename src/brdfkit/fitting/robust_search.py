@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.errors import Interrupted
 from brdfkit.fitting.acceleration import make_convex
 from brdfkit.fitting.box_quadratic import minimise_in_box
 from brdfkit.fitting.expansion import Expansion
@@ -117,8 +118,18 @@ class Robust:
     def settle(self, u, weights, report, tolerance=SETTLED, patience=ORDINARY):
         """The `Settled` end of the passes from `u` and `weights`: the next would change the fitted
         values by less than the `tolerance`, or there were too many. The first `patience` passes are
-        ordinary ones."""
-        best, near, rooted = None, NEAR, False
+        ordinary ones. On Ctrl-C `Interrupted` has the best end so far."""
+        self.best = None
+        try:
+            return self._pass(u, weights, report, tolerance, patience)
+        except KeyboardInterrupt:
+            if self.best is None:
+                raise
+            raise Interrupted(self.best) from None
+
+    def _pass(self, u, weights, report, tolerance, patience):
+        """As `settle`."""
+        near, rooted = NEAR, False
         residuals = self.problem.residuals(u, weights)
         for number in range(1, PASSES + 1):
             report(number, PASSES)
@@ -129,15 +140,15 @@ class Robust:
             gradient, hessian = self._weigh(u, weights, factors)
             ordinary = self._step(hessian, gradient, u, weights)
             change = np.sqrt(max(ordinary @ self.metric @ ordinary, 0)) / (self.spread or 1.0)
-            astray = rooted and change > best.change
-            if best is None or change < best.change:
+            astray = rooted and change > self.best.change
+            if self.best is None or change < self.best.change:
                 light = float(np.mean([f < 0.5 for f in factors]))
-                best = Settled(u[0], weights[0], light, number, change)
+                self.best = Settled(u[0], weights[0], light, number, change)
             if change <= tolerance:
                 break
             rooted = False
             if astray:  # back, and nearer to the end by smaller merits first
-                u, weights, near = best.u[None], best.weights[None], best.change / 3
+                u, weights, near = self.best.u[None], self.best.weights[None], self.best.change / 3
                 self.part, self.rows = self.problem, slice(None)  # a part's Hessian is too rough
                 residuals = self.problem.residuals(u, weights)
                 continue
@@ -156,8 +167,8 @@ class Robust:
                 residuals = self.problem.residuals(u, weights)
             else:
                 u, weights, residuals = self._descend(u, weights, residuals, scales, steps, further)
-        best.passes = number
-        return best
+        self.best.passes = number
+        return self.best
 
     def _newton(self, u, weights, ratios):
         """Newton's matrix, that knows how the weights of the samples change, at held scales."""
@@ -236,8 +247,10 @@ class Robust:
     def _expand(self, problem, u, weights, factors, curvature=True):
         """The `Expansion` of E² with the samples weighted by `factors`."""
         problem.factors = factors
-        sums = problem.sums(u, weights, curvature)
-        problem.factors = None
+        try:
+            sums = problem.sums(u, weights, curvature)
+        finally:  # Ctrl-C may come here
+            problem.factors = None
         return Expansion.of(problem.columns, problem.space, sums, u, weights)
 
     def _curvature(self, u, weights, factors):

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from brdfkit.arguments import to_dictionary, to_pair, to_whole_number
-from brdfkit.errors import BrdfkitError, no_such
+from brdfkit.errors import BrdfkitError, Interrupted, no_such
 from brdfkit.fitting import Fit, Loss, as_loss, regress
 from brdfkit.fitting.measurement_noise import regress_noisy
 from brdfkit.fitting.robust import WEIGHTS
@@ -121,6 +121,8 @@ def fit(
         for a spectral fit, or no sample is left; for a formula or loss that is not finite; for
         weights or standard errors that do not fit; and for a robust fit without more samples than
         parameters.
+    Interrupted
+        On Ctrl-C, once the search has begun; its `best` is the best `Fit` so far.
 
     Examples
     --------
@@ -137,33 +139,41 @@ def fit(
     loss = as_loss(loss)
     samples = select_samples(data, max_angle, weights, use_standard_error, spectral)
 
+    def to_fit(found):
+        linear = dict(zip(model.weights(), map(tuple, found.weights.T), strict=True))
+        fitted = model(wavelengths=wavelengths(data) if spectral else (), **found.shapes, **linear)
+        return Fit(
+            model=fitted,
+            data=data.name,
+            loss_name=loss.name,
+            loss=found.loss,
+            samples=len(samples.wi),
+            evaluations=found.evaluations,
+            seconds=time.perf_counter() - began,
+            message=found.message,
+            at_bounds=found.at_bounds,
+            certainty=found.certainty,
+            notes=(*found.notes, *_list_notes(data, samples, loss, found, fitted)),
+            settings={
+                **given,
+                **how,
+                "max_angle": float(max_angle),
+                "spectral": bool(spectral),
+                "solver": to_plain(how["solver"]),
+                "constraints": list(map(to_plain, how["constraints"])),
+            },
+            checksum=data.checksum,
+            versions=dict(versions()),
+        )
+
     solve = regress if samples.errors is None else regress_noisy
-    found = solve(model, samples, loss, robust=robust, **how, report=progress)
-    linear = dict(zip(model.weights(), map(tuple, found.weights.T), strict=True))
-    fitted = model(wavelengths=wavelengths(data) if spectral else (), **found.shapes, **linear)
-    return Fit(
-        model=fitted,
-        data=data.name,
-        loss_name=loss.name,
-        loss=found.loss,
-        samples=len(samples.wi),
-        evaluations=found.evaluations,
-        seconds=time.perf_counter() - began,
-        message=found.message,
-        at_bounds=found.at_bounds,
-        certainty=found.certainty,
-        notes=(*found.notes, *_list_notes(data, samples, loss, found, fitted)),
-        settings={
-            **given,
-            **how,
-            "max_angle": float(max_angle),
-            "spectral": bool(spectral),
-            "solver": to_plain(how["solver"]),
-            "constraints": list(map(to_plain, how["constraints"])),
-        },
-        checksum=data.checksum,
-        versions=dict(versions()),
-    )
+    try:
+        return to_fit(solve(model, samples, loss, robust=robust, **how, report=progress))
+    except Interrupted as stop:
+        best = to_fit(stop.best)
+        raise Interrupted(
+            best, f"{best.name}: the best fit so far has the loss {best.loss:.6g}"
+        ) from None
 
 
 # The settings: all arguments but the model, the material with its weights, and the progress

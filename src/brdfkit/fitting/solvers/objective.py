@@ -106,6 +106,12 @@ class Objective:
             )
         return End(np.array(end.point, float), float(end.error), end.message)
 
+    def end_at_best(self, ends: Expansion) -> End:
+        """The `End` of an interrupted search, which had come to these points."""
+        best = ends.at([int(np.argmin(ends.error))])
+        point = self.join(best.u, best.weights)
+        return End(point[0], float(self.error(point)[0]), "interrupted")
+
     def stages(self) -> tuple[Any, ...]:
         """The objectives of a search on ever more samples: the parts, then this one."""
         return (*self.parts, self)
