@@ -12,7 +12,7 @@ from brdfkit.fitting.problem import Problem
 # and the best on all; no part is more than half of what it is drawn from
 PARTS = 40_000, 3_000
 # How many starts go on after so many steps
-EXPLORING = (24, 4), (8, 6)
+EXPLORING = (32, 20), (8, 30)
 # Ends on a part within this share of the least E² are followed to all samples, up to so many
 CLOSE, FINALISTS = 0.02, 3
 MOST_STEPS, FEW_STEPS = 200, 10

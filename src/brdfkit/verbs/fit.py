@@ -89,7 +89,7 @@ def fit(
         met. Derivatives of functions are taken by differences.
     starts : int, optional
         Points from which the search begins: the defaults and others, spread over the bounds. By
-        default 16 for each searched parameter, at most 48.
+        default 16 for each searched parameter, at most 96.
     bounds : dict of str to (float, float), optional
         Narrower bounds of shape parameters, as ``{"alpha_u": (0.01, 0.5)}``.
     fixed : dict of str to float, optional
