@@ -2,8 +2,8 @@
 
     f = k_d / π + k_s D G₂ F / (4 (N·L)(N·V))
 
-D is that of [Walter et al. 2007], G₂ that of [Heitz 2014], F Schlick's. Its long tails show most
-metals, paints and plastics; no retro-reflection, no scattering between facets.
+D is that of [Walter et al. 2007], G₂ that of [Heitz 2014], F Schlick's. Shows most metals, paints
+and plastics, by its long tails; no retro-reflection, no scattering between facets.
 """
 
 from brdfkit.model import follows, shape, weight

@@ -4,8 +4,8 @@
 
 The option `models` names them, as in "ggx+ggx" or "lambert+ward+cook_torrance"; wherever a model
 is named, such a sum may stand. The first model gives the diffuse term. The parameters of the j-th
-model are named after the model and j: ggx_2_alpha_u. Two lobes show metals and glossy plastics
-better than one; measurements seldom tell three apart [Ngan et al. 2005]; [Kurt 2007, eqs. 3.12,
+model are named after the model and j: ggx_2_alpha_u. Shows metals and glossy plastics, by two lobes
+better than by one; measurements seldom tell three apart. [Ngan et al. 2005]; [Kurt 2007, eqs. 3.12,
 3.30].
 """
 

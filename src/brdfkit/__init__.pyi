@@ -21,6 +21,9 @@ from .model import Model as Model
 from .model.labels import load_models as load_models
 from .model.labels import models as models
 from .plotting import plot as plot
+from .ranking import Ranked as Ranked
+from .ranking import Ranking as Ranking
+from .ranking import rank as rank
 from .rendering import Rendering as Rendering
 from .rendering import render as render
 from .rendering import render_scene as render_scene

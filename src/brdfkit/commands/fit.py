@@ -19,7 +19,7 @@ from brdfkit.errors import BrdfkitError, Interrupted
     "names",
     multiple=True,
     metavar="MODEL",
-    help="A model, or FILE.py with one; repeat it for more. Default: all.",
+    help="A model, FILE.py with one, or best; repeat it for more. Default: all.",
 )
 @click.option(
     "--loss",
@@ -90,10 +90,14 @@ def fit(
     are compared. Ctrl-C keeps the finished fits. Where a model cannot be fitted, the others go on;
     the exit status is then 2.
 
+    -m best ranks all models and two-lobe sums by their error at directions that were held out,
+    says which to take and why, and fits that one.
+
     Several FILEs are fitted in several processes, past those that cannot be read. With -o a page
     and a table are written, too, and the same command goes on where it was stopped.
     """
     from brdfkit.commands._many_files import fit_many
+    from brdfkit.commands._ranking import BEST, print_ranking, recommend
     from brdfkit.commands._targets import results_folder
     from brdfkit.fitting.solvers import AlbedoAtMost
     from brdfkit.materials import measured_material
@@ -104,11 +108,14 @@ def fit(
 
     names = list(dict.fromkeys(map(labels.read_files, names or labels.models())))
     for name in names:
-        labels.model(name)
+        if name != BEST:
+            labels.model(name)
     how = {"loss": loss, "robust": robust, "max_angle": max_angle, "seed": seed, "solver": solver}
     how["constraints"] = () if albedo_at_most is None else AlbedoAtMost(albedo_at_most)
     how["spectral"] = spectral
     if len(files) > 1:
+        if BEST in names:
+            raise BrdfkitError("-m best ranks models on one material; name one FILE, or a model.")
         if rendered:
             raise BrdfkitError("--render shows one material; name one FILE, or leave it out.")
         fit_many(files, names, how, output, jobs, console)
@@ -116,6 +123,9 @@ def fit(
     (file,) = files
     with console.progress(f"read {file}"):
         material = measured_material(file)
+    names, ranking = recommend(names, material, how, console)
+    if ranking:
+        print_ranking(ranking, console)
     if rendered:
         require_memory((size, size), 1 + len(names))
         output = output or Path(slug(material.name))
@@ -131,7 +141,7 @@ def fit(
             written += [output / "render.exr", output / "render.png"]
     with console.progress("compare"):
         comparison = compare(material, fits, max_angle, spectral)
-    _print_fits(material, fits, failed, comparison, psnr, written, console)
+    _print_fits(material, fits, failed, comparison, psnr, written, ranking, console)
     for error in failed.values():
         say(error)
     if interrupted or failed:
@@ -175,12 +185,14 @@ def _fit_each(names, material, how, output, console):
     return sorted(fits, key=lambda f: f.loss), failed, False
 
 
-def _print_fits(material, fits, failed, comparison, psnr, written, console):
+def _print_fits(material, fits, failed, comparison, psnr, written, ranking, console):
+    from brdfkit.commands._ranking import record
     from brdfkit.verbs.compare import format_error
 
     if console.as_json:
         records = [_record(f, comparison, psnr) for f in fits]
         entries = {"material": material.name, "fits": records, "failed": failed}
+        entries["ranking"] = record(ranking)
         console.json({**entries, "written": written})
         return
     for found in fits:

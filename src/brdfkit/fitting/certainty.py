@@ -53,6 +53,15 @@ class Certainty:
         errors = self.standard_errors().items()
         return {name: t * error for t, (name, error) in zip(quantiles, errors, strict=True)}
 
+    def criterion(self, loss, price):
+        """N ln(E²) + `price` k, of an error E, the `loss`, N numbers and k parameters."""
+        with np.errstate(divide="ignore"):
+            return float(self.numbers * 2 * np.log(loss) + price * self.parameters)
+
+    def bic(self, loss):
+        """The Bayesian criterion of an error E, the `loss`."""
+        return self.criterion(loss, np.log(self.numbers))
+
     def matrix(self):
         """The covariance (n, n)."""
         return np.array(self.covariance).reshape(len(self.names), len(self.names))

@@ -136,5 +136,8 @@ def _correct(hessian, correction):
         return hessian
     scale = 1 / np.sqrt(np.maximum(hessian.diagonal(axis1=1, axis2=2), 1e-300))
     both = hessian + correction
-    least = np.linalg.eigvalsh(both * scale[:, :, None] * scale[:, None, :])[:, 0]
+    with np.errstate(over="ignore", invalid="ignore"):  # where a parameter does nothing
+        scaled = both * scale[:, :, None] * scale[:, None, :]
+    finite = np.isfinite(scaled).all(axis=(1, 2))
+    least = np.linalg.eigvalsh(np.where(finite[:, None, None], scaled, 0))[:, 0]
     return np.where((least > 1e-3)[:, None, None], both, hessian)

@@ -13,10 +13,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import drjit as dr
 import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.jit.threads import in_turn
 from brdfkit.model import double_precision
 
 
@@ -69,6 +71,18 @@ class Loss:
         weights = self.weights(samples.wi[:, 2]) * samples.weight
         total = weights.sum() * (samples.values.shape[1] if self.channel_mean else 1)
         return weights / total if total else weights
+
+
+@in_turn
+def squares(loss: Loss, values: Any, samples: Any) -> NDArray[np.float64]:
+    """Squared differences (n,) of `values` (n, channels) from the `Samples`, channels summed."""
+    array = double_precision.array
+    cosines = [array(w[:, 2]) for w in (samples.wi, samples.wo)]
+    differences = [
+        loss.difference(array(value), array(measured), *cosines)
+        for value, measured in zip(values.T, samples.values.T, strict=True)
+    ]
+    return np.asarray(sum(dr.square(difference) for difference in differences))
 
 
 def loss_of(difference: Callable[..., Any]) -> Loss:

@@ -52,6 +52,7 @@ def regress(
     fixed=None,
     anisotropic=False,
     seed=0,
+    first=None,
     report=None,
 ):
     """The `Solution` of a model class on valid `Samples` under a `Loss`.
@@ -62,8 +63,9 @@ def regress(
     bounds, by default `usual_starts`; `bounds`: (low, high), and `fixed`: a value, by shape
     parameter; `anisotropic`: search the second parameter of an anisotropic model, such as
     ``alpha_v``, too; `seed`: for the start points, and for the parts of many samples by which they
-    are compared; `report`: called with (done, total). On Ctrl-C `Interrupted` has the best
-    `Solution` so far.
+    are compared; `first`: the shape parameters of the first of these points, by default the
+    model's; `report`: called with (done, total). On Ctrl-C `Interrupted` has the best `Solution` so
+    far.
     """
     bounds, report = bounds or {}, report or (lambda done, total: None)
     # What is searched: neither fixed nor determined by the measured directions
@@ -73,7 +75,7 @@ def regress(
     rng = np.random.default_rng(seed)
     folded = fold(whole)
     problems = [folded] if folded else with_parts(whole, rng)
-    default = space.coordinates(model().values)
+    default = space.coordinates(first or model().values)
     points = start_points(space, default, starts or usual_starts(len(space.names)), seed)
     counted = 0
     if len(whole.groups) > 1:  # compare the starts on few channels

@@ -134,12 +134,12 @@ class Fit:
         """Akaike's criterion, N ln(E²) + 2 k, of N numbers and k parameters: of models fitted to
         the same data under the same loss, less is better. It supposes independent samples and noise
         that is Gaussian and equal in the loss's differences, no robust weight, and no table."""
-        return self._criterion(2.0)
+        return self.certainty.criterion(self.loss, 2.0) if self.certainty else NAN
 
     @property
     def bic(self) -> float:
         """The Bayesian criterion, N ln(E²) + k ln N; see `aic`."""
-        return self._criterion(np.log(self.certainty.numbers)) if self.certainty else NAN
+        return self.certainty.bic(self.loss) if self.certainty else NAN
 
     def _per_value(self, known):
         """Numbers by the names of `Certainty` in the form of `values`, NaN where there is none."""
@@ -154,13 +154,6 @@ class Fit:
             else:
                 found[name] = known.get(name, NAN)
         return found
-
-    def _criterion(self, price):
-        if not self.certainty:
-            return NAN
-        with np.errstate(divide="ignore"):
-            deviance = self.certainty.numbers * 2 * np.log(self.loss)
-        return float(deviance + price * self.certainty.parameters)
 
     def eval(self, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
         """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3)."""

@@ -11,8 +11,10 @@ from brdfkit.fitting.problem import Problem
 # Many samples are searched by parts: all starts on the smallest, those that end best on the next,
 # and the best on all; no part is more than half of what it is drawn from
 PARTS = 40_000, 3_000
-# How many starts go on after so many steps
-EXPLORING = (24, 4), (8, 6)
+# How many starts go on after so many steps; and where more shape parameters are searched than FEW,
+# those of a sum, whose best end few starts lead to
+EXPLORING, LONGER = ((24, 4), (8, 6)), ((32, 20), (8, 30))
+FEW = 3
 # Ends on a part within this share of the least E² are followed to all samples, up to so many
 CLOSE, FINALISTS = 0.02, 3
 MOST_STEPS, FEW_STEPS = 200, 10
@@ -43,7 +45,7 @@ def search(problems, u, report, iterations=MOST_STEPS, tolerance=EXACT):
     if first.clamped:
         u, weights = _avoid_clamping(first, u, weights)
     # A few steps from all starts, a few more from the best of these, and so on
-    for count, steps in EXPLORING:
+    for count, steps in LONGER if u.shape[1] > FEW else EXPLORING:
         found = levenberg_marquardt(first.expand, u, weights, first.least, steps)
         evaluations += found.evaluations
         ends = found.ends.at(found.best(count))

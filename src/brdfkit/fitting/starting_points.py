@@ -7,7 +7,7 @@ import numpy as np
 
 def usual_starts(shapes):
     """How many points a search over so many shape parameters begins at."""
-    return max(1, min(16 * shapes, 48))
+    return max(1, min(16 * shapes, 96))
 
 
 def start_points(space, default, count, seed):

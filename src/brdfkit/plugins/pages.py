@@ -4,11 +4,14 @@ The first line is ``Title: one sentence.``; the formula, where there is one, and
 """
 
 import inspect
+import re
 import sys
 from dataclasses import dataclass
 
 from brdfkit.plugins import discovery
 from brdfkit.references import works
+
+SHOWS = re.compile(r"\bShows .*?\.(?=\s|$)")
 
 
 @dataclass(frozen=True)
@@ -21,6 +24,12 @@ class Page:
 
     def __str__(self):
         return "\n".join([f"{self.title}: {self.sentence}", *self.lines])
+
+    @property
+    def shows(self):
+        """Which materials a model shows, and what it does not: the sentence that begins so."""
+        found = SHOWS.search(" ".join(self.lines))
+        return found.group() if found else ""
 
     @property
     def references(self):

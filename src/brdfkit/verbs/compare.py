@@ -4,15 +4,13 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import drjit as dr
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import losses
-from brdfkit.jit.threads import in_turn
+from brdfkit.fitting.loss import squares
 from brdfkit.materials import MaterialLike, materials, measured_material
 from brdfkit.measured.selection import select_samples
-from brdfkit.model import double_precision
 from brdfkit.names import make_unique
 
 
@@ -118,16 +116,4 @@ def error(thing, data, loss, max_angle=80.0, spectral=False):
             f"{samples.values.shape[1]}; compare what has the same ones."
         )
     values = np.broadcast_to(values, samples.values.shape)
-    return math.sqrt(importance @ _squares(loss, values, samples))
-
-
-@in_turn
-def _squares(loss, values, samples):
-    """Squared differences (n,) of `values` (n, channels) from the `samples`, channels summed."""
-    array = double_precision.array
-    cosines = [array(w[:, 2]) for w in (samples.wi, samples.wo)]
-    differences = [
-        loss.difference(array(value), array(measured), *cosines)
-        for value, measured in zip(values.T, samples.values.T, strict=True)
-    ]
-    return np.asarray(sum(dr.square(difference) for difference in differences))
+    return math.sqrt(importance @ squares(loss, values, samples))

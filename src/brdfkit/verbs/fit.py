@@ -27,6 +27,7 @@ from brdfkit.measured.selection import require_max_angle, select_samples
 from brdfkit.measured.spectrum_to_rgb import wavelengths
 from brdfkit.model import Model, labels
 from brdfkit.model.evaluation import clamped_share
+from brdfkit.verbs.azimuth import note_on_azimuth
 from brdfkit.version import versions
 
 Constraint = AlbedoAtMost | WeightsAtMost | Callable[[Model], ArrayLike]
@@ -88,7 +89,7 @@ def fit(
         met. Derivatives of functions are taken by differences.
     starts : int, optional
         Points from which the search begins: the defaults and others, spread over the bounds. By
-        default 16 for each searched parameter, at most 48.
+        default 16 for each searched parameter, at most 96.
     bounds : dict of str to (float, float), optional
         Narrower bounds of shape parameters, as ``{"alpha_u": (0.01, 0.5)}``.
     fixed : dict of str to float, optional
@@ -220,7 +221,8 @@ def check_settings(given: Mapping[str, Any], where: str = "") -> dict[str, Any]:
 
 
 def _list_notes(data, samples, loss, found, fitted):
-    """Notes on a fit, in words: too few measured numbers, negative values, a clamped model."""
+    """Notes on a fit, in words: too few measured numbers, negative values, a clamped model, an
+    isotropic one of an anisotropic material."""
     notes = []
     known, sought = found.certainty.numbers, found.certainty.parameters
     if known < sought:
@@ -235,6 +237,8 @@ def _list_notes(data, samples, loss, found, fitted):
     if fitted.signed():
         clamped = clamped_share(fitted)
         notes.append(f"{clamped:.1%} of the hemisphere's direction pairs are clamped at 0")
+    if data.anisotropic and (note := note_on_azimuth(data, samples, loss, fitted)):
+        notes.append(note)
     return (*notes, *found.certainty.undetermined, *found.certainty.trades)
 
 

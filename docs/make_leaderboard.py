@@ -1,0 +1,219 @@
+"""Makes `docs/leaderboard.md` and its figure: every model, fitted to every measurement at hand.
+
+    BRDFKIT_DATA=FOLDER python docs/make_leaderboard.py --cache CACHE    # two hours on two cores
+
+FOLDER holds third-party measurements. CACHE keeps each fit as soon as it is finished, and the same
+command goes on from there; the page is written after each part of the plan. The errors are computed
+by `leaderboard_truth.py`, and made into tables and words by `leaderboard_page.py`.
+"""
+
+import argparse
+import json
+import os
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from leaderboard_page import write_page
+from leaderboard_truth import MAX_ANGLE, PAIRS, Truth
+
+import brdfkit as bk
+from brdfkit.files import sha256, write_safely
+from brdfkit.fitting.levenberg_marquardt import levenberg_marquardt
+from brdfkit.fitting.parameter_space import Space
+from brdfkit.fitting.problem import Problem
+from brdfkit.measured.selection import select_samples
+from brdfkit.model import labels
+from brdfkit.samples.neural import decode_network
+
+SEED = 0
+# Cells of the reconstructions that are fitted, of a MERL table, and of one to be searched often
+SHAPE, FULL, COARSE = (60, 30, 60), (90, 90, 180), (30, 24, 48)
+FEW = (
+    "gold-metallic-paint",
+    "chrome-steel",
+    "teflon",
+    "specular-violet-phenolic",
+    "light-brown-fabric",
+)
+# The main sums, and more of them and of other forms, which are fitted by the log loss only. They
+# did best of all pairs of models, on a few materials, and of their variants
+SUMS = "ggx+ggx", "abc+ggx", "abc+student_t"
+MORE = (
+    "abc+student_t:fresnel=coloured",
+    "burley+abc+student_t:fresnel=coloured",
+    "ggx:fresnel=coloured",
+    "student_t:fresnel=coloured",
+)
+# How many random starts the search is held to
+RESTARTS = 50
+# What is fitted to measurements and by other losses, too, and checked on a few reconstructions:
+# against full tables, and against random starts on coarse ones
+SOME = "ggx", "student_t", "ggx+ggx", "abc+student_t"
+NETWORKS, MERL = "nbrdf_derived/merl_nbrdf.npz", "neural reconstruction"
+COLLECTIONS = {
+    "paints": "minidiff_paints/*.astm.xz",
+    "RGL": "rgl/*.bsdf",
+    "Cornell": "cornell/*.brdf",
+}
+
+
+def plan():
+    """What is fitted: (collection, loss, labels of models), the most telling first."""
+    main = (*(name for name in bk.models() if name != "mixture"), *SUMS)
+    yield MERL, "log", main
+    yield MERL, "log", MORE
+    for collection in COLLECTIONS:
+        yield collection, "log", SOME
+    yield MERL, "cosine", SOME
+    yield MERL, "cbrt", SOME
+
+
+def reconstructions(networks, cache, shape, names=None):
+    """The files in `cache` of neural reconstructions, as tables of `shape`."""
+    folder = cache / "materials" / "x".join(map(str, shape))
+    folder.mkdir(parents=True, exist_ok=True)
+    files = [folder / f"{name}.npz" for name in names or sorted(networks)]
+    for file in files:
+        if not file.is_file():
+            table = decode_network(networks[file.stem], shape)
+            bk.save(bk.Measured.from_table(table.values, name=file.stem), file)
+    return files
+
+
+def sweep(files, models, loss, output, workers):
+    """The finished sweep of some files, each fit of which is kept in `output`."""
+
+    def tell(done, total):
+        print(f"{output.name}: {done} of {total} fits", end="\r", file=sys.stderr)
+
+    settings = {"loss": loss, "seed": SEED, "max_angle": MAX_ANGLE}
+    found = bk.sweep(files, models, settings, output=output, workers=workers, progress=tell)
+    print(f"{output.name}: {found.summary}", *found.problems, sep="\n", file=sys.stderr)
+    if len(found.rows) < found.asked:
+        sys.exit("interrupted; the same command goes on from there.")
+    return found
+
+
+def restart(file, model):
+    """(E of the fit, the least E of `RESTARTS` searches from random points on all samples)."""
+    data, model = bk.load(file), labels.model(model)
+    samples = select_samples(data, MAX_ANGLE)
+    space = Space.of(model, {}, model.determined(samples), data.anisotropic)
+    problem = Problem(model, samples, bk.losses["log"], space)
+    ends = []
+    for u in np.random.default_rng(SEED).random((RESTARTS, 1, len(space.names))):
+        start = problem.start(u)
+        found = levenberg_marquardt(problem.expand, u, start, problem.least, 200, 1e-9).ends
+        ends.append(float(np.sqrt(found.error[0])))
+    return bk.fit(model, data, seed=SEED).loss, min(ends)
+
+
+class Kept:
+    """Results in a JSON file, by key, so that each is computed once."""
+
+    def __init__(self, file):
+        self.file = file
+        self.results = json.loads(file.read_text()) if file.is_file() else {}
+
+    def __call__(self, key, compute, *arguments):
+        """The result of `key`, computed where it is not kept."""
+        if key not in self.results:
+            self.results[key] = compute(*arguments)
+        return self.results[key]
+
+    def write(self):
+        """Write the file."""
+        with write_safely(self.file) as beside:
+            beside.write_text(json.dumps(self.results))
+
+
+@dataclass(frozen=True)
+class Score:
+    """One fit: `error` in the page's metric, `own` in the loss that it minimised."""
+
+    collection: str
+    material: str
+    model: str
+    loss: str
+    error: float
+    own: float
+    parameters: int
+
+
+def time_fits(file, models, kept):
+    """Model → seconds of the processor that a fit to a file takes, the least of two."""
+    data = bk.load(file)
+
+    def measure(model):
+        seconds = []
+        for _ in range(2):
+            began = time.process_time()
+            bk.fit(model, data)
+            seconds.append(time.process_time() - began)
+        return min(seconds)
+
+    return {model: kept(f"seconds/{file.stem}/{model}", measure, model) for model in models}
+
+
+def judge(rows, collection, networks, kept):
+    """Yield the `Score` of every row of a sweep whose fit succeeded."""
+    asked = {}
+
+    def error(row):
+        file = Path(row.file)
+        if file not in asked:
+            asked.clear()  # one at a time: rows come by file
+            asked[file] = Truth(file, networks)
+        return asked[file].error(row.fit)
+
+    for row in rows:
+        if row.fit:
+            key = f"{row.loss}/{row.material}/{row.model}/{sha256(row.saved)}"
+            score = row.material, row.model, row.loss, kept(key, error, row), row.error
+            yield Score(collection, *score, row.parameters)
+    kept.write()
+
+
+def main():
+    """Fit what is not fitted, judge all fits, and write the page."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--cache", type=Path, required=True, help="folder for the fits")
+    parser.add_argument("--workers", type=int, help="processes; default: one for each core")
+    given = parser.parse_args()
+    folder = os.environ.get("BRDFKIT_DATA")
+    if not folder:
+        sys.exit("BRDFKIT_DATA names no folder of measurements")
+    folder = Path(folder)
+    with np.load(folder / NETWORKS) as read:
+        networks = dict(read)
+    kept = Kept(given.cache / "errors.json")
+
+    files = {MERL: reconstructions(networks, given.cache, SHAPE)}
+    files |= {name: sorted(folder.glob(pattern)) for name, pattern in COLLECTIONS.items()}
+    shape = "×".join(map(str, SHAPE))
+    facts = {"merl": MERL, "pairs": PAIRS, "angle": MAX_ANGLE, "seed": SEED, "shape": shape}
+    scores, full, restarts, seconds = [], [], [], {}
+    timed = next(file for file in files[MERL] if file.stem == FEW[0])
+    for collection, loss, models in plan():
+        rows = sweep(files[collection], models, loss, given.cache / loss, given.workers).rows
+        scores += judge(rows, collection, networks, kept)
+        seconds |= time_fits(timed, models, kept)
+        write_page(scores, seconds, full, restarts, facts)
+    # A few materials in full, and from random starts
+    few = reconstructions(networks, given.cache, FULL, FEW)
+    rows = sweep(few, SOME, "log", given.cache / "full", given.workers).rows
+    full += judge(rows, MERL, networks, kept)
+    for file in reconstructions(networks, given.cache, COARSE, FEW):
+        for model in SOME:
+            found = kept(f"restarts/{file.stem}/{model}", restart, file, model)
+            restarts.append((file.stem, model, *found))
+    kept.write()
+    write_page(scores, seconds, full, restarts, facts)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

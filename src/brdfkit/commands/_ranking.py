@@ -1,0 +1,49 @@
+"""`brdfkit fit -m best`: ranks the models, says which one is recommended, and why."""
+
+import click
+
+from brdfkit.commands._errors import say
+from brdfkit.commands._stopping import status
+
+BEST = "best"  # stands for the recommended model
+
+
+def recommend(names, material, how, console):
+    """The `names` with the recommended model in place of BEST, and the `Ranking`, None without.
+
+    `how`: loss, angle and seed of the fit. An interrupted ranking is printed, and ends the command.
+    """
+    from brdfkit.ranking import rank
+
+    if BEST not in names:
+        return names, None
+    how = {name: how[name] for name in ("loss", "max_angle", "seed")}
+    with console.progress(f"rank models on {material.name}") as progress:
+        ranking = rank(material, **how, progress=progress)
+    if len(ranking.rows) < ranking.asked:
+        print_ranking(ranking, console)
+        say(f"interrupted; {len(ranking.rows)} of {ranking.asked} models are ranked.")
+        click.get_current_context().exit(status())
+    chosen = [ranking.best if name == BEST else name for name in names]
+    return list(dict.fromkeys(chosen)), ranking
+
+
+def print_ranking(ranking, console):
+    """Print the table and the sentences of a ranking, but not as JSON; say what failed."""
+    from brdfkit.ranking.result import COLUMNS
+
+    if not console.as_json:
+        title = f"{ranking.material}: errors ({ranking.loss}) at directions that were held out"
+        console.table(COLUMNS, ranking.table(), title=title)
+        console.out.print("\n".join(filter(None, [ranking.reason, ranking.suits, ""])))
+    for problem in ranking.problems:
+        say(problem)
+
+
+def record(ranking):
+    """A ranking for JSON; None stays so."""
+    return ranking and {
+        "best": ranking.best,
+        "reason": ranking.reason,
+        "models": [{**vars(row), "tied": row.tied} for row in ranking.rows],
+    }

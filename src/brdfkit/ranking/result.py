@@ -1,0 +1,184 @@
+"""`Ranking`, what `rank` returns: a row for every model; prints as a table, with the choice."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.model import labels
+from brdfkit.names import printable
+from brdfkit.plugins.pages import page
+
+# A model is tied with the best where it is behind by at most so many standard errors: so large a
+# difference comes about by chance once in twenty times
+TIED = 2.0
+COLUMNS = "model", ">error", ">behind [%]", ">parameters", ">BIC", ">time [s]", ""
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """How well one model predicts what it was not fitted to, or why it cannot be fitted.
+
+    Attributes
+    ----------
+    model : str
+        The model's label.
+    error : float
+        E of the ranking's loss where the model was not fitted; nan where it cannot be.
+    behind : float
+        By how much E is larger than the best model's.
+    uncertainty : float
+        The standard error of `behind`, of the differences in each block of directions.
+    parameters : int
+        How many numbers were sought: the weights of each channel, and the shape parameters.
+    bic : float
+        The Bayesian criterion of the fit to all samples that were drawn, N ln(E²) + k ln N: less
+        is better. It takes N samples for independent, which neighbours are not.
+    seconds : float
+        Wall-clock time of that fit.
+    message : str
+        One sentence on why the model cannot be fitted.
+    """
+
+    model: str
+    error: float = math.nan
+    behind: float = math.nan
+    uncertainty: float = math.nan
+    parameters: int = 0
+    bic: float = math.nan
+    seconds: float = field(default=math.nan, compare=False)
+    message: str = ""
+
+    @property
+    def tied(self) -> bool:
+        """Whether the model is no worse than the best, within the noise."""
+        return self.behind <= TIED * self.uncertainty
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """Models ranked on one measured material; prints as a table. Made by `rank`.
+
+    Attributes
+    ----------
+    material : str
+        Name of the measured material.
+    loss : str
+        Name of the loss.
+    rows : tuple of Ranked
+        The models, the least held-out error first; those that cannot be fitted last.
+    asked : int
+        How many models were asked for; more than there are rows after Ctrl-C.
+    seconds : float
+        Wall-clock time.
+    """
+
+    material: str
+    loss: str
+    rows: tuple[Ranked, ...]
+    asked: int
+    seconds: float = field(default=math.nan, compare=False)
+
+    @property
+    def best(self) -> str:
+        """The recommended model: of those that are tied, the one with the fewest parameters."""
+        return self._recommended.model
+
+    @property
+    def reason(self) -> str:
+        """Why it is recommended, in words."""
+        own, tied = self._recommended, [row for row in self.rows if row.tied]
+        others = [_compare(row, own) for row in tied if row is not own]
+        if others:
+            count = f"{len(tied)} models that are tied" if others[1:] else "the two that are tied"
+            return (
+                f"{own.model} is recommended: it has the fewest parameters of {count}. "
+                f"Tied with it: {'; '.join(others)}."
+            )
+        reason = f"{own.model} is recommended: its error is the least, by more than the noise."
+        after = [row for row in self.rows if row is not own and not row.message]
+        return f"{reason} Next is {_compare(after[0], own)}." if after else reason
+
+    @property
+    def suits(self) -> str:
+        """Which materials the recommended model is meant for, as its page says; or nothing."""
+        sentence = page(labels.model(self.best)).shows
+        return f"{self.best}: {sentence}" if sentence else ""
+
+    @property
+    def problems(self) -> list[str]:
+        """The sentences on the models that cannot be fitted."""
+        return [row.message for row in self.rows if row.message]
+
+    @property
+    def _recommended(self) -> Ranked:
+        return min((row for row in self.rows if row.tied), key=lambda row: row.parameters)
+
+    def table(self) -> list[tuple[str, ...]]:
+        """The rows of the models that could be fitted as texts, under `COLUMNS`."""
+        return [_texts(row, row is self._recommended) for row in self.rows if not row.message]
+
+    def __str__(self) -> str:
+        heads = [name.removeprefix(">") for name in COLUMNS]
+        heads[0] = self.material
+        rows = [heads, *self.table()]
+        widths = [max(map(len, texts)) for texts in zip(*rows, strict=True)]
+        sides = [">" if name.startswith(">") else "<" for name in COLUMNS]
+        lines = [
+            "  ".join(f"{t:{s}{w}}" for t, s, w in zip(texts, sides, widths, strict=True)).rstrip()
+            for texts in rows
+        ]
+        return "\n".join(filter(None, [*lines, self.reason, self.suits, *self.problems]))
+
+
+def order(found, shares):
+    """The `Ranked` of every model, the best first; `found`: by label what came out, a `Validated`
+    or an error; `shares` (blocks,): how much each block counts."""
+    fitted = {label: one for label, one in found.items() if not isinstance(one, BrdfkitError)}
+    best = min(fitted.values(), key=lambda one: one.errors.sum())
+    least = math.sqrt(best.errors.sum())
+    rows = []
+    for label, one in fitted.items():
+        error = math.sqrt(one.errors.sum())
+        noise = paired_standard_error(one.errors - best.errors, shares)
+        # Of E², whose difference is (E + least) (E - least)
+        uncertainty = noise / (error + least) if noise else 0.0
+        rows.append(
+            Ranked(label, error, error - least, uncertainty, one.parameters, one.bic, one.seconds)
+        )
+    failed = [
+        Ranked(label, message=printable(str(one)))
+        for label, one in found.items()
+        if isinstance(one, BrdfkitError)
+    ]
+    return (*sorted(rows, key=lambda row: (row.error, row.parameters)), *failed)
+
+
+def paired_standard_error(differences, shares):
+    """The standard error of the sum of `differences` (blocks,), of blocks with these `shares`."""
+    count = len(differences)
+    apart = differences - differences.sum() * shares / shares.sum()
+    return float(np.sqrt(count / (count - 1) * (apart**2).sum()))
+
+
+def _compare(row, own):
+    """A row beside the recommended one, in words."""
+    more = row.parameters - own.parameters
+    number = f"{abs(more)} {'more' if more > 0 else 'fewer'}" if more else "as many"
+    gap = row.error - own.error
+    return (
+        f"{row.model}, with {number} parameter{'s' * (abs(more) != 1)} and an error "
+        f"{abs(gap):.2g} {'above' if gap > 0 else 'below'} its own"
+    )
+
+
+def _texts(row, recommended):
+    behind = "-"
+    if row.behind:
+        least = (row.error - row.behind) or math.nan
+        digits = 0 if row.behind > least else 1
+        behind = " ± ".join(f"{100 * x / least:.{digits}f}" for x in (row.behind, row.uncertainty))
+    verdict = "best" if recommended else "tied" if row.tied else ""
+    numbers = f"{row.error:.4g}", behind, str(row.parameters), f"{row.bic:.0f}"
+    return row.model, *numbers, f"{row.seconds:.1f}", verdict

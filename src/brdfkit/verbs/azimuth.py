@@ -1,0 +1,68 @@
+"""What a model misses that is the same at every azimuth, of a material that is not."""
+
+import math
+
+import numpy as np
+
+from brdfkit.fitting.derivative import differentiate
+from brdfkit.jit.threads import in_turn
+from brdfkit.model import double_precision
+
+# Direction pairs and turns of the surface, by which azimuths are compared
+PAIRS, TURNS = 2_000, 8
+
+
+def is_isotropic(model, wi, wo):
+    """Whether a model with values stays the same as the surface turns, at pairs (n, 3)."""
+    values = model.eval(wi, wo)
+    apart = max(abs(model.eval(*_turn(wi, wo, turn)) - values).max() for turn in (0.7, 1.9))
+    return bool(apart <= 1e-9 * abs(values).max())
+
+
+def note_on_azimuth(data, samples, loss, fitted):
+    """The note on the fit of a model to `Samples` of an anisotropic `Measured`, or None.
+
+    Of a table, or where the format has values between its samples, it tells the least error of any
+    isotropic model: the spread over the azimuths.
+    """
+    rows = np.linspace(0, len(samples.wi) - 1, min(PAIRS, len(samples.wi))).astype(int)
+    part = samples.at(rows)
+    if not is_isotropic(fitted, part.wi, part.wo):
+        return None
+    note = "the material changes as the surface turns, and the model as fitted does not"
+    if not (data.is_table or data.has_lookup):
+        return note
+    least = _least_error(data if fitted.wavelengths else data.rgb, part, loss)
+    return f"{note}: no isotropic one has an error below about {least:.2g}"
+
+
+@in_turn
+def _least_error(data, part, loss):
+    """The least E of any isotropic model at `Samples` and their turns.
+
+    At each pair it is the best single value for all azimuths, one step of Gauss and Newton from
+    their mean: exact where the difference is linear in the model's value, or one of functions of
+    the two values.
+    """
+    turns = [_turn(part.wi, part.wo, angle) for angle in np.arange(TURNS) * 2 * np.pi / TURNS]
+    measured = np.stack([data.eval(*pair) for pair in turns])
+    cosines = [double_precision.array(np.tile(w[:, 2], TURNS)) for w in (part.wi, part.wo)]
+    squares = 0.0
+    for own in np.moveaxis(measured, 2, 0):
+        given = double_precision.array(own.ravel())
+
+        def difference(value, given=given):
+            return loss.difference(value, given, *cosines)
+
+        start = double_precision.array(np.tile(own.mean(axis=0), TURNS))
+        d, slope = (np.array(x).reshape(own.shape) for x in differentiate(difference, start))
+        gain = (d * slope).sum(axis=0) ** 2 / np.maximum((slope**2).sum(axis=0), 1e-300)
+        squares = squares + ((d**2).sum(axis=0) - gain) / TURNS
+    return math.sqrt(loss.importance(part) @ squares)
+
+
+def _turn(wi, wo, angle):
+    """Direction pairs on the surface turned about its normal by an `angle` [rad]."""
+    c, s = math.cos(angle), math.sin(angle)
+    turn = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+    return wi @ turn, wo @ turn

@@ -1,0 +1,24 @@
+"""The search for the end of a fit: where few starts lead to it, where a parameter does nothing."""
+
+import numpy as np
+
+import brdfkit as bk
+from brdfkit.fitting.levenberg_marquardt import _correct
+from brdfkit.samples.neural import decode_network
+
+
+def test_an_end_is_found_to_which_one_start_in_seventeen_leads(measured_data):
+    """Of 50 random starts 3 end at the least E, 14 six percent above it, 22 at 0.103."""
+    with np.load(measured_data / "nbrdf_derived" / "merl_nbrdf.npz") as networks:
+        table = decode_network(networks["light-brown-fabric"], (24, 18, 36))
+    fabric = bk.Measured.from_table(table.values, name="fabric")
+    assert bk.fit("abc+student_t", fabric, seed=1).loss < 0.0749
+
+
+def test_a_parameter_that_does_nothing_has_no_correction():
+    """Its scale is infinite; the Hessian stays as it is."""
+    hessian = np.array([[[2.0, 0.0], [0.0, 0.0]], [[2.0, 0.0], [0.0, 1.0]]])
+    correction = np.array([[[1e-3, 1e180], [1e180, 1e200]], [[1.0, 0.0], [0.0, 1.0]]])
+    np.testing.assert_array_equal(
+        _correct(hessian, correction), hessian + np.stack([np.zeros((2, 2)), np.eye(2)])
+    )
