@@ -99,7 +99,7 @@ def regress(
         try:
             u, weights, message, notes, passes = settle(whole, u, weights, robust, rng, report)
         except Interrupted as stop:
-            u, weights, stopped = stop.best.u[None], stop.best.weights[None], True
+            u, weights, stopped = stop.best.point.u, stop.best.point.weights, True
         error = whole.sums(u, weights, curvature=False).error[0]
     certainty = certify(whole, u, weights, passes, rng)
     message = "interrupted: the best so far" if stopped else explain_end(certainty) or message
