@@ -29,6 +29,8 @@ EXACTLY = 1e-11
 LOOSE = 1e-5
 # Where a pass changes them by less than this share, the end is near
 NEAR = 1e-3
+# Where a step to the end leaves more of the change than this, a part's Hessian is too rough
+SLOW = 0.5
 # So many passes of few samples are ordinary ones first, that the end is MATLAB's
 ORDINARY = 60
 
@@ -76,6 +78,8 @@ class Passes:
             gradient, hessian = problem.weigh(point, factors)
             ordinary = problem.best_step(hessian, gradient, point)
             change = np.sqrt(max(ordinary @ problem.metric @ ordinary, 0)) / problem.spread
+            if solved and change > SLOW * self.best.change:
+                problem.forget_part()
             astray = solved and change > self.best.change
             if self.best is None or change < self.best.change:
                 light = float(np.mean([f < 0.5 for f in factors]))
@@ -84,9 +88,8 @@ class Passes:
                 break
             solved = False
             if astray:
-                # Back, nearer to the end by merits first, and with a Hessian that is not a part's
+                # Back, and nearer to the end by merits first
                 point, near = self.best.point, self.best.change / 3
-                problem.forget_part()
             elif number <= patience:
                 point = self._descend(point, scales, (ordinary,))
             else:
@@ -132,8 +135,10 @@ class Passes:
         z = point.join() + step
         free = (z > self.problem.low) & (z < self.problem.high)
         matrix = newton[np.ix_(free, free)] + A[free] @ B[:, free]
+        unit = 1 / np.sqrt(np.maximum(np.abs(np.diagonal(matrix)), 1e-300))
         found = step.copy()
-        found[free] = np.linalg.lstsq(matrix, -gradient[free])[0]
+        solved = np.linalg.lstsq(matrix * np.outer(unit, unit), -gradient[free] * unit)
+        found[free] = solved[0] * unit
         return found
 
 
