@@ -11,7 +11,7 @@ from brdfkit.fitting.robust import WEIGHTS, least_scale, leverages, require_more
 # One of so many samples, those with residuals next to the median, tell how it changes
 NEXT = 200
 # Step of the central difference in r for the derivative of a weight
-SMALL = 1e-4
+SMALL = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
