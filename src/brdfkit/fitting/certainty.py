@@ -6,7 +6,7 @@ leverage. [MacKinnon & White 1985]. It supposes that samples are independent, no
 is equally large or that their channels are independent.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -65,6 +65,11 @@ class Certainty:
     def matrix(self):
         """The covariance (n, n)."""
         return np.array(self.covariance).reshape(len(self.names), len(self.names))
+
+    def without_errors(self):
+        """The same without standard errors, where what is fitted does not have independent noise,
+        as pixels that show the same samples."""
+        return replace(self, names=(), covariance=(), freedom=())
 
     def correlation(self):
         """The correlation (n, n)."""

@@ -133,8 +133,9 @@ class Fit:
     def aic(self) -> float:
         """Akaike's criterion, N ln(E²) + 2 k, of N numbers and k parameters: of models fitted to
         the same data under the same loss, less is better. It supposes independent samples and noise
-        that is Gaussian and equal in the loss's differences, no robust weight, and no table."""
-        return self.certainty.criterion(self.loss, 2.0) if self.certainty else NAN
+        that is Gaussian and equal in the loss's differences, no robust weight, and no table; NaN of
+        a fit of pictures, whose pixels show the same samples."""
+        return self.certainty.criterion(self.loss, 2.0) if self._has_criteria() else NAN
 
     @property
     def bic(self) -> float:
@@ -154,6 +155,9 @@ class Fit:
             else:
                 found[name] = known.get(name, NAN)
         return found
+
+    def _has_criteria(self):
+        return self.certainty is not None and self.loss_name != "picture"
 
     def eval(self, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
         """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3)."""
