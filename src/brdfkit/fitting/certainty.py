@@ -66,10 +66,10 @@ class Certainty:
         """The covariance (n, n)."""
         return np.array(self.covariance).reshape(len(self.names), len(self.names))
 
-    def without_errors(self):
-        """The same without standard errors, where what is fitted does not have independent noise,
-        as pixels that show the same samples."""
-        return replace(self, names=(), covariance=(), freedom=())
+    def without_errors(self, numbers):
+        """The same without standard errors, for what has no independent noise, as pixels that show
+        the same samples; `numbers`: how many were measured."""
+        return replace(self, names=(), covariance=(), freedom=(), numbers=numbers)
 
     def correlation(self):
         """The correlation (n, n)."""

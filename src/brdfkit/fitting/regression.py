@@ -110,7 +110,7 @@ def regress(
         error = whole.sums(u, weights, curvature=False).error[0]
     certainty = certify(whole, u, weights, passes, rng)
     if pixels is not None:
-        certainty = certainty.without_errors()
+        certainty = certainty.without_errors(samples.values.size)
     message = "interrupted: the best so far" if stopped else explain_end(certainty) or message
     found = Solution(
         space.values(u[0]),

@@ -59,6 +59,7 @@ class Fit:
     misfit of the model is larger than the noise: of a whole table, standard errors say how sharply
     the loss determines the parameters, not how near they are to a truth. Intervals are linear: of
     parameters that trade off, or a highlight of a dozen noisy samples, 85 to 90 % hold the truth.
+    Fits of pictures have no standard errors: their pixels show the same samples.
     """
 
     model: Model
