@@ -234,7 +234,7 @@ def test_what_pictures_cannot_do_is_refused(model, how, words):
     ("given", "words"),
     [
         ({"lights": ("hal",)}, "no light of pictures 'hal'; did you mean hall"),
-        ({"lights": ()}, "lights is empty; name some of court, hall, sky"),
+        ({"lights": ()}, "lights is empty; name some of court, hall, sky, studio"),
         ({"share": -1}, "share = -1 should be a number of at least 0"),
         ({"share": "much"}, "share = 'much' should be"),
     ],

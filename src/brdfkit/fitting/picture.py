@@ -22,11 +22,12 @@ class Picture:
     """A loss E by which a fit makes a model look like the measured material.
 
     It compares pictures of a ball under direct light, as a screen shows them. Lights are grey; they
-    are ``"court"``, open to the sky, ``"hall"``, with small lamps, and ``"sky"``, with a low sun.
+    are ``"court"``, open to the sky, ``"hall"``, with small lamps, ``"sky"``, with a low sun, and
+    ``"studio"``, with softboxes.
 
     Parameters
     ----------
-    lights : tuple of str, default ("court", "hall", "sky")
+    lights : tuple of str, default ("court", "hall", "sky", "studio")
         The lights, one picture for each.
     share : float, default 0.001
         How much the square of the log loss counts beside the mean square of pixels, at least 0:

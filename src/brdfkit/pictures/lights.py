@@ -46,7 +46,14 @@ def sky(w):
     return np.where(w[:, 2] < 0, 0.25, above)
 
 
-LIGHTS = {light.__name__: light for light in (court, hall, sky)}
+def studio(w):
+    """A dim room with a softbox at the upper left in front, and a smaller one at the right."""
+    grey = np.where(w[:, 2] < 0, 0.15, 0.05 + 0.25 * w[:, 2])
+    softbox, other = (234, 38), (117, 13)
+    return grey + 3.3 * _disc(w, *softbox, radius=22) + 2 * _disc(w, *other, radius=12)
+
+
+LIGHTS = {light.__name__: light for light in (court, hall, sky, studio)}
 
 
 def _towards(azimuth, elevation):
