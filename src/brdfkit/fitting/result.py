@@ -141,7 +141,7 @@ class Fit:
     @property
     def bic(self) -> float:
         """The Bayesian criterion, N ln(E²) + k ln N; see `aic`."""
-        return self.certainty.bic(self.loss) if self.certainty else NAN
+        return self.certainty.bic(self.loss) if self._has_criteria() else NAN
 
     def _per_value(self, known):
         """Numbers by the names of `Certainty` in the form of `values`, NaN where there is none."""

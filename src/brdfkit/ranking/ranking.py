@@ -80,6 +80,11 @@ def rank(
     data, classes = measured_material(data), _find_classes(models)
     folds, seed = to_whole_number("folds", folds, 2), to_whole_number("seed", seed, 0)
     loss = as_loss(loss)
+    if not isinstance(loss, Loss):
+        raise BrdfkitError(
+            f"The loss {loss.name} looks at pixels, which mix directions, and none of them can be "
+            "held out; choose another loss."
+        )
     anisotropic = data.anisotropic if anisotropic is None else anisotropic
     samples = select_samples(data, max_angle)
     held_out = HeldOut.draw(samples, loss, data.anisotropic, folds, np.random.default_rng(seed))
