@@ -208,14 +208,16 @@ def test_a_fit_says_what_it_saw(tmp_path):
     bk.save(found, tmp_path / "fit.json")
     assert bk.load(tmp_path / "fit.json") == found
     assert "picture" not in bk.compare(data, found).errors["lambert"]
+    with pytest.raises(BrdfkitError, match="lambert was fitted by pictures"):
+        bk.bootstrap(found, data)
 
 
 @pytest.mark.quick
 @pytest.mark.parametrize(
     ("model", "how", "words"),
     [
-        ("lambert", {"robust": "huber"}, "robust weighs samples one by one.*leave robust out"),
-        ("lambert", {"weights": np.ones(500)}, "weights weighs samples one by one"),
+        ("lambert", {"robust": "huber"}, "robust looks at samples one by one.*leave robust out"),
+        ("lambert", {"weights": np.ones(500)}, "weights looks at samples one by one"),
         ("koenderink", {}, "koenderink: may be negative, and is clamped"),
     ],
 )
