@@ -29,7 +29,7 @@ class Picture:
     ----------
     lights : tuple of str, default ("court", "hall", "sky", "studio")
         The lights, one picture for each.
-    share : float, default 0.001
+    share : float, default 0.003
         How much the square of the log loss counts beside the mean square of pixels, at least 0:
         more of it keeps to the measurement where the pictures show little.
 
@@ -41,11 +41,11 @@ class Picture:
     Examples
     --------
     >>> Picture(lights=("hall",)).share
-    0.001
+    0.003
     """
 
     lights: tuple[str, ...] = tuple(LIGHTS)
-    share: float = 1e-3
+    share: float = 3e-3
 
     name = "picture"
     linear = False
