@@ -136,12 +136,12 @@ class Fit:
         the same data under the same loss, less is better. It supposes independent samples and noise
         that is Gaussian and equal in the loss's differences, no robust weight, and no table; NaN of
         a fit of pictures, whose pixels show the same samples."""
-        return self.certainty.criterion(self.loss, 2.0) if self._has_criteria() else NAN
+        return self._samplewise.criterion(self.loss, 2.0) if self._samplewise else NAN
 
     @property
     def bic(self) -> float:
         """The Bayesian criterion, N ln(E²) + k ln N; see `aic`."""
-        return self.certainty.bic(self.loss) if self._has_criteria() else NAN
+        return self._samplewise.bic(self.loss) if self._samplewise else NAN
 
     def _per_value(self, known):
         """Numbers by the names of `Certainty` in the form of `values`, NaN where there is none."""
@@ -157,8 +157,10 @@ class Fit:
                 found[name] = known.get(name, NAN)
         return found
 
-    def _has_criteria(self):
-        return self.certainty is not None and self.loss_name != "picture"
+    @property
+    def _samplewise(self) -> Certainty | None:
+        """The certainty of a fit whose criteria mean something: by samples, not by pictures."""
+        return None if self.loss_name == "picture" else self.certainty
 
     def eval(self, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
         """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3)."""
