@@ -133,4 +133,10 @@ if __name__ == "__main__":
     parser.add_argument("--robust")
     given = parser.parse_args()
     models = given.models or [name for name in bk.models() if name != "mixture"]
-    report(models, given.loss or bk.losses, given.noise or NOISES, given.replicates, given.robust)
+    report(
+        models,
+        given.loss or bk.losses.by_sample,
+        given.noise or NOISES,
+        given.replicates,
+        given.robust,
+    )

@@ -20,7 +20,7 @@ def of_values(values):
     return bk.Measured.from_samples(samples.wi, samples.wo, values, channels=channels)
 
 
-@pytest.mark.parametrize("loss", bk.losses)
+@pytest.mark.parametrize("loss", bk.losses.by_sample)
 @pytest.mark.parametrize("name", ["ggx", "koenderink:order=4", "pca_polynomial", "ggx+ggx", "eon"])
 def test_fewer_numbers_than_parameters(name, loss):
     """The fit meets them, claims no certainty, and says so."""
@@ -50,7 +50,7 @@ def test_a_channel_without_values():
         of_values(np.full((20, 3), np.nan))
 
 
-@pytest.mark.parametrize("loss", bk.losses)
+@pytest.mark.parametrize("loss", bk.losses.by_sample)
 @pytest.mark.parametrize("constant", [0.3, 0.0, -0.2, 1e-30, 1e20])
 def test_constant_data(constant, loss):
     """A diffuse term, or nothing at all; a search that ends, and a note."""

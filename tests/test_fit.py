@@ -63,7 +63,9 @@ def assert_same_parameters(found, truth):
         np.testing.assert_allclose(own, value, rtol=1e-4, err_msg=name)
 
 
-@pytest.mark.parametrize(("loss", "starts"), [("log", 16), *((loss, 1) for loss in bk.losses)])
+@pytest.mark.parametrize(
+    ("loss", "starts"), [("log", 16), *((loss, 1) for loss in bk.losses.by_sample)]
+)
 def test_known_parameters_come_back(model, loss, starts):
     """To 1e-4, from the default start alone and with the usual several ones."""
     truth = isotropic(model)
@@ -208,7 +210,7 @@ def test_lafortunes_other_lobes_come_back(c_x, c_y):
 @pytest.mark.quick
 def test_a_black_material_is_fitted():
     data = synthetic(bk.models()["lambert"](diffuse_reflectance=0.0), n=50)
-    for loss in bk.losses:
+    for loss in bk.losses.by_sample:
         found = bk.fit("ward", data, loss=loss, starts=2)
         assert found.loss < 1e-9
         assert found.values["diffuse_reflectance"][0] < 1e-9
@@ -242,7 +244,7 @@ def test_fixed_parameter_stays():
 def test_metrics_agree_with_the_fit():
     """`compare`, which evaluates in NumPy, finds the loss that the fit reported."""
     data = synthetic(random_model(bk.models()["ggx"], 3))
-    for loss in bk.losses:
+    for loss in bk.losses.by_sample:
         found = bk.fit("ward", data, loss=loss)
         assert bk.compare(data, found).errors["ward"][loss] == pytest.approx(found.loss, rel=1e-9)
 

@@ -72,7 +72,7 @@ def spoiled():
     return truth, bk.Measured.from_samples(wi, wo, values, channels=("Y",))
 
 
-@pytest.mark.parametrize("loss", losses)
+@pytest.mark.parametrize("loss", losses.by_sample)
 def test_outliers_lose_their_say(spoiled, loss):
     truth, data = spoiled
     plain, robust = (bk.fit("ggx", data, loss, robust=r) for r in (None, "bisquare"))

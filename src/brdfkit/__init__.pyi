@@ -5,6 +5,7 @@ from .errors import BrdfkitError as BrdfkitError
 from .errors import Interrupted as Interrupted
 from .fitting import Fit as Fit
 from .fitting import Loss as Loss
+from .fitting import Picture as Picture
 from .fitting import losses as losses
 from .fitting.solvers import SLSQP as SLSQP
 from .fitting.solvers import AlbedoAtMost as AlbedoAtMost

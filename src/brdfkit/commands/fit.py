@@ -26,7 +26,7 @@ from brdfkit.errors import BrdfkitError, Interrupted
     default="log",
     metavar="LOSS",
     show_default=True,
-    help="What the fit minimises: cosine, log, cbrt, plain, lafortune or relative.",
+    help="What the fit minimises: cosine, log, cbrt, plain, lafortune, relative or picture.",
 )
 @click.option(
     "--robust",

@@ -19,10 +19,12 @@ SIZE = 2**17
 class Block:
     """Samples, repeated for each of `count` points, one point after the other.
 
-    `rows`: which samples; `wi`, `wo`: directions; `measured`: an array per channel; `importance`;
-    `point`: the number of the point, all of Dr.Jit's and `count` times as long as `rows`.
+    `loss`: theirs; `rows`: which samples; `wi`, `wo`: directions; `measured`: an array per channel;
+    `importance`; `point`: the number of the point, all of Dr.Jit's and `count` times as long as
+    `rows`.
     """
 
+    loss: Any
     rows: slice
     count: int
     wi: double_precision.Vector
@@ -32,8 +34,8 @@ class Block:
     point: Any
 
     @classmethod
-    def of(cls, samples, importance, rows, count):
-        """The block of the `rows` of `Samples`, whose `importance` is (n,)."""
+    def of(cls, samples, importance, loss, rows, count):
+        """The block of the `rows` of `Samples`, whose `importance` is (n,), under a `Loss`."""
 
         def array(values):
             part = values[rows]
@@ -46,7 +48,7 @@ class Block:
         point = np.repeat(np.arange(count, dtype=np.uint32), size)
         index = dr.uint32_array_t(double_precision.float64())
         measured = [array(channel) for channel in samples.values.T]
-        return cls(rows, count, wi, wo, measured, array(importance), index(pad(point)))
+        return cls(loss, rows, count, wi, wo, measured, array(importance), index(pad(point)))
 
     def spread(self, table):
         """A list of arrays, one value per sample: the columns of `table` (count, columns)."""
@@ -56,6 +58,10 @@ class Block:
             return [float64(np.repeat(column, size)) for column in table.T]
         flat, first = double_precision.array(table.ravel()), self.point * columns
         return [dr.gather(float64, flat, first + k) for k in range(columns)]
+
+    def columns(self, columns, table):
+        """Arrays of all `Columns` at the parameters in `table` (count, shapes)."""
+        return columns.eval(self.spread(table) if table.size else [], self.wi, self.wo)
 
     def first(self):
         """(wi, wo) of the samples, once."""
@@ -74,18 +80,19 @@ class Block:
 class Blocks:
     """The blocks of `Samples`. A single one is kept, several are made anew for each use."""
 
-    def __init__(self, samples, importance):
-        self.samples, self.importance, self._kept = samples, importance, {}
+    def __init__(self, samples, importance, loss):
+        self.samples, self.importance, self.loss, self._kept = samples, importance, loss, {}
 
     def __call__(self, count):
         """The blocks for `count` points."""
         groups = -(-self.samples.values.shape[1] // GROUP)
+        given = self.samples, self.importance, self.loss
         n, step = len(self.importance), max(SIZE // (count * groups), 1)
         if n > step:
             for start in range(0, n, step):
                 rows = slice(start, min(start + step, n))
-                yield Block.of(self.samples, self.importance, rows, count)
+                yield Block.of(*given, rows, count)
             return
         if count not in self._kept:
-            self._kept[count] = Block.of(self.samples, self.importance, slice(0, n), count)
+            self._kept[count] = Block.of(*given, slice(0, n), count)
         yield self._kept[count]

@@ -6,7 +6,7 @@ leverage. [MacKinnon & White 1985]. It supposes that samples are independent, no
 is equally large or that their channels are independent.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -65,6 +65,11 @@ class Certainty:
     def matrix(self):
         """The covariance (n, n)."""
         return np.array(self.covariance).reshape(len(self.names), len(self.names))
+
+    def without_errors(self, numbers):
+        """The same without standard errors, for what has no independent noise, as pixels that show
+        the same samples; `numbers`: how many were measured."""
+        return replace(self, names=(), covariance=(), freedom=(), numbers=numbers)
 
     def correlation(self):
         """The correlation (n, n)."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from brdfkit.errors import no_such
 from brdfkit.fitting.loss import Loss, loss_of, require_working
+from brdfkit.fitting.picture import Picture
 
 # Added inside the logarithm, which is nearly linear for smaller values, and to the measured value
 # below a relative difference: about the noise of a measured table [sr⁻¹]
@@ -38,17 +39,23 @@ def _sine(cosine):
     return np.sqrt(np.maximum(1 - cosine**2, 0))
 
 
-class Losses(dict[str, Loss]):
+class Losses(dict[str, Loss | Picture]):
     """The losses by name: what `fit` makes small. Prints as a table of their meanings.
 
     A loss E is a root mean square of differences: of f cos θ_i [sr⁻¹] for "cosine", of its cube
     root [sr^(-1/3)] for "cbrt", of f [sr⁻¹] for "plain", of f cos θ_i cos θ_o [sr⁻¹] for
     "lafortune", and without a unit, 0.1 being about 10 %, of the logarithm of f cos θ_i cos θ_o for
-    "log" and of f as a share of the measured one for "relative".
+    "log" and of f as a share of the measured one for "relative"; for "picture", of pixels, 1 being
+    white. `by_sample`: all but the last, which judge a model sample by sample.
 
     >>> losses["plain"].meaning
     'RMS difference of f: what is bright counts'
     """
+
+    @property
+    def by_sample(self) -> dict[str, Loss]:
+        """Those that are a `Loss`, which judges a model sample by sample."""
+        return {name: loss for name, loss in self.items() if isinstance(loss, Loss)}
 
     def __repr__(self) -> str:
         width = max(map(len, self))
@@ -94,17 +101,20 @@ losses = Losses(
             meaning="RMS difference of f as a share of the measured f + 0.001: dark counts",
             difference=_relative,
         ),
+        Picture(),
     )
 )
 
 
-def as_loss(given: Any) -> Loss:
-    """The `Loss` of a name in `losses`, of a difference written as a function, or a loss itself.
+def as_loss(given: Any) -> Loss | Picture:
+    """The loss of a name in `losses`, of a difference written as a function, or a loss itself.
 
     Raises `BrdfkitError` for an unknown name, and for a function that fails on Dr.Jit's arrays.
     """
     if isinstance(given, str) and given in losses:
         return losses[given]
+    if isinstance(given, Picture):
+        return given
     if isinstance(given, Loss):
         require_working(given)
         return given

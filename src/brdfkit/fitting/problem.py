@@ -46,7 +46,7 @@ class Problem:
                 f"The {loss.name} loss weighs no sample, for all are seen at normal incidence; "
                 "choose another loss."
             )
-        self.importance, self.blocks = importance, Blocks(samples, importance)
+        self.importance, self.blocks = importance, Blocks(samples, importance, loss)
 
     def on(self, samples):
         """The same problem on other `Samples`."""
@@ -178,9 +178,7 @@ class Problem:
             dr.eval(*arrays)
 
     def _columns(self, block, u):
-        values = self.space.table(u)
-        shapes = block.spread(values) if values.size else []
-        return self.columns.eval(shapes, block.wi, block.wo)
+        return block.columns(self.columns, self.space.table(u))
 
     def _mix(self, block, columns, weights):
         """The model at a block's samples, an array per channel."""
@@ -197,7 +195,7 @@ class Problem:
         """The loss's difference, and its derivative by the model's `value`, in channel `c`."""
 
         def difference(value):
-            return self.loss.difference(value, block.measured[c], block.wi.z, block.wo.z)
+            return block.loss.difference(value, block.measured[c], block.wi.z, block.wo.z)
 
         def clamped(value):
             return difference(dr.select(value < 0, 0, value))
@@ -222,7 +220,7 @@ class Problem:
                 model = self._mix(block, self._columns(block, u), weights)
             for c, value in enumerate(model):
                 found = self._difference(block, value, c)
-                require_finite_loss(self.loss, block, value, block.measured[c], *found)
+                require_finite_loss(block.loss, block, value, block.measured[c], *found)
 
     def _evaluate(self, block, u, columns, squares, moments, weights):
         """What `Sums.add` takes, of a block, in one kernel."""

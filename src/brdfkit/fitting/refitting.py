@@ -10,6 +10,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.levenberg_marquardt import levenberg_marquardt
 from brdfkit.fitting.named_losses import as_loss
 from brdfkit.fitting.parameter_space import Space
+from brdfkit.fitting.picture import Picture
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.robust_search import settle
 from brdfkit.fitting.search import EXACT, MOST_STEPS
@@ -24,6 +25,11 @@ class Refit:
     samples: Any
 
     def __post_init__(self):
+        if isinstance(as_loss(self.fit.loss_name), Picture):
+            raise BrdfkitError(
+                f"{self.fit.name} was fitted by pictures, whose pixels show the same samples; fit "
+                "by another loss first."
+            )
         if self.samples.errors is not None:
             raise BrdfkitError(
                 f"{self.fit.name} was fitted by the standard errors of the measurement, whose "

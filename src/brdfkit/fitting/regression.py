@@ -11,6 +11,7 @@ from brdfkit.fitting.folding import fold
 from brdfkit.fitting.levenberg_marquardt import ROUNDING
 from brdfkit.fitting.parameter_space import Space
 from brdfkit.fitting.part import mix_bands
+from brdfkit.fitting.picture_problem import PictureProblem
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.robust_search import settle
 from brdfkit.fitting.search import search, with_parts
@@ -51,11 +52,13 @@ def regress(
     bounds=None,
     fixed=None,
     anisotropic=False,
+    pixels=None,
     seed=0,
     first=None,
     report=None,
 ):
-    """The `Solution` of a model class on valid `Samples` under a `Loss`.
+    """The `Solution` of a model class on valid `Samples` under a `Loss`, or under a `Picture` on
+    `Pixels`, too.
 
     `robust`: a name in `fitting.robust.WEIGHTS`; `solver`: a `Solver`, by default
     `default_solver`; `constraints`: of `solvers`, or a user's functions of the model;
@@ -71,10 +74,14 @@ def regress(
     # What is searched: neither fixed nor determined by the measured directions
     given = {n: v for n, v in model.determined(samples).items() if n not in bounds} | (fixed or {})
     space = Space.of(model, bounds, given, anisotropic)
-    whole = Problem(model, samples, loss, space)
     rng = np.random.default_rng(seed)
-    folded = fold(whole)
-    problems = [folded] if folded else with_parts(whole, rng)
+    if pixels is None:
+        whole = Problem(model, samples, loss, space)
+        folded = fold(whole)
+        problems = [folded] if folded else with_parts(whole, rng)
+    else:
+        whole = PictureProblem.of(model, samples, loss, space, pixels, rng)
+        problems = [whole.few(rng), whole]
     default = space.coordinates(first or model().values)
     points = start_points(space, default, starts or usual_starts(len(space.names)), seed)
     counted = 0
@@ -102,6 +109,8 @@ def regress(
             u, weights, stopped = stop.best.point.u, stop.best.point.weights, True
         error = whole.sums(u, weights, curvature=False).error[0]
     certainty = certify(whole, u, weights, passes, rng)
+    if pixels is not None:
+        certainty = certainty.without_errors(samples.values.size)
     message = "interrupted: the best so far" if stopped else explain_end(certainty) or message
     found = Solution(
         space.values(u[0]),

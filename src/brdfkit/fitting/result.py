@@ -59,6 +59,7 @@ class Fit:
     misfit of the model is larger than the noise: of a whole table, standard errors say how sharply
     the loss determines the parameters, not how near they are to a truth. Intervals are linear: of
     parameters that trade off, or a highlight of a dozen noisy samples, 85 to 90 % hold the truth.
+    Fits of pictures have no standard errors: their pixels show the same samples.
     """
 
     model: Model
@@ -133,13 +134,14 @@ class Fit:
     def aic(self) -> float:
         """Akaike's criterion, N ln(E²) + 2 k, of N numbers and k parameters: of models fitted to
         the same data under the same loss, less is better. It supposes independent samples and noise
-        that is Gaussian and equal in the loss's differences, no robust weight, and no table."""
-        return self.certainty.criterion(self.loss, 2.0) if self.certainty else NAN
+        that is Gaussian and equal in the loss's differences, no robust weight, and no table; NaN of
+        a fit of pictures, whose pixels show the same samples."""
+        return self._samplewise.criterion(self.loss, 2.0) if self._samplewise else NAN
 
     @property
     def bic(self) -> float:
         """The Bayesian criterion, N ln(E²) + k ln N; see `aic`."""
-        return self.certainty.bic(self.loss) if self.certainty else NAN
+        return self._samplewise.bic(self.loss) if self._samplewise else NAN
 
     def _per_value(self, known):
         """Numbers by the names of `Certainty` in the form of `values`, NaN where there is none."""
@@ -154,6 +156,11 @@ class Fit:
             else:
                 found[name] = known.get(name, NAN)
         return found
+
+    @property
+    def _samplewise(self) -> Certainty | None:
+        """The certainty of a fit whose criteria mean something: by samples, not by pictures."""
+        return None if self.loss_name == "picture" else self.certainty
 
     def eval(self, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
         """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3)."""

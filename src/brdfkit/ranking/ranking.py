@@ -79,10 +79,15 @@ def rank(
     began = time.perf_counter()
     data, classes = measured_material(data), _find_classes(models)
     folds, seed = to_whole_number("folds", folds, 2), to_whole_number("seed", seed, 0)
-    loss = as_loss(loss)
+    chosen = as_loss(loss)
+    if not isinstance(chosen, Loss):
+        raise BrdfkitError(
+            f"The loss {chosen.name} looks at pixels, which mix directions, so that none can be "
+            "held out; choose another loss."
+        )
     anisotropic = data.anisotropic if anisotropic is None else anisotropic
     samples = select_samples(data, max_angle)
-    held_out = HeldOut.draw(samples, loss, data.anisotropic, folds, np.random.default_rng(seed))
+    held_out = HeldOut.draw(samples, chosen, data.anisotropic, folds, np.random.default_rng(seed))
 
     report, fits = progress or (lambda done, total: None), folds + 1
     found: dict[str, Any] = {}
@@ -102,7 +107,7 @@ def rank(
     if all(isinstance(one, BrdfkitError) for one in found.values()):
         raise next(iter(found.values()))
     rows = order(found, held_out.sum_by_block(np.ones(len(held_out.blocks))))
-    return Ranking(data.name, loss.name, rows, len(classes), time.perf_counter() - began)
+    return Ranking(data.name, chosen.name, rows, len(classes), time.perf_counter() - began)
 
 
 def candidates() -> list[str]:

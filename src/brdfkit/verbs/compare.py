@@ -89,7 +89,7 @@ def compare(
     errors: dict[str, dict[str, float]] = {}
     for thing in found:
         errors[make_unique(thing.name, errors)] = {
-            loss: error(thing, data, loss, max_angle, spectral) for loss in losses
+            loss: error(thing, data, loss, max_angle, spectral) for loss in losses.by_sample
         }
     return Comparison(data.name, dict(sorted(errors.items(), key=lambda item: item[1]["log"])))
 
@@ -103,7 +103,7 @@ def error(thing, data, loss, max_angle=80.0, spectral=False):
 
     >>> error(models()["lambert"](), load("paint.binary"), "log")    # doctest: +SKIP
     """
-    loss = losses[loss]
+    loss = losses.by_sample[loss]
     samples = select_samples(data, max_angle, spectral=spectral)
     importance = loss.importance(samples)
     if not importance.any():

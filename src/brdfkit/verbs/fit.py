@@ -3,6 +3,7 @@
 import inspect
 import time
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from brdfkit.arguments import to_dictionary, to_pair, to_whole_number
 from brdfkit.errors import BrdfkitError, Interrupted, no_such
-from brdfkit.fitting import Fit, Loss, as_loss, regress
+from brdfkit.fitting import Fit, Loss, Picture, as_loss, regress
 from brdfkit.fitting.measurement_noise import regress_noisy
 from brdfkit.fitting.robust import WEIGHTS
 from brdfkit.fitting.solvers import AlbedoAtMost, Solver, WeightsAtMost
@@ -27,6 +28,7 @@ from brdfkit.measured.selection import require_max_angle, select_samples
 from brdfkit.measured.spectrum_to_rgb import wavelengths
 from brdfkit.model import Model, labels
 from brdfkit.model.evaluation import clamped_share
+from brdfkit.pictures import draw_pixels
 from brdfkit.verbs.azimuth import note_on_azimuth
 from brdfkit.version import versions
 
@@ -37,7 +39,7 @@ Constraint = AlbedoAtMost | WeightsAtMost | Callable[[Model], ArrayLike]
 def fit(
     name: str | Path | type[Model],
     data: MaterialLike,
-    loss: str | Loss | Callable[..., Any] = "log",
+    loss: str | Loss | Picture | Callable[..., Any] = "log",
     *,
     robust: str | None = None,
     weights: ArrayLike | None = None,
@@ -66,10 +68,10 @@ def fit(
         defines one; or a class derived from `Model`.
     data : Measured, str or Path
         The measured material, or the name or path of one.
-    loss : str, Loss or callable, default "log"
-        What is made small: a name in `brdfkit.losses`, a `Loss`, or your own difference of a
-        model's value from the measured one, a function (model, measured, cos_i, cos_o) of Dr.Jit's
-        arrays.
+    loss : str, Loss, Picture or callable, default "log"
+        What is made small: a name in `brdfkit.losses`, a `Loss`, a `Picture`, or your own
+        difference of a model's value from the measured one, a function (model, measured, cos_i,
+        cos_o) of Dr.Jit's arrays.
     robust : str, optional
         The weight by which outliers lose their say, as ``"bisquare"`` [Kurt 2007, eq. 5.14]; the
         others are in `brdfkit.fitting.robust.WEIGHTS`. By default all samples count.
@@ -120,8 +122,9 @@ def fit(
         robust fit does not take, or that no parameters meet; for a parameter that is not searched,
         or bounds and values beyond the model's; where `data` was not measured, has no wavelengths
         for a spectral fit, or no sample is left; for a formula or loss that is not finite; for
-        weights or standard errors that do not fit; and for a robust fit without more samples than
-        parameters.
+        weights or standard errors that do not fit; for a robust fit without more samples than
+        parameters; and for a `Picture` with robust, weights or spectral, or of a model that may be
+        negative.
     Interrupted
         On Ctrl-C, once the search has begun; its `best` is the best `Fit` so far.
 
@@ -168,6 +171,10 @@ def fit(
         )
 
     solve = regress if samples.errors is None else regress_noisy
+    if isinstance(loss, Picture):
+        _require_plain(robust=robust, weights=weights, spectral=spectral)
+        pixels = draw_pixels(loss.lights, data.rgb.eval, max_angle, checked["seed"])
+        solve = partial(regress, pixels=pixels)
     try:
         return to_fit(solve(model, samples, loss, robust=robust, **how, report=progress))
     except Interrupted as stop:
@@ -220,10 +227,23 @@ def check_settings(given: Mapping[str, Any], where: str = "") -> dict[str, Any]:
     return settings
 
 
+def _require_plain(**given):
+    """Raise `BrdfkitError` for arguments that look at samples or wavelengths one by one, many of
+    which a picture shows in one pixel."""
+    for name, value in given.items():
+        if value is not None and value is not False:
+            raise BrdfkitError(
+                f"{name} looks at samples one by one, and the loss picture at pixels, which mix "
+                f"many; leave {name} out, or choose another loss."
+            )
+
+
 def _list_notes(data, samples, loss, found, fitted):
     """Notes on a fit, in words: too few measured numbers, negative values, a clamped model, an
     isotropic one of an anisotropic material."""
     notes = []
+    if isinstance(loss, Picture):
+        notes.append(f"seen: {loss.describe()}; pixels tell no standard errors")
     known, sought = found.certainty.numbers, found.certainty.parameters
     if known < sought:
         notes.append(
