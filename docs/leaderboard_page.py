@@ -143,11 +143,13 @@ def advice(log):
         f"which can be anisotropic, beside `ggx`: {beside(log, 'student_t', 'ggx')}.",
     ]
     for model in models_of(log):
-        plain = model.replace(":fresnel=coloured", "")
-        if plain != model and plain in next(iter(log.values())):
-            lines.append(
-                f"- **A coloured Fresnel term**: beside `{plain}`: {beside(log, model, plain)}."
-            )
+        plain, (ground, _, others) = model.replace(":fresnel=coloured", ""), model.partition("+")
+        if plain != model and plain in models_of(log):
+            says = beside(log, model, plain)
+            lines.append(f"- **A coloured Fresnel term**: beside `{plain}`: {says}.")
+        if others in models_of(log) and "+" in others:
+            says = beside(log, model, others)
+            lines.append(f"- **Another ground**, `{ground}`: beside `{others}`: {says}.")
     return "\n".join(lines)
 
 
