@@ -16,7 +16,7 @@ FUNCTIONS = {name: thing for name, thing in PUBLIC.items() if inspect.isfunction
 CLASSES = {
     name: thing
     for name, thing in PUBLIC.items()
-    if isinstance(thing, type) and not issubclass(thing, Exception)
+    if isinstance(thing, type) and not issubclass(thing, BaseException)
 }
 # Constructors and methods that people call with arguments of their own
 METHODS = {

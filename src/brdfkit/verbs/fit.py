@@ -60,6 +60,7 @@ def fit(
     Unless another solver is given, a damped Gauss-Newton search (Levenberg-Marquardt) from several
     starts at once, in double precision with exact derivatives: the shape parameters, and the
     weights of every channel, which follow them. Fits of several threads run one after the other.
+    Ctrl-C raises `Interrupted`, whose `best` is the best fit so far.
 
     Parameters
     ----------
@@ -125,8 +126,6 @@ def fit(
         weights or standard errors that do not fit; for a robust fit without more samples than
         parameters; and for a `Picture` with robust, weights or spectral, or of a model that may be
         negative.
-    Interrupted
-        On Ctrl-C, once the search has begun; its `best` is the best `Fit` so far.
 
     Examples
     --------
