@@ -7,29 +7,21 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from brdfkit.arguments import to_dictionary, to_pair, to_whole_number
-from brdfkit.errors import BrdfkitError, Interrupted, no_such
+from brdfkit.errors import Interrupted, no_such
 from brdfkit.fitting import Fit, Loss, Picture, as_loss, regress
 from brdfkit.fitting.measurement_noise import regress_noisy
-from brdfkit.fitting.robust import WEIGHTS
 from brdfkit.fitting.solvers import AlbedoAtMost, Solver, WeightsAtMost
-from brdfkit.fitting.solvers.settings import (
-    require_suitable,
-    to_constraints,
-    to_plain,
-    to_solver,
-)
+from brdfkit.fitting.solvers.settings import to_plain
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike, measured_material
-from brdfkit.measured.selection import require_max_angle, select_samples
+from brdfkit.measured.selection import select_samples
 from brdfkit.measured.spectrum_to_rgb import wavelengths
 from brdfkit.model import Model, labels
-from brdfkit.model.evaluation import clamped_share
 from brdfkit.pictures import draw_pixels
-from brdfkit.verbs.azimuth import note_on_azimuth
+from brdfkit.verbs.fit_notes import list_notes
+from brdfkit.verbs.fit_settings import require_plain, to_settings
 from brdfkit.version import versions
 
 Constraint = AlbedoAtMost | WeightsAtMost | Callable[[Model], ArrayLike]
@@ -156,7 +148,7 @@ def fit(
             message=found.message,
             at_bounds=found.at_bounds,
             certainty=found.certainty,
-            notes=(*found.notes, *_list_notes(data, samples, loss, found, fitted)),
+            notes=(*found.notes, *list_notes(data, samples, loss, found, fitted)),
             settings={
                 **given,
                 **how,
@@ -171,7 +163,7 @@ def fit(
 
     solve = regress if samples.errors is None else regress_noisy
     if isinstance(loss, Picture):
-        _require_plain(robust=robust, weights=weights, spectral=spectral)
+        require_plain(robust=robust, weights=weights, spectral=spectral)
         pixels = draw_pixels(loss.lights, data.rgb.eval, max_angle, checked["seed"])
         solve = partial(regress, pixels=pixels)
     try:
@@ -204,68 +196,4 @@ def check_settings(given: Mapping[str, Any], where: str = "") -> dict[str, Any]:
         if name not in SETTINGS:
             raise no_such("setting of a fit", name, SETTINGS)
     settings = {**SETTINGS, **given}
-    loss, robust = settings["loss"], settings["robust"]
-    if not isinstance(loss, str):
-        raise BrdfkitError(
-            f"loss = {loss!r} is code; where other processes fit, it should be a name, one of "
-            "brdfkit.losses."
-        )
-    as_loss(loss)
-    if robust not in (None, *WEIGHTS):
-        raise no_such("robust weight", robust, WEIGHTS)
-    settings["solver"] = to_solver(settings["solver"])
-    settings["constraints"] = to_constraints(settings["constraints"])
-    require_suitable(settings["solver"], settings["constraints"], robust)
-    if settings["starts"] is not None:
-        settings["starts"] = to_whole_number("starts", settings["starts"], least=1)
-    settings["seed"] = to_whole_number("seed", settings["seed"], least=0)
-    bounds = to_dictionary("bounds", settings["bounds"])
-    settings["bounds"] = {n: to_pair(f"{where}the bounds of {n}", v) for n, v in bounds.items()}
-    settings["fixed"] = to_dictionary("fixed", settings["fixed"])
-    require_max_angle(settings["max_angle"])
-    return settings
-
-
-def _require_plain(**given):
-    """Raise `BrdfkitError` for arguments that look at samples or wavelengths one by one, many of
-    which a picture shows in one pixel."""
-    for name, value in given.items():
-        if value is not None and value is not False:
-            raise BrdfkitError(
-                f"{name} looks at samples one by one, and the loss picture at pixels, which mix "
-                f"many; leave {name} out, or choose another loss."
-            )
-
-
-def _list_notes(data, samples, loss, found, fitted):
-    """Notes on a fit, in words: too few measured numbers, negative values, a clamped model, an
-    isotropic one of an anisotropic material."""
-    notes = []
-    if isinstance(loss, Picture):
-        notes.append(f"seen: {loss.describe()}; pixels tell no standard errors")
-    known, sought = found.certainty.numbers, found.certainty.parameters
-    if known < sought:
-        notes.append(
-            f"{known} numbers were measured for {sought} that are sought: other values fit as well"
-        )
-    if len(samples.wi) > 1 and fitted.shapes() and not np.ptp(samples.values, axis=0).any():
-        notes.append("all measured values are equal: they tell nothing of a highlight's shape")
-    negative = (samples.values < 0).mean()
-    if negative and not loss.linear:
-        notes.append(f"{negative:.1%} of the {_explain_negative(data)}")
-    if fitted.signed():
-        clamped = clamped_share(fitted)
-        notes.append(f"{clamped:.1%} of the hemisphere's direction pairs are clamped at 0")
-    if data.anisotropic and (note := note_on_azimuth(data, samples, loss, fitted)):
-        notes.append(note)
-    return (*notes, *found.certainty.undetermined, *found.certainty.trades)
-
-
-def _explain_negative(data):
-    """The end of a note in words: which values are negative, and what this does to the fit."""
-    if (data.values[data.samples.valid] >= 0).all():
-        return (
-            "values in linear sRGB are negative and count as 0, though none was measured so: these "
-            "colours are more saturated than sRGB holds, and the fit shows them less so"
-        )
-    return "measured values are negative and count as 0"
+    return to_settings(settings, where)

@@ -1,0 +1,41 @@
+"""What one should know of a fit, in sentences."""
+
+import numpy as np
+
+from brdfkit.fitting import Picture
+from brdfkit.model.evaluation import clamped_share
+from brdfkit.verbs.azimuth import note_on_azimuth
+
+
+def list_notes(data, samples, loss, found, fitted):
+    """Notes on a fit, in words: too few measured numbers, negative values, a clamped model, an
+    isotropic one of an anisotropic material."""
+    notes = []
+    if isinstance(loss, Picture):
+        notes.append(f"seen: {loss.describe()}; pixels tell no standard errors")
+    known, sought = found.certainty.numbers, found.certainty.parameters
+    if known < sought:
+        notes.append(
+            f"{known} numbers were measured for {sought} that are sought: other values fit as well"
+        )
+    if len(samples.wi) > 1 and fitted.shapes() and not np.ptp(samples.values, axis=0).any():
+        notes.append("all measured values are equal: they tell nothing of a highlight's shape")
+    negative = (samples.values < 0).mean()
+    if negative and not loss.linear:
+        notes.append(f"{negative:.1%} of the {_explain_negative(data)}")
+    if fitted.signed():
+        clamped = clamped_share(fitted)
+        notes.append(f"{clamped:.1%} of the hemisphere's direction pairs are clamped at 0")
+    if data.anisotropic and (note := note_on_azimuth(data, samples, loss, fitted)):
+        notes.append(note)
+    return (*notes, *found.certainty.undetermined, *found.certainty.trades)
+
+
+def _explain_negative(data):
+    """The end of a note in words: which values are negative, and what this does to the fit."""
+    if (data.values[data.samples.valid] >= 0).all():
+        return (
+            "values in linear sRGB are negative and count as 0, though none was measured so: these "
+            "colours are more saturated than sRGB holds, and the fit shows them less so"
+        )
+    return "measured values are negative and count as 0"
