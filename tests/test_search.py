@@ -1,6 +1,7 @@
 """The search for the end of a fit: where few starts lead to it, where a parameter does nothing."""
 
 import numpy as np
+import pytest
 
 import brdfkit as bk
 from brdfkit.fitting.levenberg_marquardt import _correct
@@ -13,6 +14,15 @@ def test_an_end_is_found_to_which_one_start_in_seventeen_leads(measured_data):
         table = decode_network(networks["light-brown-fabric"], (24, 18, 36))
     fabric = bk.Measured.from_table(table.values, name="fabric")
     assert bk.fit("abc+student_t", fabric, seed=1).loss < 0.0749
+
+
+def test_a_black_lobe_is_lit_where_it_helps():
+    """Every start ends black; a lobe as wide as it goes is better, as another solver finds."""
+    how = {"loss": "cosine", "use_standard_error": False}
+    found = bk.fit("ggx", "plaster", **how)
+    other = bk.fit("ggx", "plaster", **how, solver="trust_region")
+    assert found.values["specular_reflectance"][0] > 0
+    assert found.loss == pytest.approx(other.loss, rel=1e-7)
 
 
 def test_a_parameter_that_does_nothing_has_no_correction():

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from brdfkit.fitting.black_lobes import light_up
 from brdfkit.fitting.levenberg_marquardt import levenberg_marquardt
 from brdfkit.fitting.part import draw_part
 from brdfkit.fitting.problem import Problem
@@ -40,7 +41,7 @@ def search(problems, u, report, iterations=MOST_STEPS, tolerance=EXACT):
     """The `Expansion` about the points, the best first, where the search of `problems`, on ever
     more of the samples, ends, which of them converged, and the number of evaluations; `u`
     (starts, shapes): where it begins; `iterations`, `tolerance`: see `levenberg_marquardt`."""
-    first, last = problems[0], problems[-1]
+    first, last, starts = problems[0], problems[-1], u
     weights, evaluations = first.start(u), 0
     if first.clamped:
         u, weights = _avoid_clamping(first, u, weights)
@@ -50,18 +51,21 @@ def search(problems, u, report, iterations=MOST_STEPS, tolerance=EXACT):
         evaluations += found.evaluations
         ends = found.ends.at(found.best(count))
         u, weights = ends.u, ends.weights
+    lit = light_up(first, ends.at([0]), starts)
+    u, weights = (np.concatenate(parts) for parts in zip((u, weights), lit, strict=True))
     for number, problem in enumerate(problems):
         report(number, len(problems))
         if number:
             rows = found.best(FINALISTS)
             error = found.ends.error
             ends = found.ends.at(rows[error[rows] <= (1 + CLOSE) * error[rows[0]]])
+            u, weights = ends.u, ends.weights
         # A clamped model creeps from kink to kink: let it do so on a part
         tight = MANY * tolerance
         loose = tight if problem.clamped else max(LOOSE, tight)
         limit = loose if problem is not last else tight if number else tolerance
         part = problems[number - 1] if number else None
-        found, count = _descend(problem, part, ends, iterations, limit)
+        found, count = _descend(problem, part, u, weights, iterations, limit)
         evaluations += count
     report(len(problems), len(problems))
     best = found.best(FINALISTS)
@@ -79,21 +83,21 @@ def _avoid_clamping(problem, u, weights):
     return [np.concatenate(parts) for parts in zip(*starts, strict=True)]
 
 
-def _descend(problem, part, ends, iterations, tolerance):
-    """The `Search` of a problem from the points of an `Expansion`, and the number of evaluations;
+def _descend(problem, part, u, weights, iterations, tolerance):
+    """The `Search` of a problem from the points `u` and `weights`, and the number of evaluations;
     `part`: a problem on some of its samples, at whose ends it begins, or None."""
     evaluations, damping = 0, 1e-4
     if part is not None:
         # The Hessian of all samples is nearly that of a part, if the part is like them
         expand, damping = _borrow_curvature(problem, part), 1e-7
         found = levenberg_marquardt(
-            expand, ends.u, ends.weights, problem.least, FEW_STEPS, tolerance, damping
+            expand, u, weights, problem.least, FEW_STEPS, tolerance, damping
         )
         if found.converged.all():
             return found, found.evaluations
-        ends, evaluations = found.ends, found.evaluations
+        u, weights, evaluations = found.ends.u, found.ends.weights, found.evaluations
     found = levenberg_marquardt(
-        problem.expand, ends.u, ends.weights, problem.least, iterations, tolerance, damping
+        problem.expand, u, weights, problem.least, iterations, tolerance, damping
     )
     return found, evaluations + found.evaluations
 
