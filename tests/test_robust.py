@@ -83,6 +83,29 @@ def test_outliers_lose_their_say(spoiled, loss):
     assert off[1] < 0.01 < off[0]
 
 
+@pytest.mark.parametrize(("name", "seed"), [("cauchy", 9), ("welsch", 9), ("logistic", 3)])
+def test_few_samples_settle_where_matlabs_passes_do(name, seed):
+    """Twelve samples of large leverage, which the merit of a pass knows."""
+    wi, wo = random_pairs(12, seed=seed, max_degrees=79)
+    values = np.random.default_rng(seed).standard_t(2, (12, 1)) + 3
+    data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
+    fit = bk.fit("koenderink:order=2", data, "plain", robust=name)
+    columns, _ = lobe_values(fit.model, wi, wo)
+    found = robust_least_squares(columns, values[:, 0], name)
+    assert found.converged
+    weights = np.ravel([fit.values[n] for n in fit.model.weights()])
+    np.testing.assert_allclose(weights, found.solution, rtol=1e-4, atol=1e-5)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", WEIGHTS)
+def test_no_weight_overflows(name):
+    function, _, rho = WEIGHTS[name]
+    with np.errstate(all="raise", under="ignore"):
+        assert np.isfinite(function(np.array([0.0, 1e80, -1e200]))).all()
+        assert np.isfinite(rho(np.array([0.0, 1e80]))).all()
+
+
 def test_a_linear_fit_is_the_least_squares():
     """Without a search, `fit` and `robust_least_squares` are the same thing."""
     wi, wo = random_pairs(400, seed=8, max_degrees=79)

@@ -183,3 +183,28 @@ def test_bad_numbers_are_explained(make, words):
 def test_a_sweep_takes_no_code():
     with pytest.raises(BrdfkitError, match="<lambda> is code"):
         bk.sweep("plaster", "lambert", {"constraints": [lambda model: 1.0]})
+
+
+@pytest.mark.quick
+def test_the_error_of_an_end_is_computed_anew(noisy):
+    """A solver may say what it likes."""
+
+    class Boaster:
+        def minimise(self, objective):
+            return solvers.End(objective.starts[0], -1.0, None)
+
+    found = bk.fit("ward", noisy, solver=Boaster())
+    assert found.loss == pytest.approx(bk.compare(noisy, found).errors["ward"]["log"], rel=1e-9)
+
+
+@pytest.mark.quick
+def test_ctrl_c_in_any_solver_keeps_the_best_point(noisy):
+    class Stopping:
+        def minimise(self, objective):
+            objective.error(objective.starts)
+            raise KeyboardInterrupt
+
+    with pytest.raises(bk.Interrupted) as stop:
+        bk.fit("ward", noisy, solver=Stopping())
+    best = stop.value.best
+    assert best.loss == pytest.approx(bk.compare(noisy, best).errors["ward"]["log"], rel=1e-9)

@@ -42,7 +42,7 @@ from brdfkit.errors import BrdfkitError, Interrupted
     "--albedo-at-most",
     type=float,
     metavar="LIMIT",
-    help="Let no model reflect more than this share of the light at 0°, 30°, 60° or 80°.",
+    help="Let no model reflect more than this share of the light, at 0°, 30°, 60°, 75°, 85°, 89°.",
 )
 @click.option(
     "-o",

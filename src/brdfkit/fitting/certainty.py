@@ -169,11 +169,13 @@ def _describe_open(names, steps, at, vectors):
     """A sentence on each of the `vectors` (n, count) along which E² does not rise; `steps`: the
     same, in units of the parameters, which are `at` (n,)."""
     said = {}
-    for step, vector in zip(steps.T, vectors.T, strict=True):
+    # Relative changes; of what is 0, as good as infinite ones
+    shares = np.clip(steps, -1e5, 1e5) / np.where(at == 0, 1e-300, at)[:, None]
+    for share_of, vector in zip(shares.T, vectors.T, strict=True):
         relative = {}
         for j in np.argsort(-np.abs(vector)):
             if abs(vector[j]) > ABSENT:
-                relative.setdefault(_plain(names[j]), step[j] / (at[j] or 1e-300))
+                relative.setdefault(_plain(names[j]), share_of[j])
         if len(relative) == 1:
             said[f"the data do not determine {next(iter(relative))}"] = True
             continue

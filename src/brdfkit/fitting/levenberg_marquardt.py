@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.errors import Interrupted
 from brdfkit.fitting.box_quadratic import minimise_in_box
 from brdfkit.fitting.expansion import Expansion
+from brdfkit.fitting.stopped import Stopped
 
 # A search goes on while so many times its next gain could bring it below the best one
 PATIENCE = 10
@@ -45,7 +45,7 @@ def levenberg_marquardt(expand, u, weights, least, iterations, tolerance=1e-6, d
     `expand(u, weights)` gives an `Expansion`; `least` (lobes,): the least weights; a search takes
     at most `iterations` steps, ends where the next would lower E² by less than `tolerance` of it,
     or where E² is rounding beside that of the worst start; `damping`: of its first step. A search
-    ends, too, that would not come below one that has converged. On Ctrl-C `Interrupted` has the
+    ends, too, that would not come below one that has converged. On Ctrl-C `Stopped` has the
     `Expansion` about where the searches are.
     """
     now = expand(u, weights)
@@ -108,7 +108,7 @@ def levenberg_marquardt(expand, u, weights, least, iterations, tolerance=1e-6, d
             converged |= now.error <= exact
             searching &= ~converged
     except KeyboardInterrupt:
-        raise Interrupted(now) from None
+        raise Stopped(now) from None
     return Search(now, converged, evaluations)
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.fitting.derivative import differentiate
 from brdfkit.jit.threads import in_turn
 from brdfkit.model import double_precision
 
@@ -68,9 +69,25 @@ class Loss:
 
     def importance(self, samples: Any) -> NDArray[np.float64]:
         """w (n,) of `Samples`, with how much each sample counts, so that Σ_n is a mean."""
-        weights = self.weights(samples.wi[:, 2]) * samples.weight
+        weights = self._weigh(samples.wi[:, 2]) * samples.weight
         total = weights.sum() * (samples.values.shape[1] if self.channel_mean else 1)
         return weights / total if total else weights
+
+    def _weigh(self, cos_i):
+        """The `weights` at NumPy's cosines (n,), if they are such, or `BrdfkitError`."""
+        try:
+            weights = np.broadcast_to(np.asarray(self.weights(cos_i), float), cos_i.shape)
+            good = bool((np.isfinite(weights) & (weights >= 0)).all())
+        except Exception as error:
+            raise BrdfkitError(
+                f"The weights of the loss {self.name} fail with {type(error).__name__} ({error}); "
+                "they are called with NumPy's cosines (n,) and should return as many numbers."
+            ) from error
+        if not good:
+            raise BrdfkitError(
+                f"The weights of the loss {self.name} should be finite numbers of at least 0."
+            )
+        return weights
 
 
 @in_turn
@@ -114,8 +131,13 @@ def require_working(loss: Loss) -> None:
             f"The loss {loss.name} gives {found.size} numbers for {model.size} samples; it should "
             "give one for each."
         )
-    if (found == found[0]).all():
-        raise BrdfkitError(f"The loss {loss.name} is {found[0]:g} whatever the model's value is.")
+    ones = [double_precision.array(np.full(len(model), x)) for x in (0.4, 0.75, 0.5)]
+    _, slope = differentiate(lambda m: loss.difference(m, *ones), double_precision.array(model))
+    if not np.array(slope).any():
+        raise BrdfkitError(
+            f"The loss {loss.name} does not change with the model's value, or has no derivative by "
+            "it, as after dr.detach."
+        )
 
 
 def _at_oblique(loss, model, measured):

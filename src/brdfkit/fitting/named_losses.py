@@ -9,7 +9,7 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from brdfkit.errors import no_such
+from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.fitting.loss import Loss, loss_of, require_working
 from brdfkit.fitting.picture import Picture
 
@@ -115,9 +115,14 @@ def as_loss(given: Any) -> Loss | Picture:
         return losses[given]
     if isinstance(given, Picture):
         return given
-    if isinstance(given, Loss):
-        require_working(given)
-        return given
-    if callable(given):
-        return loss_of(given)
-    raise no_such("loss", given, losses)
+    if not callable(given) and not isinstance(given, Loss):
+        raise no_such("loss", given, losses)
+    loss = given if isinstance(given, Loss) else loss_of(given)
+    if loss is losses.get(loss.name):
+        return loss
+    if not isinstance(loss.name, str) or loss.name in losses:
+        raise BrdfkitError(
+            f"A loss of your own is named {loss.name!r}; give it a name that brdfkit.losses lacks."
+        )
+    require_working(loss)
+    return loss

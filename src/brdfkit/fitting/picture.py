@@ -51,6 +51,8 @@ class Picture:
     linear = False
 
     def __post_init__(self) -> None:
+        if not isinstance(self.lights, str | tuple | list):
+            raise BrdfkitError(f"Picture: lights = {self.lights!r} should be names of lights.")
         named = (self.lights,) if isinstance(self.lights, str) else tuple(self.lights)
         if not named:
             raise BrdfkitError(f"Picture: lights is empty; name some of {', '.join(LIGHTS)}.")

@@ -4,6 +4,8 @@ import numpy as np
 
 # So many standard errors are followed, and twice as many again where they do not reach the level
 REACH, WIDENINGS = 3.0, 6
+# A step of so many standard errors, within which the least E² is nearly a parabola
+NEAR = 0.3
 
 
 def follow(again, parameter, middle, bound, level, points):
@@ -29,6 +31,20 @@ def follow(again, parameter, middle, bound, level, points):
     j = above[0]
     share = (wanted - height[j - 1]) / (height[j] - height[j - 1])
     return float(values[j - 1] + share * (values[j] - values[j - 1])), path
+
+
+def curvature(again, parameter, low, high):
+    """The rise of the least E² over the square of a parameter's step, near the fit; None where the
+    parameter has no standard error."""
+    middle, error = again.fit.values[parameter], again.fit.standard_errors[parameter]
+    if not error > 0:
+        return None
+    steps = [s for s in (-NEAR * error, NEAR * error) if low <= middle + s <= high]
+    rises = [
+        (_descend(again, parameter, [middle + step])[0][1] ** 2 - again.fit.loss**2) / step**2
+        for step in steps
+    ]
+    return max(float(np.mean(rises)), 0.0) if rises else None
 
 
 def _descend(again, parameter, values):

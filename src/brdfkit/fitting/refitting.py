@@ -8,7 +8,7 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.levenberg_marquardt import levenberg_marquardt
-from brdfkit.fitting.named_losses import as_loss
+from brdfkit.fitting.named_losses import as_loss, losses
 from brdfkit.fitting.parameter_space import Space
 from brdfkit.fitting.picture import Picture
 from brdfkit.fitting.problem import Problem
@@ -25,6 +25,11 @@ class Refit:
     samples: Any
 
     def __post_init__(self):
+        if self.fit.loss_name not in losses:
+            raise BrdfkitError(
+                f"{self.fit.name} was fitted by a loss of your own, {self.fit.loss_name}, which a "
+                "fit does not keep; fit by one of brdfkit.losses first."
+            )
         if isinstance(as_loss(self.fit.loss_name), Picture):
             raise BrdfkitError(
                 f"{self.fit.name} was fitted by pictures, whose pixels show the same samples; fit "
@@ -34,6 +39,11 @@ class Refit:
             raise BrdfkitError(
                 f"{self.fit.name} was fitted by the standard errors of the measurement, whose "
                 "weights are not repeated; fit with use_standard_error=False first."
+            )
+        if self.fit.settings.get("constraints"):
+            raise BrdfkitError(
+                f"{self.fit.name} was fitted with constraints, which are not repeated; fit without "
+                "them first."
             )
         problem = self.problem()
         u = problem.space.coordinates(self.fit.values)[None]

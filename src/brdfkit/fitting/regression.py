@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.errors import Interrupted
 from brdfkit.fitting.certainty import Certainty, certify, explain_end
 from brdfkit.fitting.folding import fold
 from brdfkit.fitting.levenberg_marquardt import ROUNDING
@@ -17,6 +16,7 @@ from brdfkit.fitting.robust_search import settle
 from brdfkit.fitting.search import search, with_parts
 from brdfkit.fitting.solvers import SLSQP, Constraints, LevenbergMarquardt, Objective
 from brdfkit.fitting.starting_points import start_points, usual_starts
+from brdfkit.fitting.stopped import Stopped
 from brdfkit.jit.threads import in_turn
 
 
@@ -67,7 +67,7 @@ def regress(
     parameter; `anisotropic`: search the second parameter of an anisotropic model, such as
     ``alpha_v``, too; `seed`: for the start points, and for the parts of many samples by which they
     are compared; `first`: the shape parameters of the first of these points, by default the
-    model's; `report`: called with (done, total). On Ctrl-C `Interrupted` has the best `Solution` so
+    model's; `report`: called with (done, total). On Ctrl-C `Stopped` has the best `Solution` so
     far.
     """
     bounds, report = bounds or {}, report or (lambda done, total: None)
@@ -95,8 +95,12 @@ def regress(
     stopped = False
     try:
         end = objective.require_end(solver.minimise(objective))
-    except Interrupted as stop:
-        end, stopped = objective.end_at_best(stop.best), True
+    except KeyboardInterrupt as stop:
+        # With constraints, what was seen so far need not meet them
+        best = None if limits else objective.best_so_far(getattr(stop, "best", None))
+        if best is None:
+            raise
+        end, stopped = best, True
     (u, weights), passes = objective.split(end.point[None]), None
     error, message, notes = end.error, end.message, limits.notes(end.point) if limits else ()
     if message != "converged" and error <= ROUNDING * whole.black().sum():
@@ -105,7 +109,7 @@ def regress(
     if robust and not stopped:
         try:
             u, weights, message, notes, passes = settle(whole, u, weights, robust, rng, report)
-        except Interrupted as stop:
+        except Stopped as stop:
             u, weights, stopped = stop.best.point.u, stop.best.point.weights, True
         error = whole.sums(u, weights, curvature=False).error[0]
     certainty = certify(whole, u, weights, passes, rng)
@@ -123,7 +127,7 @@ def regress(
         certainty,
     )
     if stopped:
-        raise Interrupted(found)
+        raise Stopped(found)
     return found
 
 

@@ -19,6 +19,7 @@ import numpy as np
 from brdfkit.errors import BrdfkitError
 
 PASSES = 50
+FAR = 30.0  # exp(-r²) is 0 beyond
 TOLERANCE = np.sqrt(np.finfo(float).eps)
 
 
@@ -30,20 +31,33 @@ def _tanh(r):
     return np.tanh(r) / np.where(r == 0, 1, r) + (r == 0)
 
 
+def _bell(r):
+    return np.exp(-(np.minimum(np.abs(r), FAR) ** 2))
+
+
 def _beyond(limit, inside, outside):
     """A function of |r|: `inside` up to `limit`, `outside` beyond."""
-    return lambda r: np.where(np.abs(r) < limit, inside(np.abs(r)), outside(np.abs(r)))
+
+    def function(r):
+        r = np.abs(r)
+        return np.where(r < limit, inside(np.minimum(r, limit)), outside(r))
+
+    return function
 
 
 # Name → (weight ω of r, tune: larger is gentler, ρ: the integral of ω r)
 WEIGHTS = {
     "andrews": (_sine, 1.339, _beyond(np.pi, lambda r: 1 - np.cos(r), lambda r: 2.0)),
     "bisquare": (
-        lambda r: np.where(np.abs(r) < 1, (1 - r**2) ** 2, 0),
+        lambda r: (1 - np.minimum(np.abs(r), 1) ** 2) ** 2,
         4.685,
         _beyond(1, lambda r: (1 - (1 - r**2) ** 3) / 6, lambda r: 1 / 6),
     ),
-    "cauchy": (lambda r: 1 / (1 + r**2), 2.385, lambda r: np.log1p(r**2) / 2),
+    "cauchy": (
+        lambda r: 1 / (1 + np.minimum(np.abs(r), 1e100) ** 2),
+        2.385,
+        lambda r: np.log1p(r**2) / 2,
+    ),
     "fair": (lambda r: 1 / (1 + np.abs(r)), 1.4, lambda r: np.abs(r) - np.log1p(np.abs(r))),
     "huber": (
         lambda r: 1 / np.maximum(1, np.abs(r)),
@@ -56,7 +70,7 @@ WEIGHTS = {
         2.795,
         _beyond(1, lambda r: r**2 / 2, lambda r: 0.5),
     ),
-    "welsch": (lambda r: np.exp(-(r**2)), 2.985, lambda r: (1 - np.exp(-(r**2))) / 2),
+    "welsch": (_bell, 2.985, lambda r: (1 - _bell(r)) / 2),
 }
 
 

@@ -96,9 +96,9 @@ class RobustProblem:
         return [residual / (lever * scale) for residual, lever, scale in both]
 
     def merit(self, point, scales):
-        """What a pass makes small: Σ ρ(r), in units of the squared residuals."""
-        both = zip(self.ratios(point, scales), scales, strict=True)
-        return sum(scale**2 * self.rho(r).sum() for r, scale in both)
+        """What a pass makes small: Σ lever² ρ(r), in units of the squared residuals."""
+        each = zip(self.ratios(point, scales), self.levers, scales, strict=True)
+        return sum(scale**2 * (lever**2 * self.rho(r)).sum() for r, lever, scale in each)
 
     def say(self, u, weights):
         """By channel, the weights ω of the samples, and the derivatives of ω r by r."""

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.errors import Interrupted
 from brdfkit.fitting.convexity import make_convex
 from brdfkit.fitting.part import draw_part
 from brdfkit.fitting.robust_problem import Point, RobustProblem
+from brdfkit.fitting.stopped import Stopped
 
 PASSES = 150
 # So many samples settle on half as many first
@@ -59,13 +59,13 @@ class Passes:
     def settle(self, u, weights, report, tolerance=SETTLED, patience=ORDINARY):
         """The `Settled` end of the passes from `u` and `weights`: the next would change the fitted
         values by less than the `tolerance`, or there were too many. The first `patience` passes are
-        ordinary ones. On Ctrl-C `Interrupted` has the best end so far."""
+        ordinary ones. On Ctrl-C `Stopped` has the best end so far."""
         try:
             return self._settle(self.problem.at(u, weights), report, tolerance, patience)
         except KeyboardInterrupt:
             if self.best is None:
                 raise
-            raise Interrupted(self.best) from None
+            raise Stopped(self.best) from None
 
     def _settle(self, point, report, tolerance, patience):
         problem, near, solved = self.problem, NEAR, False
@@ -147,7 +147,7 @@ def settle(problem, u, weights, name, rng, report):
     message, notes, and what each sample has to say, as `RobustProblem.say`.
 
     Many samples settle on a part of them first, drawn by the generator `rng`. On Ctrl-C
-    `Interrupted` has the best `Settled` so far.
+    `Stopped` has the best `Settled` so far.
     """
     samples = problem.samples
     many = len(samples.wi) > MANY

@@ -39,10 +39,11 @@ def select_samples(data, max_angle, weights=None, errors=False, spectral=False):
     if weights is not None:
         samples = samples.at(samples.weight > 0)
     if not len(samples.wi):
-        more = "" if weights is None else " and a weight above 0"
+        what, more = "a larger max_angle", ""
+        if weights is not None:
+            what, more = "other weights", " and a weight above 0"
         raise BrdfkitError(
-            f"{data.name}: no valid sample has both angles below {max_angle:g}°{more}; "
-            "give a larger max_angle."
+            f"{data.name}: no valid sample has both angles below {max_angle:g}°{more}; give {what}."
         )
     return samples
 

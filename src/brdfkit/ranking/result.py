@@ -88,6 +88,13 @@ class Ranking:
     @property
     def reason(self) -> str:
         """Why it is recommended, in words."""
+        if len(self.rows) == self.asked:
+            return self._choice
+        ranked = f"{len(self.rows)} of {self.asked} models are ranked"
+        return f"Interrupted: {ranked}. Of these, {self._choice}"
+
+    @property
+    def _choice(self) -> str:
         own, tied = self._recommended, [row for row in self.rows if row.tied]
         others = [_compare(row, own) for row in tied if row is not own]
         if others:
@@ -167,10 +174,10 @@ def _compare(row, own):
     more = row.parameters - own.parameters
     number = f"{abs(more)} {'more' if more > 0 else 'fewer'}" if more else "as many"
     gap = row.error - own.error
-    return (
-        f"{row.model}, with {number} parameter{'s' * (abs(more) != 1)} and an error "
-        f"{abs(gap):.2g} {'above' if gap > 0 else 'below'} its own"
+    error = (
+        f"an error {abs(gap):.2g} {'above' if gap > 0 else 'below'} its own" if gap else "its error"
     )
+    return f"{row.model}, with {number} parameter{'s' * (abs(more) != 1)} and {error}"
 
 
 def _texts(row, recommended):
@@ -179,6 +186,6 @@ def _texts(row, recommended):
         least = (row.error - row.behind) or math.nan
         digits = 0 if row.behind > least else 1
         behind = " ± ".join(f"{100 * x / least:.{digits}f}" for x in (row.behind, row.uncertainty))
-    verdict = "best" if recommended else "tied" if row.tied else ""
+    verdict = "take" if recommended else "tied" if row.tied else ""
     numbers = f"{row.error:.4g}", behind, str(row.parameters), f"{row.bic:.0f}"
     return row.model, *numbers, f"{row.seconds:.1f}", verdict

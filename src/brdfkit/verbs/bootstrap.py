@@ -2,11 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from numbers import Real
 
 import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.arguments import to_whole_number
+from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit
 from brdfkit.fitting.refitting import Refit
 from brdfkit.jit.threads import in_turn
@@ -39,6 +41,8 @@ class Bootstrap:
 
         >>> bootstrap(fit("ward", "plaster"), "plaster").intervals(0.9)    # doctest: +SKIP
         """
+        if not isinstance(level, Real) or not 0 < level < 1:
+            raise BrdfkitError(f"level = {level!r} should be a share, between 0 and 1.")
         ends = [(1 - level) / 2, (1 + level) / 2]
         return {
             name: np.quantile(values, ends, axis=0).T for name, values in self.estimates.items()
@@ -122,6 +126,8 @@ def bootstrap(
 
 def refit(fit, data):
     """The `Refit` of a fit and the material that was fitted."""
+    if not isinstance(fit, Fit):
+        raise BrdfkitError(f"Here a Fit is needed, not a {type(fit).__name__}; make one by fit.")
     settings, data = fit.settings, measured_material(data)
     errors = settings.get("use_standard_error", False)
     given = settings.get("max_angle", 80.0), None, errors, bool(fit.wavelengths)

@@ -14,6 +14,7 @@ from brdfkit.fitting import Fit, Loss, Picture, as_loss, regress
 from brdfkit.fitting.measurement_noise import regress_noisy
 from brdfkit.fitting.solvers import AlbedoAtMost, Solver, WeightsAtMost
 from brdfkit.fitting.solvers.settings import to_plain
+from brdfkit.fitting.stopped import Stopped
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike, measured_material
 from brdfkit.measured.selection import select_samples
@@ -52,7 +53,8 @@ def fit(
     Unless another solver is given, a damped Gauss-Newton search (Levenberg-Marquardt) from several
     starts at once, in double precision with exact derivatives: the shape parameters, and the
     weights of every channel, which follow them. Fits of several threads run one after the other.
-    Ctrl-C raises `Interrupted`, whose `best` is the best fit so far.
+    Ctrl-C raises `Interrupted`, whose `best` is the best fit so far; with constraints, or before
+    any point was evaluated, a plain KeyboardInterrupt.
 
     Parameters
     ----------
@@ -148,7 +150,10 @@ def fit(
             message=found.message,
             at_bounds=found.at_bounds,
             certainty=found.certainty,
-            notes=(*found.notes, *list_notes(data, samples, loss, found, fitted)),
+            notes=(
+                *found.notes,
+                *list_notes(data, samples, loss, found, fitted, weights is not None),
+            ),
             settings={
                 **given,
                 **how,
@@ -168,7 +173,7 @@ def fit(
         solve = partial(regress, pixels=pixels)
     try:
         return to_fit(solve(model, samples, loss, robust=robust, **how, report=progress))
-    except Interrupted as stop:
+    except Stopped as stop:
         best = to_fit(stop.best)
         raise Interrupted(
             best, f"{best.name}: the best fit so far has the loss {best.loss:.6g}"

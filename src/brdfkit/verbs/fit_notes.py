@@ -7,10 +7,10 @@ from brdfkit.model.evaluation import clamped_share
 from brdfkit.verbs.azimuth import note_on_azimuth
 
 
-def list_notes(data, samples, loss, found, fitted):
+def list_notes(data, samples, loss, found, fitted, weighted):
     """Notes on a fit, in words: too few measured numbers, negative values, a clamped model, an
-    isotropic one of an anisotropic material."""
-    notes = []
+    isotropic one of an anisotropic material; `weighted`: whether the user gave weights."""
+    notes = ["samples count by the weights that were given; so in the loss"] if weighted else []
     if isinstance(loss, Picture):
         notes.append(f"seen: {loss.describe()}; pixels tell no standard errors")
     known, sought = found.certainty.numbers, found.certainty.parameters

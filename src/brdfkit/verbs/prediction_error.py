@@ -13,6 +13,7 @@ from brdfkit.materials import MaterialLike, material, measured_material
 from brdfkit.measured.selection import select_samples
 from brdfkit.model import double_precision
 from brdfkit.model.evaluation import lobe_values
+from brdfkit.verbs.bootstrap import refit
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,15 +91,25 @@ def prediction_error(
         data, fit.settings.get("max_angle", 80.0), spectral=bool(fit.wavelengths)
     )
     _require_linear(fit, samples)
+    refit(fit, data)  # weights, constraints and standard errors are not known here
     Z = lobe_values(fit.model, samples.wi, samples.wo)[0]
     # (Z'WZ)⁻¹ Z'W, of the weights W of the loss
     root = _root_weights(as_loss(fit.loss_name), samples)
     solve = np.linalg.pinv(root[:, None] * Z) * root
     values = samples.values if truth is None else material(truth).eval(samples.wi, samples.wo)
+    if values.shape != samples.values.shape:
+        raise BrdfkitError(
+            f"truth has {values.shape[1]} channels and the measurement {samples.values.shape[1]}; "
+            "give a truth with the same."
+        )
     bias = Z @ (solve @ values) - values
     if sigma is None:
         left = Z @ (solve @ samples.values) - samples.values
         sigma = np.sqrt((left**2).sum(axis=0) / max(len(Z) - Z.shape[1], 1))
+    if np.shape(sigma) not in ((), values.shape[1:]) or not np.all(np.isfinite(sigma)):
+        raise BrdfkitError(
+            f"sigma = {sigma!r} should be a number, or one for each of {values.shape[1]} channels."
+        )
     spread = ((Z @ (solve @ solve.T)) * Z).sum(axis=1, keepdims=True)
     return PredictionError(spread * np.broadcast_to(sigma, values.shape[1:]) ** 2, bias)
 

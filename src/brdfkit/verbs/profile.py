@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from brdfkit.arguments import to_whole_number
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit
-from brdfkit.fitting.profiling import follow
+from brdfkit.fitting.profiling import curvature, follow
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike
 from brdfkit.plotting.lobe_plots import Plot
@@ -68,10 +68,10 @@ class Profile:
 def profile(fit: Fit, data: MaterialLike, parameter: str, points: int = 25) -> Profile:
     """The profile of the loss over a shape parameter, and the 95 % interval that it gives.
 
-    At each value of the parameter the loss is minimised over all others. With N numbers and k
-    parameters, the interval is where E² ≤ E²_min (1 + t² / (N - k)), of Student's t [Bates & Watts
-    1988]: for noise that is Gaussian and equal in the loss's differences, also where the model is
-    far from linear and `Fit.intervals` are not to be trusted.
+    At each value of the parameter the loss is minimised over all others. The interval is where E²
+    is not above a level [Bates & Watts 1988]: that which the parabola of the same curvature reaches
+    at the ends of `Fit.intervals`. So it supposes of the noise what these do, and not that the
+    model is nearly linear.
 
     Parameters
     ----------
@@ -115,8 +115,13 @@ def profile(fit: Fit, data: MaterialLike, parameter: str, points: int = 25) -> P
         why = "is robust, and minimises no loss" if freedom >= 1 else "has no number to spare"
         raise BrdfkitError(f"{fit.name}: the fit {why}, so it has no profile; try bootstrap.")
     middle = fit.values[parameter]
-    level = fit.loss * np.sqrt(1 + stdtrit(freedom, 0.975) ** 2 / freedom)
     k = space.names.index(parameter)
+    rise = curvature(again, parameter, float(space.low[k]), float(space.high[k]))
+    low, high = np.ravel(fit.intervals[parameter]).tolist()
+    if rise is None:  # on a bound, where no interval is known
+        level = fit.loss * np.sqrt(1 + stdtrit(freedom, 0.975) ** 2 / freedom)
+    else:
+        level = np.sqrt(fit.loss**2 + rise * ((high - low) / 2) ** 2)
     (low, below), (high, above) = (
         follow(again, parameter, middle, bound, level, points // 2)
         for bound in (float(space.low[k]), float(space.high[k]))

@@ -26,7 +26,7 @@ class AlbedoAtMost:
     ----------
     limit : float, default 1
         The largest directional albedo of each channel, above 0; at most 1 where no light is gained.
-    theta : tuple of float, default (0, 30, 60, 80)
+    theta : tuple of float, default (0, 30, 60, 75, 85, 89)
         Angles of incidence to the normal [degrees, from 0 to below 90].
     phi : tuple of float, default (0,)
         Azimuths of incidence [degrees], each with every `theta`; isotropic models need one.
@@ -37,7 +37,7 @@ class AlbedoAtMost:
     """
 
     limit: float = 1.0
-    theta: tuple[float, ...] = (0.0, 30.0, 60.0, 80.0)
+    theta: tuple[float, ...] = (0.0, 30.0, 60.0, 75.0, 85.0, 89.0)
     phi: tuple[float, ...] = (0.0,)
 
     def __post_init__(self) -> None:

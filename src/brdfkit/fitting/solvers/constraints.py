@@ -76,7 +76,14 @@ class Custom:
         shapes, model = len(problem.space.names), problem.columns.model
         by_channel = z[shapes:].reshape(problem.channels, -1)
         weights = dict(zip(model.weights(), map(tuple, by_channel.T), strict=True))
-        found = self.function(model(**problem.space.values(z[:shapes]), **weights))
+        shown = model(**problem.space.values(z[:shapes]), **weights)
+        try:
+            found = self.function(shown)
+        except Exception as error:
+            raise BrdfkitError(
+                f"{self.describe([], 0)} fails with {type(error).__name__} ({error}); it is called "
+                "with the model and its values."
+            ) from error
         try:
             values = np.array(found, float).ravel()
         except (TypeError, ValueError):

@@ -52,6 +52,7 @@ class Objective:
         self.seed, self.report = seed, report
         self.constraints, self.parts = constraints, parts
         self.shapes, self.evaluations = coordinates.shape[1], 0
+        self.best = None  # (E², point) of all that were evaluated
         weights = np.tile(problem.least, problem.channels)
         self.low: Floats = np.concatenate([np.zeros(self.shapes), weights])
         self.high: Floats = np.concatenate([np.ones(self.shapes), np.full(len(weights), np.inf)])
@@ -77,7 +78,11 @@ class Objective:
         derivatives are halves of those of E²."""
         points = np.array(points, float, ndmin=2)
         self.evaluations += len(points)
-        return self.problem.expand_here(*self.split(points), curvature)
+        found = self.problem.expand_here(*self.split(points), curvature)
+        best = int(np.argmin(found.error))
+        if self.best is None or found.error[best] < self.best[0]:
+            self.best = found.error[best], points[best]
+        return found
 
     def clip(self, points: ArrayLike) -> Floats:
         """The nearest points within the bounds."""
@@ -97,20 +102,35 @@ class Objective:
         return self.evaluations + sum(part.evaluations for part in self.parts)
 
     def require_end(self, end: Any) -> End:
-        """What a user's solver returned, if it is an `End` within the bounds, or `BrdfkitError`."""
+        """What a user's solver returned, if it is an `End` within the bounds that meets the
+        constraints, with E² computed here, or `BrdfkitError`."""
         inside = isinstance(end, End) and np.shape(end.point) == self.low.shape
         if not (inside and np.all((self.low <= end.point) & (end.point <= self.high))):
             raise BrdfkitError(
                 f"The solver returned {end!r:.200}; it should return an End, whose point has "
-                f"{len(self.low)} numbers within objective.low and objective.high."
+                f"{len(self.low)} finite numbers within objective.low and objective.high."
             )
-        return End(np.array(end.point, float), float(end.error), end.message)
+        point = np.array(end.point, float)
+        if not np.isfinite(point).all():
+            raise BrdfkitError("The solver returned an End whose point is not finite.")
+        if self.constraints and not self.constraints.met(point):
+            raise BrdfkitError("The solver returned an End that does not meet the constraints.")
+        evaluations = self.evaluations
+        found = End(point, float(self.error(point)[0]), str(end.message))
+        self.evaluations = evaluations
+        return found
 
-    def end_at_best(self, ends: Expansion) -> End:
-        """The `End` of an interrupted search, which had come to these points."""
-        best = ends.at([int(np.argmin(ends.error))])
-        point = self.join(best.u, best.weights)
-        return End(point[0], float(self.error(point)[0]), "interrupted")
+    def best_so_far(self, ends: Expansion | None = None) -> End | None:
+        """The `End` of an interrupted search, which had come to the points `ends`, or, by default,
+        evaluated some on the most samples; None where there are none."""
+        if ends is not None:
+            best = ends.at([int(np.argmin(ends.error))])
+            point = self.join(best.u, best.weights)[0]
+        elif seen := [stage.best for stage in self.stages() if stage.best]:
+            point = seen[-1][1]
+        else:
+            return None
+        return End(point, float(self.error(point)[0]), "interrupted")
 
     def stages(self) -> tuple[Any, ...]:
         """The objectives of a search on ever more samples: the parts, then this one."""
