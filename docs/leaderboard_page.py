@@ -215,8 +215,8 @@ def checked(log, full, restarts):
     return paragraphs(
         "## What was checked",
         "**Resolution.** The reconstructions are fitted as tables smaller than MERL's. Fits of "
-        f"tables of MERL's size differ in ε by {most:.2%} at most; by more than 1 % where one of the "
-        "two searches ended elsewhere.",
+        f"tables of MERL's size differ in ε by {most:.2%} at most; by more than 1 % where one of "
+        "the two searches ended elsewhere.",
         differences("ε, ε of a full table", sizes),
         "**Random starts.** E of the log loss on coarse tables, beside the least E of 50 searches, "
         "each from one random point and on all samples to its end: the fits are at most "
@@ -249,5 +249,5 @@ def draw(log):
     axes.set_xscale("log")
     axes.set_xlabel("ε")
     tidy(axes, "", "materials within ε")
-    axes.legend(fontsize=8)
+    drawn.legend(loc="outside lower center", ncols=3, fontsize=8, frameon=False)
     return drawn
