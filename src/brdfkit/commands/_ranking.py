@@ -17,6 +17,9 @@ def recommend(names, material, how, console):
 
     if BEST not in names:
         return names, None
+    for option in ("robust", "spectral"):
+        if how.get(option):
+            say(f"models are ranked without --{option}; the fit then uses it.")
     how = {name: how[name] for name in ("loss", "max_angle", "seed")}
     with console.progress(f"rank models on {material.name}") as progress:
         ranking = rank(material, **how, progress=progress)

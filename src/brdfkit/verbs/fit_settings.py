@@ -15,7 +15,7 @@ def to_settings(settings, where):
     loss, robust = settings["loss"], settings["robust"]
     if not isinstance(loss, str):
         raise BrdfkitError(
-            f"loss = {loss!r} is code; where other processes fit, it should be a name, one of "
+            f"loss = {loss!r} is no name; where other processes fit, it should be one of "
             "brdfkit.losses."
         )
     as_loss(loss)
