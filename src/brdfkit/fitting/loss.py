@@ -77,7 +77,7 @@ class Loss:
         """The `weights` at NumPy's cosines (n,), if they are such, or `BrdfkitError`."""
         try:
             weights = np.broadcast_to(np.asarray(self.weights(cos_i), float), cos_i.shape)
-            good = bool((np.isfinite(weights) & (weights >= 0)).all())
+            good = bool(np.isfinite(weights.sum()) and weights.min(initial=0) >= 0)
         except Exception as error:
             raise BrdfkitError(
                 f"The weights of the loss {self.name} fail with {type(error).__name__} ({error}); "

@@ -1,7 +1,5 @@
 """What one should know of a fit, in sentences."""
 
-import numpy as np
-
 from brdfkit.fitting import Picture
 from brdfkit.model.evaluation import clamped_share
 from brdfkit.verbs.azimuth import note_on_azimuth
@@ -18,7 +16,7 @@ def list_notes(data, samples, loss, found, fitted, weighted):
         notes.append(
             f"{known} numbers were measured for {sought} that are sought: other values fit as well"
         )
-    if len(samples.wi) > 1 and fitted.shapes() and not np.ptp(samples.values, axis=0).any():
+    if len(samples.wi) > 1 and fitted.shapes() and _are_equal(samples.values):
         notes.append("all measured values are equal: they tell nothing of a highlight's shape")
     negative = (samples.values < 0).mean()
     if negative and not loss.linear:
@@ -29,6 +27,11 @@ def list_notes(data, samples, loss, found, fitted, weighted):
     if data.anisotropic and (note := note_on_azimuth(data, samples, loss, fitted)):
         notes.append(note)
     return (*notes, *found.certainty.undetermined, *found.certainty.trades)
+
+
+def _are_equal(values):
+    """Whether all rows are equal; most often the first two tell."""
+    return bool((values[0] == values[1]).all() and (values == values[0]).all())
 
 
 def _explain_negative(data):
