@@ -27,7 +27,6 @@ def test_default_model(configured, check):
     assert report, str(report)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("variant", OTHER_VARIANTS)
 def test_every_model_in_other_variants(model, variant):
     """In colours; no spectrum holds those below 0."""

@@ -49,7 +49,6 @@ def test_what_is_no_material_is_refused(taker, thing, said, llvm_variant):
         TAKERS[taker](thing)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("taker", TAKERS)
 def test_a_name_stands_for_its_material(taker, llvm_variant, tmp_path, monkeypatch):
     """That of a model, of a material that comes with brdfkit, or a path, as on the command line."""

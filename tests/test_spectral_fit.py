@@ -95,7 +95,6 @@ def test_standard_errors_count_at_every_wavelength():
     assert fit.values["alpha_u"] == pytest.approx(0.2, rel=0.1)
 
 
-@pytest.mark.quick
 def test_it_is_rendered_as_the_measurement(llvm_variant):
     """A Lambertian material, which a fit meets exactly, at wavelengths within and beyond."""
     import drjit as dr

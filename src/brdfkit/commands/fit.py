@@ -10,6 +10,9 @@ from brdfkit.commands._stopping import status
 from brdfkit.commands.render import path_trace
 from brdfkit.errors import BrdfkitError, Interrupted
 
+# The losses whose errors the table of fits shows, beside that which was minimised
+SHOWN = "cosine", "log", "cbrt", "plain"
+
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
@@ -198,11 +201,12 @@ def _print_fits(material, fits, failed, comparison, psnr, written, ranking, cons
     for found in fits:
         console.out.print(str(found))
         console.out.print()
-    losses = [f">{name}" for name in next(iter(comparison.errors.values()))]
+    named = {f.loss_name for f in fits}
+    shown = [name for name in next(iter(comparison.errors.values())) if name in {*SHOWN, *named}]
     image = [">PSNR [dB]"] if psnr else []
-    columns, rows = ["model", *losses, *image, ">time [s]"], []
+    columns, rows = ["model", *(f">{name}" for name in shown), *image, ">time [s]"], []
     for found in fits:
-        errors = [format_error(e) for e in comparison.errors[found.name].values()]
+        errors = [format_error(comparison.errors[found.name][name]) for name in shown]
         image = [f"{psnr[found.name]:.1f}"] if psnr else []
         rows.append((found.name, *errors, *image, f"{found.seconds:.2f}"))
     console.table(columns, rows, title=f"{material.name}: errors")
