@@ -175,3 +175,12 @@ def test_the_command_line_knows_solvers_and_constraints():
     refused = CliRunner().invoke(main, [*words, "--solver", "trust_region"])
     assert refused.exit_code == 2
     assert "TrustRegion takes no constraints" in refused.output
+
+
+def test_a_fit_that_gains_light_is_remarked():
+    words = ["fit", "brushed_aluminium", "-m", "blinn_phong"]
+    free, kept = (
+        CliRunner().invoke(main, [*words, *more]) for more in ([], ["--albedo-at-most", "1"])
+    )
+    assert "of the light at 85°; --albedo-at-most 1 prevents it" in free.stdout
+    assert "of the light at" not in kept.stdout

@@ -5,13 +5,11 @@ from pathlib import Path
 import click
 
 from brdfkit.commands._errors import say
+from brdfkit.commands._fits import print_fits
 from brdfkit.commands._options import output_options, render_options
 from brdfkit.commands._stopping import status
 from brdfkit.commands.render import path_trace
 from brdfkit.errors import BrdfkitError, Interrupted
-
-# The losses whose errors the table of fits shows, beside that which was minimised
-SHOWN = "cosine", "log", "cbrt", "plain"
 
 
 @click.command()
@@ -144,7 +142,7 @@ def fit(
             written += [output / "render.exr", output / "render.png"]
     with console.progress("compare"):
         comparison = compare(material, fits, max_angle, spectral)
-    _print_fits(material, fits, failed, comparison, psnr, written, ranking, console)
+    print_fits(material, fits, failed, comparison, psnr, written, ranking, console)
     for error in failed.values():
         say(error)
     if interrupted or failed:
@@ -186,54 +184,3 @@ def _fit_each(names, material, how, output, console):
     if not fits:
         raise next(iter(failed.values()))
     return sorted(fits, key=lambda f: f.loss), failed, False
-
-
-def _print_fits(material, fits, failed, comparison, psnr, written, ranking, console):
-    from brdfkit.commands._ranking import record
-    from brdfkit.verbs.compare import format_error
-
-    if console.as_json:
-        records = [_record(f, comparison, psnr) for f in fits]
-        entries = {"material": material.name, "fits": records, "failed": failed}
-        entries["ranking"] = record(ranking)
-        console.json({**entries, "written": written})
-        return
-    for found in fits:
-        console.out.print(str(found))
-        console.out.print()
-    named = {f.loss_name for f in fits}
-    shown = [name for name in next(iter(comparison.errors.values())) if name in {*SHOWN, *named}]
-    image = [">PSNR [dB]"] if psnr else []
-    columns, rows = ["model", *(f">{name}" for name in shown), *image, ">time [s]"], []
-    for found in fits:
-        errors = [format_error(comparison.errors[found.name][name]) for name in shown]
-        image = [f"{psnr[found.name]:.1f}"] if psnr else []
-        rows.append((found.name, *errors, *image, f"{found.seconds:.2f}"))
-    console.table(columns, rows, title=f"{material.name}: errors")
-    console.list_written(written)
-
-
-def _record(found, comparison, psnr):
-    """A fit for JSON, with its errors under every loss and the PSNR of its picture."""
-    return {
-        "model": found.name,
-        "parameters": found.values,
-        "wavelengths": found.wavelengths,
-        "standard_errors": found.standard_errors,
-        "intervals": found.intervals,
-        "degrees_of_freedom": found.degrees_of_freedom,
-        "aic": found.aic,
-        "bic": found.bic,
-        "loss": found.loss_name,
-        "error": found.loss,
-        "errors": comparison.errors[found.name],
-        "psnr": psnr.get(found.name),
-        "at_bounds": found.at_bounds,
-        "notes": found.notes,
-        "evaluations": found.evaluations,
-        "samples": found.samples,
-        "seconds": found.seconds,
-        "message": found.message,
-        "checksum": found.checksum,
-        "versions": found.versions,
-    }
