@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from brdfkit.fitting.part import draw_part
+from brdfkit.fitting.points import join, of_channel
 
 # More samples are judged by a part of half as many
 MANY = 40_000
@@ -82,7 +83,7 @@ def certify(problem, u, weights, passes=None, rng=None):
     lobes). `passes`: of a robust fit, by channel the factors ω of the samples and the derivatives
     of ω r by r; `rng`: a generator, by which a part of many samples is drawn."""
     names, free = _list_parameters(problem, u, weights)
-    at = np.concatenate([problem.space.table(u)[0], weights[0].ravel()])
+    at = join(problem.space.table(u), weights)[0]
     counted = problem.importance > 0
     numbers = int(counted.sum()) * problem.channels
     nothing = Certainty((), (), (), (), (), numbers, len(names))
@@ -90,7 +91,7 @@ def certify(problem, u, weights, passes=None, rng=None):
         return nothing
     shares = np.ones(len(counted))
     if len(counted) > MANY and rng is not None:
-        part, rows = draw_part(problem.samples, problem.black(), MANY // 2, rng)
+        part, rows = draw_part(problem.samples, problem.black, MANY // 2, rng)
         whole, problem = problem.importance[rows], problem.on(part)
         shares = whole / np.where(problem.importance > 0, problem.importance, 1)
         passes = passes and [[array[rows] for array in by_channel] for by_channel in passes]
@@ -141,7 +142,7 @@ def _sum(problem, u, weights, free, shares, passes):
     where = np.cumsum(free) - 1
     owns = []
     for c in range(problem.channels):
-        own = np.r_[0:shapes, shapes + c * lobes : shapes + (c + 1) * lobes]
+        own = of_channel(c, shapes, lobes)
         jacobians[c] = jacobians[c][free[own]]
         owns.append(where[own[free[own]]])
     hessian = np.zeros((free.sum(), free.sum()))

@@ -4,13 +4,13 @@
 kernel.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from brdfkit.fitting.box_quadratic import minimise_in_box
 from brdfkit.fitting.expansion import Expansion
+from brdfkit.fitting.points import join, limits
 from brdfkit.fitting.stopped import Stopped
 
 # A search goes on while so many times its next gain could bring it below the best one
@@ -51,8 +51,7 @@ def levenberg_marquardt(expand, u, weights, least, iterations, tolerance=1e-6, d
     now = expand(u, weights)
     points, shapes = now.u.shape
     channels = weights.shape[1]
-    low = np.concatenate([np.zeros(shapes), np.tile(least, channels)])
-    high = np.concatenate([np.ones(shapes), np.full(channels * len(least), np.inf)])
+    low, high = limits(shapes, channels, least)
     correction = np.zeros_like(now.hessian)
     damping, growth, evaluations = np.full(points, damping), np.full(points, 4.0), points
     exact = ROUNDING * now.error.max()
@@ -69,7 +68,7 @@ def levenberg_marquardt(expand, u, weights, least, iterations, tolerance=1e-6, d
             diagonal = H.diagonal(axis1=1, axis2=2)
             floor = 1e-12 * diagonal.max(axis=1, keepdims=True) + 1e-300
             damped = H + np.eye(H.shape[1]) * (damping[rows, None] * (diagonal + floor))[:, None, :]
-            at = _join(here)
+            at = join(here.u, here.weights)
             step = minimise_in_box(damped, g, low - at, high - at)
             gain = -((2 * g + (H @ step[:, :, None])[:, :, 0]) * step).sum(axis=1)
             # Where nothing is to be gained, the search is over; elsewhere the step is tried
@@ -100,7 +99,7 @@ def levenberg_marquardt(expand, u, weights, least, iterations, tolerance=1e-6, d
             correction[bad] = 0
             correction[good] = _secant(
                 correction[good],
-                _join(trial) - _join(here),
+                join(trial.u, trial.weights) - join(here.u, here.weights),
                 trial.gradient - here.gradient,
                 trial.hessian,
             )
@@ -110,12 +109,6 @@ def levenberg_marquardt(expand, u, weights, least, iterations, tolerance=1e-6, d
     except KeyboardInterrupt:
         raise Stopped(now) from None
     return Search(now, converged, evaluations)
-
-
-def _join(expansion):
-    """The points (points, n): coordinates, then weights by channel."""
-    u, weights = expansion.u, expansion.weights
-    return np.concatenate([u, weights.reshape(len(u), math.prod(weights.shape[1:]))], axis=1)
 
 
 def _secant(correction, step, change, hessian):

@@ -13,7 +13,6 @@ import numpy as np
 from brdfkit.fitting.derivative import differentiate
 from brdfkit.fitting.regression import regress
 from brdfkit.model import double_precision
-from brdfkit.model.evaluation import mix_lobes
 
 # The least τ², as a share of the mean σ²: a σ of 0 is not trusted beyond it
 LEAST = 0.01
@@ -24,7 +23,7 @@ ALIKE = 0.05
 def regress_noisy(model, samples, loss, **how):
     """The `Solution` of `regress` on `Samples` that have standard errors, which it uses."""
     found = regress(model, samples, loss, **how)
-    shares = find_shares(samples, loss, _evaluate(model, found, samples), found.loss)
+    shares = find_shares(samples, loss, found.eval(model, samples), found.loss)
     if shares.min() > (1 - ALIKE) * shares.max():
         return found
     found = regress(model, replace(samples, weight=samples.weight * shares), loss, **how)
@@ -59,8 +58,3 @@ def _variance(samples, loss, model, measured, sigma):
     # No spread was seen, as where no ray came: σ is not 0, but as the least known
     known = sigma[sigma > 0]
     return (np.array(slope) * np.maximum(sigma, known.min() if len(known) else 0)) ** 2
-
-
-def _evaluate(model, found, samples):
-    """The values (n, channels) of the model of a `Solution` at `Samples`."""
-    return mix_lobes(model(**found.shapes), found.weights.T, samples.wi, samples.wo)

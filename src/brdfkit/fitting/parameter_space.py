@@ -36,6 +36,13 @@ class Space:
         log = np.array([model.parameters[n].log for n in names], bool)
         return cls(names, low, high, log, {k: float(v) for k, v in fixed.items()})
 
+    @classmethod
+    def on(cls, samples, model, bounds, fixed, anisotropic):
+        """The space of a fit to `Samples`, whose directions determine some parameters, unless these
+        have `bounds` or are `fixed`; see `of`."""
+        determined = {n: v for n, v in model.determined(samples).items() if n not in bounds}
+        return cls.of(model, bounds, determined | fixed, anisotropic)
+
     def table(self, u):
         """The parameters (points, shapes) at coordinates `u`, of the same shape."""
         linear = self.low + u * (self.high - self.low)

@@ -67,5 +67,5 @@ def _part(model, samples, space, size, rng):
     """About `size` of `Samples`, or all where they are not many more."""
     if len(samples.wi) <= 2 * size:
         return samples
-    part, _ = draw_part(samples, Problem(model, samples, LOG, space).black(), size, rng)
+    part, _ = draw_part(samples, Problem(model, samples, LOG, space).black, size, rng)
     return part

@@ -4,6 +4,8 @@ A point is the coordinates u of the searched shape parameters and the weights of
 points are evaluated together, each with all samples, by one kernel.
 """
 
+from functools import cached_property
+
 import drjit as dr
 import numpy as np
 
@@ -52,6 +54,7 @@ class Problem:
         """The same problem on other `Samples`."""
         return Problem(self.model, samples, self.loss, self.space)
 
+    @cached_property
     def black(self):
         """What each sample adds to E² of a black model (n,)."""
         squares = []

@@ -14,7 +14,7 @@ from brdfkit.fitting.picture import Picture
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.robust_search import settle
 from brdfkit.fitting.search import EXACT, MOST_STEPS
-from brdfkit.model.evaluation import weight_matrix
+from brdfkit.model.evaluation import weight_matrix, with_weights
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,9 +65,9 @@ class Refit:
         """The `Problem` of the fit, with parameters `held` at values, by name."""
         model, settings = type(self.fit.model), self.fit.settings
         bounds = {n: v for n, v in settings.get("bounds", {}).items() if n not in held}
-        determined = model.determined(self.samples).items()
-        given = {n: v for n, v in determined if n not in bounds} | settings.get("fixed", {}) | held
-        space = Space.of(model, bounds, given, settings.get("anisotropic", False))
+        fixed = settings.get("fixed", {}) | held
+        anisotropic = settings.get("anisotropic", False)
+        space = Space.on(self.samples, model, bounds, fixed, anisotropic)
         return Problem(model, self.samples, as_loss(self.fit.loss_name), space)
 
     def descend(self, problem, values, weights, rng=None):
@@ -83,5 +83,5 @@ class Refit:
 
     def values(self, shapes, weights):
         """All values of the model by name, of `shapes` by name and `weights`."""
-        named = dict(zip(self.fit.model.weights(), map(tuple, weights[0].T), strict=True))
-        return type(self.fit.model)(wavelengths=self.fit.wavelengths, **shapes, **named).values
+        model, wavelengths = type(self.fit.model), self.fit.wavelengths
+        return with_weights(model, shapes, weights[0], wavelengths).values

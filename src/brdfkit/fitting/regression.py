@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.fitting.certainty import Certainty, certify, explain_end
+from brdfkit.fitting.certainty import ON_BOUND, Certainty, certify, explain_end
 from brdfkit.fitting.folding import fold
 from brdfkit.fitting.levenberg_marquardt import ROUNDING
 from brdfkit.fitting.parameter_space import Space
@@ -18,6 +18,7 @@ from brdfkit.fitting.solvers import SLSQP, Constraints, LevenbergMarquardt, Obje
 from brdfkit.fitting.starting_points import start_points, usual_starts
 from brdfkit.fitting.stopped import Stopped
 from brdfkit.jit.threads import in_turn
+from brdfkit.model.evaluation import mix_lobes
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +38,10 @@ class Solution:
     at_bounds: tuple[str, ...]
     notes: tuple[str, ...]
     certainty: Certainty
+
+    def eval(self, model, samples):
+        """The values (n, channels) of the `model` class that was regressed, at `Samples`."""
+        return mix_lobes(model(**self.shapes), self.weights.T, samples.wi, samples.wo)
 
 
 @in_turn
@@ -71,9 +76,7 @@ def regress(
     far.
     """
     bounds, report = bounds or {}, report or (lambda done, total: None)
-    # What is searched: neither fixed nor determined by the measured directions
-    given = {n: v for n, v in model.determined(samples).items() if n not in bounds} | (fixed or {})
-    space = Space.of(model, bounds, given, anisotropic)
+    space = Space.on(samples, model, bounds, fixed or {}, anisotropic)
     rng = np.random.default_rng(seed)
     if pixels is None:
         whole = Problem(model, samples, loss, space)
@@ -103,7 +106,7 @@ def regress(
         end, stopped = best, True
     (u, weights), passes = objective.split(end.point[None]), None
     error, message, notes = end.error, end.message, limits.notes(end.point) if limits else ()
-    if message != "converged" and error <= ROUNDING * whole.black().sum():
+    if message != "converged" and error <= ROUNDING * whole.black.sum():
         message = "converged"  # a model that meets the data: the search went on in rounding
     # Weigh down outliers, from the optimum where all samples count alike
     if robust and not stopped:
@@ -138,6 +141,6 @@ def default_solver(constraints):
 
 def _find_at_bounds(space, u, model, weights):
     """The parameters that ended on a bound: weights of 0 in all channels, then shape parameters."""
-    shapes = [n for n, v in zip(space.names, u, strict=True) if min(v, 1 - v) < 1e-6]
+    shapes = [n for n, v in zip(space.names, u, strict=True) if min(v, 1 - v) < ON_BOUND]
     black = [n for n, w in zip(model.weights(), weights.T, strict=True) if (w == 0).all()]
     return (*(n for n in black if model.parameters[n].bounds[0] == 0), *shapes)

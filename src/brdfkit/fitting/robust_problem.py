@@ -6,6 +6,7 @@ import numpy as np
 
 from brdfkit.fitting.box_quadratic import minimise_in_box
 from brdfkit.fitting.expansion import Expansion
+from brdfkit.fitting.points import join, limits
 from brdfkit.fitting.robust import WEIGHTS, least_scale, leverages, require_more_samples, scale_of
 
 # One of so many samples, those with residuals next to the median, tell how it changes
@@ -25,7 +26,7 @@ class Point:
 
     def join(self):
         """The point as a vector (k,)."""
-        return np.concatenate([self.u[0], self.weights[0].ravel()])
+        return join(self.u, self.weights)[0]
 
 
 class RobustProblem:
@@ -47,8 +48,7 @@ class RobustProblem:
         black = problem.residuals(u, 0 * weights)
         self.least = [least_scale(target) for target in black]
         self.spread = np.sqrt(sum(len(t) * np.var(t) for t in black)) or 1.0
-        self.low = np.concatenate([np.zeros(u.shape[1]), np.tile(problem.least, problem.channels)])
-        self.high = np.concatenate([np.ones(u.shape[1]), np.full(weights[0].size, np.inf)])
+        self.low, self.high = limits(u.shape[1], problem.channels, problem.least)
 
     def _leverages(self, u, weights):
         """The leverages (n,) of the linear parameters, by channel: exact, or of a part's size."""

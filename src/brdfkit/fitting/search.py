@@ -32,7 +32,7 @@ def with_parts(whole, rng):
     for size in PARTS[:1] if whole.clamped else PARTS:
         samples = problems[0].samples
         if 2 * size < len(samples.wi):
-            part, _ = draw_part(samples, problems[0].black(), size, rng)
+            part, _ = draw_part(samples, problems[0].black, size, rng)
             problems.insert(0, whole.on(part))
     return problems
 

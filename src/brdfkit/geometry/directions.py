@@ -42,7 +42,7 @@ def to_half_difference(wi, wo):
     h = normalize(wi + wo)
     theta_h, phi_h = to_angles(h)
     # The difference vector: wi rotated by -phi_h about z, then by -theta_h about y
-    d = _rotate_y(_rotate_z(wi, -phi_h), -theta_h)
+    d = _rotate_y(rotate_z(wi, -phi_h), -theta_h)
     theta_d, phi_d = to_angles(d)
     return theta_h, theta_d, np.mod(phi_d, 2 * np.pi)
 
@@ -61,10 +61,11 @@ def from_half_difference(theta_h, theta_d, phi_d, phi_h=0.0):
     theta_h, theta_d, phi_d, phi_h = np.broadcast_arrays(theta_h, theta_d, phi_d, phi_h)
     wi = _rotate_y(from_angles(theta_d, phi_d), theta_h)
     wo = _rotate_y(from_angles(theta_d, phi_d + np.pi), theta_h)
-    return _rotate_z(wi, phi_h), _rotate_z(wo, phi_h)
+    return rotate_z(wi, phi_h), rotate_z(wo, phi_h)
 
 
-def _rotate_z(w, angle):
+def rotate_z(w, angle):
+    """Vectors (..., 3) turned about z by an `angle` [rad]."""
     c, s = np.cos(angle), np.sin(angle)
     x, y = w[..., 0], w[..., 1]
     return np.stack([c * x - s * y, s * x + c * y, w[..., 2]], axis=-1)

@@ -46,6 +46,12 @@ def weight_matrix(model):
     return np.array([np.broadcast_to(w, channels) for w in weights])
 
 
+def with_weights(model, shapes, weights, wavelengths=()):
+    """A model of the class `model` with `shapes` by name and `weights` (channels, lobes)."""
+    named = dict(zip(model.weights(), map(tuple, weights.T), strict=True))
+    return model(wavelengths=wavelengths, **shapes, **named)
+
+
 @in_turn
 def lobe_values(model, wi, wo):
     """Two arrays (n, lobes) in sr⁻¹ of direction pairs (n, 3) above the surface.

@@ -42,9 +42,7 @@ def cross_validate(model, held_out, anisotropic, seed, report):
         out = held_out.folds == fold
         part = regress(model, samples.at(~out), loss, starts=STARTS, first=whole.shapes, **how)
         seen = samples.at(out)
-        weights = dict(zip(model.weights(), map(tuple, part.weights.T), strict=True))
-        fitted = model(**part.shapes, **weights)
-        found[out] = squares(loss, fitted.eval(seen.wi, seen.wo), seen)
+        found[out] = squares(loss, part.eval(model, seen), seen)
         report(2 + fold)
     certainty = whole.certainty
     bic = certainty.bic(whole.loss)

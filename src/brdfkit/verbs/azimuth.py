@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from brdfkit.fitting.derivative import differentiate
+from brdfkit.geometry.directions import rotate_z
 from brdfkit.jit.threads import in_turn
 from brdfkit.model import double_precision
 
@@ -15,7 +16,8 @@ PAIRS, TURNS = 2_000, 8
 def is_isotropic(model, wi, wo):
     """Whether a model with values stays the same as the surface turns, at pairs (n, 3)."""
     values = model.eval(wi, wo)
-    apart = max(abs(model.eval(*_turn(wi, wo, turn)) - values).max() for turn in (0.7, 1.9))
+    turned = [model.eval(rotate_z(wi, angle), rotate_z(wo, angle)) for angle in (0.7, 1.9)]
+    apart = max(abs(other - values).max() for other in turned)
     return bool(apart <= 1e-9 * abs(values).max())
 
 
@@ -44,8 +46,8 @@ def _least_error(data, part, loss):
     their mean: exact where the difference is linear in the model's value, or one of functions of
     the two values.
     """
-    turns = [_turn(part.wi, part.wo, angle) for angle in np.arange(TURNS) * 2 * np.pi / TURNS]
-    measured = np.stack([data.eval(*pair) for pair in turns])
+    angles = np.arange(TURNS) * 2 * np.pi / TURNS
+    measured = np.stack([data.eval(rotate_z(part.wi, a), rotate_z(part.wo, a)) for a in angles])
     cosines = [double_precision.array(np.tile(w[:, 2], TURNS)) for w in (part.wi, part.wo)]
     squares = 0.0
     for own in np.moveaxis(measured, 2, 0):
@@ -59,10 +61,3 @@ def _least_error(data, part, loss):
         gain = (d * slope).sum(axis=0) ** 2 / np.maximum((slope**2).sum(axis=0), 1e-300)
         squares = squares + ((d**2).sum(axis=0) - gain) / TURNS
     return math.sqrt(loss.importance(part) @ squares)
-
-
-def _turn(wi, wo, angle):
-    """Direction pairs on the surface turned about its normal by an `angle` [rad]."""
-    c, s = math.cos(angle), math.sin(angle)
-    turn = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
-    return wi @ turn, wo @ turn

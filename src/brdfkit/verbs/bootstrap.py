@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 from brdfkit.arguments import to_whole_number
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit
-from brdfkit.fitting.refitting import Refit
 from brdfkit.jit.threads import in_turn
-from brdfkit.materials import MaterialLike, measured_material
-from brdfkit.measured.selection import select_samples
+from brdfkit.materials import MaterialLike
+from brdfkit.verbs.refit import refit
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,13 +121,3 @@ def bootstrap(
         if progress:
             progress(number, count)
     return Bootstrap(fit, {name: np.array([f[name] for f in found]) for name in found[0]})
-
-
-def refit(fit, data):
-    """The `Refit` of a fit and the material that was fitted."""
-    if not isinstance(fit, Fit):
-        raise BrdfkitError(f"Here a Fit is needed, not a {type(fit).__name__}; make one by fit.")
-    settings, data = fit.settings, measured_material(data)
-    errors = settings.get("use_standard_error", False)
-    given = settings.get("max_angle", 80.0), None, errors, bool(fit.wavelengths)
-    return Refit(fit, select_samples(data, *given))

@@ -86,28 +86,18 @@ def compare(
     >>> print(compare("car_paint", ["ward", fit("ggx", "car_paint")]))    # doctest: +SKIP
     """
     data, found = measured_material(data), materials(things)
+    samples = select_samples(data, max_angle, spectral=spectral)
     errors: dict[str, dict[str, float]] = {}
     for thing in found:
+        values = _evaluate(thing, data, samples, spectral)
         errors[make_unique(thing.name, errors)] = {
-            loss: error(thing, data, loss, max_angle, spectral) for loss in losses.by_sample
+            name: _error(loss, values, samples) for name, loss in losses.by_sample.items()
         }
     return Comparison(data.name, dict(sorted(errors.items(), key=lambda item: item[1]["log"])))
 
 
-def error(thing, data, loss, max_angle=80.0, spectral=False):
-    """E of the loss named `loss` between `thing` (anything with `.eval`) and a `Measured`.
-
-    E is computed over the samples with both angles below `max_angle` [degrees], at the measured
-    wavelengths if `spectral`, else in linear sRGB; its units: `brdfkit.losses`. It is nan where the
-    loss weighs none of them, as the cosine loss does for samples at normal incidence.
-
-    >>> error(models()["lambert"](), load("paint.binary"), "log")    # doctest: +SKIP
-    """
-    loss = losses.by_sample[loss]
-    samples = select_samples(data, max_angle, spectral=spectral)
-    importance = loss.importance(samples)
-    if not importance.any():
-        return math.nan
+def _evaluate(thing, data, samples, spectral):
+    """The values (n, channels) of `thing` at `Samples` of a `Measured`."""
     shown = thing if spectral else getattr(thing, "rgb", thing)
     values = shown.eval(samples.wi, samples.wo)
     if values.shape[1] not in (1, samples.values.shape[1]):
@@ -115,5 +105,10 @@ def error(thing, data, loss, max_angle=80.0, spectral=False):
             f"{thing.name} has {values.shape[1]} channels and {data.name} "
             f"{samples.values.shape[1]}; compare what has the same ones."
         )
-    values = np.broadcast_to(values, samples.values.shape)
-    return math.sqrt(importance @ squares(loss, values, samples))
+    return np.broadcast_to(values, samples.values.shape)
+
+
+def _error(loss, values, samples):
+    """E of a `Loss` for `values` (n, channels) at `Samples`; nan where it weighs none of them."""
+    importance = loss.importance(samples)
+    return math.sqrt(importance @ squares(loss, values, samples)) if importance.any() else math.nan

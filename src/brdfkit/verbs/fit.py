@@ -20,6 +20,7 @@ from brdfkit.materials import MaterialLike, measured_material
 from brdfkit.measured.selection import select_samples
 from brdfkit.measured.spectrum_to_rgb import wavelengths
 from brdfkit.model import Model, labels
+from brdfkit.model.evaluation import with_weights
 from brdfkit.pictures import draw_pixels
 from brdfkit.verbs.fit_notes import list_notes
 from brdfkit.verbs.fit_settings import require_plain, to_settings
@@ -137,8 +138,8 @@ def fit(
     samples = select_samples(data, max_angle, weights, use_standard_error, spectral)
 
     def to_fit(found):
-        linear = dict(zip(model.weights(), map(tuple, found.weights.T), strict=True))
-        fitted = model(wavelengths=wavelengths(data) if spectral else (), **found.shapes, **linear)
+        known = wavelengths(data) if spectral else ()
+        fitted = with_weights(model, found.shapes, found.weights, known)
         return Fit(
             model=fitted,
             data=data.name,

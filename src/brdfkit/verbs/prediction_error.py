@@ -1,19 +1,19 @@
 """`prediction_error`: how far a linear model is from the truth, by noise and by bias."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit
+from brdfkit.fitting.loss import squares
 from brdfkit.fitting.named_losses import as_loss
+from brdfkit.fitting.refitting import Refit
 from brdfkit.jit.threads import in_turn
-from brdfkit.materials import MaterialLike, material, measured_material
-from brdfkit.measured.selection import select_samples
-from brdfkit.model import double_precision
+from brdfkit.materials import MaterialLike, material
 from brdfkit.model.evaluation import lobe_values
-from brdfkit.verbs.bootstrap import refit
+from brdfkit.verbs.refit import fitted_samples
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,12 +86,9 @@ def prediction_error(
     --------
     >>> print(prediction_error(fit("koenderink", "plaster", "plain"), "plaster"))  # doctest: +SKIP
     """
-    data = measured_material(data)
-    samples = select_samples(
-        data, fit.settings.get("max_angle", 80.0), spectral=bool(fit.wavelengths)
-    )
+    samples = fitted_samples(fit, data)
     _require_linear(fit, samples)
-    refit(fit, data)  # weights, constraints and standard errors are not known here
+    Refit(fit, samples)  # raises for weights, constraints and standard errors, not known here
     Z = lobe_values(fit.model, samples.wi, samples.wo)[0]
     # (Z'WZ)⁻¹ Z'W, of the weights W of the loss
     root = _root_weights(as_loss(fit.loss_name), samples)
@@ -137,6 +134,6 @@ def _require_linear(fit, samples):
 
 def _root_weights(loss, samples):
     """√W (n,) of a linear loss, whose squared differences are W (model - measured)²."""
-    one, zero = (double_precision.array(np.full(len(samples.wi), x)) for x in (1.0, 0.0))
-    cosines = [double_precision.array(w[:, 2]) for w in (samples.wi, samples.wo)]
-    return np.sqrt(loss.importance(samples)) * np.abs(loss.difference(one, zero, *cosines))
+    ones = np.ones((len(samples.wi), 1))
+    black = replace(samples, values=0 * ones)
+    return np.sqrt(loss.importance(samples) * squares(loss, ones, black))

@@ -13,7 +13,7 @@ from brdfkit.fitting.profiling import curvature, follow
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike
 from brdfkit.plotting.lobe_plots import Plot
-from brdfkit.verbs.bootstrap import refit
+from brdfkit.verbs.refit import refit
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,6 +10,7 @@ from brdfkit.arguments import to_positive
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.expansion import combine
 from brdfkit.fitting.not_finite import require_finite
+from brdfkit.fitting.points import of_channel
 from brdfkit.geometry.directions import from_angles
 from brdfkit.geometry.quadrature import ring_rule
 from brdfkit.model import double_precision
@@ -62,8 +63,7 @@ class AlbedoAtMost:
         for rule, T in self._integrate(problem, problem.columns.eval, u):
             for c, model in enumerate(_mix(problem, weights, T)):
                 slope = np.zeros(shapes + channels * lobes)
-                own = np.r_[0:shapes, shapes + c * lobes : shapes + (c + 1) * lobes]
-                slope[own] = -change[c] @ (T @ (rule * (model >= 0)))
+                slope[of_channel(c, shapes, lobes)] = -change[c] @ (T @ (rule * (model >= 0)))
                 slopes.append(slope)
         return np.array(slopes)
 

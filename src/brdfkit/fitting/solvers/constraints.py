@@ -7,6 +7,8 @@ import numpy as np
 
 from brdfkit.arguments import to_positive
 from brdfkit.errors import BrdfkitError
+from brdfkit.fitting.points import join, limits, split
+from brdfkit.model.evaluation import with_weights
 
 # Constraints are met to the first, and active where they have less than the second to spare
 MET, ACTIVE = 1e-8, 1e-6
@@ -56,13 +58,12 @@ class Custom:
 
     def values(self, problem, u, weights):
         """As `WeightsAtMost.values`."""
-        return self._values(problem, np.concatenate([u[0], weights[0].ravel()]))
+        return self._values(problem, join(u, weights)[0])
 
     def slopes(self, problem, u, weights):
         """As `WeightsAtMost.slopes`, by central differences."""
-        z = np.concatenate([u[0], weights[0].ravel()])
-        low = np.concatenate([0 * u[0], np.tile(problem.least, problem.channels)])
-        high = np.concatenate([0 * u[0] + 1, np.full(weights.size, np.inf)])
+        z = join(u, weights)[0]
+        low, high = limits(u.shape[1], problem.channels, problem.least)
         slopes = []
         for k in range(len(z)):
             below, above = z.copy(), z.copy()
@@ -73,10 +74,8 @@ class Custom:
         return np.stack(slopes, axis=1)
 
     def _values(self, problem, z):
-        shapes, model = len(problem.space.names), problem.columns.model
-        by_channel = z[shapes:].reshape(problem.channels, -1)
-        weights = dict(zip(model.weights(), map(tuple, by_channel.T), strict=True))
-        shown = model(**problem.space.values(z[:shapes]), **weights)
+        u, weights = split(z[None], len(problem.space.names), problem.channels)
+        shown = with_weights(problem.columns.model, problem.space.values(u[0]), weights[0])
         try:
             found = self.function(shown)
         except Exception as error:
@@ -149,5 +148,4 @@ class Constraints:
 
     def _split(self, z):
         """Coordinates (1, shapes) and weights (1, channels, lobes) of a point."""
-        shapes = len(self.problem.space.names)
-        return z[None, :shapes], z[shapes:].reshape(1, self.problem.channels, -1)
+        return split(z[None], len(self.problem.space.names), self.problem.channels)

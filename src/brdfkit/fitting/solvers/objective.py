@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.expansion import Expansion
+from brdfkit.fitting.points import join, limits, split
 
 Floats = NDArray[np.float64]
 
@@ -53,9 +54,7 @@ class Objective:
         self.constraints, self.parts = constraints, parts
         self.shapes, self.evaluations = coordinates.shape[1], 0
         self.best = None  # (E², point) of all that were evaluated
-        weights = np.tile(problem.least, problem.channels)
-        self.low: Floats = np.concatenate([np.zeros(self.shapes), weights])
-        self.high: Floats = np.concatenate([np.ones(self.shapes), np.full(len(weights), np.inf)])
+        self.low, self.high = limits(self.shapes, problem.channels, problem.least)
 
     @classmethod
     def of(cls, problems, *given):
@@ -90,12 +89,11 @@ class Objective:
 
     def split(self, points: Floats) -> tuple[Floats, Floats]:
         """Coordinates (count, shapes) and weights (count, channels, lobes) of points (count, n)."""
-        u, weights = points[:, : self.shapes], points[:, self.shapes :]
-        return u, weights.reshape(len(points), self.problem.channels, len(self.problem.least))
+        return split(points, self.shapes, self.problem.channels)
 
     def join(self, u: Floats, weights: Floats) -> Floats:
         """The points of coordinates and weights."""
-        return np.concatenate([u, weights.reshape(len(u), -1)], axis=1)
+        return join(u, weights)
 
     def count(self) -> int:
         """The evaluations on all samples and on parts of them."""
@@ -115,10 +113,8 @@ class Objective:
             raise BrdfkitError("The solver returned an End whose point is not finite.")
         if self.constraints and not self.constraints.met(point):
             raise BrdfkitError("The solver returned an End that does not meet the constraints.")
-        evaluations = self.evaluations
-        found = End(point, float(self.error(point)[0]), str(end.message))
-        self.evaluations = evaluations
-        return found
+        sums = self.problem.expand_here(*self.split(point[None]), curvature=False)
+        return End(point, float(sums.error[0]), str(end.message))
 
     def best_so_far(self, ends: Expansion | None = None) -> End | None:
         """The `End` of an interrupted search, which had come to the points `ends`, or, by default,

@@ -1,0 +1,23 @@
+"""A fit made ready to be fitted again, as the bootstrap and the profile do."""
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.fitting import Fit
+from brdfkit.fitting.refitting import Refit
+from brdfkit.materials import measured_material
+from brdfkit.measured.selection import select_samples
+
+
+def refit(fit, data):
+    """The `Refit` of a fit and the material that was fitted."""
+    return Refit(fit, fitted_samples(fit, data))
+
+
+def fitted_samples(fit, data):
+    """The `Samples` of a material that were fitted; with standard errors, where these counted."""
+    if not isinstance(fit, Fit):
+        raise BrdfkitError(f"Here a Fit is needed, not a {type(fit).__name__}; make one by fit.")
+    settings, data = fit.settings, measured_material(data)
+    errors = settings.get("use_standard_error", False)
+    return select_samples(
+        data, settings.get("max_angle", 80.0), errors=errors, spectral=bool(fit.wavelengths)
+    )
