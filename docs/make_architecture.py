@@ -38,7 +38,9 @@ GROUPS = {  # what a row of rooms is for, by one of them
     "measured": "a measured material",
     "fitting": "what a fit and what Mitsuba runs",
     "model": "what a model is made of",
+    "thumbnails": "what a BRDF looks like",
     "samples": "numbers",
+    "geometry": "directions, and words",
     "files": "the ground everyone stands on",
 }
 

@@ -12,8 +12,8 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.geometry.directions import from_angles
 from brdfkit.measured import Measured
 from brdfkit.plotting import Plot, plot
-from brdfkit.plotting.half_disc import Radius
 from brdfkit.plotting.plane_of_incidence import lobe
+from brdfkit.thumbnails.radius import Radius
 
 pytestmark = pytest.mark.quick
 

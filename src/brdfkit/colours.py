@@ -26,6 +26,16 @@ def luminance(values):
     return values[..., 0] if channels == 1 else values @ LUMINANCE
 
 
+def to_srgb(linear):
+    """sRGB's curve [IEC 1999]: values 0 to 1 of linear ones, which are clipped to 0 to 1.
+
+    >>> to_srgb(np.array([0.0, 0.5, 2.0])).round(3)
+    array([0.   , 0.735, 1.   ])
+    """
+    x = np.clip(linear, 0, 1)
+    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
+
+
 def colour_science():
     """The package `colour`, imported without its change of how NumPy prints arrays."""
     with np.printoptions():

@@ -16,6 +16,8 @@ from brdfkit.auditing.grazing_and_retro import grazing, retroreflection
 from brdfkit.auditing.noise import Noise, noise
 from brdfkit.auditing.spikes import Spike, spikes
 from brdfkit.auditing.symmetries import Difference, by_mirror, by_reciprocity
+from brdfkit.documents import Document, Paragraph, Picture, Shown, Table
+from brdfkit.documents.parts import BAD
 from brdfkit.materials import MaterialLike, measured_material
 from brdfkit.measured.spectrum_to_rgb import rgb_or_mean
 
@@ -23,11 +25,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MAX_ANGLE = 80.0  # degrees: what a fit uses by default
+DPI, WIDTH = 75, 760  # of the picture in a notebook
 FEW = 10  # up to so many angles are listed one by one
 
 
-@dataclass(frozen=True)
-class Audit:
+@dataclass(frozen=True, repr=False)
+class Audit(Shown):
     """What is in a measurement; prints as text. Made by `audit`. NaN is what it cannot tell.
 
     Attributes
@@ -110,12 +113,22 @@ class Audit:
 
         return picture(self)
 
-    def __str__(self) -> str:
-        rows = self.rows()
-        width = max(map(len, rows))
-        lines = [f"  {heading:<{width}}  {text}" for heading, text in rows.items()]
-        lines += [f"  ! {finding}" for finding in self.findings()]
-        return "\n".join([self.name, *lines])
+    def document(self) -> Document:
+        """What was measured and how well, and what is doubtful."""
+        says = f"{self.name}: a slice of the table, the lobes and the albedo"
+        return Document(
+            self.name,
+            (
+                Picture(self._draw, says, WIDTH),
+                Table(tuple(self.rows().items())),
+                *(Paragraph(finding, BAD) for finding in self.findings()),
+            ),
+        )
+
+    def _draw(self):
+        from brdfkit.plotting import to_png
+
+        return to_png(self.picture(), DPI)
 
 
 def audit(data: MaterialLike) -> Audit:

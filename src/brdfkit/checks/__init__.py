@@ -15,6 +15,8 @@ from brdfkit.checks.failure import describe
 from brdfkit.checks.material_subject import Subject
 from brdfkit.checks.plugin_subject import PluginSubject, example, is_no_model
 from brdfkit.checks.registry import Finding, checks
+from brdfkit.documents import Cell, Document, Shown, Table
+from brdfkit.documents.parts import BAD, GOOD
 from brdfkit.errors import BrdfkitError, nearest, no_such
 from brdfkit.jit import llvm
 from brdfkit.jit.threads import in_turn
@@ -26,8 +28,8 @@ for _module in pkgutil.iter_modules(__path__):
     importlib.import_module(f"{__name__}.{_module.name}")
 
 
-@dataclass(frozen=True)
-class Report:
+@dataclass(frozen=True, repr=False)
+class Report(Shown):
     """What `check` found; true when everything passed; prints as a list.
 
     Attributes
@@ -44,13 +46,13 @@ class Report:
     def __bool__(self) -> bool:
         return all(finding.passed for finding in self.findings)
 
-    def __str__(self) -> str:
-        width = max(len(f.check) for f in self.findings)
-        lines = [
-            f"  {'ok  ' if f.passed else 'FAIL'}  {f.check:<{width}}  {f.figure}"
+    def document(self) -> Document:
+        """Each check, whether it passed, and the figure by which."""
+        rows = tuple(
+            (Cell("ok", GOOD) if f.passed else Cell("FAIL", BAD), f.check, f.figure)
             for f in self.findings
-        ]
-        return "\n".join([f"{self.name}: {'passed' if self else 'failed'}", *lines])
+        )
+        return Document(f"{self.name}: {'passed' if self else 'failed'}", (Table(rows),))
 
 
 @in_turn

@@ -9,6 +9,8 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
+from brdfkit.documents import Cell, Document, Shown, Table
+from brdfkit.documents.parts import STRONG
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.fitting.loss import Loss, loss_of, require_working
 from brdfkit.fitting.picture import Picture
@@ -39,7 +41,7 @@ def _sine(cosine):
     return np.sqrt(np.maximum(1 - cosine**2, 0))
 
 
-class Losses(dict[str, Loss | Picture]):
+class Losses(Shown, dict[str, Loss | Picture]):
     """The losses by name: what `fit` makes small. Prints as a table of their meanings.
 
     A loss E is a root mean square of differences: of f cos θ_i [sr⁻¹] for "cosine", of its cube
@@ -57,9 +59,10 @@ class Losses(dict[str, Loss | Picture]):
         """Those that are a `Loss`, which judges a model sample by sample."""
         return {name: loss for name, loss in self.items() if isinstance(loss, Loss)}
 
-    def __repr__(self) -> str:
-        width = max(map(len, self))
-        return "\n".join(f"{name:<{width}}  {loss.meaning}" for name, loss in self.items())
+    def document(self) -> Document:
+        """The losses by name, with the meaning of each."""
+        rows = tuple((Cell(name, kind=STRONG), loss.meaning) for name, loss in self.items())
+        return Document("Losses: what a fit makes small", (Table(rows),))
 
 
 losses = Losses(

@@ -6,16 +6,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from brdfkit.documents import Document, Folded, Paragraph, Shown
+from brdfkit.documents.parts import SOFT
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.certainty import Certainty
 from brdfkit.model import Model
+from brdfkit.model.value_table import value_table
+from brdfkit.plugins.pages import page
+from brdfkit.thumbnails import thumbnails
 
 NAN = float("nan")
-MOST_PRINTED = 3  # numbers of a weight; of more the least and the most
 
 
-@dataclass(frozen=True)
-class Fit:
+@dataclass(frozen=True, repr=False)
+class Fit(Shown):
     """A model fitted to a measured material. Evaluates and renders like its model. Made by `fit`.
 
     Attributes
@@ -204,36 +208,21 @@ class Fit:
         """The dictionary for `mitsuba.load_dict`."""
         return self.model.scene_dict()
 
-    def __str__(self) -> str:
-        width, errors = max(map(len, self.values)), self.standard_errors
-        lines = [f"{self.name} fitted to {self.data}: {self.loss_name} loss {self.loss:.6g}"]
-        for name, value in self.values.items():
-            both = np.atleast_1d(value), np.atleast_1d(errors[name])
-            if len(both[0]) > MOST_PRINTED:
-                numbers = _summarise(*both, self.wavelengths)
-            else:
-                numbers = "  ".join(map(_with_error, *both))
-            note = "   on its bound" if name in self.at_bounds else ""
-            lines.append(f"  {name:<{width}}  {numbers}{note}")
-        lines += [f"  {note}" for note in self.notes]
-        lines.append(
-            f"  {self.message}; {self.samples:,} sample{'s' * (self.samples != 1)}, "
-            f"{self.evaluations} evaluations, "
-            f"{self.seconds:.2f} s"
+    def document(self) -> Document:
+        """What the fit tells of itself: its values, notes on them, and how they were found."""
+        old = ("no standard errors: saved by an earlier version",) * (self.certainty is None)
+        sample, often = "s" * (self.samples != 1), "s" * (self.evaluations != 1)
+        return Document(
+            f"{self.name} fitted to {self.data}: {self.loss_name} loss {self.loss:.6g}",
+            (
+                *thumbnails(self.name, self.rgb.eval),
+                value_table(self.model, self.standard_errors, self.at_bounds),
+                *(Paragraph(note) for note in (*self.notes, *old)),
+                Paragraph(
+                    f"{self.message}; {self.samples:,} sample{sample}, "
+                    f"{self.evaluations} evaluation{often}, {self.seconds:.2f} s",
+                    kind=SOFT,
+                ),
+                Folded(f"the page of {self.model.type_name()}", str(page(type(self.model)))),
+            ),
         )
-        return "\n".join(lines)
-
-
-def _summarise(values, errors, wavelengths):
-    """Many numbers as the least and the most of them."""
-    least, most = (
-        f"{values[k]:.4g} at {wavelengths[k]:g} nm" for k in (np.argmin(values), np.argmax(values))
-    )
-    known = errors[np.isfinite(errors)]
-    error = f", ± {np.median(known):.2g} in the median" if len(known) else ""
-    return f"{least} to {most}{error}"
-
-
-def _with_error(value, error):
-    """A value with its standard error, if it has one."""
-    return f"{value:.6g}" if np.isnan(error) else f"{value:.6g} ± {error:.2g}"

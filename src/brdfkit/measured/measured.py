@@ -9,12 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import brdfkit  # for `audit`, of a higher layer, which is imported when it is called
+from brdfkit import documents
 from brdfkit.colours import RGB
+from brdfkit.documents import Document, Shown
 from brdfkit.jit.threads import cached_in_turn, in_turn
 from brdfkit.measured.interpolation import Interpolant
 from brdfkit.measured.measured_data import MeasuredData
 from brdfkit.measured.mixing import mix
-from brdfkit.measured.spectrum_to_rgb import to_rgb, wavelengths
+from brdfkit.measured.spectrum_to_rgb import rgb_or_mean, to_rgb, wavelengths
 from brdfkit.measured.subtraction import subtract
 from brdfkit.measured.tabulation import (
     bounded,
@@ -25,10 +27,11 @@ from brdfkit.measured.tabulation import (
 )
 from brdfkit.measured.validation import check_shape
 from brdfkit.samples import Table
+from brdfkit.thumbnails import thumbnails
 
 
-@dataclass(frozen=True, eq=False)
-class Measured(MeasuredData):
+@dataclass(frozen=True, eq=False, repr=False)
+class Measured(Shown, MeasuredData):
     """A measured BRDF. Made by `brdfkit.load`, `from_samples` or `from_table`.
 
     Attributes
@@ -164,6 +167,12 @@ class Measured(MeasuredData):
         >>> print(load("copper.astm").audit())    # doctest: +SKIP
         """
         return brdfkit.audit(self)
+
+    def document(self) -> Document:
+        """What the measurement tells of itself: its size, its look, and the notes of its file."""
+        notes = tuple((key.replace("_", " "), str(value)) for key, value in self.info.items())
+        pictures = thumbnails(self.name, lambda wi, wo: rgb_or_mean(self).eval(wi, wo))
+        return Document(self.summary, (*pictures, documents.Table(notes)))
 
     @cached_in_turn
     def tabulated(self) -> "Measured":

@@ -14,6 +14,8 @@ from brdfkit.measured.checksum import checksum
 from brdfkit.measured.validation import check_errors, check_table, make_printable
 from brdfkit.samples import Samples, Table
 
+MOST = 8  # channels that are named
+
 
 @dataclass(frozen=True, eq=False)
 class MeasuredData:
@@ -177,10 +179,13 @@ class MeasuredData:
         """The SHA-256 of the directions and values: equal data have it, whatever their file."""
         return checksum(self)
 
-    def __str__(self) -> str:
+    @property
+    def summary(self) -> str:
+        """What there is, in one line."""
         valid = self.samples.valid
         size = "×".join(map(str, self._table.shape)) + " table" if self._table else "samples"
-        return (
-            f"{self.name}: {size}, {valid.sum():,} of {len(valid):,} valid, "
-            f"channels {' '.join(self.channels)}"
-        )
+        channels = " ".join(self.channels)
+        if len(self.channels) > MOST:
+            channels = f"{self.channels[0]} to {self.channels[-1]}, {len(self.channels)} of them"
+        counts = f"{valid.sum():,} of {len(valid):,} valid"
+        return f"{self.name}: {size}, {counts}, channels {channels}"

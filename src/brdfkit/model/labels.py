@@ -10,19 +10,32 @@ import os
 from pathlib import Path
 from typing import Any
 
+from brdfkit.documents import Cell, Document, Shown, Table
+from brdfkit.documents.parts import STRONG
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.model.model import Model
 from brdfkit.plugins import discovery
 from brdfkit.plugins.discovery import MODELS
+from brdfkit.plugins.pages import page
 
 
-def models() -> dict[str, type[Model]]:
+class Models(Shown, dict[str, type[Model]]):
+    """Classes of models by name; prints as a table."""
+
+    def document(self) -> Document:
+        """The models by name, with one sentence on each."""
+        rows = tuple((Cell(name, kind=STRONG), page(m).sentence) for name, m in self.items())
+        return Document(f"{len(self)} BRDF models", (Table(rows),))
+
+
+def models() -> Models:
     """The BRDF models there are: brdfkit's, and those of yours that were loaded.
 
     Returns
     -------
     dict of str to type
-        Classes by name; called with parameters, a class gives a model with values.
+        Classes by name, printed as a table; called with parameters, a class gives a model with
+        values.
 
     Examples
     --------
@@ -30,7 +43,7 @@ def models() -> dict[str, type[Model]]:
     ward(diffuse_reflectance=0.4, specular_reflectance=0.2, alpha_u=0.1, alpha_v=0.1)
     """
     found = {name: model_in(source) for name, source in discovery.sources(MODELS).items()}
-    return {name: model for name, model in found.items() if model is not None}
+    return Models((name, model) for name, model in found.items() if model is not None)
 
 
 def model(label: str | type[Model]) -> type[Model]:

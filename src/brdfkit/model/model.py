@@ -19,11 +19,13 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from brdfkit.documents import Document, Folded, Shown
 from brdfkit.errors import BrdfkitError
 from brdfkit.model.declaration import Declaration
 from brdfkit.model.evaluation import evaluate_model
 from brdfkit.model.lobes import Lobe
 from brdfkit.model.pickling import reduce_model
+from brdfkit.model.value_table import value_table
 from brdfkit.model.weights import (
     check_wavelengths,
     mitsuba_entries,
@@ -31,9 +33,11 @@ from brdfkit.model.weights import (
     rgb_values,
     short,
 )
+from brdfkit.plugins.pages import page
+from brdfkit.thumbnails import thumbnails
 
 
-class Model(Declaration):
+class Model(Shown, Declaration):
     """A BRDF model with values.
 
     Each model is a class derived from this one. The values of its parameters are the attributes of
@@ -199,6 +203,21 @@ class Model(Declaration):
 
     def __reduce__(self):
         return reduce_model(self)
+
+    def document(self) -> Document:
+        """What the model tells of itself: its look, its values and its page."""
+        shown = page(type(self))
+        return Document(
+            f"{self.label()}: {shown.sentence}",
+            (
+                *thumbnails(self.name, self.rgb.eval),
+                value_table(self),
+                Folded(f"the page of {self.type_name()}", str(shown)),
+            ),
+        )
+
+    def __str__(self) -> str:
+        return repr(self)
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name}={short(value)}" for name, value in self.arguments.items())

@@ -38,10 +38,16 @@ def draw_normals(count, light, half_vectors, rng):
 def _spread(u):
     """Normals (n, 3), even over the disc, for points `u` (n, 3) of the unit cube."""
     radius, phi = np.sqrt(u[:, 0]), 2 * np.pi * u[:, 1]
+    return facing(radius * np.cos(phi), radius * np.sin(phi))
+
+
+def facing(x, y):
+    """Normals (n, 3) of the points of the ball that are seen at `x` to the right and `y` upwards
+    (n,) of its middle, within the disc of radius 1."""
     right = normalize(np.cross((0.0, 0.0, 1.0), VIEW))
     up = np.cross(VIEW, right)
-    x, y = radius * np.cos(phi), radius * np.sin(phi)
-    return np.stack([x, y, np.sqrt(1 - radius**2)], axis=1) @ np.stack([right, up, VIEW])
+    z = np.sqrt(np.maximum(1 - x**2 - y**2, 0))
+    return np.stack([x, y, z], axis=1) @ np.stack([right, up, VIEW])
 
 
 def turn_frames(normals):

@@ -36,7 +36,7 @@ class Pixels:
 
     def look(self, brdf):
         """The pixels (pixels, channels) of another BRDF (wi, wo) → (n, channels)."""
-        return _add_up(brdf(self.wi, self.wo), self.shares, self.pairs)
+        return add_up(brdf(self.wi, self.wo), self.shares, self.pairs)
 
     def first(self, count):
         """The first `count` pixels."""
@@ -69,23 +69,9 @@ def _draw_picture(name, brdf, half_vectors, max_angle, rng, pixels, directions):
     """Of one picture, wi and wo (pixels, pairs, 3), shares (pixels, pairs), values and weights."""
     light, pairs = sampling_of(name), 2 * directions
     normals, weights = draw_normals(pixels, light, half_vectors, rng)
-    frames = turn_frames(normals)
-    wo = np.repeat((frames @ VIEW)[:, None], pairs, axis=1)
-    # Directions in each normal's frame: drawn by the light in the world, and by the BRDF there
-    by_light = light.sample(_stratify(rng, pixels, directions)).reshape(pixels, directions, 3)
-    by_light = by_light @ frames.transpose(0, 2, 1)
-    points = _stratify(rng, pixels, directions)
-    by_brdf = half_vectors.sample(wo[:, :directions].reshape(-1, 3), points)
-    wi = np.concatenate([by_light, by_brdf.reshape(by_light.shape)], axis=1)
-    world = (wi @ frames).reshape(-1, 3)
-    wi, wo = wi.reshape(-1, 3), wo.reshape(-1, 3)
-    density = directions * (light.pdf(world) + half_vectors.pdf(wi, wo))
-    least = max(np.cos(np.radians(max_angle)), 1e-6)
-    counts = (wi[:, 2] > least) & (wo[:, 2] > least)
-    shares = np.where(counts, LIGHTS[name](world) * wi[:, 2] / density, 0.0)
-    # What does not count is looked up along the normal, where every BRDF is defined
-    wi, wo = (np.where(counts[:, None], w, (0.0, 0.0, 1.0)) for w in (wi, wo))
-    values = _add_up(brdf(wi, wo), shares, pairs)
+    points = [_stratify(rng, pixels, directions) for _ in range(2)]
+    wi, wo, shares = draw_directions(normals, name, half_vectors, max_angle, *points)
+    values = add_up(brdf(wi, wo), shares, pairs)
     exposure = 1 / (_find_white(values.max(axis=1), weights) or 1.0)
     shape = pixels, pairs
     return (
@@ -97,6 +83,31 @@ def _draw_picture(name, brdf, half_vectors, max_angle, rng, pixels, directions):
     )
 
 
+def draw_directions(normals, name, half_vectors, max_angle, for_light, for_brdf):
+    """Pairs wi, wo (n · pairs, 3) at points of `normals` (n, 3) under the light called `name`,
+    and their shares (n · pairs,) in the radiance that is seen.
+
+    `for_light`, `for_brdf`: points (n, directions, 3) of the unit cube, by which each is drawn.
+    """
+    light, shape = sampling_of(name), for_light.shape
+    frames, directions = turn_frames(normals), shape[1]
+    wo = np.repeat((frames @ VIEW)[:, None], 2 * directions, axis=1)
+    # Directions in each normal's frame: drawn by the light in the world, and by the BRDF there
+    by_light = light.sample(for_light.reshape(-1, 3)).reshape(shape)
+    by_light = by_light @ frames.transpose(0, 2, 1)
+    by_brdf = half_vectors.sample(wo[:, :directions].reshape(-1, 3), for_brdf.reshape(-1, 3))
+    wi = np.concatenate([by_light, by_brdf.reshape(shape)], axis=1)
+    world = (wi @ frames).reshape(-1, 3)
+    wi, wo = wi.reshape(-1, 3), wo.reshape(-1, 3)
+    density = directions * (light.pdf(world) + half_vectors.pdf(wi, wo))
+    least = max(np.cos(np.radians(max_angle)), 1e-6)
+    counts = (wi[:, 2] > least) & (wo[:, 2] > least)
+    shares = np.where(counts, LIGHTS[name](world) * wi[:, 2] / density, 0.0)
+    # What does not count is looked up along the normal, where every BRDF is defined
+    wi, wo = (np.where(counts[:, None], w, (0.0, 0.0, 1.0)) for w in (wi, wo))
+    return wi, wo, shares
+
+
 def _find_white(values, weights):
     """The value (1,) above which the `weights` (n,) of pixels are those that may be brighter."""
     order = np.argsort(values)
@@ -104,14 +115,14 @@ def _find_white(values, weights):
     return values[order][np.searchsorted(sums, (1 - BRIGHTER) * sums[-1])]
 
 
-def _add_up(values, shares, pairs):
+def add_up(values, shares, pairs):
     """The pixels (pixels, channels) of which the pairs have these `values` (n, channels)."""
     return (shares[:, None] * values).reshape(-1, pairs, values.shape[1]).sum(axis=1)
 
 
 def _stratify(rng, pixels, count):
-    """Points (pixels · count, 3) of the unit cube: those of a pixel are in different strata of each
+    """Points (pixels, count, 3) of the unit cube: those of a pixel are in different strata of each
     axis."""
     shape = pixels, count, 3
     strata = rng.random(shape).argsort(axis=1)
-    return ((strata + rng.random(shape)) / count).reshape(-1, 3)
+    return (strata + rng.random(shape)) / count

@@ -13,8 +13,9 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.materials import MaterialLike, materials
 from brdfkit.measured import Measured
 from brdfkit.names import make_unique
-from brdfkit.plotting.half_disc import Radius, draw_half_disc, xy
+from brdfkit.plotting.half_disc import draw_half_disc, xy
 from brdfkit.plotting.plane_of_incidence import is_scattered, lobe, usual_angles
+from brdfkit.thumbnails.radius import Radius
 
 BLACK, GREY = "black", "0.45"
 # Okabe and Ito's colours, which the colour-blind tell apart
@@ -68,9 +69,14 @@ class Plot(Figure):
     """
 
     def _repr_png_(self):
-        png = io.BytesIO()
-        self.savefig(png, format="png", dpi=100)
-        return png.getvalue()
+        return to_png(self)
+
+
+def to_png(figure, dpi=100):
+    """The bytes of a matplotlib `Figure` as a PNG."""
+    png = io.BytesIO()
+    figure.savefig(png, format="png", dpi=dpi)
+    return png.getvalue()
 
 
 def _find_materials(things):

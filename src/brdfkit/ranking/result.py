@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from brdfkit.documents import Cell, Document, Paragraph, Shown, Table
+from brdfkit.documents.parts import BAD, STRONG
 from brdfkit.errors import BrdfkitError
 from brdfkit.model import labels
 from brdfkit.names import printable
@@ -13,6 +15,9 @@ from brdfkit.plugins.pages import page
 # A model is tied with the best where it is behind by at most so many standard errors: so large a
 # difference comes about by chance once in twenty times
 TIED = 2.0
+# Errors that differ by less, as shares of them, differ by rounding
+EQUAL = 1e-9
+TAKE = "take"
 COLUMNS = "model", ">error", ">behind [%]", ">parameters", ">BIC", ">time [s]", ""
 
 
@@ -53,11 +58,11 @@ class Ranked:
     @property
     def tied(self) -> bool:
         """Whether the model is no worse than the best, within the noise."""
-        return self.behind <= TIED * self.uncertainty
+        return self.behind <= TIED * self.uncertainty + EQUAL * self.error
 
 
-@dataclass(frozen=True)
-class Ranking:
+@dataclass(frozen=True, repr=False)
+class Ranking(Shown):
     """Models ranked on one measured material; prints as a table. Made by `rank`.
 
     Attributes
@@ -126,17 +131,14 @@ class Ranking:
         """The rows of the models that could be fitted as texts, under `COLUMNS`."""
         return [_texts(row, row is self._recommended) for row in self.rows if not row.message]
 
-    def __str__(self) -> str:
-        heads = [name.removeprefix(">") for name in COLUMNS]
-        heads[0] = self.material
-        rows = [heads, *self.table()]
-        widths = [max(map(len, texts)) for texts in zip(*rows, strict=True)]
-        sides = [">" if name.startswith(">") else "<" for name in COLUMNS]
-        lines = [
-            "  ".join(f"{t:{s}{w}}" for t, s, w in zip(texts, sides, widths, strict=True)).rstrip()
-            for texts in rows
-        ]
-        return "\n".join(filter(None, [*lines, self.reason, self.suits, *self.problems]))
+    def document(self) -> Document:
+        """The models in their order, which is recommended, and why."""
+        said = [Paragraph(text) for text in (self.reason, self.suits) if text]
+        failed = [Paragraph(problem, BAD) for problem in self.problems]
+        return Document(
+            f"{self.material}: {self.loss} loss where the models were not fitted",
+            (Table(tuple(map(_stress, self.table())), COLUMNS), *said, *failed),
+        )
 
 
 def order(found, shares):
@@ -180,12 +182,17 @@ def _compare(row, own):
     return f"{row.model}, with {number} parameter{'s' * (abs(more) != 1)} and {error}"
 
 
+def _stress(texts):
+    """A row of texts, strong where the model is recommended."""
+    return tuple(Cell(text, STRONG if texts[-1] == TAKE else "") for text in texts)
+
+
 def _texts(row, recommended):
     behind = "-"
     if row.behind:
         least = (row.error - row.behind) or math.nan
         digits = 0 if row.behind > least else 1
         behind = " ± ".join(f"{100 * x / least:.{digits}f}" for x in (row.behind, row.uncertainty))
-    verdict = "take" if recommended else "tied" if row.tied else ""
+    verdict = TAKE if recommended else "tied" if row.tied else ""
     numbers = f"{row.error:.4g}", behind, str(row.parameters), f"{row.bic:.0f}"
     return row.model, *numbers, f"{row.seconds:.1f}", verdict

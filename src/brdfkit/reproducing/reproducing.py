@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
+from brdfkit.documents import Document, Shown, Table
 from brdfkit.errors import no_such
 from brdfkit.files import make_folder
 from brdfkit.reproducing.claims import Claim, count
@@ -14,8 +15,8 @@ from brdfkit.reproducing.page import write_page
 from brdfkit.reproducing.sources import find_sources
 
 
-@dataclass(frozen=True)
-class Reproduction:
+@dataclass(frozen=True, repr=False)
+class Reproduction(Shown):
     """The claims of a thesis, run; prints as a list of them. Made by `reproduce`.
 
     Attributes
@@ -35,12 +36,11 @@ class Reproduction:
     written: tuple[Path, ...] = ()
     unfinished: tuple[str, ...] = ()
 
-    def __str__(self) -> str:
-        lines = [f"{self.name}: {len(self.claims)} claims: {count(self.claims)}"]
-        lines += [
-            f"  {c.verdict}: {c.says} ({c.where}): {c.printed} | {c.ours}" for c in self.claims
-        ]
-        return "\n".join(lines)
+    def document(self) -> Document:
+        """The claims, each with its verdict, what is printed and what came out."""
+        rows = tuple((c.verdict, f"{c.says} ({c.where})", c.printed, c.ours) for c in self.claims)
+        title = f"{self.name}: {len(self.claims)} claims: {count(self.claims)}"
+        return Document(title, (Table(rows, ("verdict", "claim", "printed", "here")),))
 
 
 def theses() -> dict[str, str]:

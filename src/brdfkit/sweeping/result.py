@@ -4,6 +4,8 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from brdfkit.documents import Document, Paragraph, Shown, Table
+from brdfkit.documents.parts import BAD, SOFT
 from brdfkit.fitting import Fit
 from brdfkit.sweeping import page, tables
 
@@ -54,8 +56,8 @@ class Row:
     saved: Path | None = field(default=None, repr=False, compare=False)
 
 
-@dataclass(frozen=True)
-class Sweep:
+@dataclass(frozen=True, repr=False)
+class Sweep(Shown):
     """The fits of several models to many materials; prints as a table. Made by `sweep`.
 
     Attributes
@@ -163,16 +165,9 @@ class Sweep:
         """
         page.write(self, path)
 
-    def __str__(self) -> str:
-        columns, *sections = tables.errors(self)
-        rows = [
-            [name.removeprefix(">") for name in columns],
-            *(r for rows in sections for r in rows),
-        ]
-        widths = [max(map(len, texts)) for texts in zip(*rows, strict=True)]
-        sides = [">" if name.startswith(">") else "<" for name in columns]
-        lines = [
-            "  ".join(f"{t:{s}{w}}" for t, s, w in zip(texts, sides, widths, strict=True)).rstrip()
-            for texts in rows
-        ]
-        return "\n".join([*lines, *self.problems, self.summary])
+    def document(self) -> Document:
+        """The errors, materials by models, what failed, and how many fits there are."""
+        columns, rows, foot = tables.errors(self)
+        failed = [Paragraph(problem, BAD) for problem in self.problems]
+        shown = Table(tuple(map(tuple, rows)), tuple(columns), tuple(map(tuple, foot)))
+        return Document("Errors of the fits", (shown, *failed, Paragraph(self.summary, SOFT)))

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.arguments import to_whole_number
+from brdfkit.documents import Document, Paragraph, Shown, Table
+from brdfkit.documents.parts import SOFT
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit
 from brdfkit.jit.threads import in_turn
@@ -15,8 +17,8 @@ from brdfkit.materials import MaterialLike
 from brdfkit.verbs.refit import refit
 
 
-@dataclass(frozen=True, eq=False)
-class Bootstrap:
+@dataclass(frozen=True, repr=False, eq=False)
+class Bootstrap(Shown):
     """The values that fits of redrawn samples have; prints as a table.
 
     Attributes
@@ -47,8 +49,9 @@ class Bootstrap:
             name: np.quantile(values, ends, axis=0).T for name, values in self.estimates.items()
         }
 
-    def __str__(self) -> str:
-        width, rows = max(map(len, self.estimates)), []
+    def document(self) -> Document:
+        """The values, with standard errors and intervals."""
+        rows = []
         intervals, errors = self.intervals(), self.standard_errors
         for name, value in self.fit.values.items():
             texts = [
@@ -60,10 +63,12 @@ class Bootstrap:
                     strict=True,
                 )
             ]
-            rows.append(f"  {name:<{width}}  {'  '.join(texts)}")
+            rows.append((name, "  ".join(texts)))
         count = len(next(iter(self.estimates.values())))
         title = f"{self.fit.name} fitted to {self.fit.data}: standard errors and 95 % intervals"
-        return "\n".join([title, *rows, f"  of {count} fits to samples drawn anew"])
+        return Document(
+            title, (Table(tuple(rows)), Paragraph(f"of {count} fits to samples drawn anew", SOFT))
+        )
 
 
 @in_turn

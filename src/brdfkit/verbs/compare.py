@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.documents import Cell, Document, Shown, Table
+from brdfkit.documents.parts import STRONG
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import losses
 from brdfkit.fitting.loss import squares
@@ -14,8 +16,8 @@ from brdfkit.measured.selection import select_samples
 from brdfkit.names import make_unique
 
 
-@dataclass(frozen=True)
-class Comparison:
+@dataclass(frozen=True, repr=False)
+class Comparison(Shown):
     """Errors of several BRDFs against one measured material, under every loss; prints as a table.
 
     Attributes
@@ -35,13 +37,19 @@ class Comparison:
         """Name of the BRDF with the least log loss."""
         return next(iter(self.errors))
 
-    def __str__(self) -> str:
+    def document(self) -> Document:
+        """The errors, a row for each BRDF and a column for each loss, the least of it strong."""
         names = list(next(iter(self.errors.values())))
-        width = max(map(len, [self.material, *self.errors]))
-        lines = [f"{self.material:<{width}}" + "".join(f"{n:>12}" for n in names)]
-        for name, row in self.errors.items():
-            lines.append(f"{name:<{width}}" + "".join(f"{format_error(row[n]):>12}" for n in names))
-        return "\n".join(lines)
+        table = np.array([[row[name] for name in names] for row in self.errors.values()])
+        is_least = table == np.nanmin(np.vstack([table, np.full(len(names), np.inf)]), axis=0)
+        kinds = np.where(is_least, STRONG, "").tolist()
+        hints = [losses[name].meaning for name in names]
+        rows = tuple(
+            (Cell(name), *map(Cell, map(format_error, errors), kind, hints))
+            for name, errors, kind in zip(self.errors, table, kinds, strict=True)
+        )
+        columns = ("", *(f">{name}" for name in names))
+        return Document(f"{self.material}: errors by loss", (Table(rows, columns),))
 
 
 def format_error(error):

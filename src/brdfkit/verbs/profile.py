@@ -7,17 +7,18 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from brdfkit.arguments import to_whole_number
+from brdfkit.documents import Document, Picture, Shown
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit
 from brdfkit.fitting.profiling import curvature, follow
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike
-from brdfkit.plotting.lobe_plots import Plot
+from brdfkit.plotting import Plot, to_png
 from brdfkit.verbs.refit import refit
 
 
-@dataclass(frozen=True, eq=False)
-class Profile:
+@dataclass(frozen=True, eq=False, repr=False)
+class Profile(Shown):
     """The least loss at each value of a parameter; prints as a line.
 
     Attributes
@@ -59,9 +60,12 @@ class Profile:
         axes.set_title(f"{self.fit.name} fitted to {self.fit.data}: 95 % by the profile", size=10)
         return figure
 
-    def __str__(self) -> str:
+    def document(self) -> Document:
+        """The value with its interval, and the plot."""
         low, high = self.interval
-        return f"{self.parameter} = {self.value:.6g}, 95 %: {low:.6g} to {high:.6g}, by its profile"
+        line = f"{self.parameter} = {self.value:.6g}, 95 %: {low:.6g} to {high:.6g}, by its profile"
+        says = f"the {self.fit.loss_name} loss over {self.parameter}"
+        return Document(line, (Picture(lambda: to_png(self.plot()), says, 500),))
 
 
 @in_turn

@@ -1,0 +1,37 @@
+"""A document as text: the title, and below it, indented, its paragraphs and tables."""
+
+from brdfkit.documents.parts import BAD, Cell, Paragraph, Table
+
+INDENT, BETWEEN = "  ", "  "
+
+
+def to_text(document):
+    """The text of a `Document`; pictures and what is folded are left out."""
+    lines = []
+    for part in document.parts:
+        if isinstance(part, Table):
+            lines += _table(part)
+        elif isinstance(part, Paragraph):
+            mark = "! " if part.kind == BAD else ""
+            lines += [f"{mark}{line}" for line in part.text.splitlines()]
+    return "\n".join([document.title, *(INDENT + line for line in lines)])
+
+
+def plain(cell):
+    """The text of a cell."""
+    return cell.text if isinstance(cell, Cell) else cell
+
+
+def _table(table):
+    """The lines of a `Table`: columns as wide as their longest text."""
+    head = [[name.removeprefix(">") for name in table.columns]] if any(table.columns) else []
+    rows = [*head, *([plain(cell) for cell in row] for row in (*table.rows, *table.foot))]
+    if not rows:
+        return []
+    widths = [max(map(len, texts)) for texts in zip(*rows, strict=True)]
+    names = table.columns or [""] * len(widths)
+    sides = [">" if name.startswith(">") else "<" for name in names]
+    return [
+        BETWEEN.join(f"{t:{s}{w}}" for t, s, w in zip(row, sides, widths, strict=True)).rstrip()
+        for row in rows
+    ]

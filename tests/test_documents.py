@@ -1,0 +1,202 @@
+"""What objects tell of themselves: the same words as text and as HTML, which notebooks show."""
+
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+import brdfkit as bk
+from brdfkit.colours import to_srgb
+from brdfkit.documents import Cell, Document, Folded, Paragraph, Picture, Shown, Table
+from brdfkit.documents.html import to_html
+from brdfkit.documents.parts import BAD
+from brdfkit.documents.text import to_text
+from brdfkit.geometry.directions import from_angles
+from brdfkit.pictures.ball import WHITE, ball
+from brdfkit.pictures.lights import studio
+from brdfkit.pictures.normals import facing
+
+pytestmark = pytest.mark.quick
+
+NASTY = "a<b> & \"c\" 'd'"
+VOID = {"img", "br", "path"}
+
+
+class Reader(HTMLParser):
+    """Reads HTML: its text, its tags and their attributes; the tags must balance."""
+
+    def __init__(self, html):
+        super().__init__()
+        self.open, self.tags, self.attributes, self.texts = [], [], [], []
+        self.feed(html)
+        self.close()
+        assert not self.open
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append(tag)
+        self.attributes += attributes
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attributes):
+        self.tags.append(tag)
+        self.attributes += attributes
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, text):
+        if "style" not in self.open:
+            self.texts.append(text)
+
+    @property
+    def text(self):
+        return " ".join(" ".join(self.texts).split())
+
+
+@pytest.fixture(scope="module")
+def shown():
+    """One object of every class that derives from `Shown`, by the class's name."""
+    plaster = bk.load("plaster")
+    fit = bk.fit("ward", plaster, use_standard_error=False)
+    named = bk.Measured.from_table(np.full((9, 9, 18, 3), 0.1), name=NASTY, info={NASTY: NASTY})
+    objects = [
+        named,
+        bk.audit(named),
+        fit,
+        bk.models()["ggx"](alpha_u=0.1),
+        bk.models(),
+        bk.losses,
+        bk.compare(named, [fit, "lambert"]),
+        bk.check("lambert", only=["energy"]),
+        bk.rank(plaster, ["lambert", "ward"]),
+        bk.sweep("plaster", "lambert", workers=1),
+        bk.bootstrap(fit, plaster, count=2),
+        bk.profile(fit, plaster, "alpha_u", points=5),
+        bk.Reproduction(NASTY, ()),
+    ]
+    return {type(thing).__name__: thing for thing in objects}
+
+
+@pytest.fixture(scope="module")
+def pages(shown):
+    """The HTML of each."""
+    return {name: thing._repr_html_() for name, thing in shown.items()}
+
+
+def subclasses(cls):
+    return {cls} | {s for child in cls.__subclasses__() for s in subclasses(child)}
+
+
+def test_every_class_that_shows_itself_is_tested(shown):
+    known = {c for thing in shown.values() for c in type(thing).__mro__}
+    public = {c for c in subclasses(Shown) if not issubclass(c, bk.Model)} - {Shown}
+    assert public <= known
+
+
+def test_html_stands_alone(pages):
+    for name, html in pages.items():
+        read = Reader(html)
+        assert len(html.encode()) < 200_000, name
+        assert not {"script", "iframe", "link", "object"} & set(read.tags)
+        assert not [k for k, _ in read.attributes if k.startswith("on")]
+        for key, value in read.attributes:
+            if key in ("src", "href"):
+                assert value.startswith("data:image/"), name
+        assert not re.search(r"https?://(?!www\.w3\.org/2000/svg)", html), name
+        assert "@import" not in html
+
+
+def test_text_and_html_say_the_same(shown, pages):
+    for name, thing in shown.items():
+        text, html = str(thing), Reader(pages[name]).text
+        assert repr(thing) == text
+        if isinstance(thing, bk.Model):  # its text is the call that makes it
+            continue
+        for word in text.split():
+            assert word in html or word == "!", (name, word)
+
+
+def test_names_are_escaped(pages):
+    for name in ("Measured", "Audit", "Comparison", "Reproduction"):
+        html = pages[name]
+        assert "<b>" not in html
+        assert NASTY in Reader(html).text
+    html = to_html(
+        Document(
+            NASTY,
+            (
+                Table(((Cell(NASTY, hint=NASTY), NASTY),), (NASTY, NASTY), ((NASTY, NASTY),)),
+                Paragraph(NASTY),
+                Picture(lambda: b"\x89PNG", NASTY, 10),
+                Folded(NASTY, NASTY),
+            ),
+        )
+    )
+    read = Reader(html)
+    assert "<b>" not in html
+    assert read.text.count(NASTY) == 10
+    assert [v for k, v in read.attributes if k in ("alt", "title")] == [NASTY, NASTY]
+
+
+def test_text_is_aligned_and_without_pictures():
+    def fail():
+        raise AssertionError("text draws nothing")
+
+    table = Table((("long name", "1.5"), (Cell("b", BAD), "10")), ("what", ">much"), (("", "2"),))
+    document = Document("title", (Picture(fail, "", 1), table, Paragraph("bad", BAD)))
+    assert to_text(document).splitlines() == [
+        "title",
+        "  what       much",
+        "  long name   1.5",
+        "  b            10",
+        "                2",
+        "  ! bad",
+    ]
+    assert to_text(Document("empty", (Table(()),))) == "empty"
+
+
+def test_values_on_bounds_and_errors_are_told():
+    fit = bk.fit("ggx", bk.load("plaster"))  # it has no highlight: that weight ends on its bound
+    row = next(line for line in str(fit).splitlines() if "specular" in line)
+    assert row.endswith("on its bound")
+    assert "±" not in row
+    assert str(fit).count("±") == 3
+    assert 'class="bad"' in fit._repr_html_()
+
+
+def test_a_chip_has_the_colour_of_the_weight():
+    ward = bk.models()["ward"](diffuse_reflectance=[0.5, 0.0, 2.0])
+    expected = np.round(255 * to_srgb(np.array([0.25, 0, 1]))).astype(int)
+    assert "background:rgb({},{},{})".format(*expected) in ward._repr_html_()
+
+
+def test_the_mark_lies_between_the_bounds():
+    ward = bk.models()["ward"]
+    low, high = ward.parameters["alpha_u"].bounds
+    middle = ward(alpha_u=np.sqrt(low * high))  # its order of magnitude is searched
+    assert middle._repr_html_().count('style="left:50%"') == 2
+
+
+def test_the_ball_is_a_picture_of_the_material(monkeypatch):
+    def matt(wi, wo):
+        return np.full((len(wi), 1), WHITE / np.pi)
+
+    white, cover = ball(matt, 24)
+    assert cover.sum() == pytest.approx(np.pi * 12**2, rel=0.01)
+    assert white[cover == 0].max() == 0
+    assert np.percentile(white[cover > 0], 99) == pytest.approx(WHITE, rel=0.05)
+    # the radiance is linear in the BRDF
+    half, _ = ball(lambda wi, wo: 0.5 * matt(wi, wo), 24)
+    np.testing.assert_allclose(half, 0.5 * white)
+    # with many directions, against the sum over all of the light, but for a common factor
+    monkeypatch.setattr("brdfkit.pictures.ball.DIRECTIONS", 1000)
+    white, _ = ball(matt, 24)
+    heights, azimuths = np.meshgrid(np.linspace(-0.9975, 0.9975, 400), np.arange(800) * np.pi / 400)
+    light = from_angles(np.arccos(heights), azimuths).reshape(-1, 3)
+    at = (np.arange(24) + 0.5) / 12 - 1
+    x, y = (grid[cover == 1] for grid in np.meshgrid(at, -at))
+    cosines = np.maximum(facing(x, y) @ light.T, 0)
+    ratios = white[cover == 1, 0] / (cosines @ studio(light))
+    assert ratios.std() < 0.02 * ratios.mean()
