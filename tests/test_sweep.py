@@ -95,7 +95,7 @@ def test_rows_and_the_best(here, fitted):
     for material, best in found.best.items():
         assert best.loss == min(r.error for r in found.rows if r.material == material)
     assert [line.split()[0] for line in str(found).splitlines()[1:5]] == ["material", *TRUTHS]
-    assert str(found).splitlines()[-1].startswith("6 of 6 fits; ")
+    assert str(found).splitlines()[-1].startswith("  6 of 6 fits; ")
 
 
 @pytest.mark.quick
