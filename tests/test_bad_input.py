@@ -112,3 +112,29 @@ def test_other_models_go_on_where_one_is_nan(tmp_path, no_user_plugins):
     )
     assert "h is the normal; keep the formula finite there" in result.stderr
     assert result.exit_code == 2
+
+
+def test_unknown_names_propose_the_nearest():
+    with pytest.raises(BrdfkitError, match="did you mean ward"):
+        bk.models()["wrad"]
+    with pytest.raises(BrdfkitError, match="did you mean log"):
+        bk.losses["lgo"]
+    assert bk.models().get("wrad") is None
+    with pytest.raises(BrdfkitError, match="wrad"):
+        bk.check({"type": "wrad"})
+
+
+def test_a_loss_that_weighs_nothing_is_refused():
+    grey = of_values(np.full((40, 1), 0.2))
+    nothing = bk.Loss(
+        "mine", "nothing", lambda m, d, ci, co: m - d, weights=lambda cos_i: 0 * cos_i
+    )
+    with pytest.raises(BrdfkitError, match="of its weights all are 0"):
+        bk.fit("lambert", grey, nothing)
+
+
+def test_sigma_is_a_number():
+    grey = of_values(np.full((40, 1), 0.2))
+    fit = bk.fit("koenderink", grey, "plain")
+    with pytest.raises(BrdfkitError, match="sigma = 'a' should be a number"):
+        bk.prediction_error(fit, grey, sigma="a")

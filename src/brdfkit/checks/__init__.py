@@ -18,6 +18,7 @@ from brdfkit.checks.registry import Finding, checks
 from brdfkit.documents import Cell, Document, Shown, Table
 from brdfkit.documents.parts import BAD, GOOD
 from brdfkit.errors import BrdfkitError, nearest, no_such
+from brdfkit.host.load_by_mitsuba import load_by_mitsuba
 from brdfkit.jit import llvm
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike, material
@@ -123,6 +124,10 @@ def _subject(thing):
     if kind not in (None, MODELS):
         return PluginSubject(kind, thing), kind, name
     found = _material(thing)
+    if name and kind is None:  # a plugin of Mitsuba's, or none at all
+        import mitsuba as mi
+
+        load_by_mitsuba(mi.load_dict, found.scene_dict(), name)
     return Subject(found), MODELS, found.name
 
 

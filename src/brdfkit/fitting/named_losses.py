@@ -59,6 +59,9 @@ class Losses(Shown, dict[str, Loss | Picture]):
         """Those that are a `Loss`, which judges a model sample by sample."""
         return {name: loss for name, loss in self.items() if isinstance(loss, Loss)}
 
+    def __missing__(self, name: str) -> Loss | Picture:
+        raise no_such("loss", name, self)
+
     def document(self) -> Document:
         """The losses by name, with the meaning of each."""
         rows = tuple((Cell(name, kind=STRONG), loss.meaning) for name, loss in self.items())

@@ -44,9 +44,9 @@ class Problem:
 
         importance = loss.importance(samples)
         if not importance.any():
+            why = "all are seen at normal incidence" if samples.wi[:, 2].min() == 1 else "all are 0"
             raise BrdfkitError(
-                f"The {loss.name} loss weighs no sample, for all are seen at normal incidence; "
-                "choose another loss."
+                f"The {loss.name} loss weighs no sample: of its weights {why}; choose another loss."
             )
         self.importance, self.blocks = importance, Blocks(samples, importance, loss)
 

@@ -22,6 +22,9 @@ from brdfkit.plugins.pages import page
 class Models(Shown, dict[str, type[Model]]):
     """Classes of models by name; prints as a table."""
 
+    def __missing__(self, name: str) -> type[Model]:
+        raise no_such("model", name, self)
+
     def document(self) -> Document:
         """The models by name, with one sentence on each."""
         rows = tuple((Cell(name, kind=STRONG), page(m).sentence) for name, m in self.items())

@@ -103,12 +103,22 @@ def prediction_error(
     if sigma is None:
         left = Z @ (solve @ samples.values) - samples.values
         sigma = np.sqrt((left**2).sum(axis=0) / max(len(Z) - Z.shape[1], 1))
-    if np.shape(sigma) not in ((), values.shape[1:]) or not np.all(np.isfinite(sigma)):
-        raise BrdfkitError(
-            f"sigma = {sigma!r} should be a number, or one for each of {values.shape[1]} channels."
-        )
+    sigma = _to_numbers(sigma, values.shape[1])
     spread = ((Z @ (solve @ solve.T)) * Z).sum(axis=1, keepdims=True)
     return PredictionError(spread * np.broadcast_to(sigma, values.shape[1:]) ** 2, bias)
+
+
+def _to_numbers(sigma, channels):
+    """`sigma` as an array, of one number or one for each channel."""
+    try:
+        numbers = np.asarray(sigma, float)
+    except (TypeError, ValueError):
+        numbers = np.array(np.nan)
+    if numbers.shape not in ((), (channels,)) or not np.all(np.isfinite(numbers)):
+        raise BrdfkitError(
+            f"sigma = {sigma!r} should be a number, or one for each of {channels} channels."
+        )
+    return numbers
 
 
 def _require_linear(fit, samples):
