@@ -166,6 +166,18 @@ def adaptive(data):
     return rgl.read(Source(Path("paint.bsdf"), None, data))
 
 
+def csv():
+    """What a spreadsheet of Central Europe saves: an index, decimal commas, an empty value."""
+    rows = [
+        ";theta_i [deg];theta_o [deg];delta_phi [deg];450nm;550nm;450nm_error;550nm_error",
+        "0;30,0;30,0;180;3,0;2,0;0,01;0,02",
+        "1;30,0;-10,5;180;0,25;-0,125;0,01;0,02",
+        "2;60,0;30,0;90;;0,5;0,01;0,02",
+        ";;;;;;;",
+    ]
+    return "\r\n".join(["# Sample: a paint", "# made up", *rows, ""]).encode()
+
+
 FILES = {  # format or convention: (name, content)
     "merl": ("grey.binary", merl()),
     "cornell": ("paint.brdf", cornell()),
@@ -174,6 +186,7 @@ FILES = {  # format or convention: (name, content)
     "curet": ("abrdf.dat", curet()),
     "alta": ("paint.dat", alta()),
     "utia": ("paint.bin", utia()),
+    "csv": ("paint.csv", csv()),
 }
 
 

@@ -124,7 +124,7 @@ def test_a_writer_refuses_in_one_sentence(tmp_path, kind):
 
 
 @pytest.mark.parametrize("name", ["Lack, grün", "漆", "caf\udce9"])  # the last: latin-1 on disk
-@pytest.mark.parametrize("suffix", [".brdf", ".astm", ".dat", ".npz", ".bsdf"])
+@pytest.mark.parametrize("suffix", [".brdf", ".astm", ".csv", ".dat", ".npz", ".bsdf"])
 def test_any_name_can_be_written(tmp_path, suffix, name):
     material = replace(spectrum(), name=name)
     save(material, tmp_path / f"it{suffix}")
@@ -134,7 +134,7 @@ def test_any_name_can_be_written(tmp_path, suffix, name):
         assert told in (tmp_path / f"it{suffix}").read_bytes()
 
 
-@pytest.mark.parametrize("suffix", [".brdf", ".astm"])
+@pytest.mark.parametrize("suffix", [".brdf", ".astm", ".csv", ".tsv"])
 def test_text_keeps_every_digit(tmp_path, suffix):
     material = spectrum()
     save(material, tmp_path / f"paint{suffix}")
@@ -191,6 +191,10 @@ UNREADABLE = [
     (".astm", ("a,b",), "holds R,G,B or wavelengths"),
     (".astm", ("a b",), "holds R,G,B or wavelengths"),
     (".astm", ("",), "holds R,G,B or wavelengths"),
+    (".csv", ("A", "B", "C"), "holds R, G, B, or wavelengths .* and paint has the channels A B C"),
+    (".csv", ("450nm", "550nm", "450nm"), "holds R, G, B, or wavelengths"),
+    (".csv", ("Y", "Y_error"), "holds R, G, B, or wavelengths"),
+    (".tsv", ("1nm", "550nm"), "the format TSV holds .* of 100 to 100,000 nm"),
     (".brdf", ("450nm", "550nm", "450nm"), "each once"),
     (".brdf", ("1nm", "550nm", "600nm"), "of 100 to 100,000 nm"),
     (".bsdf", ("450nm", "550nm", "450nm"), "repeat or are not above 0 nm"),

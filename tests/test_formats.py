@@ -17,6 +17,7 @@ from small_files import (
     assert_same,
     astm,
     cornell,
+    csv,
     curet,
     curet_table,
     merl,
@@ -122,6 +123,29 @@ TRAPS = {
         "all masked": (
             mini_diff().replace(b",0.5,0,", b",1.5,0,").replace(b",1.3089969389957472,", b",1.5,"),
             "no row is a valid",
+        ),
+    },
+    "csv": {
+        "cut short": (csv()[:-24], "line 6 has 6 columns where 8 belong"),
+        "no rows": (b"\n".join(csv().split(b"\n")[:3]), "has no rows behind the names"),
+        "no names": (b"30,0,30,180,0.5\n", "line 1 has numbers where the names of the columns"),
+        "comments only": (b"# theta_i\n", "it has no line where the names"),
+        "text": (replaced(csv(), b"0,25", b"dark"), "line 5 has 'dark' where a number"),
+        "thousands": (replaced(csv(), b"0,25", b"1.000,25"), "line 5 has '1.000.25'"),
+        "column": (
+            replaced(csv(), b"theta_o", b"theta_x"),
+            "column 'theta_x .* did you mean theta_o",
+        ),
+        "twice": (replaced(csv(), b"550nm;", b"450;"), "column '450' comes twice"),
+        "unit": (replaced(csv(), b"[deg]", b"[mrad]"), "'theta_i .* has the unit 'mrad'"),
+        "no azimuth": (replaced(csv(), b"delta_phi [deg]", b"phi_o"), "lacks the columns phi_i"),
+        "below": (replaced(csv(), b"-10,5", b"95"), "theta_o is 95° in line 5, which is below"),
+        "no angle": (replaced(csv(), b"-10,5", b""), "theta_o is nan in line 5; give a number"),
+        "negative error": (replaced(csv(), b"0,02", b"-1"), "error is -1 in line 4; it should be"),
+        "anisotropic": (b"# anisotropic: 1\n" + csv(), "says 'anisotropic: 1', where yes or no"),
+        "nothing": (
+            csv().replace(b"0,5", b"").replace(b"3,0", b"").replace(b"0,25", b""),
+            "no row",
         ),
     },
     "curet": {
@@ -503,8 +527,10 @@ def test_values_of_one_channel_need_no_second_axis():
     np.testing.assert_array_equal(material.standard_error, errors[:, None])
     with pytest.raises(BrdfkitError, match=r"values \(2,\) should be \(n, 1\)"):
         Measured.from_samples(w, w, values[:2], channels=("Y",), name="grey")
-    with pytest.raises(BrdfkitError, match=r"values \(3,\) should be \(n, 3\)"):
-        Measured.from_samples(w, w, values, name="grey")
+    assert Measured.from_samples(w, w, values).channels == ("Y",)
+    assert Measured.from_samples(w[:1], w[:1], values).channels == RGB
+    with pytest.raises(BrdfkitError, match=r"^grey: values \(3, 2\) have 2 columns; say what"):
+        Measured.from_samples(w, w, np.ones((3, 2)), name="grey")
 
 
 def test_what_is_infinite_was_not_measured():

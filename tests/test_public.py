@@ -23,7 +23,14 @@ METHODS = {
     f"{cls.__name__}.{method}": getattr(cls, method)
     for cls, names in {
         bk.Fit: ["residuals"],
-        bk.Measured: ["from_samples", "from_table", "minus", "resampled"],
+        bk.Measured: [
+            "from_angles",
+            "from_frame",
+            "from_samples",
+            "from_table",
+            "minus",
+            "resampled",
+        ],
         bk.Model: ["changed"],
         bk.Rendering: ["write"],
         bk.Sweep: ["to_csv", "to_html", "to_parquet"],

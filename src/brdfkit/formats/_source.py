@@ -46,8 +46,13 @@ class Source:
     @cached_property
     def lines(self):
         """The lines that are neither blank nor a '#' comment, as (number from 1, text)."""
-        stripped = ((n, line.strip()) for n, line in enumerate(self._text, 1))
-        return [(n, line) for n, line in stripped if line and not line.startswith("#")]
+        return [(n, line.strip()) for n, line in self.whole_lines]
+
+    @cached_property
+    def whole_lines(self):
+        """As `lines`, with the blanks and tabs at their ends."""
+        numbered = enumerate(self._text, 1)
+        return [(n, line) for n, line in numbered if line.strip()[:1] not in ("", "#")]
 
     @cached_property
     def comments(self):
@@ -76,10 +81,8 @@ class Source:
     def parse_numbers(self, line, fields, count=None):
         """The texts `fields` of line number `line` as floats; there must be `count` of them, unless
         it is None."""
-        if count is not None and len(fields) != count:
-            raise self.error(
-                f"line {line} has {len(fields)} columns where {count} belong (cut short?); {REMEDY}"
-            )
+        if count is not None:
+            self.require_count(line, fields, count)
         try:
             return [_parse_number(text) for text in fields]
         except ValueError:
@@ -87,6 +90,13 @@ class Source:
             raise self.error(
                 f"line {line} has {wrong[:40]!r} where a number belongs; {REMEDY}"
             ) from None
+
+    def require_count(self, line, fields, count):
+        """Raise `BrdfkitError` unless line number `line` has `count` `fields`."""
+        if len(fields) != count:
+            raise self.error(
+                f"line {line} has {len(fields)} columns where {count} belong (cut short?); {REMEDY}"
+            )
 
     def build_from_angles(self, lines, angles, values, **details):
         """The `Measured` with `values` (n, channels) at `angles` (n, 4) [rad]: theta_i, phi_i,

@@ -13,8 +13,8 @@ from brdfkit import documents
 from brdfkit.colours import RGB
 from brdfkit.documents import Document, Shown
 from brdfkit.jit.threads import cached_in_turn, in_turn
+from brdfkit.measured.from_angles import FromAngles
 from brdfkit.measured.interpolation import Interpolant
-from brdfkit.measured.measured_data import MeasuredData
 from brdfkit.measured.mixing import mix
 from brdfkit.measured.spectrum_to_rgb import rgb_or_mean, to_rgb, wavelengths
 from brdfkit.measured.subtraction import subtract
@@ -31,8 +31,9 @@ from brdfkit.thumbnails import thumbnails
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Measured(Shown, MeasuredData):
-    """A measured BRDF. Made by `brdfkit.load`, `from_samples` or `from_table`.
+class Measured(Shown, FromAngles):
+    """A measured BRDF. Made by `brdfkit.load`, `from_samples`, `from_angles`, `from_frame` or
+    `from_table`.
 
     Attributes
     ----------

@@ -11,7 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.colours import RGB
 from brdfkit.measured.checksum import checksum
-from brdfkit.measured.validation import check_errors, check_table, make_printable
+from brdfkit.measured.validation import (
+    check_errors,
+    check_table,
+    make_printable,
+    usual_channels,
+)
 from brdfkit.samples import Samples, Table
 
 MOST = 8  # channels that are named
@@ -41,7 +46,7 @@ class MeasuredData:
         wo: ArrayLike,
         values: ArrayLike,
         valid: ArrayLike | None = None,
-        channels: Sequence[str] = RGB,
+        channels: Sequence[str] | None = None,
         name: str = "samples",
         info: Mapping[str, str] | None = None,
         anisotropic: bool = False,
@@ -60,9 +65,10 @@ class MeasuredData:
         valid : array_like of bool, shape (n,), optional
             False where nothing was measured. Samples with a value that is not finite or with a
             direction below the surface never count.
-        channels : sequence of str, default RGB
+        channels : sequence of str, optional
             What the columns of `values` are: ``("R", "G", "B")``, linear sRGB; ``("Y",)``,
-            achromatic; or wavelengths, as ``("400nm", "410nm")``.
+            achromatic; or wavelengths, as ``("400nm", "410nm")``. By default the first for three
+            columns and the second for one.
         name : str, default "samples"
             Name in pictures and tables.
         info : dict of str to str, optional
@@ -89,9 +95,11 @@ class MeasuredData:
         Examples
         --------
         >>> up = [[0, 0, 1]]
-        >>> print(Measured.from_samples(up, up, [0.2], channels=("Y",), name="grey"))
+        >>> print(Measured.from_samples(up, up, [0.2], name="grey"))
         grey: samples, 1 of 1 valid, channels Y
         """
+        if channels is None:
+            channels = usual_channels(values, len(np.atleast_2d(wi)), name)
         words = make_printable(name, channels, info)
         name = words[0]
         samples = Samples.from_arrays(wi, wo, values, valid, channels, name)

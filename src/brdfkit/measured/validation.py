@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from brdfkit.colours import RGB
 from brdfkit.errors import BrdfkitError
 from brdfkit.names import printable
 from brdfkit.samples.samples import require_some
@@ -15,6 +16,22 @@ def make_printable(
     """The name, the channels and the notes `info`, as text that can be printed."""
     notes = {printable(key): printable(note, keep="\n\t") for key, note in (info or {}).items()}
     return printable(name), tuple(map(printable, channels)), notes
+
+
+def usual_channels(values, samples, name):
+    """The channels of `values` (samples, channels) whose names are not given: R, G, B, or Y.
+
+    One sample may have its three values as (3,). Raises `BrdfkitError` for another number.
+    """
+    shape = np.shape(values)
+    of_one = shape[0] if shape and samples == 1 else 1
+    columns = shape[1] if len(shape) == 2 else of_one
+    if columns not in (1, len(RGB)):
+        raise BrdfkitError(
+            f"{name}: values {shape} have {columns} columns; say what they are, as in "
+            "channels=('450nm', '550nm')."
+        )
+    return ("Y",) if columns == 1 else RGB
 
 
 def check_table(values, phi_d_period, channels, name):

@@ -1,0 +1,80 @@
+"""Text in columns under a line of their names, as spreadsheets write it: names and numbers.
+
+Tabs, semicolons, commas or blanks separate the columns; where it is not commas, numbers may have
+decimal commas.
+"""
+
+import re
+
+import numpy as np
+
+from brdfkit.formats._source import Source
+from brdfkit.measured.column_names import are_columns
+
+DELIMITERS = "\t;,"  # the first of them in the line of names; blanks where there is none
+NUMERIC = re.compile(r"[-+0-9.,;eE\s]+")
+
+
+def find_delimiter(head):
+    """What separates the columns in the text that begins with the bytes `head`, by its line of
+    names: one of `DELIMITERS`, " ", or None where no line names samples of a BRDF."""
+    header, _ = _find_header(Source("head", None, head))
+    return None if header is None or not are_columns(split(header)) else _delimiter(header)
+
+
+def read_columns(source):
+    """The names of the columns, the numbers of the lines of the rows, and the columns (n,).
+
+    A column without a name is left out, and so are rows without numbers. An empty field is NaN.
+    Raises `BrdfkitError` for a row with other columns or with text among numbers.
+    """
+    header, rows = _find_header(source)
+    if header is None:
+        line = f"line {rows[0][0]} has numbers" if rows else "it has no line"
+        raise source.error(
+            f"{line} where the names of the columns belong; add them, as in "
+            "'theta_i,phi_i,theta_o,phi_o,BRDF'"
+        )
+    delimiter = _delimiter(header)
+    names = split(header)
+    named = [k for k, name in enumerate(names) if name]  # the index that pandas writes has none
+    lines, data = [], []
+    for n, line in rows:
+        fields = split(line, delimiter)
+        if not any(fields):  # spreadsheets end with rows of delimiters
+            continue
+        source.require_count(n, fields, len(names))
+        lines.append(n)
+        data.append(source.parse_numbers(n, [_number(fields[k], delimiter) for k in named]))
+    if not lines:
+        raise source.error("has no rows behind the names of its columns; fetch the file again")
+    return [names[k] for k in named], lines, list(np.array(data).T)
+
+
+def split(line, delimiter=None):
+    """The fields of a line without blanks and quotes around them."""
+    delimiter = delimiter or _delimiter(line)
+    fields = line.split() if delimiter == " " else line.split(delimiter)
+    return [field.strip(' \t"') for field in fields]
+
+
+def _find_header(source):
+    """The line of names, or None, and the lines behind it, as (number, text).
+
+    It is the first line, or, where this has numbers, the last comment that names samples, as
+    NumPy's `savetxt` writes it.
+    """
+    lines = source.whole_lines
+    if lines and not NUMERIC.fullmatch(lines[0][1]):
+        return lines[0][1], lines[1:]
+    comments = [c for c in source.comments if are_columns(split(c))]
+    return (comments[-1] if comments else None), lines
+
+
+def _delimiter(header):
+    return next((mark for mark in DELIMITERS if mark in header), " ")
+
+
+def _number(text, delimiter):
+    """The text of a number as Python reads it."""
+    return (text if delimiter == "," else text.replace(",", ".")) or "nan"

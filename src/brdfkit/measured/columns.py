@@ -1,0 +1,106 @@
+"""A user's table of named columns as directions, values and standard errors."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from brdfkit.measured.angles import require_unit
+from brdfkit.measured.column_names import understand
+from brdfkit.measured.coordinates import to_directions, turns
+
+LEAST_COSINE = 1e-3  # a BRDF times a smaller cosine does not tell the BRDF
+
+
+def to_samples(names, columns, unit, origin):
+    """The arguments of `Measured.from_samples` in the `columns`, arrays (n,) with these `names`.
+
+    `unit`: of angles whose names state none, or None; `origin`: for errors. Rows of which no BRDF
+    is known are masked, and the argument `info` says how many.
+    """
+    require_unit(unit)
+    layout = understand(names, origin)
+    coordinates = {name: columns[n] for name, n in layout.coordinates.items()}
+    units = {name: stated or unit for name, stated in layout.units.items()}
+    wi, wo = to_directions(coordinates, units, origin)
+    values = np.stack([columns[n] for n in layout.values], axis=1)
+    errors = np.stack([columns[n] for n in layout.errors], axis=1) if layout.errors else None
+    _require_positive(errors, origin)
+
+    # The rows that are masked, by the reason
+    finite = np.isfinite(values).all(axis=1)
+    if errors is not None:
+        finite &= np.isfinite(errors).all(axis=1)
+    above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
+    masked = {"not finite": ~finite, "at or below the horizon": ~above}
+    info = {}
+    if layout.cosine:
+        info["cosine"] = "the values were BRDF × cos theta_o and are divided by it"
+        masked["view at the horizon"] = low = above & (wo[:, 2] < LEAST_COSINE)
+        cosine = np.where(above & ~low, wo[:, 2], 1)[:, None]
+        values = values / cosine
+        errors = None if errors is None else errors / cosine
+    for reason, rows in masked.items():
+        if rows.any():
+            info[reason] = f"{rows.sum():,} of {len(rows):,} rows, masked"
+    return {
+        "wi": wi,
+        "wo": wo,
+        "values": values,
+        "valid": ~np.any(list(masked.values()), axis=0),
+        "channels": layout.channels,
+        "info": info,
+        "anisotropic": turns(coordinates),
+        "standard_error": errors,
+    }
+
+
+def columns_of(frame, origin):
+    """The names, as text, and the columns, arrays (n,), of a DataFrame or a dictionary; a number
+    in a dictionary is that of all rows.
+
+    Raises `BrdfkitError` for what is neither, for columns of other lengths and for text.
+    """
+    names = list(getattr(frame, "columns", frame if isinstance(frame, Mapping) else ()))
+    if not names:
+        raise origin.error(
+            f"a {type(frame).__name__} was given; give a DataFrame, or a dictionary, with columns "
+            "such as theta_i, phi_i, theta_o, phi_o and BRDF"
+        )
+    for name in names:
+        if names.count(name) > 1:
+            raise origin.error(f"the column {name!r} comes twice; keep one")
+    columns = {str(name): _column(name, frame[name], origin) for name in names}
+    lengths = {name: len(column) for name, column in columns.items() if column.ndim}
+    longest = max(lengths, key=lengths.get) if lengths else None
+    rows = lengths.get(longest, 1)
+    for name, length in lengths.items():
+        if length < rows:
+            raise origin.error(
+                f"the column {name!r} has {length} rows where {longest!r} has {rows}; give as many"
+            )
+    if not rows:
+        raise origin.error("has columns, but no rows; give some")
+    return list(columns), [np.broadcast_to(column, rows) for column in columns.values()]
+
+
+def _column(name, given, origin):
+    column = to_numbers(f"the column {name!r}", given, origin)
+    if column.ndim > 1:
+        raise origin.error(f"the column {name!r} has {column.ndim} axes where one belongs")
+    return column
+
+
+def to_numbers(what, given, origin):
+    """The array of floats of what a user gave as `what`; `BrdfkitError` where it is none."""
+    try:
+        return np.asarray(given, float)
+    except (TypeError, ValueError):
+        raise origin.error(f"{what} should be numbers, and is not; convert it") from None
+
+
+def _require_positive(errors, origin):
+    for row in np.flatnonzero((errors < 0).any(axis=1))[:1] if errors is not None else ():
+        raise origin.error(
+            f"a standard error is {errors[row].min():g} in {origin.row(row)}; it should be at "
+            "least 0"
+        )
