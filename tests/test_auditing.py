@@ -16,7 +16,7 @@ from brdfkit import models
 from brdfkit.auditing import symmetries
 from brdfkit.auditing.albedos import Albedo, albedo_of_samples
 from brdfkit.auditing.coverage import coverage, is_near
-from brdfkit.auditing.grazing_and_retro import grazing, retroreflection
+from brdfkit.auditing.grazing_and_retro import backwards, grazing, retroreflection
 from brdfkit.auditing.noise import noise
 from brdfkit.auditing.spikes import spikes
 from brdfkit.checks.material_subject import random_pairs
@@ -408,6 +408,20 @@ def test_light_sent_back_is_told():
     plaster = models()["oren_nayar"](sigma=1.0)
     assert 1 < retroreflection(scattered(plaster.eval, *directions)) < 2.5
     assert np.isnan(retroreflection(one_sample()))
+
+
+def test_azimuths_counted_from_the_mirrors_side():
+    """As a file in another convention has them; large steps of theta_o suffice."""
+    wi, wo = grid(theta_o=range(0, 76, 10), phi=(0, 90, 180))
+    right, wrong = scattered(wi=wi, wo=wo), scattered(GGX.eval(wi, wo), wi, wo * [-1, -1, 1])
+    assert backwards(right) == pytest.approx(1 / backwards(wrong))
+    assert backwards(wrong) > 10
+    (told,) = (f for f in wrong.audit().findings() if "add 180° to phi_o" in f)
+    assert told.startswith(f"{backwards(wrong):.2g} times as bright towards the light as in")
+    assert not any("add 180°" in finding for finding in right.audit().findings())
+    plaster = models()["oren_nayar"](sigma=1.0)
+    assert 1 < backwards(scattered(plaster.eval)) < 4
+    assert np.isnan(backwards(one_sample()))
 
 
 # What is printed and drawn

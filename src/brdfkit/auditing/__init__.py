@@ -12,7 +12,7 @@ import numpy as np
 from brdfkit.auditing import report
 from brdfkit.auditing.albedos import Albedo, albedo, albedo_of_samples
 from brdfkit.auditing.coverage import Coverage, coverage
-from brdfkit.auditing.grazing_and_retro import grazing, retroreflection
+from brdfkit.auditing.grazing_and_retro import backwards, grazing, retroreflection
 from brdfkit.auditing.noise import Noise, noise
 from brdfkit.auditing.spikes import Spike, spikes
 from brdfkit.auditing.symmetries import Difference, by_mirror, by_reciprocity
@@ -58,8 +58,8 @@ class Audit(Shown):
         How much the values scatter.
     albedo, albedo_of_samples : Albedo
         Over the angle of incidence: as it is looked up, and of the samples alone.
-    grazing, retroreflection : float
-        Two ratios of medians: see `brdfkit.auditing.grazing_and_retro`.
+    grazing, retroreflection, backwards : float
+        Three ratios of medians: see `brdfkit.auditing.grazing_and_retro`.
     spikes : tuple of Spike
         Values far above all around them.
     data : Measured
@@ -88,13 +88,15 @@ class Audit(Shown):
     albedo_of_samples: Albedo | None
     grazing: float
     retroreflection: float
+    backwards: float
     spikes: tuple[Spike, ...]
     data: Any = field(repr=False, compare=False)
 
     @property
     def kind(self) -> str:
-        """In words: a 90×90×180 table, or samples."""
-        return "×".join(map(str, self.shape)) + " table" if self.shape else "samples"
+        """In words: a 90×90×180 table, samples or anisotropic samples."""
+        samples = "anisotropic samples" if self.data.anisotropic else "samples"
+        return "×".join(map(str, self.shape)) + " table" if self.shape else samples
 
     def rows(self) -> dict[str, str]:
         """The audit in words, by heading."""
@@ -183,6 +185,7 @@ def audit(data: MaterialLike) -> Audit:
         albedo_of_samples=albedo_of_samples(seen),
         grazing=grazing(data),
         retroreflection=retroreflection(data),
+        backwards=backwards(data),
         spikes=spikes(data),
         data=data,
     )

@@ -7,7 +7,7 @@ MOST_SPIKES = 3  # spikes that are named; the others are counted
 SHARE = 0.01  # the share of negative or of zero values
 NOT_RECIPROCAL, PAIRS = 0.1, 20  # the median difference, of at least so many pairs
 BRIGHT = 1.001  # the albedo; its quadrature is accurate to 10⁻³
-DARK_HORIZON, RETROREFLECTIVE = 0.5, 5  # the ratios of `grazing_and_retro.py`
+DARK_HORIZON, RETROREFLECTIVE, BACKWARDS = 0.5, 5, 5  # the ratios of `grazing_and_retro.py`
 
 
 def rows(audit):
@@ -63,6 +63,12 @@ def findings(audit):
         found.append(
             f"retroreflective: the median within 5° of the light is {audit.retroreflection:.2g} "
             "times that elsewhere; no lobe about the mirror direction can fit this"
+        )
+    if audit.backwards > BACKWARDS:
+        found.append(
+            f"{audit.backwards:.2g} times as bright towards the light as in the mirror direction, "
+            "phi_o = phi_i + 180°: unless it is retroreflective, the instrument counts phi_o from "
+            "the mirror's side; then add 180° to phi_o"
         )
     return tuple(found)
 

@@ -192,6 +192,8 @@ class MeasuredData:
         """What there is, in one line."""
         valid = self.samples.valid
         size = "×".join(map(str, self._table.shape)) + " table" if self._table else "samples"
+        if self.anisotropic and not self._table:
+            size = "anisotropic samples"
         channels = " ".join(self.channels)
         if len(self.channels) > MOST:
             channels = f"{self.channels[0]} to {self.channels[-1]}, {len(self.channels)} of them"
