@@ -131,7 +131,10 @@ TRAPS = {
         "no names": (b"30,0,30,180,0.5\n", "line 1 has numbers where the names of the columns"),
         "comments only": (b"# theta_i\n", "it has no line where the names"),
         "text": (replaced(csv(), b"0,25", b"dark"), "line 5 has 'dark' where a number"),
-        "thousands": (replaced(csv(), b"0,25", b"1.000,25"), "line 5 has '1.000.25'"),
+        "thousands": (
+            replaced(csv(), b"0,25", b"1.000,25"),
+            "line 4 has a comma and line 5 a point",
+        ),
         "column": (
             replaced(csv(), b"theta_o", b"theta_x"),
             "column 'theta_x .* did you mean theta_o",

@@ -38,6 +38,8 @@ def read_columns(source):
     delimiter = _delimiter(header)
     names = split(header)
     named = [k for k, name in enumerate(names) if name]  # the index that pandas writes has none
+    if delimiter != ",":
+        _require_one_mark(source, rows)
     lines, data = [], []
     for n, line in rows:
         fields = split(line, delimiter)
@@ -73,6 +75,16 @@ def _find_header(source):
 
 def _delimiter(header):
     return next((mark for mark in DELIMITERS if mark in header), " ")
+
+
+def _require_one_mark(source, rows):
+    """Raise `BrdfkitError` where numbers have points and commas: which are of thousands?"""
+    found = {mark: n for n, line in reversed(rows) for mark in ",." if mark in line}
+    if len(found) == 2:
+        raise source.error(
+            f"line {found[',']} has a comma and line {found['.']} a point in a number; "
+            "write all numbers with one of them, without separators of thousands"
+        )
 
 
 def _number(text, delimiter):

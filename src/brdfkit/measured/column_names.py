@@ -67,7 +67,7 @@ def understand(names, origin):
         else:
             raise origin.error(_say_unknown(name, unit, coordinate or value, coordinates))
     if len(cosines) > 1:
-        raise origin.error("has values with a cosine, CCBRDF, beside others; convert the ones")
+        raise origin.error("has CCBRDF, values with a cosine, beside others; convert them")
     _require_both_directions(coordinates, origin)
     return Layout(coordinates, units, *_find_channels(values, origin), cosines == {True})
 
@@ -80,7 +80,7 @@ def _say_unknown(name, unit, known, coordinates):
             "angles and 1/sr for values; convert the column"
         )
     others = {name for line in COORDINATES for name in line} - set(coordinates)
-    near = nearest(_split(name)[0], [*sorted(others), *EXAMPLES])
+    near = nearest(_split(name)[0][:40], [*sorted(others), *EXAMPLES])
     guess = f"; did you mean {near}? Else rename it" if near else "; rename it"
     return f"the column {_quote(name)} is unknown{guess} or leave it out"
 
@@ -115,14 +115,13 @@ def _find_channels(values, origin):
         channels = RGB
     elif channels != ("Y",) and not all(channel.endswith("nm") for channel in channels):
         raise origin.error(
-            f"has values of {', '.join(channels)[:60]}, where R, G, B belong, or wavelengths such "
+            f"has values of {_list(channels)}, where R, G, B belong, or wavelengths such "
             "as 550nm, or one column BRDF; mend the names"
         )
     if errors and set(errors) != set(channels):
-        wanted = ", ".join(f"{channel}_error" for channel in channels[:4])
         raise origin.error(
-            f"has standard errors of {', '.join(errors)[:60]}, where all of the values belong: "
-            f"{wanted.replace('Y_', 'BRDF_')}; mend the names or leave the columns out"
+            f"has standard errors of {_list(errors)} for the values of {_list(channels)}; give "
+            "those of all, as R_error or BRDF_error, or none"
         )
     places = tuple(tuple(of[c] for c in channels if c in of) for of in (found, errors))
     return channels, *places
@@ -130,8 +129,11 @@ def _find_channels(values, origin):
 
 def _split(name):
     """The text of a column's name, and the unit in brackets behind it, in lower case, or None."""
-    match = re.fullmatch(r"(.*?)\s*(?:[\[(]([^\])]*)[\])])?\s*", name, re.DOTALL)
-    return match[1], match[2] and match[2].strip().lower()
+    name = name.strip()
+    bracket = max(name.rfind("["), name.rfind("("))
+    if bracket < 0 or name[-1] not in "])":
+        return name, None
+    return name[:bracket], name[bracket + 1 : -1].strip().lower()
 
 
 def _simplify(text):
@@ -172,6 +174,10 @@ def _has_cosine(text):
 def _units(coordinate):
     """The units that a column of this coordinate may state."""
     return (None,) if coordinate.startswith("w") else (None, *DEGREES, *RADIANS)
+
+
+def _list(channels):
+    return ", ".join("BRDF" if channel == "Y" else channel for channel in channels)[:60]
 
 
 def _quote(name):

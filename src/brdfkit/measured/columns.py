@@ -95,7 +95,7 @@ def to_numbers(what, given, origin):
     try:
         return np.asarray(given, float)
     except (TypeError, ValueError):
-        raise origin.error(f"{what} should be numbers, and is not; convert it") from None
+        raise origin.error(f"{what} should hold numbers alone; convert or drop it") from None
 
 
 def _require_positive(errors, origin):

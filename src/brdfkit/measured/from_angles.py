@@ -50,9 +50,8 @@ class FromAngles(MeasuredData):
             Unit of the angles: by default degrees, but it has to be said where none of the angles
             is so large that it could not be in radians.
         channels : sequence of str, optional
-            What the last axis of `values` is: ``("R", "G", "B")``, linear sRGB; ``("Y",)``,
-            achromatic; or wavelengths, as ``("400nm", "410nm")``. By default the first for three
-            and the second for one channel.
+            What the last axis of `values` is: ``("R", "G", "B")``, linear sRGB, by default for
+            three; ``("Y",)``, achromatic, for one; or wavelengths, as ``("400nm", "410nm")``.
         name : str, default "samples"
             Name in pictures and tables.
         info : dict of str to str, optional

@@ -32,8 +32,7 @@ from brdfkit.thumbnails import thumbnails
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Measured(Shown, FromAngles):
-    """A measured BRDF. Made by `brdfkit.load`, `from_samples`, `from_angles`, `from_frame` or
-    `from_table`.
+    """A measured BRDF. Made by `brdfkit.load`, or by one of the methods `from_...`.
 
     Attributes
     ----------

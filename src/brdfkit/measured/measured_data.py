@@ -66,9 +66,8 @@ class MeasuredData:
             False where nothing was measured. Samples with a value that is not finite or with a
             direction below the surface never count.
         channels : sequence of str, optional
-            What the columns of `values` are: ``("R", "G", "B")``, linear sRGB; ``("Y",)``,
-            achromatic; or wavelengths, as ``("400nm", "410nm")``. By default the first for three
-            columns and the second for one.
+            What the columns of `values` are: ``("R", "G", "B")``, linear sRGB, by default for
+            three; ``("Y",)``, achromatic, for one; or wavelengths, as ``("400nm", "410nm")``.
         name : str, default "samples"
             Name in pictures and tables.
         info : dict of str to str, optional
