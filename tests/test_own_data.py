@@ -271,7 +271,7 @@ WRONG = [
         {"BRDF": None, "CCBRDF_R": 1, "G": 1, "B": 1},
         "has CCBRDF, values with a cosine, beside others",
     ),
-    ({"R_error": 1}, "has standard errors of R for the values of BRDF; give all"),
+    ({"R_error": 1}, "has standard errors of R for the values of BRDF; give those of all"),
     ({"BRDF_error": [1, 2, -1]}, "a standard error is -1 in row 2; it should be at least 0"),
     ({"theta_o": [10, 20]}, "the column 'theta_o' has 2 rows where 'BRDF' has 3"),
     ({"theta_o": [[10], [20], [30]]}, "the column 'theta_o' has 2 axes where one belongs"),

@@ -29,6 +29,8 @@ def build() -> None:
     samples = bk.Measured.from_samples(UP, UP, [[0.2]], channels=("Y",))
     assert_type(samples, bk.Measured)
     assert_type(samples.eval(UP, UP), Floats)
+    assert_type(bk.Measured.from_angles(30, 0, [20, 30], 180, [0.2, 0.9]), bk.Measured)
+    assert_type(bk.Measured.from_frame({"theta_i": 30, "BRDF": 0.2}), bk.Measured)
     assert_type(bk.Measured.from_table(np.ones((9, 9, 18, 3))).values, Floats)
     ward = bk.models()["ward"](alpha_u=0.1, specular_reflectance=[0.3, 0.2, 0.1])
     assert_type(ward, bk.Model)
