@@ -222,8 +222,24 @@ def test_render(cli, words, names):
     assert record["pictures"] == names
     assert record["spp"] == 2
     assert record["written"] == ["it.exr", "it.png"]
-    assert list(record["psnr"]) == names[1:]
+    assert list(record["psnr"]) == list(record["errors"]["by_name"]) == names[1:]
+    assert record["errors"]["floor"]["psnr"] > 10
     assert {"it.exr", "it.png"} < set(tree(Path()))
+
+
+@pytest.mark.quick
+def test_render_until_the_noise_is_low(cli):
+    Path("room.xml").write_text(SCENE.format(alpha=0.3))
+    for thing in ("ward", "room.xml"):
+        record = json.loads(cli("render", thing, "--size", "8", "--until", "30dB", "--json").stdout)
+        assert record["errors"]["floor"]["psnr"] >= 30
+    result = cli("render", "ward", "lambert", "--size", "8", "--spp", "4", "--until", "60 dB")
+    assert result.exit_code == 0
+    assert re.search(r"The noise floor is .* dB; 60 dB take about [\d,]+ samples", result.stderr)
+    assert re.search(r"\n lambert .*\n noise floor ", result.stdout, re.DOTALL)
+    result = cli("render", "ward", "--until", "loud")
+    assert result.exit_code == 2
+    assert "'loud' is no noise floor; give one like 45dB" in result.stderr
 
 
 @pytest.mark.quick
