@@ -237,9 +237,6 @@ def test_render_until_the_noise_is_low(cli):
     assert result.exit_code == 0
     assert re.search(r"The noise floor is .* dB; 60 dB take about [\d,]+ samples", result.stderr)
     assert re.search(r"\n lambert .*\n noise floor ", result.stdout, re.DOTALL)
-    result = cli("render", "ward", "--until", "loud")
-    assert result.exit_code == 2
-    assert "'loud' is no noise floor; give one like 45dB" in result.stderr
 
 
 @pytest.mark.quick
@@ -425,7 +422,8 @@ TRAPS = [
     ([*WARD, "-p", "diffuse_reflectance=-1"], ["diffuse_reflectance = -1", "at least 0"]),
     ([*WARD, "-p", "diffuse_reflectance=1,2"], ["diffuse_reflectance=R,G,B"]),
     ([*WARD, "--size", "0"], ["--size", "x>=1"]),
-    ([*WARD, "--size", "100000"], ["100000×100000", "1,250 GB", "give a smaller size"]),
+    ([*WARD, "--size", "100000"], ["100000×100000", "2,200 GB", "give a smaller size"]),
+    ([*WARD, "--until", "loud"], ["--until", "'loud' is no noise floor; give one like 45dB"]),
     ([*LAMBERT, "--render", "--size", "100000"], ["2 pictures of 100000×100000", "smaller size"]),
     ([*WARD, "--spp", "0"], ["--spp", "x>=1"]),
     ([*WARD, "--spp", "many"], ["--spp", "many"]),

@@ -17,7 +17,8 @@ class ImageErrors:
     """Errors of pictures, by several metrics, beside their noise floor; prints as a table.
 
     Made by `Rendering.errors`. The floor is what a metric says of the reference against itself
-    with another seed: a difference that does not exceed it is noise, and is said to be none.
+    with another seed: a difference that does not exceed it is said to be none. The pictures share
+    their samples, and so part of their noise: small differences of like materials may be real.
 
     Attributes
     ----------

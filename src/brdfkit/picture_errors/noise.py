@@ -1,7 +1,9 @@
 """The noise of a path-traced picture, from its samples in two halves.
 
 Passes of a rendering are independent, so that two halves of them differ by their noise alone. The
-picture that another seed would give is as far away as the halves say; it need not be rendered.
+picture that another seed would give is as far away as the halves say; it need not be rendered. For
+squared differences that is exact on average, for other metrics where the noise is small: at 16
+samples per pixel SSIM says up to 0.02 too much.
 """
 
 from dataclasses import dataclass

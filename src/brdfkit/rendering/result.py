@@ -107,9 +107,9 @@ class Rendering:
         """Write the pictures to a file.
 
         The EXR has one named part a picture and one a difference ("difference: NAME"), each
-        with R, G, B float32 and, in its header, spp, seed, brdfkit (the version) and parameters
-        (JSON). A difference is picture minus reference, linear. The PNG shows the pictures side
-        by side, captioned, over their differences in colour (CIEDE2000).
+        with R, G, B float32 and, in its header, spp, seed, brdfkit (the version), parameters (JSON)
+        and noise_floor [dB]. A difference is picture minus reference, linear. The PNG shows the
+        pictures side by side, captioned, over their differences in colour (CIEDE2000).
 
         Parameters
         ----------
@@ -119,7 +119,7 @@ class Rendering:
         Raises
         ------
         BrdfkitError
-            For another suffix, or where it cannot write; no file is half-write_safely.
+            For another suffix, or where it cannot write; no file is half-written.
 
         Examples
         --------
