@@ -517,6 +517,7 @@ def test_ctrl_c_keeps_the_passes_of_a_picture_and_says_so(cli, monkeypatch):
     result = cli("fit", "paint.binary", "-m", "lambert", *words)
     assert (result.exit_code, result.stderr) == (130, said)
     assert "written: out/render.png" in result.stdout
+    assert "paint: errors of pictures" in result.stdout
 
 
 @contextmanager

@@ -95,6 +95,18 @@ def test_flip_is_nothing_for_equal_pictures_and_grows(scene):
     assert np.isnan(flip(0 * reference, reference, mask))
 
 
+def test_flip_is_not_diluted_by_what_is_between_the_pixels_that_count():
+    grey = np.full((64, 64, 3), 0.3, np.float32)
+
+    def squares(apart):
+        mask = np.zeros((64, 64), bool)
+        mask[:8, :8] = mask[apart : apart + 8, apart : apart + 8] = True
+        return mask
+
+    near, far = (flip(grey, 2 * grey, squares(apart)) for apart in (24, 56))
+    assert far == pytest.approx(near, rel=0.05)
+
+
 def test_flip_has_the_exposures_of_its_authors(scene):
     """The package's own, where all pixels count and the brightest ones are equal."""
     evaluate = pytest.importorskip("flip_evaluator").evaluate
@@ -158,6 +170,8 @@ def test_a_difference_within_the_noise_is_none(scene, rng):
     assert set(rows["same"]) == set(rows["nearly"]) == {"none"}
     assert "none" not in rows["other"] + rows["noise floor"]
     assert not errors.exceeds("nearly", "psnr")
+    without_noise = image_errors({"it": reference, "same": reference}, reference, mask)
+    assert set(without_noise.table()[0][1:]) == {"none"}
     assert errors.exceeds("other", "ssim")
     assert errors.by_name["same"]["psnr"] == np.inf
     assert list(errors.floor) == list(errors.by_name["other"]) == list(METRICS)
