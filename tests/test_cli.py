@@ -222,8 +222,21 @@ def test_render(cli, words, names):
     assert record["pictures"] == names
     assert record["spp"] == 2
     assert record["written"] == ["it.exr", "it.png"]
-    assert list(record["psnr"]) == names[1:]
+    assert list(record["psnr"]) == list(record["errors"]["by_name"]) == names[1:]
+    assert record["errors"]["floor"]["psnr"] > 10
     assert {"it.exr", "it.png"} < set(tree(Path()))
+
+
+@pytest.mark.quick
+def test_render_until_the_noise_is_low(cli):
+    Path("room.xml").write_text(SCENE.format(alpha=0.3))
+    for thing in ("ward", "room.xml"):
+        record = json.loads(cli("render", thing, "--size", "8", "--until", "30dB", "--json").stdout)
+        assert record["errors"]["floor"]["psnr"] >= 30
+    result = cli("render", "ward", "lambert", "--size", "8", "--spp", "4", "--until", "60 dB")
+    assert result.exit_code == 0
+    assert re.search(r"The noise floor is .* dB; 60 dB take about [\d,]+ samples", result.stderr)
+    assert re.search(r"\n lambert .*\n noise floor ", result.stdout, re.DOTALL)
 
 
 @pytest.mark.quick
@@ -409,7 +422,8 @@ TRAPS = [
     ([*WARD, "-p", "diffuse_reflectance=-1"], ["diffuse_reflectance = -1", "at least 0"]),
     ([*WARD, "-p", "diffuse_reflectance=1,2"], ["diffuse_reflectance=R,G,B"]),
     ([*WARD, "--size", "0"], ["--size", "x>=1"]),
-    ([*WARD, "--size", "100000"], ["100000×100000", "1,250 GB", "give a smaller size"]),
+    ([*WARD, "--size", "100000"], ["100000×100000", "2,200 GB", "give a smaller size"]),
+    ([*WARD, "--until", "loud"], ["--until", "'loud' is no noise floor; give one like 45dB"]),
     ([*LAMBERT, "--render", "--size", "100000"], ["2 pictures of 100000×100000", "smaller size"]),
     ([*WARD, "--spp", "0"], ["--spp", "x>=1"]),
     ([*WARD, "--spp", "many"], ["--spp", "many"]),
@@ -503,6 +517,7 @@ def test_ctrl_c_keeps_the_passes_of_a_picture_and_says_so(cli, monkeypatch):
     result = cli("fit", "paint.binary", "-m", "lambert", *words)
     assert (result.exit_code, result.stderr) == (130, said)
     assert "written: out/render.png" in result.stdout
+    assert "paint: errors of pictures" in result.stdout
 
 
 @contextmanager

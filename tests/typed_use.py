@@ -64,6 +64,8 @@ def fit_and_render(paint: bk.Measured) -> None:
     rendering = bk.render([paint, *fits, ("grey", {"type": "diffuse"})], size=(64, 32))
     assert_type(rendering, bk.Rendering)
     assert_type(rendering.psnr(), dict[str, float])
+    assert_type(rendering.errors(), bk.ImageErrors)
+    assert_type(rendering.errors().floor, dict[str, float])
     assert_type(bk.render_scene("kitchen.xml"), bk.Rendering)
 
 

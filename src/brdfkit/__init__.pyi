@@ -21,6 +21,7 @@ from .measured import Measured as Measured
 from .model import Model as Model
 from .model.labels import load_models as load_models
 from .model.labels import models as models
+from .picture_errors import ImageErrors as ImageErrors
 from .plotting import plot as plot
 from .ranking import Ranked as Ranked
 from .ranking import Ranking as Ranking

@@ -6,17 +6,20 @@ SHOWN = "cosine", "log", "cbrt", "plain"
 INCIDENCES = 0, 85
 
 
-def print_fits(material, fits, failed, comparison, psnr, written, ranking, console):
-    """Print `fits` to a `material`, a remark on each that gains light, and their errors under
-    several losses; as JSON with what `failed` and with the `ranking`, too."""
+def print_fits(material, fits, failed, comparison, pictures, written, ranking, console):
+    """Print `fits` to a `material`, a remark on each that gains light, their errors under several
+    losses and those of their `pictures`, `ImageErrors` or None; as JSON with what `failed` and with
+    the `ranking`, too."""
     from brdfkit.commands._ranking import record
+    from brdfkit.commands.render import print_errors
     from brdfkit.verbs.compare import format_error
 
     if console.as_json:
+        psnr = {n: row["psnr"] for n, row in pictures.by_name.items()} if pictures else {}
         records = [_record(f, comparison, psnr) for f in fits]
         entries = {"material": material.name, "fits": records, "failed": failed}
         entries["ranking"] = record(ranking)
-        console.json({**entries, "written": written})
+        console.json({**entries, "pictures": pictures, "written": written})
         return
     for found in fits:
         console.out.print(str(found))
@@ -25,13 +28,13 @@ def print_fits(material, fits, failed, comparison, psnr, written, ranking, conso
         console.out.print()
     named = {f.loss_name for f in fits}
     shown = [name for name in next(iter(comparison.errors.values())) if name in {*SHOWN, *named}]
-    image = [">PSNR [dB]"] if psnr else []
-    columns, rows = ["model", *(f">{name}" for name in shown), *image, ">time [s]"], []
+    columns, rows = ["model", *(f">{name}" for name in shown), ">time [s]"], []
     for found in fits:
         errors = [format_error(comparison.errors[found.name][name]) for name in shown]
-        image = [f"{psnr[found.name]:.1f}"] if psnr else []
-        rows.append((found.name, *errors, *image, f"{found.seconds:.2f}"))
+        rows.append((found.name, *errors, f"{found.seconds:.2f}"))
     console.table(columns, rows, title=f"{material.name}: errors")
+    if pictures:
+        print_errors(pictures, console)
     console.list_written(written)
 
 

@@ -1,8 +1,26 @@
 """Options that several commands have."""
 
 import functools
+from math import isfinite
 
 import click
+
+SPP = 64  # samples per pixel
+
+
+class Decibels(click.ParamType):
+    """A number above 0, with or without dB behind it."""
+
+    name = "dB"
+
+    def convert(self, value, param, ctx):
+        try:
+            found = float(str(value).lower().removesuffix("db"))
+        except ValueError:
+            found = 0.0
+        if not (found > 0 and isfinite(found)):
+            self.fail(f"{value!r} is no noise floor; give one like 45dB.", param, ctx)
+        return found
 
 
 def output_options(command):
@@ -20,16 +38,22 @@ def output_options(command):
 
 
 def render_options(command):
-    """Adds --spp, --size and --seed to a command that renders."""
-    for name, default, least, meaning in (
-        ("--seed", 0, 0, "Seed of the samples."),
-        ("--size", 512, 1, "Side of a picture [pixels]."),
-        ("--spp", 64, 1, "Samples per pixel."),
+    """Adds --spp, --until, --size and --seed to a command that renders."""
+    count = {"type": click.IntRange(min=1), "metavar": "N"}
+    seed = {"type": click.IntRange(min=0), "metavar": "N"}
+    until = "Add samples until the noise floor, as a PSNR, is so high: 45dB is hardly seen."
+    for option in (
+        click.option("--seed", default=0, show_default=True, help="Seed of the samples.", **seed),
+        click.option(
+            "--size", default=512, show_default=True, help="Side of a picture [pixels].", **count
+        ),
+        click.option("--until", type=Decibels(), metavar="DECIBELS", help=until),
+        click.option(
+            "--spp",
+            help=f"Samples per pixel; with --until the most. Default: {SPP}, or what it takes.",
+            **count,
+        ),
     ):
-        kind = click.IntRange(min=least)
-        option = click.option(
-            name, default=default, type=kind, metavar="N", show_default=True, help=meaning
-        )
         command = option(command)
     return command
 

@@ -81,6 +81,7 @@ def fit(
     max_angle,
     spectral,
     spp,
+    until,
     size,
     seed,
     console,
@@ -131,18 +132,19 @@ def fit(
         require_memory((size, size), 1 + len(names))
         output = output or Path(slug(material.name))
 
-    psnr = {}
+    errors = None  # of pictures
     with results_folder(output):
         fits, failed, interrupted = _fit_each(names, material, how, output, console)
         files = [fit_file(output, f.name) for f in fits] if output else []
         written = [file for file in files if file.is_file()]
         if rendered and not interrupted:
-            picture = path_trace([material, *fits], output / "render.exr", spp, size, seed, console)
-            psnr, interrupted = picture.psnr(), picture.spp < picture.asked
-            written += [output / "render.exr", output / "render.png"]
+            shown, exr = [material, *fits], output / "render.exr"
+            picture = path_trace(shown, exr, spp, size, seed, console, until)
+            errors, interrupted = picture.errors(), picture.spp < picture.asked
+            written += [exr, output / "render.png"]
     with console.progress("compare"):
         comparison = compare(material, fits, max_angle, spectral)
-    print_fits(material, fits, failed, comparison, psnr, written, ranking, console)
+    print_fits(material, fits, failed, comparison, errors, written, ranking, console)
     for error in failed.values():
         say(error)
     if interrupted or failed:

@@ -3,10 +3,9 @@
 from pathlib import Path
 
 import click
-from click.core import ParameterSource
 
 from brdfkit.commands._errors import say
-from brdfkit.commands._options import output_options, render_options, values_option
+from brdfkit.commands._options import SPP, output_options, render_options, values_option
 from brdfkit.commands._stopping import status
 from brdfkit.errors import BrdfkitError
 
@@ -29,12 +28,13 @@ from brdfkit.errors import BrdfkitError
 @values_option
 @render_options
 @output_options
-def render(things, output, folders, values, spp, size, seed, console):
+def render(things, output, folders, values, spp, until, size, seed, console):
     """Path-trace materials, or a scene.
 
     Materials (fits, models, measured files) are rendered side by side. The others are compared to
-    the first. A scene of Mitsuba's is rendered alone, in its own size, and without --spp with its
-    own samples per pixel. Ctrl-C keeps the samples that all pictures have.
+    the first, by several metrics, beside their noise floor: the first with another seed. A scene of
+    Mitsuba's is rendered alone, in its own size, and without --spp with its own samples per pixel.
+    Ctrl-C keeps the samples that all pictures have.
     """
     from brdfkit.commands._targets import material, picture_file
     from brdfkit.host.users_plugins import load_plugins
@@ -49,39 +49,35 @@ def render(things, output, folders, values, spp, size, seed, console):
             raise BrdfkitError("A scene is rendered alone and without --set: name one SCENE.xml.")
         output = picture_file(output or Path(scenes[0]).with_suffix(".png").name)
         with console.progress("render") as progress:
-            picture = render_scene(scenes[0], _explicit_value("spp"), seed=seed, progress=progress)
+            picture = render_scene(scenes[0], spp, seed, progress, until)
         _write(picture, output)
     else:
         found = [material(thing, values) for thing in things]
         output = picture_file(output or f"{slug(found[0].name)}.png")
-        picture = path_trace(found, output, spp, size, seed, console)
+        picture = path_trace(found, output, spp, size, seed, console, until)
     _print_picture(picture, output, console)
     if picture.spp < picture.asked:
         click.get_current_context().exit(status())
 
 
-def path_trace(things, output, spp, size, seed, console):
+def path_trace(things, output, spp, size, seed, console, until=None):
     """Render `things` side by side and write the picture; returns a `Rendering`."""
     from brdfkit.rendering.rendering import render as render_things
 
     with console.progress("render") as progress:
-        picture = render_things(things, spp=spp, size=size, seed=seed, progress=progress)
+        spp = spp or (SPP if until is None else None)
+        picture = render_things(things, spp, size, seed, progress=progress, until=until)
     _write(picture, output)
     return picture
 
 
-def _explicit_value(option):
-    """The value of an option of this command, None where it was not given."""
-    context = click.get_current_context()
-    default = context.get_parameter_source(option) is ParameterSource.DEFAULT
-    return None if default else context.params[option]
-
-
 def _write(picture, output):
-    """Write a `Rendering`, and say so where it was interrupted."""
+    """Write a `Rendering`, and say so where it was interrupted or is not as good as asked for."""
     picture.write(output)
     if picture.spp < picture.asked:
         say(f"interrupted; rendered with {picture.spp} of {picture.asked} samples per pixel.")
+    elif picture.shortfall:
+        say(picture.shortfall)
 
 
 def _print_picture(picture, path, console):
@@ -94,11 +90,23 @@ def _print_picture(picture, path, console):
             {
                 "pictures": list(picture.pictures),
                 "psnr": picture.psnr(),
+                "errors": picture.errors(),
                 "spp": picture.spp,
                 "seconds": picture.seconds,
                 "written": written,
             }
         )
         return
-    console.out.print(str(picture))
+    if picture.differences:
+        console.out.print(picture.head)
+        print_errors(picture.errors(), console)
+    else:
+        console.out.print(str(picture))
     console.list_written(written)
+
+
+def print_errors(errors, console):
+    """Print `ImageErrors` as a table."""
+    *rows, floor = errors.table()
+    console.table(errors.columns, rows, [floor], title=f"{errors.reference}: errors of pictures")
+    console.out.print("\n".join(errors.remarks))

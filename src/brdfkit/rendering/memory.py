@@ -5,8 +5,8 @@ import psutil
 from brdfkit.errors import BrdfkitError
 
 # Peak of the resident memory [bytes per pixel], measured from 2 to 9 million pixels: ONE for a
-# single picture, SEVERAL + EACH·pictures for more, whose colour differences take most of it
-ONE = 125
+# single picture and its noise, SEVERAL + EACH·pictures for more, whose colour differences take most
+ONE = 220
 SEVERAL, EACH = 330, 75
 
 
@@ -17,7 +17,7 @@ def require_memory(size, pictures, where=""):
 
     >>> require_memory((100_000, 100_000), 1)
     Traceback (most recent call last):
-    brdfkit.errors.BrdfkitError: A picture of 100000×100000 pixels would take about 1,250 ...
+    brdfkit.errors.BrdfkitError: A picture of 100000×100000 pixels would take about 2,200 ...
     """
     width, height = map(int, size)
     needed = width * height * (ONE if pictures == 1 else SEVERAL + EACH * pictures)

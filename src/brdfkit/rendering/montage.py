@@ -1,14 +1,15 @@
 """The files of a rendering: a multi-part OpenEXR with everything, and a montage to look at."""
 
 import json
-from math import ceil
+from math import ceil, isfinite
 from pathlib import Path
 
 import numpy as np
 
-from brdfkit.colours import colour_science
+from brdfkit.colours import to_srgb
 from brdfkit.errors import BrdfkitError
 from brdfkit.json_values import plain
+from brdfkit.picture_errors.colour_difference import ciede2000
 from brdfkit.version import __version__
 
 COLUMNS = 4
@@ -43,6 +44,8 @@ def write_exr(rendering, path):
             "brdfkit": __version__,
             "parameters": json.dumps(plain(rendering.parameters.get(name, {}))),
         }
+        if isfinite(rendering.noise_floor):
+            header["noise_floor"] = rendering.noise_floor
         channels = {c: np.ascontiguousarray(picture[..., i]) for i, c in enumerate("RGB")}
         parts.append(OpenEXR.Part(header, channels, title))
     try:
@@ -95,27 +98,15 @@ def _image(rgb, zoom):
 
 def _srgb(linear):
     """sRGB in 0..1 of linear values; magenta, which stands out, where they are not finite."""
-    x = np.clip(linear, 0, 1)
-    x = np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
-    return np.where(np.isfinite(linear).all(axis=-1, keepdims=True), x, (1, 0, 1))
+    finite = np.isfinite(linear).all(axis=-1, keepdims=True)
+    return np.where(finite, to_srgb(linear), (1, 0, 1))
 
 
 def colour_differences(rendering):
-    """Colour difference ΔE to the reference (height, width), by the name of every other picture.
-
-    By CIEDE2000 [Luo et al. 2001]: 1 is about the least that is seen, black to white is 100. Values
-    above white are not clipped, so that differences within highlights count.
-    """
-    names = rendering.differences
-    if not names:
-        return {}
-    colour = colour_science()
-
-    to_xyz = colour.RGB_COLOURSPACES["sRGB"].matrix_RGB_to_XYZ
-    with np.errstate(invalid="ignore"):  # what is not finite becomes NaN
-        lab = {n: colour.XYZ_to_Lab(p @ to_xyz.T) for n, p in rendering.pictures.items()}
-        reference = lab[rendering.reference]
-        return {n: colour.delta_E(reference, lab[n], method="CIE 2000") for n in names}
+    """ΔE2000 to the reference (height, width), by the name of every other picture."""
+    pictures = rendering.pictures
+    reference = pictures[rendering.reference]
+    return {n: ciede2000(reference, pictures[n]) for n in rendering.differences}
 
 
 def _false_colour(difference):

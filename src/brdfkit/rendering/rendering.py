@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.arguments import to_whole_number
+from brdfkit.arguments import to_positive, to_whole_number
 from brdfkit.errors import BrdfkitError
 from brdfkit.host.load_by_mitsuba import load_by_mitsuba
 from brdfkit.jit.threads import in_turn
@@ -21,14 +21,18 @@ from brdfkit.rendering.memory import require_memory
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.tracing import trace
 
+SPP = 256  # samples per pixel
+MOST = 16_384  # of them, where a noise floor is asked for
+
 
 def render(
     things: Renderable | Iterable[Renderable],
-    spp: int = 256,
+    spp: int | None = None,
     size: int | tuple[int, int] = 512,
     seed: int = 0,
     scene: Callable[[dict[str, Any], tuple[int, int]], dict[str, Any]] | None = None,
     progress: Callable[[int, int], object] | None = None,
+    until: float | None = None,
 ) -> Rendering:
     """Path-trace one or several materials in the same scene, with the same samples.
 
@@ -41,8 +45,8 @@ def render(
     things : Measured, Fit, Model, str, Path, dict or (str, one of these), or several
         The materials, the reference first: objects, names or paths, BSDFs' dictionaries, which may
         hold a "name", or pairs of a name and one of these.
-    spp : int, default 256
-        Samples per pixel.
+    spp : int, optional
+        Samples per pixel, by default 256; with `until`, the most of them, by default 16,384.
     size : int or (int, int), default 512
         Side, or width and height, of a picture [pixels].
     seed : int, default 0
@@ -52,7 +56,11 @@ def render(
         Gives the scene's dictionary for (BSDF's dictionary, (width, height)). By default
         `brdfkit.rendering.scenes.ball`: a ball on grey ground under a clear sky and one softbox.
     progress : callable, optional
-        Called with (done, total) after each pass of a picture.
+        Called with (done, total) after each pass of a picture; with `until`, the total is a guess
+        that improves.
+    until : float, optional
+        Adds samples until the noise floor, the PSNR of the reference to itself with another seed,
+        is so high [dB, above 0]; 45 leaves noise that is hardly seen.
 
     Returns
     -------
@@ -68,8 +76,10 @@ def render(
     --------
     >>> pictures = render(["car_paint", ("grey", {"type": "diffuse"})], spp=16)    # doctest: +SKIP
     >>> pictures.write("paint.exr")    # doctest: +SKIP
+    >>> print(render(["car_paint", "ggx"], until=45).errors())    # doctest: +SKIP
     """
-    spp, seed = to_whole_number("spp", spp, least=1), to_whole_number("seed", seed, least=0)
+    until = _to_decibels(until)
+    spp, seed = _to_samples(spp, SPP, until), to_whole_number("seed", seed, least=0)
     size = _to_size(size)
     subjects = as_list(things)
     require_memory(size, len(subjects))
@@ -84,8 +94,8 @@ def render(
             parameters[name] = values
     build, mask = (scene, None) if scene else (scenes.ball, scenes.ball_mask(size))
     scenes_by_name = {name: build(bsdf, size) for name, bsdf in materials.items()}
-    pictures, reached, seconds = _load_and_trace(scenes_by_name, spp, seed, progress)
-    return Rendering(pictures, reached, seconds, seed, parameters, mask, asked=spp)
+    traced = _load_and_trace(scenes_by_name, spp, seed, progress, until, mask)
+    return _rendering(traced, seed, until, parameters, mask)
 
 
 @in_turn
@@ -94,6 +104,7 @@ def render_scene(
     spp: int | None = None,
     seed: int = 0,
     progress: Callable[[int, int], object] | None = None,
+    until: float | None = None,
 ) -> Rendering:
     """Path-trace a scene file of Mitsuba's, in which brdfkit's plugins may appear.
 
@@ -104,11 +115,14 @@ def render_scene(
     path : str or Path
         The file, `.xml`.
     spp : int, optional
-        Samples per pixel; by default those of the scene's sampler.
+        Samples per pixel, by default those of the scene's sampler; with `until`, the most of them,
+        by default 16,384.
     seed : int, default 0
         Seed of the samples.
     progress : callable, optional
         Called with (done, total) after each pass.
+    until : float, optional
+        The noise floor [dB] to which samples are added, as in `render`.
 
     Returns
     -------
@@ -125,7 +139,7 @@ def render_scene(
     --------
     >>> render_scene("kitchen.xml", spp=64).write("kitchen.exr")    # doctest: +SKIP
     """
-    spp = None if spp is None else to_whole_number("spp", spp, least=1)
+    until = _to_decibels(until)
     seed, path = to_whole_number("seed", seed, least=0), Path(path)
     if not path.is_file():
         raise BrdfkitError(f"{path}: there is no such scene file; check the path.")
@@ -135,10 +149,9 @@ def render_scene(
     if scene.integrator() is None:
         raise BrdfkitError(f'{path}: the scene has no integrator; add <integrator type="path"/>.')
     require_memory(scene.sensors()[0].film().size(), 1, path)
-    if spp is None:
-        spp = scene.sensors()[0].sampler().sample_count()
-    pictures, reached, seconds = trace({path.stem: scene}, spp, seed, progress)
-    return Rendering(pictures, reached, seconds, seed, asked=spp)
+    spp = _to_samples(spp, scene.sensors()[0].sampler().sample_count(), until)
+    traced = trace({path.stem: scene}, spp, seed, progress, until)
+    return _rendering(traced, seed, until)
 
 
 def _to_size(size: int | tuple[int, int]) -> tuple[int, int]:
@@ -153,8 +166,35 @@ def _to_size(size: int | tuple[int, int]) -> tuple[int, int]:
     return width, height
 
 
+def _to_decibels(until):
+    """The noise floor `until` [dB], or None; `BrdfkitError` where it is no number above 0."""
+    return None if until is None else to_positive("until", until)
+
+
+def _to_samples(spp, default, until):
+    """Samples per pixel: with a noise floor `until` the most of them, and two for the noise."""
+    if until is None:
+        return to_whole_number("spp", default if spp is None else spp, least=1)
+    return to_whole_number("spp", MOST if spp is None else spp, least=2)
+
+
+def _rendering(traced, seed, until, parameters=None, mask=None):
+    """The `Rendering` of `Traced` pictures."""
+    return Rendering(
+        traced.pictures,
+        traced.spp,
+        traced.seconds,
+        seed,
+        parameters or {},
+        mask,
+        traced.asked,
+        traced.other_seed,
+        until,
+    )
+
+
 @in_turn
-def _load_and_trace(dictionaries, spp, seed, progress):
+def _load_and_trace(dictionaries, spp, seed, progress, until, mask):
     """The result of `trace` for scene dictionaries by name.
 
     The scenes are freed as this function returns, still in its turn: a kernel of Mitsuba's calls
@@ -163,4 +203,4 @@ def _load_and_trace(dictionaries, spp, seed, progress):
     loaded = {
         name: load_by_mitsuba(mitsuba().load_dict, d, name) for name, d in dictionaries.items()
     }
-    return trace(loaded, spp, seed, progress)
+    return trace(loaded, spp, seed, progress, until, mask)

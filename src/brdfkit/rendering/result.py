@@ -2,12 +2,16 @@
 
 import io
 from dataclasses import dataclass, field
-from math import inf
+from functools import cached_property
+from math import isfinite, isnan, nan
 from pathlib import Path
 
 import numpy as np
 
 from brdfkit.files import write_safely
+from brdfkit.picture_errors import ImageErrors, image_errors
+from brdfkit.picture_errors.noise import samples_for
+from brdfkit.picture_errors.psnr import psnr
 from brdfkit.rendering.montage import montage, picture_suffix, write_exr
 
 
@@ -30,7 +34,12 @@ class Rendering:
     mask : ndarray of bool, shape (height, width), or None
         Where the material shows; None for everywhere.
     asked : int or None
-        Samples per pixel that were asked for.
+        Samples per pixel that were asked for; with `until`, about how many it takes.
+    other_seed : ndarray, shape (height, width, 3), or None
+        The reference as another seed would give it: as far from it as noise is. None with one
+        sample per pixel.
+    until : float or None
+        The noise floor that was asked for [dB].
     """
 
     pictures: dict[str, np.ndarray] = field(repr=False)
@@ -40,6 +49,8 @@ class Rendering:
     parameters: dict[str, dict] = field(default_factory=dict)
     mask: np.ndarray | None = field(default=None, repr=False)
     asked: int | None = None
+    other_seed: np.ndarray | None = field(default=None, repr=False)
+    until: float | None = None
 
     @property
     def reference(self) -> str:
@@ -56,7 +67,7 @@ class Rendering:
         """Peak signal-to-noise ratio [dB] to the reference, by the name of every other picture.
 
         10·log10(peak² / mean squared difference), linear values, all channels, over the pixels
-        that show the ball; peak is the 99.9th percentile of the reference there. inf for
+        that show the material; peak is the 99.9th percentile of the reference there. inf for
         equal pictures.
 
         Examples
@@ -64,19 +75,41 @@ class Rendering:
         >>> render(["car_paint", "ward"], spp=16, size=128).psnr()    # doctest: +SKIP
         {'ward': 24.6}
         """
-        mask = slice(None) if self.mask is None else self.mask
-        peak = np.percentile(self.pictures[self.reference][mask], 99.9)
-        errors = {n: np.square(d[mask], dtype=float).mean() for n, d in self.differences.items()}
-        with np.errstate(divide="ignore"):  # a black reference: -inf
-            return {n: float(10 * np.log10(peak**2 / e)) if e else inf for n, e in errors.items()}
+        return {name: self._psnr(self.pictures[name]) for name in self.differences}
+
+    @cached_property
+    def noise_floor(self) -> float:
+        """PSNR [dB] of the reference to itself with another seed; nan with one sample per pixel.
+
+        The pictures share their samples, so that they may be closer than this to each other.
+        """
+        return nan if self.other_seed is None else self._psnr(self.other_seed)
+
+    def _psnr(self, picture):
+        return psnr(self.pictures[self.reference], picture, self.mask)
+
+    def errors(self) -> ImageErrors:
+        """The other pictures compared to the reference by several metrics, and their noise floor.
+
+        Returns
+        -------
+        ImageErrors
+            PSNR, ΔE2000, ΔE ITP and, with brdfkit[metrics] installed, HDR-FLIP and SSIM, over the
+            pixels that show the material; prints as a table.
+
+        Examples
+        --------
+        >>> print(render(["car_paint", "ward"]).errors())    # doctest: +SKIP
+        """
+        return image_errors(self.pictures, self.other_seed, self.mask)
 
     def write(self, path: str | Path) -> None:
         """Write the pictures to a file.
 
         The EXR has one named part a picture and one a difference ("difference: NAME"), each
-        with R, G, B float32 and, in its header, spp, seed, brdfkit (the version) and parameters
-        (JSON). A difference is picture minus reference, linear. The PNG shows the pictures side
-        by side, captioned, over their differences in colour (CIEDE2000).
+        with R, G, B float32 and, in its header, spp, seed, brdfkit (the version), parameters (JSON)
+        and noise_floor [dB]. A difference is picture minus reference, linear. The PNG shows the
+        pictures side by side, captioned, over their differences in colour (CIEDE2000).
 
         Parameters
         ----------
@@ -86,7 +119,7 @@ class Rendering:
         Raises
         ------
         BrdfkitError
-            For another suffix, or where it cannot write; no file is half-write_safely.
+            For another suffix, or where it cannot write; no file is half-written.
 
         Examples
         --------
@@ -110,10 +143,32 @@ class Rendering:
     @property
     def captions(self) -> dict[str, str]:
         """A word or two on each picture, by its name."""
-        figures = {name: f"PSNR {value:.1f} dB" for name, value in self.psnr().items()}
-        return {self.reference: "reference" if figures else f"{self.spp} spp", **figures}
+        floor = self.noise_floor
+        noise = "" if isnan(floor) else f", noise {floor:.1f} dB"
+        found = {self.reference: ("reference" if self.differences else f"{self.spp} spp") + noise}
+        for name, value in self.psnr().items():
+            within = ", within the noise" if value >= floor else noise
+            found[name] = f"PSNR {value:.1f} dB{within}"
+        return found
+
+    @property
+    def head(self) -> str:
+        """Size, samples per pixel and time, in a line."""
+        height, width = self.pictures[self.reference].shape[:2]
+        return f"{width}×{height} pixels, {self.spp} spp, {self.seconds:.1f} s"
+
+    @property
+    def shortfall(self) -> str:
+        """A sentence where the noise floor `until` was not reached; or nothing."""
+        floor, until = self.noise_floor, self.until
+        if until is None or not isfinite(floor) or floor >= until:
+            return ""
+        needed = float(f"{samples_for(until, floor, self.spp):.2g}")
+        return (
+            f"The noise floor is {floor:.1f} dB; {until:g} dB take about {needed:,.0f} samples per "
+            "pixel."
+        )
 
     def __str__(self) -> str:
-        height, width = self.pictures[self.reference].shape[:2]
-        head = f"{width}×{height} pixels, {self.spp} spp, {self.seconds:.1f} s"
-        return "\n".join([head, *(f"  {name}: {said}" for name, said in self.captions.items())])
+        said = (f"  {name}: {words}" for name, words in self.captions.items())
+        return "\n".join(filter(None, [self.head, *said, self.shortfall]))

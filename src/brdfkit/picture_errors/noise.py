@@ -1,0 +1,58 @@
+"""The noise of a path-traced picture, from its samples in two halves.
+
+Passes of a rendering are independent, so that two halves of them differ by their noise alone. The
+picture that another seed would give is as far away as the halves say; it need not be rendered. For
+squared differences that is exact on average, for other metrics where the noise is small: at 16
+samples per pixel SSIM says up to 0.02 too much.
+"""
+
+from dataclasses import dataclass
+from math import sqrt
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Halves:
+    """The samples of a picture in two halves: each the sum over its samples, and their number.
+
+    >>> Halves().plus(picture=1.0, spp=8).plus(picture=2.0, spp=8).other_seed
+    0.7928932188134524
+    """
+
+    sums: tuple[Any, Any] = (0.0, 0.0)
+    spp: tuple[int, int] = (0, 0)
+
+    def plus(self, picture, spp):
+        """With a pass more, a picture of `spp` samples per pixel, in the half that has fewer."""
+        (a, b), (m, n) = self.sums, self.spp
+        if m <= n:
+            return Halves((a + spp * picture, b), (m + spp, n))
+        return Halves((a, b + spp * picture), (m, n + spp))
+
+    @property
+    def picture(self):
+        """The picture of all samples."""
+        return sum(self.sums) / sum(self.spp)
+
+    @property
+    def other_seed(self):
+        """The picture, by as much noise away from itself as another seed's; None for one pass.
+
+        With σ² the variance of a sample, halves of m and n samples differ by σ² (1/m + 1/n), and
+        pictures of two seeds by 2σ²/(m + n).
+        """
+        (a, b), (m, n) = self.sums, self.spp
+        if not (m and n):
+            return None
+        return self.picture + sqrt(2 * m * n) / (m + n) * (a / m - b / n)
+
+
+def samples_for(decibels, floor, spp):
+    """About how many samples per pixel give a noise floor of `decibels`; `spp` give `floor` [dB].
+
+    The squared error of the noise falls with their number, so that twice as many give 3 dB.
+
+    >>> samples_for(46, 40, 100)
+    398.1071705534973
+    """
+    return spp * 10 ** min((decibels - floor) / 10, 100.0)
