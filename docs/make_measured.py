@@ -19,6 +19,7 @@ import brdfkit as bk
 from brdfkit.catalogue import shipped
 from brdfkit.checks.material_subject import INCIDENCES, Subject
 from brdfkit.checks.sampling import spread
+from brdfkit.colours import to_srgb
 from brdfkit.geometry.directions import from_angles
 from brdfkit.rendering import scenes
 
@@ -95,8 +96,9 @@ def sheet(pictures):
     for k, (name, picture) in enumerate(pictures.items()):
         x, y = k % COLUMNS * SIZE, k // COLUMNS * (SIZE + CAPTION)
         linear = np.clip(picture, 0, 1)
-        srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-        page.paste(Image.fromarray((srgb * 255 + 0.5).astype(np.uint8)), (x, y + CAPTION))
+        page.paste(
+            Image.fromarray((to_srgb(linear) * 255 + 0.5).astype(np.uint8)), (x, y + CAPTION)
+        )
         draw.text((x + 3, y + 3), label(name), "black", font)
     return page
 

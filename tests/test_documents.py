@@ -61,6 +61,7 @@ def shown():
     plaster = bk.load("plaster")
     fit = bk.fit("ward", plaster, use_standard_error=False)
     named = bk.Measured.from_table(np.full((9, 9, 18, 3), 0.1), name=NASTY, info={NASTY: NASTY})
+    rendering = bk.render([named, fit], spp=4, size=48)
     objects = [
         named,
         bk.audit(named),
@@ -75,6 +76,8 @@ def shown():
         bk.bootstrap(fit, plaster, count=2),
         bk.profile(fit, plaster, "alpha_u", points=5),
         bk.Reproduction(NASTY, ()),
+        rendering,
+        rendering.errors(),
     ]
     return {type(thing).__name__: thing for thing in objects}
 
@@ -119,7 +122,7 @@ def test_text_and_html_say_the_same(shown, pages):
 
 
 def test_names_are_escaped(pages):
-    for name in ("Measured", "Audit", "Comparison", "Reproduction"):
+    for name in ("Measured", "Audit", "Comparison", "Reproduction", "Rendering", "ImageErrors"):
         html = pages[name]
         assert "<b>" not in html
         assert NASTY in Reader(html).text

@@ -175,10 +175,10 @@ def test_a_difference_within_the_noise_is_none(scene, rng):
     assert errors.exceeds("other", "ssim")
     assert errors.by_name["same"]["psnr"] == np.inf
     assert list(errors.floor) == list(errors.by_name["other"]) == list(METRICS)
-    lines = str(errors).splitlines()
-    assert lines[0].split()[0] == "it"
-    assert lines[4].startswith("noise floor  ")
-    assert lines[5].startswith("none: not above the noise floor")
+    lines = [line.strip() for line in str(errors).splitlines()]
+    assert lines[0] == "Pictures beside that of it"
+    assert lines[5].startswith("noise floor  ")
+    assert lines[6].startswith("none: not above the noise floor")
 
 
 def test_what_is_unknown_is_said(scene):

@@ -149,12 +149,12 @@ def test_a_rendering_says_its_errors_and_their_floor():
     rendering = Rendering(pictures, spp=1, seconds=0.0)
     assert rendering.psnr()["off"] == pytest.approx(20, abs=1e-4)
     assert rendering.psnr()["same"] == np.inf
-    assert "off: PSNR 20.0 dB\n" in str(rendering)
+    assert "off   PSNR 20.0 dB\n" in str(rendering)
     noisy = Rendering(pictures, spp=2, seconds=0.0, other_seed=reference + np.float32(0.005))
     assert noisy.noise_floor == noisy.errors().floor["psnr"] == pytest.approx(40, abs=1e-4)
-    assert "r: reference, noise 40.0 dB\n" in str(noisy)
-    assert "off: PSNR 20.0 dB, noise 40.0 dB\n" in str(noisy)
-    assert str(noisy).endswith("same: PSNR inf dB, within the noise")
+    assert "r     reference, noise 40.0 dB\n" in str(noisy)
+    assert "off   PSNR 20.0 dB, noise 40.0 dB\n" in str(noisy)
+    assert str(noisy).endswith("same  PSNR inf dB, within the noise")
 
 
 def stop_at(pictures):
@@ -210,7 +210,7 @@ def test_a_noise_floor_that_takes_too_many_samples_is_said_to():
 def test_an_equal_material_has_no_error():
     twice = render([WHITE, ("again", WHITE)], spp=2, size=16)
     assert not any(twice.errors().exceeds("again", metric) for metric in METRICS)
-    assert "again: PSNR" in str(twice)
+    assert "again  PSNR" in str(twice)
     assert "within the noise" in str(twice)
     assert np.isnan(render(WHITE, spp=1, size=16).noise_floor)
 

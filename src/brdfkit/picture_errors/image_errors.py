@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.documents import Document, Paragraph, Shown, Table
+from brdfkit.documents.parts import SOFT
 from brdfkit.picture_errors.masks import counted
 from brdfkit.picture_errors.metrics import METRICS
 from brdfkit.picture_errors.psnr import peak
@@ -12,8 +14,8 @@ from brdfkit.picture_errors.psnr import peak
 NONE = "none"  # what a difference is said to be that does not exceed the noise floor
 
 
-@dataclass(frozen=True)
-class ImageErrors:
+@dataclass(frozen=True, repr=False)
+class ImageErrors(Shown):
     """Errors of pictures, by several metrics, beside their noise floor; prints as a table.
 
     Made by `Rendering.errors`. The floor is what a metric says of the reference against itself
@@ -69,16 +71,12 @@ class ImageErrors:
         reading = [none] * shown + [unknown] * math.isnan(self.floor["psnr"])
         return [*reading, f"PSNR's peak is {self.peak:.3g}.", *self.notes]
 
-    def __str__(self) -> str:
-        heads = [title.removeprefix(">") for title in self.columns]
-        rows = [[self.reference, *heads[1:]], *self.table()]
-        widths = [max(map(len, texts)) for texts in zip(*rows, strict=True)]
-        sides = ["<", *">" * len(self.floor)]
-        lines = [
-            "  ".join(f"{t:{s}{w}}" for t, s, w in zip(texts, sides, widths, strict=True))
-            for texts in rows
-        ]
-        return "\n".join([*lines, *self.remarks])
+    def document(self) -> Document:
+        """The errors, a row for each picture, over the noise floor."""
+        *rows, floor = self.table()
+        remarks = (Paragraph(remark, SOFT) for remark in self.remarks)
+        title = f"Pictures beside that of {self.reference}"
+        return Document(title, (Table(tuple(rows), self.columns, (floor,)), *remarks))
 
 
 def image_errors(pictures, other_seed=None, mask=None):

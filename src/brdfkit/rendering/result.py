@@ -8,15 +8,19 @@ from pathlib import Path
 
 import numpy as np
 
+from brdfkit.documents import Document, Paragraph, Picture, Shown, Table
+from brdfkit.documents.parts import BAD
 from brdfkit.files import write_safely
 from brdfkit.picture_errors import ImageErrors, image_errors
 from brdfkit.picture_errors.noise import samples_for
 from brdfkit.picture_errors.psnr import psnr
-from brdfkit.rendering.montage import montage, picture_suffix, write_exr
+from brdfkit.rendering.montage import COLUMNS, TILE, montage, picture_suffix, write_exr
+
+WIDEST = 1100  # pixels of the pictures in a notebook
 
 
-@dataclass(frozen=True, eq=False)
-class Rendering:
+@dataclass(frozen=True, eq=False, repr=False)
+class Rendering(Shown):
     """Pictures of one scene with several materials; the first is the reference. Made by `render`.
 
     Attributes
@@ -127,18 +131,13 @@ class Rendering:
         """
         path = Path(path)
         suffix = picture_suffix(path)
-        png = self._repr_png_()
+        png = io.BytesIO()
+        montage(self).save(png, "PNG")
         if suffix == ".exr":
             with write_safely(path) as beside:
                 write_exr(self, beside)
         with write_safely(path.with_suffix(".png") if suffix == ".exr" else path) as beside:
-            beside.write_bytes(png)
-
-    def _repr_png_(self) -> bytes:
-        """The montage, which notebooks show."""
-        stream = io.BytesIO()
-        montage(self).save(stream, "PNG")
-        return stream.getvalue()
+            beside.write_bytes(png.getvalue())
 
     @property
     def captions(self) -> dict[str, str]:
@@ -169,6 +168,18 @@ class Rendering:
             "pixel."
         )
 
-    def __str__(self) -> str:
-        said = (f"  {name}: {words}" for name, words in self.captions.items())
-        return "\n".join(filter(None, [self.head, *said, self.shortfall]))
+    def document(self) -> Document:
+        """The pictures, how far they are from the reference, and how they were made."""
+        names = ", ".join(self.pictures)
+        width = max(self.pictures[self.reference].shape[1], TILE)
+        shown = min(len(self.pictures), COLUMNS) * width
+        short = (Paragraph(self.shortfall, BAD),) if self.shortfall else ()
+        picture = Picture(self._draw, f"path-traced pictures of {names}", min(shown, WIDEST))
+        return Document(self.head, (picture, Table(tuple(self.captions.items())), *short))
+
+    def _draw(self):
+        """The montage as a JPEG, small enough for a notebook."""
+        stream, page = io.BytesIO(), montage(self)
+        page.thumbnail((WIDEST, 4 * WIDEST))
+        page.save(stream, "JPEG", quality=88)
+        return stream.getvalue()
