@@ -6,33 +6,35 @@ picture once, so that after Ctrl-C all pictures have equally many samples.
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from brdfkit.arguments import to_positive, to_whole_number
 from brdfkit.errors import BrdfkitError
-from brdfkit.host.load_by_mitsuba import load_by_mitsuba
 from brdfkit.jit.threads import in_turn
 from brdfkit.names import make_unique
-from brdfkit.rendering import scenes
 from brdfkit.rendering.inputs import Renderable, as_list, describe, mitsuba
 from brdfkit.rendering.memory import require_memory
 from brdfkit.rendering.result import Rendering
+from brdfkit.rendering.scene_file import load_scene_file
+from brdfkit.rendering.scene_loading import SIZE, load_scenes
 from brdfkit.rendering.tracing import trace
 
 SPP = 256  # samples per pixel
 MOST = 16_384  # of them, where a noise floor is asked for
+SceneLike: TypeAlias = str | Path | Callable[[dict[str, Any], tuple[int, int]], dict[str, Any]]
 
 
 def render(
     things: Renderable | Iterable[Renderable],
     spp: int | None = None,
-    size: int | tuple[int, int] = 512,
+    size: int | tuple[int, int] | None = None,
     seed: int = 0,
-    scene: Callable[[dict[str, Any], tuple[int, int]], dict[str, Any]] | None = None,
+    scene: SceneLike = "ball",
     progress: Callable[[int, int], object] | None = None,
     until: float | None = None,
+    envmap: str | Path | None = None,
 ) -> Rendering:
     """Path-trace one or several materials in the same scene, with the same samples.
 
@@ -47,20 +49,25 @@ def render(
         hold a "name", or pairs of a name and one of these.
     spp : int, optional
         Samples per pixel, by default 256; with `until`, the most of them, by default 16,384.
-    size : int or (int, int), default 512
-        Side, or width and height, of a picture [pixels].
+    size : int or (int, int), optional
+        Side, or width and height, of a picture [pixels]; by default 512, or what a scene file has.
     seed : int, default 0
         Seed of the samples; equal seeds give equal pictures, up to the order in which threads sum
         up (1e-6).
-    scene : callable, optional
-        Gives the scene's dictionary for (BSDF's dictionary, (width, height)). By default
-        `brdfkit.rendering.scenes.ball`: a ball on grey ground under a clear sky and one softbox.
+    scene : str, Path or callable, default "ball"
+        A scene's name, which `brdfkit render --help` lists; a mesh (.obj, .ply) in the ball's
+        place; a scene file "FILE.xml#ID", with the id of the BSDF that the materials replace, by
+        default "material"; or a function that gives a scene's dictionary for (BSDF's dictionary,
+        (width, height)).
     progress : callable, optional
         Called with (done, total) after each pass of a picture; with `until`, the total is a guess
         that improves.
     until : float, optional
         Adds samples until the noise floor, the PSNR of the reference to itself with another seed,
         is so high [dB, above 0]; 45 leaves noise that is hardly seen.
+    envmap : str or Path, optional
+        An environment map, by latitude and longitude, in the place of sky and softbox; it is scaled
+        to their illuminance of the ground.
 
     Returns
     -------
@@ -80,9 +87,9 @@ def render(
     """
     until = _to_decibels(until)
     spp, seed = _to_samples(spp, SPP, until), to_whole_number("seed", seed, least=0)
-    size = _to_size(size)
+    size = None if size is None else _to_size(size)
     subjects = as_list(things)
-    require_memory(size, len(subjects))
+    require_memory(size or SIZE, len(subjects))
     mitsuba()  # sets a variant, on which the dictionaries depend
     materials: dict[str, dict[str, Any]] = {}
     parameters: dict[str, dict[str, Any]] = {}
@@ -92,9 +99,8 @@ def render(
         materials[name] = bsdf
         if values:
             parameters[name] = values
-    build, mask = (scene, None) if scene else (scenes.ball, scenes.ball_mask(size))
-    scenes_by_name = {name: build(bsdf, size) for name, bsdf in materials.items()}
-    traced = _load_and_trace(scenes_by_name, spp, seed, progress, until, mask)
+    where = scene, size, envmap
+    traced, mask = _load_and_trace(materials, where, spp, seed, progress, until)
     return _rendering(traced, seed, until, parameters, mask)
 
 
@@ -141,13 +147,8 @@ def render_scene(
     """
     until = _to_decibels(until)
     seed, path = to_whole_number("seed", seed, least=0), Path(path)
-    if not path.is_file():
-        raise BrdfkitError(f"{path}: there is no such scene file; check the path.")
-    scene = load_by_mitsuba(mitsuba().load_file, str(path), path)
-    if not scene.sensors():
-        raise BrdfkitError(f"{path}: the scene has no sensor to see it with; add a <sensor>.")
-    if scene.integrator() is None:
-        raise BrdfkitError(f'{path}: the scene has no integrator; add <integrator type="path"/>.')
+    mitsuba()
+    scene = load_scene_file(path)
     require_memory(scene.sensors()[0].film().size(), 1, path)
     spp = _to_samples(spp, scene.sensors()[0].sampler().sample_count(), until)
     traced = trace({path.stem: scene}, spp, seed, progress, until)
@@ -194,13 +195,12 @@ def _rendering(traced, seed, until, parameters=None, mask=None):
 
 
 @in_turn
-def _load_and_trace(dictionaries, spp, seed, progress, until, mask):
-    """The result of `trace` for scene dictionaries by name.
+def _load_and_trace(materials, where, spp, seed, progress, until):
+    """The result of `trace` for BSDFs' dictionaries by name, and the mask of the material.
 
     The scenes are freed as this function returns, still in its turn: a kernel of Mitsuba's calls
     the BSDFs of all scenes that exist in the process, also of one that another thread would free.
     """
-    loaded = {
-        name: load_by_mitsuba(mitsuba().load_dict, d, name) for name, d in dictionaries.items()
-    }
-    return trace(loaded, spp, seed, progress, until, mask)
+    loaded, mask = load_scenes(materials, *where)
+    require_memory(next(iter(loaded.values())).sensors()[0].film().size(), len(loaded))
+    return trace(loaded, spp, seed, progress, until, mask), mask

@@ -1,8 +1,7 @@
-"""The scene of every picture: a ball on grey ground under a clear sky and one softbox.
+"""What most scenes share: the camera, a clear sky with one softbox, and grey ground.
 
-World: z up, metres; the ball has radius 1, stands on the plane z = 0 at the origin and is seen
-from the south (-y). Its parametrisation has z as its axis, so that an anisotropic material is
-brushed along the ball's parallels.
+World: z up, metres. What is to be seen stands on the plane z = 0 at the origin, fills about the
+ball of radius 1 there, and is seen from the south (-y).
 """
 
 import numpy as np
@@ -14,18 +13,18 @@ SOFTBOX = (-4.4, -3.2, 5.4)
 BALL = (0.0, 0.0, 1.0)
 SUN = (0.75, 0.5, 0.45)
 GREY_SKY = 0.18
+GROUND = 0.32  # reflectance
 
 
-def ball(bsdf, size=(512, 512), spp=64):
-    """The scene dictionary for `mitsuba.load_dict`: a ball of the material `bsdf`.
+def studio(size=(512, 512), spp=64):
+    """The dictionary of a scene with all but the thing to see: a camera, light and ground.
 
-    `bsdf`: a BSDF's dictionary (or object); `size`: (width, height) [pixels]; `spp`: samples per
-    pixel. The exposure is fixed: a white wall paint (diffuse, reflectance 0.8) comes out near
-    sRGB 200 where it is brightest, so that pictures of different materials can be compared.
-    Works in every variant of Mitsuba.
+    `size`: (width, height) [pixels]; `spp`: samples per pixel. The exposure is fixed: a white wall
+    paint (diffuse, reflectance 0.8) comes out near sRGB 200 where it is brightest. Works in every
+    variant of Mitsuba.
 
-    >>> ball({"type": "diffuse"})["type"]
-    'scene'
+    >>> sorted(studio())
+    ['ground', 'integrator', 'sensor', 'sky', 'softbox', 'type']
     """
     import mitsuba as mi
 
@@ -33,57 +32,26 @@ def ball(bsdf, size=(512, 512), spp=64):
     return {
         "type": "scene",
         "integrator": {"type": "path", "max_depth": 6},
-        "sensor": _camera(at, size, spp),
+        "sensor": camera(CAMERA, TARGET, FOV, size, spp),
         "sky": _grey_sky(at) if mi.is_monochromatic else _sky(),
         "softbox": _softbox(at),
         "ground": {
             "type": "disk",
             "to_world": at.scale(1000),
-            "bsdf": {"type": "diffuse", "reflectance": 0.32},
+            "bsdf": {"type": "diffuse", "reflectance": GROUND},
         },
-        "ball": {"type": "sphere", "center": list(BALL), "radius": 1.0, "bsdf": bsdf},
     }
 
 
-def ball_mask(size=(512, 512)):
-    """True (height, width) where the centre of a pixel sees the ball.
-
-    >>> ball_mask((32, 32)).shape
-    (32, 32)
-    """
-    width, height = size
-    x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
-    scale = 2 * np.tan(np.radians(FOV) / 2) / min(width, height)
-    forward, right, up = _axes()
-    ray = (
-        forward
-        + ((x - width / 2) * scale)[..., None] * right
-        + ((height / 2 - y) * scale)[..., None] * up
-    )
-    ray /= np.linalg.norm(ray, axis=-1, keepdims=True)
-    to_ball = np.subtract(BALL, CAMERA)
-    # a ray meets the ball, of radius 1, where it passes its centre at less than 1
-    return to_ball @ to_ball - (ray @ to_ball) ** 2 < 1
-
-
-def _axes():
-    """The camera's unit vectors (forward, right, up)."""
-    forward = np.subtract(TARGET, CAMERA)
-    forward /= np.linalg.norm(forward)
-    right = np.cross(forward, (0, 0, 1))
-    right /= np.linalg.norm(right)
-    return forward, right, np.cross(right, forward)
-
-
-def _camera(at, size, spp):
-    """The sensor's dictionary; `at`: a `mitsuba.ScalarTransform4f`."""
+def camera(origin, target, fov, size=(512, 512), spp=64):
+    """A sensor's dictionary; `fov`: along the shorter side of the picture [degrees]."""
     import mitsuba as mi
 
     return {
         "type": "perspective",
-        "fov": FOV,
+        "fov": fov,
         "fov_axis": "smaller",
-        "to_world": at.look_at(list(CAMERA), list(TARGET), [0, 0, 1]),
+        "to_world": mi.ScalarTransform4f().look_at(list(origin), list(target), [0, 0, 1]),
         "film": {
             "type": "hdrfilm",
             "width": int(size[0]),
@@ -104,7 +72,7 @@ def _sky():
     return {
         "type": "sunsky",
         "turbidity": 7.0,
-        "albedo": 0.32,
+        "albedo": GROUND,
         "sun_direction": list(SUN),
         "sun_scale": 0.0,
         "sky_scale": 1.65,

@@ -1,0 +1,49 @@
+"""An environment map of the user's, in the place of the sky and the softbox of a scene."""
+
+from pathlib import Path
+
+import numpy as np
+
+from brdfkit.colours import luminance
+from brdfkit.errors import BrdfkitError
+from brdfkit.host.load_by_mitsuba import load_by_mitsuba
+
+ILLUMINANCE = 1.0  # of the ground, as from sky and softbox
+
+
+def environment(path):
+    """The dictionary of the light of a map by latitude and longitude, in a file of any HDR format.
+
+    It is scaled to the illuminance of the ground that the scenes have, so that pictures are exposed
+    alike. Raises `BrdfkitError` for a file that is missing, that Mitsuba cannot read, or whose upper
+    half, which lights the scene, is black or not finite.
+    """
+    import mitsuba as mi
+
+    path = Path(path)
+    if not path.is_file():
+        raise BrdfkitError(f"{path}: there is no such environment map; check the path.")
+    read = load_by_mitsuba(lambda file, parallel: mi.Bitmap(file), str(path), path)
+    rgb = np.array(read.convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False))
+    height, width = rgb.shape[:2]
+    theta = (np.arange(height) + 0.5) / height * np.pi
+    solid_angle = 2 * np.pi / width * np.pi / height * np.sin(theta)
+    received = luminance(rgb).sum(axis=1) @ (solid_angle * np.maximum(np.cos(theta), 0))
+    if not 0 < received < np.inf:
+        raise BrdfkitError(f"{path}: the map gives no light from above, or values not finite.")
+    return {
+        "type": "envmap",
+        "bitmap": mi.Bitmap(rgb),
+        "scale": ILLUMINANCE / received,
+        "to_world": mi.ScalarTransform4f().rotate([1, 0, 0], 90),  # the map has y up
+    }
+
+
+def light_by(light, scene):
+    """The dictionary of a scene with another `light` for its sky and its softbox.
+
+    Raises `BrdfkitError` for a scene with lamps of its own.
+    """
+    if not isinstance(scene, dict) or "sky" not in scene:
+        raise BrdfkitError("This scene has its own light, no sky that a map could replace: leave envmap out.")
+    return {key: value for key, value in scene.items() if key != "softbox"} | {"sky": light}

@@ -1,0 +1,66 @@
+"""Loads the scene that `render` is given, by its name, in a file or a function, for each material."""
+
+from pathlib import Path
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.host.load_by_mitsuba import load_by_mitsuba
+from brdfkit.rendering import scene_file, users_mesh
+from brdfkit.rendering.environment import environment, light_by
+from brdfkit.rendering.scenes import scene, scene_names
+from brdfkit.rendering.shown_material import load_material, mask
+
+SIZE = 512, 512  # of a picture [pixels]
+
+
+def load_scenes(materials, given, size=None, envmap=None):
+    """(scenes by name, mask): a `mitsuba.Scene` for each of `materials`, the dictionaries of BSDFs
+    by name, and True (height, width) where the material shows.
+
+    `given`: see `find_scene`; `size`: (width, height) [pixels], by default 512, or a scene file's
+    own; `envmap`: file of an environment map, for the light. The mask is None for a function of the
+    user's, which gets the dictionary itself. Raises `BrdfkitError` for what cannot be loaded.
+    """
+    import mitsuba as mi
+
+    build, of_file = find_scene(given), not callable(given) and _suffix(given)
+    if of_file != scene_file.SUFFIX:
+        size = size or SIZE
+    light = environment(envmap) if envmap else None
+    scenes, seen = {}, None
+    for name, bsdf in materials.items():
+        material = None if callable(given) else load_material(bsdf, name, both_sides=of_file)
+        made = build(material or bsdf, size)
+        made = light_by(light, made) if light else made
+        loaded = load_by_mitsuba(mi.load_dict, made, name) if isinstance(made, dict) else made
+        if material and not scenes:
+            seen = mask(loaded, material)
+        scenes[name] = loaded
+    return scenes, seen
+
+
+def find_scene(given):
+    """The function that makes the scene, of (BSDF, size).
+
+    `given`: such a function; the name of a scene; a mesh, OBJ or PLY; or a scene file, "FILE.xml"
+    or "FILE.xml#ID". Raises `BrdfkitError` for anything else.
+    """
+    if callable(given):
+        return given
+    if not isinstance(given, str | Path):
+        raise BrdfkitError(f"scene = {given!r} should be a scene's name, a file or a function.")
+    suffix = _suffix(given)
+    if suffix == scene_file.SUFFIX:
+        return scene_file.file_scene(given)
+    if suffix in users_mesh.SUFFIXES:
+        return users_mesh.mesh_scene(given)
+    if suffix or isinstance(given, Path):
+        raise BrdfkitError(
+            f"{given}: a scene is a mesh (.obj, .ply), a scene file (.xml), or one of "
+            f"{', '.join(scene_names())}."
+        )
+    return scene(given)
+
+
+def _suffix(given):
+    """The suffix of a scene's file, "" for the name of a scene."""
+    return Path(str(given).partition("#")[0]).suffix.lower()

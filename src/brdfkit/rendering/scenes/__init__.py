@@ -1,0 +1,39 @@
+"""The scenes of pictures: every file of this folder is one scene and is found by itself.
+
+A file NAME.py holds the function `NAME(bsdf, size=(512, 512))`, the dictionary of the scene for
+`mitsuba.load_dict`:
+
+- `bsdf`: the material, a BSDF as a dictionary or an object, for whatever is to show it;
+- `size`: (width, height) of the picture [pixels];
+- the first line of the file's docstring says what one sees;
+- the light has the keys "sky" and "softbox" where an environment map may take its place.
+
+It works in every variant of Mitsuba, and is exposed so that a white wall paint nearly fills the
+range of sRGB: then pictures of different materials, and of different scenes, can be compared. A
+file whose name begins with an underscore is no scene: it holds what several scenes share.
+"""
+
+import importlib
+import pkgutil
+
+from brdfkit.errors import no_such
+
+
+def scene_names():
+    """The names of the scenes, in alphabetical order.
+
+    >>> "ball" in scene_names()
+    True
+    """
+    return sorted(m.name for m in pkgutil.iter_modules(__path__) if not m.name.startswith("_"))
+
+
+def scene(name):
+    """The function that makes the scene of a name; `BrdfkitError` where there is none.
+
+    >>> scene("ball")({"type": "diffuse"})["type"]
+    'scene'
+    """
+    if name not in scene_names():
+        raise no_such("scene", name, scene_names())
+    return getattr(importlib.import_module(f"{__name__}.{name}"), name)
