@@ -21,7 +21,7 @@ from brdfkit.checks.material_subject import INCIDENCES, Subject
 from brdfkit.checks.sampling import spread
 from brdfkit.colours import to_srgb
 from brdfkit.geometry.directions import from_angles
-from brdfkit.rendering import scenes
+from brdfkit.rendering.scenes.ball import ball
 
 PAGE = Path(__file__).with_name("measured.md")
 SIZE, SPP, COLUMNS = 128, 121, 10
@@ -60,7 +60,7 @@ def pictured(bsdf):
     """(linear picture, seconds) of a ball."""
     import mitsuba as mi
 
-    scene = mi.load_dict(scenes.ball(bsdf, (SIZE, SIZE), SPP))
+    scene = mi.load_dict(ball(bsdf, (SIZE, SIZE), SPP))
     seconds = []
     for seed in range(2):
         began = time.perf_counter()

@@ -46,7 +46,7 @@ def render_seconds(materials):
     """Least seconds of a warm rendering by material."""
     import mitsuba as mi
 
-    from brdfkit.rendering.scenes import ball
+    from brdfkit.rendering.scenes.ball import ball
 
     scenes = {name: mi.load_dict(ball(m, (SIZE, SIZE), SPP)) for name, m in materials.items()}
     best = dict.fromkeys(scenes, np.inf)

@@ -12,7 +12,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.picture_errors.metrics import METRICS
 from brdfkit.rendering import Rendering, memory, render, render_scene
 from brdfkit.rendering.montage import montage
-from brdfkit.rendering.scenes import ball, ball_mask
+from brdfkit.rendering.scenes.ball import ball
 from brdfkit.rendering.tracing import passes_of
 
 WHITE = {"name": "white", "type": "diffuse", "reflectance": 0.8}
@@ -55,10 +55,8 @@ def test_all_pictures_share_their_samples():
 
 def test_seeds_agree_in_the_mean():
     """Two independent sets of 12 pictures; |t| > 4 comes by chance once in 1,600 (22 d.o.f.)."""
-    mask = ball_mask((16, 16))
-    means = [
-        render(WHITE, spp=4, size=16, seed=s).pictures["white"][mask].mean() for s in range(24)
-    ]
+    renderings = [render(WHITE, spp=4, size=16, seed=s) for s in range(24)]
+    means = [r.pictures["white"][r.mask].mean() for r in renderings]
     first, second = np.reshape(means, (2, 12))
     error = np.sqrt((first.var(ddof=1) + second.var(ddof=1)) / 12)
     assert error > 0
@@ -92,21 +90,6 @@ def test_a_white_furnace_returns_the_sky():
     picture = render(white, spp=256, size=16, scene=furnace).pictures["diffuse"]
     # the noise of a pixel at 256 spp is below 2 %, of the mean of 256 pixels below 0.2 %
     assert picture.mean() == pytest.approx(1, abs=0.01)
-
-
-@pytest.mark.quick
-@pytest.mark.parametrize("size", [(32, 32), (48, 32), (24, 40)])
-def test_the_mask_is_where_the_camera_sees_the_ball(size):
-    import mitsuba as mi
-
-    scene = mi.load_dict(ball({"type": "diffuse"}, size))
-    x, y = (a.ravel() for a in np.meshgrid(*((np.arange(n) + 0.5) / n for n in size)))
-    rays, _ = scene.sensors()[0].sample_ray(0, 0.5, mi.Point2f(x, y), mi.Point2f(0.5))
-    hit = scene.ray_intersect(rays)
-    radius = np.linalg.norm(hit.p.numpy().T - (0, 0, 1), axis=1)
-    on_ball = hit.is_valid().numpy() & (np.abs(radius - 1) < 1e-3)
-    assert (ball_mask(size) == on_ball.reshape(size[::-1])).mean() > 0.998
-    assert ball_mask((200, 200)).any(axis=1).mean() == pytest.approx(0.7, abs=0.03)
 
 
 @pytest.mark.quick

@@ -26,7 +26,9 @@ from .plotting import plot as plot
 from .ranking import Ranked as Ranked
 from .ranking import Ranking as Ranking
 from .ranking import rank as rank
+from .rendering import Gallery as Gallery
 from .rendering import Rendering as Rendering
+from .rendering import gallery as gallery
 from .rendering import render as render
 from .rendering import render_scene as render_scene
 from .reproducing import Reproduction as Reproduction

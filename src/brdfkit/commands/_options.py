@@ -2,8 +2,11 @@
 
 import functools
 from math import isfinite
+from pathlib import Path
 
 import click
+
+import brdfkit
 
 SPP = 64  # samples per pixel
 
@@ -41,12 +44,11 @@ def render_options(command):
     """Adds --spp, --until, --size and --seed to a command that renders."""
     count = {"type": click.IntRange(min=1), "metavar": "N"}
     seed = {"type": click.IntRange(min=0), "metavar": "N"}
+    size = "Side of a picture [pixels]. Default: 512, or what a scene file has."
     until = "Add samples until the noise floor, as a PSNR, is so high: 45dB is hardly seen."
     for option in (
         click.option("--seed", default=0, show_default=True, help="Seed of the samples.", **seed),
-        click.option(
-            "--size", default=512, show_default=True, help="Side of a picture [pixels].", **count
-        ),
+        click.option("--size", help=size, **count),
         click.option("--until", type=Decibels(), metavar="DECIBELS", help=until),
         click.option(
             "--spp",
@@ -56,6 +58,22 @@ def render_options(command):
     ):
         command = option(command)
     return command
+
+
+def scene_option(command):
+    """Adds --scene to a command that renders materials."""
+    # by the names of their files: to import the scenes takes a second
+    folder = Path(brdfkit.__file__).with_name("rendering") / "scenes"
+    names = ", ".join(sorted(file.stem for file in folder.glob("[!_]*.py")))
+    option = click.option(
+        "--scene",
+        default="ball",
+        show_default=True,
+        metavar="SCENE",
+        help=f"What shows the material: {names}; a mesh of yours, .obj or .ply; or FILE.xml#ID, a "
+        "scene, and in it the BSDF to replace, which need not be named if it is 'material'.",
+    )
+    return option(command)
 
 
 def values_option(command):

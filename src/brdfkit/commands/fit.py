@@ -6,7 +6,7 @@ import click
 
 from brdfkit.commands._errors import say
 from brdfkit.commands._fits import print_fits
-from brdfkit.commands._options import output_options, render_options
+from brdfkit.commands._options import output_options, render_options, scene_option
 from brdfkit.commands._stopping import status
 from brdfkit.commands.render import path_trace
 from brdfkit.errors import BrdfkitError, Interrupted
@@ -66,6 +66,7 @@ from brdfkit.errors import BrdfkitError, Interrupted
     help="Use the samples with both angles below this one [degrees].",
 )
 @click.option("--spectral", is_flag=True, help="Fit a weight for each measured wavelength.")
+@scene_option
 @render_options
 @output_options
 def fit(
@@ -80,6 +81,7 @@ def fit(
     rendered,
     max_angle,
     spectral,
+    scene,
     spp,
     until,
     size,
@@ -106,6 +108,7 @@ def fit(
     from brdfkit.model import labels
     from brdfkit.names import fit_file, slug
     from brdfkit.rendering.memory import require_memory
+    from brdfkit.rendering.scene_loading import SIZE, find_scene
     from brdfkit.verbs.compare import compare
 
     names = list(dict.fromkeys(map(labels.read_files, names or labels.models())))
@@ -129,7 +132,8 @@ def fit(
     if ranking:
         print_ranking(ranking, console)
     if rendered:
-        require_memory((size, size), 1 + len(names))
+        find_scene(scene)
+        require_memory((size, size) if size else SIZE, 1 + len(names))
         output = output or Path(slug(material.name))
 
     errors = None  # of pictures
@@ -139,7 +143,8 @@ def fit(
         written = [file for file in files if file.is_file()]
         if rendered and not interrupted:
             shown, exr = [material, *fits], output / "render.exr"
-            picture = path_trace(shown, exr, spp, size, seed, console, until)
+            where = {"size": size, "seed": seed, "scene": scene}
+            picture = path_trace(shown, exr, console, spp, until, **where)
             errors, interrupted = picture.errors(), picture.spp < picture.asked
             written += [exr, output / "render.png"]
     with console.progress("compare"):

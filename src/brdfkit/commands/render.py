@@ -5,7 +5,13 @@ from pathlib import Path
 import click
 
 from brdfkit.commands._errors import say
-from brdfkit.commands._options import SPP, output_options, render_options, values_option
+from brdfkit.commands._options import (
+    SPP,
+    output_options,
+    render_options,
+    scene_option,
+    values_option,
+)
 from brdfkit.commands._stopping import status
 from brdfkit.errors import BrdfkitError
 
@@ -26,15 +32,19 @@ from brdfkit.errors import BrdfkitError
     help="Folder or file with plugins of yours to load first; repeat it for more.",
 )
 @values_option
+@scene_option
+@click.option(
+    "--envmap", metavar="FILE", help="Light by an environment map, .exr or .hdr, not by the sky."
+)
 @render_options
 @output_options
-def render(things, output, folders, values, spp, until, size, seed, console):
+def render(things, output, folders, values, scene, envmap, spp, until, size, seed, console):
     """Path-trace materials, or a scene.
 
     Materials (fits, models, measured files) are rendered side by side. The others are compared to
-    the first, by several metrics, beside their noise floor: the first with another seed. A scene of
-    Mitsuba's is rendered alone, in its own size, and without --spp with its own samples per pixel.
-    Ctrl-C keeps the samples that all pictures have.
+    the first, by several metrics, beside their noise floor: the first with another seed. A
+    SCENE.xml of Mitsuba's is rendered alone, in its own size, and without --spp with its own
+    samples per pixel. Ctrl-C keeps the samples that all pictures have.
     """
     from brdfkit.commands._targets import material, picture_file
     from brdfkit.host.users_plugins import load_plugins
@@ -47,6 +57,8 @@ def render(things, output, folders, values, spp, until, size, seed, console):
     if scenes:
         if len(things) > 1 or values:
             raise BrdfkitError("A scene is rendered alone and without --set: name one SCENE.xml.")
+        if scene != "ball" or envmap:
+            raise BrdfkitError(f"{scenes[0]} is a scene: leave --scene and --envmap out.")
         output = picture_file(output or Path(scenes[0]).with_suffix(".png").name)
         with console.progress("render") as progress:
             picture = render_scene(scenes[0], spp, seed, progress, until)
@@ -54,19 +66,23 @@ def render(things, output, folders, values, spp, until, size, seed, console):
     else:
         found = [material(thing, values) for thing in things]
         output = picture_file(output or f"{slug(found[0].name)}.png")
-        picture = path_trace(found, output, spp, size, seed, console, until)
+        where = {"size": size, "seed": seed, "scene": scene, "envmap": envmap}
+        picture = path_trace(found, output, console, spp, until, **where)
     _print_picture(picture, output, console)
     if picture.spp < picture.asked:
         click.get_current_context().exit(status())
 
 
-def path_trace(things, output, spp, size, seed, console, until=None):
-    """Render `things` side by side and write the picture; returns a `Rendering`."""
+def path_trace(things, output, console, spp, until, **where):
+    """Render `things` side by side and write the picture; returns a `Rendering`.
+
+    `where`: what `brdfkit.render` takes besides.
+    """
     from brdfkit.rendering.rendering import render as render_things
 
     with console.progress("render") as progress:
         spp = spp or (SPP if until is None else None)
-        picture = render_things(things, spp, size, seed, progress=progress, until=until)
+        picture = render_things(things, spp, until=until, progress=progress, **where)
     _write(picture, output)
     return picture
 

@@ -15,8 +15,8 @@ def environment(path):
     """The dictionary of the light of a map by latitude and longitude, in a file of any HDR format.
 
     It is scaled to the illuminance of the ground that the scenes have, so that pictures are exposed
-    alike. Raises `BrdfkitError` for a file that is missing, that Mitsuba cannot read, or whose upper
-    half, which lights the scene, is black or not finite.
+    alike. Raises `BrdfkitError` for a file that is missing, that Mitsuba cannot read, or whose
+    upper half, which lights the ground, is black or not finite.
     """
     import mitsuba as mi
 
@@ -45,5 +45,5 @@ def light_by(light, scene):
     Raises `BrdfkitError` for a scene with lamps of its own.
     """
     if not isinstance(scene, dict) or "sky" not in scene:
-        raise BrdfkitError("This scene has its own light, no sky that a map could replace: leave envmap out.")
+        raise BrdfkitError("The scene has lamps of its own: leave envmap out, or choose another.")
     return {key: value for key, value in scene.items() if key != "softbox"} | {"sky": light}

@@ -17,9 +17,7 @@ def load_scene_file(path, **how):
     """
     import mitsuba as mi
 
-    path = Path(path)
-    if not path.is_file():
-        raise BrdfkitError(f"{path}: there is no such scene file; check the path.")
+    path = _existing(path)
 
     def load(source, parallel):
         return mi.load_file(source, parallel=parallel, **how)
@@ -41,7 +39,7 @@ def file_scene(source):
     `BrdfkitError` for a file that cannot be rendered, and for one without that id.
     """
     path, _, place = str(source).partition("#")
-    place = place or PLACE
+    path, place = _existing(path), place or PLACE
 
     def build(bsdf, size):
         # equal BSDFs would become one, with one of their ids
@@ -59,6 +57,13 @@ def file_scene(source):
         return scene
 
     return build
+
+
+def _existing(path):
+    """The `Path` of a scene file; an error where there is none."""
+    if not Path(path).is_file():
+        raise BrdfkitError(f"{path}: there is no such scene file; check the path.")
+    return Path(path)
 
 
 def _no_place(path, place, known):

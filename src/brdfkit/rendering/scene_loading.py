@@ -1,4 +1,4 @@
-"""Loads the scene that `render` is given, by its name, in a file or a function, for each material."""
+"""Loads the scene that `render` is given, a name, a file or a function, for each material."""
 
 from pathlib import Path
 

@@ -11,6 +11,8 @@ from brdfkit.rendering.scenes._studio import studio
 
 SUFFIXES = ".obj", ".ply"
 SIZE = 2.0  # of the longest side of its bounding box, as of the ball's
+SHARP = np.radians(35)  # between a normal at a corner of a face and the face's own
+AXES = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])  # row vectors: y becomes z, and z -y
 
 
 def mesh_scene(path):
@@ -38,29 +40,47 @@ def _read(path):
     import mitsuba as mi
 
     file = {"type": path.suffix.lower()[1:], "filename": str(path)}
-    read = load_by_mitsuba(mi.load_dict, file, path)
-    buffers = mi.traverse(read)
-    points, normals = (np.array(buffers[f"vertex_{n}"]).reshape(-1, 3) for n in ("positions", "normals"))
-    uv, faces = np.array(buffers["vertex_texcoords"]), np.array(buffers["faces"]).reshape(-1, 3)
-
-    used = points[np.unique(faces)]
-    low, high = (used.min(axis=0), used.max(axis=0)) if len(used) else (0, 0)
+    # of an empty mesh Mitsuba says that it has no normals: it is loaded without them first
+    flat = load_by_mitsuba(mi.load_dict, file | {"face_normals": True}, path)
+    low, high = (np.array(corner).ravel() for corner in (flat.bbox().min, flat.bbox().max))
     extent = np.max(high - low)
-    if not 0 < extent < np.inf:
+    if not (flat.face_count() and 0 < extent < np.inf):
         raise BrdfkitError(f"{path}: the mesh has no faces, or none with an area; export it anew.")
-    points = (points - (low + high) / 2) * (SIZE / extent)
-    points, normals = (np.stack([a[:, 0], -a[:, 2], a[:, 1]], axis=-1) for a in (points, normals))
-    points = points - (0, 0, points[np.unique(faces), 2].min())
-    if len(uv):
-        return points, normals, uv.reshape(-1, 2), faces
-    return _unweld(points, normals, faces)
+    buffers = mi.traverse(load_by_mitsuba(mi.load_dict, file, path))
+    points, normals, uv, faces = (
+        np.array(buffers[name]).reshape(-1, width)
+        for name, width in (
+            ("vertex_positions", 3),
+            ("vertex_normals", 3),
+            ("vertex_texcoords", 2),
+            ("faces", 3),
+        )
+    )
+
+    # (faces, corners, 3), in the axes of the scenes; a face has its corners to itself
+    points = ((points - (low + high) / 2) * (SIZE / extent))[faces] @ AXES
+    normals = normals[faces] @ AXES
+    points[..., 2] -= points[..., 2].min()
+    uv = uv[faces] if len(uv) else _around(points)
+    corners = (x.reshape(-1, x.shape[-1]) for x in (points, _sharpen(normals, points), uv))
+    return *corners, np.arange(faces.size).reshape(-1, 3)
 
 
-def _unweld(points, normals, faces):
-    """(points, normals, uv, faces) with three vertices of its own for each face, so that u, the
-    angle around the vertical axis, does not jump within a face; v is the angle from the axis."""
-    x, y, z = np.moveaxis(points[faces], -1, 0)
-    u, v = np.arctan2(y, x), np.arctan2(np.hypot(x, y), z - points[:, 2].max() / 2)
-    u = np.unwrap(u, axis=1)
-    new = np.arange(faces.size).reshape(-1, 3)
-    return points[faces].reshape(-1, 3), normals[faces].reshape(-1, 3), np.dstack([u, v]), new
+def _sharpen(normals, points):
+    """The normals at the corners of faces; those of the faces where the two differ much, at edges
+    which the mesh means to be sharp."""
+    flat = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
+    flat /= np.maximum(np.linalg.norm(flat, axis=-1, keepdims=True), 1e-30)
+    flat = np.broadcast_to(flat[:, None], normals.shape)
+    cos = np.einsum("fci,fci->fc", flat, normals)
+    # below 0: the face is turned, and its corners are right
+    sharp = np.abs(cos) < np.cos(SHARP)
+    return np.where(sharp[..., None], np.sign(cos)[..., None] * flat, normals)
+
+
+def _around(points):
+    """(u, v) at the corners of faces: the angle around the vertical axis, which does not jump
+    within a face, and the angle from that axis."""
+    x, y, z = np.moveaxis(points, -1, 0)
+    u = np.unwrap(np.arctan2(y, x), axis=1)
+    return np.stack([u, np.arctan2(np.hypot(x, y), z - z.max() / 2)], axis=-1)

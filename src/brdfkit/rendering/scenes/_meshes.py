@@ -1,4 +1,4 @@
-"""Meshes of smooth surfaces p(u, v), with exact normals, and tangents along u for brushed materials.
+"""Meshes of smooth surfaces p(u, v), with exact normals, and tangents along u for brushing.
 
 Mitsuba takes a triangle's tangent from its vertices' (u, v), and turns it into the plane of the
 normal between them: a fine grid gives the tangents of the surface itself.
@@ -6,7 +6,7 @@ normal between them: a fine grid gives the tangents of the surface itself.
 
 import numpy as np
 
-AROUND = 256  # columns of a surface of revolution
+AROUND = 192  # columns of a surface of revolution
 
 
 def mesh_of_grid(points, normals, bsdf):
@@ -50,19 +50,20 @@ def mesh(points, normals, uv, faces, bsdf):
     return made
 
 
-def revolve(r, z, rows=256):
+def revolve(r, z, between=1):
     """(points, normals) of the surface that a profile sweeps about the z axis; a grid for a mesh.
 
     `r`, `z`: points of the profile, which a cubic spline joins; where it closes, its first point is
-    its last. The inside lies to the left of the profile's way. u runs around the axis, v along the
-    profile.
+    its last. The inside lies to the left of the profile's way. `between`: rows from a point to the
+    next: set the points close where it bends much. u runs around the axis, v along the profile.
     """
     from scipy.interpolate import CubicSpline
 
     way = np.concatenate([[0], np.cumsum(np.hypot(np.diff(r), np.diff(z)))])
     closed = r[0] == r[-1] and z[0] == z[-1]
     spline = CubicSpline(way, np.column_stack([r, z]), bc_type="periodic" if closed else "natural")
-    place = np.linspace(0, way[-1], rows)
+    rows = between * (len(way) - 1) + 1
+    place = np.interp(np.linspace(0, len(way) - 1, rows), np.arange(len(way)), way)
     (r, z), (dr, dz) = spline(place).T, spline(place, 1).T
     phi = np.linspace(0, 2 * np.pi, AROUND + 1)
     length = np.hypot(dr, dz)

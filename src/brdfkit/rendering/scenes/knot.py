@@ -7,7 +7,7 @@ from brdfkit.rendering.scenes._studio import studio
 
 TUBE = 0.235  # radius
 LEAN = 0.3  # of the knot, away from the camera [radians]
-ROWS, AROUND = 768, 96  # along the tube, around it
+ROWS, AROUND = 512, 64  # along the tube, around it
 
 
 def knot(bsdf, size=(512, 512)):

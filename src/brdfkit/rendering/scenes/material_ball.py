@@ -23,7 +23,7 @@ def material_ball(bsdf, size=(512, 512)):
     import mitsuba as mi
 
     height = WIRE + np.sqrt((1 + WIRE) ** 2 - RING**2)  # of the ball's middle, on the ring
-    points, normals = (_turn(x) for x in revolve(*_ball_profile(), rows=480))
+    points, normals = (_turn(x) for x in revolve(*_ball_profile()))
     floor = {
         "type": "checkerboard",
         "color0": 0.24,
@@ -31,8 +31,8 @@ def material_ball(bsdf, size=(512, 512)):
         "to_uv": mi.ScalarTransform4f().scale(140),
     }
     return studio(size) | {
-        "ball": mesh_of_grid(points + (0, 0, height), normals, bsdf),
-        "ring": mesh_of_grid(*revolve(*_ring_profile(), rows=64), bsdf),
+        "ball": mesh_of_grid(points + np.array([0, 0, height]), normals, bsdf),
+        "ring": mesh_of_grid(*revolve(*_ring_profile()), bsdf),
         "ground": {
             "type": "rectangle",
             "to_world": mi.ScalarTransform4f().scale(100),
@@ -47,7 +47,8 @@ def _ball_profile():
     def step(theta, edge):
         return (1 + np.tanh((theta - edge) / EDGE * 2)) / 2
 
-    theta = np.linspace(np.pi, 0, 4000)
+    edges = np.add.outer((OPENING, *BAND), 3 * EDGE * np.linspace(-1, 1, 49))
+    theta = np.unique([*np.linspace(0, np.pi, 120), *edges.ravel()])[::-1]
     sunk = 1 - step(theta, OPENING) + step(theta, BAND[0]) - step(theta, BAND[1])
     radius = 1 - (1 - INNER) * sunk
     r = radius * np.sin(theta)
@@ -57,7 +58,7 @@ def _ball_profile():
 
 def _ring_profile():
     """(r, z) of the ring."""
-    t = np.linspace(0, 2 * np.pi, 200)
+    t = np.linspace(0, 2 * np.pi, 73)
     t[-1] = 0
     return RING + WIRE * np.cos(t), WIRE + WIRE * np.sin(t)
 

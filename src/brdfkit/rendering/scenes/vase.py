@@ -46,4 +46,4 @@ def vase(bsdf, size=(512, 512)):
     >>> vase({"type": "diffuse"})["vase"].class_name()    # doctest: +SKIP
     'Mesh'
     """
-    return studio(size) | {"vase": mesh_of_grid(*revolve(*PROFILE.T, rows=256), bsdf)}
+    return studio(size) | {"vase": mesh_of_grid(*revolve(*PROFILE.T, between=8), bsdf)}

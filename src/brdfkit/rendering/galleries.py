@@ -1,0 +1,145 @@
+"""`gallery`: materials by models in one picture, as a grid to look at."""
+
+import io
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from brdfkit.colours import to_srgb
+from brdfkit.errors import BrdfkitError
+from brdfkit.files import write_safely
+from brdfkit.names import make_unique
+from brdfkit.rendering.inputs import Renderable, as_list, describe
+from brdfkit.rendering.rendering import SceneLike, render
+from brdfkit.rendering.result import Rendering
+
+HEAD, SIDE, BELOW, GAP = 26, 26, 22, 6  # of the grid: names above, at the left, captions [pixels]
+DPI = 100
+
+
+@dataclass(frozen=True, eq=False)
+class Gallery:
+    """Pictures of materials, a row each, by models, a column each. Made by `gallery`.
+
+    Attributes
+    ----------
+    rows : dict of str to Rendering
+        The pictures of a row by its material's name; the first picture is the material's.
+    """
+
+    rows: dict[str, Rendering] = field(repr=False)
+
+    def write(self, path: str | Path) -> None:
+        """Write the grid as a picture.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file, `.png`.
+
+        Raises
+        ------
+        BrdfkitError
+            For another suffix, or where it cannot write; nothing is half-written.
+
+        Examples
+        --------
+        >>> gallery([["car_paint", "ward"]], spp=16).write("paint.png")    # doctest: +SKIP
+        """
+        path = Path(path)
+        if path.suffix.lower() != ".png":
+            raise BrdfkitError(f"{path}: a gallery is written as .png; choose that.")
+        with write_safely(path) as beside:
+            beside.write_bytes(self._repr_png_())
+
+    def _repr_png_(self) -> bytes:
+        """The grid, which notebooks show."""
+        stream = io.BytesIO()
+        draw_grid(self.rows).savefig(stream, dpi=DPI)
+        return stream.getvalue()
+
+
+def gallery(
+    rows: Iterable[Iterable[Renderable]],
+    spp: int = 64,
+    size: int = 192,
+    seed: int = 0,
+    scene: SceneLike = "ball",
+    progress: Callable[[int, int], object] | None = None,
+) -> Gallery:
+    """Path-trace materials by models into one picture, as a grid with labels.
+
+    Parameters
+    ----------
+    rows : iterable of iterables of Measured, Fit, Model, str, Path, dict or (str, one of these)
+        A row for each material: the material, the reference of its row, then its fits, by the same
+        models in every row.
+    spp : int, default 64
+        Samples per pixel.
+    size : int, default 192
+        Side of each picture [pixels].
+    seed : int, default 0
+        Seed of the samples, the same in every picture.
+    scene : str, Path or callable, default "ball"
+        What is rendered, as for `render`.
+    progress : callable, optional
+        Called with (done, total) after each row.
+
+    Returns
+    -------
+    Gallery
+        A `Rendering` for each row; ``write`` makes a PNG, and notebooks show it.
+
+    Raises
+    ------
+    BrdfkitError
+        For rows of different models, and for what `render` refuses.
+
+    Examples
+    --------
+    >>> materials = [bk.load(n) for n in ("car_paint", "brushed_aluminium")]    # doctest: +SKIP
+    >>> gallery([[m, bk.fit("ward", m), bk.fit("ggx", m)] for m in materials])    # doctest: +SKIP
+    """
+    listed = [as_list(row) for row in rows]
+    if not listed:
+        raise BrdfkitError("There is nothing to render; give at least one row.")
+    columns = [[describe(thing)[0] for thing in row[1:]] for row in listed]
+    for names in columns:
+        if names != columns[0]:
+            raise BrdfkitError(
+                f"The rows of a gallery should show the same models: here are {', '.join(names)}, "
+                f"in the first row {', '.join(columns[0])}."
+            )
+    found: dict[str, Rendering] = {}
+    for done, row in enumerate(listed, 1):
+        rendering = render(row, spp, size, seed, scene)
+        found[make_unique(rendering.reference, found)] = rendering
+        if progress:
+            progress(done, len(listed))
+    return Gallery(found)
+
+
+def draw_grid(rows):
+    """A matplotlib `Figure` of renderings by name: a row each, a pixel for a pixel."""
+    from matplotlib.figure import Figure
+
+    first = next(iter(rows.values()))
+    height, width = first.pictures[first.reference].shape[:2]
+    columns = max(len(r.pictures) for r in rows.values())
+    total = SIDE + columns * (width + GAP), HEAD + len(rows) * (height + BELOW)  # pixels
+
+    figure = Figure(figsize=[side / DPI for side in total], dpi=DPI)
+    for i, (material, rendering) in enumerate(rows.items()):
+        psnr = rendering.psnr()
+        for j, (name, picture) in enumerate(rendering.pictures.items()):
+            left, top = SIDE + j * (width + GAP), HEAD + i * (height + BELOW)
+            corner = left / total[0], 1 - (top + height) / total[1]
+            axes = figure.add_axes((*corner, width / total[0], height / total[1]))
+            axes.imshow(to_srgb(picture), interpolation="none")
+            axes.set(xticks=[], yticks=[], frame_on=False)
+            axes.set_xlabel(f"{psnr[name]:.1f} dB" if name in psnr else "", fontsize=8, labelpad=3)
+            if i == 0:
+                axes.set_title(name if j else "reference", fontsize=9, pad=4)
+            if j == 0:
+                axes.set_ylabel(material, fontsize=9, labelpad=4)
+    return figure

@@ -1,0 +1,249 @@
+"""Scenes: each renders in every variant, knows where its material shows, and keeps energy."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+import brdfkit as bk
+from brdfkit.colours import luminance
+from brdfkit.errors import BrdfkitError
+from brdfkit.rendering import environment, users_mesh
+from brdfkit.rendering.galleries import draw_grid
+from brdfkit.rendering.scenes import _meshes, _studio, knot, material_ball, scene, scene_names, vase
+
+WHITE = {"name": "white", "type": "diffuse", "reflectance": 0.8}
+BLACK = {"name": "black", "type": "diffuse", "reflectance": 0.02}
+SCENES = scene_names()
+SURFACES = {
+    "vase": lambda: _meshes.revolve(*vase.PROFILE.T, between=8),
+    "knot": knot.tube,
+    "ball": lambda: _meshes.revolve(*material_ball._ball_profile()),
+    "ring": lambda: _meshes.revolve(*material_ball._ring_profile()),
+}
+CUBE = """v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 4 -1\nv 1 4 -1\nv 1 4 1\nv -1 4 1
+f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n"""
+KITCHEN = """<scene version="3.0.0"><integrator type="path"/><emitter type="constant"/>
+<sensor type="perspective"><transform name="to_world">
+<lookat origin="0,-8,1" target="0,0,1" up="0,0,1"/></transform><float name="fov" value="30"/>
+<film type="hdrfilm"><integer name="width" value="24"/><integer name="height" value="16"/>
+<rfilter type="box"/></film></sensor>
+<bsdf type="twosided" id="{id}"><bsdf type="diffuse"/></bsdf>
+<bsdf type="twosided" id="Floor"><bsdf type="diffuse"/></bsdf>
+<shape type="sphere"><point name="center" value="0,0,1"/><ref id="{id}"/></shape>
+<shape type="disk"><transform name="to_world"><scale value="9"/></transform><ref id="Floor"/>
+</shape></scene>"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def variant():
+    mi = pytest.importorskip("mitsuba")
+    before = mi.variant()
+    mi.set_variant("llvm_ad_rgb")
+    yield
+    if before:
+        mi.set_variant(before)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_material_changes_what_its_mask_holds(name):
+    """Outside, it is seen by its shadow, its reflection and at its edge only."""
+    both = bk.render([WHITE, BLACK], spp=4, size=32, scene=name)
+    changed = np.abs(both.differences["black"]).mean(axis=-1)
+    assert 0.05 < both.mask.mean() < 0.5
+    inside, outside = np.median(changed[both.mask]), np.median(changed[~both.mask])
+    assert inside > 0.1
+    assert outside < inside / 5
+    assert np.percentile(both.pictures["white"], 95) > 0.1  # exposed
+
+
+@pytest.fixture(scope="module")
+def in_rgb():
+    return {name: bk.render(WHITE, spp=30, size=8, scene=name) for name in SCENES}
+
+
+@pytest.mark.parametrize("variant", ["llvm_ad_mono", "llvm_ad_spectral", "scalar_rgb"])
+def test_every_variant_shows_the_same(in_rgb, variant):
+    import mitsuba as mi
+
+    mi.set_variant(variant)
+    try:
+        found = {name: bk.render(WHITE, spp=30, size=8, scene=name) for name in SCENES}
+    finally:
+        mi.set_variant("llvm_ad_rgb")
+    for name, expected in in_rgb.items():
+        mask = found[name].mask
+        np.testing.assert_array_equal(mask, expected.mask)
+        means = [luminance(r.pictures["white"][mask]).mean() for r in (found[name], expected)]
+        assert means[0] == pytest.approx(means[1], rel=0.06), name
+
+
+@pytest.mark.quick
+def test_the_mask_of_the_ball_is_its_outline():
+    """A ray meets the ball, of radius 1, where it passes its middle at less than 1."""
+    for width, height in ((32, 32), (48, 32), (24, 40)):
+        mask = bk.render(WHITE, spp=1, size=(width, height)).mask
+        forward = np.subtract(_studio.TARGET, _studio.CAMERA)
+        forward /= np.linalg.norm(forward)
+        up = np.cross((1, 0, 0), forward)
+        scale = 2 * np.tan(np.radians(_studio.FOV) / 2) / min(width, height)
+        x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
+        x, y = (x - width / 2) * scale, (height / 2 - y) * scale
+        ray = forward + x[..., None] * np.array([1, 0, 0]) + y[..., None] * up
+        ray /= np.linalg.norm(ray, axis=-1, keepdims=True)
+        to_ball = np.subtract(_studio.BALL, _studio.CAMERA)
+        np.testing.assert_array_equal(mask, to_ball @ to_ball - (ray @ to_ball) ** 2 < 1)
+
+
+@pytest.mark.parametrize("name", ["vase", "knot", "material_ball"])
+def test_a_white_furnace_shows_nothing(name):
+    """A closed surface of reflectance 1 under light of radiance 1 from everywhere is as bright."""
+
+    def furnace(bsdf, size):
+        found = scene(name)(bsdf, size)
+        shapes = {k: s for k, s in found.items() if k in ("ball", "ring", "vase", "knot", "sensor")}
+        light = {"type": "constant", "radiance": 1.0}
+        return {"type": "scene", "integrator": {"type": "path"}, "light": light} | shapes
+
+    white = {"type": "diffuse", "reflectance": 1.0}
+    picture = bk.render(white, spp=64, size=24, scene=furnace).pictures["diffuse"]
+    # between shading normals and triangles some light is lost; noise of the mean below 0.3 %
+    assert picture.mean() == pytest.approx(1, abs=0.015)
+    assert np.median(picture) == pytest.approx(1, abs=0.01)
+
+
+@pytest.mark.parametrize("name", SURFACES)
+def test_tangents_are_those_of_the_surface(name):
+    """At random points: around the axis, z or that of the tube, to half a step of the mesh."""
+    import mitsuba as mi
+
+    points, normals = SURFACES[name]()
+    made = _meshes.mesh_of_grid(points, normals, {"type": "diffuse"})
+    samples = np.random.default_rng(0).random((3, 5000))
+    on = made.sample_position(0.0, mi.Point2f(samples[:2]))
+    n = np.array(on.n).T
+    ray = mi.Ray3f(mi.Point3f(np.array(on.p) + 1e-3 * n.T), mi.Vector3f(-n.T))
+    si = mi.load_dict({"type": "scene", "it": made}).ray_intersect(ray)
+    p, s, face, shading = (np.array(x).T for x in (si.p, si.sh_frame.s, si.n, si.sh_frame.n))
+
+    axis = np.broadcast_to([0.0, 0.0, 1.0], p.shape)
+    if name == "knot":  # its axis is the mean around the tube
+        middle = points[:, :-1].mean(axis=1)
+        along = CubicSpline(np.linspace(0, 1, len(middle)), middle, bc_type="periodic")
+        axis = along(np.array(si.uv.y), 1)
+        p = p - along(np.array(si.uv.y))
+        assert np.linalg.norm(p, axis=1) == pytest.approx(knot.TUBE, rel=0.01)
+    around = np.cross(axis, p)
+    around *= np.sign(np.sum(s * around, axis=1)[:1]) / np.linalg.norm(around, axis=1)[:, None]
+
+    assert np.abs(np.sum(s * shading, axis=1)).max() < 1e-5
+    assert np.sum(s * around, axis=1).min() > np.cos(np.pi / (points.shape[1] - 1))
+    assert np.sum(face * n, axis=1).min() > 0.9  # outwards
+    assert np.median(np.sum(face * shading, axis=1)) > np.cos(np.radians(2))
+
+
+@pytest.fixture
+def files(tmp_path, monkeypatch):
+    """A folder with meshes, scene files and maps, in which one works."""
+    import mitsuba as mi
+
+    monkeypatch.chdir(tmp_path)
+    Path("cube.obj").write_text(CUBE)
+    Path("empty.obj").write_text(CUBE.partition("f ")[0])
+    Path("broken.ply").write_text("ply of mine")
+    Path("mesh.stl").write_text("solid")
+    Path("kitchen.xml").write_text(KITCHEN.format(id="Counter"))
+    Path("room.xml").write_text(KITCHEN.format(id="material"))
+    grey = np.full((16, 32, 3), 0.3, np.float32)
+    mi.Bitmap(grey).write("grey.exr")
+    mi.Bitmap(0 * grey).write("night.exr")
+
+
+@pytest.mark.quick
+def test_a_mesh_stands_in_the_place_of_the_ball(files):
+    """A box twice as high as wide, y up and without normals: 2 high, with sharp edges."""
+    build = users_mesh.mesh_scene("cube.obj")
+    made = build({"type": "diffuse"})["mesh"]
+    low, high = (np.array(corner).ravel() for corner in (made.bbox().min, made.bbox().max))
+    np.testing.assert_allclose(low, [-0.5, -0.5, 0], atol=1e-6)
+    np.testing.assert_allclose(high, [0.5, 0.5, 2], atol=1e-6)
+    import mitsuba as mi
+
+    p = mi.Point3f([2.0, 0.1, 0.1], [0.2, -2.0, 0.2], [1.3, 1.2, 3.0])
+    d = mi.Vector3f([-1.0, 0, 0], [0, 1.0, 0], [0, 0, -1.0])
+    si = mi.load_dict({"type": "scene", "it": made}).ray_intersect(mi.Ray3f(p, d))
+    np.testing.assert_allclose(np.array(si.sh_frame.n), -np.array(d), atol=1e-6)
+    # brushed around the vertical axis: level on the sides
+    np.testing.assert_allclose(np.array(si.sh_frame.s)[:, :2].T, [[0, 1, 0], [1, 0, 0]], atol=0.02)
+    assert bk.render(WHITE, spp=1, size=32, scene="cube.obj").mask.mean() > 0.1
+
+
+@pytest.mark.quick
+def test_a_material_is_put_into_a_scene_file(files):
+    both = bk.render([WHITE, BLACK], spp=8, scene="kitchen.xml#Counter")
+    assert both.pictures["white"].shape == (16, 24, 3)  # the file's own
+    changed = np.abs(both.differences["black"]).mean(axis=-1)
+    assert np.percentile(changed[both.mask], 10) > 0.2
+    assert np.median(changed[~both.mask]) < 0.05
+    other = bk.render([WHITE], spp=1, size=(12, 8), scene=Path("room.xml"))
+    assert other.pictures["white"].shape == (8, 12, 3)
+    assert 0.1 < other.mask.mean() < 0.5
+
+
+@pytest.mark.parametrize("file", [None, "grey.exr"])
+def test_an_environment_map_lights_the_ground_as_the_sky_does(files, file):
+    """Nothing stands on it: L = reflectance/π · E."""
+
+    def empty(bsdf, size):
+        found = _studio.studio(size)
+        found = environment.light_by(environment.environment(file), found) if file else found
+        return found | {"integrator": {"type": "direct"}}
+
+    picture = luminance(bk.render(WHITE, spp=256, size=9, scene=empty).pictures["white"])
+    expected = _studio.GROUND / np.pi * environment.ILLUMINANCE
+    assert picture[3:6, 3:6].mean() == pytest.approx(expected, rel=0.03)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"scene": "vaes"}, r"no scene 'vaes'; did you mean vase\? There are ball, cornell_box"),
+        ({"scene": 3}, "scene = 3 should be a scene's name, a file or a function"),
+        ({"scene": "missing.obj"}, r"missing\.obj: there is no such mesh"),
+        ({"scene": "empty.obj"}, r"empty\.obj: the mesh has no faces"),
+        ({"scene": "broken.ply"}, r"broken\.ply: Mitsuba cannot load it \(.*invalid PLY header"),
+        ({"scene": "mesh.stl"}, r"mesh\.stl: a scene is a mesh \(\.obj, \.ply\), a scene file"),
+        ({"scene": "missing.xml"}, r"missing\.xml: there is no such scene file"),
+        ({"scene": "kitchen.xml"}, "no shape has a BSDF of the id 'material'.* are Counter, Floor"),
+        ({"scene": "kitchen.xml#counter"}, r"did you mean kitchen\.xml#Counter\?"),
+        ({"scene": "kitchen.xml#Counter", "envmap": "grey.exr"}, "has lamps of its own"),
+        ({"scene": "cornell_box", "envmap": "grey.exr"}, "has lamps of its own"),
+        ({"envmap": "missing.exr"}, r"missing\.exr: there is no such environment map"),
+        ({"envmap": "night.exr"}, r"night\.exr: the map gives no light from above"),
+        ({"envmap": "broken.ply"}, r"broken\.ply: Mitsuba cannot load it"),
+    ],
+)
+def test_what_is_no_scene_is_said(files, arguments, message):
+    with pytest.raises(BrdfkitError, match=message):
+        bk.render(WHITE, spp=1, size=8, **arguments)
+
+
+@pytest.mark.quick
+def test_a_gallery_has_a_row_for_each_material(tmp_path):
+    rows = [[m, ("lambert", WHITE), ("ward", BLACK)] for m in (WHITE, BLACK)]
+    found = bk.gallery(rows, spp=1, size=40)
+    assert list(found.rows) == ["white", "black"]
+    axes = draw_grid(found.rows).axes
+    assert [a.get_title() for a in axes] == ["reference", "lambert", "ward", "", "", ""]
+    assert [a.get_ylabel() for a in axes] == ["white", "", "", "black", "", ""]
+    assert axes[4].get_xlabel() == f"{found.rows['black'].psnr()['lambert']:.1f} dB"
+    found.write(tmp_path / "grid.png")
+    assert (tmp_path / "grid.png").read_bytes()[:4] == b"\x89PNG"
+    with pytest.raises(BrdfkitError, match=r"grid\.exr: a gallery is written as \.png"):
+        found.write(tmp_path / "grid.exr")
+    with pytest.raises(BrdfkitError, match="the same models: here are ggx, in the first row ward"):
+        bk.gallery([[WHITE, "ward"], [BLACK, "ggx"]], spp=1, size=8)
+    with pytest.raises(BrdfkitError, match="nothing to render"):
+        bk.gallery([])
