@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import OpenEXR
 import pytest
 from click.testing import CliRunner
 from rich.cells import cell_len
@@ -22,6 +23,7 @@ import brdfkit as bk
 from brdfkit.catalogue import shipped
 from brdfkit.cli import main
 from brdfkit.plugins import discovery
+from brdfkit.rendering.scenes import scene_names
 
 SMALL = ("--size", "16", "--spp", "2")
 SHAPE = (6, 4, 8)
@@ -240,6 +242,20 @@ def test_render_until_the_noise_is_low(cli):
 
 
 @pytest.mark.quick
+def test_render_in_another_scene(cli):
+    """A scene file keeps its size, unless another is given; the help names every scene."""
+    scene = SCENE.format(alpha=0.3).replace('"ward"', '"ward" id="it"')
+    Path("room.xml").write_text(scene)
+    for words, shape in (((), (6, 8)), (("--size", "5"), (5, 5))):
+        words = *words, "--spp", "1", "--scene", "room.xml#it", "-o", "it.exr"
+        assert_fine(cli("render", "lambert", *words))
+        assert OpenEXR.File("it.exr").channels()["RGB"].pixels.shape[:2] == shape
+    assert_fine(cli("render", "lambert", *SMALL, "--scene", "cornell_box"))
+    shown = cli("render", "--help").stdout
+    assert all(name in shown for name in scene_names())
+
+
+@pytest.mark.quick
 def test_render_a_scene_and_a_fit(cli):
     Path("room.xml").write_text(SCENE.format(alpha=0.3))
     assert_fine(cli("fit", "paint.binary", "-m", "ward", "-o", "."))
@@ -412,6 +428,9 @@ TRAPS = [
     (["render", "missing.xml"], ["missing.xml"]),
     (["render", "nothing"], ["nothing", "ward", "car_paint"]),
     (["render", "bounds.xml", "ward"], ["alone"]),
+    (["render", "bounds.xml", "--scene", "vase"], ["bounds.xml", "leave --scene"]),
+    ([*WARD, "--scene", "vaes"], ["vaes", "did you mean vase?", "cornell_box"]),
+    ([*LAMBERT, "--render", "--scene", "no.obj", "-o", "new"], ["no.obj", "no such mesh"]),
     (["render", "paint.binary", "-p", "alpha_u=.1"], ["paint.binary", "no model"]),
     ([*WARD, "-p", "nope=1"], ["nope", "alpha_u"]),
     ([*WARD, "-p", "alpha_u"], ["alpha_u=VALUE"]),

@@ -32,6 +32,7 @@ METHODS = {
             "resampled",
         ],
         bk.Model: ["changed"],
+        bk.Gallery: ["write"],
         bk.Rendering: ["write"],
         bk.Sweep: ["to_csv", "to_html", "to_parquet"],
     }.items()

@@ -67,6 +67,7 @@ def fit_and_render(paint: bk.Measured) -> None:
     assert_type(rendering.errors(), bk.ImageErrors)
     assert_type(rendering.errors().floor, dict[str, float])
     assert_type(bk.render_scene("kitchen.xml"), bk.Rendering)
+    assert_type(bk.gallery([[paint, *fits]], scene="vase"), bk.Gallery)
 
 
 def fit_many(files: list[Path]) -> None:
