@@ -22,13 +22,13 @@ def load_scenes(materials, given, size=None, envmap=None):
     """
     import mitsuba as mi
 
-    build, of_file = find_scene(given), not callable(given) and _suffix(given)
-    if of_file != scene_file.SUFFIX:
+    build, suffix = find_scene(given), "" if callable(given) else _suffix(given)
+    if suffix != scene_file.SUFFIX:
         size = size or SIZE
     light = environment(envmap) if envmap else None
     scenes, seen = {}, None
     for name, bsdf in materials.items():
-        material = None if callable(given) else load_material(bsdf, name, both_sides=of_file)
+        material = None if callable(given) else load_material(bsdf, name, both_sides=bool(suffix))
         made = build(material or bsdf, size)
         made = light_by(light, made) if light else made
         loaded = load_by_mitsuba(mi.load_dict, made, name) if isinstance(made, dict) else made

@@ -3,6 +3,7 @@
 import numpy as np
 
 from brdfkit.host.load_by_mitsuba import load_by_mitsuba
+from brdfkit.jit.padding import pad
 
 
 def load_material(bsdf, name, both_sides=False):
@@ -37,6 +38,6 @@ def mask(scene, material):
         shapes = (first_hit(mi.Point2f(*p)) for p in zip(x.flat, y.flat, strict=True))
         seen = np.array([s is not None and s.bsdf() is material for s in shapes])
     else:
-        shape = first_hit(mi.Point2f(x.ravel(), y.ravel()))
+        shape = first_hit(mi.Point2f(*(pad(a.ravel().astype(np.float32)) for a in (x, y))))
         seen = np.array(shape.bsdf() == mi.BSDFPtr(material))
     return seen.reshape(height, width)

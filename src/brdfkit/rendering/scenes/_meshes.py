@@ -6,6 +6,8 @@ normal between them: a fine grid gives the tangents of the surface itself.
 
 import numpy as np
 
+from brdfkit.jit.padding import pad
+
 AROUND = 192  # columns of a surface of revolution
 
 
@@ -38,14 +40,13 @@ def mesh(points, normals, uv, faces, bsdf):
     faces = np.where(turned[:, None], faces[:, ::-1], faces)[np.linalg.norm(across, axis=1) > 1e-12]
 
     properties = mi.Properties()
-    loaded = mi.load_dict(bsdf, parallel=False) if isinstance(bsdf, dict) else bsdf
-    properties["bsdf"] = loaded
+    properties["bsdf"] = mi.load_dict(bsdf, parallel=False) if isinstance(bsdf, dict) else bsdf
     made = mi.Mesh("mesh", len(points), len(faces), properties, True, True)
     buffers = mi.traverse(made)
-    buffers["vertex_positions"] = np.ravel(points).astype(np.float32)
-    buffers["vertex_normals"] = np.ravel(normals).astype(np.float32)
-    buffers["vertex_texcoords"] = np.ravel(uv).astype(np.float32)
-    buffers["faces"] = np.ravel(faces).astype(np.uint32)
+    buffers["vertex_positions"] = pad(np.ravel(points).astype(np.float32))
+    buffers["vertex_normals"] = pad(np.ravel(normals).astype(np.float32))
+    buffers["vertex_texcoords"] = pad(np.ravel(uv).astype(np.float32))
+    buffers["faces"] = pad(np.ravel(faces).astype(np.uint32))
     buffers.update()
     return made
 
