@@ -23,6 +23,7 @@ from .model.labels import load_models as load_models
 from .model.labels import models as models
 from .picture_errors import ImageErrors as ImageErrors
 from .plotting import plot as plot
+from .progress_bar import progress as progress
 from .ranking import Ranked as Ranked
 from .ranking import Ranking as Ranking
 from .ranking import rank as rank

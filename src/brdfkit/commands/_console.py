@@ -1,16 +1,13 @@
 """Prints the results of commands: tables for people, or JSON; and a progress bar."""
 
 import json
-from contextlib import contextmanager
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cached_property
-from threading import Timer
 
 from brdfkit.commands import _tables
 from brdfkit.json_values import plain
-
-PATIENCE = 1.0  # seconds until the bar shows: a bar that flashes up only disturbs
-MEMORY = 3600.0  # seconds of which the time left is estimated: one fit of a sweep may take minutes
+from brdfkit.progress_bar import progress
 
 
 @dataclass(frozen=True)
@@ -28,33 +25,9 @@ class Console:
         # no markup: names from files may hold brackets
         return Console(quiet=self.quiet, highlight=False, markup=False, emoji=False, soft_wrap=True)
 
-    @contextmanager
     def progress(self, what):
-        """Within the block a bar shows the progress of `what`; gives a function (done, total).
-
-        The bar appears after a second, from a thread of its own: also where the function has not
-        been called yet.
-        """
-        from rich.console import Console
-        from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
-        terminal = Console(stderr=True)
-        text = TextColumn("{task.description}", markup=False)
-        columns = text, BarColumn(), TimeRemainingColumn(compact=True)
-        bar = Progress(*columns, console=terminal, transient=True, speed_estimate_period=MEMORY)
-        task = bar.add_task(what, total=None)
-        patience = Timer(PATIENCE, bar.start)
-        patience.daemon = True
-        if terminal.is_terminal and not self.quiet:
-            patience.start()
-        try:
-            yield lambda done, total: bar.update(task, completed=done, total=total)
-        finally:
-            patience.cancel()
-            if patience.ident:
-                patience.join()
-            if bar.live.is_started:  # stopping an unstarted bar prints an empty line
-                bar.stop()
+        """Within the block a bar shows the progress of `what`; gives a function (done, total)."""
+        return nullcontext(lambda done, total: None) if self.quiet else progress(what)
 
     def json(self, record):
         """Print a result as JSON; `record`: dictionaries, lists, arrays, paths and dataclasses."""
