@@ -1,11 +1,11 @@
-# make demo | test | quick | lint | bench | docs | wheel; everything happens in .venv, nothing else is needed
+# make demo | notebook | ipynb | test | quick | lint | bench | docs | wheel; everything happens in .venv, nothing else is needed
 PYTHON ?= python3
 VENV := .venv
 RUN := $(VENV)/bin
 # NumPy's threads beside Dr.Jit's, times two workers, would wait for each other
 PYTEST := OPENBLAS_NUM_THREADS=1 $(RUN)/python -m pytest -n 2
 
-.PHONY: demo test quick lint bench docs wheel clean
+.PHONY: demo notebook ipynb test quick lint bench docs wheel clean
 
 $(VENV)/.ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -16,6 +16,17 @@ $(VENV)/.ready: pyproject.toml
 demo: $(VENV)/.ready
 	$(RUN)/brdfkit fit brushed_aluminium -m ward_duer:form=bounded -m ashikhmin_shirley -m ggx --render -o demo
 	@echo "The pictures: demo/render.png (to look at), demo/render.exr (all parts, linear)"
+
+# JupyterLab shows Markdown as text unless its settings, here those of .venv, say that it is a notebook
+LABCONFIG := $(VENV)/etc/jupyter/labconfig/default_setting_overrides.json
+
+notebook: $(VENV)/.ready
+	$(RUN)/jupytext-config --settings-file $(LABCONFIG) set-default-viewer markdown
+	$(RUN)/jupyter lab --LabApp.default_url=/lab/tree/notebooks/first_render.md
+
+# For editors that open no text as a notebook, such as VS Code
+ipynb: $(VENV)/.ready
+	$(RUN)/jupytext --to ipynb notebooks/[a-z]*.md
 
 test: lint
 	$(PYTEST)

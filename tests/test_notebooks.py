@@ -1,12 +1,23 @@
-"""Every notebook runs from its first cell to its last."""
+"""Every notebook runs from its first cell to its last, and `make notebook` opens them as such."""
 
+import json
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
 from pathlib import Path
+from urllib.error import URLError
+from urllib.request import urlopen
 
 import jupytext
 import nbclient
 import pytest
 
-NOTEBOOKS = sorted((Path(__file__).parents[1] / "notebooks").glob("*.md"))
+TOP = Path(__file__).parents[1]
+NOTEBOOKS = sorted(path for path in (TOP / "notebooks").glob("*.md") if path.stem != "README")
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
@@ -19,3 +30,60 @@ def test_a_notebook_runs(path, tmp_path):
     said = [output for cell in notebook.cells for output in cell.get("outputs", ())]
     assert said
     assert not [output for output in said if output.get("name") == "stderr"]
+    assert not list(tmp_path.iterdir()), "it leaves files behind"
+
+
+def test_the_index_names_every_notebook():
+    index = (TOP / "notebooks" / "README.md").read_text(encoding="utf-8")
+    assert [path.name for path in NOTEBOOKS if f"]({path.name})" not in index] == []
+
+
+@pytest.mark.skipif(not shutil.which("make"), reason="there is no make")
+def test_make_notebook(tmp_path):
+    """JupyterLab starts, and opens Markdown as notebooks; nothing is written into a home."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        address = f"http://127.0.0.1:{free.getsockname()[1]}"
+    settings = {
+        "ServerApp": {"open_browser": False, "allow_root": True, "port": int(address[17:])},
+        "IdentityProvider": {"token": ""},
+    }
+    (tmp_path / "jupyter_lab_config.json").write_text(json.dumps(settings))
+    folders = dict.fromkeys(("HOME", "JUPYTER_CONFIG_DIR", "JUPYTER_RUNTIME_DIR"), str(tmp_path))
+    labconfig = tmp_path / "labconfig" / "default_setting_overrides.json"
+    server = subprocess.Popen(
+        [
+            "make",
+            "-o",
+            f"{sys.prefix}/.ready",
+            f"VENV={sys.prefix}",
+            f"LABCONFIG={labconfig}",
+            "notebook",
+        ],
+        cwd=TOP,
+        env=os.environ | folders,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    try:
+        assert _get(f"{address}/").geturl() == f"{address}/lab/tree/notebooks/first_render.md"
+        shown = json.load(_get(f"{address}/api/contents/notebooks/first_render.md?content=0"))
+        viewer = _get(f"{address}/lab/api/settings/@jupyterlab/docmanager-extension:plugin")
+    finally:
+        os.killpg(server.pid, signal.SIGTERM)
+        server.wait(20)
+    assert shown["type"] == "notebook"
+    assert b"Jupytext Notebook" in viewer.read()
+
+
+def _get(address, patience=60):
+    """The answer of a server that may still be starting, for `patience` seconds."""
+    end = time.monotonic() + patience
+    while True:
+        try:
+            return urlopen(address, timeout=patience)
+        except URLError:
+            if time.monotonic() > end:
+                raise
+            time.sleep(0.2)
