@@ -171,7 +171,7 @@ class Measured(Shown, FromAngles):
     def document(self) -> Document:
         """What the measurement tells of itself: its size, its look, and the notes of its file."""
         notes = tuple((key.replace("_", " "), str(value)) for key, value in self.info.items())
-        pictures = thumbnails(self.name, lambda wi, wo: rgb_or_mean(self).eval(wi, wo))
+        pictures = thumbnails(self.name, lambda wi, wo: rgb_or_mean(self).rendered.eval(wi, wo))
         return Document(self.summary, (*pictures, documents.Table(notes)))
 
     @cached_in_turn
