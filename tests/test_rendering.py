@@ -152,12 +152,12 @@ def stop_at(pictures):
 
 @pytest.mark.quick
 def test_an_interrupted_render_keeps_what_every_picture_has():
-    # two passes of 30 spp × two pictures
-    kept = render([WHITE, GREY], spp=60, size=16, progress=stop_at(3))
-    assert (kept.spp, kept.asked) == (30, 60)
+    # two passes of 16 spp × two pictures
+    kept = render([WHITE, GREY], spp=32, size=16, progress=stop_at(3))
+    assert (kept.spp, kept.asked) == (16, 32)
     assert np.isnan(kept.noise_floor)
     for thing in (WHITE, GREY):
-        alone = render(thing, spp=60, size=16, progress=stop_at(1)).pictures[thing["name"]]
+        alone = render(thing, spp=32, size=16, progress=stop_at(1)).pictures[thing["name"]]
         np.testing.assert_allclose(kept.pictures[thing["name"]], alone, rtol=1e-5, atol=1e-6)
 
 
@@ -168,12 +168,12 @@ def test_samples_are_added_until_the_noise_is_low_enough():
     found = render(
         [WHITE, GREY], until=38.0, size=32, progress=lambda done, total: totals.append(total)
     )
-    passes = found.spp // 30
-    assert found.asked == found.spp == 30 * passes
+    passes = found.spp // 16
+    assert found.asked == found.spp == 16 * passes
     assert 38 <= found.noise_floor == found.errors().floor["psnr"]
     assert len(totals) == 2 * passes
     assert totals[4] == pytest.approx(2 * passes, abs=2 + passes // 2)
-    assert render([WHITE, GREY], spp=found.spp - 30, size=32).noise_floor < 38
+    assert render([WHITE, GREY], spp=found.spp - 16, size=32).noise_floor < 38
     again = render([WHITE, GREY], spp=found.spp, size=32)
     np.testing.assert_allclose(again.pictures["grey"], found.pictures["grey"], rtol=1e-5, atol=1e-6)
     assert not found.shortfall
@@ -185,8 +185,8 @@ def test_a_noise_floor_that_takes_too_many_samples_is_said_to():
     assert found.asked == found.spp == 16
     needed = 16 * 10 ** ((60 - found.noise_floor) / 10)
     assert f"60 dB take about {float(f'{needed:.2g}'):,.0f} samples" in str(found)
-    stopped = render(WHITE, until=60, spp=60, size=16, progress=stop_at(1))
-    assert (stopped.spp, stopped.asked, stopped.shortfall) == (30, 60, "")
+    stopped = render(WHITE, until=60, spp=32, size=16, progress=stop_at(1))
+    assert (stopped.spp, stopped.asked, stopped.shortfall) == (16, 32, "")
 
 
 @pytest.mark.quick
