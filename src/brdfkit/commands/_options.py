@@ -26,6 +26,72 @@ class Decibels(click.ParamType):
         return found
 
 
+def fit_options(default):
+    """Adds -m, --loss and other options to a command that fits; it gets `names`, the models, and
+    `how`, the settings of `fit`. `default`: in words, which models without -m."""
+
+    def add(command):
+        @functools.wraps(command)
+        def with_settings(*args, loss, robust, solver, albedo_at_most, max_angle, **kwargs):
+            from brdfkit.fitting.solvers import AlbedoAtMost
+
+            how = {"loss": loss, "robust": robust, "solver": solver, "max_angle": max_angle}
+            how["constraints"] = () if albedo_at_most is None else AlbedoAtMost(albedo_at_most)
+            return command(*args, how=how, **kwargs)
+
+        for option in reversed(_fit_options(default)):
+            with_settings = option(with_settings)
+        return with_settings
+
+    return add
+
+
+def _fit_options(default):
+    """The options of `fit_options`."""
+    return (
+        click.option(
+            "-m",
+            "--model",
+            "names",
+            multiple=True,
+            metavar="MODEL",
+            help=f"A model, FILE.py with one, or best; repeat it for more. Default: {default}.",
+        ),
+        click.option(
+            "--loss",
+            default="log",
+            metavar="LOSS",
+            show_default=True,
+            help="What the fit minimises: cosine, log, cbrt, plain, lafortune, relative or "
+            "picture.",
+        ),
+        click.option(
+            "--robust",
+            metavar="WEIGHTS",
+            help="Give outliers little weight: bisquare, huber, cauchy ...",
+        ),
+        click.option(
+            "--solver",
+            metavar="SOLVER",
+            help="What searches: levenberg_marquardt, slsqp, trust_region or "
+            "differential_evolution.",
+        ),
+        click.option(
+            "--albedo-at-most",
+            type=float,
+            metavar="LIMIT",
+            help="Let no model reflect more than this share of the light, at 0°, 30°, 60°, 75°, "
+            "85°, 89°.",
+        ),
+        click.option(
+            "--max-angle",
+            default=80.0,
+            show_default=True,
+            help="Use the samples with both angles below this one [degrees].",
+        ),
+    )
+
+
 def output_options(command):
     """Adds --json and --quiet to a command that prints a result; it gets a `Console` instead."""
 
@@ -40,19 +106,21 @@ def output_options(command):
     return with_output
 
 
-def render_options(command):
-    """Adds --spp, --until, --size and --seed to a command that renders."""
+def render_options(command, spp=SPP, size="512, or what a scene file has"):
+    """Adds --spp, --until, --size and --seed to a command that renders.
+
+    `spp`, `size`: what they are by default, in words.
+    """
     count = {"type": click.IntRange(min=1), "metavar": "N"}
     seed = {"type": click.IntRange(min=0), "metavar": "N"}
-    size = "Side of a picture [pixels]. Default: 512, or what a scene file has."
     until = "Add samples until the noise floor, as a PSNR, is so high: 45dB is hardly seen."
     for option in (
         click.option("--seed", default=0, show_default=True, help="Seed of the samples.", **seed),
-        click.option("--size", help=size, **count),
+        click.option("--size", help=f"Side of a picture [pixels]. Default: {size}.", **count),
         click.option("--until", type=Decibels(), metavar="DECIBELS", help=until),
         click.option(
             "--spp",
-            help=f"Samples per pixel; with --until the most. Default: {SPP}, or what it takes.",
+            help=f"Samples per pixel; with --until the most. Default: {spp}, or what it takes.",
             **count,
         ),
     ):

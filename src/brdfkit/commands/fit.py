@@ -6,7 +6,12 @@ import click
 
 from brdfkit.commands._errors import say
 from brdfkit.commands._fits import print_fits
-from brdfkit.commands._options import output_options, render_options, scene_option
+from brdfkit.commands._options import (
+    fit_options,
+    output_options,
+    render_options,
+    scene_option,
+)
 from brdfkit.commands._stopping import status
 from brdfkit.commands.render import path_trace
 from brdfkit.errors import BrdfkitError, Interrupted
@@ -14,37 +19,7 @@ from brdfkit.errors import BrdfkitError, Interrupted
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@click.option(
-    "-m",
-    "--model",
-    "names",
-    multiple=True,
-    metavar="MODEL",
-    help="A model, FILE.py with one, or best; repeat it for more. Default: all.",
-)
-@click.option(
-    "--loss",
-    default="log",
-    metavar="LOSS",
-    show_default=True,
-    help="What the fit minimises: cosine, log, cbrt, plain, lafortune, relative or picture.",
-)
-@click.option(
-    "--robust",
-    metavar="WEIGHTS",
-    help="Give outliers little weight: bisquare, huber, cauchy ...",
-)
-@click.option(
-    "--solver",
-    metavar="SOLVER",
-    help="What searches: levenberg_marquardt, slsqp, trust_region or differential_evolution.",
-)
-@click.option(
-    "--albedo-at-most",
-    type=float,
-    metavar="LIMIT",
-    help="Let no model reflect more than this share of the light, at 0°, 30°, 60°, 75°, 85°, 89°.",
-)
+@fit_options("all")
 @click.option(
     "-o",
     "--output",
@@ -59,12 +34,6 @@ from brdfkit.errors import BrdfkitError, Interrupted
     help="Processes, for several FILEs. Default: one for each core.",
 )
 @click.option("--render", "rendered", is_flag=True, help="Path-trace the measurement and the fits.")
-@click.option(
-    "--max-angle",
-    default=80.0,
-    show_default=True,
-    help="Use the samples with both angles below this one [degrees].",
-)
 @click.option("--spectral", is_flag=True, help="Fit a weight for each measured wavelength.")
 @scene_option
 @render_options
@@ -72,14 +41,10 @@ from brdfkit.errors import BrdfkitError, Interrupted
 def fit(
     files,
     names,
-    loss,
-    robust,
-    solver,
-    albedo_at_most,
+    how,
     output,
     jobs,
     rendered,
-    max_angle,
     spectral,
     scene,
     spp,
@@ -103,7 +68,6 @@ def fit(
     from brdfkit.commands._many_files import fit_many
     from brdfkit.commands._ranking import BEST, print_ranking, recommend
     from brdfkit.commands._targets import results_folder
-    from brdfkit.fitting.solvers import AlbedoAtMost
     from brdfkit.materials import measured_material
     from brdfkit.model import labels
     from brdfkit.names import fit_file, slug
@@ -115,9 +79,7 @@ def fit(
     for name in names:
         if name != BEST:
             labels.model(name)
-    how = {"loss": loss, "robust": robust, "max_angle": max_angle, "seed": seed, "solver": solver}
-    how["constraints"] = () if albedo_at_most is None else AlbedoAtMost(albedo_at_most)
-    how["spectral"] = spectral
+    how |= {"seed": seed, "spectral": spectral}
     if len(files) > 1:
         if BEST in names:
             raise BrdfkitError("-m best ranks models on one material; name one FILE, or a model.")
@@ -148,7 +110,7 @@ def fit(
             errors, interrupted = picture.errors(), picture.spp < picture.asked
             written += [exr, output / "render.png"]
     with console.progress("compare"):
-        comparison = compare(material, fits, max_angle, spectral)
+        comparison = compare(material, fits, how["max_angle"], spectral)
     print_fits(material, fits, failed, comparison, errors, written, ranking, console)
     for error in failed.values():
         say(error)
