@@ -57,6 +57,8 @@ def test_contents(wheel):
     expected = plugins | tables | {"brdfkit/data/measured/index.toml", "brdfkit/__init__.pyi"}
     assert expected <= names
     assert {f"brdfkit/{f.relative_to(ROOT / 'src/brdfkit')}" for f in sources()} <= names
+    templates = {f"brdfkit/reporting/templates/{n}" for n in ("report.html", "page.css", "copy.js")}
+    assert templates <= names
     assert any(name.endswith("licenses/LICENSE") for name in names)
     tops = {name.partition("/")[0] for name in names}
     assert {top for top in tops if not top.endswith(".dist-info")} == {"brdfkit"}

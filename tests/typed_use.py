@@ -68,6 +68,7 @@ def fit_and_render(paint: bk.Measured) -> None:
     assert_type(rendering.errors().floor, dict[str, float])
     assert_type(bk.render_scene("kitchen.xml"), bk.Rendering)
     assert_type(bk.gallery([[paint, *fits]], scene="vase"), bk.Gallery)
+    assert_type(bk.report(paint, ["ward", *fits], "paint.html", {"loss": "cbrt"}), Path)
 
 
 def fit_many(files: list[Path]) -> None:

@@ -32,6 +32,7 @@ from .rendering import Rendering as Rendering
 from .rendering import gallery as gallery
 from .rendering import render as render
 from .rendering import render_scene as render_scene
+from .reporting.report import report as report
 from .reproducing import Reproduction as Reproduction
 from .reproducing import reproduce as reproduce
 from .sweeping import Sweep as Sweep

@@ -49,11 +49,11 @@ def _draw_slice(figure, axes, data):
     across = int(np.argmin(np.abs(table.centres[-1] - np.pi / 2)))
     cells = (0,) * table.anisotropic + (slice(None), slice(None), across)
     values = luminance(table.filled_values[cells])
-    known = _is_measured(data, table, cells)
+    known = is_measured(data, table, cells)
 
     # the picture; theta_h as in a table, by its square root
     axes.patch.set(facecolor="0.92", hatch="////", edgecolor="0.75", linewidth=0)
-    norm = _norm(values[known] if known.any() else values)
+    norm = scale_of(values[known] if known.any() else values)
     shown = axes.imshow(
         np.maximum(values, 0.99 * norm.vmin).T,  # 0 gets the colour of values below the scale, too
         norm=norm,
@@ -79,7 +79,7 @@ def _draw_slice(figure, axes, data):
         bar.ax.yaxis.set_minor_formatter("{x:.2g}")
 
 
-def _is_measured(data, table, cells):
+def is_measured(data, table, cells):
     """Which cells of a slice were measured, or are near a sample."""
     if data.is_table:
         return np.isfinite(table.values[cells]).all(axis=-1)
@@ -87,7 +87,7 @@ def _is_measured(data, table, cells):
     return is_near(data, wi, wo).reshape(table.values[cells].shape[:-1])
 
 
-def _norm(values):
+def scale_of(values):
     """Matplotlib's logarithmic scale for `values`, without the outermost 1 % on either side."""
     from matplotlib.colors import LogNorm
 

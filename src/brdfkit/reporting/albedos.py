@@ -1,0 +1,44 @@
+"""The albedo over the angle of incidence as a chart: measured as dots, fitted as lines."""
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from brdfkit.auditing.albedos import albedo
+from brdfkit.colours import luminance
+from brdfkit.reporting.charts import Chart, fit_class, linear
+
+
+def albedo_chart(measured, fits, anisotropic):
+    """The chart of luminances; `measured`: the `Albedo` of the measurement, which may be
+    `anisotropic`."""
+    dots = luminance(measured.values)
+    lines = [_albedo(fit.rgb, anisotropic) for fit in fits]
+    most = 1.1 * max(np.nanmax(values) for values in (dots, *lines))
+    x = linear("θi", 0, 90, range(0, 91, 15), "°")
+    y = linear("reflected / incident light", 0, most, np.arange(0, most, _step(most)).round(6))
+    chart = Chart("albedo", x, y)
+    if most > 1:
+        chart.across(1, "mirror")
+    for number, values in enumerate(lines):
+        chart.line(measured.theta_i, values, fit_class(number))
+    known = measured.theta_i <= measured.measured_to + 1
+    chart.dots(measured.theta_i[known], dots[known], "measured")
+    chart.dots(measured.theta_i[~known], dots[~known], "measured guessed")
+    return chart.svg
+
+
+def _albedo(model, anisotropic):
+    """The albedo (n,) of a model's luminance, at the angles of that of the measurement."""
+    grey = SimpleNamespace(
+        channels=("Y",),
+        anisotropic=anisotropic,
+        eval=lambda wi, wo: luminance(model.eval(wi, wo))[:, None],
+    )
+    return albedo(grey, measured_to=90.0).values[:, 0]
+
+
+def _step(most):
+    """A step of ticks, 1, 2 or 5 times a power of ten, of which `most` has two to five."""
+    power = 10 ** np.floor(np.log10(most))
+    return power * (1 if most > 4 * power else 0.5 if most > 2 * power else 0.2)

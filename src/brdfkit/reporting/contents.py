@@ -1,0 +1,121 @@
+"""What a report says, as plain data for its template: the fits in their order, the best first."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from brdfkit.auditing import audit
+from brdfkit.fitting import losses
+from brdfkit.names import make_unique
+from brdfkit.rendering.montage import colour_differences
+from brdfkit.reporting import origin, parameters
+from brdfkit.reporting.albedos import albedo_chart
+from brdfkit.reporting.errors_table import errors_table
+from brdfkit.reporting.images import halved, jpeg
+from brdfkit.reporting.lobes import lobe_charts
+from brdfkit.reporting.picture_errors import PictureError, picture_errors
+from brdfkit.reporting.pixels import for_script
+from brdfkit.reporting.slices import slice_charts
+from brdfkit.reporting.standing import ranked_by, standings
+from brdfkit.reporting.verdict import verdict
+from brdfkit.version import __version__
+
+LEAST_NOISE = 0.002  # of a value: less is no bar that one could see
+
+
+@dataclass(frozen=True, eq=False)
+class Contents:
+    """What a report says: `said` for its template; and for the page of many reports the `names` of
+    the fits, the best first, the `error` and `loss` of the best and the `picture_errors`, the
+    `findings` of the audit, and small pictures of the measurement and the best fit; and the samples
+    per pixel that there are, and that were asked for."""
+
+    said: dict[str, Any]
+    material: str
+    verdict: str
+    names: list[str]
+    loss: str
+    error: float
+    picture_errors: list[PictureError]
+    findings: tuple[str, ...]
+    thumbnails: list[str]
+    spp: int
+    asked: int
+
+    @property
+    def picture_texts(self):
+        """The errors of the best fit's picture as texts."""
+        return [error.text(error.values[0]) for error in self.picture_errors]
+
+
+def describe(material, fits, rendering, file, path):
+    """The `Contents` of a report of a `Measured` and its `fits`, with the `Rendering` of both."""
+    loss = ranked_by(fits)
+    standing = standings(material, fits, loss)
+    errors, differences = picture_errors(rendering), [*colour_differences(rendering).values()]
+    pictures = [*rendering.pictures.values()]
+
+    # the best first
+    order = sorted(range(len(fits)), key=lambda k: standing[k].errors[loss])
+    fits, standing = [fits[k] for k in order], [standing[k] for k in order]
+    errors = {metric: error.in_order(order) for metric, error in errors.items()}
+    differences = [differences[k] for k in order]
+    pictures = [pictures[0], *(pictures[1 + k] for k in order)]
+    names: list[str] = []
+    for fit in fits:
+        names.append(make_unique(fit.name, names))
+
+    head, more = verdict(names, standing, errors, loss)
+    found = audit(material)
+    known = [one for one in found.noise.relative if np.isfinite(one)]
+    sigma = float(np.median(known)) if known else 0.0
+    how = rendering.spp, pictures[0].shape[0], rendering.seed
+    command, untold = origin.command(material, file, fits, *how, path)
+    said = {
+        "material": material.name,
+        "verdict": head,
+        "more": more,
+        "facts": origin.facts(material, file, *how),
+        "command": command,
+        "untold": untold,
+        "names": names,
+        "stills": [jpeg(picture) for picture in pictures],
+        "size": how[1],
+        "captions": [_caption(errors, place) for place in range(len(names))],
+        "picture_errors": [*errors.values()],
+        "pixels": for_script([material.name, *names], pictures, differences),
+        "errors": errors_table(standing, loss),
+        "meanings": {n: losses[n].meaning.replace("θ_", "θ") for n in standing[0].errors},
+        "loss": loss,
+        "lobes": lobe_charts(material, fits, sigma),
+        "noise_shown": sigma > LEAST_NOISE,
+        "slices": slice_charts(material, fits),
+        "albedo": albedo_chart(found.albedo, fits, material.anisotropic),
+        "fits": [parameters.describe(fit) for fit in fits],
+        "audit": found.rows(),
+        "findings": found.findings(),
+        "info": material.info,
+        "version": __version__,
+    }
+    return Contents(
+        said,
+        material.name,
+        head,
+        names,
+        loss,
+        standing[0].errors[loss],
+        [*errors.values()],
+        found.findings(),
+        [jpeg(halved(picture)) for picture in pictures[:2]],
+        rendering.spp,
+        rendering.asked,
+    )
+
+
+def _caption(errors, place):
+    """A line on the picture of a fit, by its place."""
+    psnr, difference = (
+        error.text(error.values[place]) for error in (errors["psnr"], errors["delta_e_2000"])
+    )
+    return f"PSNR {psnr} dB · ΔE {difference}"

@@ -1,0 +1,35 @@
+"""The fits of a report: of models, finished, or saved."""
+
+from pathlib import Path
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.fitting import Fit
+from brdfkit.loading import load
+from brdfkit.verbs.fit import fit
+
+
+def as_list(things):
+    """One model or fit or several as a list; at least one."""
+    found = [things] if isinstance(things, str | Path | type | Fit) else list(things)
+    if not found:
+        raise BrdfkitError("There is no model to report on; give at least one.")
+    return found
+
+
+def to_fit(thing, material, settings, progress=None):
+    """The fit of a model to a `Measured`, or a finished one, or the one saved in a .json file.
+
+    Raises `BrdfkitError` as `fit` does, and for a fit of other data.
+    """
+    saved = isinstance(thing, str | Path) and str(thing).lower().endswith(".json")
+    found = load(thing) if saved else thing
+    if saved and not isinstance(found, Fit):
+        raise BrdfkitError(f"{thing}: is no saved fit; name one, or a model.")
+    if not isinstance(found, Fit):
+        return fit(thing, material, **settings, progress=progress)
+    if found.checksum and found.checksum != material.checksum:
+        raise BrdfkitError(
+            f"{found.name} was fitted to other data, {found.data}, than {material.name} has; give "
+            "fits of this material, or names of models."
+        )
+    return found

@@ -1,0 +1,48 @@
+"""The lobes as charts: the BRDF over the angle θo, measured as dots and fitted as lines."""
+
+import numpy as np
+
+from brdfkit.plotting.plane_of_incidence import is_scattered, lobe, usual_angles
+from brdfkit.reporting.charts import Axis, Chart, fit_class, linear
+from brdfkit.thumbnails.radius import Radius
+
+STEP, APART = 0.5, 3.0  # degrees between the points of a line, and between dots of a table
+PEAK = 4.0  # degrees beside the peak: there lines have all their points, and dots a closer step
+
+
+def lobe_charts(material, fits, noise):
+    """A chart for each of a few incidences. `noise`: the standard deviation of a measured value
+    over the value, 0 where it is unknown."""
+    material = getattr(material, "rgb", material)
+    return [_chart(material, fits, noise, angle) for angle in usual_angles([material])]
+
+
+def _chart(material, fits, noise, theta_i):
+    measured, *fitted = (lobe(getattr(thing, "rgb", thing), theta_i) for thing in (material, *fits))
+    radius = Radius([values for _, values in (measured, *fitted)])
+    ticks = [(value, f"{value:g}") for value in radius.ticks()]
+    x = linear("θo, towards the light < 0", -90, 90, range(-90, 91, 30), "°")
+    chart = Chart(f"θi = {theta_i:g}°", x, Axis("BRDF [sr⁻¹]", ticks, radius))
+    chart.upright(theta_i, "mirror")
+    for number, (theta_o, values) in enumerate(fitted):
+        shown = _thinned(theta_o, values, STEP)
+        chart.line(theta_o[shown], values[shown], fit_class(number))
+    theta_o, values = measured
+    if not is_scattered(material):
+        shown = _thinned(theta_o, values, APART)
+        theta_o, values = theta_o[shown], values[shown]
+    if noise:
+        chart.bars(theta_o, values * max(1 - noise, 0), values * (1 + noise), "measured")
+    chart.dots(theta_o, values, "measured")
+    return chart.svg
+
+
+def _thinned(theta_o, values, step):
+    """Which points (n,) to draw: one in each `step` [degrees], and six times as many at the
+    peak."""
+    if not np.isfinite(values).any():
+        return np.ones(len(values), bool)
+    at_peak = np.abs(theta_o - theta_o[np.nanargmax(values)]) < PEAK
+    fine, coarse = (max(1, round(width / 0.1)) for width in (step / 6, step))
+    number = np.arange(len(theta_o))
+    return (number % coarse == 0) | (at_peak & (number % fine == 0))

@@ -1,0 +1,121 @@
+"""Reports of many materials, and the page that leads to them."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.files import make_folder
+from brdfkit.materials import measured_material
+from brdfkit.names import make_unique, printable, slug
+from brdfkit.reporting import page
+from brdfkit.reporting.contents import Contents
+from brdfkit.reporting.fits import to_fit
+from brdfkit.reporting.report import write_report
+from brdfkit.verbs.compare import format_error
+from brdfkit.version import __version__
+
+PAGE = "index.html"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A report: the name of its file in the folder without suffix, and what it says."""
+
+    name: str
+    contents: Contents
+
+
+@dataclass(frozen=True)
+class Reports:
+    """The reports in a `folder`; `problems`: sentences on what failed; `interrupted`: by Ctrl-C."""
+
+    folder: Path
+    entries: list[Entry]
+    problems: list[str]
+    interrupted: bool
+
+    @property
+    def written(self):
+        """The files: the page first, if there is a report."""
+        files = [self.folder / f"{entry.name}.html" for entry in self.entries]
+        return [self.folder / PAGE, *files] if files else []
+
+    def table(self):
+        """The names of columns, and rows of texts; a column of numbers begins with ">"."""
+        if not self.entries:
+            return (), []
+        errors = self.entries[0].contents.picture_errors
+        columns = "material", "best", ">error", *(f">{error.title}" for error in errors)
+        rows = [
+            (one.material, one.names[0], format_error(one.error), *one.picture_texts)
+            for one in (entry.contents for entry in self.entries)
+        ]
+        return columns, rows
+
+
+def report_many(files, things, folder, settings, progress=None, **pictures):
+    """Write a report of each file, with the models `things`, and the page; returns the `Reports`.
+
+    `settings`: of `fit`; `pictures`: spp, until, size and seed; `progress`: called with (done,
+    total) before each file. A file that cannot be read, and a model that cannot be fitted, do not
+    stop the others. Ctrl-C ends with the reports that are finished.
+    """
+    folder = Path(folder)
+    make_folder(folder)
+    entries: dict[str, Entry] = {}
+    problems, interrupted = [], False
+    try:
+        for number, file in enumerate(files):
+            if progress:
+                progress(number, len(files))
+            try:
+                material = measured_material(file)
+                fits = _fit_each(things, material, settings, problems)
+                name = make_unique(slug(material.name), {*entries, PAGE.removesuffix(".html")})
+                path = folder / f"{name}.html"
+                said = write_report(material, fits, path, file, **pictures)
+            except BrdfkitError as error:
+                problems.append(str(error) if str(file) in str(error) else f"{file}: {error}")
+                continue
+            entries[name] = Entry(name, said)
+    except KeyboardInterrupt:
+        interrupted = True
+        if not entries:
+            raise
+    found = Reports(folder, [*entries.values()], problems, interrupted)
+    if found.entries:
+        _write_page(found)
+    return found
+
+
+def _fit_each(things, material, settings, problems):
+    """The fits of those models that can be fitted; of the others a sentence joins `problems`.
+
+    Raises `BrdfkitError` where none can be fitted.
+    """
+    fits, failed = [], []
+    for thing in things:
+        try:
+            fits.append(to_fit(thing, material, settings))
+        except BrdfkitError as error:
+            failed.append(error)
+    if not fits:
+        raise failed[0]
+    problems += [f"{material.name}: {error}" for error in failed]
+    return fits
+
+
+def _write_page(found):
+    """Write the page of a `Reports`."""
+    columns, rows = found.table()
+    page.write(
+        "gallery.html",
+        found.folder / PAGE,
+        entries=[
+            {"file": f"{entry.name}.html", "row": row, "said": entry.contents}
+            for entry, row in zip(found.entries, rows, strict=True)
+        ],
+        columns=columns,
+        problems=[printable(problem) for problem in found.problems],
+        version=__version__,
+    )

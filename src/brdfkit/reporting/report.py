@@ -1,0 +1,115 @@
+"""`report`: one HTML file that shows how well models describe a measured material."""
+
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from brdfkit.arguments import to_dictionary, to_whole_number
+from brdfkit.errors import BrdfkitError
+from brdfkit.files import require_writable
+from brdfkit.fitting import Fit
+from brdfkit.materials import MaterialLike, measured_material
+from brdfkit.measured import Measured
+from brdfkit.model import Model
+from brdfkit.reporting import page
+from brdfkit.reporting.balls import render_balls
+from brdfkit.reporting.contents import Contents, describe
+from brdfkit.reporting.defaults import SIZE
+from brdfkit.reporting.fits import as_list, to_fit
+from brdfkit.verbs.fit import check_settings
+
+LARGEST = 1024  # side of a picture [pixels]: of four such, a page has some 20 MB
+
+
+def report(
+    material: MaterialLike,
+    things: str | Path | type[Model] | Fit | Iterable[str | Path | type[Model] | Fit],
+    path: str | Path,
+    settings: Mapping[str, Any] | None = None,
+    *,
+    spp: int | None = None,
+    until: float | None = None,
+    size: int = SIZE,
+    seed: int = 0,
+    progress: Callable[[int, int], object] | None = None,
+) -> Path:
+    """Write one HTML file that shows how well models describe a measured material.
+
+    It holds a verdict in words, the errors, path-traced pictures to compare, the lobes, slices and
+    albedo, the parameters and the audit. Any browser shows it, without a network. Equal input gives
+    an equal file. Ctrl-C during the pictures keeps the samples that all of them have.
+
+    Parameters
+    ----------
+    material : Measured, str or Path
+        The measured material, or the name or path of one.
+    things : str, Path, class or Fit, or several
+        The models to fit, as for `fit`, or finished fits, or the paths of saved ones, ``.json``.
+    path : str or Path
+        The file to write, ``.html``.
+    settings : dict of str to object, optional
+        The other arguments of `fit` by name, as ``{"loss": "cbrt"}``.
+    spp : int, optional
+        Samples per pixel of the pictures, by default 256; with `until`, the most of them.
+    until : float, optional
+        The noise floor [dB] to which samples are added, as in `render`.
+    size : int, default 288
+        Side of a picture [pixels], from 16 to 1024.
+    seed : int, default 0
+        Seed of the pictures' samples.
+    progress : callable, optional
+        Called with (steps done, steps in all) of each fit and of the pictures, one after the other.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    BrdfkitError
+        For what `fit` and `render` refuse, fits of other data, and where the file cannot be
+        written.
+
+    Examples
+    --------
+    >>> report("car_paint", ["ward", "ggx"], "car_paint.html")    # doctest: +SKIP
+    """
+    path = require_page(path)
+    chosen = check_settings(to_dictionary("settings", settings))
+    data, file = measured_material(material), material if isinstance(material, str | Path) else None
+    fits = [to_fit(thing, data, chosen, progress) for thing in as_list(things)]
+    write_report(data, fits, path, file, spp, until, size, seed, progress)
+    return path
+
+
+def write_report(
+    material: Measured,
+    fits: list[Fit],
+    path: Path,
+    file: str | Path | None = None,
+    spp: int | None = None,
+    until: float | None = None,
+    size: int = SIZE,
+    seed: int = 0,
+    progress: Callable[[int, int], object] | None = None,
+) -> Contents:
+    """Write the report of a material and finished fits; `file`: from where the material came.
+
+    Returns what it says. Raises `BrdfkitError` as `report` does.
+    """
+    if to_whole_number("size", size, least=16) > LARGEST:
+        raise BrdfkitError(f"size = {size}: pictures of a page have at most {LARGEST} pixels.")
+    rendering = render_balls(material, fits, spp, until, size, seed, progress)
+    contents = describe(material, fits, rendering, file, path)
+    page.write("report.html", path, **contents.said)
+    return contents
+
+
+def require_page(path: str | Path) -> Path:
+    """The `Path` of a page to write; `BrdfkitError` where it is no .html or cannot be written."""
+    path = Path(path)
+    if path.suffix.lower() not in (".html", ".htm"):
+        raise BrdfkitError(f"{path}: a report is written as .html; choose this suffix.")
+    require_writable(path)
+    return path

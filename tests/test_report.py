@@ -1,0 +1,564 @@
+"""Reports: one HTML file that says what is so, harms nobody, and moves in a browser."""
+
+import hashlib
+import io
+import json
+import re
+import shlex
+import shutil
+import zlib
+from base64 import b64decode, b64encode
+from contextlib import contextmanager
+from html.parser import HTMLParser
+from pathlib import Path
+
+import drjit as dr
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from PIL import Image
+
+import brdfkit as bk
+from brdfkit.cli import main
+from brdfkit.reporting import many_files, origin, pixels, report, standing
+from brdfkit.reporting.balls import render_balls
+from brdfkit.reporting.defaults import SIZE as SIZE_OF_REPORTS
+from brdfkit.reporting.verdict import in_words
+from brdfkit.samples import Table
+
+NAME = 'a<b>&"c"</script>'
+SIZE, SPP = 48, 16
+SMALL = {"spp": SPP, "size": SIZE}
+TRUTH = bk.models()["ward"](
+    alpha_u=0.2, diffuse_reflectance=(0.1, 0.2, 0.3), specular_reflectance=(0.3, 0.3, 0.2)
+)
+
+
+def measured(name, seed=0):
+    """A small table of TRUTH with 3 % noise."""
+    empty = Table(np.zeros((12, 12, 12, 3)))
+    wi, wo = (w.reshape(-1, 3) for w in empty.directions())
+    noise = 1 + 0.03 * np.random.default_rng(seed).normal(size=(len(wi), 3))
+    values = (TRUTH.eval(wi, wo) * noise).reshape(empty.values.shape)
+    return bk.Measured.from_table(values, name=name, info={"made <by>": "a & b"})
+
+
+@pytest.fixture(scope="module")
+def material():
+    return measured(NAME)
+
+
+@pytest.fixture(scope="module")
+def fits(material):
+    return [bk.fit(name, material) for name in ("lambert", "ward")]
+
+
+@pytest.fixture(scope="module")
+def written(material, fits, tmp_path_factory):
+    """The path of a report, and what it says."""
+    path = tmp_path_factory.mktemp("one") / "report.html"
+    return path, report.write_report(material, fits, path, **SMALL)
+
+
+@pytest.fixture(scope="module")
+def rendering(material, fits):
+    """The pictures of the report, the best fit first, as it shows them."""
+    found = render_balls(material, fits, SPP, None, SIZE, 0)
+    measured, lambert, ward = found.pictures.values()
+    return measured, ward, lambert
+
+
+class Page(HTMLParser):
+    """A page in its elements: (tag, attributes), and the text in those that are open."""
+
+    def __init__(self, path):
+        super().__init__(convert_charrefs=True)
+        self.text, self.elements, self.open = path.read_text(encoding="utf-8"), [], []
+        self.feed(self.text)
+        self.close()
+
+    def handle_starttag(self, tag, attributes):
+        self.elements.append((tag, dict(attributes), []))
+        if tag not in ("meta", "img", "input", "wbr", "br", "image"):
+            self.open.append(self.elements[-1])
+
+    def handle_startendtag(self, tag, attributes):
+        self.elements.append((tag, dict(attributes), []))
+
+    def handle_endtag(self, tag):
+        assert self.open.pop()[0] == tag
+
+    def handle_data(self, data):
+        for _, _, texts in self.open:
+            texts.append(data)
+
+    def all(self, tag):
+        """(attributes, text) of the elements of this tag."""
+        return [(given, "".join(texts)) for t, given, texts in self.elements if t == tag]
+
+
+def test_it_is_balanced_html_without_anything_from_elsewhere(written):
+    page = Page(written[0])
+    assert page.open == []
+    assert page.text.startswith("<!doctype html>")
+    assert not re.findall(r"\w://|@import|url\(", page.text)
+    for _, attributes, _ in page.elements:
+        assert not {"style", "onclick", "onload", "srcset"} & attributes.keys()
+        for address in (attributes.get("src"), attributes.get("href")):
+            assert address is None or address.startswith("data:image/")
+
+
+def test_its_policy_allows_its_own_style_and_scripts_alone(written):
+    page = Page(written[0])
+    (policy,) = [a["content"] for a, _ in page.all("meta") if "http-equiv" in a]
+    rules = dict(rule.strip().split(" ", 1) for rule in policy.split(";"))
+    assert rules["default-src"] == "'none'"
+    assert rules["img-src"] == "data:"
+
+    def digest(text):
+        return f"'sha256-{b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+    assert rules["style-src"].split() == [digest(text) for _, text in page.all("style")]
+    scripts = [text for given, text in page.all("script") if given["type"] == "module"]
+    assert rules["script-src"].split() == [digest(text) for text in scripts]
+
+
+def test_names_are_escaped_everywhere(written):
+    page = Page(written[0])
+    assert [text for _, text in page.all("h1")] == [NAME]
+    assert NAME in page.all("title")[0][1]
+    (packed,) = [text for given, text in page.all("script") if given["type"] != "module"]
+    assert json.loads(packed)["names"] == [NAME, "ward", "lambert"]
+    assert "made <by>" in [text for _, text in page.all("dt")]
+    assert len(page.all("script")) == 3
+    records = [json.loads(text) for _, text in page.all("pre") if text.startswith("{")]
+    assert [record["material"] for record in records] == [NAME, NAME]
+
+
+def test_equal_input_gives_equal_bytes_however_many_threads(written, material, fits, tmp_path):
+    threads = dr.thread_count()
+    try:
+        dr.set_thread_count(3)
+        again = report.report(material, fits, tmp_path / "report.html", **SMALL)
+    finally:
+        dr.set_thread_count(threads)
+    assert again.read_bytes() == written[0].read_bytes()
+
+
+def test_three_fits_are_below_three_megabytes(written):
+    """Of noisy pixels, which hardly shrink, there are as many bytes as there are pixels."""
+    page, packed = len(written[0].read_bytes()), written[1].said["pixels"]
+    small = [sum(map(len, packed[kind])) for kind in ("pictures", "differences")]
+    full = [size * (SIZE_OF_REPORTS / SIZE) ** 2 for size in small]
+    assert page - sum(small) + full[0] * 4 / 3 + full[1] * 3 / 2 < 2_500_000  # and 3 more charts
+
+
+def unpack(text):
+    """The codes that the script unpacks, by NumPy."""
+    split = np.frombuffer(zlib.decompress(b64decode(text)), np.uint8).reshape(2, -1)
+    return np.cumsum(split[0] + 256 * split[1].astype(np.uint16), dtype=np.uint16)
+
+
+def test_the_pixels_are_linear_light_to_half_a_step(written, rendering):
+    packed = written[1].said["pixels"]
+    for text, picture in zip(packed["pictures"], rendering, strict=True):
+        codes = unpack(text).reshape(3, SIZE, SIZE)
+        light = np.where(codes, 2.0 ** (packed["darkest"] + codes / packed["steps"]), 0)
+        np.testing.assert_allclose(light, np.moveaxis(picture, -1, 0), rtol=0.0028, atol=2**-13)
+
+
+def test_a_difference_is_kept_to_a_few_hundredths_where_it_is_small():
+    given = np.array([[0.0, 0.5, 1.0, 5.0, 100.0, 300.0, np.nan]])
+    kept = pixels.HIGHEST * (pixels.encode_difference(given) / 255) ** 2
+    np.testing.assert_allclose(kept[0, :4], given[0, :4], atol=0.08)
+    assert kept[0, 4:].tolist() == [100, 100, 0]
+
+
+def test_the_verdict_is_what_the_samples_say(written, material, fits):
+    said = written[1]
+    assert said.names == ["ward", "lambert"]
+    assert said.verdict.startswith("ward is best by every loss and by its picture: half of the")
+    # independent of the losses: the ratio of measured and modelled values
+    samples = material.samples.at(material.samples.within(80))
+    cosines = samples.wi[:, 2:] * samples.wo[:, 2:]
+    both = samples.values, fits[1].eval(samples.wi, samples.wo)
+    logs = [np.log(values * cosines + 1e-3) for values in both]
+    off = np.sqrt(((logs[0] - logs[1]) ** 2).mean(axis=1))
+    order = np.argsort(off)
+    shares = np.cumsum(samples.weight[order]) / samples.weight.sum()
+    within = [100 * np.expm1(off[order][shares > share][0]) for share in (0.5, 0.95)]
+    figures = re.findall(r"within ([\d.]+)\s%", said.verdict)
+    np.testing.assert_allclose([float(f) for f in figures], within, rtol=0.02)
+    assert "Its lead over the others is more than noise." in said.said["more"]
+
+
+def test_equal_fits_are_tied_and_worse_ones_are_not(material, fits):
+    lambert, ward = fits
+    near = bk.fit("ward", material, max_angle=79)
+    tied = [one.tied for one in standing.standings(material, [ward, near, lambert], "log")]
+    assert tied == [True, True, False]
+
+
+@pytest.mark.parametrize(
+    ("factor", "words"), [(1.0, "0.0\xa0%"), (1.25, "25\xa0%"), (3.14, "a factor of 3.1")]
+)
+def test_factors_in_words(factor, words):
+    assert in_words(factor) == words
+
+
+def write_materials():
+    """Write two materials and a file that is none to the current folder."""
+    for seed, name in enumerate(("paint", "second paint")):
+        bk.save(measured(name, seed), f"{name}.npz")
+    Path("bad.npz").write_text("bad")
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """A current folder with materials."""
+    monkeypatch.chdir(tmp_path)
+    write_materials()
+    return tmp_path
+
+
+def cli(*words):
+    return CliRunner().invoke(main, list(map(str, words)), catch_exceptions=False)
+
+
+FEW = "--spp", SPP, "--size", SIZE, "-m", "ward"
+
+
+def test_the_command_in_a_report_repeats_it(here):
+    done = cli("report", "paint.npz", *FEW, "--loss", "cbrt", "--max-angle", 70)
+    assert done.exit_code == 0, done.stderr
+    assert "ward is the only fit" in done.stdout
+    path = Path("paint-report.html")
+    first = path.read_bytes()
+    page = Page(path)
+    facts = dict(zip(*([text for _, text in page.all(tag)] for tag in ("dt", "dd")), strict=True))
+    assert (
+        facts["SHA-256 of the file"] == hashlib.sha256(Path("paint.npz").read_bytes()).hexdigest()
+    )
+    program, *words = shlex.split(page.all("pre")[-1][1])
+    assert program == "brdfkit"
+    path.unlink()
+    assert cli(*words).exit_code == 0
+    assert path.read_bytes() == first
+
+
+def test_settings_that_no_option_tells_are_named(material):
+    settings = {"solver": "slsqp", "constraints": bk.AlbedoAtMost(0.9), "max_angle": 70}
+    told = bk.fit("lambert", material, **settings)
+    words, untold = origin.command(material, "x.npz", [told], SPP, SIZE, 0, "out/x y.html")
+    assert words.endswith(
+        "--max-angle 70 --solver slsqp --albedo-at-most 0.9 --spp 16 --size 48 "
+        "--seed 0 -o 'x y.html'"
+    )
+    assert untold == []
+    ward = bk.fit("ward", material, "cbrt", bounds={"alpha_u": (0.1, 0.3)}, seed=3, starts=1)
+    _, untold = origin.command(material, None, [told, ward], SPP, SIZE, 0, "x.html")
+    assert {"loss", "bounds", "seed", "starts"} <= set(untold)
+
+
+@pytest.fixture(scope="module")
+def reports(tmp_path_factory):
+    """A folder of reports of two materials and a bad file, and what was printed."""
+    folder = tmp_path_factory.mktemp("many")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        write_materials()
+        files = "second paint.npz", "bad.npz", "paint.npz"
+        done = cli("report", *files, *FEW, "-m", "ward.json", "-o", "all")
+    return folder / "all", done
+
+
+def test_a_gallery_passes_bad_files_and_models_that_cannot_be_fitted(reports):
+    folder, done = reports
+    assert done.exit_code == 2
+    assert "brdfkit: bad.npz: " in done.stderr
+    assert "brdfkit: paint: ward.json: there is no such file" in done.stderr
+    written = {p.name for p in folder.iterdir()}
+    assert written == {"index.html", "paint.html", "second paint.html"}
+    page = Page(folder / "index.html")
+    assert page.open == []
+    assert {given["href"] for given, _ in page.all("a")} == {"paint.html", "second%20paint.html"}
+    assert "ward.json" in next(text for _, text in page.all("li"))
+
+
+def test_ctrl_c_leaves_the_reports_that_are_finished(here, written, monkeypatch):
+    def write(material, fits, path, *_, **__):
+        if material.name != "paint":
+            raise KeyboardInterrupt
+        path.write_text("finished")
+        return written[1]
+
+    monkeypatch.setattr(many_files, "write_report", write)
+    done = cli("report", "paint.npz", "second paint.npz", "-m", "lambert", "-o", "some")
+    assert done.exit_code == 130
+    assert done.stderr == "brdfkit: interrupted; 1 of 2 reports are finished.\n"
+    assert sorted(p.name for p in Path("some").iterdir()) == ["index.html", "paint.html"]
+
+
+def test_ctrl_c_during_the_pictures_keeps_their_samples(here, monkeypatch):
+    monkeypatch.setattr("brdfkit.commands._console.Console.progress", stop_after_two_passes)
+    done = cli("report", "paint.npz", "-m", "lambert", "--spp", 64, "--size", 16)
+    said = "brdfkit: interrupted; rendered with 32 of 64 samples per pixel.\n"
+    assert (done.exit_code, done.stderr) == (130, said)
+    assert "32 samples per pixel" in Path("paint-report.html").read_text()
+
+
+@contextmanager
+def stop_after_two_passes(self, what):
+    """In place of `Console.progress`: Ctrl-C in the third pass of two pictures."""
+
+    def report(done, total):
+        if what == "render" and done == 5:
+            raise KeyboardInterrupt
+
+    yield report
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["paint.npz", "-o", "page.txt"], "page.txt: a report is written as .html"),
+        (["paint.npz", "-m", "wrad"], "did you mean ward?"),
+        (["bad.npz"], "bad.npz: "),
+        (["paint.npz", "--size", 2000], "size = 2000: pictures of a page have at most 1024"),
+        (["paint.npz", "paint.npz", "-m", "best"], "-m best ranks models on one material"),
+    ],
+)
+def test_mistakes_are_said_and_nothing_is_written(here, words, said):
+    before = sorted(here.iterdir())
+    done = cli("report", *words, *([] if "-m" in words else ["-m", "lambert"]))
+    assert done.exit_code == 2
+    assert said in done.stderr
+    assert sorted(here.iterdir()) == before
+
+
+def test_a_fit_of_other_data_is_refused(fits, tmp_path):
+    with pytest.raises(bk.BrdfkitError, match="lambert was fitted to other data"):
+        bk.report(measured("other", seed=3), fits, tmp_path / "no.html", **SMALL)
+
+
+# ---- In a browser --------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """Headless Chromium: the system's, or the one that Playwright has installed."""
+    api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+    with api.sync_playwright() as playwright:
+        names = "chromium", "chromium-browser", "google-chrome"
+        own = playwright.chromium.executable_path
+        found = next(filter(None, map(shutil.which, names)), own if Path(own).exists() else None)
+        if not found:
+            pytest.skip("there is no Chromium here; install it, or 'playwright install chromium'")
+        launched = playwright.chromium.launch(executable_path=found, args=["--no-sandbox"])
+        yield launched
+        launched.close()
+
+
+@pytest.fixture
+def show(browser):
+    """Opens a file in a tab without a network; afterwards nothing was asked for or complained."""
+    asked, said, contexts = [], [], []
+
+    def open_tab(path, **how):
+        contexts.append(browser.new_context(offline=True, **how))
+        tab = contexts[-1].new_page()
+        tab.on("request", lambda request: asked.append(request.url))
+        tab.on("console", lambda message: said.append(message.text))
+        tab.on("pageerror", lambda error: said.append(str(error)))
+        tab.goto(Path(path).resolve().as_uri())
+        return tab
+
+    yield open_tab
+    for context in contexts:
+        context.close()
+    assert said == []
+    assert [url for url in asked if not url.startswith(("file:", "data:"))] == []
+
+
+@pytest.fixture
+def tab(show, written):
+    # Playwright's own questions need what the page forbids
+    found = show(written[0], viewport={"width": 1200, "height": 900}, bypass_csp=True)
+    found.locator(".viewer").wait_for()
+    found.locator(".stage").scroll_into_view_if_needed()
+    return found
+
+
+def choose(tab, name, value):
+    tab.locator(f"input[name={name}][value='{value}']").check(force=True)
+
+
+def slide(tab, name, value):
+    tab.locator(f"input[name={name}]").fill(str(value))
+
+
+def drawn(tab, which):
+    """The bytes (height, width, 3) of sRGB on one of the two canvases."""
+    canvas = tab.locator(".stage canvas").nth(which)
+    address = canvas.evaluate("canvas => canvas.toDataURL()")
+    return opened(b64decode(address.partition(",")[2]))
+
+
+def opened(png):
+    """The bytes (height, width, 3) of sRGB in a PNG."""
+    return np.asarray(Image.open(io.BytesIO(png)).convert("RGB"), float)
+
+
+def srgb(linear):
+    """The bytes of sRGB, by the formula of IEC 61966-2-1."""
+    x = np.clip(linear, 0, 1)
+    return 255 * np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
+
+
+def test_pictures_are_shown_at_the_chosen_exposure(tab, rendering):
+    for stops in (0, 2.5, -4):
+        slide(tab, "exposure", stops)
+        for which in (0, 1):
+            expected = srgb(rendering[which] * 2**stops)
+            assert np.abs(drawn(tab, which) - expected).max() < 1.5
+    assert tab.locator("output[name=stops]").inner_text() == "−4 stops"
+
+
+def test_the_wipe_moves_by_keyboard_and_by_pointer(tab):
+    over = tab.locator(".over")
+
+    def clip():
+        return over.evaluate("e => getComputedStyle(e).clipPath")
+
+    assert clip() == "inset(0px 0px 0px 50%)"
+    tab.locator("input[name=wipe]").focus()
+    tab.keyboard.press("Home")
+    assert clip() in ("inset(0px)", "inset(0px 0px 0px 0%)")
+    tab.locator(".stage").scroll_into_view_if_needed()
+    box = tab.locator(".stage").bounding_box()
+    tab.mouse.move(box["x"] + box["width"] * 0.5, box["y"] + 50)
+    tab.mouse.down()
+    tab.mouse.move(box["x"] + box["width"] * 0.75, box["y"] + 50)
+    tab.mouse.up()
+    assert clip() == "inset(0px 0px 0px 75%)"
+
+
+def test_another_fit_and_the_difference_are_shown(tab, rendering):
+    import matplotlib as mpl
+
+    assert tab.locator(".tag.right").inner_text() == "ward"
+    choose(tab, "fit", 2)
+    assert tab.locator(".tag.right").inner_text() == "lambert"
+    assert np.abs(drawn(tab, 1) - srgb(rendering[2])).max() < 1.5
+    choose(tab, "mode", "difference")
+    assert tab.locator(".tag.right").inner_text() == "ΔE of lambert"
+    difference = bk.rendering.montage.ciede2000(rendering[0], rendering[2])
+    expected = 255 * mpl.colormaps["magma"](difference / pixels.MOST)[..., :3]
+    assert np.abs(drawn(tab, 1) - expected).max() < 10  # a step of ΔE is some steps of the scale
+    assert tab.locator(".viewer .scale").is_visible()
+
+
+def test_the_pictures_take_turns_and_stand_side_by_side(tab):
+    choose(tab, "mode", "flicker")
+    tab.wait_for_function("document.querySelector('.tag.right').textContent === 'measured'")
+    assert tab.locator(".over").evaluate("e => getComputedStyle(e).visibility") == "hidden"
+    tab.wait_for_function("document.querySelector('.tag.right').textContent === 'ward'")
+    choose(tab, "mode", "beside")
+    left, right = (pane.bounding_box() for pane in tab.locator(".pane").all())
+    assert right["x"] >= left["x"] + left["width"]
+    assert abs(left["width"] - right["width"]) < 1
+
+
+def test_the_readout_says_what_is_under_the_pointer(tab, rendering):
+    x, y = 20, 17
+    box = tab.locator(".pane").first.bounding_box()
+    step = box["width"] / SIZE
+    tab.mouse.move(box["x"] + (x + 0.5) * step, box["y"] + (y + 0.5) * step)
+
+    def read():
+        rows = tab.locator(".readout tbody tr").all()
+        return [[float(t) for t in row.locator("td").all_inner_texts()] for row in rows[:3]]
+
+    def expected(x, y):
+        first, second = rendering[0][y, x], rendering[1][y, x]
+        return [first, second, second / first]
+
+    assert tab.locator(".readout .place").inner_text() == f"{x}, {y}"
+    np.testing.assert_allclose(read(), expected(x, y), rtol=0.012)
+    said = float(tab.locator(".delta").inner_text().removeprefix("ΔE "))
+    difference = bk.rendering.montage.ciede2000(rendering[0][y, x], rendering[1][y, x])
+    assert abs(said - difference) < 0.3
+    tab.locator(".pane").first.focus()
+    tab.keyboard.press("ArrowDown")
+    tab.keyboard.press("Shift+ArrowLeft")
+    assert tab.locator(".readout .place").inner_text() == f"{x - 10}, {y + 1}"
+    np.testing.assert_allclose(read(), expected(x - 10, y + 1), rtol=0.012)
+
+
+def test_both_pictures_zoom_and_scroll_in_step(tab):
+    choose(tab, "mode", "beside")
+    choose(tab, "zoom", 4)
+    panes = tab.locator(".pane")
+    wide, seen = panes.nth(1).evaluate("e => [e.scrollWidth, e.clientWidth]")
+    assert abs(wide - 4 * seen) <= 4
+    panes.nth(0).evaluate("e => { e.scrollLeft = 120; e.scrollTop = 77; }")
+    tab.wait_for_function("document.querySelector('.over').scrollTop === 77")
+    assert panes.nth(1).evaluate("e => e.scrollLeft") == 120
+
+
+@pytest.mark.parametrize("width", [360, 1200])
+def test_light_and_dark_screens_and_telephones(show, written, width):
+    tab = show(written[0], viewport={"width": width, "height": 800})
+    brightness = []
+    for scheme in ("light", "dark"):
+        tab.emulate_media(color_scheme=scheme)
+        assert tab.evaluate("document.documentElement.scrollWidth") <= width
+        seen = opened(tab.screenshot())
+        assert seen.std() > 20
+        brightness.append(np.median(seen))
+    assert brightness[0] > 200
+    assert brightness[1] < 60
+
+
+def test_its_own_policy_lets_it_work(show, written):
+    tab = show(written[0])
+    tab.locator("input[name=exposure]").fill("2")
+    assert tab.locator("output[name=stops]").inner_text() == "+2 stops"
+    tab.locator("summary").first.click()
+    tab.locator("details .copy").first.click()
+    tab.get_by_text(re.compile("^(Copied|Selected)$")).wait_for()
+
+
+def test_without_scripts_the_pictures_and_words_are_there(show, written):
+    tab = show(written[0], java_script_enabled=False)
+    assert tab.locator("noscript").inner_text().startswith("Scripts are switched off")
+    assert not tab.locator(".viewer").is_visible()
+    assert all(image.is_visible() for image in tab.locator(".sheet img").all())
+    assert tab.locator(".chart").count() == 4 + 5
+
+
+def test_paper_has_the_pictures_and_no_controls(tab):
+    tab.emulate_media(media="print")
+    assert not tab.locator(".controls").is_visible()
+    assert not tab.locator("label.wipe").is_visible()
+    assert tab.locator(".stage canvas").first.is_visible()
+    assert tab.pdf().startswith(b"%PDF")
+
+
+def test_the_gallery_sorts_by_names_and_by_numbers(show, reports):
+    tab = show(reports[0] / "index.html")
+
+    def column(number):
+        return [row.locator("td").nth(number).inner_text() for row in tab.locator("tbody tr").all()]
+
+    head = tab.locator("thead th")
+    assert column(1) == ["second paint", "paint"]
+    head.nth(1).locator("button").press("Enter")
+    assert column(1) == ["paint", "second paint"]
+    assert head.nth(1).get_attribute("aria-sort") == "ascending"
+    for turned in (False, True):
+        head.nth(3).locator("button").click()
+        errors = [float(text) for text in column(3)]
+        assert errors == sorted(errors, reverse=turned)
+    tab.locator("tbody a").first.click()
+    tab.locator(".viewer").wait_for()
