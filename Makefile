@@ -1,11 +1,11 @@
-# make demo | notebook | ipynb | test | quick | lint | bench | docs | wheel; everything happens in .venv, nothing else is needed
+# make demo | notebook | ipynb | test | quick | lint | bench | docs | site | wheel; everything happens in .venv, nothing else is needed
 PYTHON ?= python3
 VENV := .venv
 RUN := $(VENV)/bin
 # NumPy's threads beside Dr.Jit's, times two workers, would wait for each other
 PYTEST := OPENBLAS_NUM_THREADS=1 $(RUN)/python -m pytest -n 2
 
-.PHONY: demo notebook ipynb test quick lint bench docs wheel clean
+.PHONY: demo notebook ipynb test quick lint bench docs site wheel clean
 
 $(VENV)/.ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -47,12 +47,18 @@ bench: $(VENV)/.ready
 docs: $(VENV)/.ready
 	$(RUN)/python docs/make_models.py
 	$(RUN)/python docs/make_plugins.py
+	$(RUN)/python docs/make_formats.py
 	$(RUN)/python docs/make_references.py
 	$(RUN)/python docs/make_architecture.py
+	$(MAKE) site
+
+site: $(VENV)/.ready
+	$(RUN)/python -m sphinx -W --keep-going -n -q docs docs/_build/html
+	@echo "The site: docs/_build/html/index.html"
 
 wheel: $(VENV)/.ready
 	$(RUN)/python -m build
 
 clean:
-	rm -rf $(VENV) build dist demo .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) build dist demo docs/_build docs/api docs/commands .mypy_cache .pytest_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

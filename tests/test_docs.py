@@ -11,7 +11,9 @@ from click.testing import CliRunner
 from PIL import Image, ImageDraw, ImageFont
 
 import brdfkit as bk
+from brdfkit.catalogue import shipped
 from brdfkit.cli import main
+from brdfkit.formats import formats
 from brdfkit.references import citations, references
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -64,6 +66,23 @@ def test_the_page_of_the_house_is_what_its_files_say():
     assert house == import_module("make_architecture").house()
 
 
+def test_the_pages_of_materials_are_what_the_index_says():
+    """Otherwise: python docs/make_materials.py"""
+    make = import_module("make_materials")
+    assert (make.FOLDER / "README.md").read_text(encoding="utf-8") == make.index()
+    for name, material in shipped.materials().items():
+        text = (make.FOLDER / f"{name}.md").read_text(encoding="utf-8")
+        assert text.startswith(make.head(material)), name
+
+
+def test_the_pages_of_formats_are_what_their_docstrings_say():
+    """Otherwise: make docs"""
+    make = import_module("make_formats")
+    for module in formats():
+        text = (make.FOLDER / make.file_name(module)).read_text(encoding="utf-8")
+        assert all(part in text for part in make.prose(module)), module.NAME
+
+
 def test_every_cited_work_is_known_and_every_known_work_is_cited():
     """Otherwise: an entry of references.toml is missing, or too many; make docs"""
     files = [*ROOT.glob("src/**/*.py"), *ROOT.glob("plugins/**/*.py"), *PAGES]
@@ -112,7 +131,7 @@ def test_the_pictures_are_small(make):
 def test_links_lead_to_files(page):
     links = [a or b for a, b in LINK.findall(page.read_text(encoding="utf-8"))]
     files = [unquote(link.partition("#")[0]) for link in links if ":" not in link]
-    missing = [file for file in files if not (page.parent / file).exists()]
+    missing = [file for file in files if not (page.resolve().parent / file).exists()]
     assert not missing
 
 

@@ -81,7 +81,7 @@ class Measured(Shown, FromAngles):
         Returns
         -------
         Table
-            The table; its `values` are (*shape, channels) [sr⁻¹].
+            The table; its `values` [sr⁻¹] are of `shape`, with a last axis of channels.
 
         Raises
         ------

@@ -1,0 +1,1 @@
+"""What the documentation site makes itself when it is built: one file, one thing."""

@@ -1,0 +1,108 @@
+"""Makes `docs/materials/`: a page of each material that brdfkit brings, with the balls of its fits;
+and `docs/materials.jpg`, all of them, which README shows.
+
+python docs/make_materials.py           # five minutes
+python docs/make_materials.py plaster   # one of them
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from make_models import paragraphs, table
+from PIL import Image, ImageDraw, ImageFont
+
+import brdfkit as bk
+from brdfkit.catalogue import shipped
+
+FOLDER = Path(__file__).with_name("materials")
+MODELS = ("ward", "ggx", "ggx+ggx", "abc+student_t")
+SIZE, SPP = 224, 144
+BALL, LINE = 160, 28  # pixels of the montage
+INDEX = """They come with brdfkit, are free to use, and are found by their names, as by
+`bk.load("car_paint")` or `brdfkit fit car_paint -m ggx`. None of them is one of brdfkit's models,
+so every fit has something to miss. [How they were made](../../data/measured/README.md)."""
+FITS = """## Four fits
+
+Each by `bk.fit(model, "{name}")`, with the log loss. *Log error*: what the fit made small; *PSNR*:
+of the fit's ball against the measured one, {spp} samples per pixel. The picture shows `{best}`,
+which has the least log error."""
+AGAIN = """    brdfkit info {name}
+    brdfkit fit {name} -m {best} --render -o {name}"""
+
+
+def index():
+    """The text of the page of all materials."""
+    rows = [
+        (f"[{m.title}]({m.name}.md)", f"`{m.name}`", image(m.name, m.name, SIZE // 2), m.what)
+        for m in shipped.materials().values()
+    ]
+    return paragraphs("# The materials", INDEX, table("material, name, measured, what it is", rows))
+
+
+def head(material):
+    """The first lines of a material's page, which `index.toml` tells."""
+    sentence = material.what[0].upper() + material.what[1:] + "."
+    made = f"Made by: {material.source}. Licence: {material.licence}."
+    return paragraphs(f"# {material.title}", sentence, f"`{material.name}`. {made}")
+
+
+def image(name, alt, width):
+    return f'<img src="{name}.jpg" width="{width}" alt="A ball of {alt}">'
+
+
+def make(material):
+    """Write the page of a material and its two pictures."""
+    measured = bk.load(material.name)
+    fits = {name: bk.fit(name, measured) for name in MODELS}
+    rendering = bk.render([measured, *fits.items()], spp=SPP, size=SIZE)
+    psnr, errors = rendering.psnr(), bk.compare(measured, fits.values()).errors
+    log = {name: errors[fit.name]["log"] for name, fit in fits.items()}
+    best = min(log, key=log.get)
+    write(rendering.pictures[rendering.reference], FOLDER / f"{material.name}.jpg")
+    write(rendering.pictures[best], FOLDER / f"{material.name}_fit.jpg")
+    shown = [image(material.name, material.name, SIZE), image(f"{material.name}_fit", best, SIZE)]
+    rows = [(f"`{name}`", f"{log[name]:.4f}", f"{psnr[name]:.1f} dB") for name in MODELS]
+    text = paragraphs(
+        head(material).rstrip(),
+        table(f"measured, fitted by `{best}`", [shown]),
+        FITS.format(name=material.name, best=best, spp=SPP),
+        table("model, log error, PSNR", rows),
+        AGAIN.format(name=material.name, best=best),
+        "[All materials](README.md)",
+    )
+    (FOLDER / f"{material.name}.md").write_text(text, encoding="utf-8")
+
+
+def write(linear, path):
+    """Write a linear picture as a JPEG, as a screen shows it."""
+    import mitsuba as mi
+
+    bitmap = np.array(mi.util.convert_to_bitmap(linear))
+    Image.fromarray(bitmap).save(path, quality=88, optimize=True)
+
+
+def montage():
+    """One picture of all materials: the measured balls over those of the fits."""
+    names, font = list(shipped.materials()), ImageFont.load_default(BALL // 8)
+    sheet = Image.new("RGB", (BALL * len(names), 2 * BALL + 3 * LINE), "white")
+    draw = ImageDraw.Draw(sheet)
+    for row, (suffix, word) in enumerate({"": "measured", "_fit": "fitted"}.items()):
+        top = row * (BALL + LINE)
+        draw.text((4, top + LINE // 2), word, "black", font, anchor="lm")
+        for column, name in enumerate(names):
+            ball = Image.open(FOLDER / f"{name}{suffix}.jpg").resize((BALL, BALL))
+            sheet.paste(ball, (column * BALL, top + LINE))
+    for column, name in enumerate(names):
+        middle = column * BALL + BALL // 2, 2 * BALL + 2 * LINE + LINE // 2
+        draw.text(middle, name.replace("_", " "), "black", font, anchor="mm")
+    sheet.save(FOLDER.with_suffix(".jpg"), quality=88, optimize=True)
+
+
+if __name__ == "__main__":
+    FOLDER.mkdir(exist_ok=True)
+    (FOLDER / "README.md").write_text(index(), encoding="utf-8")
+    for name in sys.argv[1:] or shipped.materials():
+        make(shipped.materials()[name])
+        print(name, flush=True)
+    montage()

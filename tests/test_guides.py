@@ -1,0 +1,45 @@
+"""The tutorial and the how-tos: their Python runs as it stands, in an empty folder."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import brdfkit as bk
+from brdfkit.measured.tabulation import tabulate
+
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+PAGES = [DOCS / "five_minutes.md", *sorted(DOCS.glob("how_to/*.md"))]
+BLOCKS = re.compile(r"```python\n(.*?)```", re.DOTALL)
+PROGRAMS = {page: "".join(BLOCKS.findall(page.read_text(encoding="utf-8"))) for page in PAGES}
+SMALLER = {  # what shows as well that a line runs, and at once
+    r"spp=\d+, size=\d+": "spp=1, size=16",
+    r'"(?:car_paint|satin_plastic)"': '"small.npz"',
+    r'"brushed_aluminium"': '"brushed.npz"',
+}
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch, llvm_variant, no_user_plugins):
+    """A folder with two small materials that stand for those that come with brdfkit."""
+    monkeypatch.chdir(tmp_path)
+    ggx, rng = bk.models()["ggx"], np.random.default_rng(0)
+    for name, model, shape in (
+        ("small", ggx(alpha_u=0.3), (12, 6, 12)),
+        ("brushed", ggx(alpha_u=0.1, alpha_v=0.4), (6, 8, 4, 8)),
+    ):
+        truth = tabulate(model.eval, 1, shape).values * np.ones(3)
+        values = truth * (1 + 0.02 * rng.normal(size=truth.shape))
+        bk.save(bk.Measured.from_table(values, standard_error=0.02 * truth), f"{name}.npz")
+
+
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES if PROGRAMS[page]], ids=lambda page: page.stem
+)
+def test_its_python_runs(page, here):
+    program = PROGRAMS[page]
+    for large, small in SMALLER.items():
+        program = re.sub(large, small, program)
+    # not the main module: what is below `if __name__ == "__main__"` starts processes
+    exec(compile(program, page.name, "exec"), {"__name__": page.stem})
