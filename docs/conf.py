@@ -33,6 +33,7 @@ nb_execution_mode = os.environ.get("BRDFKIT_NOTEBOOKS", "cache")
 nb_execution_raise_on_error = True
 nb_execution_in_temp = True
 nb_execution_timeout = 300
+nb_render_image_options = {"alt": "What the cell above shows"}
 
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
