@@ -11,10 +11,6 @@ from functools import cache
 from pathlib import Path
 
 from docutils import nodes
-from pygments import highlight
-from pygments.formatters import HtmlFormatter
-from pygments.lexers import TextLexer, get_lexer_for_filename
-from pygments.util import ClassNotFound
 from sphinx.addnodes import download_reference, pending_xref
 from sphinx.transforms import SphinxTransform
 from sphinx.util.osutil import relative_uri
@@ -24,7 +20,6 @@ SHOWN = (".md", ".py", ".pyi", ".toml", ".tsv")
 PAGE = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>{title}</title>
 <meta name="viewport" content="width=device-width,initial-scale=1">
-<link rel="stylesheet" href="{top}_static/pygments.css">
 <link rel="stylesheet" href="{top}_static/source.css"></head>
 <body><p><a href="{top}index.html">brdfkit</a></p><h1>{title}</h1>{body}</body></html>
 """
@@ -111,9 +106,7 @@ def folder_body(folder):
 
 
 def file_body(path):
-    """A file's text in colours; lines can be linked to as `#line-12`."""
-    try:
-        lexer = get_lexer_for_filename(path.name)
-    except ClassNotFound:
-        lexer = TextLexer()
-    return highlight(path.read_text(encoding="utf-8"), lexer, HtmlFormatter(lineanchors="line"))
+    """A file's text, whose lines can be linked to as `#line-12`."""
+    lines = html.escape(path.read_text(encoding="utf-8")).splitlines()
+    rows = (f'<span id="line-{n}">{line}</span>' for n, line in enumerate(lines, 1))
+    return "<pre>{}</pre>".format("\n".join(rows))
