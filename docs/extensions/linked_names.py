@@ -8,6 +8,7 @@ import re
 from docutils import nodes
 from sphinx.addnodes import pending_xref
 from sphinx.transforms import SphinxTransform
+from sphinx.util.osutil import relative_uri
 
 from extensions import api, commands
 
@@ -28,8 +29,8 @@ class LinkedNames(SphinxTransform):
         for literal in list(self.document.findall(nodes.literal)):
             page = page_of(literal.astext())
             if page and page != self.env.docname and not isinstance(literal.parent, LINKS):
-                link = pending_xref("", refdomain="std", reftype="doc", reftarget=f"/{page}")
-                link.attributes |= {"refexplicit": True, "refdoc": self.env.docname}
+                uri = relative_uri(f"{self.env.docname}.html", f"{page}.html")
+                link = nodes.reference("", "", internal=True, refuri=uri)
                 literal.replace_self(link)
                 link += literal
 
