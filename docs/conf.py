@@ -20,7 +20,7 @@ extensions = [
     "sphinx_design",
     *(f"extensions.{file.stem}" for file in sorted(DOCS.glob("extensions/[!_]*.py"))),
 ]
-exclude_patterns = ["_build"]
+exclude_patterns = ["_build", "notebooks/*.ipynb"]
 default_role = "code"
 
 # Markdown as a forge shows it, too
