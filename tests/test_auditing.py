@@ -610,3 +610,25 @@ def test_rgl_colours_out_of_gamut(measured_data, name, negative):
     assert (audit.negative > 0) == negative
     told = any("values are negative" in finding for finding in audit.findings())
     assert told == negative
+
+
+def test_samples_in_one_plane_are_told():
+    theta = np.arange(-75.0, 76, 5)
+    flat = bk.Measured.from_angles([[10], [40]], 0, theta, 180, np.full((2, len(theta)), 0.1))
+    beside = bk.Measured.from_angles([[10], [40]], 0, theta, 150, np.full((2, len(theta)), 0.1))
+    assert flat.audit().in_plane
+    assert any("in the plane of incidence only" in finding for finding in flat.audit().findings())
+    assert not beside.audit().in_plane
+
+
+def test_noise_alone_is_not_reciprocal_and_no_finding():
+    """Two readings of 10 % noise differ by 9.5 % in the median, and some tables by more."""
+    rng, angles = np.random.default_rng(3), np.arange(10.0, 71, 10)
+    theta_i, theta_o, phi_o = np.meshgrid(angles, angles, [45, 135, 225, 315], indexing="ij")
+    for spread, unequal in ((0.15, False), (0.005, True)):
+        values = 0.2 * (1 + spread * rng.standard_normal(theta_i.shape))
+        if unequal:
+            values[theta_i > theta_o] *= 1.3
+        found = bk.Measured.from_angles(theta_i, 0, theta_o, phi_o, values).audit()
+        assert found.reciprocity.median > 0.1
+        assert any("not reciprocal" in text for text in found.findings()) == unequal

@@ -1,9 +1,12 @@
 """brdfkit: any measured material becomes a validated, importance-sampled Mitsuba material.
 
 >>> import brdfkit as bk
->>> paint = bk.load("C10_Copper.astm")                          # doctest: +SKIP
+>>> paint = bk.load("car_paint")    # a file, or a material that comes along    # doctest: +SKIP
+>>> paint.audit()    # what was measured, and what is doubtful    # doctest: +SKIP
 >>> fits = [bk.fit(name, paint) for name in ("ward", "ggx")]    # doctest: +SKIP
->>> bk.render([paint, *fits]).write("copper.exr")               # doctest: +SKIP
+>>> bk.compare(paint, fits)    # errors; bk.rank chooses among all bk.models()    # doctest: +SKIP
+>>> bk.render([paint, *fits]).write("paint.exr")    # doctest: +SKIP
+>>> bk.report(paint, fits, "paint.html")    # all of it on one page    # doctest: +SKIP
 
 Importing brdfkit is light and sets no Mitsuba variant. It makes the models known to Mitsuba as
 BSDF plugins in every variant, and chooses the LLVM that Dr.Jit loads (`brdfkit.jit.llvm`).

@@ -11,7 +11,7 @@ import numpy as np
 
 from brdfkit.auditing import report
 from brdfkit.auditing.albedos import Albedo, albedo, albedo_of_samples
-from brdfkit.auditing.coverage import Coverage, coverage
+from brdfkit.auditing.coverage import Coverage, coverage, in_plane
 from brdfkit.auditing.grazing_and_retro import backwards, grazing, retroreflection
 from brdfkit.auditing.noise import Noise, noise
 from brdfkit.auditing.spikes import Spike, spikes
@@ -52,6 +52,8 @@ class Audit(Shown):
         Of the valid values [sr⁻¹]; the smallest above 0.
     coverage : Coverage
         Which part of all direction pairs was measured.
+    in_plane : bool
+        Whether it was measured in the plane of incidence only.
     reciprocity, mirror : Difference
         Between values that should be equal: with the directions exchanged, and left and right.
     noise : Noise
@@ -81,6 +83,7 @@ class Audit(Shown):
     median: float
     largest: float
     coverage: Coverage
+    in_plane: bool
     reciprocity: Difference
     mirror: Difference
     noise: Noise
@@ -178,6 +181,7 @@ def audit(data: MaterialLike) -> Audit:
         median=float(np.median(values)),
         largest=float(values.max()),
         coverage=coverage(data),
+        in_plane=in_plane(data),
         reciprocity=by_reciprocity(data),
         mirror=by_mirror(data),
         noise=noise(data),

@@ -44,7 +44,7 @@ def noise(data):
         return Noise(unknown, "not testable: no direction pair was measured twice or mirrored")
     if np.nanmax(sigmas) < EQUAL:
         return Noise(unknown, "not testable: left and right are equal, probably copies")
-    return Noise(sigmas, "differences between left and right of the plane of incidence")
+    return Noise(sigmas, f"{len(rows):,} pairs of directions, measured twice or left and right")
 
 
 def _fourth_differences(f):

@@ -6,6 +6,7 @@ MOST_SPIKES = 3  # spikes that are named; the others are counted
 # What is above, or for DARK_HORIZON below, is a finding:
 SHARE = 0.01  # the share of negative or of zero values
 NOT_RECIPROCAL, PAIRS = 0.1, 20  # the median difference, of at least so many pairs
+OF_NOISE = 0.6745 * math.sqrt(2)  # the median difference of two equal values, over their noise
 BRIGHT = 1.001  # the albedo; its quadrature is accurate to 10⁻³
 DARK_HORIZON, RETROREFLECTIVE, BACKWARDS = 0.5, 5, 5  # the ratios of `grazing_and_retro.py`
 
@@ -49,10 +50,14 @@ def findings(audit):
     if audit.zero > SHARE * values:
         share = _percent(audit.zero / values)
         found.append(f"{share} of the values are exactly 0: probably clipped")
-    if audit.reciprocity.pairs >= PAIRS and audit.reciprocity.median > NOT_RECIPROCAL:
+    if audit.reciprocity.pairs >= PAIRS and audit.reciprocity.median > _unequal(audit.noise):
         found.append(
             f"not reciprocal: exchanging wi and wo changes the value by "
             f"{_percent(audit.reciprocity.median)} in the median"
+        )
+    if audit.in_plane:
+        found.append(
+            "measured in the plane of incidence only: all beside it is a guess, also the albedo"
         )
     if audit.grazing < DARK_HORIZON:
         found.append(
@@ -71,6 +76,11 @@ def findings(audit):
             "the mirror's side; then add 180° to phi_o"
         )
     return tuple(found)
+
+
+def _unequal(noise):
+    """The median difference that is a finding: also twice what the noise alone would make."""
+    return max([NOT_RECIPROCAL, *(2 * OF_NOISE * n for n in noise.relative if not math.isnan(n))])
 
 
 def _channels(names):

@@ -21,12 +21,12 @@ STYLE = """
 .brdfkit .wide { overflow-x: auto; }
 .brdfkit table { border-collapse: collapse; margin: .35em 0; border: 0;
   font-variant-numeric: tabular-nums; }
-.brdfkit tr, .brdfkit tbody tr:nth-child(n):hover { background: none; }
-.brdfkit th, .brdfkit td { padding: .15em .9em .15em 0; text-align: left; vertical-align: top;
-  border: 0; border-bottom: 1px solid color-mix(in srgb, currentColor 16%, transparent);
-  max-width: 40rem; white-space: pre-wrap; color: inherit; }
+.brdfkit.brdfkit tr, .brdfkit tbody tr:nth-child(n):hover { background: none; }
+.brdfkit.brdfkit th, .brdfkit.brdfkit td { padding: .15em .9em .15em 0; text-align: left;
+  vertical-align: top; border: 0;
+  border-bottom: 1px solid color-mix(in srgb, currentColor 16%, transparent); max-width: 40rem; white-space: pre-wrap; color: inherit; }
 .brdfkit th { font-weight: 600; }
-.brdfkit .number { text-align: right; white-space: nowrap; }
+.brdfkit.brdfkit .number { text-align: right; white-space: nowrap; }
 .brdfkit tfoot td, .brdfkit .soft { opacity: .68; }
 .brdfkit .strong { font-weight: 600; }
 .brdfkit .good::before { content: "✓ "; color: #2e9e4f; }

@@ -61,7 +61,8 @@ def model(label: str | type[Model]) -> type[Model]:
         return model(label.label()) if label.in_plugin_file() else label
     if not isinstance(label, str):
         raise BrdfkitError(
-            f"A {type(label).__name__} names no model; give a name such as 'ward', or a class."
+            f"A {type(label).__name__} names no model; give a name such as 'ward', or a class, "
+            "before the material."
         )
     parts = label.removeprefix("mixture:models=")
     if "+" in parts or parts != label:

@@ -11,7 +11,7 @@ from brdfkit.picture_errors.masks import counted
 from brdfkit.picture_errors.metrics import METRICS
 from brdfkit.picture_errors.psnr import peak
 
-NONE = "none"  # what a difference is said to be that does not exceed the noise floor
+NOISE = "({})"  # how an error is written that does not exceed the noise floor
 
 
 @dataclass(frozen=True, repr=False)
@@ -56,18 +56,22 @@ class ImageErrors(Shown):
 
     def table(self) -> list[tuple[str, ...]]:
         """A row of texts for every picture, under `columns`; the last one is the noise floor."""
-        rows = [
-            (n, *(METRICS[m].text(e) if self.exceeds(n, m) else NONE for m, e in row.items()))
-            for n, row in self.by_name.items()
-        ]
+        rows = [(n, *(self._text(n, m) for m in row)) for n, row in self.by_name.items()]
         return [*rows, ("noise floor", *(METRICS[m].text(e) for m, e in self.floor.items()))]
+
+    def _text(self, name, metric):
+        text = METRICS[metric].text(self.by_name[name][metric])
+        return text if self.exceeds(name, metric) else NOISE.format(text)
 
     @property
     def remarks(self) -> list[str]:
         """Sentences on how to read the table, and the notes."""
-        none = f"{NONE}: not above the noise floor, the reference against itself with another seed."
+        none = (
+            f"{NOISE.format('...')} is no difference: not above the noise floor, the reference "
+            "against itself with another seed."
+        )
         unknown = "The noise floor needs two samples per pixel."
-        shown = any(NONE in row for row in self.table())
+        shown = any(text.startswith("(") for _, *row in self.table() for text in row)
         reading = [none] * shown + [unknown] * math.isnan(self.floor["psnr"])
         return [*reading, f"PSNR's peak is {self.peak:.3g}.", *self.notes]
 

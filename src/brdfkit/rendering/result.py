@@ -146,8 +146,8 @@ class Rendering(Shown):
         noise = "" if isnan(floor) else f", noise {floor:.1f} dB"
         found = {self.reference: ("reference" if self.differences else f"{self.spp} spp") + noise}
         for name, value in self.psnr().items():
-            within = ", within the noise" if value >= floor else noise
-            found[name] = f"PSNR {value:.1f} dB{within}"
+            near = noise.replace(",", " ≈") if value >= floor else noise
+            found[name] = f"PSNR {value:.1f} dB{near}"
         return found
 
     @property
