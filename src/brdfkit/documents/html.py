@@ -24,7 +24,8 @@ STYLE = """
 .brdfkit.brdfkit tr, .brdfkit tbody tr:nth-child(n):hover { background: none; }
 .brdfkit.brdfkit th, .brdfkit.brdfkit td { padding: .15em .9em .15em 0; text-align: left;
   vertical-align: top; border: 0;
-  border-bottom: 1px solid color-mix(in srgb, currentColor 16%, transparent); max-width: 40rem; white-space: pre-wrap; color: inherit; }
+  border-bottom: 1px solid color-mix(in srgb, currentColor 16%, transparent);
+  max-width: 40rem; white-space: pre-wrap; color: inherit; }
 .brdfkit th { font-weight: 600; }
 .brdfkit.brdfkit .number { text-align: right; white-space: nowrap; }
 .brdfkit tfoot td, .brdfkit .soft { opacity: .68; }
