@@ -9,6 +9,7 @@ from scipy.interpolate import CubicSpline
 import brdfkit as bk
 from brdfkit.colours import luminance
 from brdfkit.errors import BrdfkitError
+from brdfkit.jit.threads import two_threads
 from brdfkit.rendering import environment, users_mesh
 from brdfkit.rendering.galleries import draw_grid
 from brdfkit.rendering.scenes import _meshes, _studio, knot, material_ball, scene, scene_names, vase
@@ -156,8 +157,9 @@ def files(tmp_path, monkeypatch):
     Path("kitchen.xml").write_text(KITCHEN.format(id="Counter"))
     Path("room.xml").write_text(KITCHEN.format(id="material"))
     grey = np.full((16, 32, 3), 0.3, np.float32)
-    mi.Bitmap(grey).write("grey.exr")
-    mi.Bitmap(0 * grey).write("night.exr")
+    with two_threads():
+        mi.Bitmap(grey).write("grey.exr")
+        mi.Bitmap(0 * grey).write("night.exr")
 
 
 @pytest.mark.quick

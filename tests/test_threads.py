@@ -187,3 +187,18 @@ def test_every_module_can_be_imported_first():
     """The one that imports Mitsuba at its beginning could not."""
     command = [sys.executable, "-c", "import brdfkit.host.registration, brdfkit.host.bsdf"]
     subprocess.run(command, check=True)
+
+
+def test_environment_maps_load_in_one_thread(tmp_path, monkeypatch):
+    """In one thread Mitsuba alone waits for ever for the pixels of an OpenEXR file."""
+    code = """
+        import numpy as np, brdfkit as bk, drjit as dr, mitsuba as mi
+        mi.set_variant("llvm_ad_rgb")
+        dr.set_thread_count(2)
+        mi.Bitmap(np.full((16, 32, 3), 0.3, np.float32)).write("grey.exr")
+        dr.set_thread_count(1)
+        bk.render("lambert", spp=1, size=8, envmap="grey.exr")
+        assert dr.thread_count() == 1
+    """
+    monkeypatch.chdir(tmp_path)
+    assert_runs(code)

@@ -1,6 +1,7 @@
 """Loads scenes and plugins by Mitsuba; what it refuses becomes one sentence."""
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.jit.threads import two_threads
 
 
 def load_by_mitsuba(function, source, name):
@@ -9,7 +10,8 @@ def load_by_mitsuba(function, source, name):
     Raises `BrdfkitError`, which names it `name`, where Mitsuba cannot.
     """
     try:
-        return function(source, parallel=False)
+        with two_threads():
+            return function(source, parallel=False)
     except (RuntimeError, TypeError) as error:
         lines = [line.strip() for line in str(error).splitlines() if line.strip()]
         # a plugin written in Python reports its whole traceback: people need its last line only

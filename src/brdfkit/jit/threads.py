@@ -7,7 +7,8 @@ turns by one lock, and brdfkit can be used from any thread. A kernel runs on all
 
 import functools
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, ParamSpec, TypeVar
 
 P = ParamSpec("P")
@@ -45,3 +46,21 @@ def use_threads(count: int) -> None:
     import drjit as dr
 
     dr.set_thread_count(count)
+
+
+@contextmanager
+def two_threads() -> Iterator[None]:
+    """Run kernels of the block in two threads at least.
+
+    In one alone Mitsuba 3.9 waits for ever for the pixels of an OpenEXR file, read or written.
+    """
+    import drjit as dr
+
+    count = dr.thread_count()
+    if count < 2:
+        dr.set_thread_count(2)
+    try:
+        yield
+    finally:
+        if count < 2:
+            dr.set_thread_count(count)
