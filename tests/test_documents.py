@@ -17,8 +17,6 @@ from brdfkit.pictures.ball import WHITE, ball
 from brdfkit.pictures.lights import studio
 from brdfkit.pictures.normals import facing
 
-pytestmark = pytest.mark.quick
-
 NASTY = "a<b> & \"c\" 'd'"
 VOID = {"img", "br", "path"}
 

@@ -80,7 +80,6 @@ def test_every_variant_shows_the_same(in_rgb, variant):
         assert means[0] == pytest.approx(means[1], rel=0.06), name
 
 
-@pytest.mark.quick
 def test_the_mask_of_the_ball_is_its_outline():
     """A ray meets the ball, of radius 1, where it passes its middle at less than 1."""
     for width, height in ((32, 32), (48, 32), (24, 40)):
@@ -162,7 +161,6 @@ def files(tmp_path, monkeypatch):
         mi.Bitmap(0 * grey).write("night.exr")
 
 
-@pytest.mark.quick
 def test_a_mesh_stands_in_the_place_of_the_ball(files):
     """A box twice as high as wide, y up and without normals: 2 high, with sharp edges."""
     build = users_mesh.mesh_scene("cube.obj")
@@ -181,7 +179,6 @@ def test_a_mesh_stands_in_the_place_of_the_ball(files):
     assert bk.render(WHITE, spp=1, size=32, scene="cube.obj").mask.mean() > 0.1
 
 
-@pytest.mark.quick
 def test_a_material_is_put_into_a_scene_file(files):
     both = bk.render([WHITE, BLACK], spp=8, scene="kitchen.xml#Counter")
     assert both.pictures["white"].shape == (16, 24, 3)  # the file's own
@@ -207,7 +204,6 @@ def test_an_environment_map_lights_the_ground_as_the_sky_does(files, file):
     assert picture[3:6, 3:6].mean() == pytest.approx(expected, rel=0.03)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -232,7 +228,6 @@ def test_what_is_no_scene_is_said(files, arguments, message):
         bk.render(WHITE, spp=1, size=8, **arguments)
 
 
-@pytest.mark.quick
 def test_a_gallery_has_a_row_for_each_material(tmp_path):
     rows = [[m, ("lambert", WHITE), ("ward", BLACK)] for m in (WHITE, BLACK)]
     found = bk.gallery(rows, spp=1, size=40)
