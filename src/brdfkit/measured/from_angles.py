@@ -59,7 +59,7 @@ class FromAngles(MeasuredData):
             Notes, as ``{"instrument": "gonioreflectometer"}``.
         anisotropic : bool, optional
             Whether the BRDF changes as the surface turns about its normal; by default whether
-            phi_i varies.
+            phi_i varies, but for full turns.
         standard_error : array_like, the shape of `values`, optional
             Standard errors of the values [sr⁻¹].
 
