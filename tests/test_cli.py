@@ -232,8 +232,8 @@ def test_render(cli, words, names):
 @pytest.mark.quick
 def test_render_until_the_noise_is_low(cli):
     Path("room.xml").write_text(SCENE.format(alpha=0.3))
-    for thing in ("ward", "room.xml"):
-        record = json.loads(cli("render", thing, "--size", "8", "--until", "30dB", "--json").stdout)
+    for words in (["ward", "--size", "8"], ["room.xml"]):
+        record = json.loads(cli("render", *words, "--until", "30dB", "--json").stdout)
         assert record["errors"]["floor"]["psnr"] >= 30
     result = cli("render", "ward", "lambert", "--size", "8", "--spp", "4", "--until", "60 dB")
     assert result.exit_code == 0
@@ -259,8 +259,8 @@ def test_render_in_another_scene(cli):
 def test_render_a_scene_and_a_fit(cli):
     Path("room.xml").write_text(SCENE.format(alpha=0.3))
     assert_fine(cli("fit", "paint.binary", "-m", "ward", "-o", "."))
-    for thing, made in (("room.xml", "room.png"), ("ward.json", "ward.png")):
-        result = cli("render", thing, *SMALL)
+    for words, made in ((["room.xml"], "room.png"), (["ward.json", *SMALL], "ward.png")):
+        result = cli("render", *words, "--spp", "1")
         assert_fine(result)
         assert f"written: {made}" in result.stdout
         assert Path(made).exists()
@@ -429,6 +429,9 @@ TRAPS = [
     (["render", "nothing"], ["nothing", "ward", "car_paint"]),
     (["render", "bounds.xml", "ward"], ["alone"]),
     (["render", "bounds.xml", "--scene", "vase"], ["bounds.xml", "leave --scene"]),
+    (["render", "bounds.xml", "--size", "9"], ["bounds.xml", "--size out"]),
+    (["render", "bounds.xml#wall"], ["bounds.xml#wall is a place", "as --scene bounds.xml#wall"]),
+    ([*WARD, "--envmap", ""], ["envmap = ''", "path of an environment map"]),
     ([*WARD, "--scene", "vaes"], ["vaes", "did you mean vase?", "cornell_box"]),
     ([*LAMBERT, "--render", "--scene", "no.obj", "-o", "new"], ["no.obj", "no such mesh"]),
     (["render", "paint.binary", "-p", "alpha_u=.1"], ["paint.binary", "no model"]),

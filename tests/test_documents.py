@@ -76,6 +76,7 @@ def shown():
         bk.Reproduction(NASTY, ()),
         rendering,
         rendering.errors(),
+        bk.gallery([[(NASTY, named), fit]], spp=2, size=32),
     ]
     return {type(thing).__name__: thing for thing in objects}
 
@@ -120,7 +121,15 @@ def test_text_and_html_say_the_same(shown, pages):
 
 
 def test_names_are_escaped(pages):
-    for name in ("Measured", "Audit", "Comparison", "Reproduction", "Rendering", "ImageErrors"):
+    for name in (
+        "Measured",
+        "Audit",
+        "Comparison",
+        "Reproduction",
+        "Rendering",
+        "ImageErrors",
+        "Gallery",
+    ):
         html = pages[name]
         assert "<b>" not in html
         assert NASTY in Reader(html).text
@@ -156,6 +165,20 @@ def test_text_is_aligned_and_without_pictures():
         "  ! bad",
     ]
     assert to_text(Document("empty", (Table(()),))) == "empty"
+
+
+def test_what_cannot_be_drawn_is_said_and_the_rest_is_shown():
+    def fail():
+        raise RuntimeError("<lobes> of mine")
+
+    picture = Picture(fail, "a ball of mine", 1)
+    text = Reader(to_html(Document("title", (picture, Table((("value", "1"),)))))).text
+    assert text == "title Not shown: a ball of mine (RuntimeError: <lobes> of mine). value 1"
+
+
+def test_a_name_is_one_line_of_text():
+    document = Document("title", (Table((("two\nlines", "1"),), ("na\nme", ">1")),))
+    assert to_text(document).splitlines() == ["title", "  name      1", "  twolines  1"]
 
 
 def test_values_on_bounds_and_errors_are_told():

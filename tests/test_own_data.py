@@ -138,6 +138,14 @@ TEXTS = {
     "numpy, commas": (by_savetxt(",".join(FRAME.columns), delimiter=","), "mine.csv", "utf-8"),
     "greek": (headed(*GREEK), "mine.csv", "utf-8"),
     "other order": (FRAME[FRAME.columns[[4, 2, 3, 5, 1, 0, 7, 6]]].to_csv(), "mine.csv", "utf-8"),
+    "utf-16": (FRAME.to_csv(sep="\t"), "mine.txt", "utf-16"),
+    "quoted decimal commas": (FRAME.to_csv(decimal=",", quoting=1), "mine.csv", "utf-8"),
+    "a title": ("My paint, 2 mm\nof June\n" + FRAME.to_csv(), "mine.csv", "utf-8"),
+    "units below": (
+        FRAME.to_csv(index=False).replace("\n", "\n" + "Deg," * 4 + "1/sr,1/sr,1/sr,\n", 1),
+        "mine.csv",
+        "utf-8",
+    ),
     "latin-1": (FRAME.rename(columns={"phi_i": "phi_i [°]"}).to_csv(), "mine.csv", "latin-1"),
 }
 
@@ -175,6 +183,53 @@ def test_what_is_not_a_number_was_not_measured(tmp_path):
     found = Measured.from_frame(half)
     assert found.info["at or below the horizon"] == "1 of 2 rows, masked"
     np.testing.assert_array_equal(found.samples.valid, [True, False])
+
+
+def test_what_is_masked_was_not_measured():
+    column = np.ma.array([1.0, -999.0], mask=[False, True])
+    angles = {"theta_i": 30, "theta_o": [10, 20], "delta_phi": 180}
+    found = Measured.from_frame({**angles, "BRDF": column})
+    np.testing.assert_array_equal(found.samples.valid, [True, False])
+    whole = Measured.from_frame({**angles, "BRDF": np.ma.array([1, 2])})
+    np.testing.assert_array_equal(whole.values, [[1], [2]])
+
+
+@pytest.mark.parametrize(
+    ("theta_i", "phi_i", "turned"),
+    [
+        ([30, 30], [0, 360], False),
+        ([30, 30], [-180, 180], False),
+        ([30, 0, 50], [20, 90, 20], False),  # an azimuth of the normal itself means nothing
+        ([30, 50], [0, 90], True),
+        ([30, 50], [0, 180], True),
+        ([0, 50, 50], [0, 10, 11], True),
+    ],
+)
+def test_a_surface_turns_where_the_azimuth_of_the_light_varies(theta_i, phi_i, turned):
+    i, o = np.radians([theta_i, phi_i]), np.radians([40.0, 70.0])
+    by_angles = {"theta_i": theta_i, "phi_i": phi_i, "theta_o": 40, "phi_o": 70, "BRDF": 1}
+    w = np.stack([np.sin(i[0]) * np.cos(i[1]), np.sin(i[0]) * np.sin(i[1]), np.cos(i[0])])
+    v = np.sin(o[0]) * np.cos(o[1]), np.sin(o[0]) * np.sin(o[1]), np.cos(o[0])
+    vectors = {f"wi_{axis}": x for axis, x in zip("xyz", w, strict=True)}
+    vectors |= {f"wo_{axis}": x for axis, x in zip("xyz", v, strict=True)} | {"BRDF": 1}
+    assert Measured.from_frame(by_angles).anisotropic is turned
+    assert Measured.from_frame(vectors).anisotropic is turned
+
+
+def test_notes_in_a_file_and_those_that_are_none(tmp_path):
+    text = "# anisotropic: Yes\n# format: other\n# lamp: blue\n" + FRAME.to_csv()
+    found = load(saved(tmp_path, text))
+    assert found.anisotropic
+    assert found.info == {"format": "CSV", "lamp": "blue"}
+    for info in (3, ["a"]):
+        with pytest.raises(BrdfkitError, match=r"^mine: info = .* should be notes by their names"):
+            Measured.from_frame(FRAME, name="mine", info=info)
+
+
+def test_thousands_in_quotes_are_not_taken_for_decimals(tmp_path):
+    text = FRAME.to_csv(index=False) + '10,0,10.5,180,"1,000",1,1,1\n'
+    with pytest.raises(BrdfkitError, match=r"has a comma and line . a point in a number"):
+        load(saved(tmp_path, text))
 
 
 def test_a_cosine_is_divided_out_where_a_name_says_so(tmp_path):
@@ -271,6 +326,13 @@ WRONG = [
         {"BRDF": None, "CCBRDF_R": 1, "G": 1, "B": 1},
         "has CCBRDF, values with a cosine, beside others",
     ),
+    ({"CCBRDF_error": 1}, "has CCBRDF, values with a cosine, beside others"),
+    ({"BRDF": None, "CCBRDF": 1, "BRDF_error": 1}, "has CCBRDF, values with a cosine, beside"),
+    ({"BRDF": None, 550: 1, "550": 2}, "the column '550' comes twice"),
+    ({"BRDF": np.array(["2026-06-01"] * 3, "datetime64[D]")}, "'BRDF' should hold numbers alone"),
+    ({"BRDF": np.array([1, 2, 3], "timedelta64[s]")}, "'BRDF' should hold numbers alone"),
+    ({"BRDF": [1, 2j, 3]}, "the column 'BRDF' should hold numbers alone"),
+    ({"theta_i": 0.5, "theta_o": [0.2, 1, 1.5]}, "no theta is above 1.5, so that they might be"),
     ({"R_error": 1}, "has standard errors of R for the values of BRDF; give those of all"),
     ({"BRDF_error": [1, 2, -1]}, "a standard error is -1 in row 2; it should be at least 0"),
     ({"theta_o": [10, 20]}, "the column 'theta_o' has 2 rows where 'BRDF' has 3"),
@@ -281,7 +343,10 @@ WRONG = [
     ({"theta_i": -91}, "theta_i is -91° in row 0, which is below the horizon"),
     ({"phi_o": [0, 361, 0]}, "phi_o is 361° in row 1, more than a turn"),
     ({"theta_i": None, "theta_i [rad]": 30}, "theta_i is 30 rad in row 0, which is too large"),
-    ({"theta_i": 0.5, "theta_o": [0.2, 1, 1.5], "phi_o": 3.1416}, r"above 3.142, .* say unit='deg"),
+    (
+        {"theta_i": 0.5, "theta_o": [0.2, 1, 1.5], "phi_o": 3.1416},
+        r"no theta is above 1.5, .* say unit='deg",
+    ),
     ({name: [] for name in GOOD}, "has columns, but no rows"),
     (
         {**dict.fromkeys(GOOD), **VECTORS, "BRDF": 1, "wo_z": [0.8, 8]},
@@ -304,7 +369,7 @@ def test_a_frame_that_is_wrong(changes, said):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ((0.5, 0, [0.2, 1.1], 3.1416, [1, 2]), "no angle is above 3.142, .* say unit='degrees'"),
+        ((0.5, 0, [0.2, 1.1], 3.1416, [1, 2]), "no theta is above 1.1, .* say unit='degrees'"),
         ((30, 0, [10, 95], 180, [1, 2]), "theta_o is 95° in row 1, which is below the horizon"),
         ((30, 0, [10, np.inf], 180, [1, 2]), "theta_o is inf in row 1"),
         ((30, 0, [10, 20], 180, [1, 2, 3]), r"values \(3,\) should have the shape of the angles"),

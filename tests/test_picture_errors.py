@@ -48,7 +48,17 @@ def test_psnr_is_that_of_the_definition(rng):
     brighter = reference.copy()
     brighter[0, 0] = 1e6  # a firefly is no peak
     assert psnr(brighter, brighter + 0.05) == pytest.approx(20)
-    assert psnr(reference, noisy, ~everywhere) == psnr(reference, noisy)  # nothing of it is seen
+    assert np.isnan(psnr(reference, noisy, ~everywhere))  # nothing of it is seen
+
+
+def test_errors_are_unknown_where_nothing_shows_the_material(scene):
+    picture, disc = scene
+    errors = image_errors({"a": picture, "b": 2 * picture}, picture, disc & False)
+    assert np.isnan([*errors.by_name["b"].values(), *errors.floor.values()]).all()
+    assert errors.notes == (
+        "No pixel shows the material, which leaves all errors unknown: render it larger.",
+    )
+    assert errors.remarks == list(errors.notes)
 
 
 def test_ciede2000_is_as_published():

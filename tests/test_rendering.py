@@ -187,6 +187,30 @@ def test_a_noise_floor_that_takes_too_many_samples_is_said_to():
     assert f"60 dB take about {float(f'{needed:.2g}'):,.0f} samples" in str(found)
     stopped = render(WHITE, until=60, spp=32, size=16, progress=stop_at(1))
     assert (stopped.spp, stopped.asked, stopped.shortfall) == (16, 32, "")
+    hopeless = render(WHITE, until=1000, spp=2, size=8).shortfall
+    assert hopeless.endswith("; 1000 dB take more than a billion samples per pixel.")
+
+
+@pytest.mark.quick
+def test_what_is_unknown_or_without_noise_is_captioned_so():
+    grey = np.full((2, 2, 3), 0.5, np.float32)
+    pictures = {"a": grey, "b": 0.5 * grey, "c": grey}
+    exact = Rendering(pictures, 16, 1.0, other_seed=grey)
+    assert list(exact.captions.values()) == [
+        "reference, no noise",
+        "PSNR 6.0 dB, no noise",
+        "PSNR inf dB, no noise",
+    ]
+    unseen = Rendering(pictures, 16, 1.0, other_seed=grey, mask=np.full((2, 2), False))
+    assert list(unseen.captions.values()) == ["reference", "PSNR unknown", "PSNR unknown"]
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("value", [1e38, -1e300])
+def test_a_value_that_is_none_of_a_brdf_is_said(value):
+    huge = bk.Measured.from_table(np.full((3, 3, 6, 1), value), channels=("Y",))
+    with pytest.raises(BrdfkitError, match="is too large to be rendered"):
+        render(huge, spp=1, size=4)
 
 
 @pytest.mark.quick

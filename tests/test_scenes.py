@@ -156,9 +156,20 @@ def files(tmp_path, monkeypatch):
     Path("kitchen.xml").write_text(KITCHEN.format(id="Counter"))
     Path("room.xml").write_text(KITCHEN.format(id="material"))
     grey = np.full((16, 32, 3), 0.3, np.float32)
+    below_zero, inf = grey.copy(), grey.copy()
+    below_zero[12, 3], inf[12, 3] = -1, np.inf
+    maps = {"grey": grey, "night": 0 * grey, "below_zero": below_zero, "inf": inf}
     with two_threads():
-        mi.Bitmap(grey).write("grey.exr")
-        mi.Bitmap(0 * grey).write("night.exr")
+        for name, pixels in maps.items():
+            mi.Bitmap(pixels).write(f"{name}.exr")
+    flat = CUBE.partition("f ")[0]
+    Path("line.obj").write_text(flat + "f 1 1 2\nf 3 3 3\n")
+    Path("beyond.obj").write_text(flat + "f -9 -1 -2\n")
+    head = "ply\nformat ascii 1.0\nelement vertex 3\n"
+    head += "".join(f"property float {axis}\n" for axis in "xyz")
+    head += "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    for name, index in (("beyond", 99), ("below", -1)):
+        Path(f"{name}.ply").write_text(f"{head}0 0 0\n1 0 0\n0 1 0\n3 0 1 {index}\n")
 
 
 def test_a_mesh_stands_in_the_place_of_the_ball(files):
@@ -177,6 +188,34 @@ def test_a_mesh_stands_in_the_place_of_the_ball(files):
     # brushed around the vertical axis: level on the sides
     np.testing.assert_allclose(np.array(si.sh_frame.s)[:, :2].T, [[0, 1, 0], [1, 0, 0]], atol=0.02)
     assert bk.render(WHITE, spp=1, size=32, scene="cube.obj").mask.mean() > 0.1
+
+
+@pytest.mark.parametrize("unit", [1e-12, 1.0, 1e12])
+def test_a_mesh_is_the_same_in_every_unit_and_way_to_write_it(files, unit):
+    """Also beside a vertex of no face; with vertices counted backwards, between others."""
+    lines = CUBE.splitlines()
+    points = [[unit * float(x) for x in line.split()[1:]] for line in lines[:8]]
+    vertices = [f"v {x!r} {y!r} {z!r}" for x, y, z in points]
+    relative = [f"f {' '.join(str(int(i) - 9) for i in f.split()[1:])}" for f in lines[8:]]
+    far = f"v {unit * 1e3!r} 0 0"
+    expected = users_mesh.mesh_scene("cube.obj")({"type": "diffuse"})["mesh"]
+    for text in ([*vertices, far, *lines[8:]], [far, *vertices, *relative, far]):
+        Path("same.obj").write_text("\n".join(text))
+        found = users_mesh.mesh_scene("same.obj")({"type": "diffuse"})["mesh"]
+        for name in ("vertex_positions_buffer", "vertex_normals_buffer", "faces_buffer"):
+            there, here = (np.array(getattr(m, name)()) for m in (expected, found))
+            np.testing.assert_allclose(here, there, atol=1e-5)
+
+
+@pytest.mark.parametrize("rows", [2, 3, 16])
+def test_the_light_of_a_map_is_its_irradiance(files, rows):
+    """Of radiance 1 from everywhere it is π, in a map of any number of rows."""
+    import mitsuba as mi
+
+    with two_threads():
+        mi.Bitmap(np.ones((rows, 2 * rows, 3), np.float32)).write("white.exr")
+    scale = environment.environment("white.exr")["scale"]
+    assert environment.ILLUMINANCE / scale == pytest.approx(np.pi, rel=1e-6)
 
 
 def test_a_material_is_put_into_a_scene_file(files):
@@ -211,6 +250,12 @@ def test_an_environment_map_lights_the_ground_as_the_sky_does(files, file):
         ({"scene": 3}, "scene = 3 should be a scene's name, a file or a function"),
         ({"scene": "missing.obj"}, r"missing\.obj: there is no such mesh"),
         ({"scene": "empty.obj"}, r"empty\.obj: the mesh has no faces"),
+        ({"scene": "line.obj"}, r"line\.obj: the mesh has no faces, or none with an area"),
+        ({"scene": "beyond.obj"}, r"beyond\.obj: Mitsuba cannot load it \(.*invalid vertex"),
+        ({"scene": "beyond.ply"}, r"beyond\.ply: a face has a vertex that the mesh lacks"),
+        ({"scene": "below.ply"}, r"below\.ply: "),
+        ({"scene": lambda bsdf, size: None}, "The function for the scene gives NoneType; it shou"),
+        ({"scene": lambda bsdf, size: {}}, "The scene has no sensor or no integrator"),
         ({"scene": "broken.ply"}, r"broken\.ply: Mitsuba cannot load it \(.*invalid PLY header"),
         ({"scene": "mesh.stl"}, r"mesh\.stl: a scene is a mesh \(\.obj, \.ply\), a scene file"),
         ({"scene": "missing.xml"}, r"missing\.xml: there is no such scene file"),
@@ -219,6 +264,10 @@ def test_an_environment_map_lights_the_ground_as_the_sky_does(files, file):
         ({"scene": "kitchen.xml#Counter", "envmap": "grey.exr"}, "has lamps of its own"),
         ({"scene": "cornell_box", "envmap": "grey.exr"}, "has lamps of its own"),
         ({"envmap": "missing.exr"}, r"missing\.exr: there is no such environment map"),
+        ({"envmap": ""}, "envmap = '' should be the path of an environment map"),
+        ({"envmap": 3}, "envmap = 3 should be the path of an environment map"),
+        ({"envmap": "below_zero.exr"}, "the map has a negative value, or one not finite"),
+        ({"envmap": "inf.exr"}, "the map has a negative value, or one not finite"),
         ({"envmap": "night.exr"}, r"night\.exr: the map gives no light from above"),
         ({"envmap": "broken.ply"}, r"broken\.ply: Mitsuba cannot load it"),
     ],
@@ -244,3 +293,15 @@ def test_a_gallery_has_a_row_for_each_material(tmp_path):
         bk.gallery([[WHITE, "ward"], [BLACK, "ggx"]], spp=1, size=8)
     with pytest.raises(BrdfkitError, match="nothing to render"):
         bk.gallery([])
+    for rows in (None, "car_paint"):
+        with pytest.raises(BrdfkitError, match=f"rows = {rows!r} should be rows of materials"):
+            bk.gallery(rows)
+
+
+def test_names_are_drawn_as_they_are(tmp_path):
+    """Dollars are no formulas, and a line's end does not stop the montage."""
+    named = [("$x_{$", WHITE), ("two\nlines", BLACK)]
+    found = bk.gallery([named], spp=1, size=16)
+    found.write(tmp_path / "grid.png")
+    assert [a.get_title() for a in draw_grid(found.rows).axes] == ["reference", "twolines"]
+    bk.render(named, spp=1, size=16).write(tmp_path / "both.png")

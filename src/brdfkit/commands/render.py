@@ -54,11 +54,13 @@ def render(things, output, folders, values, scene, envmap, spp, until, size, see
     for folder in folders:
         load_plugins(folder)
     scenes = [t for t in things if t.lower().endswith(".xml")]
+    for place in (t for t in things if ".xml#" in t.lower()):
+        raise BrdfkitError(f"{place} is a place for a material: give it as --scene {place}.")
     if scenes:
         if len(things) > 1 or values:
             raise BrdfkitError("A scene is rendered alone and without --set: name one SCENE.xml.")
-        if scene != "ball" or envmap:
-            raise BrdfkitError(f"{scenes[0]} is a scene: leave --scene and --envmap out.")
+        if scene != "ball" or envmap is not None or size:
+            raise BrdfkitError(f"{scenes[0]} is a scene: leave --scene, --envmap and --size out.")
         output = picture_file(output or Path(scenes[0]).with_suffix(".png").name)
         with console.progress("render") as progress:
             picture = render_scene(scenes[0], spp, seed, progress, until)

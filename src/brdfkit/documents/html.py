@@ -11,7 +11,7 @@ from itertools import groupby
 import numpy as np
 
 from brdfkit.colours import to_srgb
-from brdfkit.documents.parts import Cell, Folded, Paragraph, Picture, Table
+from brdfkit.documents.parts import SOFT, Cell, Folded, Paragraph, Picture, Table
 from brdfkit.names import printable
 
 STYLE = """
@@ -111,7 +111,11 @@ def _paragraph(paragraph):
 
 
 def _picture(picture):
-    content = picture.draw()
+    try:
+        content = picture.draw()
+    except Exception as error:  # what a user's model raises: the rest is shown all the same
+        said = f"Not shown: {picture.says} ({type(error).__name__}: {error})."
+        return _paragraph(Paragraph(said, SOFT))
     if isinstance(content, str):
         return content
     kind = "png" if content.startswith(b"\x89PNG") else "jpeg"

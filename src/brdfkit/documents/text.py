@@ -1,6 +1,7 @@
 """A document as text: the title, and below it, indented, its paragraphs and tables."""
 
 from brdfkit.documents.parts import BAD, Cell, Paragraph, Table
+from brdfkit.names import printable
 
 INDENT, BETWEEN = "  ", "  "
 
@@ -24,8 +25,9 @@ def plain(cell):
 
 def _table(table):
     """The lines of a `Table`: columns as wide as their longest text."""
-    head = [[name.removeprefix(">") for name in table.columns]] if any(table.columns) else []
-    rows = [*head, *([plain(cell) for cell in row] for row in (*table.rows, *table.foot))]
+    titles = [name.removeprefix(">") for name in table.columns]
+    lines = (*([titles] if any(titles) else []), *table.rows, *table.foot)
+    rows = [[printable(plain(cell)) for cell in line] for line in lines]
     if not rows:
         return []
     widths = [max(map(len, texts)) for texts in zip(*rows, strict=True)]

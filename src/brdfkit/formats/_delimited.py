@@ -1,17 +1,21 @@
 """Text in columns under a line of their names, as spreadsheets write it: names and numbers.
 
 Tabs, semicolons, commas or blanks separate the columns; where it is not commas, numbers may have
-decimal commas.
+decimal commas, as they may in quotes.
 """
 
+import csv
 import re
+from itertools import takewhile
 
 import numpy as np
 
 from brdfkit.formats._source import Source
-from brdfkit.measured.column_names import are_columns
+from brdfkit.measured.angles import DEGREES, RADIANS
+from brdfkit.measured.column_names import PER_STERADIAN, are_columns
 
 DELIMITERS = "\t;,"  # the first of them in the line of names; blanks where there is none
+UNITS = {"", *DEGREES, *RADIANS, *PER_STERADIAN}
 NUMERIC = re.compile(r"[-+0-9.,;eE\s]+")
 
 
@@ -37,17 +41,17 @@ def read_columns(source):
         )
     delimiter = _delimiter(header)
     names = split(header)
+    names, rows = _take_units(names, rows, delimiter)
     named = [k for k, name in enumerate(names) if name]  # the index that pandas writes has none
-    if delimiter != ",":
-        _require_one_mark(source, rows)
-    lines, data = [], []
+    lines, data, marks = [], [], {}
     for n, line in rows:
         fields = split(line, delimiter)
         if not any(fields):  # spreadsheets end with rows of delimiters
             continue
         source.require_count(n, fields, len(names))
+        _require_one_mark(source, n, " ".join(fields), marks)
         lines.append(n)
-        data.append(source.parse_numbers(n, [_number(fields[k], delimiter) for k in named]))
+        data.append(source.parse_numbers(n, [_number(fields[k]) for k in named]))
     if not lines:
         raise source.error("has no rows behind the names of its columns; fetch the file again")
     return [names[k] for k in named], lines, list(np.array(data).T)
@@ -56,19 +60,26 @@ def read_columns(source):
 def split(line, delimiter=None):
     """The fields of a line without blanks and quotes around them."""
     delimiter = delimiter or _delimiter(line)
-    fields = line.split() if delimiter == " " else line.split(delimiter)
+    if delimiter == " ":
+        fields = line.split()
+    elif '"' in line:
+        fields = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))
+    else:
+        fields = line.split(delimiter)
     return [field.strip(' \t"') for field in fields]
 
 
 def _find_header(source):
     """The line of names, or None, and the lines behind it, as (number, text).
 
-    It is the first line, or, where this has numbers, the last comment that names samples, as
-    NumPy's `savetxt` writes it.
+    It is the first line that names samples, behind titles; else the first line, which is wrong; or,
+    where this has numbers, the last comment that names samples, as NumPy's `savetxt` writes it.
     """
     lines = source.whole_lines
-    if lines and not NUMERIC.fullmatch(lines[0][1]):
-        return lines[0][1], lines[1:]
+    texts = [line for _, line in takewhile(lambda row: not NUMERIC.fullmatch(row[1]), lines)]
+    if texts:
+        found = next((k for k, text in enumerate(texts) if are_columns(split(text))), 0)
+        return texts[found], lines[found + 1 :]
     comments = [c for c in source.comments if are_columns(split(c))]
     return (comments[-1] if comments else None), lines
 
@@ -77,16 +88,28 @@ def _delimiter(header):
     return next((mark for mark in DELIMITERS if mark in header), " ")
 
 
-def _require_one_mark(source, rows):
-    """Raise `BrdfkitError` where numbers have points and commas: which are of thousands?"""
-    found = {mark: n for n, line in reversed(rows) for mark in ",." if mark in line}
-    if len(found) == 2:
+def _take_units(names, rows, delimiter):
+    """The names with their units behind them, and the rows without that of the units, if any."""
+    units = split(rows[0][1], delimiter) if rows else []
+    if len(units) != len(names) or not any(units) or not UNITS.issuperset(map(str.lower, units)):
+        return names, rows
+    pairs = zip(names, units, strict=True)
+    return [f"{n} [{u}]" if u and n[-1:] not in ")]" else n for n, u in pairs], rows[1:]
+
+
+def _require_one_mark(source, line, text, marks):
+    """Raise `BrdfkitError` where numbers have points and commas: which are of thousands?
+
+    `text`: the fields of line number `line`; `marks`: the mark → the line that had it first.
+    """
+    marks |= {mark: line for mark in ",." if mark in text and mark not in marks}
+    if len(marks) == 2:
         raise source.error(
-            f"line {found[',']} has a comma and line {found['.']} a point in a number; "
+            f"line {marks[',']} has a comma and line {marks['.']} a point in a number; "
             "write all numbers with one of them, without separators of thousands"
         )
 
 
-def _number(text, delimiter):
+def _number(text):
     """The text of a number as Python reads it."""
-    return (text if delimiter == "," else text.replace(",", ".")) or "nan"
+    return text.replace(",", ".") or "nan"

@@ -1,5 +1,6 @@
 """`Source`: a file for a format's `read`: its bytes, lines and numbers, and errors that name it."""
 
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -62,7 +63,8 @@ class Source:
 
     @property
     def _text(self):
-        text = self.data.decode("utf-8-sig", errors="replace")
+        wide = self.data.startswith((BOM_UTF16_LE, BOM_UTF16_BE))  # "Unicode" of spreadsheets
+        text = self.data.decode("utf-16" if wide else "utf-8-sig", errors="replace")
         return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
     def error(self, problem):

@@ -1,6 +1,7 @@
 """Tables of named columns, `.csv`: what spreadsheets, pandas and goniometers write.
 
-The first line names the columns, in any order; every other line is a sample. Directions:
+A line names the columns, in any order; every line behind it is a sample. Lines of text before it
+are left out, and their units may stand in a line of their own below it. Directions:
 
 - ``theta_i, phi_i, theta_o, phi_o``: angles to the normal, and azimuths, of the light and of the
   viewer; the mirror direction is at phi_o - phi_i = 180°, and a theta below 0 is on the other side;
@@ -8,19 +9,21 @@ The first line names the columns, in any order; every other line is a sample. Di
 - ``theta_h, [phi_h,] theta_d, phi_d``: the half and difference angles of [Rusinkiewicz 1998];
 - ``wi_x, wi_y, wi_z, wo_x, wo_y, wo_z``: unit vectors, z along the normal.
 
-Angles are degrees, or what stands behind the name: ``theta_i [rad]``. Where no angle is so large
+Angles are degrees, or what stands behind the name: ``theta_i [rad]``. Where no theta is so large
 that it could not be in radians, the unit has to stand there.
 
 Values: ``R, G, B`` (linear sRGB), or wavelengths such as ``550nm`` or ``550``, or one column
 ``BRDF``, in sr⁻¹. They are ``CCBRDF``, ``CCBRDF_R`` or ``CCBRDF_550nm`` where they are the BRDF
 times cos theta_o, the cosine-corrected one of ASTM E2387: the cosine is divided out, and never
-guessed. Standard errors: ``R_error``, ``550nm_error``, ``BRDF_error`` or ``standard_error``.
-An empty field is a value that was not measured; a column without a name is left out.
+guessed. Standard errors: ``R_error``, ``550nm_error``, ``BRDF_error``, ``CCBRDF_error`` or
+``standard_error``. An empty field is a value that was not measured; a column without a name is left
+out.
 
-Semicolons, commas, tabs or blanks separate the columns; where it is not commas, numbers may have
-decimal commas. Lines that begin with # are comments: ``# key: text`` becomes a note, and
-``# anisotropic: yes`` or ``no`` says whether the BRDF changes as the surface turns; unless it is
-said, it does where phi_i or phi_h varies. The names may stand in the last comment, too.
+Semicolons, commas, tabs or blanks separate the columns; where it is not commas, or where they stand
+in quotes, numbers may have decimal commas. Lines that begin with # are comments: ``# key: text``
+becomes a note, and ``# anisotropic: yes`` or ``no`` says whether the BRDF changes as the surface
+turns; unless it is said, it does where the azimuth of the light, or of the half vector, varies. The
+names may stand in the last comment, too.
 
 A written file has the valid samples, those of a table being its cells, with all digits of values
 and standard errors; directions come back to 3e-15. It does not hold what a lookup of a format's own
@@ -66,10 +69,11 @@ def read(source, name=NAME):
     details = to_samples(names, columns, None, Origin(str(source.path), lines))
     notes = _read_notes(source)
     if "anisotropic" in notes:
-        stated = notes.pop("anisotropic")
+        stated = notes.pop("anisotropic").lower()
         if stated not in ANISOTROPIC:
             raise source.error(f"says 'anisotropic: {stated[:20]}', where yes or no belongs")
         details["anisotropic"] = ANISOTROPIC[stated]
+    notes.pop("format", None)  # it is this one
     details["info"] = {"format": name, **notes, **details["info"]}
     return source.build_from_directions(**details)
 

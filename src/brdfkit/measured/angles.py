@@ -20,7 +20,7 @@ def require_unit(unit):
 def to_radians(angles, units, origin):
     """The `angles`, name → numbers (n,), in radians; `units`: name → one of the words, or None.
 
-    Angles without a unit are degrees, unless all of them are so small that they might be radians:
+    Angles without a unit are degrees, unless all thetas are so small that they might be radians:
     then it has to be said. Raises `BrdfkitError` for this, for an angle that is not finite, for a
     theta beyond 90° and an azimuth beyond 360°, of either sign.
     """
@@ -36,11 +36,14 @@ def to_radians(angles, units, origin):
 def _require_units(names, angles, origin):
     """Raise `BrdfkitError` where the angles of these `names`, without a unit, might be radians."""
     largest = {name: np.abs(angles[name]).max(initial=0) for name in names}
+    thetas = {name: angle for name, angle in largest.items() if name.startswith("theta")}
+    # azimuths in degrees do not tell the unit of the thetas, which may be of another program
+    largest = thetas if any(thetas.values()) else largest
     small = all(angle <= _limit(name) for name, angle in largest.items())
     if small and any(largest.values()):
         raise origin.error(
-            f"no angle is above {max(largest.values()):.4g}, so that they might be degrees or "
-            f"radians; {origin.how_to_say_units}"
+            f"no {'theta' if largest is thetas else 'angle'} is above {max(largest.values()):.4g}, "
+            f"so that they might be degrees or radians; {origin.how_to_say_units}"
         )
 
 

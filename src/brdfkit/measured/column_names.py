@@ -63,7 +63,7 @@ def understand(names, origin):
             coordinates[coordinate], units[coordinate] = number, unit
         elif value and unit in (None, *PER_STERADIAN):
             values[value] = number
-            cosines |= {_has_cosine(text)} if not value[1] else set()
+            cosines |= _cosines(text, is_error=value[1])
         else:
             raise origin.error(_say_unknown(name, unit, coordinate or value, coordinates))
     if len(cosines) > 1:
@@ -166,9 +166,13 @@ def _value(text):
     return channel, bool(match["error"])
 
 
-def _has_cosine(text):
-    """Whether the values of a column of this name are the BRDF times cos theta_o."""
-    return _simplify(text).startswith("cc")
+def _cosines(text, is_error):
+    """Whether a column of this name is of the BRDF times cos theta_o, as a set; empty for errors
+    that do not say: they are as the values are."""
+    simple = _simplify(text)
+    if is_error and not re.match("(cc)?b[rs]df", simple):
+        return set()
+    return {simple.startswith("cc")}
 
 
 def _units(coordinate):

@@ -8,6 +8,7 @@ from brdfkit.measured.angles import require_unit
 from brdfkit.measured.column_names import understand
 from brdfkit.measured.coordinates import to_directions, turns
 
+NO_NUMBERS = "mMc"  # NumPy's kinds of what it would make numbers of: spans, dates, complex
 LEAST_COSINE = 1e-3  # a BRDF times a smaller cosine does not tell the BRDF
 
 
@@ -49,7 +50,7 @@ def to_samples(names, columns, unit, origin):
         "valid": ~np.any(list(masked.values()), axis=0),
         "channels": layout.channels,
         "info": info,
-        "anisotropic": turns(coordinates),
+        "anisotropic": turns(coordinates, units),
         "standard_error": errors,
     }
 
@@ -66,9 +67,10 @@ def columns_of(frame, origin):
             f"a {type(frame).__name__} was given; give a DataFrame, or a dictionary, with columns "
             "such as theta_i, phi_i, theta_o, phi_o and BRDF"
         )
-    for name in names:
-        if names.count(name) > 1:
-            raise origin.error(f"the column {name!r} comes twice; keep one")
+    texts = list(map(str, names))  # 550 and "550" are one
+    for text in texts:
+        if texts.count(text) > 1:
+            raise origin.error(f"the column {text!r} comes twice; keep one")
     columns = {str(name): _column(name, frame[name], origin) for name in names}
     lengths = {name: len(column) for name, column in columns.items() if column.ndim}
     longest = max(lengths, key=lengths.get) if lengths else None
@@ -91,11 +93,15 @@ def _column(name, given, origin):
 
 
 def to_numbers(what, given, origin):
-    """The array of floats of what a user gave as `what`; `BrdfkitError` where it is none."""
+    """The array of floats of what a user gave as `what`, NaN where it is masked; `BrdfkitError`
+    where it is none."""
     try:
-        return np.asarray(given, float)
+        found = np.ma.asarray(given) if np.ma.isMaskedArray(given) else np.asarray(given)
+        if found.dtype.kind not in NO_NUMBERS:
+            return np.ma.filled(found.astype(float), np.nan)
     except (TypeError, ValueError):
-        raise origin.error(f"{what} should hold numbers alone; convert or drop it") from None
+        pass
+    raise origin.error(f"{what} should hold numbers alone; convert or drop it")
 
 
 def _require_positive(errors, origin):

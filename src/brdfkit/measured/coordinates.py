@@ -8,7 +8,7 @@ phi_o - phi_i = 180°.
 import numpy as np
 
 from brdfkit.geometry.directions import from_angles, from_half_difference
-from brdfkit.measured.angles import to_radians
+from brdfkit.measured.angles import RADIANS, to_radians
 
 ANGLES = ("theta_i", "phi_i", "theta_o", "phi_o")
 # The coordinates that give both directions: a table has those of one line
@@ -19,6 +19,7 @@ COORDINATES = (
     ("theta_h", "theta_d", "phi_d"),
     ("wi_x", "wi_y", "wi_z", "wo_x", "wo_y", "wo_z"),
 )
+TURN = 1e-3  # rad: directions that differ less are rounded
 UNIT_LENGTH = 1e-3  # how far the length of a direction may be from 1
 
 
@@ -39,13 +40,28 @@ def to_directions(given, units, origin):
     return from_angles(angles["theta_i"], phi_i), from_angles(angles["theta_o"], phi_o)
 
 
-def turns(given):
-    """Whether the coordinates `given` turn the surface: whether phi_i, or phi_h, varies."""
-    for theta, phi in (("theta_i", "phi_i"), ("theta_h", "phi_h")):
-        if phi in given:
-            oblique = given[phi][given[theta] != 0]
-            return bool(oblique.size and np.ptp(oblique) > 0)
-    return False
+def turns(given, units):
+    """Whether the coordinates `given` turn the surface: whether the azimuth of wi, or of the half
+    vector, varies by more than `TURN` where it has one.
+
+    A theta below 0 does not turn it: phi is the same. `units`: see `to_directions`.
+    """
+    if "wi_x" in given:
+        x, y = given["wi_x"], given["wi_y"]
+    else:
+        half = "h" if "theta_h" in given else "i"
+        theta, name = given[f"theta_{half}"], f"phi_{half}"
+        if name not in given:
+            return False
+        phi = given[name] if units[name] in RADIANS else np.radians(given[name])
+        x, y = (theta != 0) * np.cos(phi), (theta != 0) * np.sin(phi)
+    length = np.hypot(x, y)
+    if not length.size:
+        return False
+    first = np.argmax(length)
+    cos, sin = x[first], y[first]
+    along, across = cos * x + sin * y, cos * y - sin * x
+    return bool(np.any((length > TURN) & ((np.abs(across) > TURN) | (along < 0))))
 
 
 def _to_vectors(name, given, origin):

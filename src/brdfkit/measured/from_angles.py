@@ -11,6 +11,7 @@ from brdfkit.measured.columns import columns_of, to_numbers, to_samples
 from brdfkit.measured.coordinates import to_directions, turns
 from brdfkit.measured.measured_data import MeasuredData
 from brdfkit.measured.origin import Origin
+from brdfkit.measured.validation import to_notes
 
 
 class FromAngles(MeasuredData):
@@ -58,7 +59,7 @@ class FromAngles(MeasuredData):
             Notes, as ``{"instrument": "gonioreflectometer"}``.
         anisotropic : bool, optional
             Whether the BRDF changes as the surface turns about its normal; by default whether
-            phi_i varies.
+            phi_i varies, but for full turns.
         standard_error : array_like, the shape of `values`, optional
             Standard errors of the values [sr⁻¹].
 
@@ -84,7 +85,8 @@ class FromAngles(MeasuredData):
         require_unit(unit)
         given = {"theta_i": theta_i, "phi_i": phi_i, "theta_o": theta_o, "phi_o": phi_o}
         angles, shape = _broadcast(given, origin)
-        wi, wo = to_directions(angles, dict.fromkeys(angles, unit), origin)
+        units = dict.fromkeys(angles, unit)
+        wi, wo = to_directions(angles, units, origin)
         values = _flatten("values", values, shape, origin)
         if standard_error is not None:
             standard_error = _flatten("standard_error", standard_error, shape, origin)
@@ -95,7 +97,7 @@ class FromAngles(MeasuredData):
             channels=channels,
             name=name,
             info=info,
-            anisotropic=turns(angles) if anisotropic is None else anisotropic,
+            anisotropic=turns(angles, units) if anisotropic is None else anisotropic,
             standard_error=standard_error,
         )
 
@@ -134,8 +136,8 @@ class FromAngles(MeasuredData):
         info : dict of str to str, optional
             Notes, as ``{"instrument": "gonioreflectometer"}``.
         anisotropic : bool, optional
-            Whether the BRDF changes as the surface turns about its normal; by default whether there
-            is a column phi_i or phi_h that varies.
+            Whether the BRDF changes as the surface turns about its normal; by default whether the
+            azimuth of the light, or of the half vector, varies.
 
         Returns
         -------
@@ -157,7 +159,7 @@ class FromAngles(MeasuredData):
         origin = Origin(name)
         names, columns = columns_of(frame, origin)
         found = to_samples(names, columns, unit, origin)
-        found["info"] |= info or {}
+        found["info"] |= to_notes(info, name)
         if anisotropic is not None:
             found["anisotropic"] = anisotropic
         return cls.from_samples(**found, name=name)

@@ -14,8 +14,17 @@ def make_printable(
     name: str, channels: Sequence[str], info: Mapping[str, str] | None
 ) -> tuple[str, tuple[str, ...], dict[str, str]]:
     """The name, the channels and the notes `info`, as text that can be printed."""
-    notes = {printable(key): printable(note, keep="\n\t") for key, note in (info or {}).items()}
-    return printable(name), tuple(map(printable, channels)), notes
+    return printable(name), tuple(map(printable, channels)), to_notes(info, name)
+
+
+def to_notes(info, name):
+    """The notes `info`, or None, as text that can be printed."""
+    if not isinstance(info, Mapping | None):
+        raise BrdfkitError(
+            f"{name}: info = {info!r:.60} should be notes by their names, as in "
+            "{'instrument': 'gonioreflectometer'}."
+        )
+    return {printable(key): printable(note, keep="\n\t") for key, note in (info or {}).items()}
 
 
 def usual_channels(values, samples, name):

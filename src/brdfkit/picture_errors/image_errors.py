@@ -30,7 +30,7 @@ class ImageErrors(Shown):
         Name → metric → error: "psnr" [dB]; "delta_e_2000", the median, and "delta_e_2000_95", the
         95th percentile; "delta_e_itp_95", likewise, with 1 at 203 cd/m²; the means "flip" (HDR,
         67 pixels per degree) and "ssim" (of sRGB in 0..1), if their packages are installed. nan
-        for a picture that is not finite.
+        for a picture that is not finite, and where no pixel shows the material.
     floor : dict of str to float
         Metric → what it says of noise alone; nan where there is one sample per pixel.
     peak : float
@@ -73,6 +73,8 @@ class ImageErrors(Shown):
         unknown = "The noise floor needs two samples per pixel."
         shown = any(text.startswith("(") for _, *row in self.table() for text in row)
         reading = [none] * shown + [unknown] * math.isnan(self.floor["psnr"])
+        if math.isnan(self.peak):  # the notes say why nothing is known
+            return list(self.notes)
         return [*reading, f"PSNR's peak is {self.peak:.3g}.", *self.notes]
 
     def document(self) -> Document:
@@ -102,15 +104,22 @@ def image_errors(pictures, other_seed=None, mask=None):
             absent.append(metric)
     by_name = {n: {key: row[k] for key, row in found.items()} for k, n in enumerate(names)}
     floor = {key: row[-1] for key, row in found.items()}
-    notes = [*_not_finite(pictures, mask), *_missing(absent)]
+    notes = [*_nothing_seen(mask), *_not_finite(pictures, mask), *_missing(absent)]
     return ImageErrors(reference, by_name, floor, peak(first, mask), tuple(notes))
 
 
 def _error(metric, reference, picture, mask):
-    """The error of a picture; nan where there is none, or where either is not finite."""
-    if picture is None or not np.isfinite([reference[mask], picture[mask]]).all():
+    """The error of a picture; nan where there is none, where either is not finite, and where the
+    mask is empty."""
+    if picture is None or not mask.any() or not np.isfinite([reference[mask], picture[mask]]).all():
         return math.nan
     return metric.function(reference, picture, mask)
+
+
+def _nothing_seen(mask):
+    """A sentence where the mask is empty."""
+    if not mask.any():
+        yield "No pixel shows the material, which leaves all errors unknown: render it larger."
 
 
 def _not_finite(pictures, mask):

@@ -4,13 +4,12 @@ import numpy as np
 
 
 def counted(picture, mask):
-    """The mask (height, width) of the pixels that count: all where `mask` is None or empty.
+    """The mask (height, width) of the pixels that count: all where `mask` is None.
 
     >>> counted(np.zeros((1, 2, 3)), None)
     array([[ True,  True]])
     """
-    some = mask is not None and mask.any()
-    return mask if some else np.full(picture.shape[:2], True)
+    return np.full(picture.shape[:2], True) if mask is None else mask
 
 
 def cropped(pictures, mask, margin=0):

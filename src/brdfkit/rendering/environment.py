@@ -16,21 +16,26 @@ def environment(path):
 
     It is scaled to the illuminance of the ground that the scenes have, so that pictures are exposed
     alike. Raises `BrdfkitError` for a file that is missing, that Mitsuba cannot read, or whose
-    upper half, which lights the ground, is black or not finite.
+    upper half, which lights the ground, is black; and for radiance that is negative or not finite.
     """
     import mitsuba as mi
 
+    if not isinstance(path, str | Path) or not str(path):
+        raise BrdfkitError(f"envmap = {path!r:.60} should be the path of an environment map.")
     path = Path(path)
     if not path.is_file():
         raise BrdfkitError(f"{path}: there is no such environment map; check the path.")
     read = load_by_mitsuba(lambda file, parallel: mi.Bitmap(file), str(path), path)
     rgb = np.array(read.convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False))
     height, width = rgb.shape[:2]
-    theta = (np.arange(height) + 0.5) / height * np.pi
-    solid_angle = 2 * np.pi / width * np.pi / height * np.sin(theta)
-    received = luminance(rgb).sum(axis=1) @ (solid_angle * np.maximum(np.cos(theta), 0))
-    if not 0 < received < np.inf:
-        raise BrdfkitError(f"{path}: the map gives no light from above, or values not finite.")
+    if not (np.isfinite(rgb).all() and rgb.min() >= 0):
+        raise BrdfkitError(f"{path}: the map has a negative value, or one not finite; mend it.")
+    # the integral of cos theta over a pixel, as far as it lies above the horizon
+    edges = np.minimum(np.arange(height + 1) / height * np.pi, np.pi / 2)
+    projected = np.pi / width * np.diff(np.sin(edges) ** 2)
+    received = luminance(rgb.astype(float)).sum(axis=1) @ projected
+    if not received > 0:
+        raise BrdfkitError(f"{path}: the map gives no light from above; choose another.")
     return {
         "type": "envmap",
         "bitmap": mi.Bitmap(rgb),

@@ -6,9 +6,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from brdfkit.colours import to_srgb
+from brdfkit.documents import Document, Paragraph, Picture, Shown, Table
+from brdfkit.documents.parts import SOFT
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import write_safely
-from brdfkit.names import make_unique
+from brdfkit.names import make_unique, printable
 from brdfkit.rendering.inputs import Renderable, as_list, describe
 from brdfkit.rendering.rendering import SceneLike, render
 from brdfkit.rendering.result import Rendering
@@ -17,9 +19,11 @@ HEAD, SIDE, BELOW, GAP = 26, 26, 22, 6  # of the grid: names above, at the left,
 DPI = 100
 
 
-@dataclass(frozen=True, eq=False)
-class Gallery:
-    """Pictures of materials, a row each, by models, a column each. Made by `gallery`.
+@dataclass(frozen=True, eq=False, repr=False)
+class Gallery(Shown):
+    """Pictures of materials, a row each, by models, a column each; prints as a table of PSNR.
+
+    Made by `gallery`.
 
     Attributes
     ----------
@@ -50,10 +54,25 @@ class Gallery:
         if path.suffix.lower() != ".png":
             raise BrdfkitError(f"{path}: a gallery is written as .png; choose that.")
         with write_safely(path) as beside:
-            beside.write_bytes(self._repr_png_())
+            beside.write_bytes(self._draw())
 
-    def _repr_png_(self) -> bytes:
-        """The grid, which notebooks show."""
+    def document(self) -> Document:
+        """The grid, and how far each picture is from that of its material."""
+        first = next(iter(self.rows.values()))
+        height, width = first.pictures[first.reference].shape[:2]
+        columns = ("material", *(f">{name}" for name in first.differences))
+        rows = [
+            (name, *(f"{value:.1f}" for value in rendering.psnr().values()))
+            for name, rendering in self.rows.items()
+        ]
+        across, _ = _extent(self.rows)
+        picture = Picture(self._draw, f"pictures of {', '.join(self.rows)}", across)
+        peak = (Paragraph("PSNR to the material [dB].", SOFT),) if first.differences else ()
+        title = f"{len(rows)} × {len(columns)} pictures, {width}×{height} pixels, {first.spp} spp"
+        return Document(title, (picture, Table(tuple(rows), columns), *peak))
+
+    def _draw(self):
+        """The grid as a PNG."""
         stream = io.BytesIO()
         draw_grid(self.rows).savefig(stream, dpi=DPI)
         return stream.getvalue()
@@ -100,6 +119,10 @@ def gallery(
     >>> materials = [bk.load(n) for n in ("car_paint", "brushed_aluminium")]    # doctest: +SKIP
     >>> gallery([[m, bk.fit("ward", m), bk.fit("ggx", m)] for m in materials])    # doctest: +SKIP
     """
+    if isinstance(rows, str) or not isinstance(rows, Iterable):
+        raise BrdfkitError(
+            f"rows = {rows!r:.60} should be rows of materials, as in [[material, fit, fit]]."
+        )
     listed = [as_list(row) for row in rows]
     if not listed:
         raise BrdfkitError("There is nothing to render; give at least one row.")
@@ -125,8 +148,7 @@ def draw_grid(rows):
 
     first = next(iter(rows.values()))
     height, width = first.pictures[first.reference].shape[:2]
-    columns = max(len(r.pictures) for r in rows.values())
-    total = SIDE + columns * (width + GAP), HEAD + len(rows) * (height + BELOW)  # pixels
+    total = _extent(rows)
 
     figure = Figure(figsize=[side / DPI for side in total], dpi=DPI)
     for i, (material, rendering) in enumerate(rows.items()):
@@ -138,8 +160,17 @@ def draw_grid(rows):
             axes.imshow(to_srgb(picture), interpolation="none")
             axes.set(xticks=[], yticks=[], frame_on=False)
             axes.set_xlabel(f"{psnr[name]:.1f} dB" if name in psnr else "", fontsize=8, labelpad=3)
+            plain = {"fontsize": 9, "parse_math": False}  # names may have dollar signs
             if i == 0:
-                axes.set_title(name if j else "reference", fontsize=9, pad=4)
+                axes.set_title(printable(name) if j else "reference", pad=4, **plain)
             if j == 0:
-                axes.set_ylabel(material, fontsize=9, labelpad=4)
+                axes.set_ylabel(printable(material), labelpad=4, **plain)
     return figure
+
+
+def _extent(rows):
+    """(width, height) of the grid [pixels]."""
+    first = next(iter(rows.values()))
+    height, width = first.pictures[first.reference].shape[:2]
+    columns = max(len(r.pictures) for r in rows.values())
+    return SIDE + columns * (width + GAP), HEAD + len(rows) * (height + BELOW)

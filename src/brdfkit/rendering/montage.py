@@ -9,6 +9,7 @@ import numpy as np
 from brdfkit.colours import to_srgb
 from brdfkit.errors import BrdfkitError
 from brdfkit.json_values import plain
+from brdfkit.names import printable
 from brdfkit.picture_errors.colour_difference import ciede2000
 from brdfkit.version import __version__
 
@@ -129,7 +130,8 @@ def _draw_caption(draw, corner, name, below, width, size):
     """Draw the name, shortened in its middle where it is too long, and the line `below` it."""
     x, y = corner
     bold = _font(size, bold=True)
-    shown, keep = name, len(name)
+    shown = name = printable(name)  # Pillow cannot measure several lines
+    keep = len(name)
     while bold.getlength(shown) > width and keep > 2:
         keep -= 1
         shown = f"{name[: ceil(keep / 2)]}…{name[-(keep // 2) :]}"

@@ -3,7 +3,7 @@
 import io
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import isfinite, isnan, nan
+from math import inf, isfinite, isnan, nan
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +16,7 @@ from brdfkit.picture_errors.noise import samples_for
 from brdfkit.picture_errors.psnr import psnr
 from brdfkit.rendering.montage import COLUMNS, TILE, montage, picture_suffix, write_exr
 
+BILLION = 1e9  # samples per pixel: a larger number tells nothing more
 WIDEST = 1100  # pixels of the pictures in a notebook
 
 
@@ -143,11 +144,11 @@ class Rendering(Shown):
     def captions(self) -> dict[str, str]:
         """A word or two on each picture, by its name."""
         floor = self.noise_floor
-        noise = "" if isnan(floor) else f", noise {floor:.1f} dB"
+        noise = "" if isnan(floor) else ", no noise" if floor == inf else f", noise {floor:.1f} dB"
         found = {self.reference: ("reference" if self.differences else f"{self.spp} spp") + noise}
         for name, value in self.psnr().items():
-            near = noise.replace(",", " ≈") if value >= floor else noise
-            found[name] = f"PSNR {value:.1f} dB{near}"
+            near = noise.replace(",", " ≈") if value >= floor < inf else noise
+            found[name] = "PSNR unknown" if isnan(value) else f"PSNR {value:.1f} dB{near}"
         return found
 
     @property
@@ -163,10 +164,8 @@ class Rendering(Shown):
         if until is None or not isfinite(floor) or floor >= until:
             return ""
         needed = float(f"{samples_for(until, floor, self.spp):.2g}")
-        return (
-            f"The noise floor is {floor:.1f} dB; {until:g} dB take about {needed:,.0f} samples per "
-            "pixel."
-        )
+        many = f"about {needed:,.0f}" if needed < BILLION else "more than a billion"
+        return f"The noise floor is {floor:.1f} dB; {until:g} dB take {many} samples per pixel."
 
     def document(self) -> Document:
         """The pictures, how far they are from the reference, and how they were made."""

@@ -25,13 +25,14 @@ def load_scenes(materials, given, size=None, envmap=None):
     build, suffix = find_scene(given), "" if callable(given) else _suffix(given)
     if suffix != scene_file.SUFFIX:
         size = size or SIZE
-    light = environment(envmap) if envmap else None
+    light = None if envmap is None else environment(envmap)
     scenes, seen = {}, None
     for name, bsdf in materials.items():
         material = None if callable(given) else load_material(bsdf, name, both_sides=bool(suffix))
         made = build(material or bsdf, size)
         made = light_by(light, made) if light else made
         loaded = load_by_mitsuba(mi.load_dict, made, name) if isinstance(made, dict) else made
+        _require_scene(loaded)
         if material and not scenes:
             seen = mask(loaded, material)
         scenes[name] = loaded
@@ -59,6 +60,19 @@ def find_scene(given):
             f"{', '.join(scene_names())}."
         )
     return scene(given)
+
+
+def _require_scene(loaded):
+    """Raise `BrdfkitError` unless what was loaded is a scene that can be rendered."""
+    import mitsuba as mi
+
+    if not isinstance(loaded, mi.Scene):
+        raise BrdfkitError(
+            f"The function for the scene gives {type(loaded).__name__}; it should give the "
+            "dictionary of a scene: {'type': 'scene', ...}."
+        )
+    if not loaded.sensors() or loaded.integrator() is None:
+        raise BrdfkitError("The scene has no sensor or no integrator; add them to its dictionary.")
 
 
 def _suffix(given):

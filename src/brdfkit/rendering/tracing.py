@@ -80,7 +80,7 @@ def _passes_needed(passes, done, halves, until, mask):
     if until is None or done == 1:
         return len(passes)
     floor = psnr(halves.picture, halves.other_seed, mask)
-    if floor >= until:
+    if not floor < until:  # or unknown, where nothing shows the material
         return done
     samples = samples_for(until, floor, sum(halves.spp))
     needed = np.searchsorted(np.cumsum(passes), samples) + 1

@@ -6,22 +6,24 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.host.load_by_mitsuba import load_by_mitsuba
+from brdfkit.rendering.relative_indices import counted_from_the_start
 from brdfkit.rendering.scenes._meshes import mesh
 from brdfkit.rendering.scenes._studio import studio
 
 SUFFIXES = ".obj", ".ply"
 SIZE = 2.0  # of the longest side of its bounding box, as of the ball's
 SHARP = np.radians(35)  # between a normal at a corner of a face and the face's own
-AXES = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])  # row vectors: y becomes z, and z -y
+LEAST = 1e-12  # area of a face, for a mesh of extent 1
 
 
 def mesh_scene(path):
     """A function like those of `brdfkit.rendering.scenes`, which shows the mesh in a file.
 
-    The axis y of the file points up, and z to the camera. The mesh is made as large as the ball and
-    stands on the ground. Normals are made where it has none. An anisotropic material is brushed
-    along the u of its texture coordinates, or around its vertical axis where it has none. Raises
-    `BrdfkitError` for a file that is missing or not such a mesh, and for one without faces.
+    The axis y of the file points up, and z to the camera. The mesh, by the vertices of its faces,
+    is made as large as the ball and stands on the ground. Normals are made where it has none. An
+    anisotropic material is brushed along the u of its texture coordinates, or around its vertical
+    axis where it has none. Raises `BrdfkitError` for a file that is missing or not such a mesh, and
+    for one whose faces lack vertices or an area.
     """
     path = Path(path)
     if not path.is_file():
@@ -39,31 +41,58 @@ def _read(path):
     """(points, normals, uv, faces) of the mesh in a file, in the ball's place."""
     import mitsuba as mi
 
-    file = {"type": path.suffix.lower()[1:], "filename": str(path)}
-    # of an empty mesh Mitsuba says that it has no normals: it is loaded without them first
-    flat = load_by_mitsuba(mi.load_dict, file | {"face_normals": True}, path)
-    low, high = (np.array(corner).ravel() for corner in (flat.bbox().min, flat.bbox().max))
-    extent = np.max(high - low)
-    if not (flat.face_count() and 0 < extent < np.inf):
-        raise BrdfkitError(f"{path}: the mesh has no faces, or none with an area; export it anew.")
-    buffers = mi.traverse(load_by_mitsuba(mi.load_dict, file, path))
-    points, normals, uv, faces = (
-        np.array(buffers[name]).reshape(-1, width)
-        for name, width in (
-            ("vertex_positions", 3),
-            ("vertex_normals", 3),
-            ("vertex_texcoords", 2),
-            ("faces", 3),
-        )
-    )
+    with counted_from_the_start(path) as file:
+
+        def load(**how):
+            plugin = {"type": path.suffix.lower()[1:], "filename": str(file)}
+            return mi.traverse(load_by_mitsuba(mi.load_dict, plugin | how, path))
+
+        # without normals at first: Mitsuba makes none of faces that are none, or very small
+        points, faces = _points_and_faces(load(face_normals=True), path)
+        middle, extent = _box(points, faces, path)
+        to_world = mi.ScalarTransform4f().rotate([1, 0, 0], 90)  # y becomes z, and z -y
+        to_world = to_world.scale([SIZE / extent] * 3).translate((-middle).tolist())
+        buffers = load(to_world=to_world)
 
     # (faces, corners, 3), in the axes of the scenes; a face has its corners to itself
-    points = ((points - (low + high) / 2) * (SIZE / extent))[faces] @ AXES
-    normals = normals[faces] @ AXES
+    points, faces = _points_and_faces(buffers, path)
+    faces = faces[_areas(points, faces) > LEAST * SIZE**2]
+    normals, uv = (
+        np.array(buffers[name]).reshape(-1, width)
+        for name, width in (("vertex_normals", 3), ("vertex_texcoords", 2))
+    )
+    points, normals = points[faces], normals[faces]
     points[..., 2] -= points[..., 2].min()
     uv = uv[faces] if len(uv) else _around(points)
     corners = (x.reshape(-1, x.shape[-1]) for x in (points, _sharpen(normals, points), uv))
     return *corners, np.arange(faces.size).reshape(-1, 3)
+
+
+def _points_and_faces(buffers, path):
+    """The points (n, 3) of a mesh and its faces (m, 3), their numbers, which should exist."""
+    points = np.array(buffers["vertex_positions"], float).reshape(-1, 3)
+    faces = np.array(buffers["faces"]).reshape(-1, 3)
+    if faces.size and faces.max() >= len(points):
+        raise BrdfkitError(
+            f"{path}: a face has a vertex that the mesh lacks, beyond its {len(points)}; export it "
+            "anew."
+        )
+    return points, faces
+
+
+def _box(points, faces, path):
+    """The middle of the bounding box of the `faces`, and its longest side."""
+    used = points[faces] if faces.size else np.zeros((1, 3, 3))
+    low, high = used.min(axis=(0, 1)), used.max(axis=(0, 1))
+    extent = np.max(high - low)
+    if not (0 < extent < np.inf and np.any(_areas(points, faces) > LEAST * extent**2)):
+        raise BrdfkitError(f"{path}: the mesh has no faces, or none with an area; export it anew.")
+    return (low + high) / 2, extent
+
+
+def _areas(points, faces):
+    a, b, c = np.moveaxis(points[faces], 1, 0)
+    return np.linalg.norm(np.cross(b - a, c - a), axis=-1) / 2
 
 
 def _sharpen(normals, points):
@@ -75,7 +104,7 @@ def _sharpen(normals, points):
     cos = np.einsum("fci,fci->fc", flat, normals)
     # below 0: the face is turned, and its corners are right
     sharp = np.abs(cos) < np.cos(SHARP)
-    return np.where(sharp[..., None], np.sign(cos)[..., None] * flat, normals)
+    return np.where(sharp[..., None], np.where(cos < 0, -1, 1)[..., None] * flat, normals)
 
 
 def _around(points):

@@ -11,8 +11,11 @@ from functools import cached_property
 
 import numpy as np
 
+from brdfkit.errors import BrdfkitError
 from brdfkit.geometry.directions import from_half_difference, half_azimuth, to_half_difference
 from brdfkit.geometry.multilinear import bracket, corners, periodic_bracket
+
+LARGEST = 1e30  # 1/sr that is rendered: sums and products of a few end in single precision at 3e38
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,12 +93,22 @@ class Table:
         return replace(self, values=self.values @ weights)
 
     def scene_dict(self):
-        """The dictionary for `mitsuba.load_dict`; a caller that has wavelengths adds them."""
+        """The dictionary for `mitsuba.load_dict`; a caller that has wavelengths adds them.
+
+        Raises `BrdfkitError` for values that are too large for single precision.
+        """
         import mitsuba as mi
 
+        values = self.filled_values
+        largest = max(values.max(), -values.min())
+        if not largest < LARGEST:
+            raise BrdfkitError(
+                f"A measured value of {largest:.3g} 1/sr is too large to be rendered; above "
+                f"{LARGEST:g} it is no BRDF: mend the data."
+            )
         return {
             "type": "measured_table",
-            "table": mi.TensorXf(np.ascontiguousarray(self.filled_values, np.float32)),
+            "table": mi.TensorXf(np.ascontiguousarray(values, np.float32)),
             "phi_d_period": float(self.phi_d_period),
         }
 
