@@ -242,6 +242,10 @@ def test_the_verdict_leaves_out_what_is_noise_or_said_already():
     assert more[-1].endswith(
         "75° to 90°: half of the values there are met within a factor of 1.20."
     )
+    for cbrt, told in ((0.79, True), (0.796, False)):  # of 0.8
+        other = replace(found[1], errors={"log": 0.5, "cbrt": cbrt})
+        more = verdict(["a", "b"], [found[0], other], psnr_and_delta((40.0, 30.0)), "log")[1]
+        assert ("By cbrt, b is ahead." in more) == told
     near = [replace(one, worst=1.12) for one in found]
     assert "farthest" not in "".join(
         verdict(["a", "b"], near, psnr_and_delta((40.0, 30.0)), "log")[1]

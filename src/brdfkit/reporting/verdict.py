@@ -3,6 +3,7 @@
 from brdfkit.reporting.picture_verdict import leads_in_picture, nearer_in_picture, visibility
 
 MARKED = 1.5  # times the typical logarithm: so much worse is worth a sentence
+AHEAD = 1.01  # times another fit's error: less is not worth a sentence
 MOST = 1000  # a larger factor says no more than that the fit fails
 
 
@@ -87,7 +88,8 @@ def _others(names, standings, firsts, loss):
     said = [f"{_list(tied)} {verb} not distinguishable from it by the loss {loss}."] if tied else []
     ahead: dict[str, list[str]] = {}
     for other, place in firsts.items():
-        if place and other != loss:
+        own, least = standings[0].errors[other], standings[place].errors[other]
+        if other != loss and own > AHEAD * least:
             ahead.setdefault(names[place], []).append(other)
     said += [f"By {_list(by)}, {name} is ahead." for name, by in ahead.items()]
     return said if said or told else ["Its lead over the others is more than noise."]
