@@ -434,6 +434,17 @@ TRAPS = [
     ([*WARD, "--envmap", ""], ["envmap = ''", "path of an environment map"]),
     ([*WARD, "--scene", "vaes"], ["vaes", "did you mean vase?", "cornell_box"]),
     ([*LAMBERT, "--render", "--scene", "no.obj", "-o", "new"], ["no.obj", "no such mesh"]),
+    ([*LAMBERT, "--render", "--envmap", "no.exr", "-o", "new"], ["no.exr", "no such environment"]),
+    *(
+        ([*LAMBERT, option, value], [f"{option} is for pictures; add --render"])
+        for option, value in (
+            ("--scene", "ball"),
+            ("--envmap", "sky.exr"),
+            ("--spp", "4"),
+            ("--until", "40dB"),
+            ("--size", "8"),
+        )
+    ),
     (["render", "paint.binary", "-p", "alpha_u=.1"], ["paint.binary", "no model"]),
     ([*WARD, "-p", "nope=1"], ["nope", "alpha_u"]),
     ([*WARD, "-p", "alpha_u"], ["alpha_u=VALUE"]),

@@ -46,6 +46,11 @@ class Console:
         lines = _tables.blocks(columns, sections, self.out.width)
         self.out.print(title or "", *lines, "", sep="\n")
 
+    def list_doubts(self, findings):
+        """Print a line for each of the `findings` of an audit."""
+        for finding in findings:
+            self.out.print(f"The measurement is doubtful: {finding}.")
+
     def list_written(self, paths):
         """Print a line for each file that was written."""
         for path in paths:

@@ -9,6 +9,11 @@ import click
 import brdfkit
 
 SPP = 64  # samples per pixel
+MESHES = "a mesh of yours, .obj or .ply"
+SCENE_FILES = (
+    f"{MESHES}; or FILE.xml#ID, a scene, and in it the BSDF to replace, which need not be named if "
+    "it is 'material'"
+)
 
 
 class Decibels(click.ParamType):
@@ -26,9 +31,12 @@ class Decibels(click.ParamType):
         return found
 
 
-def fit_options(default):
+def fit_options(default, others="FILE.py with one, or best"):
     """Adds -m, --loss and other options to a command that fits; it gets `names`, the models, and
-    `how`, the settings of `fit`. `default`: in words, which models without -m."""
+    `how`, the settings of `fit`.
+
+    In words, `default`: which models without -m; `others`: what -m takes beside a model.
+    """
 
     def add(command):
         @functools.wraps(command)
@@ -39,14 +47,14 @@ def fit_options(default):
             how["constraints"] = () if albedo_at_most is None else AlbedoAtMost(albedo_at_most)
             return command(*args, how=how, **kwargs)
 
-        for option in reversed(_fit_options(default)):
+        for option in reversed(_fit_options(default, others)):
             with_settings = option(with_settings)
         return with_settings
 
     return add
 
 
-def _fit_options(default):
+def _fit_options(default, others):
     """The options of `fit_options`."""
     return (
         click.option(
@@ -55,7 +63,7 @@ def _fit_options(default):
             "names",
             multiple=True,
             metavar="MODEL",
-            help=f"A model, FILE.py with one, or best; repeat it for more. Default: {default}.",
+            help=f"A model, {others}; repeat it for more. Default: {default}.",
         ),
         click.option(
             "--loss",
@@ -63,12 +71,13 @@ def _fit_options(default):
             metavar="LOSS",
             show_default=True,
             help="What the fit minimises: cosine, log, cbrt, plain, lafortune, relative or "
-            "picture.",
+            "picture; print(brdfkit.losses) in Python says what each is.",
         ),
         click.option(
             "--robust",
             metavar="WEIGHTS",
-            help="Give outliers little weight: bisquare, huber, cauchy ...",
+            help="Give outliers little weight: andrews, bisquare, cauchy, fair, huber, logistic, "
+            "talwar or welsch.",
         ),
         click.option(
             "--solver",
@@ -128,20 +137,28 @@ def render_options(command, spp=SPP, size="512, or what a scene file has"):
     return command
 
 
-def scene_option(command):
-    """Adds --scene to a command that renders materials."""
+def scene_options(command, files=SCENE_FILES):
+    """Adds --scene and --envmap to a command that renders materials; `files`: in words, which of
+    the user's may be scenes."""
     # by the names of their files: to import the scenes takes a second
     folder = Path(brdfkit.__file__).with_name("rendering") / "scenes"
     names = ", ".join(sorted(file.stem for file in folder.glob("[!_]*.py")))
-    option = click.option(
-        "--scene",
-        default="ball",
-        show_default=True,
-        metavar="SCENE",
-        help=f"What shows the material: {names}; a mesh of yours, .obj or .ply; or FILE.xml#ID, a "
-        "scene, and in it the BSDF to replace, which need not be named if it is 'material'.",
-    )
-    return option(command)
+    for option in (
+        click.option(
+            "--envmap",
+            metavar="FILE",
+            help="Light by an environment map, .exr or .hdr, not by the sky.",
+        ),
+        click.option(
+            "--scene",
+            default="ball",
+            show_default=True,
+            metavar="SCENE",
+            help=f"What shows the material: {names}; {files}.",
+        ),
+    ):
+        command = option(command)
+    return command
 
 
 def values_option(command):

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import click
+from click.core import ParameterSource
 
 from brdfkit.commands._errors import say
 from brdfkit.commands._fits import print_fits
@@ -10,7 +11,7 @@ from brdfkit.commands._options import (
     fit_options,
     output_options,
     render_options,
-    scene_option,
+    scene_options,
 )
 from brdfkit.commands._stopping import status
 from brdfkit.commands.render import path_trace
@@ -35,7 +36,7 @@ from brdfkit.errors import BrdfkitError, Interrupted
 )
 @click.option("--render", "rendered", is_flag=True, help="Path-trace the measurement and the fits.")
 @click.option("--spectral", is_flag=True, help="Fit a weight for each measured wavelength.")
-@scene_option
+@scene_options
 @render_options
 @output_options
 def fit(
@@ -47,6 +48,7 @@ def fit(
     rendered,
     spectral,
     scene,
+    envmap,
     spp,
     until,
     size,
@@ -71,10 +73,13 @@ def fit(
     from brdfkit.materials import measured_material
     from brdfkit.model import labels
     from brdfkit.names import fit_file, slug
+    from brdfkit.rendering.environment import require_map
     from brdfkit.rendering.memory import require_memory
     from brdfkit.rendering.scene_loading import SIZE, find_scene
     from brdfkit.verbs.compare import compare
 
+    if not rendered:
+        _refuse_for_pictures("scene", "envmap", "spp", "until", "size")
     names = list(dict.fromkeys(map(labels.read_files, names or labels.models())))
     for name in names:
         if name != BEST:
@@ -95,6 +100,8 @@ def fit(
         print_ranking(ranking, console)
     if rendered:
         find_scene(scene)
+        if envmap:
+            require_map(envmap)
         require_memory((size, size) if size else SIZE, 1 + len(names))
         output = output or Path(slug(material.name))
 
@@ -105,7 +112,7 @@ def fit(
         written = [file for file in files if file.is_file()]
         if rendered and not interrupted:
             shown, exr = [material, *fits], output / "render.exr"
-            where = {"size": size, "seed": seed, "scene": scene}
+            where = {"size": size, "seed": seed, "scene": scene, "envmap": envmap}
             picture = path_trace(shown, exr, console, spp, until, **where)
             errors, interrupted = picture.errors(), picture.spp < picture.asked
             written += [exr, output / "render.png"]
@@ -116,6 +123,14 @@ def fit(
         say(error)
     if interrupted or failed:
         click.get_current_context().exit(status() if interrupted else 2)
+
+
+def _refuse_for_pictures(*options):
+    """Refuse these options of pictures where they were given without --render."""
+    context = click.get_current_context()
+    for name in options:
+        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+            raise BrdfkitError(f"--{name} is for pictures; add --render, or leave it out.")
 
 
 def _fit_each(names, material, how, output, console):

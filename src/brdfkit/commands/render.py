@@ -9,7 +9,7 @@ from brdfkit.commands._options import (
     SPP,
     output_options,
     render_options,
-    scene_option,
+    scene_options,
     values_option,
 )
 from brdfkit.commands._stopping import status
@@ -32,10 +32,7 @@ from brdfkit.errors import BrdfkitError
     help="Folder or file with plugins of yours to load first; repeat it for more.",
 )
 @values_option
-@scene_option
-@click.option(
-    "--envmap", metavar="FILE", help="Light by an environment map, .exr or .hdr, not by the sky."
-)
+@scene_options
 @render_options
 @output_options
 def render(things, output, folders, values, scene, envmap, spp, until, size, seed, console):

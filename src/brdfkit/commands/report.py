@@ -6,38 +6,54 @@ from pathlib import Path
 import click
 
 from brdfkit.commands._errors import say
-from brdfkit.commands._options import fit_options, output_options, render_options
+from brdfkit.commands._options import (
+    MESHES,
+    fit_options,
+    output_options,
+    render_options,
+    scene_options,
+)
 from brdfkit.commands._stopping import status
 from brdfkit.errors import BrdfkitError
-from brdfkit.reporting.defaults import SIZE, SPP
-
-MODELS = "ward", "ggx", "ggx+ggx"  # without -m
+from brdfkit.reporting.defaults import LARGEST, MODELS, SIZE, SMALLEST, SPP
 
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@fit_options(", ".join(MODELS))
+@fit_options(", ".join(MODELS), others="FILE.py with one, a saved fit, FIT.json, or best")
 @click.option(
     "-o",
     "--output",
     type=click.Path(path_type=Path),
     help="The page, .html; of several FILEs a folder. Default: NAME-report.html, and reports.",
 )
-@partial(render_options, spp=SPP, size=SIZE)
+@partial(scene_options, files=f"or {MESHES}")
+@partial(render_options, spp=SPP, size=f"{SIZE}; from {SMALLEST} to {LARGEST}")
 @output_options
-def report(files, names, how, output, spp, until, size, seed, console):
+def report(files, names, how, output, scene, envmap, spp, until, size, seed, console):
     """Show how well models fit, in one HTML file.
 
     Any browser shows it, without a network: a verdict, pictures to wipe and to flicker, errors,
-    lobes, slices, parameters and the audit. MODEL may also be a saved fit, FILE.json. Where a model
-    cannot be fitted, the others go on; the exit status is then 2. Ctrl-C during the pictures keeps
-    the samples that all have.
+    lobes, slices, parameters and the audit. Where a model cannot be fitted, the others go on; the
+    exit status is then 2. Ctrl-C during the pictures keeps the samples that all have.
+
+    -m best ranks all models first, and shows the ranking and the one that it recommends.
 
     Of several FILEs each has a report in a folder, with a page that leads to them: index.html.
     """
+    from brdfkit.reporting.pictures import require_pictures
+
+    for file in files:
+        if file.lower().endswith(".json"):
+            raise BrdfkitError(
+                f"{file}: a saved fit goes behind -m; name the material that it was fitted to."
+            )
     names = list(dict.fromkeys(names or MODELS))
     how |= {"seed": seed}
-    pictures = {"spp": spp, "size": size or SIZE, "seed": seed, "until": until}
+    size = SIZE if size is None else size
+    require_pictures(size, scene, envmap)
+    pictures = {"spp": spp, "size": size, "seed": seed, "until": until}
+    pictures |= {"scene": scene, "envmap": envmap}
     if len(files) > 1:
         _report_many(files, names, how, output or Path("reports"), pictures, console)
     else:
@@ -46,19 +62,24 @@ def report(files, names, how, output, spp, until, size, seed, console):
 
 def _report_one(file, names, how, output, pictures, console):
     """Fit the models to one file, and write and print its report."""
-    from brdfkit.commands._ranking import recommend
+    from brdfkit.commands._ranking import print_ranking, recommend
     from brdfkit.materials import measured_material
-    from brdfkit.names import slug
-    from brdfkit.reporting.report import require_page, write_report
+    from brdfkit.reporting.report import page_of, require_page, write_report
 
     with console.progress(f"read {file}"):
         material = measured_material(file)
-    path = require_page(output or f"{slug(material.name)}-report.html")
-    names, _ = recommend(names, material, how, console)
+    path = require_page(output or page_of(material))
+    names, ranking = recommend(names, material, how, console)
+    if ranking:
+        print_ranking(ranking, console)
     fits, failed = _fit_each(names, material, how, console)
     with console.progress("render") as progress:
-        said = write_report(material, fits, path, file, **pictures, progress=progress)
-    _print_report(said, path, console)
+        said = write_report(material, fits, path, file, ranking, **pictures, progress=progress)
+    if console.as_json:
+        console.json({**_record(said), "written": [path]})
+    else:
+        _print_verdict(said, console)
+        console.list_written([path])
     for error in failed:
         say(error)
     if said.spp < said.asked:
@@ -85,18 +106,17 @@ def _fit_each(names, material, how, console):
     return fits, failed
 
 
-def _print_report(said, path, console):
-    if console.as_json:
-        console.json({**_record(said), "written": [path]})
-        return
+def _print_verdict(said, console):
+    """Print the sentence at the head of a report's `Contents`, and what is doubtful."""
     console.out.print(f"{said.material}: {said.verdict}")
-    console.list_written([path])
+    console.list_doubts(said.findings)
 
 
 def _record(said):
     """The `Contents` of a report for JSON."""
     best = {"best": said.names[0], "loss": said.loss, "error": said.error}
-    return {"material": said.material, "verdict": said.verdict, **best}
+    found = {"material": said.material, "verdict": said.verdict, **best}
+    return {**found, "findings": said.findings}
 
 
 def _report_many(files, names, how, folder, pictures, console):
@@ -107,6 +127,8 @@ def _report_many(files, names, how, folder, pictures, console):
 
     if BEST in names:
         raise BrdfkitError("-m best ranks models on one material; name one FILE, or a model.")
+    if folder.suffix.lower() in (".html", ".htm"):
+        raise BrdfkitError(f"{folder} is one page; of several FILEs name a folder behind -o.")
     with results_folder(folder), console.progress(f"report on {len(files)} materials") as progress:
         found = report_many(files, names, folder, how, **pictures, progress=progress)
     if console.as_json:
@@ -118,7 +140,8 @@ def _report_many(files, names, how, folder, pictures, console):
             }
         )
     elif found.entries:
-        console.table(*found.table(), title="reports")
+        for entry in found.entries:
+            _print_verdict(entry.contents, console)
         console.list_written(found.written)
     for problem in found.problems:
         say(problem)

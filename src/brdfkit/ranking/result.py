@@ -91,8 +91,17 @@ class Ranking(Shown):
         return self._recommended.model
 
     @property
+    def why(self) -> str:
+        """Why it is recommended, in a few words."""
+        tied = sum(row.tied for row in self.rows)
+        if tied == 1:
+            return "its error is the least, by more than the noise"
+        count = f"{tied} models that are tied" if tied > 2 else "the two that are tied"
+        return f"it has the fewest parameters of {count}"
+
+    @property
     def reason(self) -> str:
-        """Why it is recommended, in words."""
+        """Why it is recommended, in words, and how near the others are."""
         if len(self.rows) == self.asked:
             return self._choice
         ranked = f"{len(self.rows)} of {self.asked} models are ranked"
@@ -100,15 +109,11 @@ class Ranking(Shown):
 
     @property
     def _choice(self) -> str:
-        own, tied = self._recommended, [row for row in self.rows if row.tied]
-        others = [_compare(row, own) for row in tied if row is not own]
+        own = self._recommended
+        others = [_compare(row, own) for row in self.rows if row.tied and row is not own]
+        reason = f"{own.model} is recommended: {self.why}."
         if others:
-            count = f"{len(tied)} models that are tied" if others[1:] else "the two that are tied"
-            return (
-                f"{own.model} is recommended: it has the fewest parameters of {count}. "
-                f"Tied with it: {'; '.join(others)}."
-            )
-        reason = f"{own.model} is recommended: its error is the least, by more than the noise."
+            return f"{reason} Tied with it: {'; '.join(others)}."
         after = [row for row in self.rows if row is not own and not row.message]
         return f"{reason} Next is {_compare(after[0], own)}." if after else reason
 

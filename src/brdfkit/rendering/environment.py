@@ -20,11 +20,7 @@ def environment(path):
     """
     import mitsuba as mi
 
-    if not isinstance(path, str | Path) or not str(path):
-        raise BrdfkitError(f"envmap = {path!r:.60} should be the path of an environment map.")
-    path = Path(path)
-    if not path.is_file():
-        raise BrdfkitError(f"{path}: there is no such environment map; check the path.")
+    path = require_map(path)
     read = load_by_mitsuba(lambda file, parallel: mi.Bitmap(file), str(path), path)
     rgb = np.array(read.convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False))
     height, width = rgb.shape[:2]
@@ -42,6 +38,15 @@ def environment(path):
         "scale": ILLUMINANCE / received,
         "to_world": mi.ScalarTransform4f().rotate([1, 0, 0], 90),  # the map has y up
     }
+
+
+def require_map(path):
+    """The `Path` of an environment map; `BrdfkitError` where there is no such file."""
+    if not isinstance(path, str | Path) or not str(path):
+        raise BrdfkitError(f"envmap = {path!r:.60} should be the path of an environment map.")
+    if not Path(path).is_file():
+        raise BrdfkitError(f"{path}: there is no such environment map; check the path.")
+    return Path(path)
 
 
 def light_by(light, scene):

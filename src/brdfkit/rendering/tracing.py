@@ -11,7 +11,7 @@ from brdfkit.picture_errors.noise import Halves, samples_for
 from brdfkit.picture_errors.psnr import psnr
 
 # Samples per pixel in one pass, at most; progress is reported after each. A power of two, so that a
-# block of one thread holds all samples of a pixel: see `brdfkit.reporting.balls`
+# block of one thread holds all samples of a pixel: see `brdfkit.reporting.pictures`
 PASS = 16
 RAYS = 2**23  # camera rays in one pass, at most; bounds the memory to about 1 GB
 

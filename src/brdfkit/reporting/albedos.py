@@ -6,7 +6,7 @@ import numpy as np
 
 from brdfkit.auditing.albedos import albedo
 from brdfkit.colours import luminance
-from brdfkit.reporting.charts import Chart, fit_class, linear
+from brdfkit.reporting.charts import Chart, linear
 
 
 def albedo_chart(measured, fits, anisotropic):
@@ -20,12 +20,16 @@ def albedo_chart(measured, fits, anisotropic):
     chart = Chart("albedo", x, y)
     if most > 1:
         chart.across(1, "mirror")
-    for number, values in enumerate(lines):
-        chart.line(measured.theta_i, values, fit_class(number))
-    known = measured.theta_i <= measured.measured_to + 1
-    chart.dots(measured.theta_i[known], dots[known], "measured")
-    chart.dots(measured.theta_i[~known], dots[~known], "measured guessed")
+    chart.fits([(measured.theta_i, values) for values in lines])
+    chart.dots(measured.theta_i, dots, "measured")
+    guessed = is_guessed(measured)
+    chart.dots(measured.theta_i[guessed], dots[guessed], "hollow")
     return chart.svg
+
+
+def is_guessed(measured):
+    """Where (n,) an `Albedo` is beyond the measured angles."""
+    return measured.theta_i > measured.measured_to + 1
 
 
 def _albedo(model, anisotropic):

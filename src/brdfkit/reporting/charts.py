@@ -8,6 +8,7 @@ import numpy as np
 
 WIDTH, HEIGHT = 290, 236
 COLOURS = 6  # of fits; the style has as many
+STROKES = "", " dashed", " dotted"  # of fits that follow each other: equal lines are both seen
 LEFT, RIGHT, TOP, BOTTOM = 48, 10, 26, 36  # margins
 
 
@@ -28,12 +29,17 @@ def linear(label, low, high, ticks, unit=""):
 
 
 def fit_class(number):
-    """The class of the colour and dashes of a fit by its place: six colours, then dashed."""
-    return f"fit-{number % COLOURS}" + " dashed" * (number >= COLOURS)
+    """The class of the colour and stroke of a fit by its place; the first is solid."""
+    return f"fit-{number % COLOURS}" + STROKES[_stroke(number)]
+
+
+def _stroke(number):
+    """Which stroke a fit has: with its colour it is another one for each of 18 fits."""
+    return (number + number // COLOURS) % len(STROKES)
 
 
 class Chart:
-    """A chart that grows: `line`, `dots`, `band` and `image` add to it, `svg` is its text."""
+    """A chart that grows: `fits`, `line`, `dots`, `bars` and `image` add to it; `svg`: its text."""
 
     def __init__(self, title, x, y, width=WIDTH, height=HEIGHT):
         self.x, self.y, self.width, self.height = x, y, width, height
@@ -62,6 +68,12 @@ class Chart:
                 path.append(f"{pen}{px} {py}")
             pen = "L" if known else "M"
         self._add("path", d="".join(path), kind=f"line {kind}")
+
+    def fits(self, lines):
+        """The lines (x, y) of the fits, in their order; the solid ones below, or they would hide
+        others, and the first fit's above other solid ones."""
+        for number in sorted(range(len(lines)), key=lambda k: (_stroke(k), -k)):
+            self.line(*lines[number], fit_class(number))
 
     def dots(self, x, y, kind):
         """Round dots at points (n,)."""

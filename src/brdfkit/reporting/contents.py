@@ -1,4 +1,5 @@
-"""What a report says, as plain data for its template: the fits in their order, the best first."""
+"""What a report says, as plain data for its template: the fits in their order, the one to take
+first."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -8,28 +9,27 @@ import numpy as np
 from brdfkit.auditing import audit
 from brdfkit.fitting import losses
 from brdfkit.names import make_unique
+from brdfkit.ranking.result import COLUMNS
 from brdfkit.rendering.montage import colour_differences
 from brdfkit.reporting import origin, parameters
-from brdfkit.reporting.albedos import albedo_chart
+from brdfkit.reporting.albedos import albedo_chart, is_guessed
 from brdfkit.reporting.errors_table import errors_table
 from brdfkit.reporting.images import halved, jpeg
 from brdfkit.reporting.lobes import lobe_charts
 from brdfkit.reporting.picture_errors import PictureError, picture_errors
 from brdfkit.reporting.pixels import for_script
 from brdfkit.reporting.slices import slice_charts
-from brdfkit.reporting.standing import ranked_by, standings
+from brdfkit.reporting.standing import in_order, ranked_by, standings
 from brdfkit.reporting.verdict import verdict
 from brdfkit.version import __version__
-
-LEAST_NOISE = 0.002  # of a value: less is no bar that one could see
 
 
 @dataclass(frozen=True, eq=False)
 class Contents:
     """What a report says: `said` for its template; and for the page of many reports the `names` of
-    the fits, the best first, the `error` and `loss` of the best and the `picture_errors`, the
-    `findings` of the audit, and small pictures of the measurement and the best fit; and the samples
-    per pixel that there are, and that were asked for."""
+    the fits, that to take first, with its `error` by the `loss`, the `picture_errors`, the
+    `findings` of the audit, and small pictures of the measurement and the first fit; and the
+    samples per pixel that there are, and that were asked for."""
 
     said: dict[str, Any]
     material: str
@@ -49,15 +49,19 @@ class Contents:
         return [error.text(error.values[0]) for error in self.picture_errors]
 
 
-def describe(material, fits, rendering, file, path):
-    """The `Contents` of a report of a `Measured` and its `fits`, with the `Rendering` of both."""
+def describe(material, fits, rendering, file, path, scene, envmap, ranking):
+    """The `Contents` of a report of a `Measured` and its `fits`, with the `Rendering` of both.
+
+    `file`, `path`: what was read, or None, and what is written; `scene`, `envmap`: of the pictures;
+    `ranking`: that chose a model, or None.
+    """
     loss = ranked_by(fits)
     standing = standings(material, fits, loss)
     errors, differences = picture_errors(rendering), [*colour_differences(rendering).values()]
     pictures = [*rendering.pictures.values()]
 
-    # the best first
-    order = sorted(range(len(fits)), key=lambda k: standing[k].errors[loss])
+    # the one to take first
+    order = in_order(standing, loss)
     fits, standing = [fits[k] for k in order], [standing[k] for k in order]
     errors = {metric: error.in_order(order) for metric, error in errors.items()}
     differences = [differences[k] for k in order]
@@ -66,32 +70,38 @@ def describe(material, fits, rendering, file, path):
     for fit in fits:
         names.append(make_unique(fit.name, names))
 
-    head, more = verdict(names, standing, errors, loss)
+    head, more = verdict(names, standing, errors, loss, ranking)
     found = audit(material)
     known = [one for one in found.noise.relative if np.isfinite(one)]
     sigma = float(np.median(known)) if known else 0.0
-    how = rendering.spp, pictures[0].shape[0], rendering.seed
-    command, untold = origin.command(material, file, fits, *how, path)
+    size = pictures[0].shape[0]
+    how = {"spp": rendering.spp, "size": size, "seed": rendering.seed}
+    how |= {"scene": scene, "envmap": envmap}
+    command, untold = origin.command(material, file, fits, path, **how)
+    lobes, noise_shown = lobe_charts(material, fits, sigma)
     said = {
         "material": material.name,
         "verdict": head,
         "more": more,
-        "facts": origin.facts(material, file, *how),
+        "facts": origin.facts(material, file, **how),
         "command": command,
         "untold": untold,
         "names": names,
         "stills": [jpeg(picture) for picture in pictures],
-        "size": how[1],
+        "size": size,
+        "shown": origin.scene_in_words(scene, envmap),
         "captions": [_caption(errors, place) for place in range(len(names))],
         "picture_errors": [*errors.values()],
         "pixels": for_script([material.name, *names], pictures, differences),
         "errors": errors_table(standing, loss),
         "meanings": {n: losses[n].meaning.replace("θ_", "θ") for n in standing[0].errors},
         "loss": loss,
-        "lobes": lobe_charts(material, fits, sigma),
-        "noise_shown": sigma > LEAST_NOISE,
+        "ranking": ranking and _ranked(ranking),
+        "lobes": lobes,
+        "noise_shown": noise_shown,
         "slices": slice_charts(material, fits),
         "albedo": albedo_chart(found.albedo, fits, material.anisotropic),
+        "albedo_guessed": bool(is_guessed(found.albedo).any()),
         "fits": [parameters.describe(fit) for fit in fits],
         "audit": found.rows(),
         "findings": found.findings(),
@@ -111,6 +121,15 @@ def describe(material, fits, rendering, file, path):
         rendering.spp,
         rendering.asked,
     )
+
+
+def _ranked(ranking):
+    """A `Ranking` for the page: without the times, which are others each time, and the verdict
+    second, for narrow screens."""
+    *_, time, verdict = range(len(COLUMNS))
+    shown = [0, verdict, *range(1, time)]
+    rows = [[row[k] for k in shown] for row in ranking.table()]
+    return {"columns": [COLUMNS[k] for k in shown], "rows": rows, "why": ranking.reason}
 
 
 def _caption(errors, place):

@@ -45,9 +45,9 @@ class Reports:
         if not self.entries:
             return (), []
         errors = self.entries[0].contents.picture_errors
-        columns = "material", "best", ">error", *(f">{error.title}" for error in errors)
+        columns = "material", "best", "verdict", ">error", *(f">{error.title}" for error in errors)
         rows = [
-            (one.material, one.names[0], format_error(one.error), *one.picture_texts)
+            (one.material, one.names[0], one.verdict, format_error(one.error), *one.picture_texts)
             for one in (entry.contents for entry in self.entries)
         ]
         return columns, rows

@@ -7,22 +7,30 @@ from brdfkit.files import sha256
 from brdfkit.fitting.solvers import AlbedoAtMost
 from brdfkit.fitting.solvers.settings import to_plain, to_solver
 from brdfkit.loading import locate
+from brdfkit.reporting.defaults import SCENE
 from brdfkit.verbs.fit import SETTINGS
 from brdfkit.version import versions
 
 
-def facts(material, file, spp, size, seed):
+def facts(material, file, spp, size, seed, scene, envmap):
     """What was read and how, by heading; `file`: as the user named it, or None."""
     found = {"file": str(file) if file else f"{material.name}, from memory"}
     if file:
         found["SHA-256 of the file"] = sha256(locate(file)[0])
     found["SHA-256 of its data"] = material.checksum
-    found["pictures"] = f"{size}×{size} pixels, {spp} samples per pixel, seed {seed}"
+    how = f"{size}×{size} pixels, {spp} samples per pixel, seed {seed}"
+    found["pictures"] = f"{scene_in_words(scene, envmap)}; {how}"
     found["made with"] = ", ".join(f"{name} {number}" for name, number in versions().items())
     return found
 
 
-def command(material, file, fits, spp, size, seed, output):
+def scene_in_words(scene, envmap):
+    """What the pictures show, and by which light."""
+    shown = f"the mesh {Path(scene).name}" if Path(scene).suffix else f"the scene {scene}"
+    return f"{shown}, lit by {Path(envmap).name}" if envmap else f"{shown}, in its own light"
+
+
+def command(material, file, fits, output, spp, size, seed, scene, envmap):
     """The command that makes the report again, as one would type it, and the names of the settings
     of the fits that it cannot tell."""
     words = ["brdfkit", "report", str(file or "FILE")]
@@ -40,6 +48,7 @@ def command(material, file, fits, spp, size, seed, output):
         elif (value or None) != (usual.get(name) or None):
             words += option
             untold |= set() if option else {name}
+    words += ["--scene", str(scene)] * (scene != SCENE) + ["--envmap", str(envmap)] * bool(envmap)
     words += ["--spp", str(spp), "--size", str(size), "--seed", str(seed)]
     return shlex.join([*words, "-o", Path(output).name]), sorted(untold)
 

@@ -4,33 +4,35 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from brdfkit.arguments import to_dictionary, to_whole_number
+from brdfkit.arguments import to_dictionary
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import require_writable
 from brdfkit.fitting import Fit
 from brdfkit.materials import MaterialLike, measured_material
 from brdfkit.measured import Measured
 from brdfkit.model import Model
+from brdfkit.names import slug
+from brdfkit.ranking import Ranking
 from brdfkit.reporting import page
-from brdfkit.reporting.balls import render_balls
 from brdfkit.reporting.contents import Contents, describe
-from brdfkit.reporting.defaults import SIZE
+from brdfkit.reporting.defaults import MODELS, SCENE, SIZE
 from brdfkit.reporting.fits import as_list, to_fit
+from brdfkit.reporting.pictures import render_pictures, require_pictures
 from brdfkit.verbs.fit import check_settings
-
-LARGEST = 1024  # side of a picture [pixels]: of four such, a page has some 20 MB
 
 
 def report(
     material: MaterialLike,
-    things: str | Path | type[Model] | Fit | Iterable[str | Path | type[Model] | Fit],
-    path: str | Path,
+    things: str | Path | type[Model] | Fit | Iterable[str | Path | type[Model] | Fit] = MODELS,
+    path: str | Path | None = None,
     settings: Mapping[str, Any] | None = None,
     *,
     spp: int | None = None,
     until: float | None = None,
     size: int = SIZE,
     seed: int = 0,
+    scene: str | Path = SCENE,
+    envmap: str | Path | None = None,
     progress: Callable[[int, int], object] | None = None,
 ) -> Path:
     """Write one HTML file that shows how well models describe a measured material.
@@ -43,10 +45,10 @@ def report(
     ----------
     material : Measured, str or Path
         The measured material, or the name or path of one.
-    things : str, Path, class or Fit, or several
+    things : str, Path, class or Fit, or several, default ("ward", "ggx", "ggx+ggx")
         The models to fit, as for `fit`, or finished fits, or the paths of saved ones, ``.json``.
-    path : str or Path
-        The file to write, ``.html``.
+    path : str or Path, optional
+        The file to write, ``.html``; by default "NAME-report.html", with the material's name.
     settings : dict of str to object, optional
         The other arguments of `fit` by name, as ``{"loss": "cbrt"}``.
     spp : int, optional
@@ -57,6 +59,10 @@ def report(
         Side of a picture [pixels], from 16 to 1024.
     seed : int, default 0
         Seed of the pictures' samples.
+    scene : str or Path, default "ball"
+        A scene's name or a mesh, as in `render`; no scene file.
+    envmap : str or Path, optional
+        An environment map that lights the scene, as in `render`.
     progress : callable, optional
         Called with (steps done, steps in all) of each fit and of the pictures, one after the other.
 
@@ -75,11 +81,13 @@ def report(
     --------
     >>> report("car_paint", ["ward", "ggx"], "car_paint.html")    # doctest: +SKIP
     """
-    path = require_page(path)
     chosen = check_settings(to_dictionary("settings", settings))
+    require_pictures(size, scene, envmap)
     data, file = measured_material(material), material if isinstance(material, str | Path) else None
+    path = require_page(page_of(data) if path is None else path)
     fits = [to_fit(thing, data, chosen, progress) for thing in as_list(things)]
-    write_report(data, fits, path, file, spp, until, size, seed, progress)
+    pictures: dict[str, Any] = {"spp": spp, "until": until, "size": size, "seed": seed}
+    write_report(data, fits, path, file, **pictures, scene=scene, envmap=envmap, progress=progress)
     return path
 
 
@@ -88,22 +96,25 @@ def write_report(
     fits: list[Fit],
     path: Path,
     file: str | Path | None = None,
-    spp: int | None = None,
-    until: float | None = None,
-    size: int = SIZE,
-    seed: int = 0,
-    progress: Callable[[int, int], object] | None = None,
+    ranking: Ranking | None = None,
+    scene: str | Path = SCENE,
+    envmap: str | Path | None = None,
+    **pictures: Any,
 ) -> Contents:
-    """Write the report of a material and finished fits; `file`: from where the material came.
+    """Write the report of a material and finished fits.
 
-    Returns what it says. Raises `BrdfkitError` as `report` does.
+    `file`: from where the material came; `ranking`: that chose a model; `pictures`: what
+    `render_pictures` takes besides. Returns what it says. Raises `BrdfkitError` as `report` does.
     """
-    if to_whole_number("size", size, least=16) > LARGEST:
-        raise BrdfkitError(f"size = {size}: pictures of a page have at most {LARGEST} pixels.")
-    rendering = render_balls(material, fits, spp, until, size, seed, progress)
-    contents = describe(material, fits, rendering, file, path)
+    rendering = render_pictures(material, fits, scene=scene, envmap=envmap, **pictures)
+    contents = describe(material, fits, rendering, file, path, scene, envmap, ranking)
     page.write("report.html", path, **contents.said)
     return contents
+
+
+def page_of(material: Measured) -> str:
+    """The file of a material's report, where none is named."""
+    return f"{slug(material.name)}-report.html"
 
 
 def require_page(path: str | Path) -> Path:

@@ -1,5 +1,5 @@
-"""How the fits stand: their errors by every loss, how far off they are in plain words, and which of
-them cannot be told from the best."""
+"""How the fits stand: their errors by every loss, how far off their values are, which cannot be
+told from the best, and which one to take."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ from brdfkit.ranking.result import TIED, paired_standard_error
 from brdfkit.verbs.compare import compare
 
 SHOWN = "cosine", "log", "cbrt", "plain"  # and the loss that was fitted
-MOST_SAMPLES = 50_000  # of which quantiles and ties are told; of more, so many are drawn
+MOST_SAMPLES = 200_000  # of which quantiles and ties are told; of more, so many are drawn
 BAND, LEAST = 15.0, 20  # degrees of θi over which a deviation is told; samples that it needs
 
 
@@ -23,9 +23,10 @@ class Standing:
     """How a fit stands.
 
     `errors`: E by loss; `typical`, `most`: the factors within which half, and 95 %, of the measured
-    values are met; `worst`: the factor for half of them in the band of incidences (from, to)
-    [degrees] `worst_at` where it is largest; `numbers`: how many were sought; `tied`: no worse than
-    the best, within the noise between blocks of directions.
+    values are met, those above 0 of every channel, each counted once; `worst`: the factor for half
+    of them in the band of incidences (from, to) [degrees] `worst_at` where it is largest;
+    `numbers`: how many were sought; `tied`: no worse than the best, within the noise between blocks
+    of directions.
     """
 
     errors: dict[str, float]
@@ -52,23 +53,33 @@ def standings(material, fits, loss):
     samples = _some(select_samples(material, max_angle))
     blocks = number_blocks(samples.wi, samples.wo, material.anisotropic)
     weight = losses[loss].importance(samples)
-    sums, deviations = [], []
+    sums, factors = [], []
     for fit in fits:
         values = np.broadcast_to(fit.rgb.eval(samples.wi, samples.wo), samples.values.shape)
         sums.append(np.bincount(blocks, weight * squares(losses[loss], values, samples)))
-        square = squares(losses["log"], values, samples) / samples.values.shape[1]
-        deviations.append(np.sqrt(square))
+        factors.append(_factors(values, samples))
     best = min(sums, key=np.sum)
     shares = np.bincount(blocks, weight)
     return [
         Standing(
             {name: found[name] for name in losses.by_sample if name in {*SHOWN, loss}},
-            *_factors(deviation, samples),
+            *own_factors,
             _count_numbers(fit),
             _is_tied(own - best, shares),
         )
-        for fit, found, own, deviation in zip(fits, errors, sums, deviations, strict=True)
+        for fit, found, own, own_factors in zip(fits, errors, sums, factors, strict=True)
     ]
+
+
+def in_order(standings, loss):
+    """The places of the fits: that of the one to take, then the others by their error.
+
+    To take is, as in `rank`, of those that are tied with the best the one with the fewest numbers.
+    """
+    by_error = sorted(range(len(standings)), key=lambda place: standings[place].errors[loss])
+    tied = [place for place in by_error if standings[place].tied]
+    taken = min(tied, key=lambda place: standings[place].numbers)
+    return [taken, *(place for place in by_error if place != taken)]
 
 
 def _errors(material, fits, max_angle):
@@ -85,26 +96,27 @@ def _some(samples):
     return samples.at(np.sort(drawn))
 
 
-def _factors(deviation, samples):
-    """`typical`, `most`, `worst` and `worst_at` of a `Standing`; `deviation`: of logarithms."""
-    theta_i = np.degrees(to_angles(samples.wi)[0])
+def _factors(values, samples):
+    """`typical`, `most`, `worst` and `worst_at` of a `Standing`; `values`: the fit's, of the
+    measured `samples` (n, channels)."""
+    known = samples.values > 0
+    with np.errstate(divide="ignore"):  # a fit of 0 is off by any factor
+        off = np.abs(np.log(np.maximum(values[known], 0) / samples.values[known]))
+    theta_i = np.broadcast_to(np.degrees(to_angles(samples.wi)[0])[:, None], known.shape)[known]
     bands = np.floor(theta_i / BAND)
     found = {
-        band: _quantile(deviation[bands == band], samples.weight[bands == band], 0.5)
+        band: _quantile(off[bands == band], 0.5)
         for band in np.unique(bands)
         if (bands == band).sum() >= min(LEAST, len(bands))
     }
-    worst = max(found, key=found.get) if found else 0.0
-    typical, most = (_quantile(deviation, samples.weight, share) for share in (0.5, 0.95))
-    factors = (float(np.exp(x)) for x in (typical, most, found.get(worst, typical)))
+    worst = max(found, key=found.get)
+    factors = (float(np.exp(x)) for x in (_quantile(off, 0.5), _quantile(off, 0.95), found[worst]))
     return *factors, (worst * BAND, (worst + 1) * BAND)
 
 
-def _quantile(values, weights, share):
-    """The value below which a `share` of the weight lies."""
-    order = np.argsort(values)
-    sums = np.cumsum(weights[order])
-    return values[order][np.searchsorted(sums, share * sums[-1])]
+def _quantile(values, share):
+    """The value of which a `share` of the others are no larger; itself one of them."""
+    return np.quantile(values, share, method="inverted_cdf")
 
 
 def _is_tied(differences, shares):

@@ -1,55 +1,72 @@
-"""The verdict of a report in words: which fit is best, by what, how far off it is, and whether one
-can see it."""
+"""The verdict of a report in words: which fit to take, why, and how far off it is."""
 
-# ΔE: the least difference that is seen side by side, and one that is plain
-SEEN, PLAIN = 1.0, 3.0
-NOISE = 0.5  # what is less than this part of the noise is not known
+from brdfkit.reporting.picture_verdict import leads_in_picture, nearer_in_picture, visibility
+
+MARKED = 1.5  # times the typical logarithm: so much worse is worth a sentence
+AHEAD = 1.01  # times another fit's error: less is not worth a sentence
+MOST = 1000  # a larger factor says no more than that the fit fails
 
 
-def verdict(names, standings, errors, loss):
-    """The sentence at the head, and a list of others below it.
+def verdict(names, standings, errors, loss, ranking=None):
+    """The sentences at the head, and a list of others below it.
 
-    `names`: of the fits; `standings`: theirs; both in the order of the `loss` by which they are
-    ranked. `errors`: their `PictureError`s by metric, in the same order.
+    `names`: of the fits; `standings`: theirs; both in their order, the one to take first. `errors`:
+    their `PictureError`s by metric, in the same order. `loss`: by which they are ranked. `ranking`:
+    the `Ranking` that chose a model, or None.
     """
-    best, seen = standings[0], errors["psnr"]
-    firsts = {name: _first([one.errors[name] for one in standings]) for name in best.errors}
-    nearest = seen.first
+    taken = standings[0]
+    firsts = {name: _first([one.errors[name] for one in standings]) for name in taken.errors}
+    alone = len(names) == 1
+    if alone:
+        why = f"was {_chosen(ranking)}" if ranking else "is the only fit"
+    elif firsts[loss]:
+        why = _is_enough(names[firsts[loss]], standings[firsts[loss]], taken)
+    else:
+        why = _leads(loss, firsts, leads_in_picture(errors["psnr"]))
     head = (
-        f"{names[0]} {_leads(loss, firsts, nearest == 0, len(names))}: half of the measured values "
-        f"are met within {in_words(best.typical)}, 95\xa0% within {in_words(best.most)}, and "
-        f"{_visible(errors)}."
+        f"{names[0]} {why}. Half of the measured values are met within a factor of "
+        f"{in_words(taken.typical)}, 95\xa0% within {in_words(taken.most)}, and "
+        f"{visibility(errors)}."
     )
-    more = _others(names, standings, firsts) if len(names) > 1 else []
-    if nearest:
-        values = f"{seen.text(seen.values[nearest])}, against {seen.text(seen.values[0])}"
+    more = [] if alone else _others(names, standings, firsts, loss)
+    if ranking and not alone:
+        more.append(f"{ranking.best} was {_chosen(ranking)}.")
+    more += nearer_in_picture(names, errors["psnr"])
+    if taken.worst > taken.typical**MARKED:
+        low, high = taken.worst_at
         more.append(
-            f"In the picture {names[nearest]} comes nearest: {seen.title} {values} of {names[0]}."
+            f"{names[0]} is farthest off at θi {low:g}° to {high:g}°: half of the values there are "
+            f"met within a factor of {in_words(taken.worst)}."
         )
-    low, high = best.worst_at
-    more.append(
-        f"{names[0]} is farthest off at θi {low:g}° to {high:g}°: half of the values there are met "
-        f"within {in_words(best.worst)}."
-    )
     return head, more
 
 
 def in_words(factor):
-    """A factor in words: in percent as long as it is small.
+    """A factor as text.
 
-    >>> in_words(1.06), in_words(2.5)
-    ('6.0\xa0%', 'a factor of 2.5')
+    >>> in_words(1.057), in_words(23.4)
+    ('1.06', '23')
     """
-    percent = 100 * (factor - 1)
-    if percent < 10:
-        return f"{percent:.1f}\xa0%"
-    return f"{percent:.0f}\xa0%" if percent < 50 else f"a factor of {factor:.2g}"
+    if factor >= MOST:
+        return f"{MOST:,} or more"
+    return f"{factor:.2f}" if factor < 10 else f"{factor:.0f}"
 
 
-def _leads(loss, firsts, in_picture, count):
+def _chosen(ranking):
+    """Why the `ranking` recommends its model, in words."""
+    count = sum(not row.message for row in ranking.rows)
+    return f"chosen from {count} models, because {ranking.why}"
+
+
+def _is_enough(name, best, taken):
+    """That the fit to take is tied with the `best`, which has this name and more numbers."""
+    more = best.numbers - taken.numbers
+    numbers = f"{more} more number{'s' * (more > 1)}"
+    return f"is enough: {name}, with {numbers}, is no better by more than noise"
+
+
+def _leads(loss, firsts, in_picture):
     """What the best fit leads in, in words; `firsts`: the place of the best by each loss."""
-    if count == 1:
-        return "is the only fit"
     others = [name for name, place in firsts.items() if place == 0 and name != loss]
     by = f"by the loss{'es' * bool(others)} {_list([loss, *others])}"
     if len(others) + 1 == len(firsts):
@@ -62,38 +79,20 @@ def _first(errors):
     return errors.index(min(errors))
 
 
-def _visible(errors):
-    """Whether the first fit's picture can be told from the measured one, in words."""
-    median, upper = errors["delta_e_2000"], errors["delta_e_2000_95"]
-    typical, most = (_without_noise(error) for error in (median, upper))
-    figures = f"ΔE {median.values[0]:.1f} in the median, where noise alone has {median.floor:.1f}"
-    if most < NOISE * upper.floor:
-        return f"its picture differs by no more than noise ({figures})"
-    if most < SEEN:
-        return f"its picture cannot be told from the measured one by eye ({figures})"
-    if typical < SEEN:
-        return f"its picture differs visibly in places only ({figures})"
-    if typical < PLAIN:
-        return f"its picture differs visibly, side by side ({figures})"
-    return f"its picture is plainly another one ({figures})"
-
-
-def _without_noise(error):
-    """The first fit's error less that of noise, which adds to it as squares do."""
-    return max(error.values[0] ** 2 - error.floor**2, 0.0) ** 0.5
-
-
-def _others(names, standings, firsts):
+def _others(names, standings, firsts, loss):
     """Sentences on ties, and on other fits that lead by other losses."""
-    tied = [name for name, one in zip(names[1:], standings[1:], strict=True) if one.tied]
+    told = firsts[loss]  # by the head
+    rest = [k for k in range(1, len(names)) if k != told]
+    tied = [names[k] for k in rest if standings[k].tied]
     verb = "is" if len(tied) == 1 else "are"
-    said = [f"{_list(tied)} {verb} not distinguishable from it by this loss."] if tied else []
+    said = [f"{_list(tied)} {verb} not distinguishable from it by the loss {loss}."] if tied else []
     ahead: dict[str, list[str]] = {}
-    for loss, place in firsts.items():
-        if place:
-            ahead.setdefault(names[place], []).append(loss)
-    said += [f"By {_list(losses)}, {name} is ahead." for name, losses in ahead.items()]
-    return said or ["Its lead over the others is more than noise."]
+    for other, place in firsts.items():
+        own, least = standings[0].errors[other], standings[place].errors[other]
+        if other != loss and own > AHEAD * least:
+            ahead.setdefault(names[place], []).append(other)
+    said += [f"By {_list(by)}, {name} is ahead." for name, by in ahead.items()]
+    return said if said or told else ["Its lead over the others is more than noise."]
 
 
 def _list(words):
