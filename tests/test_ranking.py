@@ -17,7 +17,7 @@ from brdfkit.model import Model, labels, weight
 from brdfkit.model.lobes import Cosine, Lobe
 from brdfkit.ranking import ranking
 from brdfkit.ranking.held_out import PART, HeldOut, number_blocks
-from brdfkit.ranking.result import paired_standard_error
+from brdfkit.ranking.result import beside, is_tied, paired_standard_error
 
 TRUTHS = {
     "ward": {"alpha_u": 0.15, "diffuse_reflectance": 0.1},
@@ -239,3 +239,12 @@ def test_an_anisotropic_fit_has_no_such_note():
     notes = {model: " ".join(bk.fit(model, data).notes) for model in ("ward", "lambert")}
     assert "turns" not in notes["ward"]
     assert "the material changes as the surface turns, and the model as fitted" in notes["lambert"]
+
+
+def test_errors_that_differ_by_rounding_are_tied():
+    shares, squares = np.full(4, 0.25), np.array([1.0, 2.0, 3.0, 4.0])
+    assert is_tied(*beside(squares * (1 + 1e-15), squares, shares))
+    assert not is_tied(*beside(squares * 1.001, squares, squares))  # by the same share everywhere
+    # one block tells nothing of noise
+    assert is_tied(*beside(squares[:1], squares[:1], shares[:1]))
+    assert not is_tied(*beside(squares[1:2], squares[:1], shares[:1]))

@@ -1,4 +1,4 @@
-"""Makes names unique, printable, and fit for a file."""
+"""Makes names unique, printable, fit for a file, and lists of them."""
 
 from pathlib import Path
 
@@ -29,6 +29,16 @@ def printable(text, keep=""):
     'gold[2J'
     """
     return "".join(c for c in str(text) if c in keep or c not in CONTROL)
+
+
+def listed(words):
+    """Words as a list in a sentence.
+
+    >>> listed(["log", "cbrt", "plain"])
+    'log, cbrt and plain'
+    """
+    *first, last = words
+    return f"{', '.join(first)} and {last}" if first else last
 
 
 def slug(name):

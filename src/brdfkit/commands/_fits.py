@@ -1,7 +1,5 @@
 """What `brdfkit fit` prints: the fits, a table of their errors, or both as JSON."""
 
-# The losses whose errors the table of fits shows, beside that which was minimised
-SHOWN = "cosine", "log", "cbrt", "plain"
 # Where fits gain light, if they do [degrees]
 INCIDENCES = 0, 85
 
@@ -12,7 +10,7 @@ def print_fits(material, fits, failed, comparison, pictures, written, ranking, c
     the `ranking`, too."""
     from brdfkit.commands._ranking import record
     from brdfkit.commands.render import print_errors
-    from brdfkit.verbs.compare import format_error
+    from brdfkit.verbs.compare import format_error, told
 
     if console.as_json:
         psnr = {n: row["psnr"] for n, row in pictures.by_name.items()} if pictures else {}
@@ -26,8 +24,7 @@ def print_fits(material, fits, failed, comparison, pictures, written, ranking, c
         if gained := _gained_light(found):
             console.out.print(f"  {gained}")
         console.out.print()
-    named = {f.loss_name for f in fits}
-    shown = [name for name in next(iter(comparison.errors.values())) if name in {*SHOWN, *named}]
+    shown = told(*(f.loss_name for f in fits))
     columns, rows = ["model", *(f">{name}" for name in shown), ">time [s]"], []
     for found in fits:
         errors = [format_error(comparison.errors[found.name][name]) for name in shown]

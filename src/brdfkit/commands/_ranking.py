@@ -4,6 +4,7 @@ import click
 
 from brdfkit.commands._errors import say
 from brdfkit.commands._stopping import status
+from brdfkit.errors import BrdfkitError
 
 BEST = "best"  # stands for the recommended model
 
@@ -29,6 +30,12 @@ def recommend(names, material, how, console):
         click.get_current_context().exit(status())
     chosen = [ranking.best if name == BEST else name for name in names]
     return list(dict.fromkeys(chosen)), ranking
+
+
+def refuse_best(names):
+    """Raise `BrdfkitError` where `names`, of models for several files, have BEST."""
+    if BEST in names:
+        raise BrdfkitError("-m best ranks models on one material; name one FILE, or a model.")
 
 
 def print_ranking(ranking, console):

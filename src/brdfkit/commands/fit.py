@@ -68,14 +68,13 @@ def fit(
     and a table are written, too, and the same command goes on where it was stopped.
     """
     from brdfkit.commands._many_files import fit_many
-    from brdfkit.commands._ranking import BEST, print_ranking, recommend
+    from brdfkit.commands._ranking import BEST, print_ranking, recommend, refuse_best
     from brdfkit.commands._targets import results_folder
     from brdfkit.materials import measured_material
     from brdfkit.model import labels
     from brdfkit.names import fit_file, slug
-    from brdfkit.rendering.environment import require_map
     from brdfkit.rendering.memory import require_memory
-    from brdfkit.rendering.scene_loading import SIZE, find_scene
+    from brdfkit.rendering.scene_loading import SIZE, require_scene
     from brdfkit.verbs.compare import compare
 
     if not rendered:
@@ -86,8 +85,7 @@ def fit(
             labels.model(name)
     how |= {"seed": seed, "spectral": spectral}
     if len(files) > 1:
-        if BEST in names:
-            raise BrdfkitError("-m best ranks models on one material; name one FILE, or a model.")
+        refuse_best(names)
         if rendered:
             raise BrdfkitError("--render shows one material; name one FILE, or leave it out.")
         fit_many(files, names, how, output, jobs, console)
@@ -99,9 +97,7 @@ def fit(
     if ranking:
         print_ranking(ranking, console)
     if rendered:
-        find_scene(scene)
-        if envmap:
-            require_map(envmap)
+        require_scene(scene, envmap)
         require_memory((size, size) if size else SIZE, 1 + len(names))
         output = output or Path(slug(material.name))
 

@@ -64,6 +64,7 @@ def _report_one(file, names, how, output, pictures, console):
     """Fit the models to one file, and write and print its report."""
     from brdfkit.commands._ranking import print_ranking, recommend
     from brdfkit.materials import measured_material
+    from brdfkit.reporting.fits import fit_each
     from brdfkit.reporting.report import page_of, require_page, write_report
 
     with console.progress(f"read {file}"):
@@ -72,7 +73,7 @@ def _report_one(file, names, how, output, pictures, console):
     names, ranking = recommend(names, material, how, console)
     if ranking:
         print_ranking(ranking, console)
-    fits, failed = _fit_each(names, material, how, console)
+    fits, failed = fit_each(names, material, how, console.progress)
     with console.progress("render") as progress:
         said = write_report(material, fits, path, file, ranking, **pictures, progress=progress)
     if console.as_json:
@@ -87,23 +88,6 @@ def _report_one(file, names, how, output, pictures, console):
         click.get_current_context().exit(status())
     if failed:
         click.get_current_context().exit(2)
-
-
-def _fit_each(names, material, how, console):
-    """The fits, and the errors of the models that cannot be fitted; the first one is raised where
-    none can."""
-    from brdfkit.reporting.fits import to_fit
-
-    fits, failed = [], []
-    for number, name in enumerate(names, 1):
-        try:
-            with console.progress(f"fit {name} ({number} of {len(names)})") as progress:
-                fits.append(to_fit(name, material, how, progress))
-        except BrdfkitError as error:
-            failed.append(error)
-    if not fits:
-        raise failed[0]
-    return fits, failed
 
 
 def _print_verdict(said, console):
@@ -121,12 +105,11 @@ def _record(said):
 
 def _report_many(files, names, how, folder, pictures, console):
     """Write a report of each file to `folder`, and the page that leads to them."""
-    from brdfkit.commands._ranking import BEST
+    from brdfkit.commands._ranking import refuse_best
     from brdfkit.commands._targets import results_folder
     from brdfkit.reporting.many_files import report_many
 
-    if BEST in names:
-        raise BrdfkitError("-m best ranks models on one material; name one FILE, or a model.")
+    refuse_best(names)
     if folder.suffix.lower() in (".html", ".htm"):
         raise BrdfkitError(f"{folder} is one page; of several FILEs name a folder behind -o.")
     with results_folder(folder), console.progress(f"report on {len(files)} materials") as progress:

@@ -12,6 +12,7 @@ import numpy as np
 
 from brdfkit.fitting.part import draw_part
 from brdfkit.fitting.points import join, of_channel
+from brdfkit.names import listed
 
 # More samples are judged by a part of half as many
 MANY = 40_000
@@ -194,8 +195,7 @@ def _describe_trade(names, share):
         what = "their product" if share < 0 else "their ratio"
     if len(names) > 4:
         names = [*names[:3], f"{len(names) - 3} other parameters"]
-    joined = f"{', '.join(names[:-1])} and {names[-1]}"
-    return f"{joined} trade off: only {what} is determined"
+    return f"{listed(names)} trade off: only {what} is determined"
 
 
 def _plain(name):

@@ -14,6 +14,7 @@ import drjit as dr
 
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.fitting.loss import Loss
+from brdfkit.names import listed
 from brdfkit.pictures import LIGHTS
 
 
@@ -75,9 +76,7 @@ class Picture:
 
     def describe(self) -> str:
         """What is seen, in words."""
-        *others, last = self.lights
-        lights = f"{', '.join(others)} and {last}" if others else last
-        return f"pictures of a ball under {lights}"
+        return f"pictures of a ball under {listed(self.lights)}"
 
     @cached_property
     def of_pixels(self) -> Loss:

@@ -58,7 +58,7 @@ class Ranked:
     @property
     def tied(self) -> bool:
         """Whether the model is no worse than the best, within the noise."""
-        return self.behind <= TIED * self.uncertainty + EQUAL * self.error
+        return is_tied(self.error, self.behind, self.uncertainty)
 
 
 @dataclass(frozen=True, repr=False)
@@ -151,16 +151,16 @@ def order(found, shares):
     or an error; `shares` (blocks,): how much each block counts."""
     fitted = {label: one for label, one in found.items() if not isinstance(one, BrdfkitError)}
     best = min(fitted.values(), key=lambda one: one.errors.sum())
-    least = math.sqrt(best.errors.sum())
-    rows = []
-    for label, one in fitted.items():
-        error = math.sqrt(one.errors.sum())
-        noise = paired_standard_error(one.errors - best.errors, shares)
-        # Of E², whose difference is (E + least) (E - least)
-        uncertainty = noise / (error + least) if noise else 0.0
-        rows.append(
-            Ranked(label, error, error - least, uncertainty, one.parameters, one.bic, one.seconds)
+    rows = [
+        Ranked(
+            label,
+            *beside(one.errors, best.errors, shares),
+            one.parameters,
+            one.bic,
+            one.seconds,
         )
+        for label, one in fitted.items()
+    ]
     failed = [
         Ranked(label, message=printable(str(one)))
         for label, one in found.items()
@@ -169,9 +169,29 @@ def order(found, shares):
     return (*sorted(rows, key=lambda row: (row.error, row.parameters)), *failed)
 
 
+def beside(errors, best, shares):
+    """A model's E, by how much it is above the best model's, and the standard error of that.
+
+    `errors`, `best` (blocks,): what each block of directions adds to the E² of each; `shares`
+    (blocks,): how much each block counts.
+    """
+    error, least = (math.sqrt(squares.sum()) for squares in (errors, best))
+    noise = paired_standard_error(errors - best, shares)
+    # Of E², whose difference is (E + least) (E - least)
+    return error, error - least, noise / (error + least) if noise else 0.0
+
+
+def is_tied(error, behind, uncertainty):
+    """Whether an E is no worse than the best one, within the noise; see `beside`."""
+    return behind <= TIED * uncertainty + EQUAL * error
+
+
 def paired_standard_error(differences, shares):
-    """The standard error of the sum of `differences` (blocks,), of blocks with these `shares`."""
+    """The standard error of the sum of `differences` (blocks,), of blocks with these `shares`; 0 of
+    one block, which tells nothing of noise."""
     count = len(differences)
+    if count < 2:
+        return 0.0
     apart = differences - differences.sum() * shares / shares.sum()
     return float(np.sqrt(count / (count - 1) * (apart**2).sum()))
 

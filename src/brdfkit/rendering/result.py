@@ -144,10 +144,11 @@ class Rendering(Shown):
     def captions(self) -> dict[str, str]:
         """A word or two on each picture, by its name."""
         floor = self.noise_floor
-        noise = "" if isnan(floor) else ", no noise" if floor == inf else f", noise {floor:.1f} dB"
-        found = {self.reference: ("reference" if self.differences else f"{self.spp} spp") + noise}
+        noise = "" if isnan(floor) else "no noise" if floor == inf else f"noise {floor:.1f} dB"
+        beside = f", {noise}" if noise else ""
+        found = {self.reference: ("reference" if self.differences else f"{self.spp} spp") + beside}
         for name, value in self.psnr().items():
-            near = noise.replace(",", " ≈") if value >= floor < inf else noise
+            near = f" ≈ {noise}" if value >= floor < inf else beside
             found[name] = "PSNR unknown" if isnan(value) else f"PSNR {value:.1f} dB{near}"
         return found
 

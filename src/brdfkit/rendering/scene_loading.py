@@ -5,7 +5,7 @@ from pathlib import Path
 from brdfkit.errors import BrdfkitError
 from brdfkit.host.load_by_mitsuba import load_by_mitsuba
 from brdfkit.rendering import scene_file, users_mesh
-from brdfkit.rendering.environment import environment, light_by
+from brdfkit.rendering.environment import environment, light_by, require_map
 from brdfkit.rendering.scenes import scene, scene_names
 from brdfkit.rendering.shown_material import load_material, mask
 
@@ -37,6 +37,14 @@ def load_scenes(materials, given, size=None, envmap=None):
             seen = mask(loaded, material)
         scenes[name] = loaded
     return scenes, seen
+
+
+def require_scene(given, envmap=None):
+    """Raise `BrdfkitError` for a scene or an environment map that is not there, before anything
+    long begins."""
+    find_scene(given)
+    if envmap is not None:
+        require_map(envmap)
 
 
 def find_scene(given):

@@ -1,5 +1,6 @@
 """The fits of a report: of models, finished, or saved."""
 
+from contextlib import nullcontext
 from pathlib import Path
 
 from brdfkit.errors import BrdfkitError
@@ -14,6 +15,24 @@ def as_list(things):
     if not found:
         raise BrdfkitError("There is no model to report on; give at least one.")
     return found
+
+
+def fit_each(things, material, settings, show=lambda what: nullcontext()):
+    """The fits of those `things` that can be fitted, and the errors of the others.
+
+    `show`: gives, for what is done, a context with a function (done, total) that shows its
+    progress, or with None. Raises the first `BrdfkitError` where none can be fitted.
+    """
+    fits, failed = [], []
+    for number, thing in enumerate(things, 1):
+        try:
+            with show(f"fit {thing} ({number} of {len(things)})") as progress:
+                fits.append(to_fit(thing, material, settings, progress))
+        except BrdfkitError as error:
+            failed.append(error)
+    if not fits:
+        raise failed[0]
+    return fits, failed
 
 
 def to_fit(thing, material, settings, progress=None):

@@ -9,7 +9,7 @@ from brdfkit.materials import measured_material
 from brdfkit.names import make_unique, printable, slug
 from brdfkit.reporting import page
 from brdfkit.reporting.contents import Contents
-from brdfkit.reporting.fits import to_fit
+from brdfkit.reporting.fits import fit_each
 from brdfkit.reporting.report import write_report
 from brdfkit.verbs.compare import format_error
 from brdfkit.version import __version__
@@ -70,7 +70,8 @@ def report_many(files, things, folder, settings, progress=None, **pictures):
                 progress(number, len(files))
             try:
                 material = measured_material(file)
-                fits = _fit_each(things, material, settings, problems)
+                fits, failed = fit_each(things, material, settings)
+                problems += [f"{material.name}: {error}" for error in failed]
                 name = make_unique(slug(material.name), {*entries, PAGE.removesuffix(".html")})
                 path = folder / f"{name}.html"
                 said = write_report(material, fits, path, file, **pictures)
@@ -86,23 +87,6 @@ def report_many(files, things, folder, settings, progress=None, **pictures):
     if found.entries:
         _write_page(found)
     return found
-
-
-def _fit_each(things, material, settings, problems):
-    """The fits of those models that can be fitted; of the others a sentence joins `problems`.
-
-    Raises `BrdfkitError` where none can be fitted.
-    """
-    fits, failed = [], []
-    for thing in things:
-        try:
-            fits.append(to_fit(thing, material, settings))
-        except BrdfkitError as error:
-            failed.append(error)
-    if not fits:
-        raise failed[0]
-    problems += [f"{material.name}: {error}" for error in failed]
-    return fits
 
 
 def _write_page(found):

@@ -6,9 +6,9 @@ import numpy as np
 
 from brdfkit.colours import RGB
 from brdfkit.json_values import plain
+from brdfkit.model.value_table import MOST
 
 DIGITS = 9  # of numbers in JSON: enough to build the model, and the same on every machine
-MOST = 3  # numbers of a weight that are listed; of more, as of a spectrum, the least and the most
 
 
 def describe(fit):

@@ -14,9 +14,8 @@ from brdfkit.arguments import to_whole_number
 from brdfkit.errors import BrdfkitError
 from brdfkit.jit.threads import in_turn
 from brdfkit.rendering import render
-from brdfkit.rendering.environment import require_map
 from brdfkit.rendering.scene_file import SUFFIX
-from brdfkit.rendering.scene_loading import find_scene
+from brdfkit.rendering.scene_loading import find_scene, require_scene
 from brdfkit.rendering.shown_material import load_material, mask
 from brdfkit.rendering.tracing import PASS
 from brdfkit.reporting.defaults import LARGEST, SCENE, SIZE, SMALLEST, SPP
@@ -54,9 +53,7 @@ def require_pictures(size, scene, envmap):
         raise BrdfkitError(
             f"{scene}: a report shows materials in a scene of brdfkit's or on a mesh; choose one."
         )
-    find_scene(scene)
-    if envmap:
-        require_map(envmap)
+    require_scene(scene, envmap)
 
 
 def _sharp(scene):

@@ -10,10 +10,9 @@ from brdfkit.fitting.loss import squares
 from brdfkit.geometry.directions import to_angles
 from brdfkit.measured.selection import select_samples
 from brdfkit.ranking.held_out import number_blocks
-from brdfkit.ranking.result import TIED, paired_standard_error
-from brdfkit.verbs.compare import compare
+from brdfkit.ranking.result import beside, is_tied
+from brdfkit.verbs.compare import compare, told
 
-SHOWN = "cosine", "log", "cbrt", "plain"  # and the loss that was fitted
 MOST_SAMPLES = 200_000  # of which quantiles and ties are told; of more, so many are drawn
 BAND, LEAST = 15.0, 20  # degrees of θi over which a deviation is told; samples that it needs
 
@@ -62,10 +61,10 @@ def standings(material, fits, loss):
     shares = np.bincount(blocks, weight)
     return [
         Standing(
-            {name: found[name] for name in losses.by_sample if name in {*SHOWN, loss}},
+            {name: found[name] for name in told(loss)},
             *own_factors,
             _count_numbers(fit),
-            _is_tied(own - best, shares),
+            is_tied(*beside(own, best, shares)),
         )
         for fit, found, own, own_factors in zip(fits, errors, sums, factors, strict=True)
     ]
@@ -117,13 +116,6 @@ def _factors(values, samples):
 def _quantile(values, share):
     """The value of which a `share` of the others are no larger; itself one of them."""
     return np.quantile(values, share, method="inverted_cdf")
-
-
-def _is_tied(differences, shares):
-    """Whether the sum of differences (blocks,) to the best is no more than noise."""
-    if len(differences) < 2:
-        return not differences.any()
-    return bool(differences.sum() <= TIED * paired_standard_error(differences, shares))
 
 
 def _count_numbers(fit):

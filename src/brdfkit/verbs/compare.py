@@ -15,6 +15,9 @@ from brdfkit.materials import MaterialLike, materials, measured_material
 from brdfkit.measured.selection import select_samples
 from brdfkit.names import make_unique
 
+# The losses by which errors are told, beside those that were minimised
+USUAL = "cosine", "log", "cbrt", "plain"
+
 
 @dataclass(frozen=True, repr=False)
 class Comparison(Shown):
@@ -50,6 +53,15 @@ class Comparison(Shown):
         )
         columns = ("", *(f">{name}" for name in names))
         return Document(f"{self.material}: errors by loss", (Table(rows, columns),))
+
+
+def told(*minimised):
+    """The names of the losses by which the errors of fits are told, in the order of `losses`.
+
+    >>> told("relative")
+    ['cosine', 'log', 'cbrt', 'plain', 'relative']
+    """
+    return [name for name in losses.by_sample if name in {*USUAL, *minimised}]
 
 
 def format_error(error):
