@@ -2,17 +2,15 @@
 
 import platform
 from collections import Counter, defaultdict
-from importlib.metadata import version
 from pathlib import Path
 from statistics import mean, median
 
 from make_models import paragraphs, table
 
-import brdfkit as bk
 from brdfkit.reproducing.drawing import COLOURS, figure, tidy
+from brdfkit.version import versions
 
 PAGE = Path(__file__).with_name("leaderboard.md")
-PACKAGES = "mitsuba", "drjit", "numpy", "scipy"
 INTRODUCTION = """Every model, fitted to every measurement at hand, and how far it is off. Made by
 `BRDFKIT_DATA=FOLDER python docs/make_leaderboard.py --cache CACHE`, which goes on from where it was
 stopped; FOLDER holds third-party files, which brdfkit does not ship.
@@ -40,9 +38,7 @@ def write_page(scores, seconds, full, restarts, facts):
     what the introduction tells."""
     merl = facts["merl"]
     log = by_material([s for s in scores if (s.collection, s.loss) == (merl, "log")])
-    packages = ", ".join(f"{name} {version(name)}" for name in PACKAGES)
-    versions = f"brdfkit {bk.__version__}, Python {platform.python_version()}, {packages}"
-    facts = {**facts, "count": len(log), "versions": versions}
+    facts = {**facts, "count": len(log), "versions": made_with()}
     text = paragraphs(
         *("# The leaderboard", INTRODUCTION.format(**facts)),
         *("## What was to be reached", BARS, reached(log)),
@@ -54,6 +50,12 @@ def write_page(scores, seconds, full, restarts, facts):
     )
     PAGE.write_text(text, encoding="utf-8")
     draw(log).savefig(PAGE.with_suffix(".png"), dpi=90)
+
+
+def made_with():
+    """The versions of brdfkit, of Python and of what the numbers depend on, in words."""
+    own, *others = (f"{name} {number}" for name, number in versions().items())
+    return ", ".join([own, f"Python {platform.python_version()}", *others])
 
 
 def by_material(scores):

@@ -1,18 +1,15 @@
 """The page of the losses: the errors of pictures of `make_losses.py`, in tables and words."""
 
-import platform
 from collections import Counter, defaultdict
-from importlib.metadata import version
 from pathlib import Path
 from statistics import mean, median
 
+from leaderboard_page import made_with
 from make_models import paragraphs, table
 
-import brdfkit as bk
 from brdfkit.reproducing.drawing import COLOURS, figure, tidy
 
 PAGE = Path(__file__).with_name("losses.md")
-PACKAGES = "mitsuba", "drjit", "numpy", "scipy"
 # The losses that the figure shows, and the difference that is clear [dB]
 DRAWN, CLEAR = ("log", "cbrt", "picture", "cosine"), 0.5
 INTRODUCTION = """A fit by another loss is another picture. Here the same models are fitted to
@@ -30,13 +27,12 @@ has a PSNR of {until:g} dB (least: {floor:.1f} dB), at {size}×{size} pixels.
 def write_page(rows, until, size):
     """Write the page of `rows`, dictionaries of material, model, loss, floor and errors."""
     found = by_fit(rows)
-    packages = ", ".join(f"{name} {version(name)}" for name in PACKAGES)
     facts = {
         "count": len({row["material"] for row in rows}),
         "until": until,
         "floor": min(row["floor"] for row in rows),
         "size": size,
-        "versions": f"brdfkit {bk.__version__}, Python {platform.python_version()}, {packages}",
+        "versions": made_with(),
     }
     text = paragraphs(
         "# Which loss looks best",

@@ -177,9 +177,10 @@ def judge(rows, collection, networks, kept):
     kept.write()
 
 
-def main():
-    """Fit what is not fitted, judge all fits, and write the page."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+def start(description):
+    """The arguments of the command line, the folder of measurements, and the networks in it, of a
+    program that its docstring describes."""
+    parser = argparse.ArgumentParser(description=description.partition("\n")[0])
     parser.add_argument("--cache", type=Path, required=True, help="folder for the fits")
     parser.add_argument("--workers", type=int, help="processes; default: one for each core")
     given = parser.parse_args()
@@ -189,6 +190,12 @@ def main():
     folder = Path(folder)
     with np.load(folder / NETWORKS) as read:
         networks = dict(read)
+    return given, folder, networks
+
+
+def main():
+    """Fit what is not fitted, judge all fits, and write the page."""
+    given, folder, networks = start(__doc__)
     kept = Kept(given.cache / "errors.json")
 
     files = {MERL: reconstructions(networks, given.cache, SHAPE)}

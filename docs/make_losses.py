@@ -8,14 +8,10 @@ each fit and the figures of each picture, and the same command goes on from ther
 written again after each loss. Its words are in `losses_page.py`.
 """
 
-import argparse
-import os
 import sys
-from pathlib import Path
 
-import numpy as np
 from losses_page import write_page
-from make_leaderboard import NETWORKS, SEED, SHAPE, Kept, reconstructions
+from make_leaderboard import SEED, SHAPE, Kept, reconstructions, start, sweep
 
 import brdfkit as bk
 
@@ -23,15 +19,6 @@ MODELS = "ggx", "abc", "ggx+ggx", "abc+student_t"
 # The losses, those that matter most first
 LOSSES = "log", "cbrt", "picture", "cosine", "relative", "lafortune", "plain"
 SIZE, UNTIL = 64, 45.0  # of pictures [pixels], and their noise floor [dB]
-
-
-def fit_all(files, loss, output, workers):
-    """The rows of a finished sweep, each fit of which is kept in `output`."""
-    found = bk.sweep(files, MODELS, {"loss": loss}, output=output, workers=workers)
-    print(f"{output.name}: {found.summary}", *found.problems, sep="\n", file=sys.stderr)
-    if len(found.rows) < found.asked:
-        sys.exit("interrupted; the same command goes on from there.")
-    return found.rows
 
 
 def judge(file, fits, kept):
@@ -50,21 +37,13 @@ def judge(file, fits, kept):
 
 def main():
     """Fit what is not fitted, render what is not rendered, and write the page."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--cache", type=Path, required=True, help="folder for the fits")
-    parser.add_argument("--workers", type=int, help="processes; default: one for each core")
-    given = parser.parse_args()
-    folder = os.environ.get("BRDFKIT_DATA")
-    if not folder:
-        sys.exit("BRDFKIT_DATA names no folder of measurements")
-    with np.load(Path(folder) / NETWORKS) as read:
-        networks = dict(read)
+    given, _, networks = start(__doc__)
     kept = Kept(given.cache / "pictures.json")
     files = reconstructions(networks, given.cache, SHAPE)
 
     rows = []
     for loss in LOSSES:
-        found = fit_all(files, loss, given.cache / loss, given.workers)
+        found = sweep(files, MODELS, loss, given.cache / loss, given.workers).rows
         for number, file in enumerate(files, 1):
             fits = [row.fit for row in found if row.material == file.stem and row.fit]
             looks = judge(file, fits, kept)

@@ -31,6 +31,18 @@ def llvm_variant():
     return mi
 
 
+@pytest.fixture(scope="module")
+def module_in_llvm():
+    """Mitsuba in llvm_ad_rgb for all tests of a file; afterwards the old variant is back."""
+    import mitsuba as mi
+
+    before = mi.variant()
+    mi.set_variant("llvm_ad_rgb")
+    yield mi
+    if before:
+        mi.set_variant(before)
+
+
 @pytest.fixture
 def no_user_plugins(monkeypatch):
     """No plugin of a user's is known, and what a test adds is forgotten."""

@@ -33,16 +33,6 @@ def make():
     return module
 
 
-@pytest.fixture(scope="module")
-def variant():
-    mi = pytest.importorskip("mitsuba")
-    before = mi.variant()
-    mi.set_variant("llvm_ad_rgb")
-    yield mi
-    if before:
-        mi.set_variant(before)
-
-
 @pytest.fixture
 def copy(tmp_path, monkeypatch):
     """A copy of the folder, to spoil."""
@@ -213,14 +203,14 @@ def test_rounding_is_as_fine_as_it_says(make):
 
 
 @pytest.mark.parametrize("name", TABULATED)
-def test_the_program_makes_what_is_shipped(measured, make, variant, name):
+def test_the_program_makes_what_is_shipped(measured, make, module_in_llvm, name):
     made, shipped = make.tabulate(name), measured[name].table.values
     assert np.array_equal(np.isnan(made), np.isnan(shipped))
     assert np.allclose(made, shipped, rtol=1e-4, equal_nan=True)
 
 
 @pytest.mark.parametrize("name", MEASURED)
-def test_measured_again_the_values_agree(measured, make, variant, name):
+def test_measured_again_the_values_agree(measured, make, module_in_llvm, name):
     """Other samples of the same specimen, at every third cell along each axis: of a third as many
     cells, the centres are among the table's."""
     shipped = measured[name].table
@@ -234,10 +224,10 @@ def test_measured_again_the_values_agree(measured, make, variant, name):
 
 
 @pytest.mark.parametrize("name", TABULATED)
-def test_a_lookup_gives_the_bsdf_between_the_cells(measured, make, variant, name):
+def test_a_lookup_gives_the_bsdf_between_the_cells(measured, make, module_in_llvm, name):
     wi, wo = random_pairs(20_000, seed=1)
     wi, wo = (w[to_half_difference(wi, wo)[1] < np.radians(75)] for w in (wi, wo))
-    bsdf = variant.load_dict(make.TABULATED[name]())
+    bsdf = module_in_llvm.load_dict(make.TABULATED[name]())
     error = np.abs(measured[name].eval(wi, wo) / make.evaluate(bsdf, wi, wo) - 1).max(axis=1)
     assert np.median(error) < 0.006
     assert np.percentile(error, 99) < 0.05

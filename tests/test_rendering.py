@@ -15,18 +15,10 @@ from brdfkit.rendering.montage import montage
 from brdfkit.rendering.scenes.ball import ball
 from brdfkit.rendering.tracing import passes_of
 
+pytestmark = pytest.mark.usefixtures("module_in_llvm")
+
 WHITE = {"name": "white", "type": "diffuse", "reflectance": 0.8}
 GREY = {"name": "grey", "type": "diffuse", "reflectance": 0.2}
-
-
-@pytest.fixture(scope="module", autouse=True)
-def variant():
-    mi = pytest.importorskip("mitsuba")
-    before = mi.variant()
-    mi.set_variant("llvm_ad_rgb")
-    yield
-    if before:
-        mi.set_variant(before)
 
 
 @pytest.fixture(scope="module")

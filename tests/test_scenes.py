@@ -14,6 +14,8 @@ from brdfkit.rendering import environment, users_mesh
 from brdfkit.rendering.galleries import draw_grid
 from brdfkit.rendering.scenes import _meshes, _studio, knot, material_ball, scene, scene_names, vase
 
+pytestmark = pytest.mark.usefixtures("module_in_llvm")
+
 WHITE = {"name": "white", "type": "diffuse", "reflectance": 0.8}
 BLACK = {"name": "black", "type": "diffuse", "reflectance": 0.02}
 SCENES = scene_names()
@@ -35,16 +37,6 @@ KITCHEN = """<scene version="3.0.0"><integrator type="path"/><emitter type="cons
 <shape type="sphere"><point name="center" value="0,0,1"/><ref id="{id}"/></shape>
 <shape type="disk"><transform name="to_world"><scale value="9"/></transform><ref id="Floor"/>
 </shape></scene>"""
-
-
-@pytest.fixture(scope="module", autouse=True)
-def variant():
-    mi = pytest.importorskip("mitsuba")
-    before = mi.variant()
-    mi.set_variant("llvm_ad_rgb")
-    yield
-    if before:
-        mi.set_variant(before)
 
 
 @pytest.mark.parametrize("name", SCENES)
