@@ -713,3 +713,31 @@ def test_the_gallery_sorts_by_names_and_by_numbers(show, reports):
         assert errors == sorted(errors, reverse=turned)
     tab.locator("tbody a").first.click()
     tab.locator(".viewer").wait_for()
+
+
+def test_few_samples_in_many_bands_have_a_report(here):
+    """Four samples, each in a band of incidences of its own."""
+    theta = np.array([20.0, 30, 50, 70])
+    few = bk.Measured.from_angles(theta, 0, theta[::-1], 180, theta / 100, name="few")
+    path = bk.report(few, ["lambert"], "few.html", spp=SPP, size=16)
+    assert "Half of the measured values are met within" in Page(path).text
+
+
+def test_what_cannot_be_compared_is_refused_in_a_sentence(here):
+    dark = bk.Measured.from_table(np.full((9, 9, 18, 3), -0.1), name="dark")
+    with pytest.raises(bk.BrdfkitError, match="dark: no measured value is above 0"):
+        bk.report(dark, ["lambert"], "dark.html", spp=SPP, size=16)
+    with pytest.raises(bk.BrdfkitError, match="spp = 0 should be"):
+        bk.report("plaster", ["lambert"], "none.html", spp=0)
+    assert not list(here.glob("*.html"))
+
+
+def test_unknown_errors_are_not_taken_for_figures():
+    broken = psnr_and_delta((np.nan,), 30.0, np.nan, 1.0)
+    assert broken["psnr"].first is None
+    assert "not finite" in visibility(broken)
+    half_known = PictureError(METRICS["psnr"], (np.nan, 20.0), 30.0)
+    assert half_known.first == 1
+    # after Ctrl-C in the second pass the noise is not known
+    assert "noise" not in visibility(psnr_and_delta((30.0,), np.nan, 0.5, np.nan))
+    assert visibility(psnr_and_delta((30.0,), np.nan, 0.5, np.nan)).startswith("its picture cannot")

@@ -37,7 +37,7 @@ def colour_bar(name, steps=128):
 
 
 def _bytes(shares):
-    return (np.clip(shares, 0, 1) * 255 + 0.5).astype(np.uint8)
+    return (np.clip(np.nan_to_num(shares), 0, 1) * 255 + 0.5).astype(np.uint8)
 
 
 def _address(pixels, kind, **options):

@@ -1,6 +1,7 @@
 """How far the pictures of the fits are from that of the measurement, and how far noise alone is."""
 
 from dataclasses import dataclass, replace
+from math import isnan
 
 from brdfkit.picture_errors.metrics import METRICS, Metric
 
@@ -21,8 +22,9 @@ class PictureError:
 
     @property
     def first(self):
-        """The place of the fit that comes nearest."""
-        return self.values.index((max if self.metric.more else min)(self.values))
+        """The place of the fit that comes nearest; None where no error is known."""
+        known = [value for value in self.values if not isnan(value)]
+        return self.values.index((max if self.metric.more else min)(known)) if known else None
 
     def text(self, value):
         """A value as text."""

@@ -1,6 +1,8 @@
 """What the verdict says of the pictures: whether a fit's can be told from the measured one by eye,
 and whether another one is nearer."""
 
+from math import isnan
+
 # ΔE: the least difference that is seen side by side, and one that is plain
 SEEN, PLAIN = 1.0, 3.0
 NOISE = 0.5  # what is less than this part of the noise is not known
@@ -14,7 +16,11 @@ def visibility(errors):
     """
     median, upper = errors["delta_e_2000"], errors["delta_e_2000_95"]
     typical, most = (_without_noise(error) for error in (median, upper))
-    figures = f"ΔE {median.values[0]:.1f} in the median, where noise alone has {median.floor:.1f}"
+    if isnan(median.values[0]):
+        return "nothing can be said of its picture, which is not finite"
+    figures = f"ΔE {median.values[0]:.1f} in the median"
+    if not isnan(median.floor):
+        figures += f", where noise alone has {median.floor:.1f}"
     if median.floor > SEEN and median.values[0] < DROWNED * median.floor:
         return f"the pictures are too noisy to tell; use more --spp ({figures})"
     if most < NOISE * upper.floor:
@@ -36,7 +42,7 @@ def leads_in_picture(psnr):
 def nearer_in_picture(names, psnr):
     """A sentence where another fit's picture is nearer than the first fit's, by more than noise."""
     nearest = psnr.first
-    if not _is_nearer(psnr, nearest, 0):
+    if nearest is None or not _is_nearer(psnr, nearest, 0):
         return []
     near, own = (psnr.text(psnr.values[place]) for place in (nearest, 0))
     return [
@@ -54,5 +60,6 @@ def _is_nearer(psnr, one, other):
 
 
 def _without_noise(error):
-    """The first fit's error less that of noise, which adds to it as squares do."""
-    return max(error.values[0] ** 2 - error.floor**2, 0.0) ** 0.5
+    """The first fit's error less that of noise, if known, which adds to it as squares do."""
+    noise = 0.0 if isnan(error.floor) else error.floor
+    return max(error.values[0] ** 2 - noise**2, 0.0) ** 0.5

@@ -38,7 +38,8 @@ def render_pictures(
     """
     require_pictures(size, scene, envmap)
     if spp is not None or until is None:
-        spp = ceil(to_whole_number("spp", spp or SPP, least=1) / PASS) * PASS
+        spp = SPP if spp is None else spp
+        spp = ceil(to_whole_number("spp", spp, least=1) / PASS) * PASS
     build = _sharp(scene)
     how = {"scene": build, "progress": progress, "until": until, "envmap": envmap}
     found = render([material, *fits], spp, size, seed, **how)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import losses
 from brdfkit.fitting.loss import squares
 from brdfkit.geometry.directions import to_angles
@@ -50,6 +51,11 @@ def standings(material, fits, loss):
     max_angle = fits[0].settings.get("max_angle", 80.0)
     errors = _errors(material, fits, max_angle)
     samples = _some(select_samples(material, max_angle))
+    if not (samples.values > 0).any():
+        raise BrdfkitError(
+            f"{material.name}: no measured value is above 0, by which a fit could be off by a "
+            "factor; a report needs some."
+        )
     blocks = number_blocks(samples.wi, samples.wo, material.anisotropic)
     weight = losses[loss].importance(samples)
     sums, factors = [], []
@@ -103,11 +109,9 @@ def _factors(values, samples):
         off = np.abs(np.log(np.maximum(values[known], 0) / samples.values[known]))
     theta_i = np.broadcast_to(np.degrees(to_angles(samples.wi)[0])[:, None], known.shape)[known]
     bands = np.floor(theta_i / BAND)
-    found = {
-        band: _quantile(off[bands == band], 0.5)
-        for band in np.unique(bands)
-        if (bands == band).sum() >= min(LEAST, len(bands))
-    }
+    some, counts = np.unique(bands, return_counts=True)
+    some = some[counts >= min(LEAST, counts.max())]  # of few samples, the fullest bands
+    found = {band: _quantile(off[bands == band], 0.5) for band in some}
     worst = max(found, key=found.get)
     factors = (float(np.exp(x)) for x in (_quantile(off, 0.5), _quantile(off, 0.95), found[worst]))
     return *factors, (worst * BAND, (worst + 1) * BAND)
