@@ -7,14 +7,15 @@ from statistics import mean, median
 from leaderboard_page import made_with
 from make_models import paragraphs, table
 
+from brdfkit.names import listed
 from brdfkit.reproducing.drawing import COLOURS, figure, tidy
 
 PAGE = Path(__file__).with_name("losses.md")
 # The losses that the figure shows, and the difference that is clear [dB]
 DRAWN, CLEAR = ("log", "cbrt", "picture", "cosine"), 0.5
 INTRODUCTION = """A fit by another loss is another picture. Here the same models are fitted to
-{count} materials by each loss, and each fit is path-traced beside the measurement, on the ball that
-`brdfkit render` shows. Made by `BRDFKIT_DATA=FOLDER python docs/make_losses.py --cache CACHE`;
+{count} materials by {losses}, and each fit is path-traced beside the measurement, on the
+ball that `brdfkit render` shows. Made by `BRDFKIT_DATA=FOLDER python docs/make_losses.py --cache CACHE`;
 FOLDER holds third-party files, which brdfkit does not ship.
 
 The materials are neural reconstructions, which stand for MERL's tables [Sztrajman et al. 2021], in
@@ -28,6 +29,7 @@ def write_page(rows, until, size):
     """Write the page of `rows`, dictionaries of material, model, loss, floor and errors."""
     found = by_fit(rows)
     facts = {
+        "losses": listed([f"`{loss}`" for loss in dict.fromkeys(row["loss"] for row in rows)]),
         "count": len({row["material"] for row in rows}),
         "until": until,
         "floor": min(row["floor"] for row in rows),
