@@ -15,8 +15,8 @@ PAGE = Path(__file__).with_name("losses.md")
 DRAWN, CLEAR = ("log", "cbrt", "picture", "cosine"), 0.5
 INTRODUCTION = """A fit by another loss is another picture. Here the same models are fitted to
 {count} materials by {losses}, and each fit is path-traced beside the measurement, on the
-ball that `brdfkit render` shows. Made by `BRDFKIT_DATA=FOLDER python docs/make_losses.py --cache CACHE`;
-FOLDER holds third-party files, which brdfkit does not ship.
+ball that `brdfkit render` shows. Made by `BRDFKIT_DATA=FOLDER python docs/make_losses.py
+--cache CACHE`; FOLDER holds third-party files, which brdfkit does not ship.
 
 The materials are neural reconstructions, which stand for MERL's tables [Sztrajman et al. 2021], in
 tables of 60×30×60 cells. Samples were added until the measurement beside itself, with another seed,
