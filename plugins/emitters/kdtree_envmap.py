@@ -23,7 +23,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.host.arrays import Rows
 from brdfkit.host.channels import emission_of_rgb
 from brdfkit.host.declared import count, declared, number, picture, text
-from brdfkit.light_sampling import environment_tree
+from brdfkit.lighting import environment_tree
 
 PARAMETERS = {
     "filename": text("", "the map: a picture, azimuth across and polar angle down"),

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from brdfkit.checks.plugin_subject import example
-from brdfkit.light_sampling.environment_tree import block_sums, blocks
+from brdfkit.lighting.environment_tree import block_sums, blocks
 
 pytestmark = pytest.mark.quick
 

@@ -1,1 +1,0 @@
-"""What emitter plugins compute from a picture of the surroundings, without Mitsuba."""

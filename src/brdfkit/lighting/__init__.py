@@ -1,0 +1,1 @@
+"""Light from environments: how maps are cut, sampled and filtered; spherical Gaussians."""
