@@ -1,10 +1,10 @@
-"""The dual-paraboloid map: the sphere of directions as two unit discs, one for z ≥ 0, one for z < 0.
+"""The dual-paraboloid map: all directions as two unit discs, one for z ≥ 0, one for z < 0.
 
 A direction of either hemisphere is seen in a paraboloid mirror from below or above. There are no
 angles in it, only divisions, and the density of directions varies by a factor of 4 over a disc.
 Written by arithmetic alone, for NumPy arrays and Dr.Jit's alike.
 
-[Heidrich & Seidel 1998; Ergun 2015, section 7.1.4]
+[Heidrich & Seidel 1998; Ergun 2015, chapter 7]
 """
 
 
