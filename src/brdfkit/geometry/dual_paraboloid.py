@@ -4,7 +4,7 @@ A direction of either hemisphere is seen in a paraboloid mirror from below or ab
 angles in it, only divisions, and the density of directions varies by a factor of 4 over a disc.
 Written by arithmetic alone, for NumPy arrays and Dr.Jit's alike.
 
-[Heidrich & Seidel 1998; Ergun 2015, chapter 7]
+[Heidrich & Seidel 1998], [Ergun 2015, chapter 7]
 """
 
 
