@@ -59,7 +59,6 @@ def albedo(model, degrees, n_theta=400, n_phi=720):
     return (f.mean(axis=1) * 2 * np.pi * np.cos(theta) * np.sin(theta)) @ w
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(("name", "shape"), ALBEDOS)
 def test_specular_albedo(name, shape):
     values = {k: float(v) for k, v in (pair.split("=") for pair in shape.split())}
@@ -373,7 +372,6 @@ def student_slopes(alpha, gamma):
     return file_of("student_t").StudentSlopes(alpha, alpha, gamma)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("gamma", [1.6, 1.9, 2.0, 2.5, 4.0, 12.0, 40.0])
 def test_shadowing_of_students_slopes(gamma):
     """G₁ against the integral over Student's t, in one dimension of 2γ - 2 degrees of freedom."""

@@ -8,7 +8,6 @@ from test_fit import synthetic
 import brdfkit as bk
 from brdfkit.errors import BrdfkitError
 
-pytestmark = pytest.mark.quick
 
 
 # Of 400 samples one has a leverage of 0.27 on Koenderink's basis, where the bootstrap differs more

@@ -77,7 +77,6 @@ def test_weights_of_samples_vary_little(configured):
         assert max(spreads) <= 1.5, (subject.thing, spreads)
 
 
-@pytest.mark.quick
 def test_measured_table_passes_the_checks():
     report = bk.check(bk.load("red_plastic"), only=set(checks[MODELS]) - {"reciprocity"})
     assert report, str(report)

@@ -121,7 +121,6 @@ def test_info(cli):
     assert record["info"] == data.info
 
 
-@pytest.mark.quick
 def test_info_with_a_picture(cli):
     result = cli("info", "paint.binary", "-o", "paint.png")
     assert_fine(result)
@@ -767,7 +766,6 @@ assert not {heavy} & set(sys.modules), {heavy} & set(sys.modules)
     assert "Usage" in helped.stdout
 
 
-@pytest.mark.quick
 def test_program(tmp_path):
     """The installed program, its status, and a terminal that knows ASCII only."""
     page = run("models", "ward", PYTHONIOENCODING="ascii")
@@ -784,7 +782,6 @@ def test_program(tmp_path):
     assert run("--version").stdout.strip() == f"brdfkit, version {bk.__version__}"
 
 
-@pytest.mark.quick
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full")
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 @pytest.mark.parametrize("words", [["models"], ["models", "--json"], ["--help"]], ids=" ".join)
@@ -801,7 +798,6 @@ def test_a_disk_that_is_full_is_one_sentence(words, unbuffered):
     assert re.fullmatch(r"brdfkit: the output cannot be written \(.*\); make room\.\n", done.stderr)
 
 
-@pytest.mark.quick
 def test_python_knows_the_command_line(tmp_path):
     words = sys.executable, "-m", "brdfkit", "models", "nope"
     done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path)

@@ -52,7 +52,6 @@ def test_lambert_ends_at_the_limit():
         assert f"without the constraints E would be {free.loss:.6g}" in found.message
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("loss", ["log", "plain"])
 def test_the_limit_is_met_from_a_perfect_fit(loss):
     """Where E is 0 without the constraint."""

@@ -184,7 +184,6 @@ def test_anisotropy_comes_back_where_it_is_asked_for():
         np.testing.assert_allclose(found.values[name], value, rtol=1e-4, err_msg=name)
 
 
-@pytest.mark.quick
 def test_anisotropy_is_searched_where_it_was_measured():
     """Grooves along x, ten times as steep across; the other material knows no azimuth."""
     brushed = bk.load("brushed_aluminium")

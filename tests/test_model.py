@@ -9,7 +9,6 @@ import pytest
 import brdfkit as bk
 from brdfkit.model import labels
 
-pytestmark = pytest.mark.quick
 WARD = bk.models()["ward"]
 FELT = """
 from brdfkit.model import Model, shape, weight

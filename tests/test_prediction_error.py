@@ -8,7 +8,6 @@ import brdfkit as bk
 from brdfkit.errors import BrdfkitError
 from brdfkit.model.evaluation import lobe_values
 
-pytestmark = pytest.mark.quick
 
 
 @pytest.mark.parametrize(("name", "loss"), [("koenderink", "plain"), ("pca_polynomial", "cosine")])

@@ -153,7 +153,6 @@ def test_an_interrupted_render_keeps_what_every_picture_has():
         np.testing.assert_allclose(kept.pictures[thing["name"]], alone, rtol=1e-5, atol=1e-6)
 
 
-@pytest.mark.quick
 def test_samples_are_added_until_the_noise_is_low_enough():
     """The guess of how many it takes comes true; the pictures are those of so many samples."""
     totals = []

@@ -47,7 +47,6 @@ def test_first_use_by_many_threads():
     """)
 
 
-@pytest.mark.quick
 def test_mitsuba_itself_may_be_imported_by_many_threads():
     """Its import puts another module in its place, and Python hands out the first one, too."""
     assert_runs(f"""
@@ -182,7 +181,6 @@ def test_a_signal_waits_until_a_library_is_loaded(received):
     assert done
 
 
-@pytest.mark.quick
 def test_every_module_can_be_imported_first():
     """The one that imports Mitsuba at its beginning could not."""
     command = [sys.executable, "-c", "import brdfkit.host.registration, brdfkit.host.bsdf"]
