@@ -23,6 +23,8 @@ INDEX = """A model is a file in [`plugins/bsdfs/`](../../plugins/bsdfs), of whic
 form of a model is named with its option, `koenderink:order=8`, a sum of models with a plus,
 `oren_nayar+ward`: see [mixture](mixture.md). In Mitsuba every parameter may be a texture, and one
 that is "per channel" takes a number or one per colour."""
+EXPOSED = """In Mitsuba each parameter may be a texture. `mi.traverse` shows them, and gradients
+flow to them."""
 USE = """    {fits}
 
 ```python
@@ -68,6 +70,7 @@ def page(model):
     return paragraphs(
         *(f"# {title}", sentence, balls, text),
         table("parameter, default, bounds, meaning, per channel", parameters),
+        EXPOSED,
         options and table("option, default, choices, meaning", options),
         f"![Polar plots of {name} in the plane of incidence]({name}_lobes.png)",
         *("## Use", use(model)),

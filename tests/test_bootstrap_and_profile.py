@@ -9,7 +9,6 @@ import brdfkit as bk
 from brdfkit.errors import BrdfkitError
 
 
-
 # Of 400 samples one has a leverage of 0.27 on Koenderink's basis, where the bootstrap differs more
 @pytest.mark.parametrize(
     ("name", "loss", "n"), [("koenderink", "plain", 2000), ("ggx", "log", 400)]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import pyarrow
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -388,6 +389,14 @@ def test_units_and_frames_that_are_none():
         Measured.from_angles(30, 0, 30, 180, 1, unit="grad")
     with pytest.raises(BrdfkitError, match=r"^mine: a list was given; give a DataFrame"):
         Measured.from_frame([1, 2], name="mine")
+
+
+def test_a_table_of_arrow():
+    found = Measured.from_frame(pyarrow.Table.from_pandas(FRAME, preserve_index=False))
+    np.testing.assert_array_equal(found.samples.values, Measured.from_frame(FRAME).samples.values)
+
+
+def test_columns_that_come_twice():
     twice = pd.concat([FRAME, FRAME[["phi_o"]]], axis=1)
     with pytest.raises(BrdfkitError, match=r"^mine: the column 'phi_o' comes twice; keep one\.$"):
         Measured.from_frame(twice, name="mine")

@@ -9,7 +9,6 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.model.evaluation import lobe_values
 
 
-
 @pytest.mark.parametrize(("name", "loss"), [("koenderink", "plain"), ("pca_polynomial", "cosine")])
 def test_variance_and_bias_are_those_of_repeated_fits(name, loss):
     """Fits of 100 noisy measurements of a GGX, which these models cannot follow."""

@@ -61,7 +61,8 @@ def columns_of(frame, origin):
 
     Raises `BrdfkitError` for what is neither, for columns of other lengths and for text.
     """
-    names = list(getattr(frame, "columns", frame if isinstance(frame, Mapping) else ()))
+    names = getattr(frame, "columns", frame if isinstance(frame, Mapping) else ())
+    names = list(getattr(frame, "column_names", names))  # as pyarrow calls them
     if not names:
         raise origin.error(
             f"a {type(frame).__name__} was given; give a DataFrame, or a dictionary, with columns "
