@@ -1,4 +1,8 @@
-"""No fit has become worse: every model on thirty materials, against the list of optima."""
+"""No fit has become worse: every model on thirty materials, against the list of optima.
+
+Each model is fitted by one loss of the two, the other one on the next material: the whole list
+would take two minutes. `python tests/optima.py` runs all of it.
+"""
 
 import optima
 import pytest
@@ -6,16 +10,19 @@ import pytest
 import brdfkit as bk
 
 KNOWN = optima.read()
+MATERIALS = [*optima.SHIPPED, *optima.MEASURED, *optima.RECONSTRUCTED]
 
 
-@pytest.mark.parametrize("name", [*optima.SHIPPED, *optima.MEASURED, *optima.RECONSTRUCTED])
+@pytest.mark.parametrize("name", MATERIALS)
 def test_optima(name):
     data = optima.material(name)
     if data is None:
         pytest.skip("BRDFKIT_DATA names no folder of measurements")
     worse = []
-    for (material, model, loss), error in KNOWN.items():
-        if material == name:
+    rows = [(model, loss, error) for (of, model, loss), error in KNOWN.items() if of == name]
+    for number, (model, loss, error) in enumerate(rows):
+        model_number, loss_number = divmod(number, 2)
+        if (model_number + loss_number + MATERIALS.index(name)) % 2 == 0:
             found = bk.fit(model, data, loss, use_standard_error=False).loss
             # A fit of few samples that nearly meets them all is rounding
             if found > error * (1 + 1e-6) + 1e-9:
