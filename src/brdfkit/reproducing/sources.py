@@ -11,28 +11,40 @@ VARIABLE = "BRDFKIT_DATA"
 
 @dataclass(frozen=True)
 class Sources:
-    """`folder`: of the measurements; `tables`: of the tables transcribed from theses, if any."""
+    """`folder`: of the measurements; `tables`: of the tables transcribed from theses, if any.
 
-    folder: Path
-    tables: Path
+    Both are None where no folder is named, which a thesis without NEEDS allows.
+    """
+
+    folder: Path | None
+    tables: Path | None
 
     def path(self, name):
         """The path of a measured file, as of ``curet/abrdf.dat``."""
         return self.folder / name
 
+    def beside(self, name):
+        """The path of a file in a folder beside the measurements, as of ``environments/grace.hdr``;
+        None where it is not at hand."""
+        path = self.folder and self.folder.resolve().parent / name
+        return path if path and path.is_file() else None
+
     def table(self, name):
         """The path of a transcribed table, None where it is not at hand."""
-        path = self.tables / name
-        return path if path.is_file() else None
+        path = self.tables and self.tables / name
+        return path if path and path.is_file() else None
 
 
 def find_sources(data, tables, needs):
     """The `Sources` in the folder `data`, or in that which BRDFKIT_DATA names.
 
     `tables`: a folder, by default ``thesis`` beside `data`; `needs`: name of a file → where to get
-    it. Raises `BrdfkitError` where no folder is named, and for a file that is not there.
+    it. Raises `BrdfkitError` where no folder is named that should hold any, and for a file that is
+    not there.
     """
     named = data or os.environ.get(VARIABLE)
+    if not named and not needs:
+        return Sources(None, tables and Path(tables))
     if not named:
         raise BrdfkitError(
             f"No folder of measurements is named: set {VARIABLE} to one, or give --data FOLDER; "
