@@ -62,7 +62,11 @@ def page(kind, name, source):
 
 
 def default(setting):
-    return "" if setting.default in (None, "") else f"{setting.default:g}"
+    if isinstance(setting.default, str):
+        return setting.default and f"`{setting.default}`"
+    if isinstance(setting.default, bool):
+        return str(setting.default).lower()
+    return "" if setting.default is None else f"{setting.default:g}"
 
 
 def bounds(setting):
@@ -73,7 +77,8 @@ def bounds(setting):
 
 def element(kind, name, settings):
     """The plugin in a scene file, with its numbers at their defaults."""
-    numbers = {n: s.default for n, s in settings.items() if isinstance(s.default, int | float)}
+    defaults = {n: setting.default for n, setting in settings.items()}
+    numbers = {n: d for n, d in defaults.items() if type(d) in (int, float)}
     return xml(name, TAGS.get(kind, kind.removesuffix("s")), **numbers)
 
 

@@ -1,54 +1,9 @@
-"""Environments: the tree of blocks, and the emitter that is sampled by it, beside Mitsuba's own."""
+"""The emitter `kdtree_envmap`, beside Mitsuba's own; and maps and settings that it refuses."""
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from brdfkit.checks.plugin_subject import example
-from brdfkit.lighting.environment_tree import block_sums, blocks
-
-pytestmark = pytest.mark.quick
-
-
-def error(values, found):
-    """Sum of squared errors about the blocks' means."""
-    return sum(np.var(values[y0:y1, x0:x1]) * (y1 - y0) * (x1 - x0) for x0, x1, y0, y1 in found)
-
-
-@settings(max_examples=50, deadline=None)
-@given(st.integers(1, 9), st.integers(1, 12), st.integers(1, 40), st.integers(0, 2**32 - 1))
-def test_blocks_cover_a_picture_once(height, width, count, seed):
-    values = np.random.default_rng(seed).exponential(size=(height, width))
-    found = blocks(values, count)
-    covered = np.zeros((height, width), int)
-    for x0, x1, y0, y1 in found:
-        covered[y0:y1, x0:x1] += 1
-    assert (covered == 1).all()
-    assert len(found) == min(count, values.size)
-    assert block_sums(values, found).sum() == pytest.approx(values.sum())
-    fewer = blocks(values, max(count - 1, 1))
-    assert error(values, found) <= error(values, fewer) * (1 + 1e-9)
-
-
-def test_an_even_block_is_not_cut():
-    values = np.zeros((4, 6))
-    values[:, 4:] = 1.0
-    assert blocks(values, 100).tolist() == [[0, 4, 0, 4], [4, 6, 0, 4]]
-
-
-@settings(max_examples=25, deadline=None)
-@given(st.integers(1, 5), st.integers(1, 6), st.integers(0, 2**32 - 1))
-def test_the_first_cut_is_the_best_there_is(height, width, seed):
-    """Of all cuts of the whole picture, by trying each (Ergun 2015, eq. 6.1)."""
-    values = np.random.default_rng(seed).random((height, width))
-    columns = [[(0, x, 0, height), (x, width, 0, height)] for x in range(1, width)]
-    rows = [[(0, width, 0, y), (0, width, y, height)] for y in range(1, height)]
-    best = min((error(values, cut) for cut in columns + rows), default=0.0)
-    assert error(values, blocks(values, 2)) == pytest.approx(best, abs=1e-12)
-
-
-# The emitter
 
 
 def directions(n=20_000):
@@ -66,7 +21,8 @@ def radiance(mi, emitter, w):
 
 def as_envmap(entries):
     """The dictionary of Mitsuba's `envmap` with the same map."""
-    return {k: v for k, v in entries.items() if k != "blocks"} | {"type": "envmap"}
+    own = ("type", "blocks")
+    return {"type": "envmap"} | {k: v for k, v in entries.items() if k not in own}
 
 
 @pytest.mark.parametrize("turned", [False, True])
@@ -82,29 +38,53 @@ def test_it_shines_as_mitsubas(llvm_variant, turned):
     np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-4)
 
 
-def scene(mi, emitter):
+def scene(mi, emitter, integrator, size):
     camera = mi.ScalarTransform4f().look_at([0, 1, 5], [0, 0, 0], [0, 1, 0])
-    film = {"type": "hdrfilm", "width": 24, "height": 24, "rfilter": {"type": "box"}}
+    film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}}
     return mi.load_dict(
         {
             "type": "scene",
-            "integrator": {"type": "prb", "max_depth": 3},
-            "sensor": {"type": "perspective", "fov": 30, "to_world": camera, "film": film},
+            "integrator": {"type": integrator, "max_depth": 3},
+            "sensor": {"type": "perspective", "fov": 22, "to_world": camera, "film": film},
             "ball": {"type": "sphere", "bsdf": {"type": "roughconductor", "alpha": 0.3}},
             "light": emitter,
         }
     )
 
 
-def test_pictures_are_those_of_mitsubas(llvm_variant):
+def mean_and_error(mi, emitter):
+    """The mean of 64 pictures of a ball, and its standard error."""
+    loaded = scene(mi, emitter, "path", 12)
+    pictures = [np.array(mi.render(loaded, spp=16, seed=seed)).mean() for seed in range(64)]
+    return np.mean(pictures), np.std(pictures) / 8
+
+
+@pytest.fixture(scope="module")
+def mitsubas_mean():
+    """That of Mitsuba's `envmap`, once."""
+    import mitsuba as mi
+
+    return mean_and_error(mi, as_envmap(example("kdtree_envmap")))
+
+
+EMITTERS = [
+    ("kdtree_envmap", {"distribution": "exact", "lookup": "texture"}),
+    ("kdtree_envmap", {"distribution": "hyperbolic", "lookup": "tree"}),
+    ("kdtree_envmap", {"distribution": "steps", "lookup": "grid"}),
+    ("kdtree_envmap", {"compensated": True}),
+    ("sampled_envmap", {"sampler": "cdf"}),
+    ("sampled_envmap", {"sampler": "mip"}),
+    ("sampled_envmap", {"sampler": "alias", "compensated": True}),
+]
+
+
+@pytest.mark.parametrize(("name", "settings"), EMITTERS)
+def test_pictures_are_those_of_mitsubas(name, settings, llvm_variant, mitsubas_mean):
     """Means of 64 renders within 3 standard errors, by multiple importance sampling."""
-    mi = llvm_variant
-    means, ours = {}, example("kdtree_envmap")
-    for name, entries in {"ours": ours, "theirs": as_envmap(ours)}.items():
-        loaded = scene(mi, entries)
-        pictures = [np.array(mi.render(loaded, spp=8, seed=seed)).mean() for seed in range(64)]
-        means[name] = np.mean(pictures), np.std(pictures) / 8
-    (a, error_a), (b, error_b) = means.values()
+    (a, error_a), (b, error_b) = (
+        mean_and_error(llvm_variant, example(name, **settings)),
+        mitsubas_mean,
+    )
     assert abs(a - b) < 3 * np.hypot(error_a, error_b)
 
 
@@ -115,7 +95,7 @@ def test_the_gradient_by_the_map_is_that_of_mitsubas(llvm_variant):
     mi = llvm_variant
     found, ours = {}, example("kdtree_envmap")
     for name, entries in {"ours": ours, "theirs": as_envmap(ours)}.items():
-        loaded = scene(mi, entries)
+        loaded = scene(mi, entries, "prb", 24)
         parameters = mi.traverse(loaded)
         key = next(k for k in parameters.keys() if k.endswith("data"))  # noqa: SIM118
         leaf = mi.TensorXf(dr.detach(parameters[key]))
@@ -128,21 +108,37 @@ def test_the_gradient_by_the_map_is_that_of_mitsubas(llvm_variant):
     assert found["ours"] == pytest.approx(found["theirs"], rel=0.02)
 
 
-@pytest.mark.parametrize(
-    ("pixels", "said"),
-    [
-        (np.zeros((4, 8, 3)), "is black all over"),
-        (np.full((4, 8, 3), np.nan), "not finite"),
-        (np.full((4, 8, 3), -1.0), "values below 0"),
-        (np.full((4, 8, 3), np.inf), "not finite"),
-        (np.ones((1, 1, 3)), "has 1×1 pixels"),
-    ],
-)
-def test_a_map_that_lights_nothing_is_refused(llvm_variant, pixels, said):
-    bitmap = llvm_variant.Bitmap(pixels.astype(np.float32))
+BRIGHT = np.ones((4, 8, 3))
+REFUSED = [
+    ({"bitmap": 0 * BRIGHT}, "the bitmap is black all over and lights nothing; give another map."),
+    ({"bitmap": np.nan * BRIGHT}, "the bitmap has values that are not finite; mend them."),
+    ({"bitmap": np.inf * BRIGHT}, "the bitmap has values that are not finite; mend them."),
+    ({"bitmap": -BRIGHT}, "the bitmap has values below 0; mend them."),
+    ({"bitmap": np.ones((1, 1, 3))}, "the bitmap has 1×1 pixels; give 2×2 or more."),
+    ({"filename": "map.exr"}, "needs a filename, or a bitmap in its place."),
+    ({"blocks": 0}, "blocks = 0 should be a number between 1 and 1e+06."),
+    ({"blocks": 2_000_000}, "blocks = 2000000 should be a number between 1 and 1e+06."),
+    ({"criterion": "mse"}, "criterion = mse should be one of relative, sse, variance, range."),
+    ({"distribution": "even"}, "distribution = even should be one of exact, hyperbolic, steps."),
+    ({"lookup": "hash"}, "lookup = hash should be one of texture, tree, grid."),
+    ({"lookup": "tree", "bitmap": np.ones((2, 4096, 3))}, "takes maps of at most 2048×2048 pixels"),
+    ({"compensated": 1}, "compensated = 1 should be true or false."),
+]
+
+
+@pytest.mark.parametrize(("given", "said"), REFUSED)
+def test_what_it_cannot_use_is_refused_in_a_sentence(given, said, llvm_variant):
+    mi = llvm_variant
+    if "bitmap" in given:
+        given = given | {"bitmap": mi.Bitmap(given["bitmap"].astype(np.float32))}
     with pytest.raises(RuntimeError) as error:
-        llvm_variant.load_dict({"type": "kdtree_envmap", "bitmap": bitmap})
+        mi.load_dict(example("kdtree_envmap", **given))
     assert said in str(error.value).splitlines()[-1]
+
+
+def test_a_map_is_needed(llvm_variant):
+    with pytest.raises(RuntimeError, match="a filename, or a bitmap in its place"):
+        llvm_variant.load_dict({"type": "kdtree_envmap"})
 
 
 def test_a_map_may_only_be_turned(llvm_variant):
@@ -159,7 +155,6 @@ def test_an_optimiser_s_map_lights_too(llvm_variant, value, said):
         parameters.update()
 
 
-def test_a_map_is_needed_once(llvm_variant):
-    for entries in ({"type": "kdtree_envmap"}, example("kdtree_envmap", filename="map.exr")):
-        with pytest.raises(RuntimeError, match="a filename, or a bitmap in its place"):
-            llvm_variant.load_dict(entries)
+def test_more_blocks_than_pixels_are_as_many(llvm_variant):
+    emitter = llvm_variant.load_dict(example("kdtree_envmap", blocks=1_000_000))
+    assert len(emitter.points.law.shares) <= 15 * 32

@@ -333,7 +333,7 @@ def test_the_checks_of_phase_functions_notice(wrong, failed, tmp_path, no_user_p
 @pytest.mark.parametrize(
     ("attribute", "failed"),
     [
-        ("pdf_direction", {"chi squared", "normalisation", "mean light"}),
+        ("pdf_direction", {"chi squared", "normalisation", "weights"}),
         ("eval", {"weights", "mean light"}),
     ],
 )

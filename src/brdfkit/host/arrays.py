@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from brdfkit.jit.padding import pad
+
 
 class Rows:
     """Rows of numbers (n, columns), or plain numbers (n,), in the current variant's memory.
@@ -27,6 +29,35 @@ class Rows:
             return dr.gather(kind, self.values, index, active)
         row = self.values[index] if active else np.zeros_like(self.values[0])
         return kind(*np.atleast_1d(row).tolist())
+
+
+class Integers:
+    """Whole numbers (n,), 0 to 2³² - 1, in the current variant's memory."""
+
+    def __init__(self, values):
+        import mitsuba as mi
+
+        self.scalar = mi.variant().startswith("scalar")
+        self.values = np.ascontiguousarray(values, np.uint32)
+        if not self.scalar:
+            self.values = mi.UInt32(pad(self.values))
+
+    def at(self, index, active=True):
+        """The number of this `index`, a `mi.UInt32`; 0 if not `active`."""
+        import drjit as dr
+        import mitsuba as mi
+
+        if not self.scalar:
+            return dr.gather(mi.UInt32, self.values, index, active)
+        return int(self.values[index]) if active else 0
+
+
+def cell(x, n):
+    """The index of the cell around `x`, of `n` cells of length 1; the first and last beyond."""
+    import drjit as dr
+    import mitsuba as mi
+
+    return mi.UInt32(dr.clip(x, 0, n - 1))
 
 
 def bracket(x, n):

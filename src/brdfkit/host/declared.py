@@ -70,6 +70,28 @@ def text(default, meaning):
     return Setting(default, None, meaning, read)
 
 
+def word(allowed, meaning):
+    """One of the `allowed` words, of which the first is the default."""
+
+    def read(value):
+        if not isinstance(value, str) or value not in allowed:
+            raise ValueError("one of " + ", ".join(allowed))
+        return value
+
+    return Setting(next(iter(allowed)), None, f"{meaning}: {', '.join(allowed)}", read)
+
+
+def flag(default, meaning):
+    """True or false."""
+
+    def read(value):
+        if not isinstance(value, bool):
+            raise ValueError("true or false")
+        return value
+
+    return Setting(default, None, meaning, read)
+
+
 def picture(meaning):
     """A `mi.Bitmap`, None where the scene gives none."""
 

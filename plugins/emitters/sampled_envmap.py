@@ -1,0 +1,34 @@
+"""Environment map by the usual samplers: what `kdtree_envmap` is compared with, one beside another.
+
+    {"type": "sampled_envmap", "filename": "studio.exr", "sampler": "alias"}
+
+takes the place of Mitsuba's `envmap`, as `kdtree_envmap` does. `sampler` says how points of the map
+are drawn: `cdf`, by cumulative sums and binary search, a row and then a cell; `mip`, by descending
+mip levels, as `envmap` itself does; `alias`, by alias tables of the rows and of the cells of each
+row [Vose 1991]. `compensated`: only for integrators that also sample surfaces, the density leaves
+out what is below the map's mean [Karlík et al. 2019].
+"""
+
+from brdfkit.host.declared import word
+from brdfkit.lighting.environment_emitter import MAP, environment_emitter, small_sky
+from brdfkit.lighting.map_samplers.alias import Alias
+from brdfkit.lighting.map_samplers.cdf import Cdf
+from brdfkit.lighting.map_samplers.mip import Mip
+
+SAMPLERS = {"cdf": Cdf, "mip": Mip, "alias": Alias}
+PARAMETERS = MAP | {"sampler": word(SAMPLERS, "how points of the map are drawn")}
+
+
+def define(mi):
+    """The class of `mi.Emitter` for the current variant."""
+
+    class SampledEnvmap(environment_emitter(mi, PARAMETERS)):
+        def sampler_of(self, brightness):
+            return SAMPLERS[self.sampler](brightness)
+
+    return SampledEnvmap
+
+
+def example():
+    """A small sky with a sun, for the checks."""
+    return {"type": "sampled_envmap", "bitmap": small_sky()}

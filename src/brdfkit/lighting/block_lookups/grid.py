@@ -1,0 +1,61 @@
+"""The density found by a coarse grid over the map: each square lists the blocks that overlap it.
+
+Half as many squares as blocks. Where blocks are small, at a sun, a square lists many, which are
+tried one after the other. [Ergun 2015, section 6.2]
+"""
+
+import numpy as np
+
+from brdfkit.host.arrays import Integers, Rows, cell
+
+
+class Grid:
+    """Squares of the map, their lists of blocks, and the blocks' bounds and densities."""
+
+    def __init__(self, tree, densities):
+        blocks = tree.blocks
+        _, self.width, _, self.height = tree.boxes[0].tolist()
+        side = np.sqrt(2 * self.width * self.height / len(blocks))
+        self.columns, self.rows = (max(round(n / side), 1) for n in (self.width, self.height))
+
+        lists = [[] for _ in range(self.columns * self.rows)]
+        x0, x1 = _squares(blocks[:, 0], blocks[:, 1], self.columns, self.width)
+        y0, y1 = _squares(blocks[:, 2], blocks[:, 3], self.rows, self.height)
+        for block, (a, b, c, d) in enumerate(zip(x0, x1, y0, y1, strict=True)):
+            for row in range(c, d):
+                for list_ in lists[row * self.columns + a : row * self.columns + b]:
+                    list_.append(block)
+        self.first = Integers(np.cumsum([0] + [len(list_) for list_ in lists[:-1]]))
+        self.listed = Integers(np.concatenate(lists))
+        self.ends = Rows(blocks[:, [1, 3]])
+        self.starts = Rows(blocks[:, [0, 2]])
+        self.densities = Rows(densities)
+        self.nbytes = 4 * (len(lists) + sum(map(len, lists)) + 5 * len(blocks))
+
+    def density(self, x, y, active):
+        import drjit as dr
+        import mitsuba as mi
+
+        # The same cell for all blocks: on an edge, one of them has it
+        x, y = (mi.Float(cell(a, n)) for a, n in ((x, self.width), (y, self.height)))
+        square = cell((y + 0.5) * (self.rows / self.height), self.rows) * self.columns
+        square = square + cell((x + 0.5) * (self.columns / self.width), self.columns)
+
+        def outside(i):
+            block = self.listed.at(i, active)
+            start, end = (r.at(block, mi.Vector2f, active) for r in (self.starts, self.ends))
+            inside = (x >= start.x) & (x < end.x) & (y >= start.y) & (y < end.y)
+            return ~inside & active if dr.is_jit_v(mi.Float) else not inside and active
+
+        first = self.first.at(square, active)
+        (i,) = dr.while_loop((first,), outside, lambda i: (i + 1,))
+        return self.densities.at(self.listed.at(i, active), active=active)
+
+
+def _squares(start, end, count, size):
+    """The squares that the pixels from `start` to `end` overlap, of `count` along `size` pixels.
+
+    Pixels lie where their middles are.
+    """
+    first, last = ((a + 0.5) * count / size for a in (start, end - 1))
+    return first.astype(int), last.astype(int) + 1

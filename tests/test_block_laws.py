@@ -1,0 +1,76 @@
+"""Laws of the probabilities of blocks: NumPy's and the renderer's, and their fits."""
+
+import numpy as np
+import pytest
+
+from brdfkit.lighting.block_laws.exact import Exact
+from brdfkit.lighting.block_laws.hyperbolic import Hyperbolic
+from brdfkit.lighting.block_laws.steps import Steps
+
+pytestmark = pytest.mark.quick
+
+
+def falling(n=300):
+    """Shares (n,) of blocks as maps have them: over decades, the last ones black."""
+    shares = np.exp(-8 * np.linspace(0, 1, n) ** 0.4)
+    shares[-n // 30 :] = 0
+    return shares / shares.sum()
+
+
+LAWS = {law.__name__: law.fit(falling()) for law in (Exact, Hyperbolic, Steps)}
+LAWS["of one block"] = Steps.fit(np.ones(1))
+
+
+def test_the_hyperbola_s_numbers():
+    """Digest of Ergun 2015, 2.1.7: n = 256, u = 5."""
+    law = Hyperbolic(256, 5.0)
+    p = law.probability(np.arange(256))
+    assert p.sum() == pytest.approx(1)
+    np.testing.assert_allclose(p[[0, 1, 255]], [0.0460980, 0.0389753, 0.000970593], rtol=1e-6)
+    np.testing.assert_allclose(
+        law.inverse(np.array([0.1, 0.25, 0.5, 0.75, 0.9])),
+        [2.425694, 8.439640, 31.124784, 92.100816, 170.741147],
+        rtol=1e-6,
+    )
+
+
+def test_a_hyperbola_s_parameter_is_found():
+    assert Hyperbolic.fit(Hyperbolic(256, 5.0).probability(np.arange(256))).u == pytest.approx(
+        5, rel=1e-4
+    )
+
+
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+def test_a_law_is_a_distribution(law):
+    n = len(law.shares) if isinstance(law, Exact) else law.n
+    i, xi = np.arange(n), np.linspace(0, 0.999, 101)
+    p = law.probability(i)
+    assert p.min() >= 0
+    assert p.sum() == pytest.approx(1)
+    np.testing.assert_allclose(law.cumulative(i + 1) - law.cumulative(i), p, atol=1e-12)
+    np.testing.assert_allclose(law.cumulative(law.inverse(xi)), xi, atol=1e-9)
+
+
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+def test_the_renderer_chooses_by_the_law(law, llvm_variant):
+    """The uniform numbers that choose a block are those between F(i) and F(i + 1), to rounding."""
+    mi = llvm_variant
+    xi = ((np.arange(40_000) + 0.5) / 40_000).astype(np.float32)
+    block, rest, p = (np.array(a) for a in law.in_renderer().choose(mi.Float(xi), True))
+    block = block.astype(int)
+    np.testing.assert_allclose(p, law.probability(block), rtol=2e-3, atol=1e-9)
+    back = law.cumulative(block) + rest * law.probability(block)
+    np.testing.assert_allclose(back, xi, atol=2e-6)
+
+
+def test_steps_are_nearer_than_the_hyperbola():
+    """By the variance of choosing, Σ P² / P̂ - 1; of maps the exact law has 0."""
+    shares = falling()
+    i = np.flatnonzero(shares)
+    noise = {
+        name: (shares[i] ** 2 / law.probability(i)).sum() - 1
+        for name, law in LAWS.items()
+        if name != "of one block"
+    }
+    assert noise["Exact"] == pytest.approx(0, abs=1e-12)
+    assert noise["Steps"] < 0.1 < noise["Hyperbolic"]
