@@ -38,7 +38,7 @@ def copy(tmp_path, monkeypatch):
     """A copy of the folder, to spoil."""
     folder = tmp_path / "measured"
     shutil.copytree(index.folder(), folder)
-    monkeypatch.setattr(index, "folder", lambda: folder)
+    monkeypatch.setattr(index, "folder", lambda kind=index.MEASURED: folder)
     return folder
 
 

@@ -81,7 +81,7 @@ def cache(tmp_path, monkeypatch):
 @pytest.fixture
 def lab(server, cache, monkeypatch):
     """A function that makes `lab` the only collection, with one file, which is on the server."""
-    own = index.entries()
+    own, read = index.entries(), index.entries
 
     def put(file="grey.binary", data=TABLE, **entry):
         url = f"http://127.0.0.1:{server.server_port}/{{file}}"
@@ -96,7 +96,11 @@ def lab(server, cache, monkeypatch):
             "files": [row],
         }
         entries = own | {"collections": {"lab": collection | entry}}
-        monkeypatch.setattr(index, "entries", lambda: copy.deepcopy(entries))
+
+        def entries_of(kind=index.MEASURED):
+            return copy.deepcopy(entries) if kind == index.MEASURED else read(kind)
+
+        monkeypatch.setattr(index, "entries", entries_of)
         return cache / "lab" / file
 
     return put

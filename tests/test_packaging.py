@@ -52,9 +52,12 @@ def test_contents(wheel):
     names = set(zipfile.ZipFile(wheel).namelist())
     plugins = {f"brdfkit/{f.relative_to(ROOT)}" for f in ROOT.glob("plugins/*/*.py")}
     tables = {f"brdfkit/data/measured/{f.name}" for f in ROOT.glob("data/measured/*.xz")}
+    maps = {f"brdfkit/data/environments/{f.name}" for f in ROOT.glob("data/environments/*.exr")}
     assert plugins
     assert tables
-    expected = plugins | tables | {"brdfkit/data/measured/index.toml", "brdfkit/__init__.pyi"}
+    assert maps
+    indices = {f"brdfkit/data/{kind}/index.toml" for kind in ("measured", "environments")}
+    expected = plugins | tables | maps | indices | {"brdfkit/__init__.pyi"}
     assert expected <= names
     assert {f"brdfkit/{f.relative_to(ROOT / 'src/brdfkit')}" for f in sources()} <= names
     templates = {f"brdfkit/reporting/templates/{n}" for n in ("report.html", "page.css", "copy.js")}
@@ -78,7 +81,8 @@ def test_works_without_the_checkout(installed, tmp_path):
 import brdfkit
 from brdfkit.catalogue import index
 from brdfkit.plugins import discovery
-for path in (brdfkit.__file__, index.folder(), *discovery.sources('bsdfs').values()):
+folders = map(index.folder, (index.MEASURED, index.ENVIRONMENTS))
+for path in (brdfkit.__file__, *folders, *discovery.sources('bsdfs').values()):
     print(path)
 """
     places = python("-c", where).split()
@@ -86,5 +90,5 @@ for path in (brdfkit.__file__, index.folder(), *discovery.sources('bsdfs').value
     assert all(Path(place).is_relative_to(installed) for place in places), places
     assert "blinn_phong" in python("-c", PROGRAM, "models")
     assert "MERL" in python("-c", PROGRAM, "info", "car_paint")
-    python("-c", PROGRAM, "render", "ward", "--size", "8", "--spp", "1")
+    python("-c", PROGRAM, "render", "ward", "--size", "8", "--spp", "1", "--envmap", "studio")
     assert [p.name for p in tmp_path.iterdir()] == ["ward.png"]

@@ -1,6 +1,9 @@
 from .auditing import Audit as Audit
 from .auditing import audit as audit
 from .checks import check as check
+from .environments import EnvironmentAudit as EnvironmentAudit
+from .environments import audit_environment as audit_environment
+from .environments import convert_environment as convert_environment
 from .errors import BrdfkitError as BrdfkitError
 from .errors import Interrupted as Interrupted
 from .fitting import Fit as Fit

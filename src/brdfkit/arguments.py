@@ -30,6 +30,13 @@ def to_pair(what, given):
     return low, high
 
 
+def to_number(what, value):
+    """`value` as a finite float."""
+    if not isinstance(value, int | float | np.number) or not np.isfinite(value):
+        raise BrdfkitError(f"{what} = {value!r} should be a number.")
+    return float(value)
+
+
 def to_positive(what, value):
     """`value` as a float above 0 and finite."""
     if not isinstance(value, int | float | np.number) or not 0 < value < np.inf:

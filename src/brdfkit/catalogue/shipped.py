@@ -1,4 +1,4 @@
-"""The materials that come with brdfkit: their origin, licence and files."""
+"""What comes with brdfkit, materials and environment maps: their origin, licence and files."""
 
 from dataclasses import dataclass
 
@@ -8,11 +8,12 @@ from brdfkit.files import sha256
 
 
 @dataclass(frozen=True)
-class Material:
-    """A material that comes with brdfkit.
+class Shipped:
+    """A material or an environment map that comes with brdfkit.
 
-    `name`: for `brdfkit.load`; `title` and `what`: for people; `source`: the data and the command
-    that made it; `file`: its name in the index's folder; `sha256`: the file's checksum.
+    `name`: for `brdfkit.load`, or for ``envmap``; `title` and `what`: for people; `source`: the
+    data and the command that made it; `file`: its name in the index's folder; `sha256`: the file's
+    checksum.
     """
 
     name: str
@@ -33,8 +34,16 @@ def materials():
     >>> print(materials()["dusty_gold"].title)
     Dusty gold
     """
-    entries = index.entries().items()
-    return {name: Material(name, **entry) for name, entry in entries if name != "collections"}
+    return _shipped(index.MEASURED)
+
+
+def environments():
+    """The environment maps that come with brdfkit, by name.
+
+    >>> print(environments()["studio"].file)
+    studio.exr
+    """
+    return _shipped(index.ENVIRONMENTS)
 
 
 def path(name):
@@ -45,13 +54,31 @@ def path(name):
     >>> path("dusty_gold").name
     'dusty_gold.binary.xz'
     """
-    if name not in materials():
-        raise no_such("material", name, materials())
-    material = materials()[name]
-    file = index.folder() / material.file
+    return _verified_path("material", name, materials(), index.folder(index.MEASURED))
+
+
+def environment_path(name):
+    """The same of a shipped environment map.
+
+    >>> environment_path("studio").name
+    'studio.exr'
+    """
+    folder = index.folder(index.ENVIRONMENTS)
+    return _verified_path("environment map", name, environments(), folder)
+
+
+def _shipped(kind):
+    entries = index.entries(kind).items()
+    return {name: Shipped(name, **entry) for name, entry in entries if name != "collections"}
+
+
+def _verified_path(what, name, known, folder):
+    if name not in known:
+        raise no_such(what, name, known)
+    file = folder / known[name].file
     if not file.is_file():
         raise BrdfkitError(f"{file}: the file of {name!r} is missing; install brdfkit again.")
-    if sha256(file) != material.sha256:
+    if sha256(file) != known[name].sha256:
         raise BrdfkitError(
             f"{file}: is not the {name!r} that brdfkit came with (its checksum differs); "
             "install brdfkit again."

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 import brdfkit
+from brdfkit.catalogue import shipped
 
 SPP = 64  # samples per pixel
 MESHES = "a mesh of yours, .obj or .ply"
@@ -143,11 +144,12 @@ def scene_options(command, files=SCENE_FILES):
     # by the names of their files: to import the scenes takes a second
     folder = Path(brdfkit.__file__).with_name("rendering") / "scenes"
     names = ", ".join(sorted(file.stem for file in folder.glob("[!_]*.py")))
+    maps = ", ".join(shipped.environments())
     for option in (
         click.option(
             "--envmap",
-            metavar="FILE",
-            help="Light by an environment map, .exr or .hdr, not by the sky.",
+            metavar="NAME|FILE",
+            help=f"Light by an environment map, not by the sky: {maps}; or .exr or .hdr.",
         ),
         click.option(
             "--scene",

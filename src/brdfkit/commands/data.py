@@ -1,6 +1,6 @@
-"""`brdfkit data`: lists public measurements and downloads them."""
+"""`brdfkit data`: lists public measurements and environment maps, and downloads the former."""
 
-from dataclasses import fields
+from dataclasses import asdict, fields
 
 import click
 
@@ -11,7 +11,7 @@ from brdfkit.commands._options import output_options
 @output_options
 @click.pass_context
 def data(context, console):
-    """List or download public measurements.
+    """List public measurements and environment maps, and download measurements.
 
     \b
     brdfkit data                                the collections
@@ -21,11 +21,11 @@ def data(context, console):
 
     Downloads are kept in your cache folder. Only `brdfkit data get` downloads anything.
     """
-    from brdfkit.catalogue.public import cache, collections
-    from brdfkit.catalogue.shipped import materials
+    from brdfkit.catalogue.public import collections
+    from brdfkit.catalogue.public_maps import collections as map_collections
 
     if context.invoked_subcommand is None:
-        _print_collections(collections(), materials(), cache(), console)
+        _print_all(collections(), map_collections(), console)
 
 
 @data.command("list")
@@ -58,20 +58,43 @@ def data_get(names, console):
     _print_files(files, collections.values(), console)
 
 
-def _print_collections(collections, materials, folder, console):
-    """Print the `materials` that come with brdfkit, and the public collections."""
+def _print_all(collections, map_collections, console):
+    """Print what comes with brdfkit, and the public collections."""
+    from brdfkit.catalogue.public import cache
+
     if console.as_json:
-        console.json({name: _record(c) for name, c in collections.items()})
+        maps = {name: asdict(c) for name, c in map_collections.items()}
+        found = {name: _record(c) for name, c in collections.items()}
+        console.json(found | {"environment maps": maps})
         return
+    _print_collections(collections, console)
+    console.out.print("The materials of a collection: brdfkit data list NAME")
+    console.out.print(f"Downloaded files lie in {cache()}")
+    _print_map_collections(map_collections, console)
+    console.out.print("Fetch a map from its page, and look at it: brdfkit info MAP.hdr")
+
+
+def _print_collections(collections, console):
+    """Print the materials that come with brdfkit, and the public collections."""
+    from brdfkit.catalogue.shipped import materials
+
     columns = "collection", "what it is", ">here", ">to download", "licence"
-    licence = next(iter(materials.values())).licence
-    rows = [("brdfkit's own", ", ".join(materials), str(len(materials)), "", licence)]
+    licence = next(iter(materials().values())).licence
+    rows = [("brdfkit's own", ", ".join(materials()), str(len(materials())), "", licence)]
     for name, c in collections.items():
         here, download = len(c.files_on_disk()), sum(bool(f.url) for f in c.files.values())
         rows.append((name, c.title, str(here), str(download or "by hand"), c.licence))
     console.table(columns, rows)
-    console.out.print("The materials of a collection: brdfkit data list NAME")
-    console.out.print(f"Downloaded files lie in {folder}")
+
+
+def _print_map_collections(collections, console):
+    """Print the environment maps that come with brdfkit, and where there are others."""
+    from brdfkit.catalogue.shipped import environments
+
+    licence = next(iter(environments().values())).licence
+    rows = [("brdfkit's own", ", ".join(environments()), "--envmap NAME", licence)]
+    rows += [(name, c.title, c.page, c.licence) for name, c in collections.items()]
+    console.table(("environment maps", "what they are", "where", "licence"), rows)
 
 
 def _print_collection(collection, console):

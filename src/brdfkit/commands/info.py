@@ -1,4 +1,4 @@
-"""`brdfkit info`: prints and draws the audit of a measured material."""
+"""`brdfkit info`: prints and draws the audit of a measured material, or of an environment map."""
 
 from dataclasses import asdict, fields
 from pathlib import Path
@@ -15,31 +15,35 @@ from brdfkit.errors import BrdfkitError
     "-o",
     "--output",
     type=click.Path(path_type=Path),
-    help="Picture to write: a slice, the lobes and the albedo; .png, .pdf or .svg.",
+    help="Picture to write, .png, .pdf or .svg: a slice, the lobes and the albedo; or the map.",
 )
 @output_options
 def info(file, output, console):
-    """Audit a measured material.
+    """Audit a measured material, or an environment map.
 
-    Prints what FILE holds (angles, coverage, reciprocity, noise, albedo and more), and what is
-    doubtful. FILE is a measured file, or the name of a material that brdfkit knows. Without FILE,
-    lists the materials that come with brdfkit; `brdfkit data` lists public ones.
+    Prints what FILE holds (angles, coverage, reciprocity, noise, albedo and more; of a map, its
+    brightness and where its light comes from), and what is doubtful. FILE is a measured file, a map
+    (.exr, .hdr), or the name of one that brdfkit knows. Without FILE, lists what comes with
+    brdfkit; `brdfkit data` lists what is public.
     """
     from brdfkit.auditing import audit
     from brdfkit.catalogue import shipped
     from brdfkit.commands._targets import figure_file, write_figure
+    from brdfkit.environments import audit_environment
+    from brdfkit.environments.map_files import looks_like_map
     from brdfkit.materials import measured_material
 
     if file is None and output:
-        raise BrdfkitError("--output draws a measurement: name a FILE.")
+        raise BrdfkitError("--output draws a measurement or a map: name a FILE.")
     if file is None:
-        _print_materials(shipped.materials(), console)
+        _print_shipped(shipped.materials(), shipped.environments(), console)
         return
     output = output and figure_file(output)
+    is_map = looks_like_map(file)
     with console.progress(f"read {file}"):
-        material = measured_material(file)
+        material = file if is_map else measured_material(file)
     with console.progress("audit"):
-        found = audit(material)
+        found = audit_environment(material) if is_map else audit(material)
     if output:
         with console.progress("draw"):
             write_figure(found.picture(), output)
@@ -51,7 +55,7 @@ def print_audit(found, written, console):
     if console.as_json:
         console.json(record(found, written))
         return
-    notes = [(key.replace("_", " "), str(value)) for key, value in found.data.info.items()]
+    notes = [(key.replace("_", " "), str(value)) for key, value in _notes(found).items()]
     console.out.print(found.name, style="bold")
     console.table(["", ""], list(found.rows().items()), notes)
     for finding in found.findings():
@@ -64,15 +68,22 @@ def record(found, written):
     return {
         **{f.name: getattr(found, f.name) for f in fields(found) if f.name != "data"},
         "findings": found.findings(),
-        "info": found.data.info,
+        "info": _notes(found),
         "written": written,
     }
 
 
-def _print_materials(materials, console):
+def _notes(found):
+    """The notes of a measured file; a map has none."""
+    return getattr(found.data, "info", {})
+
+
+def _print_shipped(materials, environments, console):
     if console.as_json:
-        console.json({name: asdict(m) for name, m in materials.items()})
+        console.json({name: asdict(m) for name, m in (materials | environments).items()})
         return
-    rows = [(name, m.title, m.licence) for name, m in materials.items()]
-    console.table(["material", "what it is", "licence"], rows)
-    console.out.print("Use a name where a file is asked for: brdfkit fit NAME")
+    kinds = {"material": materials, "environment map": environments}
+    for kind, things in kinds.items():
+        rows = [(name, m.title, m.licence) for name, m in things.items()]
+        console.table([kind, "what it is", "licence"], rows)
+    console.out.print("Use a name where a file is asked for: brdfkit fit NAME, --envmap NAME")

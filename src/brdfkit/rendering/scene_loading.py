@@ -2,10 +2,11 @@
 
 from pathlib import Path
 
+from brdfkit.environments.map_files import find
 from brdfkit.errors import BrdfkitError
 from brdfkit.host.load_by_mitsuba import load_by_mitsuba
 from brdfkit.rendering import scene_file, users_mesh
-from brdfkit.rendering.environment import environment, light_by, require_map
+from brdfkit.rendering.environment import environment, light_by
 from brdfkit.rendering.scenes import scene, scene_names
 from brdfkit.rendering.shown_material import load_material, mask
 
@@ -17,8 +18,9 @@ def load_scenes(materials, given, size=None, envmap=None):
     by name, and True (height, width) where the material shows.
 
     `given`: see `find_scene`; `size`: (width, height) [pixels], by default 512, or a scene file's
-    own; `envmap`: file of an environment map, for the light. The mask is None for a function of the
-    user's, which gets the dictionary itself. Raises `BrdfkitError` for what cannot be loaded.
+    own; `envmap`: name or file of an environment map, for the light. The mask is None for a
+    function of the user's, which gets the dictionary itself. Raises `BrdfkitError` for what cannot
+    be loaded.
     """
     import mitsuba as mi
 
@@ -44,7 +46,7 @@ def require_scene(given, envmap=None):
     long begins."""
     find_scene(given)
     if envmap is not None:
-        require_map(envmap)
+        find(envmap)
 
 
 def find_scene(given):

@@ -1,0 +1,117 @@
+"""Files of environment maps: OpenEXR and Radiance, or a name of a map that comes with brdfkit."""
+
+from pathlib import Path
+
+import numpy as np
+
+from brdfkit.catalogue import shipped
+from brdfkit.errors import BrdfkitError, nearest, no_such
+from brdfkit.files import write_safely
+from brdfkit.host.load_by_mitsuba import load_by_mitsuba
+from brdfkit.jit.threads import in_turn, two_threads
+
+HDR = ".exr", ".hdr", ".rgbe", ".pfm"
+EIGHT_BIT = ".png", ".jpg", ".jpeg", ".bmp", ".tga"
+LATLONG = 2.0  # columns over rows of a map by latitude and longitude
+HALF = 65_504.0  # the largest half float
+
+
+def find(name):
+    """The `Path` of an environment map, given as a path or by the name of a shipped one.
+
+    Raises `BrdfkitError` where there is neither.
+
+    >>> find("studio").name
+    'studio.exr'
+    """
+    if not isinstance(name, str | Path) or not str(name):
+        raise BrdfkitError(
+            f"envmap = {name!r:.60} should be the path of an environment map, or the name of one."
+        )
+    if Path(name).is_file():
+        return Path(name)
+    known = shipped.environments()
+    if str(name) in known:
+        return shipped.environment_path(str(name))
+    if not Path(name).suffix and (nearest(name, known) or len(Path(name).parts) == 1):
+        raise no_such("environment map", str(name), known)
+    raise BrdfkitError(f"{name}: there is no such environment map; check the path.")
+
+
+def looks_like_map(name):
+    """Whether a word of the command line means an environment map: by its suffix, or its name."""
+    return Path(name).suffix.lower() in HDR + EIGHT_BIT or name in shipped.environments()
+
+
+def load(given):
+    """The name and the pixels (height, width, 3) of a map: a path, a shipped name, or an array.
+
+    Raises `BrdfkitError` for what is none of these, and for a map of fewer than 2×2 pixels.
+    """
+    if isinstance(given, np.ndarray):
+        name, rgb = "the map", given
+        if rgb.ndim != 3 or rgb.shape[2] != 3:
+            raise BrdfkitError(
+                f"the map has the shape {rgb.shape}; it should be (height, width, 3)."
+            )
+    else:
+        name, rgb = str(given), read(find(given))
+    if min(rgb.shape[:2]) < 2:
+        size = "×".join(map(str, rgb.shape[1::-1]))
+        raise BrdfkitError(f"{name}: the map has {size} pixels; it needs 2×2 or more.")
+    return name, rgb
+
+
+def require_radiance(rgb, name):
+    """Raise `BrdfkitError` for a map `name` with a negative value, or one not finite."""
+    if not (np.isfinite(rgb).all() and rgb.min() >= 0):
+        raise BrdfkitError(f"{name}: the map has a negative value, or one not finite; mend it.")
+
+
+def require_aspect(rgb, aspect, name):
+    """Raise `BrdfkitError` for a map `name` whose width over height is not `aspect`, within 5 %."""
+    height, width = rgb.shape[:2]
+    if abs(width / height / aspect - 1) > 0.05:
+        raise BrdfkitError(
+            f"{name}: the map has {width}×{height} pixels, and its layout {aspect:g} times as many "
+            "columns as rows; name its layout to 'brdfkit convert --from'."
+        )
+
+
+@in_turn
+def read(path):
+    """The map (height, width, 3) in linear sRGB of a file that Mitsuba reads.
+
+    Raises `BrdfkitError` for a file that it cannot read, because it is cut off, for instance.
+    """
+    import mitsuba as mi
+
+    kind = mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False
+
+    def pixels(file, parallel):
+        return np.array(mi.Bitmap(file).convert(*kind))
+
+    try:
+        return load_by_mitsuba(pixels, str(path), path)
+    except BrdfkitError as error:
+        reason = str(error).removesuffix(".")
+        raise BrdfkitError(f"{reason}: fetch it again if it is cut off, or another.") from error
+
+
+@in_turn
+def write(rgb, path):
+    """Write a map (height, width, 3) as OpenEXR, in half floats where they reach.
+
+    Returns the `Path`. Raises `BrdfkitError` for another suffix than .exr.
+    """
+    import OpenEXR
+
+    path = Path(path)
+    if path.suffix.lower() != ".exr":
+        raise BrdfkitError(f"{path}: maps are written as .exr; choose that suffix.")
+    precision = np.float16 if rgb.max() <= HALF else np.float32
+    header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.PIZ_COMPRESSION}
+    channels = {c: np.ascontiguousarray(rgb[..., i], precision) for i, c in enumerate("RGB")}
+    with write_safely(path) as beside, two_threads():
+        OpenEXR.File(header, channels).write(str(beside))
+    return path

@@ -1,0 +1,89 @@
+"""An `EnvironmentAudit` as a picture: the map with its blocks, and how the light is spread."""
+
+import numpy as np
+
+from brdfkit.colours import luminance, to_srgb
+from brdfkit.environments.spread import directions, shares, solid_angles
+from brdfkit.lighting import environment_tree
+from brdfkit.plotting import Plot
+
+SIZE = 10.4, 9.4  # inches
+MIDDLE_GREY = 0.18  # what the geometric mean of the map is shown as
+BLOCKS = 4096  # as many as `kdtree_envmap` makes by default ...
+DRAWN = 256  # ... of which the first are drawn
+COLOUR = "#0072b2"
+SIDES = ("−z", "+x", "+z", "−x", "−z")  # along the horizon
+
+
+def picture(audit):
+    """The picture of an `EnvironmentAudit` as a matplotlib `Figure`."""
+    rgb = np.where(np.isfinite(audit.data), audit.data, 0).clip(0).astype(float)
+    bright = luminance(rgb)
+    solid_angle = solid_angles(audit.height, audit.width)
+    power = bright * solid_angle
+    figure = Plot(figsize=SIZE, layout="constrained")
+    above, below = figure.subfigures(2, 1, height_ratios=(1.45, 1))
+    _draw_map(above.subplots(), audit, rgb, environment_tree.blocks(power, DRAWN))
+    left, right = below.subplots(1, 2)
+    _draw_probabilities(left, power)
+    _draw_shares(right, bright, solid_angle, audit)
+    return figure
+
+
+def _draw_map(axes, audit, rgb, blocks):
+    """Draw the tone-mapped map, the outlines of its blocks, and the brightest spot."""
+    from matplotlib.collections import PolyCollection
+
+    seen = luminance(rgb)
+    seen = seen[seen > 0]
+    exposure = MIDDLE_GREY / np.exp(np.log(seen).mean()) if seen.size else 1
+    axes.imshow(to_srgb(rgb * exposure), extent=(0, 1, 0, 1), aspect="auto")
+    x0, x1, y0, y1 = (blocks / np.repeat((audit.width, audit.height), 2)).T
+    corners = [(x0, 1 - y0), (x1, 1 - y0), (x1, 1 - y1), (x0, 1 - y1)]
+    outlines = np.moveaxis(np.array(corners), 2, 0)
+    axes.add_collection(PolyCollection(outlines, facecolors="none", edgecolors="w", linewidths=0.4))
+    towards = directions(audit.height, audit.width).reshape(-1, 3)
+    spot = int(np.argmax(towards @ np.array(audit.brightest)))
+    place = (spot % audit.width + 0.5) / audit.width, 1 - (spot // audit.width + 0.5) / audit.height
+    axes.plot(*place, "o", markersize=14, mfc="none", mec="#d55e00", mew=1.6)
+    axes.set_xticks(np.linspace(0, 1, 5), SIDES)
+    axes.set_yticks((0, 0.5, 1), ("−y, below", "horizon", "+y, above"))
+    name = audit.name.replace("$", r"\$")  # $ begins a formula
+    axes.set_title(f"{name}: {len(blocks)} blocks; the circle is the brightest pixel", fontsize=11)
+
+
+def _draw_probabilities(axes, power):
+    """Draw the probabilities of the blocks, sorted; they fall as the light is concentrated."""
+    found = environment_tree.blocks(power, BLOCKS)
+    light = np.sort(environment_tree.block_sums(power, found))[::-1]
+    total = light.sum()
+    axes.set(xscale="log", xlabel="rank of the block", ylabel="probability")
+    axes.set_title(f"probabilities of {len(found):,} blocks, sorted", fontsize=10)
+    axes.spines[["top", "right"]].set_visible(False)
+    if not total > 0:
+        return
+    share = light / total
+    rank = np.arange(1, len(share) + 1)
+    axes.plot(rank[share > 0], share[share > 0], color=COLOUR, label="the blocks' own")
+    axes.axhline(1 / len(share), color="0.6", linewidth=0.9, label="all alike")
+    axes.set_yscale("log")
+    axes.legend(frameon=False)
+
+
+def _draw_shares(axes, bright, solid_angle, audit):
+    """Draw which share of the light comes from which share of the solid angle, brightest first."""
+    axes.set(xscale="log", xlim=(1e-5, 1), ylim=(0, 1.03))
+    axes.set(xlabel="share of the solid angle, brightest first", ylabel="share of the light")
+    axes.set_title("where the light comes from", fontsize=10)
+    axes.spines[["top", "right"]].set_visible(False)
+    if not audit.mean > 0:
+        return
+    areas, light = shares(bright, solid_angle / solid_angle.sum())
+    axes.plot(areas[1:], light[1:], color=COLOUR)
+    axes.plot(0.01, audit.brightest_share, "o", color="#d55e00")
+    axes.annotate(
+        f"brightest 1 %: {100 * audit.brightest_share:.0f} %",
+        (0.01, audit.brightest_share),
+        (8, -12),
+        textcoords="offset points",
+    )
