@@ -1,0 +1,14 @@
+"""The environment maps of the thesis, or those that brdfkit brings."""
+
+from brdfkit.environments.map_files import load
+
+PROBES = "grace", "uffizi", "pisa", "ennis"
+SHIPPED = "studio", "sky", "room"
+
+
+def read_probes(sources):
+    """Name → radiance (height, width, 3): of the thesis's probes where all are at hand, else of the
+    maps that brdfkit brings."""
+    files = {name: sources.beside(f"environments/{name}.hdr") for name in PROBES}
+    found = files if all(files.values()) else {name: name for name in SHIPPED}
+    return {name: load(file)[1].astype(float) for name, file in found.items()}
