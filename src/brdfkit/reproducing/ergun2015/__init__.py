@@ -6,16 +6,16 @@ scenes*, PhD thesis, Ege University, 2015 [Ergun 2015]. Made by `brdfkit reprodu
 runs each claim again and sets what came out beside what is printed.
 
 The thesis has no tables; its figures' numbers are in the text, or lost. It names no BRDF, no block
-count, no samples per pixel, no resolution and no definition of PSNR, and its times are of a graphics
-card. So ours are ratios and orders, at settings that are told with each claim.
+count, no samples per pixel, no resolution and no definition of PSNR, and its times are of a
+graphics card. So ours are ratios and orders, at settings that are told with each claim.
 
-- **Maps**: grace, pisa and uffizi are P. Debevec's probes, of 256 × 128 pixels with 8-bit mantissas;
-  doge2 was not to be had, and ennis stands in. Where they are missing, the maps that brdfkit brings
-  (room, sky, studio) stand in for all of them, and the section says so.
+- **Maps**: grace, pisa and uffizi are P. Debevec's probes, of 256 × 128 pixels with 8-bit
+  mantissas; doge2 was not to be had, and ennis stands in. Where they are missing, the maps that
+  brdfkit brings (room, sky, studio) stand in for all of them.
 - **Meshes**: of the models of the thesis only the bunny is at hand; eleven others stand in.
 
-A claim is *confirmed* where our figures agree, *not confirmed* where they do not, *not stated* where
-the thesis gives no figure to compare ours to, *not run* where a file is missing."""
+A claim is *confirmed* where our figures agree, *not confirmed* where they do not, *not stated*
+where the thesis gives no figure to compare ours to, *not run* where a file is missing."""
 
 # The probes and the meshes are looked for beside the measurements, and shipped maps stand in
 NEEDS: dict[str, str] = {}

@@ -12,8 +12,8 @@ from brdfkit.reproducing.page import Section, Table
 SECONDS = 3
 BLOCKS = 1024
 CRITERIA = "sse", "variance", "range"
-TEXT = f"""Each map is cut into {BLOCKS:,} blocks, and each block holds the mean of its pixels' power.
-The error is Σ (power − mean)² / Σ power²."""
+TEXT = f"""Each map is cut into {BLOCKS:,} blocks, and each block holds the mean of its pixels'
+power. The error is Σ (power − mean)² / Σ power²."""
 
 
 def run(sources, report):

@@ -81,8 +81,8 @@ def shape_claim(noise):
         f"adds {mean:.2f} to the relative variance of a sample in the mean, {worst:.2f} at most; "
         f"steps {np.mean(by['steps']):.2f} and {max(by['steps']):.2f}",
         verdict(worst < 0.1),
-        "Confirmed below 0.1. Sorted shares fall faster than a hyperbola at the end, and lamps stand "
-        "out at the beginning. The estimate is unbiased all the same: P̂ divides, not the share.",
+        "Confirmed below 0.1. Sorted shares fall faster than a hyperbola at the end, and lamps "
+        "stand out at the beginning. The estimate is unbiased all the same: P̂ divides, not the share.",
     )
 
 

@@ -20,7 +20,11 @@ BLOCKS, SIZE, SPP, REFERENCE = 4096, 96, 16, 4096
 DRAWS = 1 << 20
 SAMPLERS = {
     "blocks by share": {"type": "kdtree_envmap", "criterion": "sse"},
-    "blocks by law": {"type": "kdtree_envmap", "criterion": "sse", "distribution": "hyperbolic"},
+    "blocks by law": {
+        "type": "kdtree_envmap",
+        "criterion": "sse",
+        "distribution": "hyperbolic",
+    },
     "cumulative sums": {"type": "sampled_envmap", "sampler": "cdf"},
 }
 MATERIALS = {
@@ -35,10 +39,10 @@ MATERIALS = {
     "white-diffuse": {"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.8}},
 }
 CLOSE = 0.5  # of two PSNRs that count as equal [dB]
-TEXT = f"""A ball of {SIZE} × {SIZE} pixels in each map, with {SPP} samples of the light per pixel and
-none of the surface, against one with {REFERENCE:,} samples of both. PSNR of linear values, peak the
-99.9th percentile. The thesis names three materials and no formula: ours are rough chromium (α = 0.1),
-a blue metallic `ggx` (α = 0.2) and a white diffuse ball. {BLOCKS:,} blocks."""
+TEXT = f"""A ball of {SIZE} × {SIZE} pixels in each map, with {SPP} samples of the light per pixel
+and none of the surface, against one with {REFERENCE:,} samples of both. PSNR of linear values, peak
+the 99.9th percentile. The thesis names three materials and no formula: ours are rough chromium
+(α = 0.1), a blue metallic `ggx` (α = 0.2) and a white diffuse ball. {BLOCKS:,} blocks."""
 
 
 @in_turn
@@ -183,6 +187,6 @@ def quality_claim(differences, name):
         "equal quality",
         f"{np.mean(found):+.1f} dB in the mean, {min(found):+.1f} to {max(found):+.1f}",
         verdict(np.mean(found) > -CLOSE),
-        f"At equal samples; confirmed where at most {CLOSE:g} dB are lost in the mean. The PSNRs of "
-        "the thesis are lost.",
+        f"At equal samples; confirmed where at most {CLOSE:g} dB are lost in the mean. The "
+        "thesis's PSNRs are lost.",
     )
