@@ -1,7 +1,9 @@
 """Environment maps: those that come with brdfkit, their audit, and conversions of conventions."""
 
+import importlib
 import importlib.util
 import json
+from pathlib import Path
 
 import mitsuba as mi
 import numpy as np
@@ -409,3 +411,17 @@ def test_public_maps(capsys):
         assert found.page in named[name]["page"]
         if " " not in found.convention:
             convention(found.convention)
+
+
+def test_the_how_to_names_all_conventions():
+    page = (Path(__file__).parents[1] / "docs/how_to/mirrored_environment.md").read_text("utf-8")
+    for name, short_for in NAMED.items():
+        assert f"| `{name}` | `{short_for}` |" in page
+    for name in LAYOUTS:
+        assert f"`{name}`" in page
+
+
+def test_the_page_of_the_maps_is_what_they_are():
+    """Otherwise: python docs/make_environments.py"""
+    make = importlib.import_module("make_environments")
+    assert make.PAGE.read_text(encoding="utf-8") == make.page()

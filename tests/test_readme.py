@@ -4,6 +4,7 @@ import re
 import shlex
 from pathlib import Path
 
+import numpy as np
 import pytest
 import small_files
 from click.testing import CliRunner
@@ -46,6 +47,7 @@ def here(tmp_path, monkeypatch, llvm_variant):
     bk.save(Measured.from_samples(wi, wo, copper.eval(wi, wo)), "copper.astm")
     Path("cayman.brdf").write_bytes(small_files.cornell())
     Path("gold-metallic-paint.binary").write_bytes(small_files.merl())
+    bk.convert_environment(np.ones((4, 8, 3)), "sky.exr")
     Path("my_model.py").write_text(USER_MODEL, encoding="utf-8")
     return tmp_path
 
@@ -63,6 +65,8 @@ def here(tmp_path, monkeypatch, llvm_variant):
                 "ggx.png",
                 "cayman.binary",
                 "au.npz",
+                "sky.png",
+                "mine.exr",
             },
         ),
         (

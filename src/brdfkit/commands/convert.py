@@ -19,10 +19,10 @@ from brdfkit.errors import BrdfkitError
 @click.option("--height", type=int, help="Rows of a map; default: pixels stay as large.")
 @output_options
 def convert(thing, output, values, console, **how):
-    """Write a material in another format, or an environment map in another convention.
+    """Convert a material or an environment map.
 
-    The suffix of OUTPUT names the format. What the format cannot hold is printed. A model or a fit
-    is evaluated at the direction pairs of a table.
+    A material is written in the format that the suffix of OUTPUT names. What the format cannot hold
+    is printed. A model or a fit is evaluated at the direction pairs of a table.
 
     A MAP is .exr or .hdr; then OUTPUT is .exr. A CONVENTION is the name of a program, such as
     blender, or of a layout, such as cross or angular, if need be with the axes of the world that

@@ -11,10 +11,10 @@ from brdfkit.commands._options import output_options
 @output_options
 @click.pass_context
 def data(context, console):
-    """List public measurements and environment maps, and download measurements.
+    """List public data, or download measurements.
 
     \b
-    brdfkit data                                the collections
+    brdfkit data                                the collections, of maps too
     brdfkit data list merl                      the materials of one
     brdfkit data get merl/gold-metallic-paint   download a material
     brdfkit fit merl/gold-metallic-paint        use it by its name

@@ -19,7 +19,7 @@ from brdfkit.errors import BrdfkitError
 )
 @output_options
 def info(file, output, console):
-    """Audit a measured material, or an environment map.
+    """Audit a measurement or an environment map.
 
     Prints what FILE holds (angles, coverage, reciprocity, noise, albedo and more; of a map, its
     brightness and where its light comes from), and what is doubtful. FILE is a measured file, a map
