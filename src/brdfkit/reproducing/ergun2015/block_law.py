@@ -82,7 +82,8 @@ def shape_claim(noise):
         f"steps {np.mean(by['steps']):.2f} and {max(by['steps']):.2f}",
         verdict(worst < 0.1),
         "Confirmed below 0.1. Sorted shares fall faster than a hyperbola at the end, and lamps "
-        "stand out at the beginning. The estimate is unbiased all the same: P̂ divides, not the share.",
+        "stand out at the beginning. The estimate is unbiased all the same: P̂ divides it, not the "
+        "share.",
     )
 
 
