@@ -13,6 +13,7 @@ import brdfkit as bk
 from brdfkit.catalogue import index, public_maps, shipped
 from brdfkit.cli import main
 from brdfkit.colours import luminance
+from brdfkit.environments.compass import COLOURS
 from brdfkit.environments.conventions import LAYOUTS, NAMED, convention
 from brdfkit.environments.map_files import read, write
 from brdfkit.environments.resampling import look_up, resample
@@ -215,7 +216,7 @@ def test_compass(maps):
     sides = {"+x": (40, 64), "-x": (168, 64), "+z": (104, 64), "-z": (232, 64)}
     found = {side: rgb[row, column] for side, (column, row) in sides.items()}
     found |= {"+y": rgb[22, 128], "-y": rgb[104, 128]}
-    for side, colour in bk.environments.compass.COLOURS.items():
+    for side, colour in COLOURS.items():
         assert np.allclose(found[side], colour, atol=0.01), side
     white = (rgb[64] > 2).all(axis=1)
     assert white[160:192].sum() > white[192:224].sum()  # on the face -x, whose middle is 192
@@ -391,7 +392,7 @@ def test_commands(tmp_path, capsys, monkeypatch):
     words = "convert", "compass", "cross.exr", "--to", "cross", "--turn", "90", "--height", "96"
     assert run(capsys, *words)[:2] == (0, "written: cross.exr\n")
     assert read("cross.exr").shape == (96, 128, 3)
-    assert np.allclose(read("cross.exr")[48, 34], bk.environments.compass.COLOURS["-x"], atol=0.01)
+    assert np.allclose(read("cross.exr")[48, 34], COLOURS["-x"], atol=0.01)
     code, _, told = run(capsys, "convert", "car_paint", "new.npz", "--mirror")
     assert code == 2
     assert "car_paint is no environment map" in told

@@ -5,6 +5,8 @@ import numpy as np
 from brdfkit.colours import luminance, to_srgb
 from brdfkit.environments.spread import directions, shares, solid_angles
 from brdfkit.lighting import environment_tree
+from brdfkit.lighting.environment_map import cell_power
+from brdfkit.lighting.map_samplers.blocks import DISTRIBUTIONS
 from brdfkit.plotting import Plot
 
 SIZE = 10.4, 9.4  # inches
@@ -12,6 +14,7 @@ MIDDLE_GREY = 0.18  # what the geometric mean of the map is shown as
 BLOCKS = 4096  # as many as `kdtree_envmap` makes by default ...
 DRAWN = 256  # ... of which the first are drawn
 COLOUR = "#0072b2"
+LAWS = {"hyperbolic": "#d55e00", "steps": "#009e73"}  # by which `kdtree_envmap` may choose blocks
 SIDES = ("−z", "+x", "+z", "−x", "−z")  # along the horizon
 
 
@@ -20,10 +23,10 @@ def picture(audit):
     rgb = np.where(np.isfinite(audit.data), audit.data, 0).clip(0).astype(float)
     bright = luminance(rgb)
     solid_angle = solid_angles(audit.height, audit.width)
-    power = bright * solid_angle
+    power = cell_power(bright)
     figure = Plot(figsize=SIZE, layout="constrained")
     above, below = figure.subfigures(2, 1, height_ratios=(1.45, 1))
-    _draw_map(above.subplots(), audit, rgb, environment_tree.blocks(power, DRAWN))
+    _draw_map(above.subplots(), audit, rgb, environment_tree.build(power, DRAWN).blocks)
     left, right = below.subplots(1, 2)
     _draw_probabilities(left, power)
     _draw_shares(right, bright, solid_angle, audit)
@@ -37,15 +40,20 @@ def _draw_map(axes, audit, rgb, blocks):
     seen = luminance(rgb)
     seen = seen[seen > 0]
     exposure = MIDDLE_GREY / np.exp(np.log(seen).mean()) if seen.size else 1
-    axes.imshow(to_srgb(rgb * exposure), extent=(0, 1, 0, 1), aspect="auto")
-    x0, x1, y0, y1 = (blocks / np.repeat((audit.width, audit.height), 2)).T
+    half = 0.5 / (audit.height - 1)  # a row
+    extent = 0, 1, -half, 1 + half
+    axes.imshow(to_srgb(rgb * exposure), extent=extent, aspect="auto", interpolation="nearest")
+    # a cell lies between four pixels, the first and the last row of which are at the poles
+    x0, x1, y0, y1 = blocks.T / np.repeat((audit.width, audit.height - 1), 2)[:, None]
+    x0, x1 = x0 + 0.5 / audit.width, x1 + 0.5 / audit.width
     corners = [(x0, 1 - y0), (x1, 1 - y0), (x1, 1 - y1), (x0, 1 - y1)]
     outlines = np.moveaxis(np.array(corners), 2, 0)
     axes.add_collection(PolyCollection(outlines, facecolors="none", edgecolors="w", linewidths=0.4))
     towards = directions(audit.height, audit.width).reshape(-1, 3)
     spot = int(np.argmax(towards @ np.array(audit.brightest)))
-    place = (spot % audit.width + 0.5) / audit.width, 1 - (spot // audit.width + 0.5) / audit.height
+    place = (spot % audit.width + 0.5) / audit.width, 1 - spot // audit.width / (audit.height - 1)
     axes.plot(*place, "o", markersize=14, mfc="none", mec="#d55e00", mew=1.6)
+    axes.set(xlim=(0, 1), ylim=extent[2:])
     axes.set_xticks(np.linspace(0, 1, 5), SIDES)
     axes.set_yticks((0, 0.5, 1), ("−y, below", "horizon", "+y, above"))
     name = audit.name.replace("$", r"\$")  # $ begins a formula
@@ -53,20 +61,21 @@ def _draw_map(axes, audit, rgb, blocks):
 
 
 def _draw_probabilities(axes, power):
-    """Draw the probabilities of the blocks, sorted; they fall as the light is concentrated."""
-    found = environment_tree.blocks(power, BLOCKS)
-    light = np.sort(environment_tree.block_sums(power, found))[::-1]
-    total = light.sum()
+    """Draw the probabilities of the blocks, sorted, and the laws that stand for them."""
+    blocks = environment_tree.build(power, BLOCKS).blocks
+    light = np.sort(environment_tree.block_sums(power, blocks).clip(0))[::-1]
     axes.set(xscale="log", xlabel="rank of the block", ylabel="probability")
-    axes.set_title(f"probabilities of {len(found):,} blocks, sorted", fontsize=10)
+    axes.set_title(f"probabilities of {len(blocks):,} blocks, sorted", fontsize=10)
     axes.spines[["top", "right"]].set_visible(False)
-    if not total > 0:
+    if len(light) < 2:  # of one value all over
         return
-    share = light / total
-    rank = np.arange(1, len(share) + 1)
-    axes.plot(rank[share > 0], share[share > 0], color=COLOUR, label="the blocks' own")
-    axes.axhline(1 / len(share), color="0.6", linewidth=0.9, label="all alike")
-    axes.set_yscale("log")
+    share, rank = light / light.sum(), np.arange(len(light))
+    lit = share > 0
+    axes.plot(rank[lit] + 1, share[lit], color=COLOUR, label="the blocks' own")
+    for name, colour in LAWS.items():
+        fitted = DISTRIBUTIONS[name].fit(share).probability(rank)
+        axes.plot(rank[lit] + 1, fitted[lit], color=colour, linewidth=1, label=f"{name} law")
+    axes.set(yscale="log", ylim=(share[lit].min() / 2, min(1, 3 * share[0])))
     axes.legend(frameon=False)
 
 

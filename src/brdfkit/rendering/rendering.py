@@ -66,8 +66,9 @@ def render(
         Adds samples until the noise floor, the PSNR of the reference to itself with another seed,
         is so high [dB, above 0]; 45 leaves noise that is hardly seen.
     envmap : str or Path, optional
-        An environment map, by latitude and longitude, in the place of sky and softbox; it is scaled
-        to their illuminance of the ground.
+        An environment map in the place of sky and softbox: "studio", "sky" or "room", which come
+        with brdfkit, or a file, .exr or .hdr, by latitude and longitude; it is scaled to their
+        illuminance of the ground.
 
     Returns
     -------
