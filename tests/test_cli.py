@@ -430,7 +430,7 @@ TRAPS = [
     (["render", "bounds.xml", "--scene", "vase"], ["bounds.xml", "leave --scene"]),
     (["render", "bounds.xml", "--size", "9"], ["bounds.xml", "--size out"]),
     (["render", "bounds.xml#wall"], ["bounds.xml#wall is a place", "as --scene bounds.xml#wall"]),
-    ([*WARD, "--envmap", ""], ["envmap = ''", "path of an environment map"]),
+    ([*WARD, "--envmap", ""], ["'' should be the path of an environment map"]),
     ([*WARD, "--scene", "vaes"], ["vaes", "did you mean vase?", "cornell_box"]),
     ([*LAMBERT, "--render", "--scene", "no.obj", "-o", "new"], ["no.obj", "no such mesh"]),
     ([*LAMBERT, "--render", "--envmap", "no.exr", "-o", "new"], ["no.exr", "no such environment"]),

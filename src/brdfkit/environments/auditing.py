@@ -11,7 +11,7 @@ from brdfkit.colours import luminance
 from brdfkit.documents import Document, Paragraph, Picture, Shown, Table
 from brdfkit.documents.parts import BAD
 from brdfkit.environments import report
-from brdfkit.environments.map_files import EIGHT_BIT, load
+from brdfkit.environments.map_files import is_eight_bit, load
 from brdfkit.environments.spread import directions, median, share_of_brightest, solid_angles
 
 if TYPE_CHECKING:
@@ -152,6 +152,6 @@ def audit_environment(environment: str | Path | NDArray[Any]) -> EnvironmentAudi
         not_finite=int((~finite).sum()),
         negative=int(negative.sum()),
         equal=int((bright == bright.max()).sum()),
-        eight_bit=Path(name).suffix.lower() in EIGHT_BIT,
+        eight_bit=is_eight_bit(environment),
         data=data,
     )

@@ -54,7 +54,7 @@ def convention(name):
     >>> convention("blender").frame[:, 2].tolist()    # ahead is +x
     [1.0, 0.0, 0.0]
     """
-    layout, _, axes = NAMED.get(name, name).partition(":")
+    layout, _, axes = NAMED.get(str(name), str(name)).partition(":")
     if layout not in LAYOUTS:
         raise no_such("convention of maps", name, [*NAMED, *LAYOUTS])
     return Convention(LAYOUTS[layout], _frame(axes or NAMED["mitsuba"].partition(":")[2]))

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from brdfkit.arguments import to_number, to_whole_number
 from brdfkit.environments.conventions import convention
 from brdfkit.environments.cubes import Cube
-from brdfkit.environments.map_files import load, require_aspect, require_radiance, write
+from brdfkit.environments.map_files import load_light, write
 from brdfkit.environments.resampling import resample
 from brdfkit.errors import BrdfkitError
 
@@ -64,9 +64,7 @@ def convert_environment(
     """
     before, after = convention(source), convention(target)
     turn = to_number("turn", turn)
-    name, rgb = load(environment)
-    require_aspect(rgb, before.layout.aspect, name)
-    require_radiance(rgb, name)
+    _, rgb = load_light(environment, before.layout.aspect)
     if height is None:
         quarter = round(rgb.shape[0] / before.layout.rows)
         same = before.layout.rows == after.layout.rows

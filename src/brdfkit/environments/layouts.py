@@ -17,6 +17,8 @@ import numpy as np
 
 from brdfkit.geometry import dual_paraboloid
 
+AT_POLE = 1e-12  # polar angle of a row at the upper pole: its pixels keep their azimuths
+
 
 @dataclass(frozen=True)
 class LatitudeLongitude:
@@ -31,6 +33,7 @@ class LatitudeLongitude:
     def directions(self, x, y, height, width):
         phi = 2 * np.pi * ((x + 0.5) / width - 0.5)
         theta = np.pi * (y / (height - 1) if self.at_poles else (y + 0.5) / height)
+        theta = np.where(theta == 0, AT_POLE, theta)
         sine = np.sin(theta)
         return np.stack([sine * np.sin(phi), np.cos(theta) + 0 * phi, sine * np.cos(phi)], axis=-1)
 

@@ -1,5 +1,6 @@
 """Files of environment maps: OpenEXR and Radiance, or a name of a map that comes with brdfkit."""
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,10 @@ from brdfkit.jit.threads import in_turn, two_threads
 
 HDR = ".exr", ".hdr", ".rgbe", ".pfm"
 EIGHT_BIT = ".png", ".jpg", ".jpeg", ".bmp", ".tga"
+EIGHT_BIT_TOLD = (
+    "8 bits per channel: nothing is brighter than white, so that lamps and the sun are far too "
+    "dark; look for the .exr or .hdr of the picture"
+)
 LATLONG = 2.0  # columns over rows of a map by latitude and longitude
 HALF = 65_504.0  # the largest half float
 
@@ -26,7 +31,7 @@ def find(name):
     """
     if not isinstance(name, str | Path) or not str(name):
         raise BrdfkitError(
-            f"envmap = {name!r:.60} should be the path of an environment map, or the name of one."
+            f"{name!r:.60} should be the path of an environment map, or the name of one."
         )
     if Path(name).is_file():
         return Path(name)
@@ -62,20 +67,29 @@ def load(given):
     return name, rgb
 
 
-def require_radiance(rgb, name):
-    """Raise `BrdfkitError` for a map `name` with a negative value, or one not finite."""
-    if not (np.isfinite(rgb).all() and rgb.min() >= 0):
-        raise BrdfkitError(f"{name}: the map has a negative value, or one not finite; mend it.")
+def load_light(given, aspect=LATLONG):
+    """`load`, of a map from which light is computed; `aspect`: its columns over its rows.
 
-
-def require_aspect(rgb, aspect, name):
-    """Raise `BrdfkitError` for a map `name` whose width over height is not `aspect`, within 5 %."""
+    Raises `BrdfkitError` also for another shape, by more than 5 %, and for a value that is negative
+    or not finite. Warns of 8 bits per channel.
+    """
+    name, rgb = load(given)
     height, width = rgb.shape[:2]
     if abs(width / height / aspect - 1) > 0.05:
         raise BrdfkitError(
-            f"{name}: the map has {width}×{height} pixels, and its layout {aspect:g} times as many "
-            "columns as rows; name its layout to 'brdfkit convert --from'."
+            f"{name}: the map has {width}×{height} pixels, and its layout {aspect:.3g} times as "
+            "many columns as rows; name its layout to 'brdfkit convert --from'."
         )
+    if not (np.isfinite(rgb).all() and rgb.min() >= 0):
+        raise BrdfkitError(f"{name}: the map has a negative value, or one not finite; mend it.")
+    if is_eight_bit(given):
+        warnings.warn(f"{name} has {EIGHT_BIT_TOLD}.", stacklevel=2)
+    return name, rgb
+
+
+def is_eight_bit(given):
+    """Whether a map, a path or a name, is in a file with 8 bits per channel."""
+    return isinstance(given, str | Path) and Path(given).suffix.lower() in EIGHT_BIT
 
 
 @in_turn

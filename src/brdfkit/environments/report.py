@@ -2,11 +2,12 @@
 
 import math
 
+from brdfkit.environments.map_files import EIGHT_BIT_TOLD, HALF, LATLONG
+
 # What is beyond is a finding:
 ASPECT = 0.05  # the width over the height, relative to 2
 EQUAL = 4  # pixels that are as bright as the brightest
 BELOW = 2.0  # the light from below over that from above
-HALF = 65_504  # the largest half float
 
 
 def rows(audit):
@@ -35,16 +36,13 @@ def findings(audit):
         found.append(f"{audit.not_finite:,} pixels are not finite: no renderer can use the map")
     if audit.negative:
         found.append(f"{audit.negative:,} pixels are negative: light is never below 0; mend them")
-    if abs(audit.width / audit.height / 2 - 1) > ASPECT:
+    if abs(audit.width / audit.height / LATLONG - 1) > ASPECT:
         found.append(
             f"{audit.width} × {audit.height} pixels are not twice as wide as high: perhaps another "
             "layout than latitude and longitude; 'brdfkit convert --from' makes it one"
         )
     if audit.eight_bit:
-        found.append(
-            "8 bits per channel: nothing is brighter than white, so that lamps and the sun are far "
-            "too dark; look for the .exr or .hdr of the picture"
-        )
+        found.append(EIGHT_BIT_TOLD)
     if not audit.largest:
         return (*found, "black all over: it lights nothing")
     if audit.equal == audit.width * audit.height:

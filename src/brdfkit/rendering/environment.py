@@ -3,7 +3,7 @@
 import numpy as np
 
 from brdfkit.colours import luminance
-from brdfkit.environments.map_files import LATLONG, load, require_aspect, require_radiance
+from brdfkit.environments.map_files import load_light
 from brdfkit.errors import BrdfkitError
 
 ILLUMINANCE = 1.0  # of the ground, as from sky and softbox
@@ -19,9 +19,7 @@ def environment(given):
     """
     import mitsuba as mi
 
-    name, rgb = load(given)
-    require_aspect(rgb, LATLONG, name)
-    require_radiance(rgb, name)
+    name, rgb = load_light(given)
     height, width = rgb.shape[:2]
     # the integral of cos theta over a pixel, as far as it lies above the horizon
     edges = np.minimum(np.arange(height + 1) / height * np.pi, np.pi / 2)
