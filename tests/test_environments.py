@@ -159,12 +159,30 @@ def test_programs_look_up_where_their_code_does(name, formula, z_up):
 
 @pytest.mark.quick
 def test_debevec_looks_up_as_the_page_says():
-    """(u, v) = (Dx r, Dy r), r = acos(-Dz) / (π √(Dx² + Dy²)): ahead is -z, in the middle."""
+    """(u, v) = (Dx r, Dy r), r = acos(-Dz) / (π √(Dx² + Dy²)), as (0, 0, -1) is in the middle.
+
+    The page has acos(Dz) in this formula, against its own text, which turns (0, 0, -1) by phi.
+    """
     found, (x, y, z) = convention("debevec"), DIRECTIONS.T
     r = np.arccos(-z) / np.pi / np.hypot(x, y)
     px, py, _ = found.layout.places(DIRECTIONS @ found.frame, 500, 500)
     assert np.allclose((px + 0.5) / 250 - 1, x * r, atol=0.005)
     assert np.allclose(1 - (py + 0.5) / 250, y * r, atol=0.005)
+
+
+@pytest.mark.quick
+def test_faces_are_those_of_opengl():
+    """OpenGL 4.6, table 8.19: (sc, tc) of the faces +x -x +y -y +z -z, s = (sc / |ma| + 1) / 2."""
+    found, (x, y, z) = convention("opengl"), DIRECTIONS.T
+    sc = np.array([-z, z, x, x, x, -x])
+    tc = np.array([-y, -y, z, -z, -y, -y])
+    ma = np.array([x, -x, y, -y, z, -z])
+    face, every = ma.argmax(axis=0), np.arange(len(x))
+    px, py, part = found.layout.places(DIRECTIONS @ found.frame, 64, 384)
+    assert (part == face).all()
+    s, t = ((c[face, every] / ma[face, every] + 1) / 2 for c in (sc, tc))
+    assert np.allclose((px + 0.5) / 64 - face, s)
+    assert np.allclose((py + 0.5) / 64, t)
 
 
 def test_mitsuba_looks_up_as_mitsuba_does(module_in_llvm):
@@ -411,8 +429,9 @@ def test_public_maps(capsys):
     _, out, _ = run(capsys, "data", "--json")
     named = json.loads(out)["environment maps"]
     assert {"polyhaven", "debevec", "usc"} <= set(named)
+    assert "Convention: usc" in run(capsys, "data", "list", "usc")[1]
     for name, found in public_maps.collections().items():
-        assert found.page.startswith("https://")
+        assert found.page.startswith("http")
         assert found.page in named[name]["page"]
         if " " not in found.convention:
             convention(found.convention)

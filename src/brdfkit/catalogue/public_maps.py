@@ -23,6 +23,12 @@ class MapCollection:
     page: str
     convention: str
 
+    def __str__(self):
+        return (
+            f"{self.title}\nTerms: {self.terms}\nCite: {self.citation}\nPage: {self.page}\n"
+            f"Convention: {self.convention}"
+        )
+
 
 def collections():
     """The public collections of environment maps by name.

@@ -32,10 +32,16 @@ def data(context, console):
 @click.argument("collection")
 @output_options
 def data_list(collection, console):
-    """List the materials of a COLLECTION."""
-    from brdfkit.catalogue import public
+    """List the materials of a COLLECTION; of one of maps, its page and terms."""
+    from brdfkit.catalogue import public, public_maps
 
-    _print_collection(public.collection(collection), console)
+    maps = public_maps.collections().get(collection)
+    if maps is None:
+        _print_collection(public.collection(collection), console)
+    elif console.as_json:
+        console.json(asdict(maps))
+    else:
+        console.out.print(str(maps))
 
 
 @data.command("get")

@@ -29,7 +29,7 @@ NAMED = {
     "pbrt-v3": "latlong:-y+z-x",  # src/lights/infinite.cpp: SphericalPhi(w), SphericalTheta(w)
     "three.js": "latlong:+z+y+x",  # ShaderChunk/common.glsl.js: equirectUv
     "opengl": "strip:+x+y+z",  # OpenGL 4.6, table 8.19
-    "debevec": "angular:+x+y-z",  # https://www.debevec.org/Probes
+    "debevec": "angular:+x+y-z",  # http://www.debevec.org/Probes
     "usc": "latlong:+x+y-z",  # https://vgl.ict.usc.edu/Data/HighResProbes
 }
 AXES = re.compile("([+-][xyz])([+-][yz])([+-][xyz])")
