@@ -3,9 +3,21 @@
 import numpy as np
 import pytest
 
+import brdfkit as bk
 from brdfkit.geometry.directions import from_angles, normalize
-from brdfkit.lighting.spherical_gaussians import LobeTable
+from brdfkit.geometry.quadrature import directional_albedo, ring_rule
+from brdfkit.lighting.spherical_gaussians import (
+    LobeTable,
+    anisotropic,
+    initial_guess,
+    kernel_density,
+    lobe_table,
+    mixture,
+    warp,
+)
 from brdfkit.lighting.spherical_gaussians import von_mises_fisher as vmf
+from brdfkit.lighting.spherical_gaussians.anisotropic import AnisotropicGaussian
+from brdfkit.lighting.spherical_gaussians.one_view import one_view
 
 UP = np.array([0.0, 0.0, 1.0])
 quick = pytest.mark.quick
@@ -115,3 +127,302 @@ def test_white_light_gives_the_sum_of_the_weights():
     found = table_of_two_views().eval(x, np.broadcast_to(from_angles(0.5, 1.0), x.shape))
     diffuse, weights, _, _ = table_of_two_views().at(from_angles([0.5], [1.0]))
     assert solid_angle @ found[:, 0] == pytest.approx(weights.sum() + diffuse.sum(), rel=1e-4)
+
+
+# Mixtures
+
+
+KAPPAS = np.array([20.0, 80.0, 400.0])
+
+
+def some_samples(n=3000):
+    """Directions of three lobes with random weights, as a quadrature has them."""
+    random = np.random.default_rng(3)
+    mu = normalize(random.normal(size=(3, 3)))
+    x = [vmf.sample(m, k, random.random((n, 2))) for m, k in zip(mu, KAPPAS, strict=True)]
+    return mu, np.concatenate(x), random.random(3 * n)
+
+
+@quick
+@pytest.mark.parametrize("restarts", [0, 2])
+def test_the_likelihood_never_falls(restarts):
+    _, x, weights = some_samples()
+    starts = [initial_guess.cut_in_intervals(x, weights, 5)]
+    random = np.random.default_rng(restarts)
+    starts += [initial_guess.around_samples(x, weights, 5, random) for _ in range(restarts)]
+    for start in starts:
+        found, likelihood = mixture.fit(x, weights, start, steps=40)
+        assert len(likelihood) > 5
+        assert np.diff(likelihood).min() > -1e-12
+        assert likelihood[-1] > likelihood[0]
+        assert found.weights.sum() == pytest.approx(1)
+
+
+@quick
+def test_the_lobes_that_samples_come_from_are_found():
+    mu, x, weights = some_samples()
+    found = initial_guess.best_mixture(x, weights, 3)
+    order = (mu @ found.axes.T).argmax(axis=1)
+    assert sorted(order) == [0, 1, 2]
+    # Weights between 0 and 1 are worth 3/4 of the 3000 samples; within 4 standard errors
+    worth = 0.75 * 3000
+    np.testing.assert_allclose(found.kappa[order], KAPPAS, rtol=4 / np.sqrt(worth))
+    np.testing.assert_allclose(found.weights[order], 1 / 3, rtol=4 * np.sqrt(2 / 3 / worth))
+    off = np.linalg.norm(found.axes[order] - mu, axis=1)
+    assert (off < 4 / np.sqrt(KAPPAS * worth)).all()
+
+
+@quick
+def test_the_fit_stops_where_it_has_converged():
+    _, x, weights = some_samples()
+    found, likelihood = mixture.fit(x, weights, initial_guess.best_mixture(x, weights, 3), 500)
+    assert len(likelihood) < 100
+    again, _ = mixture.fit(x, weights, found, 1, tolerance=0)
+    np.testing.assert_allclose(again.kappa, found.kappa, rtol=1e-3)
+
+
+@quick
+def test_the_guess_of_the_thesis_cuts_the_wider_angle():
+    phi = np.linspace(-0.1, 0.1, 50)
+    theta = np.linspace(0.2, 1.2, 50)
+    x = from_angles(theta, phi[::-1])
+    found = initial_guess.cut_in_intervals(x, np.ones(50), 5)
+    np.testing.assert_allclose(found.weights, 0.2)
+    middles = np.arccos(found.axes[:, 2])
+    np.testing.assert_allclose(middles, 0.2 + (np.arange(5) + 0.5) / 5, atol=0.01)
+
+
+@quick
+def test_one_direction_that_stands_for_a_cell_has_the_width_of_the_cell():
+    """κ stays finite, where that of a point would not."""
+    start = mixture.Mixture(np.ones(1), UP[None], np.ones(1))
+    found, _ = mixture.fit(UP[None] * 0.999, np.ones(1), start)
+    assert found.kappa[0] == pytest.approx(1000, rel=1e-3)
+
+
+# Kernels: the values of the rule of thumb were computed apart
+
+
+@quick
+def test_the_bandwidth_is_that_of_the_rule_of_thumb():
+    expected = {
+        5: [(0.321233, 9.6908), (0.286186, 12.2097), (0.254963, 15.3832)],
+        50: [(0.100166, 99.669), (0.0892377, 125.575), (0.0795018, 158.215)],
+        500: [(0.0316280, 999.667), (0.0281774, 1259.50), (0.0251032, 1586.87)],
+    }
+    for kappa, row in expected.items():
+        for n, (h, kernel) in zip((8, 16, 32), row, strict=True):
+            found = kernel_density.bandwidth(float(kappa), n)
+            assert found == pytest.approx(h, rel=5e-6)
+            assert found**-2 == pytest.approx(kernel, rel=1e-5)
+    assert kernel_density.bandwidth(1e7, 8) == pytest.approx(1e7**-0.5 * 8 ** (-1 / 6))
+
+
+@quick
+def test_the_kernels_widen_a_lobe_and_ours_do_not():
+    for n, ratio in {8: 0.70, 16: 0.73, 32: 0.77}.items():
+        # Computed apart to two digits; 0.693 for n = 8
+        assert kernel_density.width(500.0, n) / 500 == pytest.approx(ratio, abs=8e-3)
+        mu = normalize([0.3, 0.1, 0.8])
+        for kappa in 3.0, 40.0, 500.0:
+            axes, kernel = kernel_density.split(mu, kappa, n)
+            x, solid_angle = sphere()
+            estimate = vmf.density(x[:, None], axes, kernel).mean(axis=1)
+            mean = (solid_angle * estimate) @ x
+            assert vmf.kappa_of(np.linalg.norm(mean)) == pytest.approx(kappa, rel=1e-3)
+            assert np.linalg.norm(np.cross(mean, mu)) < 0.2 / np.sqrt(kappa)
+
+
+# Warps of half vectors to light
+
+
+def beckmann(i, view, m):
+    """Beckmann's D of the half vectors of light directions `i` (n, 3) and one `view`."""
+    h = normalize(i + view)
+    tan_squared = (1 - h[:, 2] ** 2) / h[:, 2] ** 2
+    return np.exp(-tan_squared / m**2) / (np.pi * m**2 * h[:, 2] ** 4)
+
+
+def above_the_horizon(view):
+    """Directions (n, 3) dense about the mirror direction of a view, and their solid angles."""
+    x, cosine = ring_rule(view, 128)
+    return x, cosine / x[:, 2]
+
+
+@quick
+@pytest.mark.parametrize("m", [0.05, 0.1, 0.2])
+@pytest.mark.parametrize(("degrees", "percent"), [(0, (0.2, 4.4)), (30, (9, 10)), (60, (42, 43.5))])
+def test_wangs_warp_is_as_far_from_beckmanns_lobe_as_known(m, degrees, percent):
+    """The values, to the percent, and the integrals were computed apart, by drawn directions."""
+    view = from_angles(np.radians(degrees), 0.0)
+    mu, kappa = warp.to_light(UP, warp.beckmann(m), view)
+    x, solid_angle = above_the_horizon(view)
+    found = vmf.density(x, mu, kappa) * 4 * (view @ UP)  # the amplitude is D's
+    expected = beckmann(x, view, m)
+    low, high = percent
+    error = 100 * solid_angle @ np.abs(found - expected) / (solid_angle @ expected)
+    assert low <= error <= high
+    ratio = 4 * (view @ UP) / (solid_angle @ expected)
+    off = 0.016 if (m, degrees) == (0.2, 60) else 0.0
+    assert ratio == pytest.approx(1 + off, abs=3e-3)
+
+
+@quick
+def test_an_anisotropic_gaussian_warps_better_and_is_wangs_in_the_mean():
+    m, view = 0.1, from_angles(np.radians(60), 0.4)
+    lobe = AnisotropicGaussian(np.eye(3), np.array([1, 1]) / m**2)
+    warped = lobe.to_light(view)
+    mu, kappa = warp.to_light(UP, warp.beckmann(m), view)
+    np.testing.assert_allclose(warped.frame[2], mu, atol=1e-12)
+    # Wang's κ / 2 is the geometric mean of the bandwidths, of which one is 4 cos²60° of the other
+    assert np.sqrt(warped.bandwidths.prod()) == pytest.approx(kappa / 2)
+    assert warped.bandwidths[1] / warped.bandwidths[0] == pytest.approx(4)
+    x, solid_angle = above_the_horizon(view)
+    expected = beckmann(x, view, m)
+    found = warped.eval(x) / (np.pi * m**2)
+    assert solid_angle @ np.abs(found - expected) < 0.2 * (solid_angle @ expected)  # Wang: 0.43
+
+
+@quick
+def test_the_integral_of_an_anisotropic_gaussian():
+    x, solid_angle = sphere()
+    frame = np.array([*vmf.tangents(normalize([0.5, 0.2, 0.8])), normalize([0.5, 0.2, 0.8])])
+    for bandwidths in (8.0, 8.0), (8.0, 90.0):
+        lobe = AnisotropicGaussian(frame, np.array(bandwidths))
+        # What it leaves out is e^-8 = 3e-4
+        assert solid_angle @ lobe.eval(x) == pytest.approx(lobe.integral(), rel=4e-4)
+        again = anisotropic.fit(x, solid_angle * lobe.eval(x))
+        np.testing.assert_allclose(again.bandwidths, bandwidths, rtol=4e-3)
+    # Along the axes of the last, whose bandwidths differ
+    np.testing.assert_allclose(np.abs(again.frame @ frame.T), np.eye(3), atol=1e-6)
+
+
+def test_one_anisotropic_gaussian_does_what_eight_round_ones_do():
+    """Of brushed metal, α_v / α_u = 4, seen along the normal."""
+    ward = bk.models()["ward"](diffuse_reflectance=0.0, alpha_u=0.05, alpha_v=0.2)
+    seen = one_view(ward.eval, 0.0, 0.0)
+    values, light = seen.rest[:, 0], seen.energy[:, 0]
+
+    def error(density):
+        return np.abs(light.sum() * density - values) @ seen.solid_angle / light.sum()
+
+    def of_round_ones(n):
+        found = initial_guess.best_mixture(*seen.samples(), n, restarts=2)
+        return error(np.exp(found.log_lobes(seen.directions)).sum(axis=1))
+
+    lobe = anisotropic.fit(seen.directions, light)
+    one = error(lobe.eval(seen.directions) / lobe.integral())
+    assert one < 0.06
+    assert one < of_round_ones(8) < 2 * one
+
+
+@quick
+def test_a_lobe_of_light_warps_back():
+    view = from_angles(1.0, 2.0)
+    axes = from_angles(np.array([0.1, 0.7]), np.array([0.0, 1.9]))
+    kappa = np.array([30.0, 500.0])
+    halves = warp.to_half_vectors(*warp.to_light(axes, kappa, view), view)
+    np.testing.assert_allclose(halves[0], axes, atol=1e-12)
+    np.testing.assert_allclose(halves[1], kappa)
+
+
+# The lobes of materials
+
+
+def relative_error(table, brdf, theta, phi=0.0):
+    """∫ |BRDF × cosine - lobes| over ∫ BRDF × cosine, seen from (θ, φ)."""
+    view = from_angles(theta, phi)
+    x, cosine = ring_rule(view, 40)
+    wo = np.broadcast_to(view, x.shape)
+    expected = brdf(x, wo) * x[:, 2:]
+    off = np.abs(table.eval(x, wo) - expected).sum(axis=1)
+    return off @ (cosine / x[:, 2]) / (cosine @ brdf(x, wo).sum(axis=1))
+
+
+def materials():
+    ggx = bk.models()["ggx"](diffuse_reflectance=0.1, alpha_u=0.1)
+    return {"ggx": ggx.eval, "red_plastic": bk.load("red_plastic").eval}
+
+
+@pytest.mark.parametrize("name", ["ggx", "red_plastic"])
+def test_lobes_are_near_the_material_at_views_and_between_them(name):
+    brdf = materials()[name]
+    table = lobe_table(brdf, lobes=16, views=16)
+    theta = table.theta_o
+    for degrees, most in {0: 0.03, 30: 0.06, 60: 0.1, 78: 0.2}.items():
+        i = int(np.radians(degrees) / theta[1])
+        at = relative_error(table, brdf, theta[i])
+        assert at < most
+        assert relative_error(table, brdf, (theta[i] + theta[i + 1]) / 2, 2.0) < 1.2 * most
+        # A white environment gives the albedo, to the accuracy of the rule
+        view = from_angles(theta[i], 0.0)
+        expected = directional_albedo(lambda wi, wo: brdf(wo, wi), view)
+        diffuse, weights, _, _ = table.at(view[None])
+        np.testing.assert_allclose((diffuse + weights.sum(axis=1))[0], expected, rtol=5e-3)
+
+
+def test_lobes_of_neighbouring_views_correspond():
+    """Between views that are fitted apart, lobes are mixed that have nothing in common."""
+    brdf = materials()["ggx"]
+    table = lobe_table(brdf, lobes=8, views=12)
+    between = (table.theta_o[6] + table.theta_o[7]) / 2
+    order = np.arange(8)[::-1]
+    mixed_up = [part.copy() for part in (table.weights, table.axes, table.kappa)]
+    for part in mixed_up:
+        part[7] = part[7][order]
+    apart = LobeTable(table.theta_o, table.phi_o, table.diffuse, *mixed_up)
+    assert relative_error(apart, brdf, table.theta_o[7]) < 0.15  # as good at the view itself
+    assert relative_error(apart, brdf, between) > 2 * relative_error(table, brdf, between)
+
+
+def test_anisotropic_materials_have_azimuths():
+    ward = bk.models()["ward"](diffuse_reflectance=0.2, alpha_u=0.1, alpha_v=0.25)
+    table = lobe_table(ward.eval, lobes=8, views=8, azimuths=12)
+    step = 2 * np.pi / 12
+    for phi, most in {0.0: 0.1, 2 * step: 0.1, 4.5 * step: 0.12}.items():
+        assert relative_error(table, ward.eval, table.theta_o[3], phi) < most
+    round_one = lobe_table(ward.eval, lobes=8, views=8)
+    assert relative_error(round_one, ward.eval, table.theta_o[3], 3 * step) > 0.3
+
+
+@pytest.mark.parametrize("method", ["warped", "kde"])
+def test_single_lobes_are_near_what_is_nearly_one(method):
+    ward = bk.models()["ward"](diffuse_reflectance=0.2, alpha_u=0.2)
+    table = lobe_table(ward.eval, method=method, lobes=16, views=6)
+    assert table.kappa.shape == (6, 1 if method == "warped" else 16)
+    assert relative_error(table, ward.eval, 0.0) < 0.08
+    assert relative_error(table, ward.eval, table.theta_o[1] * 1.5) < 0.15
+
+
+@quick
+@pytest.mark.parametrize("method", ["gmm", "warped", "kde"])
+def test_what_is_diffuse_is_the_diffuse_part(method):
+    lambert = bk.models()["lambert"](diffuse_reflectance=0.3)
+    table = lobe_table(lambert.eval, method=method, lobes=4, views=3)
+    np.testing.assert_allclose(table.diffuse, 0.3)
+    assert table.weights.max() < 1e-12
+
+
+@quick
+def test_tables_are_the_same_every_time():
+    ggx = bk.models()["ggx"](alpha_u=0.3)
+    one, other = (lobe_table(ggx.eval, lobes=4, views=3) for _ in range(2))
+    assert all(np.array_equal(vars(one)[name], vars(other)[name]) for name in vars(one))
+
+
+@quick
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        ({"method": "gnm"}, "did you mean gmm"),
+        ({"lobes": 0}, "lobes = 0"),
+        ({"views": 1}, "views = 1"),
+        ({"azimuths": 2.5}, "azimuths = 2.5"),
+        ({"brdf": lambda wi, wo: np.full((len(wi), 1), np.nan)}, "finite"),
+        ({"brdf": lambda wi, wo: np.ones(len(wi))}, "(n, channels)"),
+    ],
+)
+def test_what_makes_no_table_is_said(arguments, word):
+    with pytest.raises(bk.BrdfkitError) as error:
+        lobe_table(**({"brdf": bk.models()["lambert"]().eval} | arguments))
+    assert word in str(error.value)

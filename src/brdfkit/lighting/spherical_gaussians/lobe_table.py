@@ -23,15 +23,18 @@ class LobeTable:
     """The lobes of a material at each view; see the file.
 
     The views are a grid of `theta_o` × `phi_o`, the azimuth fastest: view i·len(phi_o) + j has
-    theta_o[i] and phi_o[j]. One azimuth, 0, stands for an isotropic material, whose lobes turn
-    about z with the view; otherwise the azimuths are j·2π/len(phi_o).
+    theta_o[i] and phi_o[j], which is j·2π/len(phi_o). One azimuth stands for all of an isotropic
+    material. The axes are stored as if every view had azimuth 0, in the plane y = 0 with x ≥ 0, and
+    are turned about z by the azimuth of the view: the lobes of neighbours are most alike so.
     """
 
     theta_o: Floats = field(repr=False)  #: (nθ,) [rad], evenly from 0, below π/2
     phi_o: Floats = field(repr=False)  #: (nφ,) [rad], evenly from 0 around the circle
     diffuse: Floats = field(repr=False)  #: (views, channels) albedo of the diffuse part
     weights: Floats = field(repr=False)  #: (views, lobes, channels) integral of each lobe
-    axes: Floats = field(repr=False)  #: (views, lobes, 3) unit vectors, z along the normal
+    axes: Floats = field(
+        repr=False
+    )  #: (views, lobes, 3) unit vectors, z along the normal, see above
     kappa: Floats = field(repr=False)  #: (views, lobes) concentrations
 
     def at(self, wo):
@@ -47,9 +50,7 @@ class LobeTable:
             each = (-1,) + (1,) * (values.ndim - 1)
             return sum(values[view] * np.reshape(share, each) for view, share in shares)
 
-        axes = normalize(mixed(self.axes))
-        if len(self.phi_o) == 1:
-            axes = rotate_z(axes, phi[:, None])
+        axes = rotate_z(normalize(mixed(self.axes)), phi[:, None])
         return mixed(self.diffuse), mixed(self.weights), axes, mixed(self.kappa)
 
     def eval(self, wi, wo):

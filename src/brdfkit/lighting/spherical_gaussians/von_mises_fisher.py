@@ -5,13 +5,11 @@
 with the axis μ and the concentration κ ≥ 0: 0 is uniform, a large κ a lobe of about 1/√κ radians.
 Stable for every κ; caps and samples want κ > 0. Axes (..., 3) and concentrations (...) broadcast.
 
-[Ergun 2015, eqs. 8.1 - 8.9; Banerjee et al. 2005]
+[Ergun 2015, eqs. 8.1 - 8.9]; [Banerjee et al. 2005]
 """
 
 import numpy as np
 from scipy.special import exprel
-
-from brdfkit.geometry.directions import normalize
 
 MOST = 1e8  # the largest κ, of a lobe of a ten thousandth of a radian
 
@@ -97,8 +95,15 @@ def points(mu, kappa, n):
 
 
 def tangents(mu):
-    """Two unit vectors (..., 3) that with μ (..., 3) make a right-handed frame."""
-    mu = np.asarray(mu, float)
-    steep = np.abs(mu[..., 2:]) > 0.9
-    x = normalize(np.cross(np.where(steep, [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]), mu))
-    return x, np.cross(mu, x)
+    """Two unit vectors (..., 3) that with μ (..., 3) make a right-handed frame.
+
+    x and y of a frame whose z is turned to μ by the least turn, or -z for μ below the horizon, so
+    that the tangents change smoothly with μ within each hemisphere.
+    """
+    x, y, z = np.moveaxis(np.asarray(mu, float), -1, 0)
+    sign = np.where(z < 0, -1.0, 1.0)
+    a = 1 / (1 + np.abs(z))
+    return (
+        np.stack([1 - x * x * a, -x * y * a, -sign * x], axis=-1),
+        np.stack([-sign * x * y * a, sign * (1 - y * y * a), -y], axis=-1),
+    )
