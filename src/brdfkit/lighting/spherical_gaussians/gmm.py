@@ -4,7 +4,7 @@ The thesis fits views apart from each other, and pictures show where one view's 
 another's. Here the view along the normal is fitted from several guesses. Every other begins at the
 lobes of the view before it, on the same azimuth, moved as facets would move them: their half
 vectors stay (`warp`). A few steps then fit them. Lobe k is thus everywhere the same lobe, and
-between two views it lies between its places there.
+between two views it lies between its places there. [Ergun 2015, section 8.3]
 """
 
 import numpy as np
@@ -57,7 +57,7 @@ def channel_weights(lobes, one, steps=5):
         weights = lobes.weights * energy.sum()
         for _ in range(steps):
             kept = Mixture(np.maximum(weights, mixture.TINY), lobes.axes, lobes.kappa)
-            weights = energy @ kept.shares(one.means)[0]
+            weights = kept.shares(one.means)[0] @ energy
         return weights
 
     return np.stack([of_channel(energy) for energy in one.energy.T], axis=1)

@@ -30,5 +30,6 @@ def best_mixture(x, weights, n, restarts=4):
     random = np.random.default_rng(0)
     starts = [cut_in_intervals(x, weights, n)]
     starts += [around_samples(x, weights, n, random) for _ in range(restarts)]
-    fits = [mixture.fit(x, weights, start) for start in starts]
-    return max(fits, key=lambda found: found[1][-1])[0]
+    fits = [mixture.fit(x, weights, start, steps=50) for start in starts]
+    best, _ = max(fits, key=lambda found: found[1][-1])
+    return mixture.fit(x, weights, best)[0]

@@ -6,12 +6,13 @@ import numpy as np
 
 from brdfkit.arguments import to_whole_number
 from brdfkit.errors import no_such
+from brdfkit.lighting.spherical_gaussians.elliptic import elliptic
 from brdfkit.lighting.spherical_gaussians.gmm import gmm
 from brdfkit.lighting.spherical_gaussians.lobe_table import Floats, LobeTable
 from brdfkit.lighting.spherical_gaussians.one_view import one_view
 from brdfkit.lighting.spherical_gaussians.single import kde, warped
 
-METHODS = {"gmm": gmm, "kde": kde, "warped": warped}
+METHODS = {"gmm": gmm, "elliptic": elliptic, "kde": kde, "warped": warped}
 LAST = np.radians(88)  # of theta_o: beyond it, a ball has a thousandth of its pixels
 
 
@@ -30,8 +31,9 @@ def lobe_table(
         ``brdf(wi, wo)`` gives (n, channels) in sr⁻¹, without a cosine, of pairs of unit vectors
         (n, 3) above the surface: the `eval` of any material.
     method : str, default "gmm"
-        "gmm": a mixture fitted at each view; "warped": one lobe per view; "kde": as many sharper
-        lobes in place of that one.
+        "gmm": a mixture fitted at each view, the nearest to the material; "warped": one lobe per
+        view; "kde": as many sharper lobes in place of that one; "elliptic": these spread over an
+        ellipse, for brushed metal and grazing views.
     lobes : int, default 32
         Lobes per view, at least 1; "warped" has 1.
     views : int, default 24

@@ -28,23 +28,24 @@ class Mixture:
     kappa: np.ndarray
 
     def log_lobes(self, x):
-        """log(α_k g_k(x)) (samples, n)."""
-        # κ (μ·x - 1) and log g at the axis, which is the same for all samples
-        scaled = x @ (self.kappa[:, None] * self.axes).T
-        return scaled + (np.log(self.weights) + vmf.log_density(1, self.kappa) - self.kappa)
+        """log(α_k g_k(x)) (n, samples)."""
+        # κ μ·x, and what is the same for all samples
+        constant = np.log(self.weights) + vmf.log_density(0, self.kappa)
+        return (self.kappa[:, None] * self.axes) @ x.T + constant[:, None]
 
     def shares(self, x):
-        """γ (samples, n), each lobe's share of each sample, and log f (samples,) at the samples."""
-        lobes = self.log_lobes(x)
-        largest = lobes.max(axis=1, keepdims=True)
-        lobes = np.exp(lobes - largest)
-        total = lobes.sum(axis=1, keepdims=True)
-        return lobes / total, (np.log(total) + largest)[:, 0]
+        """γ (n, samples), each lobe's share of each sample, and log f (samples,) at the samples."""
+        share = self.log_lobes(x)
+        largest = share.max(axis=0)
+        np.exp(np.subtract(share, largest, out=share), out=share)
+        total = share.sum(axis=0)
+        share /= total
+        return share, np.log(total) + largest
 
 
 def of_clusters(x, weights, cluster, n):
     """The mixture (n lobes) of samples that each belong to the `cluster` (samples,), a number."""
-    return _maximisation(x, weights, np.eye(n)[cluster])
+    return _maximisation(x, weights, np.eye(n)[:, cluster])
 
 
 def fit(x, weights, start, steps=200, tolerance=1e-7):
@@ -65,8 +66,9 @@ def fit(x, weights, start, steps=200, tolerance=1e-7):
 
 def _maximisation(x, weights, share, before=None):
     """The likeliest mixture for these shares; a lobe without samples stays as it was `before`."""
-    each = weights @ share
-    mean = (share * weights[:, None]).T @ x / np.maximum(each, TINY * weights.sum())[:, None]
+    share = share * weights
+    each = share.sum(axis=1)
+    mean = share @ x / np.maximum(each, TINY * weights.sum())[:, None]
     length = np.linalg.norm(mean, axis=1)
     empty = length < TINY
     other = before.axes if before else np.array([0.0, 0.0, 1.0])

@@ -15,31 +15,37 @@ STEPS = 50
 
 def warped(grid, lobes):
     """(diffuse, weights (1, channels), axes, κ) of each `OneView` of a `grid`; `lobes` is 1."""
-    return [[_one_lobe(one) for one in views] for views in grid]
+    return [[_split(one, 1) for one in views] for views in grid]
 
 
 def kde(grid, lobes):
     """The same lobe, split into as many sharper `lobes` of equal weight."""
-    return [[_split(*_one_lobe(one), lobes) for one in views] for views in grid]
+    return [[_split(one, lobes) for one in views] for views in grid]
 
 
-def _one_lobe(one):
-    """The likeliest lobe beside a cosine; begins as narrow as the highest value allows."""
-    x, weights = one.samples()
+def _split(one, n):
+    """The one lobe of a view, or n in its place, and the diffuse part with all other light."""
+    part, _, axis, kappa = one_lobe(one)
     light = one.energy.sum(axis=0)
+    axes, kappa = kernel_density.split(axis, kappa, n) if n > 1 else (axis[None], kappa)
+    weights = np.repeat(part * light[None] / n, n, axis=0)
+    return one.diffuse + (1 - part) * light, weights, axes, np.full(n, kappa)
+
+
+def one_lobe(one):
+    """The likeliest lobe beside a cosine; begins as narrow as the highest value allows.
+
+    Returns its part of the light, its share (m,) of each of `one.samples()`, its axis and κ.
+    """
+    x, weights = one.samples()
     brightest = one.rest.mean(axis=1).argmax()
     axis = one.directions[brightest]
-    kappa = 2 * np.pi * one.rest[brightest].mean() / max(light.mean(), 1e-9)
-    part = 0.9  # of the light: what is the lobe's
+    kappa = 2 * np.pi * one.rest[brightest].mean() / max(one.energy.sum(axis=0).mean(), 1e-9)
+    part = 0.9
     for _ in range(STEPS):
         lobe = part * np.exp(vmf.log_density(x @ axis, kappa))
-        weight = weights * lobe / (lobe + (1 - part) * x[:, 2] / np.pi)
-        part = weight.sum() / weights.sum()
-        mean = weight @ x / weight.sum()
+        share = lobe / (lobe + (1 - part) * x[:, 2] / np.pi)
+        part = weights @ share / weights.sum()
+        mean = (weights * share) @ x / (weights @ share)
         axis, kappa = mean / np.linalg.norm(mean), vmf.kappa_of(np.linalg.norm(mean))
-    return one.diffuse + (1 - part) * light, part * light[None], axis[None], kappa[None]
-
-
-def _split(diffuse, weights, axes, kappa, n):
-    axes, kappa = kernel_density.split(axes[0], kappa[0], n)
-    return diffuse, np.repeat(weights / n, n, axis=0), axes, np.full(n, kappa)
+    return part, share, axis, kappa

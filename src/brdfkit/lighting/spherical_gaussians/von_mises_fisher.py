@@ -52,7 +52,7 @@ def kappa_of(mean_resultant):
     """
     r = np.clip(mean_resultant, 0, 1 - 1 / MOST)
     kappa = kappa_near(r)
-    for _ in range(6):
+    for _ in range(4):  # from within 4 %, each step doubles the digits
         # dR̄/dκ, which hardly changes below 0.01, where the two terms cancel; e^(2·300) is enough
         slope = 1 / np.maximum(kappa, 0.01) ** 2 - 1 / np.sinh(np.clip(kappa, 0.01, 300)) ** 2
         kappa = np.maximum(kappa + (r - mean_cosine(kappa)) / slope, 0)
