@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from brdfkit.lighting.block_laws.exact import Exact
 from brdfkit.lighting.block_laws.hyperbolic import Hyperbolic
+from brdfkit.lighting.block_laws.sorted_blocks import SortedBlocks
 from brdfkit.lighting.block_laws.steps import Steps
+from brdfkit.lighting.environment_tree import build
 
 pytestmark = pytest.mark.quick
 
@@ -17,7 +18,7 @@ def falling(n=300):
     return shares / shares.sum()
 
 
-LAWS = {law.__name__: law.fit(falling()) for law in (Exact, Hyperbolic, Steps)}
+LAWS = {law.__name__: law.fit(falling()) for law in (Hyperbolic, Steps)}
 LAWS["of one block"] = Steps.fit(np.ones(1))
 
 
@@ -42,8 +43,7 @@ def test_a_hyperbola_s_parameter_is_found():
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 def test_a_law_is_a_distribution(law):
-    n = len(law.shares) if isinstance(law, Exact) else law.n
-    i, xi = np.arange(n), np.linspace(0, 0.999, 101)
+    i, xi = np.arange(law.n), np.linspace(0, 0.999, 101)
     p = law.probability(i)
     assert p.min() >= 0
     assert p.sum() == pytest.approx(1)
@@ -53,18 +53,28 @@ def test_a_law_is_a_distribution(law):
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 def test_the_renderer_chooses_by_the_law(law, llvm_variant):
-    """The uniform numbers that choose a block are those between F(i) and F(i + 1), to rounding."""
+    """A point of block i is drawn by the uniform numbers between F(i) and F(i + 1), to rounding."""
     mi = llvm_variant
+    tree = build(np.random.default_rng(0).random((20, 30)), law.n)
+    shares = np.full(law.n, 1 / law.n)
+    blocks = SortedBlocks(tree, shares, type("Law", (type(law),), {"fit": lambda _: law}))
     xi = ((np.arange(40_000) + 0.5) / 40_000).astype(np.float32)
-    block, rest, p = (np.array(a) for a in law.in_renderer().choose(mi.Float(xi), True))
-    block = block.astype(int)
-    np.testing.assert_allclose(p, law.probability(block), rtol=2e-3, atol=1e-9)
-    back = law.cumulative(block) + rest * law.probability(block)
-    np.testing.assert_allclose(back, xi, atol=2e-6)
+    x, y, density = (
+        np.array(a) for a in blocks.sample(mi.Point2f(mi.Float(xi), mi.Float(0.5)), True)
+    )
+    i = np.minimum(np.floor(law.inverse(xi.astype(float))), law.n - 1).astype(int)
+    x0, x1, y0, y1 = tree.blocks[i].T  # the shares are equal: sorted as they are
+    rest = (xi - law.cumulative(i)) / law.probability(i)
+    expected = x0 + rest.clip(0, 1) * (x1 - x0)
+    off = np.abs(x - expected) > 0.01 * (x1 - x0)
+    assert off.mean() < 5e-3
+    np.testing.assert_allclose(y, (y0 + y1) / 2, atol=1e-4)
+    p = law.probability(i) * 600 / ((x1 - x0) * (y1 - y0))
+    assert (np.abs(density - p) > 2e-3 * p).mean() < 1e-3
 
 
 def test_steps_are_nearer_than_the_hyperbola():
-    """By the variance of choosing, Σ P² / P̂ - 1; of maps the exact law has 0."""
+    """By the variance of choosing, Σ P² / P̂ - 1, which is 0 for the exact shares."""
     shares = falling()
     i = np.flatnonzero(shares)
     noise = {
@@ -72,5 +82,4 @@ def test_steps_are_nearer_than_the_hyperbola():
         for name, law in LAWS.items()
         if name != "of one block"
     }
-    assert noise["Exact"] == pytest.approx(0, abs=1e-12)
     assert noise["Steps"] < 0.1 < noise["Hyperbolic"]

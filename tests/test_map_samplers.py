@@ -136,8 +136,25 @@ def test_memory_is_a_hundredth_of_the_map(llvm_variant):
     """4,096 blocks of 2048 × 1024 pixels; a texture needs one channel of the map besides."""
     pixels = np.kron(sky(32, 64), np.ones((32, 32)))
     pixels *= np.random.default_rng(0).gamma(3, 0.3, pixels.shape)
-    map_bytes = pixels.size * 3 * 4
-    for lookup in ("tree", "grid"):
-        assert Blocks(pixels, 4096, lookup=lookup).nbytes <= 0.01 * map_bytes
-    texture = Blocks(pixels, 4096, lookup="texture")
-    assert texture.nbytes - texture.lookup.nbytes <= 0.01 * map_bytes
+    hundredth = 0.01 * pixels.size * 3 * 4
+    assert Blocks(pixels, lookup="tree").nbytes <= hundredth
+    texture = Blocks(pixels, lookup="texture")
+    assert texture.nbytes - texture.lookup.nbytes <= hundredth
+    assert Blocks(pixels, distribution="steps", lookup="grid").nbytes <= hundredth
+
+
+def test_walking_keeps_strata(llvm_variant):
+    """As Mitsuba's descent of mip levels does, and sorted blocks do not: the variance of the mean
+    column of 32 × 32 jittered points, over that of as many independent ones."""
+    mi = llvm_variant
+    random = np.random.default_rng(4).random((64, 2, 1024))
+    corner = np.stack(np.meshgrid(np.arange(32), np.arange(32))).reshape(2, -1)
+    left = {}
+    for name in ("exact, texture", "mip", "steps, texture"):
+        sampler, variances = BY_NAME[name](sky()), []
+        for u in ((corner + random) / 32, random):
+            u = u.transpose(1, 0, 2).reshape(2, -1).astype(np.float32).clip(0, 1 - 1e-7)
+            x = np.array(sampler.sample(mi.Point2f(mi.Float(u[0]), mi.Float(u[1])), True)[0])
+            variances.append(x.reshape(64, -1).mean(axis=1).var())
+        left[name] = variances[0] / variances[1]
+    assert left["exact, texture"] < 3 * left["mip"] < 0.1 < left["steps, texture"]

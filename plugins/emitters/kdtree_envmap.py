@@ -9,15 +9,16 @@ constant power per angle. A sample chooses a block, and a point of it uniformly 
 
 `criterion` says which block is cut next: `relative`, the squared error over the mean, which is what
 a block adds to the variance of samples; or one of the thesis's, `sse` (the squared error),
-`variance`, `range`. `distribution` says how a block is chosen: `exact`, by its share of the power;
-by closed forms that need no table, `hyperbolic`, the thesis's law of one parameter, noisier where
-sorted shares are not hyperbolic, and `steps`, eight ranges of equal shares. `lookup` says how the
-density of a direction that a surface drew is found: `texture`, stored for every pixel; `tree`, by
-walking down the cuts; `grid`, by trying the blocks that a square of a coarse grid lists.
-`compensated`: only for integrators that also sample surfaces [Karlík et al. 2019].
+`variance`, `range`. `distribution` says how a block is chosen: `exact`, by its share of the power,
+walking down the cuts; by closed forms that need no walk and no table, `hyperbolic`, the thesis's
+law of one parameter, noisier where sorted shares are not hyperbolic, and `steps`, eight ranges of
+equal shares. `lookup` says how the density of a direction that a surface drew is found: `texture`,
+stored for every cell between pixels; `tree`, by walking; `grid`, by trying the blocks that a square
+of a coarse grid lists. `compensated`: only for integrators that also sample surfaces
+[Karlík et al. 2019].
 
-Samples are stratified where Mitsuba's sampler is: `stratified`, `multijitter`, `orthogonal` and
-`ldsampler` are, `independent` is not.
+Mitsuba's samplers `stratified`, `multijitter`, `orthogonal` and `ldsampler` stratify what blocks
+are drawn with, `independent` does not; `exact` keeps the strata, the closed forms lose most.
 
 [Ergun 2015, chapter 6]. In spectral variants a colour of the map becomes a smooth spectrum under
 D65 [Mallett & Yuksel 2019], linear in the colour.

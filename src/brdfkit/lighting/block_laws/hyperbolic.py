@@ -9,11 +9,9 @@ from types import ModuleType
 
 import numpy as np
 
-from brdfkit.lighting.block_laws.closed_form import ClosedForm
-
 
 @dataclass(frozen=True)
-class Hyperbolic(ClosedForm):
+class Hyperbolic:
     """The law of `n` blocks with the parameter `u` > 0; see the package."""
 
     n: int

@@ -9,14 +9,12 @@ from types import ModuleType
 
 import numpy as np
 
-from brdfkit.lighting.block_laws.closed_form import ClosedForm
-
 STEPS = 8
 EDGES = 64  # places where a step may begin, in equal ratios of ranks
 
 
 @dataclass(frozen=True)
-class Steps(ClosedForm):
+class Steps:
     """The law of `n` blocks; step k has the blocks from `edges[k]` on and the `shares[k]`."""
 
     n: int

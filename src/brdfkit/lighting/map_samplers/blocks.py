@@ -1,22 +1,20 @@
-"""Samples a map by blocks of nearly constant power: a block by a law, a point in it evenly.
+"""Samples a map by blocks of nearly constant power: by walking their tree, or by a law.
 
 [Ergun 2015, chapter 6]
 """
 
-import numpy as np
-
-from brdfkit.host.arrays import Rows
 from brdfkit.lighting import environment_tree
-from brdfkit.lighting.block_laws.exact import Exact
 from brdfkit.lighting.block_laws.hyperbolic import Hyperbolic
+from brdfkit.lighting.block_laws.sorted_blocks import SortedBlocks
 from brdfkit.lighting.block_laws.steps import Steps
 from brdfkit.lighting.block_lookups.grid import Grid
 from brdfkit.lighting.block_lookups.texture import Texture
-from brdfkit.lighting.block_lookups.tree import TreeOfCuts
+from brdfkit.lighting.block_lookups.walk import Walk
 from brdfkit.lighting.environment_map import cell_power
 
-DISTRIBUTIONS = {"exact": Exact, "hyperbolic": Hyperbolic, "steps": Steps}
-LOOKUPS = {"texture": Texture, "tree": TreeOfCuts, "grid": Grid}
+LAWS = {"hyperbolic": Hyperbolic, "steps": Steps}
+DISTRIBUTIONS = ("exact", *LAWS)
+LOOKUPS = {"texture": Texture, "tree": Walk, "grid": Grid}
 
 
 class Blocks:
@@ -31,31 +29,22 @@ class Blocks:
         lookup="texture",
     ):
         power = cell_power(brightness)
-        tree = environment_tree.build(power, count, criterion)
-        shares = environment_tree.block_sums(power, tree.blocks).clip(0)
-        shares = shares / shares.sum()
-        order = np.argsort(-shares, kind="stable")  # the largest first
-        self.law = DISTRIBUTIONS[distribution].fit(shares[order])
-        self.choice = self.law.in_renderer()
-        x0, x1, y0, y1 = tree.blocks[order].T
-        self.corners = Rows(np.stack([x0, y0], axis=1))
-        self.sizes = Rows(np.stack([x1 - x0, y1 - y0], axis=1))
-
-        # Density of the law, relative to an even one
-        self.cells = power.size
-        densities = np.empty(len(order))
-        areas = (x1 - x0) * (y1 - y0)
-        densities[order] = self.law.probability(np.arange(len(order))) * self.cells / areas
-        self.lookup = LOOKUPS[lookup](tree, densities)
-        self.nbytes = 16 * len(order) + self.choice.nbytes + self.lookup.nbytes
+        self.tree = environment_tree.build(power, count, criterion)
+        x0, x1, y0, y1 = self.tree.blocks.T
+        self.shares = environment_tree.block_sums(power, self.tree.blocks).clip(0)
+        self.shares = self.shares / self.shares.sum()
+        if distribution == "exact":
+            densities = self.shares * power.size / ((x1 - x0) * (y1 - y0))
+            self.choice = Walk(self.tree, densities)
+        else:
+            self.choice = SortedBlocks(self.tree, self.shares, LAWS[distribution])
+            densities = self.choice.densities
+        shared = isinstance(self.choice, LOOKUPS[lookup])
+        self.lookup = self.choice if shared else LOOKUPS[lookup](self.tree, densities)
+        self.nbytes = self.choice.nbytes + (0 if shared else self.lookup.nbytes)
 
     def sample(self, u, active):
-        import mitsuba as mi
-
-        block, rest, probability = self.choice.choose(u.x, active)
-        corner, size = (r.at(block, mi.Vector2f, active) for r in (self.corners, self.sizes))
-        density = probability * (self.cells / (size.x * size.y))
-        return corner.x + rest * size.x, corner.y + u.y * size.y, density
+        return self.choice.sample(u, active)
 
     def density(self, x, y, active):
         return self.lookup.density(x, y, active)
