@@ -21,7 +21,7 @@ BY_NAME = {
     "alias": Alias,
 } | {
     f"{law}, {lookup}": lambda map_, law=law, lookup=lookup: Blocks(
-        map_, 200, distribution=law, lookup=lookup
+        map_, 200, "relative", law, lookup
     )
     for law in DISTRIBUTIONS
     for lookup in LOOKUPS
@@ -68,7 +68,7 @@ def test_every_lookup_finds_the_same_density(lookup, llvm_variant):
     u = np.random.default_rng(2).random((2, 50_000), np.float32)
     x, y = mi.Float(u[0] * 64), mi.Float(u[1] * 32)
     found, expected = (
-        np.array(Blocks(sky(), 200, lookup=name).density(x, y, True))
+        np.array(BY_NAME[f"exact, {name}"](sky()).density(x, y, True))
         for name in (lookup, "texture")
     )
     np.testing.assert_array_equal(found, expected)
@@ -137,10 +137,10 @@ def test_memory_is_a_hundredth_of_the_map(llvm_variant):
     pixels = np.kron(sky(32, 64), np.ones((32, 32)))
     pixels *= np.random.default_rng(0).gamma(3, 0.3, pixels.shape)
     hundredth = 0.01 * pixels.size * 3 * 4
-    assert Blocks(pixels, lookup="tree").nbytes <= hundredth
-    texture = Blocks(pixels, lookup="texture")
+    for law, lookup in (("exact", "tree"), ("steps", "tree"), ("steps", "grid")):
+        assert Blocks(pixels, 4096, "relative", law, lookup).nbytes <= hundredth
+    texture = Blocks(pixels, 4096, "relative", "exact", "texture")
     assert texture.nbytes - texture.lookup.nbytes <= hundredth
-    assert Blocks(pixels, distribution="steps", lookup="grid").nbytes <= hundredth
 
 
 def test_walking_keeps_strata(llvm_variant):

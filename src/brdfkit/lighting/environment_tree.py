@@ -11,8 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-DEFAULT_CRITERION = "relative"
-
 
 @dataclass(frozen=True)
 class Tree:
@@ -31,7 +29,7 @@ class Tree:
         return self.boxes[self.left < 0]
 
 
-def build(values, count, criterion=DEFAULT_CRITERION):
+def build(values, count, criterion="relative"):
     """The `Tree` of at most `count` blocks of `values` (height, width) ≥ 0.
 
     A block of constant value is not cut, so that there may be fewer than `count`. `criterion`: a

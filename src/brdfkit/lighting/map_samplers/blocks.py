@@ -20,14 +20,7 @@ LOOKUPS = {"texture": Texture, "tree": Walk, "grid": Grid}
 class Blocks:
     """At most `count` blocks of the map; see `environment_tree.CRITERIA` and the names above."""
 
-    def __init__(
-        self,
-        brightness,
-        count=4096,
-        criterion=environment_tree.DEFAULT_CRITERION,
-        distribution="exact",
-        lookup="texture",
-    ):
+    def __init__(self, brightness, count, criterion, distribution, lookup):
         power = cell_power(brightness)
         self.tree = environment_tree.build(power, count, criterion)
         x0, x1, y0, y1 = self.tree.blocks.T

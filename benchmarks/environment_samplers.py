@@ -1,0 +1,276 @@
+"""Samplers of environment maps beside Mitsuba's `envmap`: noise, time, memory, build, gradient.
+
+python benchmarks/environment_samplers.py [MAP ...]    # writes docs/environment_samplers.md
+
+A sky with a sun is made by the program; maps on the command line come besides. All ratios are of
+one run, in which the samplers take turns; times are of the processor, the least of several.
+"""
+
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+
+import brdfkit as bk
+from brdfkit.checks.plugin_subject import example
+from brdfkit.colours import luminance
+from brdfkit.jit import llvm, threads
+from brdfkit.lighting.environment_map import cell_power
+
+PAGE = Path(__file__).parents[1] / "docs" / "environment_samplers.md"
+BLOCKS, OTHERS = {"type": "kdtree_envmap"}, {"type": "sampled_envmap"}
+SAMPLERS = {
+    "`envmap`": {"type": "envmap"},
+    "blocks": BLOCKS,
+    "blocks, `lookup=tree`": BLOCKS | {"lookup": "tree"},
+    "blocks, `lookup=grid`": BLOCKS | {"lookup": "grid"},
+    "blocks, `criterion=sse`": BLOCKS | {"criterion": "sse"},
+    "blocks, `steps`": BLOCKS | {"distribution": "steps"},
+    "blocks, `hyperbolic`": BLOCKS | {"distribution": "hyperbolic"},
+    "`cdf`": OTHERS | {"sampler": "cdf"},
+    "`mip`": OTHERS | {"sampler": "mip"},
+    "`alias`": OTHERS | {"sampler": "alias"},
+    "blocks, compensated": BLOCKS | {"compensated": True},
+    "`alias`, compensated": OTHERS | {"sampler": "alias", "compensated": True},
+}
+SIZE, SPP = 32, 36
+PICTURES = 16  # whose variance is taken, for each of Mitsuba's two samplers
+ROUNDS = 3
+
+HEAD = """# Environment samplers
+
+How the points of an environment map are drawn: by 4,096 blocks of a tree (`kdtree_envmap`), and by
+the usual ways (`sampled_envmap`), beside Mitsuba's `envmap`, whose figures are 1. Ours share the
+look-up of the radiance, so that they differ in the sampler alone.
+
+- **Noise** is the variance of pixels at equal samples over the square of their means: a matt
+  and a glossy ball on matt ground, path traced, so that light and surfaces are both sampled. Once
+  with Mitsuba's sampler `independent`, once with `multijitter`, which stratifies its numbers.
+- **Time** is that of such a picture, and noise × time is what an equally good one costs.
+- **Build** is the time in which a sampler is made of the map's brightness, over that in which NumPy
+  makes a 2-D CDF: sums along rows, and of rows. **Load** is that of the whole emitter, from pixels
+  in memory, over `envmap`'s.
+- **Memory** is that of the sampler's tables, in per cent of a map of three floats a pixel.
+- **Gradient** is the time of a picture and its derivatives by the map (`prb`), and how far the sum
+  of the derivatives is from `envmap`'s, noise included.
+
+`python benchmarks/environment_samplers.py MAP ...` makes this page anew; these maps were {maps}.
+
+"""
+TAIL = """
+## What the tables say
+"""
+
+
+def sky():
+    """A clouded sky with a sun over dark ground, 1024 × 2048, as a `mi.Bitmap`."""
+    import mitsuba as mi
+
+    v, u = np.meshgrid(np.linspace(0, 1, 1024), (np.arange(2048) + 0.5) / 2048, indexing="ij")
+    random = np.random.default_rng(0)
+    clouds = sum(
+        np.cos(2 * np.pi * (round(k) * u + f * v) + phase) / k
+        for k, f, phase in random.random((40, 3)) * [60, 60, 2 * np.pi] + [1, 0, 0]
+    )
+    bright = np.where(v < 0.5, 0.4 + 0.3 * v + 0.2 * clouds.clip(0, 4), 0.08)
+    bright = bright * random.gamma(20, 1 / 20, bright.shape)
+    colour = np.stack([0.7 * bright, 0.9 * bright, 1.2 * bright], axis=-1)
+    distance = np.hypot((u - 0.3) * 2 * np.sin(np.pi * 0.2), v - 0.2) * np.pi
+    sun = 2e4 * (distance < 0.0047) + 3 * np.exp(-distance / 0.05)
+    return mi.Bitmap((colour + sun[..., None]).astype(np.float32))
+
+
+def maps(files):
+    """Name → `mi.Bitmap` in floats."""
+    import mitsuba as mi
+
+    kind = mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False
+    return {"sky": sky()} | {Path(f).stem: mi.Bitmap(str(f)).convert(*kind) for f in files}
+
+
+def scene(emitter, sampler="independent", integrator="path"):
+    """A matt and a glossy ball on ground that fills the picture."""
+    import mitsuba as mi
+
+    to = mi.ScalarTransform4f()
+    camera = to.look_at([0, 6, 4], [0, 0.6, 0], [0, 1, 0])
+    film = {"type": "hdrfilm", "width": SIZE, "height": SIZE, "rfilter": {"type": "box"}}
+    return mi.load_dict(
+        {
+            "type": "scene",
+            "integrator": {"type": integrator, "max_depth": 3},
+            "sensor": {
+                "type": "perspective",
+                "fov": 35,
+                "to_world": camera,
+                "film": film,
+                "sampler": {"type": sampler, "sample_count": SPP},
+            },
+            "matt": {"type": "sphere", "center": [-1.1, 1, 0]},
+            "glossy": {
+                "type": "sphere",
+                "center": [1.1, 1, 0],
+                "bsdf": {"type": "roughconductor", "alpha": 0.15},
+            },
+            "ground": {"type": "rectangle", "to_world": to.rotate([1, 0, 0], -90).scale(50)},
+            "light": emitter,
+        }
+    )
+
+
+def noise(emitter, sampler):
+    """The variance of pixels over the square of their means, in the mean over the picture."""
+    import mitsuba as mi
+
+    loaded = scene(emitter, sampler)
+    pictures = (np.array(mi.render(loaded, spp=SPP, seed=seed)) for seed in range(PICTURES))
+    found = np.array([luminance(picture) for picture in pictures])
+    return float((found.var(axis=0, ddof=1) / found.mean(axis=0) ** 2).mean())
+
+
+def least_seconds(functions, rounds=ROUNDS):
+    """Name → least processor time of a function; the functions take turns."""
+    best = dict.fromkeys(functions, np.inf)
+    for round_ in range(rounds):
+        for name, function in functions.items():
+            began = time.process_time()
+            function(round_)
+            best[name] = min(best[name], time.process_time() - began)
+    return best
+
+
+def picture(emitter):
+    """A function that renders a picture."""
+    import mitsuba as mi
+
+    loaded = scene(emitter)
+    return lambda seed: np.array(mi.render(loaded, spp=8 * SPP, seed=seed))
+
+
+def gradient(emitter):
+    """A function that renders a picture and returns the sum of its derivatives by the map."""
+    import drjit as dr
+    import mitsuba as mi
+
+    loaded = scene(emitter, integrator="prb")
+    parameters = mi.traverse(loaded)
+    key = next(k for k in parameters.keys() if k.endswith("data"))  # noqa: SIM118
+    leaf = mi.TensorXf(dr.detach(parameters[key]))
+    dr.enable_grad(leaf)
+    parameters[key] = leaf
+    parameters.update()
+
+    def derivatives(seed):
+        dr.set_grad(leaf, 0)
+        dr.backward(dr.mean(mi.render(loaded, parameters, spp=SPP, seed=seed), axis=None))
+        return float(np.array(dr.grad(leaf)).sum())
+
+    return derivatives
+
+
+def numpy_cdf(power):
+    """A 2-D CDF of cells: their sums along rows, and those of the rows."""
+    rows = np.cumsum(power, axis=1)
+    totals = np.cumsum(rows[:, -1])
+    return rows / np.maximum(rows[:, -1:], 1e-30), totals / totals[-1]
+
+
+def measure(bitmap):
+    """Sampler → its figures on a map; `envmap`'s are 1 where they are ratios."""
+    import mitsuba as mi
+
+    emitters = {name: entries | {"bitmap": bitmap} for name, entries in SAMPLERS.items()}
+    loaded = {name: mi.load_dict(emitter) for name, emitter in emitters.items()}
+    bright = luminance(np.array(bitmap, float))
+    power = cell_power(bright)
+
+    independent = {name: noise(emitter, "independent") for name, emitter in loaded.items()}
+    jittered = {name: noise(emitter, "multijitter") for name, emitter in loaded.items()}
+    seconds = least_seconds({name: picture(emitter) for name, emitter in loaded.items()})
+    builds = {
+        name: lambda _, emitter=emitter: emitter.sampler_of(bright)
+        for name, emitter in loaded.items()
+        if name != "`envmap`"
+    }
+    build = least_seconds(builds | {"NumPy": lambda _: numpy_cdf(power)}, 2)
+    loads = {n: lambda _, e=emitter: mi.load_dict(e) for n, emitter in emitters.items()}
+    load = least_seconds(loads, 1)
+    gradients = {name: gradient(emitter) for name, emitter in loaded.items()}
+    sums = {name: np.mean([f(seed) for seed in range(3)]) for name, f in gradients.items()}
+    backward = least_seconds(gradients, 2)
+    tables = {name: getattr(emitter, "points", None) for name, emitter in loaded.items()}
+    tables["`envmap`"] = tables["`mip`"]  # it has the same
+
+    first = "`envmap`"
+    return {
+        name: {
+            "noise": independent[name] / independent[first],
+            "time": seconds[name] / seconds[first],
+            "noise × time": independent[name] * seconds[name] / independent[first] / seconds[first],
+            "noise, multijitter": jittered[name] / jittered[first],
+            "gain by multijitter": independent[name] / jittered[name],
+            "build": build[name] / build["NumPy"] if name in build else np.nan,
+            "load": load[name] / load[first],
+            "memory [%]": 100 * tables[name].nbytes / (12 * bright.size),
+            "gradient, time": backward[name] / backward[first],
+            "gradient, off [%]": 100 * abs(sums[name] / sums[first] - 1),
+        }
+        for name in SAMPLERS
+    }
+
+
+def table(head, rows):
+    """A Markdown table."""
+    lines = ["| " + " | ".join(cells) + " |" for cells in (head, ["---"] * len(head), *rows)]
+    return "\n".join(lines) + "\n"
+
+
+def number(value):
+    """Three digits, nothing for what was not measured."""
+    return "" if np.isnan(value) else f"{value:.2f}" if value < 10 else f"{value:.0f}"
+
+
+def page(found, sizes):
+    """The page, of the figures map → sampler → column → number."""
+    columns = list(next(iter(next(iter(found.values())).values())))
+    rows = []
+    for name in SAMPLERS:
+        of_maps = {c: np.array([by[name][c] for by in found.values()]) for c in columns}
+        means = (v.mean() if "[%]" in c else np.exp(np.log(v).mean()) for c, v in of_maps.items())
+        rows.append([name, *map(number, means)])
+    text = HEAD.format(maps=", ".join(f"{n} ({w} × {h})" for n, (w, h) in sizes.items()))
+    text += (
+        "## In the mean over the maps\n\nGeometric means of ratios; per cent are plain means.\n\n"
+    )
+    text += table(["", *columns], rows)
+    of = {
+        "Noise": "noise",
+        "Noise with stratified numbers": "noise, multijitter",
+        "Time": "time",
+        "Build, over NumPy's CDF": "build",
+        "Memory, in per cent of the map": "memory [%]",
+    }
+    for title, column in of.items():
+        rows = [[s, *(number(by[s][column]) for by in found.values())] for s in SAMPLERS]
+        text += f"\n## {title}\n\n" + table(["", *found], rows)
+    return text + TAIL
+
+
+def main():
+    llvm.use_variant()
+    assert bk.check(example("kdtree_envmap"), only=["weights"])  # and Mitsuba is awake
+    out = Console(stderr=True)
+    found, sizes = {}, {}
+    with threads.two_threads():
+        for name, bitmap in maps(sys.argv[1:]).items():
+            out.print(f"{name} ...")
+            found[name], sizes[name] = measure(bitmap), tuple(bitmap.size())
+            PAGE.write_text(page(found, sizes), encoding="utf-8")
+    out.print(f"written: {PAGE}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
