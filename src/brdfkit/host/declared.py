@@ -59,6 +59,16 @@ def count(default, bounds, meaning):
     return Setting(default, bounds, meaning, read)
 
 
+def plain_number(default, bounds, meaning):
+    """A number within `bounds` that is no derivative's: a Python value, for what precedes a render."""
+
+    def read(value):
+        _require_within(value, bounds)
+        return float(value)
+
+    return Setting(default, bounds, meaning, read)
+
+
 def text(default, meaning):
     """A word or the name of a file."""
 

@@ -1,0 +1,104 @@
+"""Direct light with shadows of convex parts: no triangle is asked whether a point sees the light.
+
+    L = L_e + Σ_s ρ(ω_s, ω_o) L(ω_s) V(ω_s) cosθ_s / (p_b(ω_s) + p_e(ω_s))
+
+with two directions ω_s per sample of a pixel, one drawn by the BSDF (density p_b) and one by the
+lights (p_e): the balance heuristic. V is 0 where a convex part lies in the way. Every mesh that
+encloses a volume is cut into nearly convex parts when the scene is first rendered, which takes
+seconds to minutes and is kept in the user's cache folder; `concavity` says how far a part may be
+from its hull. Each part has a map of its faces by direction, in which a ray finds where it enters
+the part in two look-ups or so. Other shapes (spheres, grounds, lamps) cast the shadows of their own.
+Camera rays meet the surfaces as they are.
+
+[Ergun 2015, section 7.2]. A picture is the mean of its passes, so that more passes with other seeds
+refine it. Shadows are approximate: where a hull is thicker than the mesh they are too large, and a
+point inside a part is not shaded by it. The light should be an environment, such as `kdtree_envmap`,
+for the BSDF's samples; other lights are sampled by themselves alone. There is no indirect light, and
+what comes back is unpolarised. An object is moved by `integrator.occluders(scene).move(id, matrix)`,
+without a new tree over its triangles.
+"""
+
+import drjit as dr
+
+from brdfkit.host.declared import count, declared, plain_number
+from brdfkit.visibility.decomposition import CONCAVITY
+from brdfkit.visibility.occluders import RESOLUTION
+from brdfkit.visibility.of_scene import occluders_of
+
+PARAMETERS = {
+    "concavity": plain_number(CONCAVITY, (0.01, 1.0), "distance between a part and its hull, at most"),
+    "resolution": count(RESOLUTION, (4, 1024), "texels along a side of the largest part's map"),
+}
+
+
+def define(mi):
+    """The class of `mi.SamplingIntegrator` for the current variant."""
+
+    class ConvexDirect(declared(mi.SamplingIntegrator, PARAMETERS)):
+        def __init__(self, props):
+            super().__init__(props)
+            self.prepared = None, None, None  # scene, occluders, scene of the other shapes
+
+        def occluders(self, scene):
+            """The `Occluders` of the scene's meshes, None where no mesh encloses a volume."""
+            return self._prepare(scene)[1]
+
+        def _prepare(self, scene):
+            if self.prepared[0] is not scene:
+                found = occluders_of(scene, self.concavity, self.resolution)
+                self.prepared = scene, *found
+            return self.prepared
+
+        def sample(self, scene, sampler, ray, medium=None, active=True):
+            # What the camera sees, and its own light
+            si = scene.ray_intersect(mi.Ray3f(ray), active)
+            seen = active & si.is_valid()
+            emitter = si.emitter(scene)
+            radiance = mi.UnpolarizedSpectrum(0)
+            if emitter is not None:
+                radiance += mi.unpolarized_spectrum(emitter.eval(si, active))
+
+            bsdf = si.bsdf()
+            radiance += self.light_by_emitters(scene, si, bsdf, sampler.next_2d(), seen)
+            samples = sampler.next_1d(), sampler.next_2d()
+            radiance += self.light_by_bsdf(scene, si, bsdf, *samples, seen)
+            return mi.depolarizer(dr.select(active, radiance, 0)), active, []
+
+        def light_by_emitters(self, scene, si, bsdf, sample, active):
+            active = active & mi.has_flag(bsdf.flags(), mi.BSDFFlags.Smooth)
+            ds, light = scene.sample_emitter_direction(si, sample, False, active)
+            active = active & (ds.pdf > 0)
+            wo = si.to_local(ds.d)
+            value, pdf = bsdf.eval_pdf(mi.BSDFContext(), si, wo, active)
+            by_bsdf = mi.has_flag(ds.emitter.flags(), mi.EmitterFlags.Infinite) & ~ds.delta
+            weight = ds.pdf / (ds.pdf + dr.select(by_bsdf, pdf, 0))
+            found = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * weight
+            return dr.select(self.visible(scene, si.spawn_ray_to(ds.p), active), found, 0)
+
+        def light_by_bsdf(self, scene, si, bsdf, sample1, sample2, active):
+            environment = scene.environment()
+            if environment is None:
+                return mi.UnpolarizedSpectrum(0)
+            bs, value = bsdf.sample(mi.BSDFContext(), si, sample1, sample2, active)
+            active = active & (bs.pdf > 0)
+            ray = si.spawn_ray(si.to_world(bs.wo))
+
+            # The environment in this direction, and its density
+            far = mi.SurfaceInteraction3f(si)
+            far.t, far.wi = dr.inf, -ray.d  # beyond all surfaces
+            ds = mi.DirectionSample3f(scene, far, si)
+            pdf = scene.pdf_emitter_direction(si, ds, active)
+            pdf = dr.select(mi.has_flag(bs.sampled_type, mi.BSDFFlags.Delta), 0, pdf)
+            light = mi.unpolarized_spectrum(environment.eval(far, active))
+            found = mi.unpolarized_spectrum(value) * light * (bs.pdf / (bs.pdf + pdf))
+            return dr.select(self.visible(scene, ray, active), found, 0)
+
+        def visible(self, scene, ray, active):
+            _, occluders, others = self._prepare(scene)
+            if others is not None:
+                active = active & ~others.ray_test(ray, active)
+            if occluders is not None:
+                active = active & ~occluders.blocked(ray, active)[0]
+            return active
+
+    return ConvexDirect

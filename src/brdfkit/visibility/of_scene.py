@@ -1,0 +1,47 @@
+"""The occluders of a Mitsuba scene: convex parts of its meshes, and the shapes that have none."""
+
+import numpy as np
+
+from brdfkit.visibility.decomposition import decompose
+from brdfkit.visibility.occluders import Occluders
+
+
+def occluders_of(scene, concavity, resolution):
+    """(`Occluders` of the meshes, a `mitsuba.Scene` of the other shapes); None where there are none.
+
+    scene : the `mitsuba.Scene`.
+    concavity : see `decompose`.
+    resolution : see `Occluders`.
+
+    The objects have the ids of their shapes. No parts have what is no mesh (a sphere, an instance),
+    encloses no volume (a ground), or gives light, which would stand in its own.
+    """
+    import mitsuba as mi
+
+    objects, others = {}, []
+    for shape in scene.shapes():
+        cut = shape.shape_type() == mi.ShapeType.Mesh and not shape.is_emitter()
+        parts = _parts(shape, concavity) if cut else []
+        if parts:
+            objects[shape.id()] = parts
+        else:
+            others.append(shape)
+    return Occluders(objects, resolution) if objects else None, _scene_of(others)
+
+
+def _parts(mesh, concavity):
+    import mitsuba as mi
+
+    buffers = mi.traverse(mesh)
+    points = np.array(buffers["vertex_positions"], float).reshape(-1, 3)
+    faces = np.array(buffers["faces"], int).reshape(-1, 3)
+    return decompose(points, faces, concavity)
+
+
+def _scene_of(shapes):
+    import mitsuba as mi
+
+    if not shapes:
+        return None
+    numbered = {f"shape_{i}": shape for i, shape in enumerate(shapes)}
+    return mi.load_dict({"type": "scene", **numbered}, parallel=False)
