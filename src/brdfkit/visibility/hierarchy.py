@@ -22,15 +22,40 @@ class Hierarchy:
         self.order = WholeNumbers(np.maximum(order, 0))
         self.low, self.high = Rows(_nodes(low, np.minimum)), Rows(_nodes(high, np.maximum))
 
-    def next_leaf(self, node, ray, inverse, active=True):
-        """(the first leaf whose box a ray hits, from `node` on in the walk, its box's number).
+    def any_hit(self, ray, test, active=True):
+        """(whether the ray hits anything between its origin and its `maxt`, reads of maps).
 
-        inverse : 1 / the ray's direction, by components.
+        test : a function (box's number, active) → (whether the ray hits what is in the box, reads
+            of maps that this took).
+        """
+        import drjit as dr
+        import mitsuba as mi
+
+        def visit(node, hit, reads):
+            leaf, number = self._next_leaf(node, ray)
+            hit_here, more = test(number, leaf != END)
+            hit_here = hit_here & (leaf != END)
+            onward = dr.select(leaf != END, after(leaf), END)
+            return onward, dr.select(hit_here, mi.UInt32(1), mi.UInt32(0)), reads + more
+
+        start = dr.select(active, mi.UInt32(ROOT), mi.UInt32(END))
+        with dr.suspend_grad():  # shadows have edges, of which such a test has no derivative
+            _, hit, reads = dr.while_loop(
+                (start, mi.UInt32(0), mi.UInt32(0)),
+                lambda node, hit, reads: (node != END) & (hit == 0),
+                visit,
+            )
+        return hit == 1, reads
+
+    def _next_leaf(self, node, ray):
+        """(the first leaf whose box a ray hits, from `node` on in the walk, its box's number).
 
         The leaf is `END` where there is none.
         """
         import drjit as dr
         import mitsuba as mi
+
+        inverse = dr.rcp(ray.d)
 
         def step(node, found):
             a = (self.low.at(node, mi.Point3f) - ray.o) * inverse
@@ -41,13 +66,12 @@ class Hierarchy:
             onward = dr.select(hit, dr.select(leaf, node, 2 * node), after(node))
             return onward, dr.select(hit & leaf, mi.UInt32(1), mi.UInt32(0))
 
-        start = dr.select(active, mi.UInt32(0), mi.UInt32(1))
         leaf, _ = dr.while_loop(
-            (mi.UInt32(node), start),
+            (mi.UInt32(node), mi.UInt32(0)),
             lambda node, found: (node != END) & (found == 0),
             step,
         )
-        return leaf, self.order.at(leaf - self.leaves, active & (leaf != END))
+        return leaf, self.order.at(leaf - self.leaves, leaf != END)
 
 
 def after(node):

@@ -5,10 +5,11 @@ import numpy as np
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.host.arrays import Rows
 from brdfkit.visibility.convex_ray import enter
-from brdfkit.visibility.hierarchy import END, ROOT, Hierarchy, after
+from brdfkit.visibility.hierarchy import Hierarchy
 from brdfkit.visibility.plane_map import RasterisedPlaneMap
 
-RESOLUTION = 64
+RESOLUTION = 64  # texels
+CLEARANCE = 0.01  # over half of the longest side of an object
 
 
 class Occluders:
@@ -16,15 +17,21 @@ class Occluders:
 
     objects : name → list of its parts, `Hull`s; at least one part in all.
     resolution : side of the plane map of the largest part, in texels.
+    clearance : a part that a ray enters nearer than this does not block it, as a share of half the
+        longest side of its object's bounding box.
+
+    A hull bulges out of the mesh where that is hollow, and would shade the mesh beside it: without
+    the clearance, dark lines follow the seams between the parts.
 
     An object that is moved changes its transform and the tree; its plane maps stay as they are.
     """
 
-    def __init__(self, objects, resolution=RESOLUTION):
+    def __init__(self, objects, resolution=RESOLUTION, clearance=CLEARANCE):
         self.hulls = [hull for parts in objects.values() for hull in parts]
         if not self.hulls:
             raise BrdfkitError("There are no convex parts; give an object that encloses a volume.")
-        ends = np.cumsum([len(parts) for parts in objects.values()])
+        lengths = [len(parts) for parts in objects.values()]
+        ends = np.cumsum(lengths)
         self._parts = {
             name: slice(end - len(parts), end)
             for (name, parts), end in zip(objects.items(), ends, strict=True)
@@ -35,6 +42,7 @@ class Occluders:
         self._vertex_part = np.repeat(np.arange(len(self.hulls)), counts)
         self._to_world = np.tile(np.eye(4), (len(self.hulls), 1, 1))
         self.maps = RasterisedPlaneMap(self.hulls, resolution)
+        self.clearance = Rows(np.repeat([clearance * _half(p) for p in objects.values()], lengths))
         self._update()
 
     def move(self, name, to_world):
@@ -65,26 +73,12 @@ class Occluders:
 
         A part that holds the origin does not block: the origin lies on the surface within it.
         """
-        import drjit as dr
-        import mitsuba as mi
 
-        inverse = dr.rcp(ray.d)
+        def test(part, active):
+            t, entered, reads = self._enter(ray, part, active)
+            return entered & (t >= self.clearance.at(part, active=active)) & (t < ray.maxt), reads
 
-        def test(node, blocked, lookups):
-            leaf, part = self.tree.next_leaf(node, ray, inverse)
-            found = leaf != END
-            t, entered, count = self._enter(ray, part, found)
-            hit = entered & (t >= 0) & (t < ray.maxt)
-            onward = dr.select(found, after(leaf), END)
-            return onward, dr.select(hit, mi.UInt32(1), mi.UInt32(0)), lookups + count
-
-        with dr.suspend_grad():  # shadows have edges, which such a test has no derivative of
-            _, blocked, lookups = dr.while_loop(
-                (dr.select(active, mi.UInt32(ROOT), mi.UInt32(END)), mi.UInt32(0), mi.UInt32(0)),
-                lambda node, blocked, lookups: (node != END) & (blocked == 0),
-                test,
-            )
-        return blocked == 1, lookups
+        return self.tree.any_hit(ray, test, active)
 
     def _enter(self, ray, part, active):
         """Where the ray enters a part, in the ray's own unit of distance; see `enter`."""
@@ -98,3 +92,9 @@ class Occluders:
         length = dr.select(active, dr.norm(d), 1)
         t, entered, count = enter(mi, o, d / length, self.maps, part, active)
         return t / length, entered, count
+
+
+def _half(parts):
+    """Half of the longest side of the bounding box of an object's parts; 0 where it has none."""
+    vertices = np.concatenate([hull.vertices for hull in parts]) if parts else np.zeros((1, 3))
+    return np.ptp(vertices, axis=0).max() / 2
