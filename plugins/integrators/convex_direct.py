@@ -18,7 +18,10 @@ what comes back is unpolarised. An object is moved by `integrator.occluders(scen
 without a new tree over its triangles.
 """
 
+import math
+
 import drjit as dr
+import numpy as np
 
 from brdfkit.host.declared import count, declared, plain_number
 from brdfkit.visibility.decomposition import CONCAVITY
@@ -70,8 +73,9 @@ def define(mi):
             active = active & (ds.pdf > 0)
             wo = si.to_local(ds.d)
             value, pdf = bsdf.eval_pdf(mi.BSDFContext(), si, wo, active)
-            by_bsdf = mi.has_flag(ds.emitter.flags(), mi.EmitterFlags.Infinite) & ~ds.delta
-            weight = ds.pdf / (ds.pdf + dr.select(by_bsdf, pdf, 0))
+            infinite = mi.has_flag(ds.emitter.flags(), mi.EmitterFlags.Infinite)
+            pdf = dr.select(infinite, dr.select(ds.delta, 0, pdf), 0)  # 0: by the BSDF never drawn
+            weight = ds.pdf / dr.select(active, ds.pdf + pdf, 1)
             found = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * weight
             return dr.select(self.visible(scene, si.spawn_ray_to(ds.p), active), found, 0)
 
@@ -90,15 +94,44 @@ def define(mi):
             pdf = scene.pdf_emitter_direction(si, ds, active)
             pdf = dr.select(mi.has_flag(bs.sampled_type, mi.BSDFFlags.Delta), 0, pdf)
             light = mi.unpolarized_spectrum(environment.eval(far, active))
-            found = mi.unpolarized_spectrum(value) * light * (bs.pdf / (bs.pdf + pdf))
+            found = mi.unpolarized_spectrum(value) * light * (bs.pdf / dr.select(active, bs.pdf + pdf, 1))
             return dr.select(self.visible(scene, ray, active), found, 0)
 
         def visible(self, scene, ray, active):
             _, occluders, others = self._prepare(scene)
             if others is not None:
-                active = active & ~others.ray_test(ray, active)
+                active = dr.select(others.ray_test(ray, active), False, active)
             if occluders is not None:
-                active = active & ~occluders.blocked(ray, active)[0]
+                active = dr.select(occluders.blocked(ray, active)[0], False, active)
             return active
 
     return ConvexDirect
+
+
+def reference():
+    """A scene, and the radiance (3,) of each of its pixels: (1 - F) L times the albedo.
+
+    A ground under an even sky, right below the middle of a cube. F is the share of the sky that the
+    cube's lower face hides, by the cosine: the form factor of four rectangles with a corner above.
+    """
+    import mitsuba as mi
+
+    albedo, sky, half, height = 0.5, np.array([0.9, 0.6, 0.3]), 0.5, 0.5
+    t = mi.ScalarTransform4f
+    camera = t().look_at([0, 0, height / 2], [0, 0, 0], [0, 1, 0]).scale(1e-3)
+    film = {"type": "hdrfilm", "width": 16, "height": 16, "rfilter": {"type": "box"}}
+    film["pixel_format"] = "luminance" if mi.is_monochromatic else "rgb"
+    grey = {"type": "rgb", "value": [albedo] * 3}
+    cube = t().translate([0, 0, height + half]).scale(half)
+    scene = {
+        "type": "scene",
+        "integrator": {"type": "convex_direct"},
+        "sensor": {"type": "orthographic", "to_world": camera, "film": film},
+        "sky": {"type": "constant", "radiance": {"type": "rgb", "value": sky.tolist()}},
+        "ground": {"type": "rectangle", "bsdf": {"type": "diffuse", "reflectance": grey}},
+        "cube": {"type": "cube", "to_world": cube},
+    }
+    side = half / height
+    root = math.sqrt(1 + side**2)
+    hidden = 4 / math.pi * side / root * math.atan(side / root)
+    return scene, albedo * sky * (1 - hidden)

@@ -17,6 +17,7 @@ import hashlib
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import make_folder, write_safely
@@ -36,7 +37,8 @@ def decompose(points, faces, concavity=CONCAVITY, hull_vertices=HULL_VERTICES):
         of the mesh's bounding box is 2. Larger: fewer parts.
     hull_vertices : vertices that a hull has at most, 8 to 10,000; a hull of more is simplified.
 
-    A mesh that is not closed has no inside: coacd then makes a closed one around it, by voxels of
+    A closed mesh that is convex already is its own part, for which coacd is not asked. A mesh that
+    is not closed has no inside: coacd then makes a closed one around it, by voxels of
     1/50 of its size, which is that much too thick. The same mesh always has the same parts. Raises
     `BrdfkitError` where coacd is not installed, and for settings out of range.
     """
@@ -45,8 +47,11 @@ def decompose(points, faces, concavity=CONCAVITY, hull_vertices=HULL_VERTICES):
     if not 8 <= hull_vertices <= 10_000:
         raise BrdfkitError(f"hull_vertices = {hull_vertices} should be between 8 and 10000.")
     points, faces = weld(points, faces)
-    if hull(points) is None:
+    whole = hull(points)
+    if whole is None:
         return []
+    if is_closed(faces) and _fills_its_hull(points, faces):
+        return [whole]
     settings = SEARCH | {"threshold": float(concavity), "max_ch_vertex": int(hull_vertices)}
     settings["preprocess_mode"] = "off" if is_closed(faces) else "on"
     file = cache() / f"{_checksum(points, faces, settings)}.npz"
@@ -79,6 +84,13 @@ def is_closed(faces):
     edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     _, count = np.unique(edges, axis=0, return_counts=True)
     return bool(np.all(count == 2))
+
+
+def _fills_its_hull(points, faces):
+    """Whether a closed mesh is convex: its volume is that of its hull, within a millionth."""
+    corners = points[faces] - points.mean(axis=0)
+    volume = abs(np.linalg.det(corners).sum()) / 6
+    return volume > (1 - 1e-6) * ConvexHull(points).volume
 
 
 def _run_coacd(points, faces, settings):

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from brdfkit.visibility.decomposition import decompose
+from brdfkit.errors import BrdfkitError
+from brdfkit.visibility.decomposition import decompose, is_closed, weld
 from brdfkit.visibility.occluders import Occluders
 
 
@@ -13,11 +14,15 @@ def occluders_of(scene, concavity, resolution):
     concavity : see `decompose`.
     resolution : see `Occluders`.
 
+    Raises `BrdfkitError` for a scene without shapes.
+
     The objects have the ids of their shapes. No parts have what is no mesh (a sphere, an instance),
     encloses no volume (a ground), or gives light, which would stand in its own.
     """
     import mitsuba as mi
 
+    if not scene.shapes():
+        raise BrdfkitError("The scene has no shapes; add what should be seen and cast shadows.")
     objects, others = {}, []
     for shape in scene.shapes():
         cut = shape.shape_type() == mi.ShapeType.Mesh and not shape.is_emitter()
@@ -35,7 +40,14 @@ def _parts(mesh, concavity):
     buffers = mi.traverse(mesh)
     points = np.array(buffers["vertex_positions"], float).reshape(-1, 3)
     faces = np.array(buffers["faces"], int).reshape(-1, 3)
-    return decompose(points, faces, concavity)
+    parts = decompose(points, faces, concavity)
+    if parts and not is_closed(weld(points, faces)[1]):
+        mi.Log(
+            mi.LogLevel.Warn,
+            f"{mesh.id()}: the mesh is not closed; its convex parts are those of a closed mesh "
+            "around it, which is a little thicker.",
+        )
+    return parts
 
 
 def _scene_of(shapes):
