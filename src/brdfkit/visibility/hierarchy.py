@@ -16,11 +16,15 @@ class Hierarchy:
     """A tree over `n` boxes, with corners `low` and `high` (n, 3); each is in one leaf."""
 
     def __init__(self, low, high):
+        import drjit as dr
+        import mitsuba as mi
+
         order = _order(low, high)
-        low, high = _leaves(low, order, np.inf), _leaves(high, order, -np.inf)
-        self.leaves = len(order)
+        self.leaves = mi.UInt32(len(order))
+        dr.make_opaque(self.leaves)  # one kernel for any number of boxes
         self.order = WholeNumbers(np.maximum(order, 0))
-        self.low, self.high = Rows(_nodes(low, np.minimum)), Rows(_nodes(high, np.maximum))
+        self.low = Rows(_nodes(_leaves(low, order), np.fmin))
+        self.high = Rows(_nodes(_leaves(high, order), np.fmax))
 
     def any_hit(self, ray, test, active=True):
         """(whether the ray hits anything between its origin and its `maxt`, reads of maps).
@@ -109,9 +113,10 @@ def _order(low, high):
     return order
 
 
-def _leaves(corners, order, empty):
-    """The corners (leaves, 3) of the boxes in their `order`; `empty` for an empty leaf."""
-    return np.where(order[:, None] < 0, empty, corners[order])
+def _leaves(corners, order):
+    """The corners (leaves, 3) of the boxes in their `order`; NaN for an empty leaf, which no ray
+    hits."""
+    return np.where(order[:, None] < 0, np.nan, corners[order])
 
 
 def _nodes(leaves, combine):
