@@ -1,4 +1,4 @@
-"""Convex parts of meshes: hulls, plane maps, Algorithm 3, the tree, and the integrator's shadows."""
+"""Convex parts of meshes: hulls, plane maps, Algorithm 3, the tree, the integrator's shadows."""
 
 import sys
 
@@ -207,7 +207,9 @@ def box(low, high):
     """The points and the outward triangles of a box."""
     points = np.array(np.meshgrid(*zip(low, high, strict=True), indexing="ij")).reshape(3, -1).T
     quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
-    return points, np.array([[q[i] for i in half] for q in quads for half in ((0, 1, 2), (0, 2, 3))])
+    return points, np.array(
+        [[q[i] for i in half] for q in quads for half in ((0, 1, 2), (0, 2, 3))]
+    )
 
 
 def corner():

@@ -5,17 +5,21 @@
 with two directions ω_s per sample of a pixel, one drawn by the BSDF (density p_b) and one by the
 lights (p_e): the balance heuristic. V is 0 where a convex part lies in the way. Every mesh that
 encloses a volume is cut into nearly convex parts when the scene is first rendered, which takes
-seconds to minutes and is kept in the user's cache folder; `concavity` says how far a part may be
-from its hull. Each part has a map of its faces by direction, in which a ray finds where it enters
-the part in two look-ups or so. Other shapes (spheres, grounds, lamps) cast the shadows of their own.
-Camera rays meet the surfaces as they are.
+seconds to minutes and is kept in the user's cache folder (it needs coacd: `pip install
+'brdfkit[visibility]'`); `concavity` says how far a part may be from its hull. Each part has a map
+of its faces by direction, in which a ray finds where it enters the part in two look-ups or so.
+Other shapes (spheres, grounds, lamps) cast their own shadows. Camera rays meet the surfaces as they
+are.
 
-[Ergun 2015, section 7.2]. A picture is the mean of its passes, so that more passes with other seeds
-refine it. Shadows are approximate: where a hull is thicker than the mesh they are too large, and a
-point inside a part is not shaded by it. The light should be an environment, such as `kdtree_envmap`,
-for the BSDF's samples; other lights are sampled by themselves alone. There is no indirect light, and
-what comes back is unpolarised. An object is moved by `integrator.occluders(scene).move(id, matrix)`,
-without a new tree over its triangles.
+[Ergun 2015, section 7.2]. A picture is the mean of its passes: more passes with other seeds refine
+it. Shadows are approximate: too large where a hull is thicker than the mesh, and missing on a point
+from what is nearer than a hundredth of the mesh's size. The light should be an environment, such as
+`kdtree_envmap`; other lights are sampled by themselves alone. There is no indirect light, and what
+comes back is unpolarised.
+
+In Python an object is moved without a new tree over its triangles, by a matrix from its first
+place: `integrator.occluders(scene).move(id, matrix)`. That moves its shadow; what the camera sees
+is moved as ever in Mitsuba.
 """
 
 import math
@@ -29,7 +33,7 @@ from brdfkit.visibility.occluders import RESOLUTION
 from brdfkit.visibility.of_scene import occluders_of
 
 PARAMETERS = {
-    "concavity": plain_number(CONCAVITY, (0.01, 1.0), "distance between a part and its hull, at most"),
+    "concavity": plain_number(CONCAVITY, (0.01, 1.0), "largest distance of a part to its hull"),
     "resolution": count(RESOLUTION, (4, 1024), "texels along a side of the largest part's map"),
 }
 
@@ -94,7 +98,11 @@ def define(mi):
             pdf = scene.pdf_emitter_direction(si, ds, active)
             pdf = dr.select(mi.has_flag(bs.sampled_type, mi.BSDFFlags.Delta), 0, pdf)
             light = mi.unpolarized_spectrum(environment.eval(far, active))
-            found = mi.unpolarized_spectrum(value) * light * (bs.pdf / dr.select(active, bs.pdf + pdf, 1))
+            found = (
+                mi.unpolarized_spectrum(value)
+                * light
+                * (bs.pdf / dr.select(active, bs.pdf + pdf, 1))
+            )
             return dr.select(self.visible(scene, ray, active), found, 0)
 
         def visible(self, scene, ray, active):

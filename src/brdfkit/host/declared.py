@@ -60,7 +60,7 @@ def count(default, bounds, meaning):
 
 
 def plain_number(default, bounds, meaning):
-    """A number within `bounds` that is no derivative's: a Python value, for what precedes a render."""
+    """A number within `bounds`, a Python value: for what is computed before a render."""
 
     def read(value):
         _require_within(value, bounds)

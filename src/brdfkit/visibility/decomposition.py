@@ -25,7 +25,7 @@ from brdfkit.visibility.hull import hull
 
 # The search for cuts: coacd's defaults (150, 20, 3 and 2000) find as many parts in 4 times the time
 SEARCH = {"mcts_iterations": 20, "mcts_nodes": 10, "mcts_max_depth": 2, "resolution": 500}
-CONCAVITY = 0.05
+CONCAVITY = 0.03
 HULL_VERTICES = 256
 
 

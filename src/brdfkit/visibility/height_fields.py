@@ -7,7 +7,8 @@ keeps triangles where a field would hold few of them; here every leaf is a field
 
 import numpy as np
 
-from brdfkit.host.arrays import Rows
+from brdfkit.host.arrays import Rows, cell
+from brdfkit.visibility.frames import Frames
 from brdfkit.visibility.hierarchy import Hierarchy
 from brdfkit.visibility.occluders import CLEARANCE
 
@@ -22,6 +23,7 @@ class HeightFields:
     """The height fields of a mesh, and a tree over them.
 
     points, faces : the vertices (n, 3) of the mesh, and of each triangle (m, 3) their numbers.
+    clearance : see `Occluders`.
 
     `blocked` answers as that of `Occluders` does.
     """
@@ -31,9 +33,11 @@ class HeightFields:
         corners = np.asarray(points, float)[faces]
         groups = one_sided_groups(corners)
         fields = [_field(corners[group]) for group in groups]
-        boxes = [(corners[group].min(axis=(0, 1)), corners[group].max(axis=(0, 1))) for group in groups]
+        boxes = [
+            (corners[group].min(axis=(0, 1)), corners[group].max(axis=(0, 1))) for group in groups
+        ]
         self.tree = Hierarchy(*(np.array(side) for side in zip(*boxes, strict=True)))
-        self.to_field = Rows(np.concatenate([to_field for to_field, _ in fields]))
+        self.frames = Frames([to_field for to_field, _ in fields])
         self.heights = Rows(np.concatenate([heights.ravel() for _, heights in fields]))
 
     def blocked(self, ray, active=True):
@@ -46,10 +50,7 @@ class HeightFields:
         import mitsuba as mi
 
         # The ray in the field's frame, whose box is the unit cube, and the part of it in the box
-        rows = [self.to_field.at(3 * field + k, mi.Vector4f, active) for k in range(3)]
-        linear = [mi.Vector3f(row.x, row.y, row.z) for row in rows]
-        o = mi.Point3f(*(dr.dot(a, ray.o) + row.w for a, row in zip(linear, rows, strict=True)))
-        d = mi.Vector3f(*(dr.dot(a, ray.d) for a in linear))
+        o, d = self.frames.ray(field, ray, active)
         inverse = dr.rcp(d)
         a, b = -o * inverse, (1 - o) * inverse
         near = dr.maximum(dr.max(dr.minimum(a, b)), self.clearance)
@@ -62,8 +63,8 @@ class HeightFields:
 
         def read(i, before, hit):
             p = o + (near + (mi.Float(i) + 0.5) * step) * d
-            x, y = (dr.clip(mi.Int32(c * SIDE), 0, SIDE - 1) for c in (p.x, p.y))
-            height = self.heights.at(mi.UInt32((mi.Int32(field) * SIDE + y) * SIDE + x), mi.Float, active)
+            x, y = (cell(c * SIDE, SIDE) for c in (p.x, p.y))
+            height = self.heights.at((field * SIDE + y) * SIDE + x, active=active)
             above = dr.select(height < 0, 0, dr.sign(p.z - height))
             crossed = above * before < 0
             return i + 1, above, dr.select(crossed, mi.UInt32(1), mi.UInt32(0))

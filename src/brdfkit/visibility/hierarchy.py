@@ -7,7 +7,7 @@ is i + 1 without the zeros at the end of its binary form; where that is 1, the w
 
 import numpy as np
 
-from brdfkit.host.arrays import Rows, WholeNumbers
+from brdfkit.host.arrays import Integers, Rows
 
 ROOT, END = 1, 0  # END: what follows the last subtree
 
@@ -22,7 +22,7 @@ class Hierarchy:
         order = _order(low, high)
         self.leaves = mi.UInt32(len(order))
         dr.make_opaque(self.leaves)  # one kernel for any number of boxes
-        self.order = WholeNumbers(np.maximum(order, 0))
+        self.order = Integers(np.maximum(order, 0))
         self.low = Rows(_nodes(_leaves(low, order), np.fmin))
         self.high = Rows(_nodes(_leaves(high, order), np.fmax))
 

@@ -5,11 +5,12 @@ import numpy as np
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.host.arrays import Rows
 from brdfkit.visibility.convex_ray import enter
+from brdfkit.visibility.frames import Frames
 from brdfkit.visibility.hierarchy import Hierarchy
 from brdfkit.visibility.plane_map import RasterisedPlaneMap
 
-RESOLUTION = 64  # texels
-CLEARANCE = 0.01  # over half of the longest side of an object
+RESOLUTION = 128  # texels
+CLEARANCE = 0.02  # over half of the longest side of an object
 
 
 class Occluders:
@@ -66,7 +67,7 @@ class Occluders:
         high = np.maximum.reduceat(placed, self._starts)
         self.tree = Hierarchy(low, high)
         to_unit = np.stack([hull.to_unit for hull in self.hulls])
-        self.to_unit = Rows((to_unit @ np.linalg.inv(self._to_world)).reshape(-1, 4))
+        self.frames = Frames(to_unit @ np.linalg.inv(self._to_world))
 
     def blocked(self, ray, active=True):
         """(whether a part lies between the ray's origin and its `maxt`, look-ups in plane maps).
@@ -85,10 +86,7 @@ class Occluders:
         import drjit as dr
         import mitsuba as mi
 
-        rows = [self.to_unit.at(3 * part + k, mi.Vector4f, active) for k in range(3)]
-        linear = [mi.Vector3f(row.x, row.y, row.z) for row in rows]
-        o = mi.Point3f(*(dr.dot(a, ray.o) + row.w for a, row in zip(linear, rows, strict=True)))
-        d = mi.Vector3f(*(dr.dot(a, ray.d) for a in linear))
+        o, d = self.frames.ray(part, ray, active)
         length = dr.select(active, dr.norm(d), 1)
         t, entered, count = enter(mi, o, d / length, self.maps, part, active)
         return t / length, entered, count

@@ -8,7 +8,7 @@ from brdfkit.visibility.occluders import Occluders
 
 
 def occluders_of(scene, concavity, resolution):
-    """(`Occluders` of the meshes, a `mitsuba.Scene` of the other shapes); None where there are none.
+    """(`Occluders` of the meshes, a `mitsuba.Scene` of the other shapes); None where none are.
 
     scene : the `mitsuba.Scene`.
     concavity : see `decompose`.

@@ -7,7 +7,7 @@ leaves it through one face: that of the largest n·D / d. [Ergun 2015, section 7
 import numpy as np
 
 from brdfkit.geometry import dual_paraboloid
-from brdfkit.host.arrays import Rows, WholeNumbers
+from brdfkit.host.arrays import Integers, Rows, cell
 
 LEAST_SIDE = 8  # texels
 TEXELS_AT_ONCE = 1024
@@ -18,7 +18,7 @@ class ExactPlaneMap:
 
     def __init__(self, hulls):
         self.planes = Rows(np.concatenate([hull.planes for hull in hulls]))
-        self.first = WholeNumbers(np.cumsum([0] + [len(hull.planes) for hull in hulls]))
+        self.first = Integers(np.cumsum([0] + [len(hull.planes) for hull in hulls]))
 
     def at(self, part, direction, active=True):
         """The plane of a part in a unit `direction`: its normal and its distance."""
@@ -54,8 +54,8 @@ class RasterisedPlaneMap:
         sides = np.ceil(resolution * radii / radii.max()).astype(int)
         sides = np.clip(sides, min(LEAST_SIDE, resolution), resolution)
         maps = [texels(hull, side) for hull, side in zip(hulls, sides, strict=True)]
-        self.sides = WholeNumbers(sides)
-        self.first = WholeNumbers(np.cumsum([0, *(2 * sides**2)]))
+        self.sides = Integers(sides)
+        self.first = Integers(np.cumsum([0, *(2 * sides**2)]))
         self.atlas = Rows(np.concatenate([found.reshape(-1, 4) for found in maps]))
 
     def at(self, part, direction, active=True):
@@ -65,7 +65,7 @@ class RasterisedPlaneMap:
 
         side = self.sides.at(part, active)
         s, t = dual_paraboloid.to_disc(direction.x, direction.y, direction.z)
-        x, y = (dr.minimum(mi.UInt32((c + 1) * 0.5 * mi.Float(side)), side - 1) for c in (s, t))
+        x, y = (cell((c + 1) * 0.5 * mi.Float(side), side) for c in (s, t))
         y = y + dr.select(direction.z < 0, side, 0)
         plane = self.atlas.at(self.first.at(part, active) + y * side + x, mi.Vector4f, active)
         return _normal(plane), plane.w
