@@ -1,6 +1,8 @@
 """Convex parts of meshes: hulls, plane maps, Algorithm 3, the tree, the integrator's shadows."""
 
+import gc
 import sys
+import weakref
 
 import drjit as dr
 import numpy as np
@@ -321,12 +323,38 @@ def test_shadows_of_parts_are_those_of_triangles(llvm_variant, tmp_path):
     shapes = {"corner": mesh_file(mi, tmp_path / "corner.ply", *corner())}
     loaded, found = pictures(mi, {"type": "convex_direct"}, **shapes)
     assert list(loaded.integrator().occluders(loaded)._parts) == ["corner"]
-    loaded.integrator().prepared = loaded, None, loaded  # all shapes as they are
+    loaded.integrator().set_casters(loaded, None, loaded)  # all shapes as they are
     exact = np.array(loaded.integrator().render(loaded, seed=0, spp=64))
-    lit = loaded.integrator().render(scene(mi, {"type": "convex_direct"}), seed=0, spp=64)
-    assert np.abs(np.array(lit) - exact).mean() > 0.05 * exact.mean()  # the shadows matter
+    loaded.integrator().set_casters(loaded, None, None)
+    lit = np.array(loaded.integrator().render(loaded, seed=0, spp=64))
+    assert np.abs(lit - exact).mean() > 0.05 * exact.mean()  # the shadows matter
     assert np.square(found - exact).mean() < 1e-4 * np.square(exact).max()  # 40 dB
     assert found.mean() == pytest.approx(exact.mean(), rel=5e-3)
+
+
+def test_a_moved_shadow_is_that_of_the_moved_mesh(llvm_variant, tmp_path):
+    """The parts moved by a matrix, and the triangles of a mesh that stands there."""
+    mi = llvm_variant
+    points, faces = corner()
+    turn = np.array([[0.6, -0.8, 0], [0.8, 0.6, 0], [0, 0, 1]])
+    shift = np.array([0.5, -0.5, 0.2])
+    there = mesh_file(mi, tmp_path / "there.ply", points @ turn.T + shift, faces)
+    loaded, exact = pictures(mi, {"type": "convex_direct"}, corner=there)
+    occluders = Occluders({"corner": decompose(points, faces)})
+    occluders.move("corner", np.block([[turn, shift[:, None]], [np.eye(4)[3:]]]))
+    others = loaded.integrator().casters(loaded)[1]
+    loaded.integrator().set_casters(loaded, occluders, others)
+    moved = np.array(loaded.integrator().render(loaded, seed=0, spp=64))
+    assert np.square(moved - exact).mean() < 1e-4 * np.square(exact).max()  # 40 dB
+
+
+def test_a_scene_is_freed_when_it_is_no_longer_used(llvm_variant):
+    """The integrator, which the scene holds, does not hold the scene."""
+    loaded, _ = pictures(llvm_variant, {"type": "convex_direct"}, spp=1)
+    alive = weakref.ref(loaded.integrator().sample.__self__)
+    del loaded
+    gc.collect()
+    assert alive() is None
 
 
 @pytest.mark.parametrize(

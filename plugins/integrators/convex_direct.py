@@ -44,17 +44,21 @@ def define(mi):
     class ConvexDirect(declared(mi.SamplingIntegrator, PARAMETERS)):
         def __init__(self, props):
             super().__init__(props)
-            self.prepared = None, None, None  # scene, occluders, scene of the other shapes
+            self.prepared = None, None, None  # the scene's key, and what casts shadows in it
 
         def occluders(self, scene):
             """The `Occluders` of the scene's meshes, None where no mesh encloses a volume."""
-            return self._prepare(scene)[1]
+            return self.casters(scene)[0]
 
-        def _prepare(self, scene):
-            if self.prepared[0] is not scene:
-                found = occluders_of(scene, self.concavity, self.resolution)
-                self.prepared = scene, *found
-            return self.prepared
+        def casters(self, scene):
+            """What casts shadows in a scene: (`Occluders`, a `mitsuba.Scene`), each may be None."""
+            if self.prepared[0] != key(scene):
+                self.set_casters(scene, *occluders_of(scene, self.concavity, self.resolution))
+            return self.prepared[1:]
+
+        def set_casters(self, scene, occluders, others):
+            """Let `occluders` and the shapes of the scene `others` cast the shadows in a scene."""
+            self.prepared = key(scene), occluders, others
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
             # What the camera sees, and its own light
@@ -106,7 +110,7 @@ def define(mi):
             return dr.select(self.visible(scene, ray, active), found, 0)
 
         def visible(self, scene, ray, active):
-            _, occluders, others = self._prepare(scene)
+            occluders, others = self.casters(scene)
             if others is not None:
                 active = dr.select(others.ray_test(ray, active), False, active)
             if occluders is not None:
@@ -114,6 +118,11 @@ def define(mi):
             return active
 
     return ConvexDirect
+
+
+def key(scene):
+    """What tells scenes apart; the scene itself holds the integrator, and would never be freed."""
+    return id(scene), *((shape.id(), shape.primitive_count()) for shape in scene.shapes())
 
 
 def reference():
