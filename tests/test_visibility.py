@@ -18,6 +18,7 @@ from brdfkit.visibility.decomposition import decompose
 from brdfkit.visibility.height_fields import HeightFields
 from brdfkit.visibility.hierarchy import Hierarchy
 from brdfkit.visibility.hull import hull
+from brdfkit.visibility.lobes import visible_share
 from brdfkit.visibility.occluders import Occluders
 from brdfkit.visibility.plane_map import ExactPlaneMap, RasterisedPlaneMap
 
@@ -200,6 +201,32 @@ def test_what_cannot_be_moved_is_said(llvm_variant):
         occluders.move("left", np.zeros((4, 4)))
     with pytest.raises(BrdfkitError, match="no convex parts"):
         Occluders({"ground": []})
+
+
+# Lobes
+
+
+@pytest.mark.parametrize("kappa", [2.0, 30.0])
+def test_the_visible_share_of_a_lobe_is_its_integral(llvm_variant, kappa):
+    """By 40,000 directions drawn from the lobe and clipped at the hull, at three points."""
+    mi, rng = llvm_variant, np.random.default_rng(0)
+    found = hull(random_hull(20).vertices)
+    points = np.array([[2.0, 0, 0], [1.2, 0.9, 0], [0, -1, 1.5]])
+    axes = np.array([[-1.0, 0, 0], [-0.8, -0.36, 0.48], [0, 0.6, -0.8]])
+    occluders = Occluders({"part": [found]}, resolution=256, clearance=0)
+    as_vector = (mi.Point3f(points.T), mi.Vector3f(axes.T), mi.Float(kappa))
+    share = np.array(visible_share(occluders, *as_vector, rays=256))
+
+    n = 40_000
+    cos = 1 + np.log(rng.random(n) * (1 - np.exp(-2 * kappa)) + np.exp(-2 * kappa)) / kappa
+    for k, (point, axis) in enumerate(zip(points, axes, strict=True)):
+        across = np.cross(axis, unit_vectors(rng, n))
+        across /= np.linalg.norm(across, axis=1, keepdims=True)
+        d = cos[:, None] * axis + np.sqrt(1 - cos**2)[:, None] * across
+        t = clipped(found, np.tile(point, (n, 1)), d)
+        visible = 1 - ((t >= 0) & (t < np.inf)).mean()
+        assert 0.02 < visible < 0.98
+        assert share[k] == pytest.approx(visible, abs=0.02)
 
 
 # Decomposition
