@@ -1,0 +1,93 @@
+"""Filtered environment: direct light from all around, without noise and without shadows.
+
+    L(o) = ∫ f(i, o) L(i) cosθ dω  ≈  c E + Σ (f(i, o) - c) cosθ / (N p(i)) · L filtered about i
+
+Every pixel takes the same N = `samples` evenly spread directions i of its BSDF, and for each the
+mean light over a lobe as wide as the directions are sparse there, κ = 2π N p(i): one look-up in a
+map that was filtered before. c is the BSDF's diffuse part, for which the irradiance E is known.
+
+[Colbert & Křivánek 2007], whose `filter` is "mips", boxes of texels; "lobes" are levels convolved
+with von Mises-Fisher lobes, on both sides of [Ergun 2015, eq. 8.9]. It takes any BSDF and one
+environment of any kind, which is seen at `resolution` texels across. What a surface hides is not
+hidden: shadows and light between surfaces are missing.
+"""
+
+import drjit as dr
+
+from brdfkit.errors import BrdfkitError, no_such
+from brdfkit.host.channels import emission_of_rgb
+from brdfkit.host.declared import count, declared, text
+from brdfkit.lighting.filtered_light import FILTERS, FilteredLight
+from brdfkit.lighting.filtered_sampling import FilteredSampling
+
+PARAMETERS = {
+    "method": text("filtered_sampling", "filtered_sampling"),
+    "samples": count(64, (1, 65_536), "directions per pixel"),
+    "filter": text("lobes", "lobes, or mips as of graphics hardware"),
+    "resolution": count(512, (32, 1024), "texels across a hemisphere of the light"),
+}
+METHODS = {"filtered_sampling": FilteredSampling}
+
+
+def define(mi):
+    """The class of `mi.SamplingIntegrator` for the current variant."""
+
+    class FilteredEnvironment(declared(mi.SamplingIntegrator, PARAMETERS)):
+        def __init__(self, props):
+            super().__init__(props)
+            for name, known in (("method", METHODS), ("filter", FILTERS)):
+                if getattr(self, name) not in known:
+                    raise no_such(name, getattr(self, name), known, where="filtered_environment")
+            self.method_used = METHODS[self.method](self.samples)
+            self.light = FilteredLight(FILTERS[self.filter], self.resolution)
+            self.spectrum = emission_of_rgb()
+
+        def sample(self, scene, sampler, ray, medium=None, active=True):
+            environment = _only_environment(mi, scene)
+            light = self.light.of(environment)
+            si = scene.ray_intersect(mi.Ray3f(ray), active)
+            hit = active & si.is_valid()
+            shown = self.method_used.radiance(si, si.bsdf(), light, self.spectrum, hit)
+            behind = mi.unpolarized_spectrum(environment.eval(si, active & ~hit))
+            return mi.depolarizer(dr.select(hit, shown, behind)), active, []
+
+    return FilteredEnvironment
+
+
+def _only_environment(mi, scene):
+    """The environment of a `scene`; `BrdfkitError` where it has none, or other lights."""
+    if mi.variant().startswith("scalar"):
+        raise BrdfkitError(
+            f"filtered_environment does not run in {mi.variant()}; set llvm_ad_rgb or cuda_ad_rgb."
+        )
+    if scene.environment() is None:
+        raise BrdfkitError(
+            "filtered_environment: the scene has no environment to light it; add an envmap."
+        )
+    if len(scene.emitters()) > 1:
+        raise BrdfkitError(
+            "filtered_environment: the scene has lamps besides its environment; take them out, or "
+            "render it with path."
+        )
+    return scene.environment()
+
+
+def reference():
+    """A scene, and the radiance (3,) of each of its pixels: a matte wall in even light."""
+    import mitsuba as mi
+
+    albedo, radiance = 0.4, 0.7
+    camera = mi.ScalarTransform4f().look_at([0, 0, 3], [0, 0, 0], [0, 1, 0])
+    film = {"type": "hdrfilm", "width": 8, "height": 8, "rfilter": {"type": "box"}}
+    film["pixel_format"] = "luminance" if mi.is_monochromatic else "rgb"
+    scene = {
+        "type": "scene",
+        "integrator": {"type": "filtered_environment", "resolution": 64},
+        "sensor": {"type": "perspective", "fov": 20, "to_world": camera, "film": film},
+        "wall": {
+            "type": "rectangle",
+            "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": albedo}},
+        },
+        "light": {"type": "constant", "radiance": {"type": "rgb", "value": radiance}},
+    }
+    return scene, [albedo * radiance] * 3
