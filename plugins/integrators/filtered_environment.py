@@ -15,18 +15,19 @@ hidden: shadows and light between surfaces are missing.
 import drjit as dr
 
 from brdfkit.errors import BrdfkitError, no_such
-from brdfkit.host.channels import emission_of_rgb
 from brdfkit.host.declared import count, declared, text
 from brdfkit.lighting.filtered_light import FILTERS, FilteredLight
 from brdfkit.lighting.filtered_sampling import FilteredSampling
+from brdfkit.lighting.lobe_light import LobeLight
 
+METHODS = "filtered_sampling", "gmm", "kde", "warped"
 PARAMETERS = {
-    "method": text("filtered_sampling", "filtered_sampling"),
-    "samples": count(64, (1, 65_536), "directions per pixel"),
+    "method": text("filtered_sampling", f"{', '.join(METHODS)}"),
+    "samples": count(64, (1, 65_536), "directions per pixel, of filtered_sampling"),
+    "lobes": count(32, (1, 1024), "lobes per view, of gmm and kde"),
     "filter": text("lobes", "lobes, or mips as of graphics hardware"),
     "resolution": count(512, (32, 1024), "texels across a hemisphere of the light"),
 }
-METHODS = {"filtered_sampling": FilteredSampling}
 
 
 def define(mi):
@@ -38,20 +39,24 @@ def define(mi):
             for name, known in (("method", METHODS), ("filter", FILTERS)):
                 if getattr(self, name) not in known:
                     raise no_such(name, getattr(self, name), known, where="filtered_environment")
-            self.method_used = METHODS[self.method](self.samples)
+            self.shading = _shading(self.method, self.samples, self.lobes)
             self.light = FilteredLight(FILTERS[self.filter], self.resolution)
-            self.spectrum = emission_of_rgb()
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
             environment = _only_environment(mi, scene)
             light = self.light.of(environment)
             si = scene.ray_intersect(mi.Ray3f(ray), active)
             hit = active & si.is_valid()
-            shown = self.method_used.radiance(si, si.bsdf(), light, self.spectrum, hit)
+            shown = self.shading.radiance(scene, si, light, hit)
             behind = mi.unpolarized_spectrum(environment.eval(si, active & ~hit))
             return mi.depolarizer(dr.select(hit, shown, behind)), active, []
 
     return FilteredEnvironment
+
+
+def _shading(method, samples, lobes):
+    """What lights a surface, by the name of the `method`."""
+    return FilteredSampling(samples) if method == METHODS[0] else LobeLight(method, lobes)
 
 
 def _only_environment(mi, scene):

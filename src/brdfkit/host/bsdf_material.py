@@ -43,7 +43,6 @@ class BsdfMaterial:
 
         Raises `BrdfkitError` in a spectral or scalar variant of Mitsuba.
         """
-        import drjit as dr
         import mitsuba as mi
 
         if use_variant().startswith("scalar") or mi.is_spectral:
@@ -51,11 +50,27 @@ class BsdfMaterial:
                 f"{self.name}: a BSDF of Mitsuba's is not evaluated in the variant {mi.variant()}; "
                 "set llvm_ad_rgb or cuda_ad_rgb."
             )
-        wi, wo = (np.asarray(w, np.float32) for w in (wi, wo))
-        si = dr.zeros(mi.SurfaceInteraction3f, len(wi))
-        si.wi, si.sh_frame, si.n = mi.Vector3f(wi.T), mi.Frame3f([0, 0, 1]), mi.Normal3f(0, 0, 1)
-        bsdf = load_by_mitsuba(mi.load_dict, self.entries, self.name)
-        value = bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(wo.T))
-        value = np.array(mi.unpolarized_spectrum(value)).T
-        above = (wi[:, 2:] > 0) & (wo[:, 2:] > 0)
-        return np.where(above, value / np.where(above, wo[:, 2:], 1), 0).astype(float)
+        return eval_bsdf(load_by_mitsuba(mi.load_dict, self.entries, self.name), wi, wo)
+
+
+def eval_bsdf(bsdf, wi, wo, types=None):
+    """BRDF (n, channels) in sr⁻¹ of a `mitsuba.BSDF`, at direction pairs (n, 3).
+
+    `types`: flags of the components that count, by default all. The channels of a spectral variant
+    are wavelengths in the middle of the visible ones.
+    """
+    import drjit as dr
+    import mitsuba as mi
+
+    wi, wo = (np.asarray(w, np.float32) for w in (wi, wo))
+    si = dr.zeros(mi.SurfaceInteraction3f, len(wi))
+    si.wi, si.sh_frame, si.n = mi.Vector3f(wi.T), mi.Frame3f([0, 0, 1]), mi.Normal3f(0, 0, 1)
+    if mi.is_spectral:
+        si.wavelengths = type(si.wavelengths)(*np.linspace(450, 650, len(si.wavelengths)).tolist())
+    context = mi.BSDFContext()
+    if types is not None:
+        context.type_mask = types
+    value = bsdf.eval(context, si, mi.Vector3f(wo.T))
+    value = np.array(mi.unpolarized_spectrum(value)).T
+    above = (wi[:, 2:] > 0) & (wo[:, 2:] > 0)
+    return np.where(above, value / np.where(above, wo[:, 2:], 1), 0).astype(float)

@@ -1,12 +1,22 @@
 """Filtered importance sampling: a few directions of a BSDF, the same everywhere, and the mean
 light about each.
 
-[Colbert & Křivánek 2007]
+A constant c is taken from the BSDF, for which the irradiance E is known; the directions see the
+rest: L = π c E + Σ (f - c) cosθ / (N p) · mean light. It is exact for a matte surface, and right for
+any c, so that the lowest of a few values will do. [Colbert & Křivánek 2007]
 """
 
 import numpy as np
 
+from brdfkit.geometry.directions import from_angles
 from brdfkit.host.arrays import Rows
+from brdfkit.host.channels import emission_of_rgb
+from brdfkit.lighting.scene_bsdfs import bsdfs_of, has_matte_part, is_one_of, matte_and_rest
+
+GOLDEN = (np.sqrt(5) - 1) / 2  # of a turn between neighbours: they fill a disc most evenly
+# κ of the lobes over 2π / (solid angle of a direction): they overlap so far that no gaps show
+OVERLAP = 0.5
+SPREAD_OUT = from_angles(np.arccos(1 - (np.arange(8) + 0.5) / 8), 2 * np.pi * GOLDEN * np.arange(8))
 
 
 class FilteredSampling:
@@ -14,33 +24,49 @@ class FilteredSampling:
 
     def __init__(self, count):
         self.count = count
-        self.points = Rows(spread(count))
+        self.points = Rows(points(count))
 
-    def radiance(self, si, bsdf, light, spectrum, active):
-        """The radiance towards `si.wi`; `spectrum`: of a colour (rgb, si)."""
+    def radiance(self, scene, si, light, active):
+        """The radiance towards `si.wi`, a spectrum of the current variant."""
         import drjit as dr
         import mitsuba as mi
 
-        # The diffuse part as a constant, in full daylight and without directions
-        context = mi.BSDFContext()
-        context.type_mask = mi.BSDFFlags.DiffuseReflection
-        up = mi.Vector3f(0, 0, 1)
-        constant = mi.unpolarized_spectrum(bsdf.eval(context, si, up, active))
-        received = spectrum(light.irradiance(si.to_world(up)), si)
+        matte, rest = matte_and_rest(mi)
+        bsdfs = bsdfs_of(scene)
+        apart = [bsdf for bsdf in bsdfs if has_matte_part(bsdf)]
+        total = mi.UnpolarizedSpectrum(0)
+        if apart:  # the directions are those of the other components
+            here = active & is_one_of(si.bsdf(), apart)
+            c = value(si, [0, 0, 1], here, matte)
+            found = even(c, si, light) + self.uneven(si, light, here, rest)
+            total = dr.select(here, found, total)
+        if len(apart) < len(bsdfs):
+            here = active & ~is_one_of(si.bsdf(), apart)
+            c = mi.UnpolarizedSpectrum(np.inf)
+            for wo in SPREAD_OUT.tolist():
+                c = dr.minimum(c, value(si, wo, here, matte | rest) / wo[2])
+            found = even(c, si, light) + self.uneven(si, light, here, matte | rest, c)
+            total = dr.select(here, dr.maximum(found, 0), total)
+        return total
+
+    def uneven(self, si, light, active, types, c=0):
+        """The radiance by the components of some `types` less the constant `c`."""
+        import drjit as dr
+        import mitsuba as mi
+
+        context, bsdf, spectrum = mi.BSDFContext(), si.bsdf(), emission_of_rgb()
+        context.type_mask = types
 
         def one(i, total):
-            point = self.points.at(i, mi.Point3f)
-            drawn, weight = bsdf.sample(
-                mi.BSDFContext(), si, point.x, mi.Point2f(point.y, point.z), active
-            )
-            wo = si.to_world(drawn.wo)
-            # A lobe as wide as the distance to the next direction; a mirror has no width
-            delta = mi.has_flag(drawn.sampled_type, mi.BSDFFlags.Delta)
-            kappa = dr.select(delta, dr.inf, 2 * dr.pi * self.count * drawn.pdf)
-            rest = constant * dr.maximum(drawn.wo.z, 0) / dr.select(delta, dr.inf, drawn.pdf)
-            weight = mi.unpolarized_spectrum(weight) - rest
-            valid = active & (drawn.pdf > 0)
-            seen = spectrum(light.over_lobe(wo, kappa), si)
+            u = self.points.at(i, mi.Point3f)
+            drawn, weight = bsdf.sample(context, si, u.x, mi.Point2f(u.y, u.z), active)
+            valid, density = active & (drawn.pdf > 0), self.count * drawn.pdf
+            # A lobe as wide as the distance to the next direction; a mirror's has no width
+            mirror = mi.has_flag(drawn.sampled_type, mi.BSDFFlags.Delta)
+            kappa = dr.select(mirror, dr.inf, OVERLAP * 2 * dr.pi * density)
+            seen = spectrum(light.over_lobe(si.to_world(drawn.wo), kappa), si)
+            weight = mi.unpolarized_spectrum(weight) / self.count
+            weight -= c * dr.select(mirror, 0, dr.maximum(drawn.wo.z, 0) / density)
             return i + 1, total + dr.select(valid, weight * seen, 0)
 
         _, total = dr.while_loop(
@@ -48,18 +74,34 @@ class FilteredSampling:
             lambda i, total: active & (i < self.count),
             one,
         )
-        return dr.maximum(dr.pi * constant * received + total / self.count, 0)
+        return total
 
 
-def spread(count):
+def even(c, si, light):
+    """The radiance by a BSDF that is the constant `c`."""
+    import drjit as dr
+    import mitsuba as mi
+
+    received = light.irradiance(si.to_world(mi.Vector3f(0, 0, 1)))
+    return dr.pi * c * emission_of_rgb()(received, si)
+
+
+def value(si, wo, active, types):
+    """BSDF times cosine of the components of some `types`, towards the direction `wo`."""
+    import mitsuba as mi
+
+    context = mi.BSDFContext()
+    context.type_mask = types
+    return mi.unpolarized_spectrum(si.bsdf().eval(context, si, mi.Vector3f(wo), active))
+
+
+def points(count):
     """`count` points (count, 3) of the unit cube, evenly spread, the same always.
 
-    Two coordinates advance by the powers of the plastic number, the solution of x³ = x + 1
-    [Roberts 2018].
+    The last two are the radius and the angle of most samplings: they make a sunflower's spiral.
 
-    >>> spread(2).shape
+    >>> points(2).shape
     (2, 3)
     """
     i = np.arange(count) + 0.5
-    plastic = 1.32471795724474602596
-    return np.stack([i / plastic**2, i / count, i / plastic], axis=1) % 1
+    return np.stack([i * np.sqrt(2), i / count, i * GOLDEN], axis=1) % 1

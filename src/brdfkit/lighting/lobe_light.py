@@ -1,0 +1,119 @@
+"""Materials as lobes per view, lit by a filtered map: one look-up per lobe.
+
+L(o) ≈ d(o) E + Σ_k w_k(o) L filtered by the lobe μ_k(o), κ_k(o)
+
+with the lobes interpolated between the views of a `LobeTable`. [Ergun 2015, sections 8.3, 8.5, 8.6]
+"""
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.host.arrays import Rows, bracket, periodic_bracket
+from brdfkit.host.bsdf_material import eval_bsdf
+from brdfkit.host.channels import emission_of_rgb
+from brdfkit.lighting.scene_bsdfs import PAIRS, bsdfs_of
+from brdfkit.lighting.spherical_gaussians.lobes_of_material import lobe_table
+
+AZIMUTHS = 16  # of the views of an anisotropic BSDF
+
+
+class LobeLight:
+    """Light by lobes that are fitted to the BSDFs of a scene by a `method`, `count` per view."""
+
+    def __init__(self, method, count):
+        self.method, self.count, self.known = method, count, []
+
+    def radiance(self, scene, si, light, active):
+        """The radiance towards `si.wi`, a spectrum of the current variant."""
+        import drjit as dr
+        import mitsuba as mi
+
+        if mi.is_spectral:
+            raise BrdfkitError(
+                f"filtered_environment: the method {self.method} has lobes in linear sRGB; set "
+                "llvm_ad_rgb, or take filtered_sampling."
+            )
+        bsdf, total = si.bsdf(), mi.Color3f(0)
+        for each, lobes in self.fitted(scene):
+            here = active & (bsdf == mi.BSDFPtr(each))
+            total = dr.select(here, lobes.radiance(si, light, here), total)
+        return emission_of_rgb()(total, si)
+
+    def fitted(self, scene):
+        """(BSDF, `ViewedLobes`) of every BSDF of a `scene`, as they are now."""
+        found = []
+        for bsdf in bsdfs_of(scene):
+            values = eval_bsdf(bsdf, *PAIRS).tobytes()
+            same = [k for k in self.known if k[0] is bsdf and k[1] == values]
+            found += same or [(bsdf, values, self.fit(bsdf))]
+        self.known = found
+        return [(bsdf, lobes) for bsdf, _, lobes in found]
+
+    def fit(self, bsdf):
+        """The lobes of a BSDF, a few seconds."""
+        import mitsuba as mi
+
+        turning = mi.has_flag(bsdf.flags(), mi.BSDFFlags.Anisotropic)
+        return ViewedLobes(
+            lobe_table(
+                lambda wi, wo: eval_bsdf(bsdf, wo, wi),
+                self.method,
+                self.count,
+                azimuths=AZIMUTHS if turning else 1,
+            )
+        )
+
+
+class ViewedLobes:
+    """A `LobeTable` in Mitsuba."""
+
+    def __init__(self, table):
+        self.views, self.azimuths, self.count = len(table.theta_o), len(table.phi_o), 0
+        self.step = float(table.theta_o[1])
+        self.count = table.kappa.shape[1]
+        ones = (*table.kappa.shape, 3)
+        weights = np.broadcast_to(table.weights, ones)
+        self.weights = Rows(
+            np.concatenate([weights, table.kappa[..., None]], axis=-1).reshape(-1, 4)
+        )
+        self.axes = Rows(np.pad(table.axes.reshape(-1, 3), ((0, 0), (0, 1))))
+        self.diffuse = Rows(np.broadcast_to(table.diffuse, (len(table.diffuse), 3)))
+
+    def radiance(self, si, light, active):
+        """The radiance towards `si.wi`, linear sRGB."""
+        import drjit as dr
+        import mitsuba as mi
+
+        corners, sin_phi, cos_phi = self.around(si.wi)
+
+        def mean(rows, kind, lobe=0, count=1):
+            return sum(share * rows.at(view * count + lobe, kind) for view, share in corners)
+
+        def one(k, total):
+            weight = mean(self.weights, mi.Vector4f, k, self.count)
+            axis = mean(self.axes, mi.Vector4f, k, self.count)
+            x, y = cos_phi * axis.x - sin_phi * axis.y, sin_phi * axis.x + cos_phi * axis.y
+            axis = si.to_world(dr.normalize(mi.Vector3f(x, y, axis.z)))
+            seen = light.over_lobe(axis, weight.w)
+            return k + 1, total + mi.Color3f(weight.x, weight.y, weight.z) * seen
+
+        matte = mean(self.diffuse, mi.Color3f) * light.irradiance(si.to_world(mi.Vector3f(0, 0, 1)))
+        active &= si.wi.z > 0
+        _, total = dr.while_loop(
+            (mi.UInt32(0), mi.Color3f(matte)), lambda k, total: active & (k < self.count), one
+        )
+        return dr.select(active, total, 0)
+
+    def around(self, wo):
+        """The views around `wo`, as (number, share); and the sine and cosine of the azimuth by which
+        their lobes turn with it."""
+        import drjit as dr
+
+        lower, upper, t = bracket(dr.safe_acos(wo.z) / self.step, self.views)
+        phi = dr.atan2(wo.y, wo.x)
+        if self.azimuths == 1:
+            return [(lower, 1 - t), (upper, t)], *dr.sincos(phi)
+        left, right, s = periodic_bracket(phi / (2 * dr.pi) * self.azimuths, self.azimuths)
+        rows, columns = ((lower, 1 - t), (upper, t)), ((left, 1 - s), (right, s))
+        each = [(i * self.azimuths + j, a * b) for i, a in rows for j, b in columns]
+        return each, 0.0, 1.0

@@ -1,0 +1,49 @@
+"""The BSDFs of a scene, and which of them have a matte part that is told apart from the rest."""
+
+import numpy as np
+
+from brdfkit.host.bsdf_material import eval_bsdf
+
+SAME = 1e-3  # of the largest value: differences that do not count
+_w = np.random.default_rng(0).normal(size=(2, 64, 3))
+_w[..., 2] = np.abs(_w[..., 2])
+# Direction pairs above the surface, by whose values BSDFs are compared: wi (n, 3) and wo
+PAIRS = _w / np.linalg.norm(_w, axis=-1, keepdims=True)
+
+
+def bsdfs_of(scene):
+    """The different BSDFs of a `scene`, a list."""
+    return list(dict.fromkeys(shape.bsdf() for shape in scene.shapes()))
+
+
+def is_one_of(bsdf, others):
+    """Whether a `BSDFPtr` points to one of the BSDFs `others`."""
+    import mitsuba as mi
+
+    found = mi.Bool(False)
+    for other in others:
+        found |= bsdf == mi.BSDFPtr(other)
+    return found
+
+
+def matte_and_rest(mi):
+    """The types of Mitsuba's components that are diffuse reflections, and all others."""
+    matte = int(mi.BSDFFlags.DiffuseReflection)
+    return matte, int(mi.BSDFFlags.All) & ~matte
+
+
+def has_matte_part(bsdf):
+    """Whether the diffuse components of a BSDF are constant, and it takes requests for them alone.
+
+    Some BSDFs give all of themselves whichever components are asked for.
+    """
+    import mitsuba as mi
+
+    matte, rest = (eval_bsdf(bsdf, *PAIRS, types) for types in matte_and_rest(mi))
+    whole = eval_bsdf(bsdf, *PAIRS)
+    allowed = SAME * matte.max()
+    return bool(
+        matte.max() > 0
+        and np.ptp(matte, axis=0).max() < allowed
+        and np.abs(whole - matte - rest).max() < SAME * whole.max()
+    )
