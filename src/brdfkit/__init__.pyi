@@ -33,6 +33,7 @@ from .ranking import rank as rank
 from .rendering import Gallery as Gallery
 from .rendering import Rendering as Rendering
 from .rendering import gallery as gallery
+from .rendering import preview as preview
 from .rendering import render as render
 from .rendering import render_scene as render_scene
 from .reporting.report import report as report

@@ -31,11 +31,19 @@ from brdfkit.errors import BrdfkitError
     metavar="PATH",
     help="Folder or file with plugins of yours to load first; repeat it for more.",
 )
+@click.option(
+    "--preview",
+    "quickly",
+    is_flag=True,
+    help="Show the light of --envmap, by default studio, in a moment: no noise, no shadows.",
+)
 @values_option
 @scene_options
 @render_options
 @output_options
-def render(things, output, folders, values, scene, envmap, spp, until, size, seed, console):
+def render(
+    things, output, folders, quickly, values, scene, envmap, spp, until, size, seed, console
+):
     """Path-trace materials, or a scene.
 
     Materials (fits, models, measured files) are rendered side by side. The others are compared to
@@ -56,8 +64,10 @@ def render(things, output, folders, values, scene, envmap, spp, until, size, see
     if scenes:
         if len(things) > 1 or values:
             raise BrdfkitError("A scene is rendered alone and without --set: name one SCENE.xml.")
-        if scene != "ball" or envmap is not None or size:
-            raise BrdfkitError(f"{scenes[0]} is a scene: leave --scene, --envmap and --size out.")
+        if scene != "ball" or envmap is not None or size or quickly:
+            raise BrdfkitError(
+                f"{scenes[0]} is a scene: leave --scene, --envmap, --size and --preview out."
+            )
         output = picture_file(output or Path(scenes[0]).with_suffix(".png").name)
         with console.progress("render") as progress:
             picture = render_scene(scenes[0], spp, seed, progress, until)
@@ -66,7 +76,10 @@ def render(things, output, folders, values, scene, envmap, spp, until, size, see
         found = [material(thing, values) for thing in things]
         output = picture_file(output or f"{slug(found[0].name)}.png")
         where = {"size": size, "seed": seed, "scene": scene, "envmap": envmap}
-        picture = path_trace(found, output, console, spp, until, **where)
+        if quickly:
+            picture = _preview(found, output, spp, until, **where)
+        else:
+            picture = path_trace(found, output, console, spp, until, **where)
     _print_picture(picture, output, console)
     if picture.spp < picture.asked:
         click.get_current_context().exit(status())
@@ -82,6 +95,17 @@ def path_trace(things, output, console, spp, until, **where):
     with console.progress("render") as progress:
         spp = spp or (SPP if until is None else None)
         picture = render_things(things, spp, until=until, progress=progress, **where)
+    _write(picture, output)
+    return picture
+
+
+def _preview(things, output, spp, until, scene, envmap, size, seed):
+    """Preview `things` and write the picture; returns a `Rendering`."""
+    from brdfkit.rendering.preview import SIZE, STUDIO, preview
+
+    if until is not None or seed:
+        raise BrdfkitError("A preview has no noise: leave --until and --seed out.")
+    picture = preview(things, envmap or STUDIO, size or SIZE, scene, spp=spp or 1)
     _write(picture, output)
     return picture
 

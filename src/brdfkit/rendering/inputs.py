@@ -7,6 +7,7 @@ from brdfkit.fitting import Fit
 from brdfkit.jit.llvm import use_variant
 from brdfkit.materials import MaterialLike, material
 from brdfkit.model import Model
+from brdfkit.names import make_unique
 
 Renderable: TypeAlias = MaterialLike | tuple[str, MaterialLike]
 
@@ -31,6 +32,19 @@ def as_list(things: Any) -> list[Renderable]:
 def _is_pair(thing):
     """Whether `thing` is a pair of a name and a material."""
     return isinstance(thing, tuple) and len(thing) == 2 and isinstance(thing[0], str)
+
+
+def describe_all(things):
+    """(BSDF dictionaries, parameters' values) of things to render, each by a name of its own."""
+    materials: dict[str, dict[str, Any]] = {}
+    parameters: dict[str, dict[str, Any]] = {}
+    for thing in things:
+        name, bsdf, values = describe(thing)
+        name = make_unique(name, materials)
+        materials[name] = bsdf
+        if values:
+            parameters[name] = values
+    return materials, parameters
 
 
 def describe(thing):

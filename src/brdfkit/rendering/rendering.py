@@ -13,8 +13,7 @@ import numpy as np
 from brdfkit.arguments import to_positive, to_whole_number
 from brdfkit.errors import BrdfkitError
 from brdfkit.jit.threads import in_turn
-from brdfkit.names import make_unique
-from brdfkit.rendering.inputs import Renderable, as_list, describe, mitsuba
+from brdfkit.rendering.inputs import Renderable, as_list, describe_all, mitsuba
 from brdfkit.rendering.memory import require_memory
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scene_file import load_scene_file
@@ -88,18 +87,11 @@ def render(
     """
     until = _to_decibels(until)
     spp, seed = _to_samples(spp, SPP, until), to_whole_number("seed", seed, least=0)
-    size = None if size is None else _to_size(size)
+    size = None if size is None else to_size(size)
     subjects = as_list(things)
     require_memory(size or SIZE, len(subjects))
     mitsuba()  # sets a variant, on which the dictionaries depend
-    materials: dict[str, dict[str, Any]] = {}
-    parameters: dict[str, dict[str, Any]] = {}
-    for thing in subjects:
-        name, bsdf, values = describe(thing)
-        name = make_unique(name, materials)
-        materials[name] = bsdf
-        if values:
-            parameters[name] = values
+    materials, parameters = describe_all(subjects)
     where = scene, size, envmap
     traced, mask = _load_and_trace(materials, where, spp, seed, progress, until)
     return _rendering(traced, seed, until, parameters, mask)
@@ -156,7 +148,7 @@ def render_scene(
     return _rendering(traced, seed, until)
 
 
-def _to_size(size: int | tuple[int, int]) -> tuple[int, int]:
+def to_size(size: int | tuple[int, int]) -> tuple[int, int]:
     """(width, height) of a picture; `BrdfkitError` for anything but whole numbers above 0."""
     sides = (size, size) if isinstance(size, int | np.integer) else size
     try:

@@ -22,7 +22,9 @@ WIDEST = 1100  # pixels of the pictures in a notebook
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Rendering(Shown):
-    """Pictures of one scene with several materials; the first is the reference. Made by `render`.
+    """Pictures of one scene with several materials; the first is the reference.
+
+    Made by `render` and `preview`.
 
     Attributes
     ----------
@@ -45,6 +47,8 @@ class Rendering(Shown):
         sample per pixel.
     until : float or None
         The noise floor that was asked for [dB].
+    shadows : bool
+        Whether the pictures have shadows, and light between surfaces; those of `preview` have not.
     """
 
     pictures: dict[str, np.ndarray] = field(repr=False)
@@ -56,6 +60,7 @@ class Rendering(Shown):
     asked: int | None = None
     other_seed: np.ndarray | None = field(default=None, repr=False)
     until: float | None = None
+    shadows: bool = True
 
     @property
     def reference(self) -> str:
@@ -146,7 +151,9 @@ class Rendering(Shown):
         floor = self.noise_floor
         noise = "" if isnan(floor) else "no noise" if floor == inf else f"noise {floor:.1f} dB"
         beside = f", {noise}" if noise else ""
-        found = {self.reference: ("reference" if self.differences else f"{self.spp} spp") + beside}
+        shadows = "" if self.shadows else ", no shadows"
+        first = "reference" if self.differences else f"{self.spp} spp"
+        found = {self.reference: first + beside + shadows}
         for name, value in self.psnr().items():
             near = f" ≈ {noise}" if value >= floor < inf else beside
             found[name] = "PSNR unknown" if isnan(value) else f"PSNR {value:.1f} dB{near}"
@@ -156,7 +163,8 @@ class Rendering(Shown):
     def head(self) -> str:
         """Size, samples per pixel and time, in a line."""
         height, width = self.pictures[self.reference].shape[:2]
-        return f"{width}×{height} pixels, {self.spp} spp, {self.seconds:.1f} s"
+        without = "" if self.shadows else ", no shadows"
+        return f"{width}×{height} pixels, {self.spp} spp, {self.seconds:.1f} s{without}"
 
     @property
     def shortfall(self) -> str:
@@ -174,7 +182,11 @@ class Rendering(Shown):
         width = max(self.pictures[self.reference].shape[1], TILE)
         shown = min(len(self.pictures), COLUMNS) * width
         short = (Paragraph(self.shortfall, BAD),) if self.shortfall else ()
-        picture = Picture(self._draw, f"path-traced pictures of {names}", min(shown, WIDEST))
+        picture = Picture(
+            self._draw,
+            f"{'path-traced pictures' if self.shadows else 'previews'} of {names}",
+            min(shown, WIDEST),
+        )
         return Document(self.head, (picture, Table(tuple(self.captions.items())), *short))
 
     def _draw(self):

@@ -55,7 +55,7 @@ def trace(loaded, spp, seed, progress, until=None, mask=None):
             for name, scene in loaded.items():
                 # not mi.render: it turns Ctrl-C into a RuntimeError
                 image = scene.integrator().render(scene, seed=int(pass_seed), spp=count)
-                finished[name] = sums[name] + count * _rgb(image)
+                finished[name] = sums[name] + count * rgb(image)
                 if len(finished) == len(loaded):
                     halves = halves.plus((finished[reference] - sums[reference]) / count, count)
                     sums, reached = finished, reached + count
@@ -102,7 +102,7 @@ def passes_of(spp, largest):
         spp -= count
 
 
-def _rgb(image):
+def rgb(image):
     """(height, width, 3) float64 of a film; one channel counts as grey, alpha is dropped."""
     values = np.array(image, float)
     return np.repeat(values[..., :1], 3, axis=-1) if values.shape[-1] < 3 else values[..., :3]
