@@ -2,8 +2,8 @@
 light about each.
 
 A constant c is taken from the BSDF, for which the irradiance E is known; the directions see the
-rest: L = π c E + Σ (f - c) cosθ / (N p) · mean light. It is exact for a matte surface, and right for
-any c, so that the lowest of a few values will do. [Colbert & Křivánek 2007]
+rest: L = π c E + Σ (f - c) cosθ / (N p) · mean light. A matte surface is exact; any c is right, so
+that the lowest of a few values will do. [Colbert & Křivánek 2007]
 """
 
 import numpy as np

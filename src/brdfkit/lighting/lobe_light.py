@@ -11,7 +11,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.host.arrays import Rows, bracket, periodic_bracket
 from brdfkit.host.bsdf_material import eval_bsdf
 from brdfkit.host.channels import emission_of_rgb
-from brdfkit.lighting.scene_bsdfs import PAIRS, bsdfs_of
+from brdfkit.lighting.scene_bsdfs import PAIRS, bsdfs_of, is_isotropic
 from brdfkit.lighting.spherical_gaussians.lobes_of_material import lobe_table
 
 AZIMUTHS = 16  # of the views of an anisotropic BSDF
@@ -51,15 +51,10 @@ class LobeLight:
 
     def fit(self, bsdf):
         """The lobes of a BSDF, a few seconds."""
-        import mitsuba as mi
-
-        turning = mi.has_flag(bsdf.flags(), mi.BSDFFlags.Anisotropic)
+        azimuths = 1 if is_isotropic(bsdf) else AZIMUTHS
         return ViewedLobes(
             lobe_table(
-                lambda wi, wo: eval_bsdf(bsdf, wo, wi),
-                self.method,
-                self.count,
-                azimuths=AZIMUTHS if turning else 1,
+                lambda wi, wo: eval_bsdf(bsdf, wo, wi), self.method, self.count, azimuths=azimuths
             )
         )
 
@@ -68,7 +63,7 @@ class ViewedLobes:
     """A `LobeTable` in Mitsuba."""
 
     def __init__(self, table):
-        self.views, self.azimuths, self.count = len(table.theta_o), len(table.phi_o), 0
+        self.views, self.azimuths = len(table.theta_o), len(table.phi_o)
         self.step = float(table.theta_o[1])
         self.count = table.kappa.shape[1]
         ones = (*table.kappa.shape, 3)
@@ -105,15 +100,16 @@ class ViewedLobes:
         return dr.select(active, total, 0)
 
     def around(self, wo):
-        """The views around `wo`, as (number, share); and the sine and cosine of the azimuth by which
-        their lobes turn with it."""
+        """The views around `wo`, as (number, share), and the sine and cosine of its azimuth, with
+        which their lobes turn."""
         import drjit as dr
 
         lower, upper, t = bracket(dr.safe_acos(wo.z) / self.step, self.views)
+        rows, columns = ((lower, 1 - t), (upper, t)), ((0, 1),)
         phi = dr.atan2(wo.y, wo.x)
-        if self.azimuths == 1:
-            return [(lower, 1 - t), (upper, t)], *dr.sincos(phi)
-        left, right, s = periodic_bracket(phi / (2 * dr.pi) * self.azimuths, self.azimuths)
-        rows, columns = ((lower, 1 - t), (upper, t)), ((left, 1 - s), (right, s))
+        if self.azimuths > 1:
+            turn = phi / (2 * dr.pi) * self.azimuths
+            left, right, s = periodic_bracket(turn, self.azimuths)
+            columns = (left, 1 - s), (right, s)
         each = [(i * self.azimuths + j, a * b) for i, a in rows for j, b in columns]
-        return each, 0.0, 1.0
+        return each, *dr.sincos(phi)

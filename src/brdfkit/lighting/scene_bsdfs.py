@@ -1,7 +1,8 @@
-"""The BSDFs of a scene, and which of them have a matte part that is told apart from the rest."""
+"""The BSDFs of a scene: whether their matte part can be told from the rest, whether they turn."""
 
 import numpy as np
 
+from brdfkit.geometry.directions import rotate_z
 from brdfkit.host.bsdf_material import eval_bsdf
 
 SAME = 1e-3  # of the largest value: differences that do not count
@@ -47,3 +48,9 @@ def has_matte_part(bsdf):
         and np.ptp(matte, axis=0).max() < allowed
         and np.abs(whole - matte - rest).max() < SAME * whole.max()
     )
+
+
+def is_isotropic(bsdf):
+    """Whether the values of a BSDF stay when both directions turn about the normal."""
+    value, turned = eval_bsdf(bsdf, *PAIRS), eval_bsdf(bsdf, *rotate_z(PAIRS, 1.0))
+    return bool(np.abs(value - turned).max() <= SAME * value.max())
