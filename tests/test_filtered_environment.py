@@ -4,12 +4,18 @@ import math
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
+import brdfkit as bk
+from brdfkit.checks.plugin_subject import example
+from brdfkit.cli import main
 from brdfkit.geometry.directions import from_angles
 from brdfkit.lighting import paraboloid_levels as levels
 from brdfkit.lighting.filtered_map import FilteredMap, LobeMaps, Mips, picture
 from brdfkit.lighting.irradiance import irradiance
+from brdfkit.lighting.scene_bsdfs import has_matte_part, is_isotropic
 from brdfkit.lighting.sphere_filter import azimuths, convolve, row_angles, row_solid_angles
+from brdfkit.picture_errors.psnr import psnr
 
 SIDE = 128
 
@@ -78,7 +84,6 @@ def test_convolution_is_that_of_the_quadrature(kappa):
     assert error(filtered[tuple(some)], expected) < 1e-3
 
 
-@pytest.mark.quick
 def test_a_look_up_is_the_mean_over_the_lobe(module_in_llvm):
     """Of the root mean square within 1 % at the κ of a level, and 2 % halfway between two; the mips
     of graphics hardware are off by tens of per cent."""
@@ -96,7 +101,6 @@ def test_a_look_up_is_the_mean_over_the_lobe(module_in_llvm):
     np.testing.assert_allclose(sharp, np.array(mips.bilinear(direction, 0)).T, rtol=1e-6)
 
 
-@pytest.mark.quick
 def test_irradiance_is_that_of_the_quadrature(module_in_llvm):
     mi = module_in_llvm
     w = axes()
@@ -106,7 +110,6 @@ def test_irradiance_is_that_of_the_quadrature(module_in_llvm):
     assert error(values, expected) < 2e-3
 
 
-@pytest.mark.quick
 def test_levels_meet_at_the_rim(module_in_llvm):
     """Just above and just below the plane z = 0, where one disc ends and the other begins."""
     mi = module_in_llvm
@@ -119,3 +122,147 @@ def test_levels_meet_at_the_rim(module_in_llvm):
     for kappa in (2.0, 50.0):
         a, b = (np.array(found.at(w, mi.Float(kappa))) for w in (above, below))
         np.testing.assert_allclose(a, b, rtol=0.02)
+
+
+# The integrator
+
+
+def scene(mi, integrator, bsdf, light, **more):
+    """A ball that fills the picture, by its front."""
+    camera = mi.ScalarTransform4f().look_at([0, -4, 0], [0, 0, 0], [0, 0, 1])
+    film = {"type": "hdrfilm", "width": 16, "height": 16, "rfilter": {"type": "box"}}
+    return mi.load_dict(
+        {
+            "type": "scene",
+            "integrator": integrator,
+            "sensor": {"type": "perspective", "fov": 18, "to_world": camera, "film": film},
+            "ball": {"type": "sphere", "bsdf": bsdf},
+            **({"light": light} if light else {}),
+            **more,
+        }
+    )
+
+
+def ours(**settings):
+    return {"type": "filtered_environment", "resolution": 128, **settings}
+
+
+def shown(loaded, spp=1):
+    return np.array(loaded.integrator().render(loaded, seed=0, spp=spp))
+
+
+WARD = {"type": "ward", "alpha_u": 0.1, "alpha_v": 0.1}
+TURNED = {"type": "ward", "alpha_u": 0.1, "alpha_v": 0.3}
+
+
+@pytest.mark.parametrize(
+    ("bsdf", "settings", "expected"),
+    [
+        (WARD, {}, 38),
+        (TURNED, {"samples": 128}, 38),
+        ({"type": "principled", "roughness": 0.4}, {"samples": 256}, 36),
+        (WARD, {"method": "gmm", "lobes": 12}, 42),
+    ],
+)
+def test_pictures_are_those_of_path_tracing(llvm_variant, bsdf, settings, expected):
+    """On a ball, which hides nothing from itself; PSNR [dB] to 4096 paths per pixel."""
+    mi = llvm_variant
+    light = example("kdtree_envmap")
+    truth = shown(scene(mi, {"type": "path", "max_depth": 2}, bsdf, light), 4096)
+    picture = shown(scene(mi, ours(**settings), bsdf, light), 16)
+    assert psnr(truth, picture) > expected
+
+
+def test_it_follows_the_light_and_the_material(llvm_variant):
+    """What an update changes is seen in the next picture."""
+    mi = llvm_variant
+    loaded = scene(mi, ours(method="warped"), WARD, example("kdtree_envmap"))
+    first = shown(loaded)
+    parameters = mi.traverse(loaded)
+    parameters["light.scale"] = 2.0
+    parameters.update()
+    brighter = shown(loaded)
+    np.testing.assert_allclose(brighter, 2 * first, rtol=1e-5)
+    parameters["ball.bsdf.specular_reflectance.value"] = 0.0
+    parameters.update()
+    assert shown(loaded).max() < 0.8 * brighter.max()
+
+
+@pytest.mark.quick
+def test_what_is_told_apart(llvm_variant):
+    mi = llvm_variant
+    for entries, matte, even in (
+        (WARD, True, True),
+        (TURNED, True, False),
+        ({"type": "twosided", "inside": WARD}, True, True),
+        ({"type": "oren_nayar"}, False, True),
+        ({"type": "principled"}, False, True),
+        ({"type": "conductor"}, False, True),
+    ):
+        bsdf = mi.load_dict(entries)
+        assert has_matte_part(bsdf) == matte, entries
+        assert is_isotropic(bsdf) == even, entries
+
+
+LAMP = {"type": "point", "position": [0, -5, 0]}
+
+
+@pytest.mark.parametrize(
+    ("light", "more", "settings", "variant", "said"),
+    [
+        (None, {}, {}, "llvm_ad_rgb", "no environment to light it; add an envmap"),
+        ({"type": "constant"}, {"lamp": LAMP}, {}, "llvm_ad_rgb", "lamps besides its environment"),
+        ({"type": "constant"}, {}, {}, "scalar_rgb", "does not run in scalar_rgb"),
+        ({"type": "constant"}, {}, {"method": "gmm"}, "llvm_ad_spectral", "take filtered_sampling"),
+        ({"type": "constant"}, {}, {"method": "gm"}, "llvm_ad_rgb", "did you mean gmm"),
+        ({"type": "constant"}, {}, {"filter": "mip"}, "llvm_ad_rgb", "did you mean mips"),
+    ],
+)
+def test_what_it_cannot_light_is_said(llvm_variant, light, more, settings, variant, said):
+    mi = llvm_variant
+    mi.set_variant(variant)
+    try:
+        with pytest.raises((RuntimeError, bk.BrdfkitError), match=said):
+            shown(scene(mi, ours(**settings), {"type": "diffuse"}, light, **more))
+    finally:
+        mi.set_variant("llvm_ad_rgb")
+
+
+# Previews
+
+
+def test_a_preview_is_the_same_each_time_and_has_no_shadows(llvm_variant, tmp_path):
+    first, again = (bk.preview(["ggx", "lambert"], size=32) for _ in range(2))
+    for name, shown_once in first.pictures.items():
+        assert shown_once.shape == (32, 32, 3)
+        np.testing.assert_array_equal(shown_once, again.pictures[name])
+    assert first.noise_floor == math.inf
+    assert "no shadows" in first.captions["ggx"]
+    assert "no shadows" in str(first)
+    first.write(tmp_path / "both.exr")
+    assert {file.name for file in tmp_path.iterdir()} == {"both.exr", "both.png"}
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"environment": "nowhere.exr"}, "nowhere.exr"),
+        ({"shape": "cornell_box"}, "A preview shows a shape"),
+        ({"shape": "nothing.obj"}, "no such mesh"),
+        ({"method": "gm"}, "did you mean gmm"),
+        ({"size": 0}, "size = 0"),
+        ({"spp": 0}, "spp"),
+    ],
+)
+def test_what_cannot_be_previewed_is_said(llvm_variant, given, said):
+    with pytest.raises(bk.BrdfkitError, match=said):
+        bk.preview("lambert", **{"size": 8, **given})
+
+
+@pytest.mark.quick
+def test_the_command_line_refuses_noise_in_a_preview():
+    for words in (["--until", "40"], ["--seed", "3"]):
+        run = CliRunner().invoke(main, ["render", "ggx", "--preview", *words])
+        assert run.exit_code == 2
+        assert "A preview has no noise" in run.stderr

@@ -1,15 +1,24 @@
 """Filtered environment: direct light from all around, without noise and without shadows.
 
-    L(o) = ∫ f(i, o) L(i) cosθ dω  ≈  c E + Σ (f(i, o) - c) cosθ / (N p(i)) · L filtered about i
+    {"type": "filtered_environment", "method": "gmm"}
 
-Every pixel takes the same N = `samples` evenly spread directions i of its BSDF, and for each the
-mean light over a lobe as wide as the directions are sparse there, κ = 2π N p(i): one look-up in a
-map that was filtered before. c is the BSDF's diffuse part, for which the irradiance E is known.
+The light is filtered once, at `resolution` texels across a hemisphere. Then every mean of it over a
+lobe is one look-up, and a pixel takes some of them, the same ones everywhere:
 
-[Colbert & Křivánek 2007], whose `filter` is "mips", boxes of texels; "lobes" are levels convolved
-with von Mises-Fisher lobes, on both sides of [Ergun 2015, eq. 8.9]. It takes any BSDF and one
-environment of any kind, which is seen at `resolution` texels across. What a surface hides is not
-hidden: shadows and light between surfaces are missing.
+    L(o) ≈ π c E + Σ (f(i, o) - c) cosθ / (N p(i)) · L about i        filtered_sampling
+    L(o) ≈ d(o) E + Σ w_k(o) · L about μ_k(o)                         gmm, kde, warped
+
+E is the irradiance. `filtered_sampling` takes N = `samples` directions i of the BSDF; the fewer of
+them, by their density p, the wider the lobe about each [Colbert & Křivánek 2007]. It takes any BSDF,
+at once. The others fit spherical Gaussians to each BSDF first, which takes seconds, and interpolate
+them between views [Ergun 2015, chapter 8]: `gmm` a mixture of `lobes`, the most exact; `warped` one
+lobe, `kde` as many sharper ones in its place. They see no textures and no mirrors, and run in RGB
+and mono variants.
+
+`filter` = "lobes": levels of the light that are convolved with von Mises-Fisher lobes; "mips": boxes
+of texels, as graphics hardware has them, by the rule of [Ergun 2015, eq. 8.9]. The scene has one
+environment, of any kind, and no other lights. Surfaces hide nothing: shadows, and light between
+surfaces, are missing.
 """
 
 import drjit as dr
@@ -22,7 +31,7 @@ from brdfkit.lighting.lobe_light import LobeLight
 
 METHODS = "filtered_sampling", "gmm", "kde", "warped"
 PARAMETERS = {
-    "method": text("filtered_sampling", f"{', '.join(METHODS)}"),
+    "method": text(METHODS[0], ", ".join(METHODS)),
     "samples": count(64, (1, 65_536), "directions per pixel, of filtered_sampling"),
     "lobes": count(32, (1, 1024), "lobes per view, of gmm and kde"),
     "filter": text("lobes", "lobes, or mips as of graphics hardware"),
@@ -39,7 +48,7 @@ def define(mi):
             for name, known in (("method", METHODS), ("filter", FILTERS)):
                 if getattr(self, name) not in known:
                     raise no_such(name, getattr(self, name), known, where="filtered_environment")
-            self.shading = _shading(self.method, self.samples, self.lobes)
+            self.shading = _shading(mi, self.method, self.samples, self.lobes)
             self.light = FilteredLight(FILTERS[self.filter], self.resolution)
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
@@ -54,9 +63,16 @@ def define(mi):
     return FilteredEnvironment
 
 
-def _shading(method, samples, lobes):
+def _shading(mi, method, samples, lobes):
     """What lights a surface, by the name of the `method`."""
-    return FilteredSampling(samples) if method == METHODS[0] else LobeLight(method, lobes)
+    if method == METHODS[0]:
+        return FilteredSampling(samples)
+    if mi.is_spectral:
+        raise BrdfkitError(
+            f"filtered_environment: the lobes of {method} have colours in linear sRGB; set "
+            "llvm_ad_rgb, or take filtered_sampling."
+        )
+    return LobeLight(method, lobes)
 
 
 def _only_environment(mi, scene):

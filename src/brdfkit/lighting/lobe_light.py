@@ -7,7 +7,6 @@ with the lobes interpolated between the views of a `LobeTable`. [Ergun 2015, sec
 
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
 from brdfkit.host.arrays import Rows, bracket, periodic_bracket
 from brdfkit.host.bsdf_material import eval_bsdf
 from brdfkit.host.channels import emission_of_rgb
@@ -28,11 +27,6 @@ class LobeLight:
         import drjit as dr
         import mitsuba as mi
 
-        if mi.is_spectral:
-            raise BrdfkitError(
-                f"filtered_environment: the method {self.method} has lobes in linear sRGB; set "
-                "llvm_ad_rgb, or take filtered_sampling."
-            )
         bsdf, total = si.bsdf(), mi.Color3f(0)
         for each, lobes in self.fitted(scene):
             here = active & (bsdf == mi.BSDFPtr(each))

@@ -95,8 +95,8 @@ def _show(materials, parameters, environment, size, shape, method, spp):
     pictures, seen = {}, None
     for name, bsdf in materials.items():
         material = load_material(bsdf, name, both_sides)
-        stage = _stage(build(material, size), light, integrator, spp)
-        scene = load_by_mitsuba(mi.load_dict, stage, name)
+        staged = stage(build(material, size), light, integrator, spp)
+        scene = load_by_mitsuba(mi.load_dict, staged, name)
         seen = mask(scene, material) if seen is None else seen
         pictures[name] = rgb(integrator.render(scene, seed=0, spp=spp)).astype(np.float32)
     first, seconds = next(iter(pictures.values())), time.perf_counter() - start
@@ -120,7 +120,7 @@ def _integrator(variant, method):
     return load_by_mitsuba(mi.load_dict, entries, "preview")
 
 
-def _stage(scene, light, integrator, spp):
+def stage(scene, light, integrator, spp):
     """The dictionary of a scene without its ground, under another light.
 
     Its rays go through the middles of pixels, or of equal parts of them: nothing is random. Raises
