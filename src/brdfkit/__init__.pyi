@@ -1,3 +1,4 @@
+from . import distance_fields as distance_fields
 from .auditing import Audit as Audit
 from .auditing import audit as audit
 from .checks import check as check

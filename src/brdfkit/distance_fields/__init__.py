@@ -1,0 +1,49 @@
+"""Surfaces given by distance functions: solids, what they are combined to, and rays that meet them.
+
+>>> from brdfkit.distance_fields import box, sphere
+>>> field = sphere(1) | box(2).translate((1, 0, 0))
+>>> field([[0, 0, 3]])    # the distance at (0, 0, 3)
+array([2.])
+
+`solids.py`, `rods.py`, `fractals.py`, `grids.py`: what there is; `combinations.py`, `offsets.py`,
+`motions.py`, `repetition.py`: what becomes of it, by the operators of `operators.py`. They are the
+nodes (`node.py`) of a tree, whose formulas, made of `functions.py`, run on Dr.Jit's arrays of any
+backend, on NumPy's points (`evaluation.py`), and on symbols (`symbols.py`), which make GLSL
+(`glsl.py`) of them. `stored.py`: files; `sampling.py`, `meshing.py`: grids and meshes;
+`checking.py`: whether a distance is one; `sphere_tracing.py`, `cone_tracing.py`, `raymarching.py`:
+where rays meet it (`hits.py`), and how that moves with the parameters; `normals.py`.
+"""
+
+from brdfkit.distance_fields.checking import check as check
+from brdfkit.distance_fields.combinations import difference as difference
+from brdfkit.distance_fields.combinations import intersection as intersection
+from brdfkit.distance_fields.combinations import union as union
+from brdfkit.distance_fields.cone_tracing import cone_trace as cone_trace
+from brdfkit.distance_fields.cone_tracing import pixel_tangent as pixel_tangent
+from brdfkit.distance_fields.fractals import mandelbulb as mandelbulb
+from brdfkit.distance_fields.grids import grid as grid
+from brdfkit.distance_fields.hits import Hit as Hit
+from brdfkit.distance_fields.hits import reattach as reattach
+from brdfkit.distance_fields.meshing import Mesh as Mesh
+from brdfkit.distance_fields.meshing import from_mesh as from_mesh
+from brdfkit.distance_fields.meshing import to_mesh as to_mesh
+from brdfkit.distance_fields.motions import rotate as rotate
+from brdfkit.distance_fields.motions import scale as scale
+from brdfkit.distance_fields.motions import translate as translate
+from brdfkit.distance_fields.node import Node as Node
+from brdfkit.distance_fields.normals import normal as normal
+from brdfkit.distance_fields.offsets import dilate as dilate
+from brdfkit.distance_fields.offsets import shell as shell
+from brdfkit.distance_fields.raymarching import raymarch as raymarch
+from brdfkit.distance_fields.repetition import repeat as repeat
+from brdfkit.distance_fields.rods import capped_cone as capped_cone
+from brdfkit.distance_fields.rods import capped_cylinder as capped_cylinder
+from brdfkit.distance_fields.rods import capsule as capsule
+from brdfkit.distance_fields.solids import box as box
+from brdfkit.distance_fields.solids import plane as plane
+from brdfkit.distance_fields.solids import rounded_box as rounded_box
+from brdfkit.distance_fields.solids import sphere as sphere
+from brdfkit.distance_fields.solids import torus as torus
+from brdfkit.distance_fields.sphere_tracing import sphere_trace as sphere_trace
+from brdfkit.distance_fields.stored import from_json as from_json
+from brdfkit.distance_fields.stored import load as load

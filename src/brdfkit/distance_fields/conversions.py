@@ -1,0 +1,36 @@
+"""What a distance field becomes: JSON, a file, GLSL, a grid, a mesh."""
+
+from os import PathLike
+from typing import Any
+
+
+class Conversions:
+    """The methods of fields that make something else of them."""
+
+    def to_json(self) -> str:
+        """The field as JSON, of which `from_json` makes it again."""
+        from brdfkit.distance_fields.stored import to_json
+
+        return to_json(self)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the field to a file as JSON, which `load` reads."""
+        from brdfkit.distance_fields.stored import save
+
+        save(self, path)
+
+    def to_glsl(self, name: str = "field") -> str:
+        """The field as ``float NAME(vec3 p)`` of GLSL."""
+        from brdfkit.distance_fields.glsl import to_glsl
+
+        return to_glsl(self, name)
+
+    def to_grid(self, resolution: int = 64, bounds: Any = None) -> Any:
+        """The field sampled on cubic cells, `resolution` of them along the longest edge of its box.
+
+        The box is that of the surface and a margin, or `bounds`, (low, high). The grid differs
+        from the field by at most ``field.lipschitz * grid.half_diagonal``.
+        """
+        from brdfkit.distance_fields.sampling import to_grid
+
+        return to_grid(self, resolution, bounds)

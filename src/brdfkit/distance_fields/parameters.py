@@ -1,0 +1,61 @@
+"""The parameters of nodes: fields of dataclasses that are checked when a node is made."""
+
+from dataclasses import field
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+
+
+def number(default, least=None, above=None):
+    """A field that holds a number, or an array of Dr.Jit's, which may carry derivatives."""
+    return field(default=default, metadata={"check": _number, "least": least, "above": above})
+
+
+def vector(default, above=None, least=None, spread=False):
+    """A field of three numbers; with `spread` one number stands for three."""
+    rules = {"check": _vector, "above": above, "least": least, "spread": spread}
+    return field(default=default, metadata=rules)
+
+
+def count(default, least=0, optional=False):
+    """A field that holds a whole number, which is no parameter; None if `optional`."""
+    rules = {"check": _count, "least": least, "optional": optional, "fixed": True}
+    return field(default=default, metadata=rules)
+
+
+def checked(what, value, rules):
+    """`value` of the parameter called `what`, as its field holds it; an error where it cannot."""
+    check = rules.get("check")
+    return check(what, value, rules) if check else value
+
+
+def _number(what, value, rules):
+    if dr.is_array_v(value):
+        return value
+    least, above = rules["least"], rules["above"]
+    low = least if least is not None else above
+    valid = isinstance(value, int | float | np.number) and np.isfinite(value)
+    if valid and (low is None or value > low or (value == least)):
+        return float(value)
+    bound = "" if low is None else (f" above {low:g}" if above is not None else f" from {low:g} on")
+    raise BrdfkitError(f"{what} = {value!r} should be a finite number{bound}.")
+
+
+def _vector(what, value, rules):
+    if rules["spread"] and isinstance(value, int | float | np.number):
+        value = (value,) * 3
+    if hasattr(value, "x"):
+        value = value.x, value.y, value.z
+    if not isinstance(value, tuple | list | np.ndarray) or len(value) != 3:
+        raise BrdfkitError(f"{what} = {value!r} should be three numbers.")
+    return tuple(_number(f"{what}[{i}]", v, rules) for i, v in enumerate(value))
+
+
+def _count(what, value, rules):
+    if value is None and rules["optional"]:
+        return None
+    if not isinstance(value, int | np.integer) or value < rules["least"]:
+        raise BrdfkitError(f"{what} = {value!r} should be a whole number from {rules['least']} on.")
+    return int(value)

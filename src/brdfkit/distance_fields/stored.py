@@ -1,0 +1,83 @@
+"""Distance fields as JSON: a node is an object with its kind, its parameters and its children."""
+
+import json
+from dataclasses import MISSING, fields
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.distance_fields.boxes import plain
+from brdfkit.distance_fields.kinds import kind
+from brdfkit.errors import BrdfkitError, no_such
+from brdfkit.files import contents, write_safely
+
+
+def to_json(node):
+    """The text of a node."""
+    return json.dumps(_to_data(node))
+
+
+def from_json(text, where="the field"):
+    """The node of a JSON `text`, which errors call `where`.
+
+    >>> from_json('{"kind": "sphere", "radius": 2}')
+    sphere(2)
+    """
+    try:
+        data = json.loads(text)
+    except ValueError as error:
+        raise BrdfkitError(f"{where}: is no JSON ({error}); check the file.") from error
+    return _to_node(data, where)
+
+
+def save(node, path):
+    """Write a node to the file `path`, as JSON."""
+    with write_safely(path) as beside:
+        beside.write_text(to_json(node))
+
+
+def load(path):
+    """The node in the file `path`."""
+    try:
+        return from_json(contents(path).decode(), str(path))
+    except UnicodeDecodeError as error:
+        raise BrdfkitError(f"{path}: is no text; a distance field is JSON.") from error
+
+
+def _to_data(value):
+    if hasattr(value, "kind"):
+        own = {f.name: _to_data(getattr(value, f.name)) for f in _stored(value)}
+        return {"kind": value.kind} | own
+    if isinstance(value, tuple):
+        return [_to_data(v) for v in value]
+    if dr.is_tensor_v(value) or isinstance(value, np.ndarray):
+        return np.asarray(dr.detach(value), float).tolist()
+    return plain(value) if dr.is_array_v(value) else value
+
+
+def _to_node(data, where):
+    if not isinstance(data, dict) or "kind" not in data:
+        raise BrdfkitError(f'{where}: {str(data)[:40]} should be an object with a "kind".')
+    cls = kind(data["kind"], where)
+    known = {f.name: f for f in _stored(cls)}
+    given = {name: value for name, value in data.items() if name != "kind"}
+    for name in given:
+        if name not in known:
+            raise no_such(f"parameter of {data['kind']}", name, known, where)
+    for name, field in known.items():
+        if name not in given and field.default is MISSING:
+            raise BrdfkitError(f"{where}: {data['kind']} needs {name}; add it.")
+    if "child" in given:
+        given["child"] = _to_node(given["child"], where)
+    if "children" in given:
+        if not isinstance(given["children"], list):
+            raise BrdfkitError(f"{where}: children of {data['kind']} should be a list.")
+        given["children"] = tuple(_to_node(child, where) for child in given["children"])
+    try:
+        return cls(**given)
+    except BrdfkitError as error:
+        raise BrdfkitError(f"{where}: {error}") from error
+
+
+def _stored(node):
+    return [f for f in fields(node) if f.init]
