@@ -303,12 +303,19 @@ def test_what_is_printed_makes_the_field():
 
 
 def test_derivatives_by_all_parameters_are_those_of_differences():
-    """Of f at each point, along one direction in the space of all numbers that make the field."""
+    """Of f near the surface, along one direction in the space of all numbers that make the field.
+
+    (Further off, the bounds of repetition count, which have no derivatives.)
+    """
     import drjit as dr
 
     if not double_precision.differentiable():
         pytest.skip("no derivatives here")
-    field, points, t = everything(), points_about(300), double_precision.scalar(0.0)
+    field, points, t = everything(), points_about(1000), double_precision.scalar(0.0)
+    for _ in range(3):
+        points = points - values(field, points)[:, None] * gradients(field, points)
+    points = points[np.abs(values(field, points)) < 0.01]
+    assert len(points) > 500
     dr.enable_grad(t)
     f = moved(field, t).distance(double_precision.vector(points))
     dr.forward(t)
@@ -317,7 +324,7 @@ def test_derivatives_by_all_parameters_are_those_of_differences():
     assert smooth.mean() > 0.9
     difference = (high - low) / 2e-6
     np.testing.assert_allclose(np.array(dr.grad(f))[smooth], difference[smooth], atol=1e-4)
-    assert np.abs(difference).min() > 0  # every point feels some of it
+    assert (difference != 0).all()  # every point feels some of it
 
 
 def moved(field, t):

@@ -63,15 +63,14 @@ def to_int(a):
     return int(a) if isinstance(a, float) else dr.int32_array_t(type(a))(a)
 
 
-def texel(grid, i, j, k):
-    """The value (i, j, k) along x, y, z of a `grid`."""
+def texel(grid, i, j, k, kind):
+    """The value (i, j, k) along x, y, z of a `grid`, as an array of this kind."""
     if isinstance(i, Symbol):
         return i.program.texel(grid, i, j, k)
     across, down = (int(n) for n in grid.counts[:2])
     index = i + across * (j + down * k)
     if isinstance(i, int):
         return float(grid.array(float)[index])
-    kind = dr.float_array_t(type(i))
     return dr.gather(kind, grid.array(kind), dr.uint32_array_t(type(i))(index))
 
 

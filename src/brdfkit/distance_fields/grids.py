@@ -103,11 +103,13 @@ class grid(Node):
     def _interpolated(self, place, shares):
         """The value in the cell at `place`, at the `shares` of its edges."""
         i, j, k = place
+        kind = type(shares.x)
         planes = []
         for c in (k, k + 1):
-            rows = [
-                lerp(texel(self, i, b, c), texel(self, i + 1, b, c), shares.x) for b in (j, j + 1)
-            ]
+            rows = []
+            for b in (j, j + 1):
+                ends = texel(self, i, b, c, kind), texel(self, i + 1, b, c, kind)
+                rows.append(lerp(*ends, shares.x))
             planes.append(lerp(*rows, shares.y))
         return lerp(*planes, shares.z)
 

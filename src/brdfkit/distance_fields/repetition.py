@@ -9,7 +9,8 @@ the other half:
 
 b: distance to the copy's box, e: to a face beyond which there is a copy, B: to the box of the whole
 lattice, which makes steps long outside of it. f is an estimate, as far from right as a cell is
-large; its sign is right, and L is the child's.
+large; its sign is right, and L is the child's. Derivatives by the child's parameters are right near
+the surface, where g is f; gaps and boxes have none.
 """
 
 from dataclasses import dataclass

@@ -125,7 +125,7 @@ class capped_cone(Rod):
         x = length(*across(pa, ba, t))
         widening = self.radius_b - self.radius_a
         # To the nearer end: across and along
-        end_x = maximum(x - select(t < 0.5, self.radius_a, self.radius_b), 0.0)
+        end_x = maximum(select(t < 0.5, x - self.radius_a, x - self.radius_b), 0.0)
         end_y = (absolute(t - 0.5) - 0.5) * _root(squared)
         # To the nearest point of the side, which is a share of the way from a to b
         share = (widening * (x - self.radius_a) + t * squared) / (widening * widening + squared)
