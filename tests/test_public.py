@@ -2,6 +2,7 @@
 
 import inspect
 import math
+from dataclasses import is_dataclass
 
 import pytest
 from docstring_parser import DocstringStyle, parse
@@ -40,6 +41,12 @@ METHODS = {
 }
 CALLED = FUNCTIONS | METHODS
 
+# What the room of distance fields offers
+ROOM = {f"distance_fields.{name}": thing for name, thing in vars(bk.distance_fields).items()}
+FIELDS = {n: thing for n, thing in ROOM.items() if is_dataclass(thing)}
+TRACED = {n: thing for n, thing in ROOM.items() if inspect.isfunction(thing)}
+LISTED = CALLED | TRACED
+
 
 def documented(thing):
     return parse(inspect.getdoc(thing), DocstringStyle.NUMPYDOC)
@@ -51,29 +58,29 @@ def arguments(function):
     return {n: p for n, p in found.items() if n not in ("self", "cls")}
 
 
-@pytest.mark.parametrize("name", CALLED)
+@pytest.mark.parametrize("name", LISTED)
 def test_every_argument_and_the_result_are_annotated(name):
-    signature = inspect.signature(CALLED[name])
-    bare = [n for n, p in arguments(CALLED[name]).items() if p.annotation is p.empty]
+    signature = inspect.signature(LISTED[name])
+    bare = [n for n, p in arguments(LISTED[name]).items() if p.annotation is p.empty]
     assert not bare
     assert signature.return_annotation is not signature.empty
 
 
-@pytest.mark.parametrize("name", CALLED)
+@pytest.mark.parametrize("name", LISTED)
 def test_every_argument_is_listed_once_with_its_type_and_meaning(name):
-    listed = documented(CALLED[name]).params
+    listed = documented(LISTED[name]).params
     names = [n.strip().lstrip("*") for entry in listed for n in entry.arg_name.split(",")]
-    assert names == list(arguments(CALLED[name]))
+    assert names == list(arguments(LISTED[name]))
     for entry in listed:
         assert entry.type_name, entry.arg_name
         assert entry.description.endswith("."), entry.arg_name
 
 
-@pytest.mark.parametrize("name", CALLED)
+@pytest.mark.parametrize("name", LISTED)
 def test_a_default_is_told(name):
-    for entry in documented(CALLED[name]).params:
+    for entry in documented(LISTED[name]).params:
         for argument in entry.arg_name.split(","):
-            parameter = arguments(CALLED[name])[argument.strip().lstrip("*")]
+            parameter = arguments(LISTED[name])[argument.strip().lstrip("*")]
             if parameter.default is parameter.empty or parameter.kind is parameter.VAR_KEYWORD:
                 continue
             assert entry.is_optional, argument
@@ -92,9 +99,14 @@ def test_results_errors_and_an_example_are_told(name):
         assert [entry.type_name for entry in found.raises] == ["BrdfkitError"]
 
 
-@pytest.mark.parametrize("name", CLASSES)
+@pytest.mark.parametrize("name", TRACED)
+def test_a_function_of_a_room_has_an_example(name):
+    assert documented(TRACED[name]).examples
+
+
+@pytest.mark.parametrize("name", CLASSES | FIELDS)
 def test_a_class_lists_its_attributes_or_arguments(name):
-    cls = CLASSES[name]
+    cls = (CLASSES | FIELDS)[name]
     listed = {
         n.strip().lstrip("*") for entry in documented(cls).params for n in entry.arg_name.split(",")
     }

@@ -17,7 +17,9 @@ from brdfkit.errors import BrdfkitError
 
 
 class Combination(Node):
-    """Several solids made one."""
+    """Several solids made one, blended over the width `blend`."""
+
+    blend: Any
 
     def __post_init__(self):
         object.__setattr__(self, "children", tuple(self.children))

@@ -116,7 +116,7 @@ class grid(Node):
     def array(self, kind):
         """All values in a row, as an array of Dr.Jit's `kind`, or NumPy's for `kind` float."""
         if dr.is_tensor_v(self.values):
-            return kind(self.values.array)
+            return np.ravel(self.values) if kind is float else kind(self.values.array)
         if kind not in self._arrays:
             flat = self.values.ravel()
             self._arrays[kind] = flat if kind is float else kind(pad(flat))

@@ -1,5 +1,6 @@
 """What a ray meets: the result of every way to trace it."""
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import drjit as dr
@@ -27,11 +28,31 @@ def start(o, t):
     return o.x * 0.0 + t, dr.uint32_array_t(type(o.x))(0)
 
 
-def reattach(distance, o, d, t):
-    """`t` with its derivatives, by all parameters of f and of the ray, where f(o + t d) = 0.
+def reattach(distance: Callable[[Any], Any], o: Any, d: Any, t: Any) -> Any:
+    """`t` of hits with its derivatives by all parameters of f and of the rays.
 
-    The march has none. By the implicit function theorem dt = -df / (∇f·d), with f's slope along the
-    ray taken by a central difference. Rays that graze the surface get 0.
+    By the implicit function theorem dt = -df / (∇f·d), with f's slope along the ray taken by a
+    central difference. Rays that graze the surface get 0.
+
+    Parameters
+    ----------
+    distance : callable
+        f(p) of points, whose parameters carry derivatives; as a node's `distance`.
+    o, d : anything with x, y, z
+        Where the rays begin, and their unit directions.
+    t : array
+        Where they were found to meet the surface.
+
+    Returns
+    -------
+    array
+        The same numbers, with derivatives.
+
+    Examples
+    --------
+    >>> ball = sphere(1).with_parameters({"sphere.radius": radius})
+    >>> t = reattach(ball.distance, o, d, intersect(ball, o, d, 9).t)
+    >>> dr.backward(dr.sum(t))
     """
     t = dr.detach(t)
     h = dr.maximum(1e-3 * dr.abs(t), 1e-3)

@@ -1,13 +1,16 @@
 """Triangle meshes of distance fields, and grids of distances to triangle meshes."""
 
-from typing import NamedTuple
+from os import PathLike
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.distance_fields.grids import grid
+from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.sampling import MARGIN, axes_of, to_grid
 from brdfkit.errors import BrdfkitError
+from brdfkit.files import contents
 
 INSTALL = 'is not installed; pip install "brdfkit[distance_fields]".'
 
@@ -19,8 +22,32 @@ class Mesh(NamedTuple):
     faces: NDArray
 
 
-def to_mesh(node, resolution=64, bounds=None):
-    """The surface of a field as triangles, by marching cubes on the grid that `to_grid` makes."""
+def to_mesh(node: Node, resolution: int = 64, bounds: Any = None) -> Mesh:
+    """The surface of a field as triangles, by marching cubes on the grid that `to_grid` makes.
+
+    Parameters
+    ----------
+    node : distance field
+        Has the surface.
+    resolution : integer, default 64
+        Cells along the longest edge of the box.
+    bounds : (low, high), optional
+        The corners of the box; without them that of the surface and a margin.
+
+    Returns
+    -------
+    Mesh
+        Triangles whose vertices are within L times half a cell of the surface.
+
+    Raises
+    ------
+    BrdfkitError
+        Where there is no surface in the box, or scikit-image is not installed.
+
+    Examples
+    --------
+    >>> vertices, faces = to_mesh(sphere(1) - box(1))
+    """
     try:
         from skimage.measure import marching_cubes
     except ImportError as error:
@@ -32,12 +59,31 @@ def to_mesh(node, resolution=64, bounds=None):
     return Mesh(vertices + np.array(sampled.low), faces)
 
 
-def from_mesh(mesh, resolution=64):
-    """The distance to a closed mesh as a `grid`, by libigl; negative inside.
+def from_mesh(
+    mesh: str | PathLike[str] | tuple[ArrayLike, ArrayLike], resolution: int = 64
+) -> grid:
+    """The distance to a closed mesh as a grid, by libigl; its winding number says what is inside.
 
-    `mesh` is a file (OBJ, PLY, STL, OFF), or vertices (n, 3) and faces (m, 3). There are
-    `resolution` cubic cells along the longest edge of its box. What is inside is decided by winding
-    numbers, for the distance of each value to the mesh.
+    Parameters
+    ----------
+    mesh : file, or (vertices, faces)
+        OBJ, PLY, STL or OFF; or arrays (n, 3) and (m, 3).
+    resolution : integer, default 64
+        Cubic cells along the longest edge of the mesh's box and a margin.
+
+    Returns
+    -------
+    grid
+        Whose values are exact.
+
+    Raises
+    ------
+    BrdfkitError
+        Where the mesh is not closed or cannot be read, or libigl is not installed.
+
+    Examples
+    --------
+    >>> cow = from_mesh("cow.obj", 128)
     """
     try:
         import igl
@@ -59,6 +105,7 @@ def _read(mesh, igl):
     """Vertices and faces, of a file or as they are given."""
     if isinstance(mesh, tuple):
         return np.asarray(mesh[0], float), np.asarray(mesh[1])
+    contents(mesh)  # says what is wrong with a file that cannot be read at all
     try:
         return igl.read_triangle_mesh(str(mesh))
     except (RuntimeError, ValueError) as error:

@@ -3,6 +3,9 @@
 [Bálint et al. 2019, algorithm 1]
 """
 
+from collections.abc import Callable
+from typing import Any
+
 import drjit as dr
 
 from brdfkit.distance_fields.hits import Hit, start
@@ -10,11 +13,33 @@ from brdfkit.distance_fields.hits import Hit, start
 BISECTIONS = 24  # a step / 2²⁴ is what single precision tells apart
 
 
-def raymarch(distance, o, d, t_max, step, active=True):
+def raymarch(
+    distance: Callable[[Any], Any], o: Any, d: Any, t_max: Any, step: Any, active: Any = True
+) -> Hit:
     """Where f first changes its sign along rays, by steps of one length.
 
-    What a ray crosses within a shorter way than `step` may be missed. The march carries no
-    derivatives: see `hits.reattach`.
+    Parameters
+    ----------
+    distance : callable
+        f(p) of points; as a node's `distance`.
+    o, d : anything with x, y, z
+        Where the rays begin, and their unit directions: arrays of Dr.Jit's, or numbers.
+    t_max : number or array
+        Where the rays end, along them.
+    step : number > 0
+        The length; what a ray crosses within a shorter way may be missed.
+    active : bool or array, default True
+        Which rays are traced.
+
+    Returns
+    -------
+    Hit
+        Where they stop, and whether a surface is there; without derivatives, see `reattach`.
+
+    Examples
+    --------
+    >>> raymarch(torus(1, 0.2).distance, o, d, 9, 0.01)
+    Hit(t=..., found=True, ...)
     """
     with dr.suspend_grad():
         t, count = start(o, step)

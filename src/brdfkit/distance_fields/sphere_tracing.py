@@ -3,19 +3,56 @@
 [Hart 1996]; [Bálint et al. 2019, algorithm 2]
 """
 
+from collections.abc import Callable
+from typing import Any
+
 import drjit as dr
 
 from brdfkit.distance_fields.hits import Hit, start
 
 
 def sphere_trace(
-    distance, o, d, t_max, *, lipschitz=1.0, precision=1e-4, t_min=0.0, steps=512, active=True
-):
-    """Where rays first come within `precision` of the surface of `distance`.
+    distance: Callable[[Any], Any],
+    o: Any,
+    d: Any,
+    t_max: Any,
+    *,
+    lipschitz: Any = 1.0,
+    precision: Any = 1e-4,
+    t_min: Any = 0.0,
+    steps: Any = 512,
+    active: Any = True,
+) -> Hit:
+    """Where rays first come close to a surface; one that starts inside is found where it starts.
 
-    It starts at o + t_min d, `d` a unit vector, and ends at `t_max`, or after so many `steps`.
-    Every step is f / `lipschitz`. A ray that starts inside is found there. The march carries no
-    derivatives: see `hits.reattach`.
+    Parameters
+    ----------
+    distance : callable
+        f(p) of points, no steeper than `lipschitz`; as a node's `distance`.
+    o, d : anything with x, y, z
+        Where the rays begin, and their unit directions: arrays of Dr.Jit's, or numbers.
+    t_max : number or array
+        Where the rays end, along them.
+    lipschitz : number, default 1
+        L of f; a step is f / L.
+    precision : number > 0, default 1e-4
+        How close f / L has to be to 0.
+    t_min : number or array, default 0
+        Where the rays start, along them.
+    steps : integer, default 512
+        The steps after which a ray is given up.
+    active : bool or array, default True
+        Which rays are traced.
+
+    Returns
+    -------
+    Hit
+        Where they stop, and whether a surface is there; without derivatives, see `reattach`.
+
+    Examples
+    --------
+    >>> sphere_trace(sphere(1).distance, mi.ScalarPoint3f(0, 0, 3), mi.ScalarVector3f(0, 0, -1), 9)
+    Hit(t=2.0, found=True, distance=0.0, steps=2)
     """
     with dr.suspend_grad():
         t, count = start(o, t_min)

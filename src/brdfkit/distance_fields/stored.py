@@ -2,6 +2,8 @@
 
 import json
 from dataclasses import MISSING, fields
+from os import PathLike
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -17,9 +19,28 @@ def to_json(node):
     return json.dumps(_to_data(node))
 
 
-def from_json(text, where="the field"):
-    """The node of a JSON `text`, which errors call `where`.
+def from_json(text: str, where: str = "the field") -> Any:
+    """The field of which `to_json` made this text.
 
+    Parameters
+    ----------
+    text : str
+        JSON.
+    where : str, default "the field"
+        What errors call it.
+
+    Returns
+    -------
+    Node
+        The field.
+
+    Raises
+    ------
+    BrdfkitError
+        Where it is no JSON, or has nodes or parameters that there are not.
+
+    Examples
+    --------
     >>> from_json('{"kind": "sphere", "radius": 2}')
     sphere(2)
     """
@@ -36,8 +57,28 @@ def save(node, path):
         beside.write_text(to_json(node))
 
 
-def load(path):
-    """The node in the file `path`."""
+def load(path: str | PathLike[str]) -> Any:
+    """The field in a file that `save` wrote.
+
+    Parameters
+    ----------
+    path : file
+        JSON, compressed or not.
+
+    Returns
+    -------
+    Node
+        The field.
+
+    Raises
+    ------
+    BrdfkitError
+        Where the file cannot be read, or has nodes or parameters that there are not.
+
+    Examples
+    --------
+    >>> scene = load("scene.json")
+    """
     try:
         return from_json(contents(path).decode(), str(path))
     except UnicodeDecodeError as error:

@@ -1,0 +1,94 @@
+"""Times rays that meet distance fields, beside Mitsuba's `sdfgrid` on the same values.
+
+python benchmarks/distance_fields.py
+
+Camera rays, and the same in random order, to a grid of 64³ values: ratios of the least of several
+times in one run, taken in turns, so that other work on the machine weighs on all alike.
+"""
+
+from functools import partial
+from time import perf_counter
+
+import brdfkit  # noqa: F401  (chooses LLVM before Dr.Jit is loaded)
+from brdfkit import distance_fields as df
+
+SIDE = 1024  # pixels
+TURNS = 7
+BAR = 1.5
+
+
+def camera_rays(mi):
+    """Rays of a camera that looks at the unit cube from outside."""
+    film = {"type": "hdrfilm", "width": SIDE, "height": SIDE}
+    view = mi.ScalarTransform4f().look_at([1.6, 1.9, 1.5], [0.5, 0.5, 0.5], [0, 0, 1])
+    camera = mi.load_dict({"type": "perspective", "fov": 30, "to_world": view, "film": film})
+    return camera.sample_ray(0, 0.5, pixel_centres(mi), mi.Point2f(0.5))[0]
+
+
+def pixel_centres(mi):
+    import drjit as dr
+
+    index = dr.arange(mi.UInt32, SIDE * SIDE)
+    return (mi.Point2f(mi.Float(index % SIDE), mi.Float(index // SIDE)) + 0.5) / SIDE
+
+
+def shuffled(mi, ray):
+    """The same rays in random order."""
+    import drjit as dr
+    import numpy as np
+
+    order = mi.UInt32(np.random.default_rng(0).permutation(SIDE * SIDE).astype(np.uint32))
+    return mi.Ray3f(dr.gather(mi.Point3f, ray.o, order), dr.gather(mi.Vector3f, ray.d, order))
+
+
+def least_times(calls):
+    """The least time [s] of each of `calls`, taken in turns; the first of each is not counted."""
+    import drjit as dr
+
+    best = {}
+    for turn in range(TURNS + 1):
+        for name, call in calls.items():
+            begin = perf_counter()
+            dr.eval(call().t)
+            dr.sync_thread()
+            took = perf_counter() - begin
+            if turn:
+                best[name] = min(took, best.get(name, took))
+    return best
+
+
+def main():
+    import drjit as dr
+    import mitsuba as mi
+    import numpy as np
+
+    mi.set_variant("llvm_ad_rgb")
+    ring = df.torus(0.3, 0.12).at(0.5, 0.5, 0.5) | df.sphere(0.15).at(0.5, 0.5, 0.5).k(0.1)
+    grid = ring.to_grid(63, ((0, 0, 0), (1, 1, 1)))
+    values = mi.TensorXf(grid.values[..., None].astype(np.float32))
+    scene = mi.load_dict({"type": "scene", "sdf": {"type": "sdfgrid", "grid": values}})
+    print(f"{grid}, L = {grid.lipschitz:.2f}; {SIDE}² rays; times faster than sdfgrid")
+    rays = camera_rays(mi)
+    for name, ray in {"camera": rays, "shuffled": shuffled(mi, rays)}.items():
+        dr.eval(ray)
+        ours = {
+            f"precision {precision:g}": partial(
+                df.intersect, grid, ray.o, ray.d, 10.0, precision=precision
+            )
+            for precision in (1e-3, 1e-4, 1e-5)
+        }
+        theirs = {"sdfgrid": partial(scene.ray_intersect_preliminary, ray)}
+        times = least_times(theirs | ours)
+        expected = np.array(theirs["sdfgrid"]().t)
+        for what, call in ours.items():
+            hit, ratio = call(), times["sdfgrid"] / times[what]
+            both = np.isfinite(expected) & np.array(hit.found)
+            print(
+                f"{name:9} {what:15} {ratio:5.2f} × (bar {BAR}), "
+                f"{SIDE**2 / times[what] / 1e6:5.1f} Mrays/s; "
+                f"mean difference {np.abs(np.array(hit.t) - expected)[both].mean():.1e}"
+            )
+
+
+if __name__ == "__main__":
+    main()
