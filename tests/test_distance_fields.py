@@ -468,6 +468,58 @@ def test_normals_are_gradients(llvm_variant):
     assert np.quantile(error, 0.95) < 0.01
 
 
+def test_a_field_is_met_within_its_box(llvm_variant):
+    """As without one, also by rays that start in it; the copies' radius is an array of Dr.Jit's."""
+    import drjit as dr
+
+    mi = llvm_variant
+    radius = dr.opaque(mi.Float, 0.3)
+    dr.enable_grad(radius)
+    field = df.sphere(0.3).repeat(1, 1).with_parameters({"repeat.sphere.radius": radius})
+    o, d, *_ = rays(mi, 2000)
+    o = o * mi.Float(np.linspace(0.2, 1, 2000))
+    near, everywhere = (
+        df.intersect(field, o, d, 9.0),
+        df.sphere_trace(field.distance, o, d, 9.0, steps=4096),
+    )
+    found = np.array(near.found)
+    assert (found == np.array(everywhere.found)).mean() > 0.995
+    both = found & np.array(everywhere.found)
+    assert np.quantile(np.abs(np.array(near.t) - np.array(everywhere.t))[both], 0.95) < 1e-3
+    t = df.reattach(field.distance, o, d, near.t)
+    dr.forward(radius)
+    p = np.array(o + d * near.t).T
+    n = p - np.round(p)
+    expected = 0.3 / (n * np.array(d).T).sum(axis=1)
+    steep = both & (np.abs(expected) < 3) & (np.array(near.t) > 0.01)
+    assert steep.sum() > 500
+    np.testing.assert_allclose(np.array(dr.grad(t))[steep], expected[steep], rtol=0.03)
+
+
+def test_a_field_that_is_no_number_is_met_by_no_ray(llvm_variant):
+    mi = llvm_variant
+    o, d = mi.Point3f(0, 0, 3), mi.Vector3f(0, 0, -1)
+    for way in (df.sphere_trace, df.cone_trace):
+        assert not np.array(way(lambda p: p.x * np.nan, o, d, 9.0).found).any()
+
+
+def test_the_mandelbulb_is_nearer_than_a_third_of_its_estimate_says():
+    """Nothing is proven for it: L against distances to points of its surface, by bisection."""
+    bulb, rng = df.mandelbulb(), np.random.default_rng(0)
+    d = rng.normal(size=(30_000, 3))
+    d /= np.linalg.norm(d, axis=1, keepdims=True)
+    low, high = np.zeros(len(d)), np.full(len(d), 1.2)
+    for _ in range(20):
+        middle = (low + high) / 2
+        outside = bulb(d * middle[:, None]) > 0
+        low, high = np.where(outside, low, middle), np.where(outside, middle, high)
+    points = rng.uniform(-1.3, 1.3, (5000, 3))
+    away, _ = cKDTree(d * high[:, None]).query(points)
+    f = bulb(points)
+    assert (f / bulb.lipschitz <= away).all()
+    assert np.median((f / away)[f > 0.1]) > 0.7  # and it is not far from right
+
+
 @pytest.mark.parametrize("way", ["sphere_trace", "raymarch", "cone_trace"])
 def test_rays_of_numbers_are_traced(way):
     import mitsuba as mi

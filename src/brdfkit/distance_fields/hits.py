@@ -41,7 +41,7 @@ def reattach(distance: Callable[[Any], Any], o: Any, d: Any, t: Any) -> Any:
     o, d : anything with x, y, z
         Where the rays begin, and their unit directions.
     t : array
-        Where they were found to meet the surface.
+        Where they were found to meet the surface; of other rays the derivatives mean nothing.
 
     Returns
     -------
