@@ -6,6 +6,7 @@ The pages are written to `docs/api/`, which git ignores. Names of them in signat
 import inspect
 import sys
 from pathlib import Path
+from types import FunctionType, ModuleType
 
 from docutils import nodes
 from numpy.typing import ArrayLike
@@ -21,7 +22,8 @@ PUBLIC = {name: getattr(brdfkit, name) for name in brdfkit.__all__ if not name.s
 KINDS = {
     "What you call": inspect.isfunction,
     "What goes in and comes out": lambda thing: isinstance(thing, type) and not is_error(thing),
-    "Collections": lambda thing: not isinstance(thing, type) and not inspect.isfunction(thing),
+    "Collections": lambda thing: not isinstance(thing, type | ModuleType | FunctionType),
+    "Rooms, with names of their own": inspect.ismodule,
     "Errors": lambda thing: isinstance(thing, type) and is_error(thing),
 }
 
@@ -63,7 +65,9 @@ def page(name):
     options = (
         "" if inspect.isfunction(thing) else "   :members:\n   :inherited-members: Exception\n"
     )
-    if not isinstance(thing, type) and not inspect.isfunction(thing):
+    if inspect.ismodule(thing):
+        directive, options = "automodule", "   :members:\n   :imported-members:\n"
+    elif not isinstance(thing, type) and not inspect.isfunction(thing):
         directive, options = "autodata", "   :no-value:\n"
     return f"{name}\n{'=' * len(name)}\n\n.. {directive}:: brdfkit.{name}\n{options}"
 

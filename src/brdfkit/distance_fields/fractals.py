@@ -32,7 +32,7 @@ class mandelbulb(Node):
     """The points c of which the steps w ↦ wⁿ + c, from w = c on, do not run away.
 
     wⁿ has the n-fold angles of w and the n-th power of its length. The estimate is
-    ½ |w| log |w| / s, where a step makes n |w|ⁿ⁻¹ s + 1 of s, and more towards the poles, where it
+    ½ ‖w‖ log ‖w‖ / s, where a step makes n ‖w‖ⁿ⁻¹ s + 1 of s, and more towards the poles, where it
     stretches azimuths by sin(nθ) / sin(θ) instead of 1. No bound of it is proven: `lipschitz` is
     what held at 10⁵ points, against their distances to a dense set of surface points, where 2.8 was
     needed. Between neighbours f itself may jump.
@@ -75,7 +75,7 @@ class mandelbulb(Node):
         return maximum(minimum(estimate, LARGEST), outer)
 
     def radius(self):
-        """Of the ball that holds all: from |c| = 2^(1/(n-1)) on, every step leads further away."""
+        """Of the ball that holds all: from ‖c‖ = 2^(1/(n-1)) on, every step leads further away."""
         return 2.0 ** (1.0 / (self.n - 1.0))
 
     def bounds(self, level=0.0):

@@ -21,8 +21,8 @@ class Node(Operators, Conversions):
     A node that is derived from it is a frozen dataclass with a method `distance(p)`, written with
     `functions.py`. Its name is the one that operators, files and parameters know it by.
 
-    Three things are tracked through every operation. `lipschitz` is a bound L: |f(x) - f(y)| is at
-    most L |x - y|, so that |f| / L never overstates the distance, and is a safe step.
+    Three things are tracked through every operation. `lipschitz` is a bound L: from x to y, f
+    changes by no more than L ‖x - y‖, so that f / L never overstates the distance: a safe step.
     `exact_outside` and `exact_inside` say that f is the distance there, not an estimate below it.
     `is_convex` says that f is a convex function, and so every {f ≤ c} a convex set.
     """
