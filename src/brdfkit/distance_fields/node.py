@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import fields, replace
-from typing import Any, ClassVar
+from typing import Any
 
 from numpy.typing import ArrayLike, NDArray
 
@@ -26,10 +26,6 @@ class Node(Operators, Conversions):
     `exact_outside` and `exact_inside` say that f is the distance there, not an estimate below it.
     `is_convex` says that f is a convex function, and so every {f ≤ c} a convex set.
     """
-
-    exact_outside: ClassVar[Any] = False
-    exact_inside: ClassVar[Any] = False
-    is_convex: ClassVar[Any] = False
 
     def __init_subclass__(cls):
         super().__init_subclass__()
@@ -62,6 +58,21 @@ class Node(Operators, Conversions):
         """The nodes of which this one is made."""
         found = getattr(self, "child", ())
         return found if isinstance(found, tuple) else (found,)
+
+    @property
+    def exact_outside(self) -> Any:
+        """True if f, where it is above 0, is the distance to the surface."""
+        return False
+
+    @property
+    def exact_inside(self) -> Any:
+        """True if -f, where f is below 0, is the distance to the surface."""
+        return False
+
+    @property
+    def is_convex(self) -> Any:
+        """True if f is a convex function, so that the solid is convex, too."""
+        return False
 
     @property
     def lipschitz(self) -> float:
