@@ -1,0 +1,22 @@
+"""What a field tells the shadows: its distance, its Lipschitz bound, and its convex pieces.
+
+A field is a function of points, or a node with the method `distance(p)`, which may say `lipschitz`
+and `is_convex`. One of the `kind` "union" that `is_sharp` has its pieces as `children`.
+"""
+
+
+def distance_of(field):
+    """The function of points whose value is the distance."""
+    return getattr(field, "distance", field)
+
+
+def lipschitz_of(field):
+    """How much the distance may change per unit of length: 1 of an exact one."""
+    return float(getattr(field, "lipschitz", 1.0))
+
+
+def pieces_of(field):
+    """The fields whose minimum this one is: itself, or what a union holds, within unions too."""
+    if getattr(field, "kind", None) == "union" and field.is_sharp:
+        return [piece for child in field.children for piece in pieces_of(child)]
+    return [field]

@@ -1,0 +1,75 @@
+"""`Shadow`, what every method returns; how a march becomes one, with derivatives.
+
+The march is not differentiated. By the envelope theorem the derivative of a minimum is that of the
+function at the place of the minimum, so f / ρ is evaluated there once more, with derivatives by
+whatever moves: the light, its radius, the surface point, the parameters of the field. The march
+stops looking within ε, so that the place is found more exactly first. Where nobody asks for
+derivatives, none of this is part of the kernel.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import drjit as dr
+
+from brdfkit.distance_fields.shadows.march import cone_pace, march
+from brdfkit.distance_fields.shadows.minimum import nearest_minimum, ratio
+from brdfkit.distance_fields.shadows.tau import tau
+
+DIRECTIONS = "A", "B"  # from the surface to the light, or from the light to the surface
+# Where the minimum may be about the smallest ratio of a march, over ε ρ: two steps or so
+NEAR, REFINEMENTS = 4.0, 20
+ASIDE = 1e-3  # from the minimum to its two sides, over ρ
+
+
+@dataclass(frozen=True)
+class Shadow:
+    """How much of a light is seen, and by which ratio that was told.
+
+    visible : Float, the share of the light that is seen, 0 to 1.
+    r : Float, the smallest ratio f / ρ that was found, at most 1.
+    t : Float, where on the axis it was found, from the surface point on.
+    evaluations : Float, how often the distance was evaluated.
+    """
+
+    visible: Any
+    r: Any
+    t: Any
+    evaluations: Any
+
+
+def single_ray(field, cone, rule, epsilon, direction, pace=cone_pace, active=True):
+    """The `Shadow` of one march by a `Rule`; rays that are not `active` are lit."""
+    forward = direction == "A"
+    walk = march(field, cone if forward else cone.reversed(), rule, epsilon, pace, active)
+    d = dr.detach(cone.d)
+    t = walk.t if forward else d - walk.t
+    r = with_derivatives(walk.R_T, field, cone, t, epsilon)
+    visible = dr.select(dr.isnan(r), r, tau(r))
+    return Shadow(visible, r, t, walk.evaluations)
+
+
+def with_derivatives(r, field, cone, t, epsilon):
+    """`r` with the derivatives of the minimum of f / ρ near t, where anything has derivatives.
+
+    At a crease of the field they jump. There the derivative of the minimum is the mean of those on
+    both sides, with the weights by which the slopes along the axis cancel.
+    """
+
+    def moving(t):
+        return ratio(field, cone, t / dr.detach(cone.d) * cone.d)  # a fixed share of the axis
+
+    if not dr.grad_enabled(moving(t)):
+        return r
+    with dr.suspend_grad():
+        fixed = cone.detached()
+        rho = fixed.radius(t)
+        t = nearest_minimum(field, cone, t, NEAR * epsilon * rho, REFINEMENTS)
+        before, left, right, behind = (
+            dr.clip(t + k * ASIDE * rho, 0, fixed.d) for k in (-2, -1, 1, 2)
+        )
+        falls = dr.maximum(ratio(field, fixed, before) - ratio(field, fixed, left), 0)
+        rises = dr.maximum(ratio(field, fixed, behind) - ratio(field, fixed, right), 0)
+        level = falls + rises == 0
+        weight = dr.select(level, 0.5, rises / dr.select(level, 1, falls + rises))
+    return dr.replace_grad(r, weight * moving(left) + (1 - weight) * moving(right))
