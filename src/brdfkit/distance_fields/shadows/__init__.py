@@ -1,7 +1,8 @@
 """Soft shadows of distance functions from a single ray; one file is one method.
 
 Each method takes a field, a `LightCone` and its own settings, and returns a `Shadow`; they are
-called by name from `soft_shadow`.
+called by name from `soft_shadow`, which checks arguments and result, and so runs the kernel. A
+renderer calls the methods themselves: nothing in them ends the recording of a kernel.
 """
 
 from brdfkit.distance_fields.shadows.cone import LightCone as LightCone
