@@ -59,6 +59,5 @@ def gradient_across(field, cone, t, middle):
     `middle` is the distance on the axis.
     """
     f, width = distance_of(field), STEP * cone.radius(t)
-    return (f(cone.across(t, STEP, 0)) - middle) / width, (
-        f(cone.across(t, 0, STEP)) - middle
-    ) / width
+    aside = f(cone.across(t, STEP, 0)), f(cone.across(t, 0, STEP))
+    return tuple((there - middle) / width for there in aside)

@@ -35,17 +35,22 @@ def split(field, cone, epsilon=1 / 20, direction="A", rings=1):
     for x, y in places:
         part = cell_cone(cone, x, y, 1 / sqrt(len(places)))
         found = single_ray(field, part, rule, epsilon, direction, convex_pace, partly)
-        visible = visible + tau(found.r / steepness(field, part, found)) / len(places)
+        visible = visible + tau(found.r / steepness(field, part, found, partly)) / len(places)
         evaluations = evaluations + found.evaluations + dr.select(partly, 2, 0)
     return Shadow(dr.select(partly, visible, whole.visible), whole.r, whole.t, evaluations)
 
 
-def steepness(field, cone, shadow):
-    """|∇f| across the axis, 1 of an edge, 0 within a wall; without derivatives."""
-    with dr.suspend_grad():
-        cone = cone.detached()
-        x, y = gradient_across(field, cone, shadow.t, shadow.r * cone.radius(shadow.t))
+def steepness(field, cone, shadow, active):
+    """|∇f| across the axis where `active`: 1 of an edge, 0 within a wall; without derivatives."""
+    cone = cone.detached()
+
+    def length(r, t):
+        x, y = gradient_across(field, cone, t, r * cone.radius(t))
         return dr.clip(dr.sqrt(x * x + y * y), 1 / STEEPEST, 1)
+
+    with dr.suspend_grad():
+        r, t = dr.detach(shadow.r), dr.detach(shadow.t)
+        return dr.if_stmt((r, t), active, length, lambda r, t: 0 * t + 1)
 
 
 def cell_cone(cone, x, y, width):
