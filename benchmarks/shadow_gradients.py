@@ -1,0 +1,64 @@
+"""Derivatives of soft shadows in five scenes, beside differences of them and of the truth."""
+
+import drjit as dr
+from drjit.llvm.ad import Array3f64 as P
+from drjit.llvm.ad import Float64 as Float
+
+from brdfkit.distance_fields.shadows import light_cone
+from brdfkit.distance_fields.shadows.linear import linear
+from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
+from brdfkit.distance_fields.shadows.split import split
+
+BALL, STEP, TRUE_STEP, TRUE_RAYS = 0.02, 0.005, 0.05, 20_000
+
+
+def sphere(p, centre, radius):
+    return dr.norm(p - centre) - radius
+
+
+def box(p, centre, half):
+    q = dr.abs(p - centre) - half
+    return dr.safe_sqrt(dr.squared_norm(dr.maximum(q, 0))) + dr.minimum(dr.max(q), 0)
+
+
+def still(p):
+    return sphere(p, P(0.35, 0, 2.5), 0.3)
+
+
+# Name → the parameter's value, and the light's centre, its radius and the field by the parameter
+SCENES = {
+    "light moves": (0.2, lambda x: (P(x, 0, 6), Float(1), still)),
+    "light grows": (1.0, lambda x: (P(0, 0, 6), x, still)),
+    "sphere grows": (
+        0.27,
+        lambda x: (P(0, 0, 6), Float(1), lambda p: sphere(p, P(0.35, 0, 2.5), x)),
+    ),
+    "box grows": (
+        3.1,
+        lambda x: (P(0, 0.1, 6), Float(1), lambda p: box(p, P(-3, 0, 3), P(x, 4, 0.6))),
+    ),
+    "sphere rises": (2.8, lambda x: (P(0, 0, 6), Float(2), lambda p: sphere(p, P(0.5, 0, x), 0.4))),
+}
+
+
+def measure():
+    """Name → the derivatives of both methods, and their finite differences."""
+    found = {}
+    for name, (at, scene) in SCENES.items():
+
+        def share(method, x, *settings, scene=scene):
+            light, radius, field = scene(Float(x))
+            return method(field, light_cone(P(0, 0, 0), light, radius, BALL), *settings).visible
+
+        def difference(method, step, *settings, at=at, share=share):
+            both = (share(method, at + s, *settings)[0] for s in (step, -step))
+            return float(next(both) - next(both)) / (2 * step)
+
+        found[name] = {"truth": difference(monte_carlo, TRUE_STEP, TRUE_RAYS, 1e-5)}
+        for method, epsilon in ((linear, 1 / 256), (split, 1 / 2000)):
+            x = Float(at)
+            dr.enable_grad(x)
+            dr.backward(share(method, x, 1 / 20))
+            found[name][method.__name__] = float(dr.grad(x)[0])
+            found[name][f"{method.__name__}, difference"] = difference(method, STEP, epsilon)
+    return found

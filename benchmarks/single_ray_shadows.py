@@ -1,0 +1,167 @@
+# ruff: noqa: I001, for brdfkit comes first: it chooses the LLVM that Dr.Jit loads
+"""Measures soft shadows from a single ray: their errors, evaluations and times, beside hard rays.
+
+    python benchmarks/single_ray_shadows.py          # minutes on two cores
+
+Each part is kept in `single_ray_shadows.json` as soon as it is measured, and the same command goes
+on from there; delete the file to measure anew. It then writes the page `single_ray_shadows.md` and
+its picture. Times are compared within a part, where methods take turns; they are of all threads.
+"""
+
+import json
+import time
+from functools import partial
+from pathlib import Path
+
+import brdfkit  # noqa: F401
+import drjit as dr
+import ground_scenes
+import numpy as np
+import occluders
+import shadow_gradients
+import single_ray_shadows_page as page
+
+from brdfkit.distance_fields.shadows.aaltonen import aaltonen
+from brdfkit.distance_fields.shadows.base import base
+from brdfkit.distance_fields.shadows.convex import convex
+from brdfkit.distance_fields.shadows.dense import dense
+from brdfkit.distance_fields.shadows.discrete import discrete
+from brdfkit.distance_fields.shadows.linear import linear
+from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
+from brdfkit.distance_fields.shadows.quilez import quilez
+from brdfkit.distance_fields.shadows.split import split
+from brdfkit.distance_fields.shadows.tau import tau
+
+RESULTS = Path(__file__).with_suffix(".json")
+LANES, TRUE_RAYS, HIT = 4096, 2048, 1e-4  # random scenes of a kind, and rays of the truth
+SIZE, FRAME_RAYS = 160, 512  # pixels along a side of a frame, and rays of its truth
+RAYS = 1, 2, 4, 8, 16, 32, 64, 128
+EPSILONS = 1 / 10, 1 / 20, 1 / 30, 1 / 256
+MARCHES = {m.__name__: m for m in (base, linear, discrete, convex)}
+REPEATS = 8
+
+
+def methods():
+    """Label → the function of a field and a cone."""
+    found = {f"{n} 1/20": partial(m, epsilon=1 / 20) for n, m in MARCHES.items()}
+    found |= {"linear 1/10": partial(linear, epsilon=1 / 10)}
+    found |= {"linear 1/256": partial(linear, epsilon=1 / 256)}
+    found |= {f"split 1/{n}": partial(split, epsilon=1 / n) for n in (5, 10, 20)}
+    found |= {"split, 19 cones, 1/10": partial(split, epsilon=1 / 10, rings=2)}
+    found |= {"quilez": quilez, "aaltonen": aaltonen}
+    return found | {f"monte_carlo {n}": partial(monte_carlo, rays=n) for n in RAYS}
+
+
+def timed(calls):
+    """Label → (values, evaluations, seconds) of calls that take turns; the least of some times."""
+    found = {label: [None, None, np.inf] for label in calls}
+    for turn in range(1 + REPEATS):  # the first one compiles
+        for label, call in calls.items():
+            start = time.process_time()
+            shadow = call()
+            dr.eval(shadow.visible, shadow.evaluations)
+            dr.sync_thread()
+            seconds = time.process_time() - start
+            found[label][:2] = np.array(shadow.visible), float(np.mean(shadow.evaluations))
+            found[label][2] = min(found[label][2], seconds if turn else np.inf)
+    return found
+
+
+def errors(values, truth):
+    return {
+        "rmse": float(np.sqrt(np.mean((values - truth) ** 2))),
+        "bias": float(np.mean(values - truth)),
+    }
+
+
+def compare(field, cone, truth, calls=None):
+    """Errors, evaluations and times of all methods in these cones."""
+    calls = {label: partial(m, field, cone) for label, m in (calls or methods()).items()}
+    rows = {}
+    for label, (values, evaluations, seconds) in timed(calls).items():
+        rows[label] = {**errors(values, truth), "evaluations": evaluations, "seconds": seconds}
+    return rows
+
+
+def measure_occluder(kind):
+    """A kind of occluder: all methods against the true light, and against τ(r_min)."""
+    lanes = occluders.Lanes(LANES, seed=0)
+    field = kind(lanes)
+    if kind is occluders.half_plane:
+        truth = np.array(tau(dr.llvm.Float(lanes.edge)))  # in closed form
+    else:
+        truth = np.array(monte_carlo(field, lanes.cone, TRUE_RAYS, HIT).visible)
+    model = np.array(dense(field, lanes.cone).visible)
+    rows = compare(field, lanes.cone, truth)
+    for name, march in MARCHES.items():
+        from_model = 20 * (np.array(march(field, lanes.cone, 1 / 20).visible) - model)
+        rows[f"{name} 1/20"]["from model"] = [float(from_model.min()), float(from_model.max())]
+    rows["τ(r_min)"] = errors(model, truth) | {"evaluations": None, "seconds": None}
+    return rows
+
+
+def measure_frame(scene, radius):
+    """A frame of shadows on the ground: all methods against the true light."""
+    field, cone = scene(), ground_scenes.ground(SIZE, radius)
+    return compare(field, cone, np.array(monte_carlo(field, cone, FRAME_RAYS, HIT).visible))
+
+
+def measure_order(scene):
+    """The marches of both directions and every ε in a frame."""
+    field, cone = scene(), ground_scenes.ground(SIZE, 1.0)
+    calls = {
+        f"{name} 1/{round(1 / e)} {direction}": partial(march, field, cone, e, direction)
+        for name, march in MARCHES.items()
+        for e in EPSILONS
+        for direction in "AB"
+    }
+    return {k: {"evaluations": n, "seconds": s} for k, (_, n, s) in timed(calls).items()}
+
+
+def measure_epsilons(radius):
+    """The share of a frame where `linear` is more than 1/100 from τ(r_min), by 1/ε."""
+    field, cone = ground_scenes.complicated(), ground_scenes.ground(SIZE, radius)
+    model = np.array(dense(field, cone, 4000).visible)
+    found = {}
+    for n in (2, 4, 8, 16, 32, 64, 128, 256):
+        error = np.abs(np.array(linear(field, cone, 1 / n).visible) - model)
+        found[str(n)] = float(np.mean(error > 0.01))
+    return found
+
+
+def parts():
+    """Name → what measures it."""
+    found = {f"occluder {k.__name__}": partial(measure_occluder, k) for k in occluders.KINDS}
+    scenes = ground_scenes.cube, ground_scenes.simple, ground_scenes.complicated
+    for scene in scenes:
+        for radius in (0.2, 1.0):
+            found[f"frame {scene.__name__} {radius}"] = partial(measure_frame, scene, radius)
+    for scene in scenes[1:]:
+        found[f"order {scene.__name__}"] = partial(measure_order, scene)
+    for radius in (0.25, 0.5, 1.0, 2.0, 4.0):
+        found[f"epsilon {radius}"] = partial(measure_epsilons, radius)
+    return found | {"gradients": shadow_gradients.measure}
+
+
+def main():
+    """Measure what is not measured yet, and write the page."""
+    results = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
+    for name, measure in parts().items():
+        if name not in results:
+            print(name, flush=True)
+            results[name] = rounded(measure())
+            RESULTS.write_text(json.dumps(results, indent=1, ensure_ascii=False) + "\n")
+    page.write(results)
+
+
+def rounded(value):
+    """Numbers with four digits, in dictionaries and lists."""
+    if isinstance(value, dict):
+        return {k: rounded(v) for k, v in value.items()}
+    if isinstance(value, list):
+        return [rounded(v) for v in value]
+    return float(f"{value:.4g}") if isinstance(value, float) else value
+
+
+if __name__ == "__main__":
+    main()

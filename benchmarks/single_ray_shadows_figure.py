@@ -1,0 +1,70 @@
+"""The figure of `single_ray_shadows.py`: errors over evaluations, and the shadows of a frame."""
+
+import ground_scenes
+import numpy as np
+
+from brdfkit.distance_fields.shadows.linear import linear
+from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
+from brdfkit.distance_fields.shadows.quilez import quilez
+from brdfkit.distance_fields.shadows.split import split
+from brdfkit.reproducing.drawing import COLOURS, figure, tidy
+
+FAMILIES = "monte_carlo", "linear", "base", "discrete", "convex", "split", "quilez", "aaltonen"
+SIZE, RADIUS = 200, 1.0
+PICTURES = {
+    "256 rays": lambda field, cone: monte_carlo(field, cone, 256),
+    "split, ε = 1/10": lambda field, cone: split(field, cone, 1 / 10),
+    "linear, ε = 1/20": linear,
+    "quilez": quilez,
+}
+
+
+def draw(results):
+    """The figure."""
+    page = figure(11, 8.2)
+    above, below = page.subfigures(2, 1, height_ratios=(1, 1.15))
+    draw_errors(above, [v for k, v in results.items() if k.startswith("occluder")])
+    draw_shadows(below)
+    return page
+
+
+def draw_errors(part, kinds):
+    """Means over the kinds of occluders: errors over evaluations, by families of methods."""
+    axes = part.subplots()
+    labels = [label for label in kinds[0] if label != "τ(r_min)"]
+    for family, colour in zip(FAMILIES, COLOURS, strict=True):
+        own = [label for label in labels if label.startswith(family)]
+        points = [
+            [np.exp(np.mean(np.log([k[label][key] for k in kinds[1:]]))) for label in own]
+            for key in ("evaluations", "rmse")
+        ]
+        order = np.argsort(points[0])
+        points = [np.array(p)[order] for p in points]
+        axes.plot(*points, "o-", color=colour, label=family, ms=5)
+        if family == "split":
+            axes.annotate("19 cones", [p[-1] for p in points], (8, 0), textcoords="offset points")
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlabel("evaluations of the distance per point")
+    tidy(
+        axes,
+        "Eight kinds of occluders that cover a part of the light: geometric means",
+        "error (RMS)",
+    )
+    axes.legend(ncols=2, frameon=False)
+
+
+def draw_shadows(part):
+    """The ground of the simple scene from above, and how far it is from the first picture."""
+    field, cone = ground_scenes.simple(), ground_scenes.ground(SIZE, RADIUS, half=2.6)
+    pictures = {name: method(field, cone).visible for name, method in PICTURES.items()}
+    pictures = {name: np.array(p).reshape(SIZE, SIZE) for name, p in pictures.items()}
+    first = next(iter(pictures.values()))
+    for axes, (name, picture) in zip(part.subplots(2, 4).T, pictures.items(), strict=True):
+        axes[0].imshow(picture, cmap="gray", vmin=0, vmax=1, origin="lower")
+        axes[0].set_title(name, size=10)
+        axes[1].imshow(picture - first, cmap="RdBu", vmin=-0.3, vmax=0.3, origin="lower")
+        for a in axes:
+            a.set_axis_off()
+    axes[1].set_title("")
+    part.text(0.01, 0.02, "below: difference from the first, ±0.3; red is too dark", size=9)

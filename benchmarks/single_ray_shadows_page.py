@@ -1,0 +1,202 @@
+"""The page of `single_ray_shadows.py`: its tables beside those of the thesis."""
+
+from pathlib import Path
+
+import numpy as np
+import single_ray_shadows_figure as figure
+
+PAGE = Path(__file__).with_suffix("").with_name("single_ray_shadows.md")
+SHOWN = (
+    "linear 1/20", "base 1/20", "discrete 1/20", "convex 1/20", "split 1/5", "split 1/10",
+    "split, 19 cones, 1/10", "quilez", "aaltonen",
+    "monte_carlo 4", "monte_carlo 16", "monte_carlo 64",
+)  # fmt: skip
+MARCHES = "base", "linear", "discrete", "convex"
+# Tables 6.1 and 6.2 of the thesis [ms of a frame], columns as MARCHES, and a frame without shadows
+PRINTED = {
+    "simple": (0.7005, {
+        "1/10 A": (3.2398, 1.4602, 2.1093, 1.1499), "1/10 B": (5.0921, 1.1903, 1.7534, 1.0872),
+        "1/20 A": (4.9836, 1.8421, 3.1535, 1.5558), "1/20 B": (5.5431, 1.5759, 2.7334, 1.4943),
+        "1/30 A": (5.8127, 2.2051, 4.1393, 1.9534), "1/30 B": (5.7696, 1.9465, 3.7289, 1.8854),
+        "1/256 A": (34.153, 9.2220, 25.495, 10.233), "1/256 B": (37.060, 9.6777, 25.546, 10.547),
+    }),
+    "complicated": (18.686, {
+        "1/10 A": (29.429, 27.769, 32.197, 32.188), "1/10 B": (26.889, 25.226, 31.966, 31.870),
+        "1/20 A": (33.607, 30.304, 40.233, 40.203), "1/20 B": (31.387, 27.717, 40.290, 40.309),
+        "1/30 A": (38.011, 32.760, 47.382, 47.364), "1/30 B": (36.018, 30.240, 48.028, 47.961),
+        "1/256 A": (136.24, 90.70, 171.89, 171.47), "1/256 B": (143.22, 92.02, 182.56, 182.48),
+    }),
+}  # fmt: skip
+RIGHT = {"0.25": 16, "0.5": 16, "1.0": 32, "2.0": 32, "4.0": 64}  # section 6.3, by light radius
+FEW = 1e-3  # of the pixels may be off by more than 1/100
+
+INTRODUCTION = """# Soft shadows from a single ray: how large their errors are
+
+Made by `python benchmarks/single_ray_shadows.py`. Errors are root mean squares of the share of the
+light that is seen, from the light that truly arrives: 2048 rays (512 in frames), or the closed form
+of a half-plane. Times are ratios within one run. References are those of docs/references.md:
+[Bálint et al. 2019], whose errors were not published, [Quílez 2010] and [Aaltonen 2018].
+
+![Errors over evaluations, and shadows on a ground](single_ray_shadows.png)
+"""
+OCCLUDERS = """## What came out
+
+- The error is the model's, one straight edge, and not the march's: ε = 1/10 and 1/256 have the
+  same. Small and pointed occluders are too dark, several and thin ones leak light.
+- `split`, seven narrower cones, divides it by 3 to 8 for two to three times the evaluations, which
+  are a third to a seventh of those of rays with the same error; of thin walls alone they are as
+  many. Two straight edges at the two smallest minima of f/ρ, and sums over the section at the
+  minimum, were tried too, and were worse on most kinds at equal cost.
+- `quilez` and `aaltonen` err as much as one random ray does, always towards dark.
+- Derivatives are exact for the model; where it is far from the truth they may have the wrong sign,
+  as that by the radius of a light behind a small sphere. Those of `split` have the right one.
+
+## Occluders
+
+4096 random cones each, with a light at 6 whose radius is 0.2, 1 or 2; an occluder covers a part of
+nearly every one of them (`occluders.py`). The row τ(r_min) is what the marches approach: its error
+is that of the model, a single straight edge. Each cell: error, and in brackets the mean number of
+evaluations of the distance.
+"""
+MODEL = """## Against the model
+
+The smallest and largest difference from τ(r_min), over ε = 1/20: 0 to 1 is claimed, for `discrete`
+-1 to 1.
+"""
+FRAMES = """## Frames
+
+Shadows on the ground under a cube, a simple scene (three spheres, a box) and a complicated one (25
+objects), by lights of two radii (`ground_scenes.py`), most of it fully lit. Each cell: error, and
+in brackets the time over that of one hard shadow ray of the same field.
+"""
+EQUAL = """## At equal error
+
+How many times as long as the method rays take that have its error (interpolated between 1, 2, 4 ...
+128 rays).
+"""
+ORDER = """## The order of the variants
+
+Evaluations and time over those of `linear` with the same ε and direction; printed: times of the
+thesis's shadows alone, on a GPU, its tables 6.1 and 6.2 less the frame without shadows. Below, the
+evaluations of `linear` in direction B over those in A.
+"""
+EPSILON = """## The right ε
+
+The largest ε = 1/2, 1/4 ... at which less than 1 of 1000 pixels of the complicated frame is more
+than 1/100 from τ(r_min), by the radius of the light. The thesis judged pictures by eye.
+"""
+GRADIENTS = """## Derivatives
+
+By Dr.Jit (ε = 1/20), by finite differences of the same method (ε = 1/256, 1/2000), and by
+differences of the true light over a wider step.
+"""
+
+
+def write(results):
+    """Write the page and its figure."""
+    parts = [
+        INTRODUCTION,
+        OCCLUDERS, occluders(results), MODEL, model(results), FRAMES, frames(results),
+        EQUAL, equal(results), ORDER, order(results), EPSILON, epsilons(results),
+        GRADIENTS, gradients(results),
+    ]  # fmt: skip
+    PAGE.write_text("\n".join(parts), encoding="utf-8")
+    figure.draw(results).savefig(PAGE.with_suffix(".png"), dpi=90)
+
+
+def table(head, rows):
+    """Markdown of cells that are text."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "".join(f"| {' | '.join(map(str, line))} |\n" for line in lines)
+
+
+def named(results, kind):
+    """The parts of a kind by the rest of their names."""
+    return {name.split(" ", 1)[1]: p for name, p in results.items() if name.startswith(kind + " ")}
+
+
+def occluders(results):
+    kinds = named(results, "occluder")
+
+    def cell(row):
+        n = row["evaluations"]
+        return f"{row['rmse']:.3f}" + (f" ({n:.0f})" if n else "")
+
+    rows = [[label, *(cell(k[label]) for k in kinds.values())] for label in (*SHOWN, "τ(r_min)")]
+    return table(["", *(name.replace("_", " ") for name in kinds)], rows)
+
+
+def model(results):
+    kinds = named(results, "occluder")
+
+    def cell(row):
+        return "{:.2f} to {:.2f}".format(*(v + 0.0 for v in row["from model"]))
+
+    rows = [[m, *(cell(k[f"{m} 1/20"]) for k in kinds.values())] for m in MARCHES]
+    return table(["", *(name.replace("_", " ") for name in kinds)], rows)
+
+
+def frames(results):
+    found = named(results, "frame")
+
+    def cell(rows, label):
+        times = rows[label]["seconds"] / rows["monte_carlo 1"]["seconds"]
+        return f"{rows[label]['rmse']:.4f} ({times:.1f})"
+
+    rows = [[label, *(cell(f, label) for f in found.values())] for label in SHOWN]
+    return table(["", *found], rows)
+
+
+def equal(results):
+    found = named(results, "frame") | named(results, "occluder")
+    shown = [label for label in SHOWN if not label.startswith(("monte", "quilez", "aaltonen"))]
+    rows = [
+        [n.replace("_", " "), *(times_faster(f, label) for label in shown)]
+        for n, f in found.items()
+    ]
+    return table(["", *shown], rows)
+
+
+def times_faster(rows, label):
+    """The time of rays with the error of this method, over its time."""
+    rays = [row for name, row in rows.items() if name.startswith("monte_carlo")]
+    error, seconds = (np.log([row[key] for row in rays]) for key in ("rmse", "seconds"))
+    own = rows[label]
+    at = np.interp(-np.log(own["rmse"]), -error, seconds)
+    beyond = "> " if np.log(own["rmse"]) < error.min() else ""
+    return f"{beyond}{np.exp(at) / own['seconds']:.1f}"
+
+
+def order(results):
+    rows, directions = [], []
+    for scene, measured in named(results, "order").items():
+        bare, printed = PRINTED[scene]
+        for setting, times in printed.items():
+            linear = measured[f"linear {setting}"]
+            for k, march in enumerate(MARCHES):
+                if march == "linear":
+                    continue
+                own = measured[f"{march} {setting}"]
+                ratios = [own[key] / linear[key] for key in ("evaluations", "seconds")]
+                ratios.append((times[k] - bare) / (times[1] - bare))
+                rows.append([scene, setting, march, *(f"{r:.2f}" for r in ratios)])
+            if setting.endswith("A"):
+                other = measured[f"linear {setting[:-1]}B"]["evaluations"] / linear["evaluations"]
+                ours_and_theirs = other, (printed[setting[:-1] + "B"][1] - bare) / (times[1] - bare)
+                directions.append([scene, setting[:-2], *(f"{r:.2f}" for r in ours_and_theirs)])
+    head = ["scene", "ε, direction", "", "evaluations", "time", "printed"]
+    return table(head, rows) + "\n" + table(["scene", "ε", "B over A", "printed"], directions)
+
+
+def epsilons(results):
+    rows = []
+    for radius, shares in named(results, "epsilon").items():
+        right = min((int(n) for n, share in shares.items() if share < FEW), default=None)
+        rows.append([radius, f"1/{right}", f"1/{RIGHT[radius]}"])
+    return table(["radius", "ours", "printed"], rows)
+
+
+def gradients(results):
+    columns = ["linear", "linear, difference", "split", "split, difference", "truth"]
+    found = results["gradients"]
+    return table(["", *columns], [[n, *(f"{g[c]:.4f}" for c in columns)] for n, g in found.items()])
