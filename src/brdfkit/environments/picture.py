@@ -6,7 +6,7 @@ from brdfkit.colours import luminance, to_srgb
 from brdfkit.environments.spread import directions, shares, solid_angles
 from brdfkit.lighting import environment_tree
 from brdfkit.lighting.environment_map import cell_power
-from brdfkit.lighting.map_samplers.blocks import DISTRIBUTIONS
+from brdfkit.lighting.map_samplers.blocks import LAWS
 from brdfkit.plotting import Plot
 
 SIZE = 10.4, 9.4  # inches
@@ -14,7 +14,7 @@ MIDDLE_GREY = 0.18  # what the geometric mean of the map is shown as
 BLOCKS = 4096  # as many as `kdtree_envmap` makes by default ...
 DRAWN = 256  # ... of which the first are drawn
 COLOUR = "#0072b2"
-LAWS = {"hyperbolic": "#d55e00", "steps": "#009e73"}  # by which `kdtree_envmap` may choose blocks
+LAW_COLOURS = {"hyperbolic": "#d55e00", "steps": "#009e73"}
 SIDES = ("−z", "+x", "+z", "−x", "−z")  # along the horizon
 
 
@@ -72,8 +72,8 @@ def _draw_probabilities(axes, power):
     share, rank = light / light.sum(), np.arange(len(light))
     lit = share > 0
     axes.plot(rank[lit] + 1, share[lit], color=COLOUR, label="the blocks' own")
-    for name, colour in LAWS.items():
-        fitted = DISTRIBUTIONS[name].fit(share).probability(rank)
+    for name, colour in LAW_COLOURS.items():
+        fitted = LAWS[name].fit(share).probability(rank)
         axes.plot(rank[lit] + 1, fitted[lit], color=colour, linewidth=1, label=f"{name} law")
     axes.set(yscale="log", ylim=(share[lit].min() / 2, min(1, 3 * share[0])))
     axes.legend(frameon=False)
