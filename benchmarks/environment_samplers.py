@@ -66,20 +66,20 @@ TAIL = """
   of every cell besides, which is one channel of the map; the thesis puts it in the fourth channel
   of a texture, which lies idle. Where light is dense, the lists of `lookup=grid` exceed the
   hundredth.
-- **On probes blocks are as quiet as `envmap`.** On the sky they are not, nor are `cdf` and `alias`:
-  its sun is three pixels wide, and a density that is constant between pixels does not follow the
-  slope of the light there. Only `mip` and `envmap` do.
-- The thesis's criterion, the squared error, cuts bright places only. The squared error over the
-  mean, the default, is what a block adds to the variance.
+- **On probes blocks are nearly as quiet as `envmap`.** On the sky they are not, nor are `cdf` and
+  `alias`: its sun is three pixels wide, and a density that is constant between pixels does not
+  follow the slope of the light there. Only `mip` and `envmap` do.
+- The thesis's criterion, the squared error, shows no difference in these pictures, where surfaces
+  are sampled too. Of lights alone, the squared error over the mean, the default, is what a block
+  adds to the variance, and less noisy on large uneven maps.
 - The hyperbola's noise depends on the map; the eight steps are nearer on most.
-- **Stratified numbers decide more than anything else**, where the light is broad: what keeps
-  neighbours together (`envmap`, `mip`, `cdf`, the walk down the tree) gains several times over;
-  blocks sorted by probability, as closed forms need them, and alias tables give most of it away.
-  That is the price of O(1), which the thesis does not name.
-- Compensation halves the noise where the light is broad, at no cost. It is wrong where lights alone
-  are sampled, and so it has to be asked for.
-- **Short of its bar: the build.** In NumPy the tree takes ten times as long as a CDF, of which its
-  summed-area tables alone take three.
+- **Stratified numbers tell samplers apart**: what keeps neighbours together (`envmap`, `mip`,
+  `cdf`, the walk down the tree) gains more by them than blocks sorted by probability, as closed forms need
+  them, and alias tables. That is the price of O(1), which the thesis does not name.
+- Compensation lowers the noise where the light is broad, at no cost, and not where a few lamps are
+  all. It is wrong where lights alone are sampled, and so it has to be asked for.
+- **Short of its bar: the build.** In NumPy the tree takes ten times as long as a CDF and more, of
+  which its summed-area tables alone take three. Small maps have as many blocks, and less to share.
 """
 
 
