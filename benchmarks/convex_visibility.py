@@ -2,8 +2,9 @@
 
     python benchmarks/convex_visibility.py MODELS RESULTS
 
-MODELS is a folder of OBJ meshes, plain or compressed; RESULTS a folder for results.json and
-results.md. What results.json has is not measured again: a run that was stopped goes on.
+MODELS is a folder of OBJ meshes, plain or compressed; RESULTS a folder for results.json, results.md
+and frames.png, an object that moves, shaded by its parts (above) and its triangles (below). What
+results.json has is not measured again: a run that was stopped goes on.
 
 C7 to C10 are the claims of [Ergun 2015] on convex visibility. Pictures of one mesh are rendered by
 the integrator `convex_direct` with the same samples, so that they differ by their shadows alone.
@@ -12,6 +13,7 @@ of values as they are shown (sRGB, clipped at the 95th percentile of the picture
 """
 
 import json
+import math
 import sys
 import time
 from pathlib import Path
@@ -31,7 +33,7 @@ STUDY = "spot"  # the mesh of the sweeps
 CONCAVITIES = 0.02, 0.03, 0.05, 0.1, 0.2, 0.4
 RESOLUTIONS = 8, 16, 32, 64, 128, 256
 CLEARANCES = 0.0, 0.005, 0.01, 0.02, 0.04
-MOVES = 20
+MOVES, FRAMES = 20, 6
 
 
 def main(models, results):
@@ -52,6 +54,7 @@ def main(models, results):
         for c in CLEARANCES:
             done.measure(f"clearance {c:g}", lambda c=c: of_settings(study, clearance=c))
         done.measure("moves", lambda: of_moves(study))
+        done.measure("frames", lambda: frames(study, Path(results) / "frames.png"))
     with write_safely(Path(results) / "results.md") as beside:
         beside.write_text(page(done.values), encoding="utf-8")
 
@@ -120,6 +123,32 @@ def of_moves(path):
         "triangles": median_seconds(update(mesh, "mesh.vertex_positions", mi.Float), moved),
         "instance": median_seconds(update(instance, "instance.to_world", mi.Transform4f), turns),
     }
+
+
+def frames(path, file):
+    """Pictures of a mesh that jumps and turns; the PSNR of each against shadows of triangles."""
+    import mitsuba as mi
+    from PIL import Image
+
+    points, faces = mesh_of(path)
+    study, occluders = Study(points, faces), Occluders({"mesh": decompose(points, faces)})
+    parameters = mi.traverse(study.scene)
+    at, strip, errors = mi.ScalarTransform4f, [], []
+    for phase in np.arange(FRAMES) / FRAMES:
+        turn = at().translate([0, 0.6 * math.sin(math.pi * phase), 0])
+        matrix = np.array(turn.rotate([0, 1, 0], 360 * phase).matrix)
+        moved = points @ matrix[:3, :3].T + matrix[:3, 3]
+        parameters["mesh.vertex_positions"] = mi.Float(moved.astype(np.float32).ravel())
+        parameters.update()  # for what the camera sees
+        occluders.move("mesh", matrix)
+        pair = [
+            study.render(*by, SPP)[0] for by in ((occluders, study.ground), (None, study.scene))
+        ]
+        errors.append(psnr(pair[1], pair[0]))
+        strip.append(np.concatenate(pair))
+    shown = srgb(np.clip(np.concatenate(strip, axis=1) / np.percentile(strip, 95), 0, 1))
+    Image.fromarray((255 * shown).astype(np.uint8)).save(file)
+    return {"psnr": errors}
 
 
 def update(scene, key, kind):
