@@ -49,6 +49,10 @@ def main(models, results):
         study = meshes[STUDY]
         for c in CONCAVITIES:
             done.measure(f"concavity {c:g}", lambda c=c: of_settings(study, concavity=c))
+            done.measure(
+                f"without-clearance {c:g}",
+                lambda c=c: of_settings(study, concavity=c, clearance=0.0),
+            )
         for r in RESOLUTIONS:
             done.measure(f"resolution {r}", lambda r=r: of_settings(study, resolution=r))
         for c in CLEARANCES:
@@ -327,7 +331,7 @@ def page(values):
             lines.append("| " + " | ".join(map(str, cells)) + " |")
         elif name.startswith("mesh "):
             lines.append(f"| {name[5:]} | encloses no volume: has no parts | | | | | | |")
-    for sweep in ("concavity", "resolution", "clearance"):
+    for sweep in ("concavity", "without-clearance", "resolution", "clearance"):
         lines += ["", f"| {sweep} ({STUDY}) | parts | PSNR | shown | time / triangles |"]
         lines += ["| --- | --- | --- | --- | --- |"]
         lines += [
