@@ -6,18 +6,18 @@ The light is filtered once, at `resolution` texels across a hemisphere. Then eve
 lobe is one look-up, and a pixel takes some of them, the same ones everywhere:
 
     L(o) ≈ π c E + Σ (f(i, o) - c) cosθ / (N p(i)) · L about i        filtered_sampling
-    L(o) ≈ d(o) E + Σ w_k(o) · L about μ_k(o)                         gmm, kde, warped
+    L(o) ≈ d(o) E + Σ w_k(o) · L about μ_k(o)                         the other methods
 
 E is the irradiance. `filtered_sampling` takes N = `samples` directions i of the BSDF; the fewer of
-them, by their density p, the wider the lobe about each [Colbert & Křivánek 2007]. It takes any BSDF,
-at once. The others fit spherical Gaussians to each BSDF first, which takes seconds, and interpolate
-them between views [Ergun 2015, chapter 8]: `gmm` a mixture of `lobes`, the most exact; `warped` one
-lobe, `kde` as many sharper ones in its place. They see no textures and no mirrors, and run in RGB
-and mono variants.
+them, by their density p, the wider the lobe about each [Colbert & Křivánek 2007]. It takes any
+BSDF at once. The others fit spherical Gaussians to each BSDF first, which takes seconds, and
+interpolate them between views [Ergun 2015, chapter 8]: `gmm` a mixture of `lobes`, the most exact;
+`warped` one lobe, `kde` and `elliptic` sharper ones in its place, spread over a circle or an
+ellipse. They see no textures and no mirrors, and run in RGB and mono variants.
 
-`filter` = "lobes": levels of the light that are convolved with von Mises-Fisher lobes; "mips": boxes
-of texels, as graphics hardware has them, by the rule of [Ergun 2015, eq. 8.9]. The scene has one
-environment, of any kind, and no other lights. Surfaces hide nothing: shadows, and light between
+`filter` = "lobes": levels of the light that are convolved with von Mises-Fisher lobes; "mips":
+boxes of texels, as graphics hardware has them, by the rule of [Ergun 2015, eq. 8.9]. The scene has
+one environment, of any kind, and no other lights. Surfaces hide nothing: shadows, and light between
 surfaces, are missing.
 """
 
@@ -28,12 +28,13 @@ from brdfkit.host.declared import count, declared, text
 from brdfkit.lighting.filtered_light import FILTERS, FilteredLight
 from brdfkit.lighting.filtered_sampling import FilteredSampling
 from brdfkit.lighting.lobe_light import LobeLight
+from brdfkit.lighting.spherical_gaussians.lobes_of_material import METHODS as LOBES
 
-METHODS = "filtered_sampling", "gmm", "kde", "warped"
+METHODS = "filtered_sampling", *LOBES
 PARAMETERS = {
     "method": text(METHODS[0], ", ".join(METHODS)),
     "samples": count(64, (1, 65_536), "directions per pixel, of filtered_sampling"),
-    "lobes": count(32, (1, 1024), "lobes per view, of gmm and kde"),
+    "lobes": count(32, (1, 1024), "lobes per view, of gmm, kde and elliptic"),
     "filter": text("lobes", "lobes, or mips as of graphics hardware"),
     "resolution": count(512, (32, 1024), "texels across a hemisphere of the light"),
 }

@@ -57,8 +57,8 @@ def preview(
         What is seen: a scene of `render`, without its ground and its own light, or a mesh (.obj,
         .ply).
     method : str, default "filtered_sampling"
-        How light and material meet, a method of the integrator `filtered_environment`. The others,
-        "gmm", "kde" and "warped", fit lobes to a material first.
+        How light and material meet, a method of the integrator `filtered_environment`: "gmm" is
+        more exact, and fits lobes to a material first, which takes seconds.
     spp : int, default 1
         Rays per pixel: 4 make edges smooth, in about four times the time.
 
