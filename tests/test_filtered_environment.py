@@ -173,6 +173,17 @@ def test_pictures_are_those_of_path_tracing(llvm_variant, bsdf, settings, expect
     assert psnr(truth, picture) > expected
 
 
+@pytest.mark.parametrize("method", ["filtered_sampling", "warped"])
+def test_both_sides_of_a_material_are_alike(llvm_variant, method):
+    """As those of meshes, whose normals may point inwards."""
+    mi = llvm_variant
+    bsdf, light = {"type": "twosided", "inside": WARD}, example("kdtree_envmap")
+    outside = shown(scene(mi, ours(method=method), bsdf, light))
+    ball = {"type": "sphere", "bsdf": bsdf, "flip_normals": True}
+    inside = shown(scene(mi, ours(method=method), bsdf, light, ball=ball))
+    assert psnr(outside, inside) > 38  # directions are mirrored
+
+
 def test_it_follows_the_light_and_the_material(llvm_variant):
     """What an update changes is seen in the next picture."""
     mi = llvm_variant

@@ -41,14 +41,14 @@ class FilteredSampling:
         total = mi.UnpolarizedSpectrum(0)
         if apart:  # the directions are those of the other components
             here = active & is_one_of(si.bsdf(), apart)
-            c = value(si, [0, 0, 1], here, matte)
+            c = value(si, mi.Vector3f(0, 0, 1), here, matte)
             found = even(c, si, light) + self.uneven(si, light, here, rest)
             total = dr.select(here, found, total)
         if len(apart) < len(bsdfs):
             here = active & ~is_one_of(si.bsdf(), apart)
             c = mi.UnpolarizedSpectrum(np.inf)
             for wo in SPREAD_OUT.tolist():
-                c = dr.minimum(c, value(si, wo, here, matte | rest) / wo[2])
+                c = dr.minimum(c, value(si, mi.Vector3f(wo), here, matte | rest) / wo[2])
             found = even(c, si, light) + self.uneven(si, light, here, matte | rest, c)
             total = dr.select(here, dr.maximum(found, 0), total)
         return total
@@ -70,7 +70,8 @@ class FilteredSampling:
             kappa = dr.select(mirror, dr.inf, OVERLAP * 2 * dr.pi * density)
             seen = spectrum(light.over_lobe(si.to_world(drawn.wo), kappa), si)
             weight = mi.unpolarized_spectrum(weight) / self.count
-            weight -= c * dr.select(mirror, 0, dr.maximum(drawn.wo.z, 0) / density)
+            cos = dr.maximum(drawn.wo.z * dr.sign(si.wi.z), 0)
+            weight -= c * dr.select(mirror, 0, cos / density)
             return i + 1, total + dr.select(valid, weight * seen, 0)
 
         _, total = dr.while_loop(
@@ -86,17 +87,19 @@ def even(c, si, light):
     import drjit as dr
     import mitsuba as mi
 
-    received = light.irradiance(si.to_world(mi.Vector3f(0, 0, 1)))
+    received = light.irradiance(si.to_world(mi.Vector3f(0, 0, dr.sign(si.wi.z))))
     return dr.pi * c * emission_of_rgb()(received, si)
 
 
 def value(si, wo, active, types):
-    """BSDF times cosine of the components of some `types`, towards the direction `wo`."""
+    """BSDF times cosine of the components of some `types`, towards `wo` on the side of `si.wi`."""
+    import drjit as dr
     import mitsuba as mi
 
     context = mi.BSDFContext()
     context.type_mask = types
-    return mi.unpolarized_spectrum(si.bsdf().eval(context, si, mi.Vector3f(wo), active))
+    wo = mi.Vector3f(wo.x, wo.y, wo.z * dr.sign(si.wi.z))
+    return mi.unpolarized_spectrum(si.bsdf().eval(context, si, wo, active))
 
 
 def points(count):

@@ -30,6 +30,8 @@ class LobeLight:
         bsdf, total = si.bsdf(), mi.Color3f(0)
         for each, lobes in self.fitted(scene):
             here = active & (bsdf == mi.BSDFPtr(each))
+            if not mi.has_flag(each.flags(), mi.BSDFFlags.BackSide):
+                here &= si.wi.z > 0
             total = dr.select(here, lobes.radiance(si, light, here), total)
         return emission_of_rgb()(total, si)
 
@@ -69,11 +71,12 @@ class ViewedLobes:
         self.diffuse = Rows(np.broadcast_to(table.diffuse, (len(table.diffuse), 3)))
 
     def radiance(self, si, light, active):
-        """The radiance towards `si.wi`, linear sRGB."""
+        """The radiance towards `si.wi`, linear sRGB: the same on both sides of the surface."""
         import drjit as dr
         import mitsuba as mi
 
-        corners, sin_phi, cos_phi = self.around(si.wi)
+        side = dr.sign(si.wi.z)
+        corners, sin_phi, cos_phi = self.around(mi.Vector3f(si.wi.x, si.wi.y, dr.abs(si.wi.z)))
 
         def mean(rows, kind, lobe=0, count=1):
             return sum(share * rows.at(view * count + lobe, kind) for view, share in corners)
@@ -82,12 +85,13 @@ class ViewedLobes:
             weight = mean(self.weights, mi.Vector4f, k, self.count)
             axis = mean(self.axes, mi.Vector4f, k, self.count)
             x, y = cos_phi * axis.x - sin_phi * axis.y, sin_phi * axis.x + cos_phi * axis.y
-            axis = si.to_world(dr.normalize(mi.Vector3f(x, y, axis.z)))
+            axis = si.to_world(dr.normalize(mi.Vector3f(x, y, axis.z * side)))
             seen = light.over_lobe(axis, weight.w)
             return k + 1, total + mi.Color3f(weight.x, weight.y, weight.z) * seen
 
-        matte = mean(self.diffuse, mi.Color3f) * light.irradiance(si.to_world(mi.Vector3f(0, 0, 1)))
-        active &= si.wi.z > 0
+        matte = mean(self.diffuse, mi.Color3f) * light.irradiance(
+            si.to_world(mi.Vector3f(0, 0, side))
+        )
         _, total = dr.while_loop(
             (mi.UInt32(0), mi.Color3f(matte)), lambda k, total: active & (k < self.count), one
         )

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from brdfkit.arguments import to_whole_number
+from brdfkit.environments.map_files import find
 from brdfkit.errors import BrdfkitError
 from brdfkit.host.load_by_mitsuba import load_by_mitsuba
 from brdfkit.jit.threads import in_turn
@@ -81,7 +82,8 @@ def preview(
     spp = to_whole_number("spp", spp, least=1)
     require_memory(size, len(subjects))
     mitsuba()  # sets a variant, on which the dictionaries depend
-    return _show(*describe_all(subjects), environment, size, shape, method, spp)
+    materials, parameters = describe_all(subjects)
+    return _show(materials, parameters, environment, size, shape, method, spp)
 
 
 @in_turn
@@ -90,7 +92,8 @@ def _show(materials, parameters, environment, size, shape, method, spp):
     import mitsuba as mi
 
     start, build = time.perf_counter(), find_scene(shape)
-    light, integrator = _light(mi.variant(), environment), _integrator(mi.variant(), method)
+    light = _light(mi.variant(), environment, find(environment).stat().st_mtime_ns)
+    integrator = _integrator(mi.variant(), method)
     both_sides = Path(shape).suffix.lower() in users_mesh.SUFFIXES
     pictures, seen = {}, None
     for name, bsdf in materials.items():
@@ -104,8 +107,8 @@ def _show(materials, parameters, environment, size, shape, method, spp):
 
 
 @lru_cache(maxsize=4)
-def _light(variant, environment):
-    """The emitter of an environment map."""
+def _light(variant, environment, changed):
+    """The emitter of an environment map, whose file was `changed` at a time."""
     import mitsuba as mi
 
     return load_by_mitsuba(mi.load_dict, light_of(environment), environment)
