@@ -74,8 +74,8 @@ TAIL = """
   adds to the variance, and less noisy on large uneven maps.
 - The hyperbola's noise depends on the map; the eight steps are nearer on most.
 - **Stratified numbers tell samplers apart**: what keeps neighbours together (`envmap`, `mip`,
-  `cdf`, the walk down the tree) gains more by them than blocks sorted by probability, as closed forms need
-  them, and alias tables. That is the price of O(1), which the thesis does not name.
+  `cdf`, the walk down the tree) gains more by them than blocks sorted by probability, as closed
+  forms need them, and alias tables. That is the price of O(1), which the thesis does not name.
 - Compensation lowers the noise where the light is broad, at no cost, and not where a few lamps are
   all. It is wrong where lights alone are sampled, and so it has to be asked for.
 - **Short of its bar: the build.** In NumPy the tree takes ten times as long as a CDF and more, of
