@@ -223,9 +223,12 @@ def report(results, times):
             table(columns, rows),
             "Mean PSNR [dB] by roughness:\n",
             table(["method", *roughness], by_alpha),
-            "CPU time of a ball of 256 × 256 pixels under grace, α = 0.1, the least of five; the "
+            "CPU time of a ball of 256 × 256 pixels under grace, α = 0.1, the least of five; the\n"
             "thesis's speeds are warped 10.6 : kde 3.3 : gmm 2.0 : filtered_sampling 1.\n",
             table(["method", "ms", "speed"], speed),
+            "blocks.png: the reference; gmm with the nearest of its views; gmm between its views.\n",
+            "roughness.png: a row per α; the reference, then "
+            f"{', '.join(f'{m} {f}' for m in METHODS for f in FILTERS)}.\n",
         ]
     )
 
@@ -297,7 +300,7 @@ def main():
     mi.register_integrator("unshadowed", lambda props: define_reference(mi)(props))
     results = run(mi, given.probes, given.models, given.out)
     page = report(results, measure_times(mi, given.probes))
-    (given.out / "results.md").write_text(page)
+    (given.out / "results.md").write_text(page, encoding="utf-8")
     show_blocks(mi, given.probes, given.out)
     show_roughness(given.out)
     print(page)

@@ -206,6 +206,7 @@ def test_what_is_told_apart(llvm_variant):
         (WARD, True, True),
         (TURNED, True, False),
         ({"type": "twosided", "inside": WARD}, True, True),
+        ({"type": "ward", "alpha_u": 0.005, "alpha_v": 0.006}, True, False),
         ({"type": "oren_nayar"}, False, True),
         ({"type": "principled"}, False, True),
         ({"type": "conductor"}, False, True),

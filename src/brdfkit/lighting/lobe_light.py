@@ -14,13 +14,15 @@ from brdfkit.lighting.scene_bsdfs import PAIRS, bsdfs_of, is_isotropic
 from brdfkit.lighting.spherical_gaussians.lobes_of_material import lobe_table
 
 AZIMUTHS = 16  # of the views of an anisotropic BSDF
+KEPT = 16  # materials whose lobes are kept between pictures
 
 
 class LobeLight:
     """Light by lobes that are fitted to the BSDFs of a scene by a `method`, `count` per view."""
 
     def __init__(self, method, count):
-        self.method, self.count, self.known = method, count, []
+        self.method, self.count = method, count
+        self.known = {}  # lobes by the values of a BSDF at some directions, which tell it apart
 
     def radiance(self, scene, si, light, active):
         """The radiance towards `si.wi`, a spectrum of the current variant."""
@@ -40,10 +42,12 @@ class LobeLight:
         found = []
         for bsdf in bsdfs_of(scene):
             values = eval_bsdf(bsdf, *PAIRS).tobytes()
-            same = [k for k in self.known if k[0] is bsdf and k[1] == values]
-            found += same or [(bsdf, values, self.fit(bsdf))]
-        self.known = found
-        return [(bsdf, lobes) for bsdf, _, lobes in found]
+            lobes = self.known.pop(values, None) or self.fit(bsdf)
+            self.known[values] = lobes  # the newest comes last
+            found.append((bsdf, lobes))
+        for oldest in list(self.known)[: -max(KEPT, len(found))]:
+            del self.known[oldest]
+        return found
 
     def fit(self, bsdf):
         """The lobes of a BSDF, a few seconds."""

@@ -6,10 +6,23 @@ from brdfkit.geometry.directions import rotate_z
 from brdfkit.host.bsdf_material import eval_bsdf
 
 SAME = 1e-3  # of the largest value: differences that do not count
-_w = np.random.default_rng(0).normal(size=(2, 64, 3))
-_w[..., 2] = np.abs(_w[..., 2])
-# Direction pairs above the surface, by whose values BSDFs are compared: wi (n, 3) and wo
-PAIRS = _w / np.linalg.norm(_w, axis=-1, keepdims=True)
+
+
+def _pairs(count=64):
+    """Direction pairs (2, count, 3) above the surface: half of them anywhere, half near the mirror
+    direction, from a thousandth of a radian to a third, where narrow lobes differ."""
+    random, near = np.random.default_rng(0), count // 2
+    wi, wo = random.normal(size=(2, count, 3))
+    wi /= np.linalg.norm(wi, axis=-1, keepdims=True)
+    off = np.logspace(-3, -0.5, near)[:, None] * random.normal(size=(near, 3))
+    wo[:near] = wi[:near] * [-1, -1, 1] + off
+    wo /= np.linalg.norm(wo, axis=-1, keepdims=True)
+    pairs = np.stack([wi, wo])
+    pairs[..., 2] = np.abs(pairs[..., 2])
+    return pairs
+
+
+PAIRS = _pairs()  # by whose values BSDFs are compared
 
 
 def bsdfs_of(scene):
