@@ -226,7 +226,7 @@ def report(results, times):
             "CPU time of a ball of 256 × 256 pixels under grace, α = 0.1, the least of five; the\n"
             "thesis's speeds are warped 10.6 : kde 3.3 : gmm 2.0 : filtered_sampling 1.\n",
             table(["method", "ms", "speed"], speed),
-            "blocks.png: the reference; gmm with the nearest of its views; gmm between its views.\n",
+            "blocks.png: the reference; gmm with the nearest of its views; between its views.\n",
             "roughness.png: a row per α; the reference, then "
             f"{', '.join(f'{m} {f}' for m in METHODS for f in FILTERS)}.\n",
         ]
