@@ -33,7 +33,9 @@ from brdfkit.lighting.spherical_gaussians.lobes_of_material import METHODS as LO
 METHODS = "filtered_sampling", *LOBES
 PARAMETERS = {
     "method": text(METHODS[0], ", ".join(METHODS)),
-    "samples": count(64, (1, 65_536), "directions per pixel, of filtered_sampling"),
+    "samples": count(
+        64, (1, 65_536), "directions per pixel, of all its rays, of filtered_sampling"
+    ),
     "lobes": count(32, (1, 1024), "lobes per view, of gmm, kde and elliptic"),
     "filter": text("lobes", "lobes, or mips as of graphics hardware"),
     "resolution": count(512, (32, 1024), "texels across a hemisphere of the light"),
@@ -57,7 +59,7 @@ def define(mi):
             light = self.light.of(environment)
             si = scene.ray_intersect(mi.Ray3f(ray), active)
             hit = active & si.is_valid()
-            shown = self.shading.radiance(scene, si, light, hit)
+            shown = self.shading.radiance(scene, sampler, si, light, hit)
             behind = mi.unpolarized_spectrum(environment.eval(si, active & ~hit))
             return mi.depolarizer(dr.select(hit, shown, behind)), active, []
 

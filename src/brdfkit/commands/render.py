@@ -101,11 +101,11 @@ def path_trace(things, output, console, spp, until, **where):
 
 def _preview(things, output, spp, until, scene, envmap, size, seed):
     """Preview `things` and write the picture; returns a `Rendering`."""
-    from brdfkit.rendering.preview import SIZE, STUDIO, preview
+    from brdfkit.rendering.preview import SIZE, SPP, STUDIO, preview
 
     if until is not None or seed:
         raise BrdfkitError("A preview has no noise: leave --until and --seed out.")
-    picture = preview(things, envmap or STUDIO, size or SIZE, scene, spp=spp or 1)
+    picture = preview(things, envmap or STUDIO, size or SIZE, scene, spp=spp or SPP)
     _write(picture, output)
     return picture
 

@@ -24,17 +24,20 @@ SPREAD_OUT = from_angles(
 
 
 class FilteredSampling:
-    """Takes `count` directions of the BSDF at every point that is seen."""
+    """Takes `count` directions of the BSDF at every pixel; its rays share them."""
 
     def __init__(self, count):
         self.count = count
-        self.points = Rows(points(count))
+        self.directions = None
 
-    def radiance(self, scene, si, light, active):
+    def radiance(self, scene, sampler, si, light, active):
         """The radiance towards `si.wi`, a spectrum of the current variant."""
         import drjit as dr
         import mitsuba as mi
 
+        rays = sampler.sample_count()
+        if self.directions is None or self.directions.rays != rays:
+            self.directions = Directions(self.count, rays)
         matte, rest = matte_and_rest(mi)
         bsdfs = bsdfs_of(scene)
         apart = [bsdf for bsdf in bsdfs if has_matte_part(bsdf)]
@@ -60,26 +63,43 @@ class FilteredSampling:
 
         context, bsdf, spectrum = mi.BSDFContext(), si.bsdf(), emission_of_rgb()
         context.type_mask = types
+        directions = self.directions
+        ray = dr.arange(mi.UInt32, dr.width(si)) % directions.rays  # those of a pixel are adjacent
 
         def one(i, total):
-            u = self.points.at(i, mi.Point3f)
+            u = directions.at(i, ray)
             drawn, weight = bsdf.sample(context, si, u.x, mi.Point2f(u.y, u.z), active)
-            valid, density = active & (drawn.pdf > 0), self.count * drawn.pdf
+            valid, density = active & (drawn.pdf > 0), directions.count * drawn.pdf
             # A lobe as wide as the distance to the next direction; a mirror's has no width
             mirror = mi.has_flag(drawn.sampled_type, mi.BSDFFlags.Delta)
             kappa = dr.select(mirror, dr.inf, OVERLAP * 2 * dr.pi * density)
             seen = spectrum(light.over_lobe(si.to_world(drawn.wo), kappa), si)
-            weight = mi.unpolarized_spectrum(weight) / self.count
+            weight = mi.unpolarized_spectrum(weight)
             cos = dr.maximum(drawn.wo.z * dr.sign(si.wi.z), 0)
-            weight -= c * dr.select(mirror, 0, cos / density)
+            weight -= c * dr.select(mirror, 0, cos / drawn.pdf)
             return i + 1, total + dr.select(valid, weight * seen, 0)
 
         _, total = dr.while_loop(
             (mi.UInt32(0), mi.UnpolarizedSpectrum(0)),
-            lambda i, total: active & (i < self.count),
+            lambda i, total: active & (i < directions.per_ray),
             one,
         )
-        return total
+        return total / directions.per_ray
+
+
+class Directions:
+    """The numbers that draw at least `count` directions of a pixel, dealt out to its `rays`."""
+
+    def __init__(self, count, rays):
+        self.rays, self.per_ray = rays, -(-count // rays)
+        self.count = rays * self.per_ray
+        self.points = Rows(points(self.count))
+
+    def at(self, i, ray):
+        """The three numbers of direction `i` of a ray, a `mi.Point3f`."""
+        import mitsuba as mi
+
+        return self.points.at(i * self.rays + ray, mi.Point3f)
 
 
 def even(c, si, light):

@@ -24,7 +24,7 @@ class LobeLight:
         self.method, self.count = method, count
         self.known = {}  # lobes by the values of a BSDF at some directions, which tell it apart
 
-    def radiance(self, scene, si, light, active):
+    def radiance(self, scene, sampler, si, light, active):
         """The radiance towards `si.wi`, a spectrum of the current variant."""
         import drjit as dr
         import mitsuba as mi

@@ -1,8 +1,7 @@
 """`preview`: pictures of materials under an environment, without noise and without shadows.
 
-The integrator `filtered_environment` sees every pixel once, with the same directions everywhere. It
-and the light are kept between calls: the light is then filtered once, and a picture takes
-milliseconds.
+The integrator `filtered_environment` sees every pixel with the same directions. It and the light
+are kept between calls: the light is then filtered once, and a picture takes milliseconds.
 """
 
 import time
@@ -28,7 +27,7 @@ from brdfkit.rendering.scene_loading import find_scene
 from brdfkit.rendering.shown_material import load_material, mask
 from brdfkit.rendering.tracing import rgb
 
-STUDIO, SIZE = "studio", 256
+STUDIO, SIZE, SPP = "studio", 256, 4
 
 
 def preview(
@@ -37,7 +36,7 @@ def preview(
     size: int | tuple[int, int] = SIZE,
     shape: str | Path = "ball",
     method: str = "filtered_sampling",
-    spp: int = 1,
+    spp: int = SPP,
 ) -> Rendering:
     """Show one or several materials under an environment, without noise, in milliseconds.
 
@@ -60,8 +59,8 @@ def preview(
     method : str, default "filtered_sampling"
         How light and material meet, a method of the integrator `filtered_environment`: "gmm" is
         more exact, and fits lobes to a material first, which takes seconds.
-    spp : int, default 1
-        Rays per pixel: 4 make edges smooth, in about four times the time.
+    spp : int, default 4
+        Rays per pixel, a square number, which make edges smooth.
 
     Returns
     -------
