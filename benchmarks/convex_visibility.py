@@ -145,9 +145,8 @@ def frames(path, file):
         parameters["mesh.vertex_positions"] = mi.Float(moved.astype(np.float32).ravel())
         parameters.update()  # for what the camera sees
         occluders.move("mesh", matrix)
-        pair = [
-            study.render(*by, SPP)[0] for by in ((occluders, study.ground), (None, study.scene))
-        ]
+        casters = (occluders, study.ground), (None, study.scene)
+        pair = [study.render(*by, SPP)[0] for by in casters]
         errors.append(psnr(pair[1], pair[0]))
         strip.append(np.concatenate(pair))
     shown = srgb(np.clip(np.concatenate(strip, axis=1) / np.percentile(strip, 95), 0, 1))
