@@ -14,9 +14,10 @@ from scipy.spatial import Delaunay
 from brdfkit.errors import BrdfkitError
 from brdfkit.visibility import decomposition
 from brdfkit.visibility.convex_ray import enter
-from brdfkit.visibility.decomposition import decompose
+from brdfkit.visibility.decomposition import decompose, is_closed
 from brdfkit.visibility.height_fields import HeightFields
 from brdfkit.visibility.hierarchy import Hierarchy
+from brdfkit.visibility.holes import close_holes
 from brdfkit.visibility.hull import hull
 from brdfkit.visibility.lobes import visible_share
 from brdfkit.visibility.occluders import Occluders
@@ -288,6 +289,32 @@ def test_a_mesh_is_welded_before_it_is_judged(monkeypatch):
 def test_what_encloses_nothing_has_no_parts():
     points, faces = box([0, 0, 0], [1, 1, 0])
     assert decompose(points, faces) == []
+
+
+def solid(points, faces):
+    """The volume that a closed mesh encloses, above 0 where its triangles face out."""
+    return np.linalg.det(points[faces]).sum() / 6
+
+
+@pytest.mark.quick
+def test_the_holes_of_a_scan_are_closed():
+    """Three of a torus, of one triangle and of several; it then has nearly its old volume."""
+    points, faces = torus()
+    worn = np.delete(faces, [0, 1, 2, 3, 500, 1000, 1001], axis=0)
+    assert not is_closed(worn)
+    points, mended = close_holes(points, worn)
+    assert is_closed(mended)
+    assert solid(points, mended) == pytest.approx(solid(*torus()), rel=1e-3)
+
+
+@pytest.mark.quick
+def test_openings_and_several_pieces_stay_as_they_are():
+    points, faces = torus()
+    lid = points[faces].mean(axis=1)[:, 0] < 0  # half of the torus
+    assert len(close_holes(points, faces[lid])[1]) == lid.sum()
+    two = np.concatenate([points, points + 3])
+    worn = np.concatenate([faces[1:], faces + len(points)])
+    assert len(close_holes(two, worn)[1]) == len(worn)
 
 
 @pytest.mark.quick

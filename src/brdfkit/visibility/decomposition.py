@@ -21,6 +21,7 @@ from scipy.spatial import ConvexHull
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import make_folder, write_safely
+from brdfkit.visibility.holes import close_holes
 from brdfkit.visibility.hull import hull
 
 # The search for cuts: coacd's defaults (150, 20, 3 and 2000) find as many parts in 4 times the time
@@ -37,10 +38,12 @@ def decompose(points, faces, concavity=CONCAVITY, hull_vertices=HULL_VERTICES):
         of the mesh's bounding box is 2. Larger: fewer parts.
     hull_vertices : vertices that a hull has at most, 8 to 10,000; a hull of more is simplified.
 
-    A closed mesh that is convex already is its own part, for which coacd is not asked. A mesh that
-    is not closed has no inside: coacd then makes a closed one around it, by voxels of
-    1/50 of its size, which is that much too thick. The same mesh always has the same parts. Raises
-    `BrdfkitError` where coacd is not installed, and for settings out of range.
+    A closed mesh that is convex already is its own part, for which coacd is not asked. The holes of
+    a scan are closed (`holes.py`). Another mesh that is not closed has no inside: coacd then makes
+    a closed one around it, by voxels of 1/50 of its size, which is that much too thick.
+
+    The same mesh always has the same parts. Raises `BrdfkitError` where coacd is not installed, and
+    for settings out of range.
     """
     if not 0.01 <= concavity <= 1:
         raise BrdfkitError(f"concavity = {concavity:g} should be between 0.01 and 1.")
@@ -52,6 +55,9 @@ def decompose(points, faces, concavity=CONCAVITY, hull_vertices=HULL_VERTICES):
         return []
     if is_closed(faces) and _fills_its_hull(points, faces):
         return [whole]
+    if not is_closed(faces):
+        mended = close_holes(points, faces)
+        points, faces = mended if is_closed(mended[1]) else (points, faces)
     settings = SEARCH | {"threshold": float(concavity), "max_ch_vertex": int(hull_vertices)}
     settings["preprocess_mode"] = "off" if is_closed(faces) else "on"
     file = cache() / f"{_checksum(points, faces, settings)}.npz"

@@ -44,8 +44,8 @@ def _parts(mesh, concavity):
     if parts and not is_closed(weld(points, faces)[1]):
         mi.Log(
             mi.LogLevel.Warn,
-            f"{mesh.id()}: the mesh is not closed; its convex parts are those of a closed mesh "
-            "around it, which is a little thicker.",
+            f"{mesh.id()}: the mesh is not closed; its convex parts are those of a mesh without "
+            "its holes, or of a thicker one around it.",
         )
     return parts
 
