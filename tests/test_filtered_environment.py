@@ -1,6 +1,7 @@
 """Filtered maps of environments, the integrator that reads them, and previews."""
 
 import math
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from brdfkit.geometry.directions import from_angles
 from brdfkit.lighting import paraboloid_levels as levels
 from brdfkit.lighting.filtered_map import FilteredMap, LobeMaps, Mips, picture
 from brdfkit.lighting.irradiance import irradiance
+from brdfkit.lighting.lobe_light import LobeLight
 from brdfkit.lighting.scene_bsdfs import has_matte_part, is_isotropic
 from brdfkit.lighting.sphere_filter import azimuths, convolve, row_angles, row_solid_angles
 from brdfkit.picture_errors.psnr import psnr
@@ -265,11 +267,33 @@ def test_a_preview_is_the_same_each_time_and_has_no_shadows(llvm_variant, tmp_pa
         ({"method": "gm"}, "did you mean gmm"),
         ({"size": 0}, "size = 0"),
         ({"spp": 0}, "spp"),
+        ({"spp": 3}, "spp = 3 should be a square number"),
     ],
 )
 def test_what_cannot_be_previewed_is_said(llvm_variant, given, said):
     with pytest.raises(bk.BrdfkitError, match=said):
         bk.preview("lambert", **{"size": 8, **given})
+
+
+def test_a_preview_has_the_same_colours_in_a_spectral_variant(llvm_variant, monkeypatch):
+    coarse = ours(resolution=32, samples=9)  # quick, and the same in both
+    module = import_module("brdfkit.rendering.preview")
+    monkeypatch.setattr(module, "_integrator", lambda *_: llvm_variant.load_dict(coarse))
+    rgb = bk.preview("lambert", size=16, spp=25).pictures["lambert"]
+    llvm_variant.set_variant("llvm_ad_spectral")
+    try:
+        with pytest.raises(bk.BrdfkitError, match="spp = 4 makes wrong colours"):
+            bk.preview("lambert", size=16)
+        spectral = bk.preview("lambert", size=16, spp=25).pictures["lambert"]
+    finally:
+        llvm_variant.set_variant("llvm_ad_rgb")
+    np.testing.assert_allclose(spectral.mean(axis=(0, 1)), rgb.mean(axis=(0, 1)), rtol=0.01)
+
+
+@pytest.mark.quick
+def test_lobes_say_that_they_leave_mirrors_black(llvm_variant, capfd):
+    LobeLight("warped", 1).fit(llvm_variant.load_dict({"type": "conductor"}))
+    assert "leave mirrors and clear glass black" in "".join(capfd.readouterr())
 
 
 @pytest.mark.quick

@@ -411,6 +411,21 @@ def test_a_scene_is_freed_when_it_is_no_longer_used(llvm_variant):
     assert alive() is None
 
 
+@pytest.mark.quick
+def test_a_scene_at_the_address_of_a_freed_one_has_its_own_shadows(llvm_variant):
+    integrator, first = llvm_variant.load_dict({"type": "convex_direct"}), None
+    for x in range(8):
+        where = llvm_variant.ScalarTransform4f().translate([x, 0, 0])
+        box = {"type": "cube", "id": "box", "to_world": where}
+        loaded = llvm_variant.load_dict({"type": "scene", "box": box})
+        first = first or id(loaded)
+        if id(loaded) == first:
+            (box,) = integrator.occluders(loaded).hulls
+            assert box.vertices.mean(axis=0) == pytest.approx([x, 0, 0])
+        del loaded
+        gc.collect()
+
+
 @pytest.mark.parametrize(
     "bsdf", [{"type": "diffuse"}, {"type": "roughconductor", "alpha": 0.1}, {"type": "conductor"}]
 )

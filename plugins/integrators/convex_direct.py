@@ -121,8 +121,11 @@ def define(mi):
 
 
 def key(scene):
-    """What tells scenes apart; the scene itself holds the integrator, and would never be freed."""
-    return id(scene), *((shape.id(), shape.primitive_count()) for shape in scene.shapes())
+    """What tells scenes apart; the scene itself holds the integrator, and would never be freed.
+
+    The shapes are held, so that no other scene's are taken for them: freed addresses come again.
+    """
+    return [(shape, shape.primitive_count()) for shape in scene.shapes()]
 
 
 def reference():

@@ -51,6 +51,14 @@ class LobeLight:
 
     def fit(self, bsdf):
         """The lobes of a BSDF, a few seconds."""
+        import mitsuba as mi
+
+        if mi.has_flag(bsdf.flags(), mi.BSDFFlags.Delta):
+            mi.Log(
+                mi.LogLevel.Warn,
+                f"{bsdf.id()}: the lobes of {self.method} leave mirrors and clear glass black; "
+                "take filtered_sampling.",
+            )
         azimuths = 1 if is_isotropic(bsdf) else AZIMUTHS
         return ViewedLobes(
             lobe_table(

@@ -7,6 +7,7 @@ are kept between calls: the light is then filtered once, and a picture takes mil
 import time
 from collections.abc import Iterable
 from functools import lru_cache
+from math import isqrt
 from pathlib import Path
 
 import numpy as np
@@ -60,7 +61,8 @@ def preview(
         How light and material meet, a method of the integrator `filtered_environment`: "gmm" is
         more exact, and fits lobes to a material first, which takes seconds.
     spp : int, default 4
-        Rays per pixel, a square number, which make edges smooth.
+        Rays per pixel, a square number, which make edges smooth. A spectral variant needs 9, or a
+        larger odd one: with fewer, all rays have the same four wavelengths.
 
     Returns
     -------
@@ -70,7 +72,8 @@ def preview(
     Raises
     ------
     BrdfkitError
-        For what cannot be shown, and for an environment or a method that is unknown.
+        For what cannot be shown, for an environment or a method that is unknown, and for another
+        number of rays.
 
     Examples
     --------
@@ -81,8 +84,25 @@ def preview(
     spp = to_whole_number("spp", spp, least=1)
     require_memory(size, len(subjects))
     mitsuba()  # sets a variant, on which the dictionaries depend
+    _require_rays(spp)
     materials, parameters = describe_all(subjects)
     return _show(materials, parameters, environment, size, shape, method, spp)
+
+
+def _require_rays(spp):
+    """Raise `BrdfkitError` for rays per pixel that make no even grid, or too few wavelengths.
+
+    A ray has four wavelengths, a quarter of the range apart. An even grid of an even number of rays
+    repeats them.
+    """
+    import mitsuba as mi
+
+    if isqrt(spp) ** 2 != spp:
+        raise BrdfkitError(f"spp = {spp} should be a square number, such as 4 or 9.")
+    if mi.is_spectral and (spp < 9 or spp % 2 == 0):
+        raise BrdfkitError(
+            f"spp = {spp} makes wrong colours in {mi.variant()}; take 9 or 25, or set llvm_ad_rgb."
+        )
 
 
 @in_turn
