@@ -208,7 +208,7 @@ class Study:
     def render(self, occluders, others, spp):
         """A picture with the shadows of `occluders` and those of a scene; seconds of CPU."""
         integrator = self.scene.integrator()
-        integrator.set_casters(self.scene, occluders, others)
+        integrator.casters.set(self.scene, occluders, others)
         integrator.render(self.scene, seed=0, spp=1)  # compiled
         start = time.process_time()
         picture = np.array(integrator.render(self.scene, seed=0, spp=spp))[..., :3]

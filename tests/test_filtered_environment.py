@@ -18,6 +18,7 @@ from brdfkit.lighting.lobe_light import LobeLight
 from brdfkit.lighting.scene_bsdfs import has_matte_part, is_isotropic
 from brdfkit.lighting.sphere_filter import azimuths, convolve, row_angles, row_solid_angles
 from brdfkit.picture_errors.psnr import psnr
+from brdfkit.rendering.environment import environment
 
 SIDE = 128
 
@@ -240,6 +241,58 @@ def test_what_it_cannot_light_is_said(llvm_variant, light, more, settings, varia
             shown(scene(mi, ours(**settings), {"type": "diffuse"}, light, **more))
     finally:
         mi.set_variant("llvm_ad_rgb")
+
+
+# Shadows
+
+
+@pytest.mark.parametrize("bsdf", [{"type": "diffuse"}, {"type": "roughconductor", "alpha": 0.5}])
+def test_a_high_wall_hides_half_of_the_light(llvm_variant, bsdf):
+    """Of a ground beside it, seen from above: of its irradiance, and of a lobe about the normal.
+    On average over four sides, up to one direction near the zenith, of cosines that sum to 64."""
+    mi = llvm_variant
+    t = mi.ScalarTransform4f
+    half, gap = 50, 1.5  # beyond the clearance of parts, a hundredth of the wall's size
+    film = {"type": "hdrfilm", "width": 8, "height": 8, "rfilter": {"type": "box"}}
+    camera = t().look_at([0, 0, 1], [0, 0, 0], [0, 1, 0]).scale(1e-3)
+    entries = {
+        "type": "scene",
+        "sensor": {"type": "orthographic", "to_world": camera, "film": film},
+        "light": {"type": "constant"},
+        "ground": {"type": "rectangle", "to_world": t().scale(100), "bsdf": bsdf},
+    }
+    open_air = shown(mi.load_dict(entries | {"integrator": ours()}), spp=4).mean()
+    wall = {"type": "cube", "to_world": t().translate([half + gap, 0, 0]).scale(half)}
+    shaded = mi.load_dict(entries | {"wall": wall, "integrator": ours(shadows="convex")})
+    occluders, _ = shaded.integrator().casters.of(shaded)
+    shares = []
+    for turn in (0, 90, 180, 270):
+        occluders.move("wall", np.array(t().rotate([0, 0, 1], turn).matrix))
+        shares.append(shown(shaded, spp=4).mean() / open_air)
+    expected = (1 + gap / math.hypot(gap, half)) / 2
+    assert np.mean(shares) == pytest.approx(expected, abs=1 / 64)
+
+
+def test_shadows_of_convex_parts_are_those_of_path_tracing(llvm_variant):
+    """A box on a ground in the studio; PSNR [dB] to 512 paths per pixel of direct light."""
+    mi = llvm_variant
+    t = mi.ScalarTransform4f
+    box = {"type": "cube", "to_world": t().rotate([0, 0, 1], 20).scale(0.7), "bsdf": WARD}
+    ground = {"type": "rectangle", "to_world": t().translate([0, 0, -0.7]).scale(4)}
+    camera = t().look_at([3.2, -4.5, 2.3], [0, 0, 0], [0, 0, 1])
+    pictures = {}
+    for name, integrator, spp in (
+        ("truth", {"type": "path", "max_depth": 2}, 512),
+        ("without", ours(), 4),
+        ("with", ours(shadows="convex"), 4),
+    ):
+        loaded = scene(mi, integrator, WARD, environment("studio"), ball=box, ground=ground)
+        parameters = mi.traverse(loaded)
+        parameters["sensor.to_world"], parameters["sensor.x_fov"] = camera, 35.0
+        parameters.update()
+        pictures[name] = shown(loaded, spp)
+    truth = pictures["truth"]
+    assert psnr(truth, pictures["with"]) > psnr(truth, pictures["without"]) + 7
 
 
 # Previews

@@ -215,8 +215,12 @@ def test_the_visible_share_of_a_lobe_is_its_integral(llvm_variant, kappa):
     points = np.array([[2.0, 0, 0], [1.2, 0.9, 0], [0, -1, 1.5]])
     axes = np.array([[-1.0, 0, 0], [-0.8, -0.36, 0.48], [0, 0.6, -0.8]])
     occluders = Occluders({"part": [found]}, resolution=256, clearance=0)
-    as_vector = (mi.Point3f(points.T), mi.Vector3f(axes.T), mi.Float(kappa))
-    share = np.array(visible_share(occluders, *as_vector, rays=256))
+
+    def visible(direction):
+        return ~occluders.blocked(mi.Ray3f(mi.Point3f(points.T), direction))[0]
+
+    axis = mi.Vector3f(axes.T)
+    share = np.array(visible_share(visible, axis, mi.Float(kappa), lambda _: 1, rays=256).x)
 
     n = 40_000
     cos = 1 + np.log(rng.random(n) * (1 - np.exp(-2 * kappa)) + np.exp(-2 * kappa)) / kappa
@@ -377,9 +381,9 @@ def test_shadows_of_parts_are_those_of_triangles(llvm_variant, tmp_path):
     shapes = {"corner": mesh_file(mi, tmp_path / "corner.ply", *corner())}
     loaded, found = pictures(mi, {"type": "convex_direct"}, **shapes)
     assert list(loaded.integrator().occluders(loaded)._parts) == ["corner"]
-    loaded.integrator().set_casters(loaded, None, loaded)  # all shapes as they are
+    loaded.integrator().casters.set(loaded, None, loaded)  # all shapes as they are
     exact = np.array(loaded.integrator().render(loaded, seed=0, spp=64))
-    loaded.integrator().set_casters(loaded, None, None)
+    loaded.integrator().casters.set(loaded, None, None)
     lit = np.array(loaded.integrator().render(loaded, seed=0, spp=64))
     assert np.abs(lit - exact).mean() > 0.05 * exact.mean()  # the shadows matter
     assert np.square(found - exact).mean() < 1e-4 * np.square(exact).max()  # 40 dB
@@ -396,8 +400,8 @@ def test_a_moved_shadow_is_that_of_the_moved_mesh(llvm_variant, tmp_path):
     loaded, exact = pictures(mi, {"type": "convex_direct"}, corner=there)
     occluders = Occluders({"corner": decompose(points, faces)})
     occluders.move("corner", np.block([[turn, shift[:, None]], [np.eye(4)[3:]]]))
-    others = loaded.integrator().casters(loaded)[1]
-    loaded.integrator().set_casters(loaded, occluders, others)
+    others = loaded.integrator().casters.of(loaded)[1]
+    loaded.integrator().casters.set(loaded, occluders, others)
     moved = np.array(loaded.integrator().render(loaded, seed=0, spp=64))
     assert np.square(moved - exact).mean() < 1e-4 * np.square(exact).max()  # 40 dB
 

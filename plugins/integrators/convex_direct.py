@@ -28,9 +28,9 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.host.declared import count, declared, plain_number
+from brdfkit.visibility.casters import Casters
 from brdfkit.visibility.decomposition import CONCAVITY
 from brdfkit.visibility.occluders import RESOLUTION
-from brdfkit.visibility.of_scene import occluders_of
 
 PARAMETERS = {
     "concavity": plain_number(CONCAVITY, (0.01, 1.0), "largest distance of a part to its hull"),
@@ -44,21 +44,11 @@ def define(mi):
     class ConvexDirect(declared(mi.SamplingIntegrator, PARAMETERS)):
         def __init__(self, props):
             super().__init__(props)
-            self.prepared = None, None, None  # the scene's key, and what casts shadows in it
+            self.casters = Casters(self.concavity, self.resolution)
 
         def occluders(self, scene):
             """The `Occluders` of the scene's meshes, None where no mesh encloses a volume."""
-            return self.casters(scene)[0]
-
-        def casters(self, scene):
-            """What casts shadows in a scene: (`Occluders`, a `mitsuba.Scene`), each may be None."""
-            if self.prepared[0] != key(scene):
-                self.set_casters(scene, *occluders_of(scene, self.concavity, self.resolution))
-            return self.prepared[1:]
-
-        def set_casters(self, scene, occluders, others):
-            """Let `occluders` and the shapes of the scene `others` cast the shadows in a scene."""
-            self.prepared = key(scene), occluders, others
+            return self.casters.of(scene)[0]
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
             # What the camera sees, and its own light
@@ -85,7 +75,7 @@ def define(mi):
             pdf = dr.select(infinite, dr.select(ds.delta, 0, pdf), 0)  # 0: by the BSDF never drawn
             weight = ds.pdf / dr.select(active, ds.pdf + pdf, 1)
             found = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * weight
-            return dr.select(self.visible(scene, si.spawn_ray_to(ds.p), active), found, 0)
+            return dr.select(self.casters.visible(scene, si.spawn_ray_to(ds.p), active), found, 0)
 
         def light_by_bsdf(self, scene, si, bsdf, sample1, sample2, active):
             environment = scene.environment()
@@ -107,25 +97,9 @@ def define(mi):
                 * light
                 * (bs.pdf / dr.select(active, bs.pdf + pdf, 1))
             )
-            return dr.select(self.visible(scene, ray, active), found, 0)
-
-        def visible(self, scene, ray, active):
-            occluders, others = self.casters(scene)
-            if others is not None:
-                active = dr.select(others.ray_test(ray, active), False, active)
-            if occluders is not None:
-                active = dr.select(occluders.blocked(ray, active)[0], False, active)
-            return active
+            return dr.select(self.casters.visible(scene, ray, active), found, 0)
 
     return ConvexDirect
-
-
-def key(scene):
-    """What tells scenes apart; the scene itself holds the integrator, and would never be freed.
-
-    The shapes are held, so that no other scene's are taken for them: freed addresses come again.
-    """
-    return [(shape, shape.primitive_count()) for shape in scene.shapes()]
 
 
 def reference():

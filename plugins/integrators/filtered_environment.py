@@ -1,4 +1,4 @@
-"""Filtered environment: direct light from all around, without noise and without shadows.
+"""Filtered environment: direct light from all around, without noise, by default without shadows.
 
     {"type": "filtered_environment", "method": "gmm"}
 
@@ -17,18 +17,27 @@ ellipse. They see no textures and no mirrors, and run in RGB and mono variants.
 
 `filter` = "lobes": levels of the light that are convolved with von Mises-Fisher lobes; "mips":
 boxes of texels, as graphics hardware has them, by the rule of [Ergun 2015, eq. 8.9]. The scene has
-one environment, of any kind, and no other lights. Surfaces hide nothing: shadows, and light between
-surfaces, are missing.
+one environment, of any kind, and no other lights. Light between surfaces is missing.
+
+`shadows` = "convex" dims the light of every lobe, and the irradiance, by the share that is visible:
+that of a few directions, each of which counts by the light that comes from it. They are the same
+ones at every point, so that soft shadows have fine steps in place of noise. What casts shadows are
+convex parts of meshes, found once, and other shapes, as in `convex_direct`. A picture takes 5 times
+as long for a box, 20 times for a mesh of many parts. By default, "none", surfaces hide nothing.
 """
 
 import drjit as dr
 
 from brdfkit.errors import BrdfkitError, no_such
-from brdfkit.host.declared import count, declared, text
+from brdfkit.host.declared import count, declared, plain_number, text, word
 from brdfkit.lighting.filtered_light import FILTERS, FilteredLight
 from brdfkit.lighting.filtered_sampling import FilteredSampling
 from brdfkit.lighting.lobe_light import LobeLight
 from brdfkit.lighting.spherical_gaussians.lobes_of_material import METHODS as LOBES
+from brdfkit.visibility.casters import Casters
+from brdfkit.visibility.decomposition import CONCAVITY
+from brdfkit.visibility.occluders import RESOLUTION
+from brdfkit.visibility.shadowed_light import ShadowedLight
 
 METHODS = "filtered_sampling", *LOBES
 PARAMETERS = {
@@ -39,6 +48,10 @@ PARAMETERS = {
     "lobes": count(32, (1, 1024), "lobes per view, of gmm, kde and elliptic"),
     "filter": text("lobes", "lobes, or mips as of graphics hardware"),
     "resolution": count(512, (32, 1024), "texels across a hemisphere of the light"),
+    "shadows": word(("none", "convex"), "what casts shadows"),
+    "concavity": plain_number(
+        CONCAVITY, (0.01, 1.0), "largest distance of a convex part to its hull"
+    ),
 }
 
 
@@ -53,15 +66,23 @@ def define(mi):
                     raise no_such(name, getattr(self, name), known, where="filtered_environment")
             self.shading = _shading(mi, self.method, self.samples, self.lobes)
             self.light = FilteredLight(FILTERS[self.filter], self.resolution)
+            self.casters = Casters(self.concavity, RESOLUTION)
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
             environment = _only_environment(mi, scene)
             light = self.light.of(environment)
             si = scene.ray_intersect(mi.Ray3f(ray), active)
             hit = active & si.is_valid()
+            if self.shadows == "convex":
+                drawn = light.drawn(sampler.sample_count())
+                light = ShadowedLight(light, si, self.visible(scene, si, hit), drawn)
             shown = self.shading.radiance(scene, sampler, si, light, hit)
             behind = mi.unpolarized_spectrum(environment.eval(si, active & ~hit))
             return mi.depolarizer(dr.select(hit, shown, behind)), active, []
+
+        def visible(self, scene, si, active):
+            """Whether the light from a direction reaches the points `si`."""
+            return lambda w: self.casters.visible(scene, si.spawn_ray(w), active)
 
     return FilteredEnvironment
 

@@ -4,10 +4,12 @@ import hashlib
 
 import numpy as np
 
+from brdfkit.lighting.drawn_light import DrawnLight
 from brdfkit.lighting.emitted import radiance_of
 from brdfkit.lighting.filtered_map import FilteredMap, LobeMaps, Mips, picture
 from brdfkit.lighting.irradiance import irradiance
 
+DIRECTIONS = 256  # that stand for all the light, where it may be hidden
 FILTERS = {"lobes": LobeMaps, "mips": Mips}
 
 
@@ -16,6 +18,7 @@ class FilteredLight:
 
     def __init__(self, kind, side):
         self.kind, self.side, self.seen = kind, side, None
+        self.directions = None
 
     def of(self, emitter):
         """Itself, filtered from this `emitter` as it is now."""
@@ -25,8 +28,14 @@ class FilteredLight:
             seen_around = picture(radiance, self.side)
             self.lobes = self.kind(radiance, seen_around)
             self.irradiances = FilteredMap([irradiance(seen_around)])
-            self.seen = seen
+            self.seen, self.directions = seen, None
         return self
+
+    def drawn(self, rays):
+        """The directions from which the light comes, dealt out to the `rays` of a pixel."""
+        if self.directions is None or self.directions.rays != rays:
+            self.directions = DrawnLight(self.seen[0], DIRECTIONS, rays)
+        return self.directions
 
     def over_lobe(self, axis, kappa):
         """Mean radiance over a von Mises-Fisher lobe, linear sRGB."""
