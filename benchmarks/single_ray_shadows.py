@@ -4,8 +4,8 @@
     python benchmarks/single_ray_shadows.py          # minutes on two cores
 
 Each part is kept in `single_ray_shadows.json` as soon as it is measured, and the same command goes
-on from there; delete the file to measure anew. It then writes the page `single_ray_shadows.md` and
-its picture. Times are compared within a part, where methods take turns; they are of all threads.
+on from there; delete the file to measure anew. It then writes docs/single_ray_shadows.md and .png.
+Times are compared within a part, where methods take turns; they are of all threads.
 """
 
 import json

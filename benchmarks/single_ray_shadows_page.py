@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import single_ray_shadows_figure as figure
 
-PAGE = Path(__file__).with_suffix("").with_name("single_ray_shadows.md")
+PAGE = Path(__file__).parents[1] / "docs" / "single_ray_shadows.md"
 SHOWN = (
     "linear 1/20", "base 1/20", "discrete 1/20", "convex 1/20", "split 1/5", "split 1/10",
     "split, 19 cones, 1/10", "quilez", "aaltonen",
@@ -34,8 +34,8 @@ INTRODUCTION = """# Soft shadows from a single ray: how large their errors are
 
 Made by `python benchmarks/single_ray_shadows.py`. Errors are root mean squares of the share of the
 light that is seen, from the light that truly arrives: 2048 rays (512 in frames), or the closed form
-of a half-plane. Times are ratios within one run. References are those of docs/references.md:
-[Bálint et al. 2019], whose errors were not published, [Quílez 2010] and [Aaltonen 2018].
+of a half-plane. Times are ratios within one run. The marches are those of [Bálint et al. 2019], who
+published no errors; `quilez` and `aaltonen` are those of [Quílez 2010] and [Aaltonen 2018].
 
 ![Errors over evaluations, and shadows on a ground](single_ray_shadows.png)
 """
