@@ -30,7 +30,7 @@ PRINTED = {
 RIGHT = {"0.25": 16, "0.5": 16, "1.0": 32, "2.0": 32, "4.0": 64}  # section 6.3, by light radius
 FEW = 1e-3  # of the pixels may be off by more than 1/100
 
-INTRODUCTION = """# Soft shadows from a single ray: how large their errors are
+INTRODUCTION = """# Errors of single-ray shadows
 
 Made by `python benchmarks/single_ray_shadows.py`. Errors are root mean squares of the share of the
 light that is seen, from the light that truly arrives: 2048 rays (512 in frames), or the closed form
