@@ -57,7 +57,9 @@ def test_the_renderer_chooses_by_the_law(law, llvm_variant):
     mi = llvm_variant
     tree = build(np.random.default_rng(0).random((20, 30)), law.n)
     shares = np.full(law.n, 1 / law.n)
-    blocks = SortedBlocks(tree, shares, type("Law", (type(law),), {"fit": lambda _: law}))
+    blocks = SortedBlocks(
+        tree, shares, np.zeros((law.n, 2)), type("Law", (type(law),), {"fit": lambda _: law})
+    )
     xi = ((np.arange(40_000) + 0.5) / 40_000).astype(np.float32)
     x, y, density = (
         np.array(a) for a in blocks.sample(mi.Point2f(mi.Float(xi), mi.Float(0.5)), True)

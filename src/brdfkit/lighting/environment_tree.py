@@ -8,6 +8,7 @@ blocks that are among the next to be cut are cut at once, which ends with the sa
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -38,8 +39,12 @@ def build(values, count, criterion="relative"):
     >>> build(np.array([[0.0, 0.0, 1.0]]), 2).blocks.tolist()
     [[0, 2, 0, 1], [2, 3, 0, 1]]
     """
-    height, width = values.shape
-    sums = Sums(values)
+    return build_by(Sums(values), count, criterion)
+
+
+def build_by(sums, count, criterion="relative"):
+    """`build` of values whose `Sums` are at hand."""
+    height, width = sums.values.shape
     error = CRITERIA[criterion]
     boxes, left = np.array([[0, width, 0, height]]), np.array([-1])
     keys = error(sums, boxes)
@@ -64,13 +69,16 @@ class Sums:
     def __init__(self, values):
         self.values = values
         self.table, self.squares = _summed_area_table(values), _summed_area_table(values**2)
-        self.transposed = np.ascontiguousarray(self.table.T)
         self.rounding = 1e-14 * self.squares[-1, -1]  # of sums of squares
 
     def of(self, boxes):
         """Numbers of pixels (n,), sums of values and sums of squares over `boxes` (n, 4)."""
         x0, x1, y0, y1 = boxes.T
-        return (x1 - x0) * (y1 - y0), _sums(self.table, boxes), _sums(self.squares, boxes)
+        return (x1 - x0) * (y1 - y0), self.of_values(boxes), _sums(self.squares, boxes)
+
+    def of_values(self, boxes):
+        """Sums of values (n,) over `boxes` (n, 4)."""
+        return _sums(self.table, boxes)
 
 
 def block_sums(values, boxes):
@@ -121,8 +129,10 @@ CRITERIA = {
 def _summed_area_table(values):
     """(height + 1, width + 1): entry (y, x) is the sum over the rows below y, columns below x."""
     table = np.zeros((values.shape[0] + 1, values.shape[1] + 1))
-    np.cumsum(values, axis=0, out=table[1:, 1:])
-    return np.cumsum(table, axis=1, out=table)
+    np.cumsum(values, axis=1, out=table[1:, 1:])
+    for above, row in pairwise(table):  # twice as fast as a sum along columns
+        row += above
+    return table
 
 
 def _sums(table, boxes):
@@ -133,7 +143,7 @@ def _sums(table, boxes):
 def _cut(sums, boxes):
     """The two parts (2n, 4) of each of the `boxes` (n, 4), which hold more than one pixel."""
     x, across = _best_column(sums.table, boxes)
-    y, down = _best_column(sums.transposed, boxes[:, [2, 3, 0, 1]])
+    y, down = _best_column(sums.table.T, boxes[:, [2, 3, 0, 1]])
     vertical = across >= down
     first, second = boxes.copy(), boxes.copy()
     first[vertical, 1] = second[vertical, 0] = x[vertical]
@@ -152,8 +162,8 @@ def _best_column(table, boxes):
     start, whole = np.cumsum(cuts) - cuts, _sums(table, boxes)
     # The columns inside the boxes, one box behind the other; to the left of each, a part of n
     n = np.arange(1, cuts.sum() + 1) - np.repeat(start, cuts)
-    top, bottom = (np.repeat(y * table.shape[1] + x0, cuts) + n for y in (y0, y1))
-    left = table.take(bottom) - table.take(top) - np.repeat(table[y1, x0] - table[y0, x0], cuts)
+    x, top, bottom = np.repeat(x0, cuts) + n, np.repeat(y0, cuts), np.repeat(y1, cuts)
+    left = table[bottom, x] - table[top, x] - np.repeat(table[y1, x0] - table[y0, x0], cuts)
     right = np.repeat(whole, cuts) - left
     score = left**2 / n + right**2 / (np.repeat(x1 - x0, cuts) - n)
 

@@ -1,4 +1,4 @@
-"""Draws points of a map from its sorted blocks: a block by a law, and a point in it evenly.
+"""Draws points of a map from its sorted blocks: a block by a law, and a point in it by its slopes.
 
 [Ergun 2015, section 6.3]. Blocks beside each other in this order lie anywhere in the map, so that
 strata of Mitsuba's samplers are mostly lost.
@@ -9,12 +9,14 @@ import dataclasses
 import numpy as np
 
 from brdfkit.host.arrays import Rows
+from brdfkit.lighting.block_slopes import draw, line
 
 
 class SortedBlocks:
-    """The blocks of a `Tree`, and the law of the class `law` fitted to their shares (n,)."""
+    """The blocks of a `Tree` with `slopes` (n, 2), and the law of the class `law` fitted to their
+    shares (n,)."""
 
-    def __init__(self, tree, shares, law):
+    def __init__(self, tree, shares, slopes, law):
         order = np.argsort(-shares, kind="stable")
         x0, x1, y0, y1 = tree.blocks[order].T
         self.cells, areas = tree.boxes[0, 1] * tree.boxes[0, 3], (x1 - x0) * (y1 - y0)
@@ -23,7 +25,8 @@ class SortedBlocks:
         self.densities[order] = self.law.probability(np.arange(len(order))) * self.cells / areas
         self.in_renderer = _in_renderer(self.law)
         self.boxes = Rows(np.stack([x0, x1, y0, y1], axis=1))
-        self.nbytes = 16 * len(order)
+        self.slopes = Rows(slopes[order])
+        self.nbytes = 24 * len(order)
 
     def sample(self, u, active):
         """(x, y, density relative to an even one)."""
@@ -35,9 +38,11 @@ class SortedBlocks:
         probability = law.probability(i)
         rest = (u.x - law.cumulative(i)) / dr.maximum(probability, 1e-30)
         box = self.boxes.at(mi.UInt32(i), mi.Vector4f, active)
-        density = probability * mi.Float(self.cells) / ((box.y - box.x) * (box.w - box.z))
-        x, y = dr.lerp(box.x, box.y, dr.clip(rest, 0, 1)), dr.lerp(box.z, box.w, u.y)
-        return x, y, density
+        slope = self.slopes.at(mi.UInt32(i), mi.Vector2f, active)
+        s, t = draw(dr.clip(rest, 0, 1), slope.x), draw(u.y, slope.y)
+        mean = probability * mi.Float(self.cells) / ((box.y - box.x) * (box.w - box.z))
+        density = mean * line(s, slope.x) * line(t, slope.y)
+        return dr.lerp(box.x, box.y, s), dr.lerp(box.z, box.w, t), density
 
 
 def _in_renderer(law):

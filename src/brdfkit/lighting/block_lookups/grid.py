@@ -6,13 +6,14 @@ tried one after the other. [Ergun 2015, section 6.2]
 
 import numpy as np
 
-from brdfkit.host.arrays import Integers, Rows, cell
+from brdfkit.host.arrays import Integers, cell
+from brdfkit.lighting.block_lookups.block_densities import BlockDensities
 
 
 class Grid:
-    """Squares of the map, their lists of blocks, and the blocks' bounds and densities."""
+    """Squares of the map, their lists of blocks, and the densities in blocks."""
 
-    def __init__(self, tree, densities):
+    def __init__(self, tree, densities, slopes):
         blocks = tree.blocks
         _, self.width, _, self.height = tree.boxes[0].tolist()
         side = np.sqrt(2 * self.width * self.height / len(blocks))
@@ -27,29 +28,26 @@ class Grid:
                     list_.append(block)
         self.first = Integers(np.cumsum([0] + [len(list_) for list_ in lists[:-1]]))
         self.listed = Integers(np.concatenate(lists))
-        self.ends = Rows(blocks[:, [1, 3]])
-        self.starts = Rows(blocks[:, [0, 2]])
-        self.densities = Rows(densities)
-        self.nbytes = 4 * (len(lists) + sum(map(len, lists)) + 5 * len(blocks))
+        self.densities = BlockDensities(blocks, densities, slopes)
+        self.nbytes = 4 * (len(lists) + sum(map(len, lists))) + self.densities.nbytes
 
     def density(self, x, y, active):
         import drjit as dr
         import mitsuba as mi
 
         # The same cell for all blocks: on an edge, one of them has it
-        x, y = (mi.Float(cell(a, n)) for a, n in ((x, self.width), (y, self.height)))
-        square = cell((y + 0.5) * (self.rows / self.height), self.rows) * self.columns
-        square = square + cell((x + 0.5) * (self.columns / self.width), self.columns)
+        column, row = (mi.Float(cell(a, n)) for a, n in ((x, self.width), (y, self.height)))
+        square = cell((row + 0.5) * (self.rows / self.height), self.rows) * self.columns
+        square = square + cell((column + 0.5) * (self.columns / self.width), self.columns)
 
         def outside(i):
-            block = self.listed.at(i, active)
-            start, end = (r.at(block, mi.Vector2f, active) for r in (self.starts, self.ends))
-            inside = (x >= start.x) & (x < end.x) & (y >= start.y) & (y < end.y)
+            box = self.densities.boxes.at(self.listed.at(i, active), mi.Vector4f, active)
+            inside = (column >= box.x) & (column < box.y) & (row >= box.z) & (row < box.w)
             return ~inside & active if dr.is_jit_v(mi.Float) else not inside and active
 
         first = self.first.at(square, active)
         (i,) = dr.while_loop((first,), outside, lambda i: (i + 1,))
-        return self.densities.at(self.listed.at(i, active), active=active)
+        return self.densities.at(self.listed.at(i, active), x, y, active)
 
 
 def _squares(start, end, count, size):

@@ -1,23 +1,26 @@
-"""The density stored for every cell of the map: one read, and as much memory as one channel.
+"""The number of its block stored for every cell of the map: as much memory as one channel.
 
-[Ergun 2015, section 6.2] has it in the fourth channel of a texture, which else lies idle.
+[Ergun 2015, section 6.2] has the density in the fourth channel of a texture, which else lies idle.
 """
 
 import numpy as np
 
-from brdfkit.host.arrays import Rows, cell
+from brdfkit.host.arrays import Integers, cell
+from brdfkit.lighting.block_lookups.block_densities import BlockDensities
 
 
 class Texture:
-    """The densities of the blocks of a tree, by cell."""
+    """The blocks of a tree by cell, their mean densities and slopes."""
 
-    def __init__(self, tree, densities):
+    def __init__(self, tree, densities, slopes):
         _, self.columns, _, self.rows = tree.boxes[0].tolist()
-        texels = np.zeros((self.rows, self.columns), np.float32)
-        for (x0, x1, y0, y1), density in zip(tree.blocks.tolist(), densities, strict=True):
-            texels[y0:y1, x0:x1] = density
-        self.texels, self.nbytes = Rows(texels.ravel()), texels.nbytes
+        texels = np.zeros((self.rows, self.columns), np.uint32)
+        for block, (x0, x1, y0, y1) in enumerate(tree.blocks.tolist()):
+            texels[y0:y1, x0:x1] = block
+        self.texels = Integers(texels.ravel())
+        self.densities = BlockDensities(tree.blocks, densities, slopes)
+        self.nbytes = texels.nbytes + self.densities.nbytes
 
     def density(self, x, y, active):
         index = cell(y, self.rows) * self.columns + cell(x, self.columns)
-        return self.texels.at(index, active=active)
+        return self.densities.at(self.texels.at(index, active), x, y, active)

@@ -1,4 +1,4 @@
-"""Samples a map by blocks of nearly constant power: by walking their tree, or by a law.
+"""Samples a map by blocks in which power is nearly a straight line: by their tree or a law.
 
 [Ergun 2015, chapter 6]
 """
@@ -10,7 +10,8 @@ from brdfkit.lighting.block_laws.steps import Steps
 from brdfkit.lighting.block_lookups.grid import Grid
 from brdfkit.lighting.block_lookups.texture import Texture
 from brdfkit.lighting.block_lookups.walk import Walk
-from brdfkit.lighting.environment_map import cell_power
+from brdfkit.lighting.block_slopes import slopes
+from brdfkit.lighting.environment_map import cell_power, pixel_power
 
 LAWS = {"hyperbolic": Hyperbolic, "steps": Steps}
 DISTRIBUTIONS = ("exact", *LAWS)
@@ -21,19 +22,19 @@ class Blocks:
     """At most `count` blocks of the map; see `environment_tree.CRITERIA` and the names above."""
 
     def __init__(self, brightness, count, criterion, distribution, lookup):
-        power = cell_power(brightness)
-        self.tree = environment_tree.build(power, count, criterion)
-        x0, x1, y0, y1 = self.tree.blocks.T
-        self.shares = environment_tree.block_sums(power, self.tree.blocks).clip(0)
-        self.shares = self.shares / self.shares.sum()
+        sums = environment_tree.Sums(cell_power(brightness))
+        self.tree = environment_tree.build_by(sums, count, criterion)
+        cells, power, _ = sums.of(self.tree.blocks)
+        self.shares = power.clip(0) / power.clip(0).sum()
+        lines = slopes(sums, pixel_power(brightness), self.tree.blocks)
         if distribution == "exact":
-            densities = self.shares * power.size / ((x1 - x0) * (y1 - y0))
-            self.choice = Walk(self.tree, densities)
+            densities = self.shares * sums.values.size / cells
+            self.choice = Walk(self.tree, densities, lines)
         else:
-            self.choice = SortedBlocks(self.tree, self.shares, LAWS[distribution])
+            self.choice = SortedBlocks(self.tree, self.shares, lines, LAWS[distribution])
             densities = self.choice.densities
         shared = isinstance(self.choice, LOOKUPS[lookup])
-        self.lookup = self.choice if shared else LOOKUPS[lookup](self.tree, densities)
+        self.lookup = self.choice if shared else LOOKUPS[lookup](self.tree, densities, lines)
         self.nbytes = self.choice.nbytes + (0 if shared else self.lookup.nbytes)
 
     def sample(self, u, active):
