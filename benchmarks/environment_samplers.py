@@ -3,9 +3,11 @@
 python benchmarks/environment_samplers.py [MAP ...]    # writes docs/environment_samplers.md
 
 A sky with a sun is made by the program; maps on the command line come besides. All ratios are of
-one run, in which the samplers take turns; times are of the processor, the least of several.
+one run, in which the samplers take turns; times are of the processor, the least of several. The
+whole is repeated, so that the page can say how far its figures may be off. Some ten minutes.
 """
 
+import argparse
 import sys
 import time
 from pathlib import Path
@@ -35,9 +37,9 @@ SAMPLERS = {
     "blocks, compensated": BLOCKS | {"compensated": True},
     "`alias`, compensated": OTHERS | {"sampler": "alias", "compensated": True},
 }
-SIZE, SPP = 32, 36
-PICTURES = 16  # whose variance is taken, for each of Mitsuba's two samplers
-ROUNDS = 3
+SIZE, SPP = 24, 36
+PICTURES = 6  # whose variance is taken in a repeat, for each of Mitsuba's two samplers
+ROUNDS = 2  # of which the least time is taken, in a repeat
 
 HEAD = """# Environment samplers
 
@@ -54,9 +56,13 @@ look-up of the radiance, so that they differ in the sampler alone.
   in memory, over `envmap`'s.
 - **Memory** is that of the sampler's tables, in per cent of a map of three floats a pixel.
 - **Gradient** is the time of a picture and its derivatives by the map (`prb`), without that of
-  making the sampler anew, as an update of the map does. That they are right is a test.
+  making the sampler anew, as an update of the map does. **Gradient's sum** is that of the
+  derivatives of the mean over all texels, over `envmap`'s: 1 where they agree.
 
 `python benchmarks/environment_samplers.py MAP ...` makes this page anew; these maps were {maps}.
+Pictures have {size} × {size} pixels of {spp} samples. Everything was measured {repeats} times:
+{pictures} pictures a time for noise, the least of {rounds} times for pictures and gradients. A
+figure is the mean, and **±** its standard error, pooled over samplers and maps.
 
 """
 TAIL = """
@@ -139,12 +145,13 @@ def scene(emitter, sampler="independent", integrator="path"):
     )
 
 
-def noise(emitter, sampler):
+def noise(emitter, sampler, repeat):
     """The variance of pixels over the square of their means, in the mean over the picture."""
     import mitsuba as mi
 
     loaded = scene(emitter, sampler)
-    pictures = (np.array(mi.render(loaded, spp=SPP, seed=seed)) for seed in range(PICTURES))
+    seeds = range(PICTURES * repeat, PICTURES * (repeat + 1))
+    pictures = (np.array(mi.render(loaded, spp=SPP, seed=seed)) for seed in seeds)
     found = np.array([luminance(picture) for picture in pictures])
     return float((found.var(axis=0, ddof=1) / found.mean(axis=0) ** 2).mean())
 
@@ -169,7 +176,10 @@ def picture(emitter):
 
 
 def gradient(emitter):
-    """A function that renders a picture and computes its derivatives by the map."""
+    """A function that renders a picture and sums the derivatives of its mean by the map.
+
+    By a leaf of our own: where that of Mitsuba's `envmap` is enabled, its first gradient is 0.
+    """
     import drjit as dr
     import mitsuba as mi
 
@@ -183,8 +193,9 @@ def gradient(emitter):
 
     def derivatives(seed):
         dr.set_grad(leaf, 0)
-        dr.backward(dr.mean(mi.render(loaded, parameters, spp=SPP, seed=seed), axis=None))
-        np.array(dr.grad(leaf))
+        mean = dr.mean(mi.render(loaded, parameters, spp=SPP, seed=seed), axis=None)
+        dr.backward(mean, flags=dr.ADFlag.ClearInterior)  # the edges serve the next picture too
+        return np.array(dr.grad(leaf), float).sum()
 
     return derivatives
 
@@ -196,7 +207,7 @@ def numpy_cdf(power):
     return rows / np.maximum(rows[:, -1:], 1e-30), totals / totals[-1]
 
 
-def measure(bitmap):
+def measure(bitmap, repeat):
     """Sampler → its figures on a map; `envmap`'s are 1 where they are ratios."""
     import mitsuba as mi
 
@@ -205,19 +216,21 @@ def measure(bitmap):
     bright = luminance(np.array(bitmap, float))
     power = cell_power(bright)
 
-    independent = {name: noise(emitter, "independent") for name, emitter in loaded.items()}
-    jittered = {name: noise(emitter, "multijitter") for name, emitter in loaded.items()}
+    independent = {name: noise(emitter, "independent", repeat) for name, emitter in loaded.items()}
+    jittered = {name: noise(emitter, "multijitter", repeat) for name, emitter in loaded.items()}
     seconds = least_seconds({name: picture(emitter) for name, emitter in loaded.items()})
     builds = {
         name: lambda _, emitter=emitter: emitter.sampler_of(bright)
         for name, emitter in loaded.items()
         if name != "`envmap`"
     }
-    build = least_seconds(builds | {"NumPy": lambda _: numpy_cdf(power)}, 2)
+    build = least_seconds(builds | {"NumPy": lambda _: numpy_cdf(power)})
     loads = {n: lambda _, e=emitter: mi.load_dict(e) for n, emitter in emitters.items()}
     load = least_seconds(loads, 1)
     gradients = {name: gradient(emitter) for name, emitter in loaded.items()}
-    backward = least_seconds(gradients, 3)
+    backward = least_seconds(gradients)
+    seeds = range(ROUNDS * repeat, ROUNDS * (repeat + 1))
+    sums = {name: sum(map(derivatives, seeds)) for name, derivatives in gradients.items()}
     tables = {name: getattr(emitter, "points", None) for name, emitter in loaded.items()}
     tables["`envmap`"] = tables["`mip`"]  # it has the same
 
@@ -233,6 +246,7 @@ def measure(bitmap):
             "load": load[name] / load[first],
             "memory [%]": 100 * tables[name].nbytes / (12 * bright.size),
             "gradient": backward[name] / backward[first],
+            "gradient's sum": sums[name] / sums[first],
         }
         for name in SAMPLERS
     }
@@ -250,17 +264,29 @@ def number(value):
 
 
 def page(found, sizes):
-    """The page, of the figures map → sampler → column → number."""
+    """The page, of the repeats' figures map → sampler → column → numbers (repeats,)."""
     columns = list(next(iter(next(iter(found.values())).values())))
-    rows = []
-    for name in SAMPLERS:
-        of_maps = {c: np.array([by[name][c] for by in found.values()]) for c in columns}
-        means = (v.mean() if "[%]" in c else np.exp(np.log(v).mean()) for c, v in of_maps.items())
-        rows.append([name, *map(number, means)])
-    text = HEAD.format(maps=", ".join(f"{n} ({w} × {h})" for n, (w, h) in sizes.items()))
+    repeats = len(found[next(iter(found))]["blocks"]["time"])
+    of_column = {
+        c: np.array([[by[s][c] for by in found.values()] for s in SAMPLERS]) for c in columns
+    }  # (samplers, maps, repeats)
+    means = {c: values.mean(axis=2) for c, values in of_column.items()}
+    off = {c: standard_error(values) for c, values in of_column.items()}
+
+    text = HEAD.format(
+        maps=", ".join(f"{n} ({w} × {h})" for n, (w, h) in sizes.items()),
+        size=SIZE,
+        spp=SPP,
+        repeats=repeats,
+        pictures=PICTURES,
+        rounds=ROUNDS,
+    )
     text += (
         "## In the mean over the maps\n\nGeometric means of ratios; per cent are plain means.\n\n"
     )
+    over = [v.mean(axis=1) if "[%]" in c else np.exp(np.log(v).mean(1)) for c, v in means.items()]
+    rows = [[name, *map(number, row)] for name, row in zip(SAMPLERS, np.array(over).T, strict=True)]
+    rows.append(["±", *(percent(value / np.sqrt(len(found))) for value in off.values())])
     text += table(["", *columns], rows)
     of = {
         "Noise": "noise",
@@ -268,25 +294,55 @@ def page(found, sizes):
         "Time": "time",
         "Build, over NumPy's CDF": "build",
         "Memory, in per cent of the map": "memory [%]",
+        "Gradient's sum": "gradient's sum",
     }
     for title, column in of.items():
-        rows = [[s, *(number(by[s][column]) for by in found.values())] for s in SAMPLERS]
-        text += f"\n## {title}\n\n" + table(["", *found], rows)
+        rows = [[s, *map(number, row)] for s, row in zip(SAMPLERS, means[column], strict=True)]
+        text += f"\n## {title}\n\nEach ± {percent(off[column])}.\n\n" + table(["", *found], rows)
     return text + TAIL
 
 
+def standard_error(values):
+    """Of means over repeats, relative; pooled over samplers and maps (samplers, maps, repeats)."""
+    relative = values.std(axis=2, ddof=1) / values.mean(axis=2)
+    relative = relative[np.isfinite(relative)]
+    varying = relative[relative > 0]  # `envmap`'s own ratios are 1 each time
+    return np.sqrt((varying**2).mean() / values.shape[2]) if len(varying) else 0.0
+
+
+def percent(value):
+    """A share as per cent."""
+    return f"{100 * value:.1f} %"
+
+
 def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("maps", nargs="*", metavar="MAP", help="latitude over longitude")
+    parser.add_argument("--repeats", type=int, default=2, help="2 or more (default: 2)")
+    arguments = parser.parse_args()
+    if arguments.repeats < 2:
+        parser.error("--repeats: give 2 or more; one measurement has no known error.")
+
     llvm.use_variant()
     assert bk.check(example("kdtree_envmap"), only=["weights"])  # and Mitsuba is awake
     out = Console(stderr=True)
     found, sizes = {}, {}
     with threads.two_threads():
-        for name, bitmap in maps(sys.argv[1:]).items():
+        for name, bitmap in maps(arguments.maps).items():
             out.print(f"{name} ...")
-            found[name], sizes[name] = measure(bitmap), tuple(bitmap.size())
-            PAGE.write_text(page(found, sizes), encoding="utf-8")
+            repeats = [measure(bitmap, repeat) for repeat in range(arguments.repeats)]
+            found[name], sizes[name] = joined(repeats), tuple(bitmap.size())
+    PAGE.write_text(page(found, sizes), encoding="utf-8")
     out.print(f"written: {PAGE}")
     return 0
+
+
+def joined(repeats):
+    """Sampler → column → numbers (repeats,), of the figures of each repeat."""
+    return {
+        name: {column: np.array([r[name][column] for r in repeats]) for column in figures}
+        for name, figures in repeats[0].items()
+    }
 
 
 if __name__ == "__main__":

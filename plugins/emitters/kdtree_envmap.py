@@ -4,7 +4,8 @@
 
 takes the place of Mitsuba's `envmap`: latitude over longitude, y up, with the same convention of
 rows and columns and the same bilinear interpolation. The map is cut into `blocks` of nearly
-constant power per angle. A sample chooses a block, and a point of it uniformly in both angles.
+constant power per angle. A sample chooses a block, and a point of it by a density that follows a
+straight line along either angle, as the light falls off there; the thesis's is even.
 `to_world` may turn and mirror the map, nothing else.
 
 `criterion` says which block is cut next: `relative`, the squared error over the mean, which is what
@@ -12,10 +13,10 @@ a block adds to the variance of samples; or one of the thesis's, `sse` (the squa
 `variance`, `range`. `distribution` says how a block is chosen: `exact`, by its share of the power,
 walking down the cuts; by closed forms that need no walk and no table, `hyperbolic`, the thesis's
 law of one parameter, noisier where sorted shares are not hyperbolic, and `steps`, eight ranges of
-equal shares. `lookup` says how the density of a direction that a surface drew is found: `texture`,
-stored for every cell between pixels; `tree`, by walking; `grid`, by trying the blocks that a square
-of a coarse grid lists. `compensated`: only for integrators that also sample surfaces
-[Karlík et al. 2019].
+equal shares. `lookup` says how the block of a direction that a surface drew is found, for the
+density: `texture`, by its number, stored for every cell between pixels; `tree`, by walking; `grid`,
+by trying the blocks that a square of a coarse grid lists. `compensated`: only for integrators that
+also sample surfaces [Karlík et al. 2019].
 
 Mitsuba's samplers `stratified`, `multijitter`, `orthogonal` and `ldsampler` stratify what blocks
 are drawn with, `independent` does not; `exact` keeps the strata, the closed forms lose most.
