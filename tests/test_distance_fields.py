@@ -158,7 +158,7 @@ def everything():
     sampled = df.torus(0.6, 0.2).to_grid(12).at(-0.5, 0.9, 0.3)
     hole = df.sphere(0.3).at(0, 0, 0.4)
     whole = rods | cone | solids | rounded.at(0, 1.2, 0) | bulb | below | ring | sampled
-    return whole.dilate(0.02) - hole.k(0.1)
+    return whole.dilate(0.02) - hole.made_of("felt").k(0.1)
 
 
 def points_about(n=200):

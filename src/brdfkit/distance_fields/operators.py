@@ -51,6 +51,10 @@ class Operators:
         """A hollow shell of this thickness, whose middle is the surface."""
         return kind("shell")(self, thickness)
 
+    def made_of(self, material: str) -> Any:
+        """Name the material, by which a renderer finds its BSDF."""
+        return kind("made_of")(self, material)
+
     def repeat(self, spacing: Any, copies: int | None = None) -> Any:
         """Repeat at distances `spacing`, 0 along an axis for once.
 

@@ -38,7 +38,7 @@ def _arguments(node):
 
 
 def _value(value):
-    if value is None or isinstance(value, int):
+    if value is None or isinstance(value, int | str):
         return repr(value)
     if isinstance(value, tuple):
         return f"({', '.join(_value(v) for v in value)})"

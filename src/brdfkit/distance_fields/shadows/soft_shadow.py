@@ -7,22 +7,10 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.arguments import to_whole_number
-from brdfkit.distance_fields.shadows.aaltonen import aaltonen
-from brdfkit.distance_fields.shadows.base import base
+from brdfkit.distance_fields.shadows.by_name import METHODS, by_name
 from brdfkit.distance_fields.shadows.cone import light_cone
-from brdfkit.distance_fields.shadows.convex import convex
-from brdfkit.distance_fields.shadows.discrete import discrete
-from brdfkit.distance_fields.shadows.hard import hard
-from brdfkit.distance_fields.shadows.linear import linear
-from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
-from brdfkit.distance_fields.shadows.quilez import quilez
 from brdfkit.distance_fields.shadows.shadow import DIRECTIONS, Shadow
-from brdfkit.distance_fields.shadows.split import split
 from brdfkit.errors import BrdfkitError, no_such
-
-BY_EPSILON = {m.__name__: m for m in (linear, base, discrete, convex, split, hard)}
-WITHOUT = {m.__name__: m for m in (quilez, aaltonen)}
-METHODS = [*BY_EPSILON, *WITHOUT, monte_carlo.__name__]
 
 
 def soft_shadow(
@@ -93,13 +81,9 @@ def soft_shadow(
             "radius and ball should not be negative, nor both 0: a light of radius 0 needs a ball "
             "about the point, half a pixel wide."
         )
+    rays = to_whole_number("rays", rays, 1)
     cone = light_cone(point, light, radius, ball)
-    if shadow in BY_EPSILON:
-        found = BY_EPSILON[shadow](field, cone, epsilon, direction)
-    elif shadow in WITHOUT:
-        found = WITHOUT[shadow](field, cone)
-    else:
-        found = monte_carlo(field, cone, to_whole_number("rays", rays, 1))
+    found = by_name(shadow, field, cone, epsilon, direction, rays)
     bad = dr.isnan(found.visible)
     if dr.any(bad):
         first = np.flatnonzero(bad)[0]

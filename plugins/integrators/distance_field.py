@@ -1,0 +1,152 @@
+"""Distance field: direct light on surfaces that are given by distances, with soft shadows.
+
+    {"type": "distance_field", "filename": "scene.json"}
+
+renders a field of `brdfkit.distance_fields`, from a file that `field.save` wrote, or, in Python,
+`"field": field.to_json()`. The lights are those of the scene: area emitters on spheres, rectangles
+and disks, whose shadows are soft, and points, spots and directions, whose are sharp. A bsdf within
+the integrator is the material; a bsdf with a name is that of the parts that `field.made_of(NAME)`
+names. Textures have u = x and v = y; the tangent of anisotropic materials is the x axis laid onto
+the surface, or the z axis where that stands upright.
+
+`shadow` says how the share of a lamp that a point sees is found: by one march along a cone
+(`linear`; `base`, `discrete`; `convex`, longer steps in unions of convex solids), which takes all
+that is in the way for one half-plane; by 7 of them (`split`), right for several, small and thin
+objects; to the middle of the lamp (`hard`); by two formulas that are known from games (`quilez`,
+`aaltonen`); by `rays` rays (`monte_carlo`); or not at all (`none`). `direction` A leads from the
+surface to the lamp, B back; `epsilon` is the largest error of that share, within the method's idea
+of what is in the way.
+
+`shading` = `split`: the BSDF towards the lamp's middle, the radiance, a solid angle (π (r/d)² of a
+sphere, A cosθ / d² of other lamps) and the share: no noise. `estimated`: `samples` samples of the
+lamp, of which the shadow's edge lets some through: highlights in the lamp's shape, and rectangles
+and disks instead of the spheres about them. `exact`: a ray to every sample; `shadow` is not asked.
+A sky, `constant` or `envmap`, is always sampled so.
+
+Derivatives go to all parameters of the field (`mi.traverse` lists them, by the names of
+`field.parameters()`), to bsdfs and to lamps, through what is seen and through soft shadows, where
+Mitsuba's `prb` has none. What appears or vanishes at a silhouette as it moves is missing in them,
+and so are the shadows of `estimated`, `exact` and the sky. There is no light between surfaces; a
+lamp casts no shadow; other shapes of Mitsuba's are refused.
+
+[Bálint et al. 2019]
+"""
+
+from brdfkit.distance_fields import from_json, load
+from brdfkit.distance_fields.shading.direct_light import SHADINGS, SHADOWS, DirectLight
+from brdfkit.distance_fields.shading.exposed import exposed
+from brdfkit.distance_fields.shading.lamps import lamps_of
+from brdfkit.distance_fields.shading.parts import parts_of
+from brdfkit.distance_fields.shading.seen_point import seen_point
+from brdfkit.distance_fields.shadows.shadow import DIRECTIONS
+from brdfkit.errors import BrdfkitError
+from brdfkit.host.declared import count, declared, plain_number, text, word
+from brdfkit.host.properties import resolve_file
+
+PARAMETERS = {
+    "filename": text("", "file of the field, as JSON"),
+    "field": text("", "or the field itself, by `field.to_json()`"),
+    "shadow": word(SHADOWS, "how shadows are found"),
+    "direction": word(DIRECTIONS, "where marches begin"),
+    "epsilon": plain_number(0.05, (1e-3, 0.5), "largest error of the share of a lamp"),
+    "rays": count(64, (1, 65_536), "rays of monte_carlo"),
+    "shading": word(SHADINGS, "how light is summed up"),
+    "samples": count(4, (1, 65_536), "samples of a lamp or the sky, each time"),
+    "far": plain_number(1e3, (1e-3, 1e9), "where rays end [unit]"),
+    "precision": plain_number(1e-4, (1e-9, 1e3), "radius of the thinnest rays [unit]"),
+}
+
+
+def define(mi):
+    """The class of `mi.SamplingIntegrator` for the current variant."""
+    import drjit as dr
+
+    class DistanceField(declared(mi.SamplingIntegrator, PARAMETERS)):
+        def __init__(self, props):
+            super().__init__(props)
+            self.bsdfs = dict(props.objects())
+            self.tree = field_of(self.filename, self.field)
+            self.parts, self.values = parts_of(self.tree, self.bsdfs), exposed(self.tree)
+            how = "shadow", "direction", "epsilon", "rays", "shading", "samples", "far"
+            self.light = DirectLight(**{name: getattr(self, name) for name in how})
+            self.parameters_changed([])
+
+        def traverse(self, callback):
+            for name, value in self.values.items():
+                callback.put(name, value, mi.ParamFlags.Differentiable)
+            for name, bsdf in self.bsdfs.items():
+                callback.put(name, bsdf, mi.ParamFlags.Differentiable)
+
+        def parameters_changed(self, keys):
+            self.now = self.tree.with_parameters(self.values)
+            self.larger = self.parts.larger(self.now)
+
+        def sample(self, scene, sampler, ray, medium=None, active=True):
+            if mi.variant().startswith("scalar"):
+                raise BrdfkitError(
+                    f"distance_field does not run in {mi.variant()}; set llvm_ad_rgb or "
+                    "cuda_ad_rgb."
+                )
+            # What the camera sees of lamps and the sky
+            shown = scene.ray_intersect(mi.Ray3f(ray), active)
+            emitter, radiance = shown.emitter(scene), mi.UnpolarizedSpectrum(0)
+            if emitter is not None:
+                radiance = mi.unpolarized_spectrum(emitter.eval(shown, active))
+
+            # What lies before them
+            end = dr.minimum(shown.t, self.far)
+            seen = seen_point(self.now, ray, end, self.precision, active)
+            here = active & seen.found
+            bsdf = self.parts.bsdf(self.now, self.larger, seen.si.p)
+            lit = mi.UnpolarizedSpectrum(0)
+            for lamp in lamps_of(scene):
+                lit += self.light.by_lamp(lamp, self.now, seen, bsdf, sampler, here)
+            sky = scene.environment()
+            if sky is not None:
+                lit += self.light.by_rays(sky, self.now, seen, bsdf, sampler, here)
+            return mi.depolarizer(dr.select(here, lit, radiance)), active, []
+
+        def to_string(self):
+            return f"DistanceField[{self.tree}]"
+
+    return DistanceField
+
+
+def field_of(filename, field):
+    """The field of a file, or of a text; `BrdfkitError` where there is none, or are both."""
+    if bool(filename) == bool(field):
+        raise BrdfkitError(
+            "distance_field: give the field as a filename, or in Python as field.to_json()."
+        )
+    return load(resolve_file(filename)) if filename else from_json(field, "distance_field: field")
+
+
+def example():
+    """A plane, for the checks."""
+    return {"type": "distance_field", "field": '{"kind": "plane"}'}
+
+
+def reference():
+    """A scene, and the radiance (3,) of each of its pixels: albedo / π · π (r/d)² L.
+
+    A matte ground below a lamp, whose cone nothing is in.
+    """
+    import mitsuba as mi
+
+    albedo, radiance, r, d = 0.5, [0.9, 0.6, 0.3], 0.5, 2.0
+    t = mi.ScalarTransform4f
+    camera = t().look_at([0.01, 0, 1], [0.01, 0, 0], [0, 1, 0]).scale(1e-3)
+    film = {"type": "hdrfilm", "width": 8, "height": 8, "rfilter": {"type": "box"}}
+    film["pixel_format"] = "luminance" if mi.is_monochromatic else "rgb"
+    grey = {"type": "rgb", "value": [albedo] * 3}
+    light = {"type": "area", "radiance": {"type": "rgb", "value": radiance}}
+    scene = {
+        "type": "scene",
+        "integrator": {
+            **example(),
+            "bsdf": {"type": "diffuse", "reflectance": grey},
+        },
+        "sensor": {"type": "orthographic", "to_world": camera, "film": film},
+        "lamp": {"type": "sphere", "center": [0, 0, d], "radius": r, "emitter": light},
+    }
+    return scene, [albedo * (r / d) ** 2 * value for value in radiance]

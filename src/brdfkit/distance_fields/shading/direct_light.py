@@ -1,0 +1,114 @@
+"""The light that lamps and an environment send to a camera by way of a field's surface.
+
+split       f(ω_0) · L · (solid angle of the whole lamp) · (the share of it that is seen)
+estimated   the mean of f(ω_s) L / p(ω_s) over samples s of the lamp that the edge of the shadow,
+            found by one march, lets through
+exact       the same, with a ray of its own for each sample
+
+f is the BSDF times the cosine at the surface, ω_0 the direction of the lamp's middle, L the
+radiance.
+
+[Bálint et al. 2019, equations 5.1, 5.2]
+"""
+
+from dataclasses import dataclass
+
+import drjit as dr
+
+from brdfkit.distance_fields.shadows import edge, light_cone
+from brdfkit.distance_fields.shadows.by_name import METHODS, SOFT, by_name
+from brdfkit.distance_fields.sphere_tracing import sphere_trace
+from brdfkit.errors import BrdfkitError
+
+SHADINGS = "split", "estimated", "exact"
+SHADOWS = [*METHODS, "none"]
+
+
+@dataclass(frozen=True)
+class DirectLight:
+    """How light is found: the settings of the integrator of the same names."""
+
+    shadow: str
+    direction: str
+    epsilon: float
+    rays: int
+    shading: str
+    samples: int
+    far: float
+
+    def __post_init__(self):
+        if self.shading == "estimated" and self.shadow not in SOFT:
+            raise BrdfkitError(
+                f"distance_field: shading = estimated needs the edge that one march finds, and "
+                f"shadow = {self.shadow} finds none; give one of {', '.join(SOFT)}."
+            )
+
+    def by_lamp(self, lamp, field, seen, bsdf, sampler, active):
+        """The radiance of a `Lamp`'s light that a `SeenPoint` sends to the camera."""
+        if self.shading == "split" or lamp.shape is None:
+            return self.by_middle(lamp, field, seen, bsdf, active)
+        if self.shading == "exact":
+            return self.by_rays(lamp.emitter, field, seen, bsdf, sampler, active)
+        cone, found = self.shadow_of(lamp, field, seen, lamp.middle_light(seen.si, active)[0])
+        with dr.suspend_grad():
+            line = edge(field, cone, found)
+
+        def shows(ds):
+            return line.shows(cone, ds.p)
+
+        return self.by_samples(lamp.emitter, shows, seen.si, bsdf, sampler, active)
+
+    def by_middle(self, lamp, field, seen, bsdf, active):
+        import mitsuba as mi
+
+        ds, light = lamp.middle_light(seen.si, active)
+        value = bsdf.eval(mi.BSDFContext(), seen.si, seen.si.to_local(ds.d), active)
+        visible = 1
+        if self.shadow != "none":
+            _, found = self.shadow_of(lamp, field, seen, ds)
+            visible = found.visible
+        return mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * visible
+
+    def shadow_of(self, lamp, field, seen, ds):
+        """The cone to a lamp, and the `Shadow` in it.
+
+        Rays that saw nothing look at the lamp from beside it, where the march soon ends.
+        """
+        centre, radius = lamp.sphere(seen.si, ds, self.far)
+        beside = centre + type(centre)(0, 0, 1) * (2 * radius + 1)
+        cone = light_cone(dr.select(seen.found, seen.si.p, beside), centre, radius, seen.ball)
+        how = self.epsilon, self.direction, self.rays
+        return cone, by_name(self.shadow, field, cone, *how)
+
+    def by_rays(self, emitter, field, seen, bsdf, sampler, active):
+        """The same for any emitter, with a ray to each sample."""
+        si = seen.si
+
+        def shows(ds):
+            return (self.shadow == "none") | ~self.is_blocked(field, seen, ds, active)
+
+        return self.by_samples(emitter, shows, si, bsdf, sampler, active)
+
+    def is_blocked(self, field, seen, ds, active):
+        """Whether the ray to a sample of an emitter meets the field."""
+        settings = {"lipschitz": field.lipschitz, "precision": seen.ball / 2, "active": active}
+        far = dr.minimum(ds.dist, self.far)
+        return sphere_trace(field.distance, seen.si.p, ds.d, far, **settings).found
+
+    def by_samples(self, emitter, shows, si, bsdf, sampler, active):
+        """The mean over samples of an emitter of those for which `shows(ds)`."""
+        import mitsuba as mi
+
+        def one(i, sampler, total):
+            ds, light = emitter.sample_direction(si, sampler.next_2d(active), active)
+            value = bsdf.eval(mi.BSDFContext(), si, si.to_local(ds.d), active)
+            found = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light)
+            return i + 1, sampler, total + dr.select(shows(ds), found, 0)
+
+        _, _, total = dr.while_loop(
+            (mi.UInt32(0), sampler, mi.UnpolarizedSpectrum(0)),
+            lambda i, sampler, total: active & (i < self.samples),
+            one,
+            max_iterations=self.samples,
+        )
+        return total / self.samples

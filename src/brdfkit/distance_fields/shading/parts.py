@@ -1,0 +1,57 @@
+"""The BSDF of each part of a field, by the name of its material."""
+
+import drjit as dr
+
+from brdfkit.distance_fields.materials import grown, material_names, share
+from brdfkit.errors import BrdfkitError
+
+
+class Parts:
+    """The BSDFs of a field: `named`, name → BSDF, and `other`, that of all else."""
+
+    def __init__(self, named, other):
+        self.named, self.other = named, other
+
+    def larger(self, field):
+        """Name → the field with the parts of this name grown, which `bsdf` needs."""
+        return {name: grown(field, name) for name in self.named}
+
+    def bsdf(self, field, larger, p):
+        """The `mi.BSDFPtr` at points of the surface: of the part with the largest share."""
+        import mitsuba as mi
+
+        with dr.suspend_grad():
+            shares = {name: share(field, each, p) for name, each in larger.items()}
+            found, most = mi.BSDFPtr(self.other), 1 - sum(shares.values(), mi.Float(0))
+            for name, here in shares.items():
+                found = dr.select(here > most, mi.BSDFPtr(self.named[name]), found)
+                most = dr.maximum(here, most)
+        return found
+
+
+def parts_of(field, bsdfs):
+    """The `Parts` of a field, of the BSDFs that a scene gives: name → BSDF.
+
+    One whose name is that of no part is for all parts without a name; where there is none, they are
+    Mitsuba's `diffuse`. Raises `BrdfkitError` for a name without a BSDF, and for too many BSDFs.
+    """
+    import mitsuba as mi
+
+    names = material_names(field)
+    for name, thing in bsdfs.items():
+        if not isinstance(thing, mi.BSDF):
+            raise BrdfkitError(f"distance_field: {name} is no bsdf; only bsdfs belong here.")
+    for name in names:
+        if name not in bsdfs:
+            raise BrdfkitError(
+                f"distance_field: a part of the field is made of {name!r}; give a bsdf of this "
+                "name."
+            )
+    others = [name for name in bsdfs if name not in names]
+    if len(others) > 1:
+        raise BrdfkitError(
+            f"distance_field: the bsdfs {', '.join(others)} belong to no part of the field; name "
+            "parts by field.made_of(NAME), and give one bsdf at most for all others."
+        )
+    other = bsdfs[others[0]] if others else mi.load_dict({"type": "diffuse"})
+    return Parts({name: bsdfs[name] for name in names}, other)

@@ -1,0 +1,79 @@
+"""Where camera rays meet a field: by cones as wide as a sample's part of a pixel.
+
+A cone ends where it touches the surface, so that no object is missed, thin as it may be. The end,
+with the empty ball about it that touches the surface, is what is shaded: shadows begin at that
+ball. Objects so look larger by half a pixel's diagonal over the root of the samples per pixel.
+
+[Bálint et al. 2019, section 2.7]
+"""
+
+from dataclasses import dataclass
+from math import sqrt
+from typing import Any
+
+import drjit as dr
+
+from brdfkit.distance_fields.cone_tracing import cone_trace
+from brdfkit.distance_fields.hits import reattach
+from brdfkit.distance_fields.normals import normal
+
+FINEST = 1e-3  # [unit]: half of the differences of normals; single precision allows no less
+
+
+@dataclass(frozen=True)
+class SeenPoint:
+    """What a camera ray meets.
+
+    si : `mi.SurfaceInteraction3f`.
+    ball : Float, the radius of the empty ball about its point.
+    found : Bool, whether the ray meets the field at all.
+    """
+
+    si: Any
+    ball: Any
+    found: Any
+
+
+def seen_point(field, ray, far, precision, active):
+    """The `SeenPoint` of each `mi.RayDifferential3f`, with derivatives by the field's parameters.
+
+    far : where rays end.
+    precision : the radius of the thinnest cones.
+    """
+    radius, tangent = cone_of(ray)
+    settings = {"radius": radius + precision, "tangent": tangent, "active": active}
+    f, lipschitz = field.distance, field.lipschitz
+    hit = cone_trace(f, ray.o, ray.d, far, lipschitz=lipschitz, precision=precision / 4, **settings)
+    t = dr.select(hit.found, hit.t, 0)
+    if dr.grad_enabled(f(ray(t))):
+        t = reattach(f, ray.o, ray.d, t)
+    ball = dr.maximum(hit.distance, precision / 2)  # of rays that meet nothing
+    n = normal(f, ray(t), dr.maximum(ball, FINEST))
+    return SeenPoint(interaction(ray, t, n, hit.found), ball, hit.found)
+
+
+def cone_of(ray):
+    """R₀ and tan α of the cone about a ray with differentials; 0 and 0 of one without."""
+    if not ray.has_differentials:
+        return 0.0, 0.0
+    across = dr.maximum(dr.norm(ray.o_x - ray.o), dr.norm(ray.o_y - ray.o))
+    turned = dr.maximum(dr.norm(ray.d_x - ray.d), dr.norm(ray.d_y - ray.d))
+    return dr.detach(across) / sqrt(2), dr.detach(turned) / sqrt(2)
+
+
+def interaction(ray, t, n, found):
+    """The `mi.SurfaceInteraction3f`: u and v are x and y, the tangent is the x axis laid onto the
+    surface; where that stands upright, the z axis."""
+    import mitsuba as mi
+
+    si = dr.zeros(mi.SurfaceInteraction3f, dr.width(t))
+    si.t, si.p = dr.select(found, t, dr.inf), ray(t)
+    si.time, si.wavelengths = ray.time, ray.wavelengths
+    si.n = si.sh_frame.n = mi.Normal3f(n)
+    si.uv = mi.Point2f(si.p.x, si.p.y)
+    upright = dr.abs(n.x) > 0.999
+    si.dp_du = mi.Vector3f(dr.select(upright, 0, 1), 0, dr.select(upright, 1, 0))
+    si.dp_dv = mi.Vector3f(0, 1, 0)
+    si.initialize_sh_frame()
+    si.wi = si.to_local(-ray.d)
+    return si
