@@ -44,13 +44,17 @@ def single_ray(field, cone, rule, epsilon, direction, pace=cone_pace, active=Tru
     walk = march(field, cone if forward else cone.reversed(), rule, epsilon, pace, active)
     d = dr.detach(cone.d)
     t = walk.t if forward else d - walk.t
-    r = with_derivatives(walk.R_T, field, cone, t, epsilon)
+    r = walk.R_T
     visible = dr.select(dr.isnan(r), r, tau(r))
+    moving = moving_minimum(r, field, cone, t, epsilon)
+    if dr.grad_enabled(moving):
+        # τ' of what the march ends at, at most ε above the minimum, would be rough
+        visible, r = dr.replace_grad(visible, tau(moving)), dr.replace_grad(r, moving)
     return Shadow(visible, r, t, walk.evaluations)
 
 
-def with_derivatives(r, field, cone, t, epsilon):
-    """`r` with the derivatives of the minimum of f / ρ near t, where anything has derivatives.
+def moving_minimum(r, field, cone, t, epsilon):
+    """The minimum of f / ρ near t, with derivatives where anything has them; `r` elsewhere.
 
     At a crease of the field they jump. There the derivative of the minimum is the mean of those on
     both sides, with the weights by which the slopes along the axis cancel.
@@ -72,4 +76,4 @@ def with_derivatives(r, field, cone, t, epsilon):
         rises = dr.maximum(ratio(field, fixed, behind) - ratio(field, fixed, right), 0)
         level = falls + rises == 0
         weight = dr.select(level, 0.5, rises / dr.select(level, 1, falls + rises))
-    return dr.replace_grad(r, weight * moving(left) + (1 - weight) * moving(right))
+    return weight * moving(left) + (1 - weight) * moving(right)

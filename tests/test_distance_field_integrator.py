@@ -1,0 +1,243 @@
+"""The integrator of distance fields: light by closed forms, every shadow, derivatives, bad input."""
+
+import re
+
+import drjit as dr
+import numpy as np
+import pytest
+
+from brdfkit.distance_fields import box, plane, sphere, torus
+
+GREY = {"type": "diffuse", "reflectance": 0.5}
+BALL = {"type": "sphere", "center": [2, 0, 3], "radius": 0.6}
+POINT = {"type": "point", "position": [2, 0, 3], "intensity": 9.0}
+SHADED = plane() | box(0.7).at(0.5, 0, 1)  # a cube above the ground, out of view; its shadow is not
+
+
+@pytest.fixture
+def mi(llvm_variant):
+    return llvm_variant
+
+
+def lit(shape):
+    return {**shape, "emitter": {"type": "area", "radiance": 10.0}}
+
+
+def scene(mi, field, light, size=24, **integrator):
+    """The ground about the origin from above, without what casts the shadow."""
+    given = {"bsdf": GREY, "field": field.to_json()}
+    camera = mi.ScalarTransform4f().look_at([-1, 0, 0.4], [-0.5, 0, 0], [0, 0, 1])
+    film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}}
+    return mi.load_dict(
+        {
+            "type": "scene",
+            "integrator": {"type": "distance_field", **given, **integrator},
+            "sensor": {"type": "perspective", "fov": 60, "to_world": camera, "film": film},
+            "lamp": light,
+        }
+    )
+
+
+def picture(mi, field, light, spp=4, **settings):
+    return np.array(mi.render(scene(mi, field, light, **settings), spp=spp), float)
+
+
+# Light
+
+
+def test_light_falls_as_in_mitsuba(mi):
+    """A ground with a small ball on it, and the same shapes in Mitsuba's `direct`; each lamp."""
+    t = mi.ScalarTransform4f
+    turned = t().look_at([2, 0, 3], [0, 0, 0], [0, 1, 0]).scale([0.5, 0.3, 1])
+    sky = {"type": "constant", "radiance": 0.7}
+    lamps = [
+        (lit(BALL), {}, 0.01), (lit(BALL), {"shading": "estimated"}, 0.01),
+        (lit({"type": "rectangle", "to_world": turned}), {"shading": "estimated"}, 0.01),
+        (lit({"type": "disk", "to_world": turned}), {"shading": "exact"}, 0.01),
+        (POINT, {}, 0.005), (sky, {}, 0.01),
+        ({"type": "directional", "direction": [-2, 0.3, -3], "irradiance": 2.0}, {}, 0.005),
+    ]  # fmt: skip
+    field = plane() | sphere(0.1).at(-0.6, 0.05, 0.1)
+    for lamp, settings, tolerance in lamps:
+        ours = scene(mi, field, lamp, **settings)
+        given = {
+            "type": "scene",
+            "integrator": {"type": "direct", "emitter_samples": 1, "bsdf_samples": 0},
+            "sensor": ours.sensors()[0],
+            "lamp": lamp,
+            "ground": {"type": "rectangle", "to_world": t().scale(50), "bsdf": GREY},
+            "ball": {"type": "sphere", "center": [-0.6, 0.05, 0.1], "radius": 0.1, "bsdf": GREY},
+        }
+        found, known = (np.array(mi.render(s, spp=64)) for s in (ours, mi.load_dict(given)))
+        assert found.mean() == pytest.approx(known.mean(), rel=tolerance), (lamp["type"], settings)
+
+
+def test_shadows_beside_the_truth(mi):
+    """Of the light that a method finds too much or too little; the rivals are far too dark."""
+    light = lit(BALL)
+    truth = picture(mi, SHADED, light, shading="exact", spp=256).mean()
+    whole = picture(mi, SHADED, light, shadow="none").mean()
+
+    def error(**settings):
+        return (picture(mi, SHADED, light, spp=16, **settings).mean() - truth) / whole
+
+    assert truth < 0.3 * whole
+    assert abs(error(shadow="monte_carlo")) < 0.01
+    for shadow in ("linear", "base", "discrete", "convex", "split"):
+        assert abs(error(shadow=shadow)) < 0.05, shadow
+    assert abs(error(direction="B")) < 0.05
+    assert abs(error(shading="estimated")) < 0.05
+    for shadow in ("hard", "quilez", "aaltonen"):
+        assert error(shadow=shadow) < -0.03, shadow
+
+
+def test_parts_have_their_bsdfs(mi):
+    """Looked at from above: a named ball, one without a name, and the ground between them."""
+    field = (
+        plane().made_of("chalk")
+        | sphere(0.2).at(-0.7, 0, 0.2).scale(1.2)
+        | (sphere(0.2).made_of("coal") - box(0.1)).rotate(0.5).at(-0.2, 0, 0.2)
+    )
+    bsdfs = {
+        name: {"type": "diffuse", "reflectance": value}
+        for name, value in {"chalk": 0.8, "coal": 0.1, "bsdf": 0.4}.items()
+    }
+    loaded = scene(mi, field, {"type": "constant", "radiance": 1.0}, **bsdfs)
+    parts, now = loaded.integrator().parts, loaded.integrator().now
+    where = mi.Point3f([-0.84, -0.2, 0.5], [0, 0, 0.1], [0.48, 0.4, 0])
+    found = parts.bsdf(now, loaded.integrator().larger, where)
+    si = dr.zeros(mi.SurfaceInteraction3f, 3)
+    albedo = found.eval_diffuse_reflectance(si).x
+    np.testing.assert_allclose(albedo, [0.4, 0.1, 0.8])
+
+
+# Derivatives
+
+
+def grid_ball():
+    return sphere(0.4).to_grid(12).at(0.5, 0, 1)
+
+
+MOVED = {
+    "a lamp's place": (SHADED, "lamp.place", {}),
+    "lamp's radius": (SHADED, "lamp.radius", {}),
+    "an occluder's size": (SHADED, "integrator.union.1.translate.box.size", {"shadow": "split"}),
+    "where a ring is": (
+        plane() | torus(0.4, 0.15).at(0.5, 0, 1),
+        "integrator.union.1.translate.offset",
+        {"shadow": "split"},
+    ),
+    "a ball's grid": (plane() | grid_ball(), "integrator.union.1.translate.grid.values", {}),
+}
+
+
+def change(mi, loaded, name, x):
+    """The parameters of a scene, the one called `name` changed by x."""
+    parameters = mi.traverse(loaded)
+    if name.startswith("lamp"):
+        centre, radius = mi.Vector3f(BALL["center"]), BALL["radius"]
+        centre.x += x if name == "lamp.place" else 0
+        radius += x if name == "lamp.radius" else 0
+        parameters["lamp.to_world"] = mi.Transform4f().translate(centre).scale(radius)
+    else:
+        parameters[name] = parameters[name] + x
+    parameters.update()
+    return parameters
+
+
+@pytest.mark.parametrize("name", MOVED)
+def test_derivatives_are_those_of_differences(mi, name):
+    """Backward and forward; of the ground alone, so that no silhouette moves."""
+    field, parameter, settings = MOVED[name]
+    weights = mi.Float(np.random.default_rng(2).uniform(0, 1, 16 * 16 * 3))
+
+    def rendered(step, propagate=False):
+        loaded = scene(mi, field, lit(BALL), size=16, epsilon=0.01, **settings)
+        parameters = change(mi, loaded, parameter, step)
+        if propagate:
+            dr.forward(step, flags=dr.ADFlag.ClearEdges)
+        return dr.ravel(mi.render(loaded, parameters, spp=16, seed=5)) * weights
+
+    x = mi.Float(0)
+    dr.enable_grad(x)
+    dr.backward(dr.sum(rendered(x)))
+    backward = dr.grad(x)[0]
+
+    x = mi.Float(0)
+    dr.enable_grad(x)
+    forward = dr.sum(dr.forward_to(rendered(x, propagate=True)))[0]
+
+    ends = [np.array(rendered(mi.Float(step)), float).sum() for step in (-0.01, 0.01)]
+    expected = (ends[1] - ends[0]) / 0.02
+    print(name, backward, forward, expected)
+    assert backward == pytest.approx(expected, rel=0.05)
+    assert forward == pytest.approx(backward, rel=1e-3)
+
+
+@pytest.mark.parametrize("integrator", ["prb", "prb_projective"])
+def test_mitsuba_has_no_derivative_of_a_shadow(mi, integrator):
+    """Of the same ball as a grid that Mitsuba renders; it is out of view, and its shadow is not."""
+    grid = grid_ball().child
+    low, high = (np.array(corner) for corner in (grid.low, grid.high))
+    t = mi.ScalarTransform4f()
+    place = t.translate((low + [0.5, 0, 1]).tolist()).scale((high - low).tolist())
+    values = np.asarray(grid.values, np.float32)[..., None] / (high - low)[0]
+    ours = scene(mi, plane(), lit(BALL), size=16)
+    loaded = mi.load_dict(
+        {
+            "type": "scene",
+            "integrator": {"type": integrator, "max_depth": 2},
+            "sensor": ours.sensors()[0],
+            "lamp": lit(BALL),
+            "ground": {"type": "rectangle", "to_world": t.scale(50), "bsdf": GREY},
+            "ball": {"type": "sdfgrid", "grid": mi.TensorXf(values), "to_world": place},
+        }
+    )
+    parameters = mi.traverse(loaded)
+    leaf = mi.TensorXf(parameters["ball.grid"])
+    dr.enable_grad(leaf)
+    parameters["ball.grid"] = leaf
+    parameters.update()
+    image = mi.render(loaded, parameters, spp=16)
+    assert np.array(image).mean() < 0.6 * picture(mi, plane(), lit(BALL)).mean()  # its shadow
+    dr.backward(dr.sum(dr.ravel(image)))
+    assert np.abs(np.array(dr.grad(leaf))).max() == 0
+
+
+# Bad input
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"field": ""}, "give the field as a filename, or in Python as field.to_json"),
+        ({"filename": "a.json"}, "give the field as a filename, or"),
+        ({"filename": "a.json", "field": ""}, r"a\.json.* does not exist"),
+        ({"field": "[1]"}, 'distance_field: field: .* should be an object with a "kind"'),
+        ({"field": '{"kind": "union", "children": []}'}, "union: there is nothing in it"),
+        ({"field": '{"kind": "sphere", "radius": NaN}'}, "radius = nan should be a finite"),
+        ({"shadow": "soft"}, "distance_field: shadow = soft should be one of linear, base"),
+        ({"shading": "estimated", "shadow": "quilez"}, "shadow = quilez finds none; give one of"),
+        ({"field": sphere(1).made_of("gold").to_json()}, "made of 'gold'; give a bsdf"),
+        ({"more": GREY}, "bsdfs bsdf, more belong to no part of the field"),
+        ({"lamp": lit(BALL)}, "distance_field: lamp is no bsdf"),
+    ],
+)
+def test_what_cannot_be_rendered_is_said(mi, given, said):
+    with pytest.raises(RuntimeError, match=said):
+        scene(mi, plane(), POINT, **given)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"lamp": {"type": "cube"}}, "the shape 'lamp' is no lamp; besides the field"),
+        ({"lamp": GREY}, "the scene has no light; add an emitter"),
+    ],
+)
+def test_what_is_in_the_scene_is_checked(mi, more, said):
+    with pytest.raises(RuntimeError) as error:
+        mi.render(scene(mi, plane(), more["lamp"]), spp=1)
+    assert re.search(said, str(error.value.__cause__))
