@@ -1,4 +1,4 @@
-"""The integrator of distance fields: light by closed forms, every shadow, derivatives, bad input."""
+"""The integrator of distance fields: light as in Mitsuba, every shadow, derivatives, bad input."""
 
 import re
 
@@ -23,9 +23,9 @@ def lit(shape):
     return {**shape, "emitter": {"type": "area", "radiance": 10.0}}
 
 
-def scene(mi, field, light, size=24, **integrator):
+def scene(mi, node, light, size=24, **integrator):
     """The ground about the origin from above, without what casts the shadow."""
-    given = {"bsdf": GREY, "field": field.to_json()}
+    given = {"bsdf": GREY, "field": node.to_json()}
     camera = mi.ScalarTransform4f().look_at([-1, 0, 0.4], [-0.5, 0, 0], [0, 0, 1])
     film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}}
     return mi.load_dict(
@@ -121,7 +121,7 @@ def grid_ball():
 MOVED = {
     "a lamp's place": (SHADED, "lamp.place", {}),
     "lamp's radius": (SHADED, "lamp.radius", {}),
-    "an occluder's size": (SHADED, "integrator.union.1.translate.box.size", {"shadow": "split"}),
+    "an occluder's size": (SHADED, "integrator.union.1.translate.box.size", {}),
     "where a ring is": (
         plane() | torus(0.4, 0.15).at(0.5, 0, 1),
         "integrator.union.1.translate.offset",
@@ -131,18 +131,16 @@ MOVED = {
 }
 
 
-def change(mi, loaded, name, x):
-    """The parameters of a scene, the one called `name` changed by x."""
-    parameters = mi.traverse(loaded)
+def change(mi, parameters, name, start, x):
+    """Change the one of a scene's parameters called `name` by x, from its value at the `start`."""
     if name.startswith("lamp"):
-        centre, radius = mi.Vector3f(BALL["center"]), BALL["radius"]
+        centre, radius = mi.Vector3f(BALL["center"]), mi.Float(BALL["radius"])
         centre.x += x if name == "lamp.place" else 0
         radius += x if name == "lamp.radius" else 0
         parameters["lamp.to_world"] = mi.Transform4f().translate(centre).scale(radius)
     else:
-        parameters[name] = parameters[name] + x
+        parameters[name] = start + x
     parameters.update()
-    return parameters
 
 
 @pytest.mark.parametrize("name", MOVED)
@@ -150,10 +148,13 @@ def test_derivatives_are_those_of_differences(mi, name):
     """Backward and forward; of the ground alone, so that no silhouette moves."""
     field, parameter, settings = MOVED[name]
     weights = mi.Float(np.random.default_rng(2).uniform(0, 1, 16 * 16 * 3))
+    loaded = scene(mi, field, lit(BALL), size=16, epsilon=0.01, **settings)
+    parameters = mi.traverse(loaded)
+    value = parameters.get(parameter)  # None of the lamp, see `change`
+    start = value is not None and type(value)(value)
 
     def rendered(step, propagate=False):
-        loaded = scene(mi, field, lit(BALL), size=16, epsilon=0.01, **settings)
-        parameters = change(mi, loaded, parameter, step)
+        change(mi, parameters, parameter, start, step)
         if propagate:
             dr.forward(step, flags=dr.ADFlag.ClearEdges)
         return dr.ravel(mi.render(loaded, parameters, spp=16, seed=5)) * weights
@@ -169,7 +170,6 @@ def test_derivatives_are_those_of_differences(mi, name):
 
     ends = [np.array(rendered(mi.Float(step)), float).sum() for step in (-0.01, 0.01)]
     expected = (ends[1] - ends[0]) / 0.02
-    print(name, backward, forward, expected)
     assert backward == pytest.approx(expected, rel=0.05)
     assert forward == pytest.approx(backward, rel=1e-3)
 
@@ -180,7 +180,7 @@ def test_mitsuba_has_no_derivative_of_a_shadow(mi, integrator):
     grid = grid_ball().child
     low, high = (np.array(corner) for corner in (grid.low, grid.high))
     t = mi.ScalarTransform4f()
-    place = t.translate((low + [0.5, 0, 1]).tolist()).scale((high - low).tolist())
+    place = t.translate((low + np.array([0.5, 0, 1])).tolist()).scale((high - low).tolist())
     values = np.asarray(grid.values, np.float32)[..., None] / (high - low)[0]
     ours = scene(mi, plane(), lit(BALL), size=16)
     loaded = mi.load_dict(
@@ -213,7 +213,7 @@ def test_mitsuba_has_no_derivative_of_a_shadow(mi, integrator):
     [
         ({"field": ""}, "give the field as a filename, or in Python as field.to_json"),
         ({"filename": "a.json"}, "give the field as a filename, or"),
-        ({"filename": "a.json", "field": ""}, r"a\.json.* does not exist"),
+        ({"filename": "a.json", "field": ""}, "a.json: there is no such file"),
         ({"field": "[1]"}, 'distance_field: field: .* should be an object with a "kind"'),
         ({"field": '{"kind": "union", "children": []}'}, "union: there is nothing in it"),
         ({"field": '{"kind": "sphere", "radius": NaN}'}, "radius = nan should be a finite"),

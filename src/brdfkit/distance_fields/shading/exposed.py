@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from brdfkit.jit.padding import pad
+
 
 def exposed(node):
     """Name → array of every parameter of a field: `mi.Float`, `mi.Vector3f` or `mi.TensorXf`.
@@ -19,7 +21,8 @@ def exposed(node):
         if isinstance(value, tuple):
             found[name] = mi.Vector3f(*(float(v) for v in value))
         elif np.ndim(value) == 3:
-            found[name] = mi.TensorXf(np.asarray(value, np.float32))
+            flat = pad(np.ravel(value).astype(np.float32))
+            found[name] = mi.TensorXf(mi.Float(flat), np.shape(value))
         else:
             found[name] = mi.Float(float(value))
     dr.make_opaque(found)
