@@ -33,9 +33,9 @@ STUDIO, SIZE, SPP = "studio", 256, 4
 
 def preview(
     things: Renderable | Iterable[Renderable],
-    environment: str | Path = STUDIO,
+    envmap: str | Path = STUDIO,
     size: int | tuple[int, int] = SIZE,
-    shape: str | Path = "ball",
+    scene: str | Path = "ball",
     method: str = "filtered_sampling",
     spp: int = SPP,
 ) -> Rendering:
@@ -49,12 +49,12 @@ def preview(
     ----------
     things : Measured, Fit, Model, str, Path, dict or (str, one of these), or several
         The materials, as `render` takes them; the first is the reference.
-    environment : str or Path, default "studio"
+    envmap : str or Path, default "studio"
         An environment map by latitude and longitude: the name of one that brdfkit knows, or a file.
         It is scaled to the illuminance that the scenes of `render` have.
     size : int or (int, int), default 256
         Side, or width and height, of a picture [pixels].
-    shape : str or Path, default "ball"
+    scene : str or Path, default "ball"
         What is seen: a scene of `render`, without its ground and its own light, or a mesh (.obj,
         .ply).
     method : str, default "filtered_sampling"
@@ -78,7 +78,7 @@ def preview(
     Examples
     --------
     >>> preview(["car_paint", "ggx"]).write("paint.png")    # doctest: +SKIP
-    >>> preview("ward", environment="probe.exr", shape="teapot.obj", size=512)    # doctest: +SKIP
+    >>> preview("ward", envmap="probe.exr", scene="teapot.obj", size=512)    # doctest: +SKIP
     """
     size, subjects = to_size(size), as_list(things)
     spp = to_whole_number("spp", spp, least=1)
@@ -86,7 +86,7 @@ def preview(
     mitsuba()  # sets a variant, on which the dictionaries depend
     _require_rays(spp)
     materials, parameters = describe_all(subjects)
-    return _show(materials, parameters, environment, size, shape, method, spp)
+    return _show(materials, parameters, envmap, size, scene, method, spp)
 
 
 def _require_rays(spp):
@@ -106,31 +106,31 @@ def _require_rays(spp):
 
 
 @in_turn
-def _show(materials, parameters, environment, size, shape, method, spp):
+def _show(materials, parameters, envmap, size, scene, method, spp):
     """The `Rendering` of BSDFs' dictionaries by name, and of their parameters' values."""
     import mitsuba as mi
 
-    start, build = time.perf_counter(), find_scene(shape)
-    light = _light(mi.variant(), environment, find(environment).stat().st_mtime_ns)
+    start, build = time.perf_counter(), find_scene(scene)
+    light = _light(mi.variant(), envmap, find(envmap).stat().st_mtime_ns)
     integrator = _integrator(mi.variant(), method)
-    both_sides = Path(shape).suffix.lower() in users_mesh.SUFFIXES
+    both_sides = Path(scene).suffix.lower() in users_mesh.SUFFIXES
     pictures, seen = {}, None
     for name, bsdf in materials.items():
         material = load_material(bsdf, name, both_sides)
         staged = stage(build(material, size), light, integrator, spp)
-        scene = load_by_mitsuba(mi.load_dict, staged, name)
-        seen = mask(scene, material) if seen is None else seen
-        pictures[name] = rgb(integrator.render(scene, seed=0, spp=spp)).astype(np.float32)
+        loaded = load_by_mitsuba(mi.load_dict, staged, name)
+        seen = mask(loaded, material) if seen is None else seen
+        pictures[name] = rgb(integrator.render(loaded, seed=0, spp=spp)).astype(np.float32)
     first, seconds = next(iter(pictures.values())), time.perf_counter() - start
     return Rendering(pictures, spp, seconds, 0, parameters, seen, spp, first, shadows=False)
 
 
 @lru_cache(maxsize=4)
-def _light(variant, environment, changed):
+def _light(variant, envmap, changed):
     """The emitter of an environment map, whose file was `changed` at a time."""
     import mitsuba as mi
 
-    return load_by_mitsuba(mi.load_dict, light_of(environment), environment)
+    return load_by_mitsuba(mi.load_dict, light_of(envmap), envmap)
 
 
 @lru_cache(maxsize=4)
