@@ -314,9 +314,9 @@ def test_a_preview_is_the_same_each_time_and_has_no_shadows(llvm_variant, tmp_pa
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ({"environment": "nowhere.exr"}, "nowhere.exr"),
-        ({"shape": "cornell_box"}, "A preview shows a shape"),
-        ({"shape": "nothing.obj"}, "no such mesh"),
+        ({"envmap": "nowhere.exr"}, "nowhere.exr"),
+        ({"scene": "cornell_box"}, "A preview shows a shape"),
+        ({"scene": "nothing.obj"}, "no such mesh"),
         ({"method": "gm"}, "did you mean gmm"),
         ({"size": 0}, "size = 0"),
         ({"spp": 0}, "spp"),
