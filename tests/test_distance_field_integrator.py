@@ -6,7 +6,7 @@ import drjit as dr
 import numpy as np
 import pytest
 
-from brdfkit.distance_fields import box, plane, sphere, torus
+from brdfkit.distance_fields import box, plane, sphere
 
 GREY = {"type": "diffuse", "reflectance": 0.5}
 BALL = {"type": "sphere", "center": [2, 0, 3], "radius": 0.6}
@@ -122,10 +122,10 @@ MOVED = {
     "a lamp's place": (SHADED, "lamp.place", {}),
     "lamp's radius": (SHADED, "lamp.radius", {}),
     "an occluder's size": (SHADED, "integrator.union.1.translate.box.size", {}),
-    "where a ring is": (
-        plane() | torus(0.4, 0.15).at(0.5, 0, 1),
-        "integrator.union.1.translate.offset",
-        {"shadow": "split"},
+    "how two solids blend": (
+        plane() | (sphere(0.35).at(0.5, 0, 1) | box(0.5).at(0.5, 0.3, 1).k(0.2)),
+        "integrator.union.1.union.blend",
+        {"direction": "B"},
     ),
     "a ball's grid": (plane() | grid_ball(), "integrator.union.1.translate.grid.values", {}),
 }
