@@ -3,11 +3,12 @@
 python benchmarks/environment_samplers.py [MAP ...]    # writes docs/environment_samplers.md
 
 A sky with a sun is made by the program; maps on the command line come besides. All ratios are of
-one run, in which the samplers take turns; times are of the processor, the least of several. The
-whole is repeated, so that the page can say how far its figures may be off. Some ten minutes.
+one run; times are of the processor, the least of several. The samplers take turns, each alone, and
+the whole is repeated, so that the page can say how far its figures may be off. Some ten minutes.
 """
 
 import argparse
+import gc
 import sys
 import time
 from pathlib import Path
@@ -66,26 +67,15 @@ figure is the mean, and **±** its standard error, pooled over samplers and maps
 
 """
 TAIL = """
-## What the tables say
+## How to read the tables
 
-- **Blocks need a hundredth of the map's memory** with `lookup=tree`. The default stores the density
-  of every cell besides, which is one channel of the map; the thesis puts it in the fourth channel
-  of a texture, which lies idle. Where light is dense, the lists of `lookup=grid` exceed the
-  hundredth.
-- **On probes blocks are nearly as quiet as `envmap`.** On the sky they are not, nor are `cdf` and
-  `alias`: its sun is three pixels wide, and a density that is constant between pixels does not
-  follow the slope of the light there. Only `mip` and `envmap` do.
-- The thesis's criterion, the squared error, shows no difference in these pictures, where surfaces
-  are sampled too. Of lights alone, the squared error over the mean, the default, is what a block
-  adds to the variance, and less noisy on large uneven maps.
-- The hyperbola's noise depends on the map; the eight steps are nearer on most.
-- **Stratified numbers tell samplers apart**: what keeps neighbours together (`envmap`, `mip`,
-  `cdf`, the walk down the tree) gains more by them than blocks sorted by probability, as closed
-  forms need them, and alias tables. That is the price of O(1), which the thesis does not name.
-- Compensation lowers the noise where the light is broad, at no cost, and not where a few lamps are
-  all. It is wrong where lights alone are sampled, and so it has to be asked for.
-- **Short of its bar: the build.** In NumPy the tree takes ten times as long as a CDF and more, of
-  which its summed-area tables alone take three. Small maps have as many blocks, and less to share.
+- Blocks follow the light by straight lines within each block; `cdf` and `alias` are even between
+  pixels, `mip` and `envmap` are as the map. A sun that is a few pixels wide tells them apart.
+- `lookup=tree` is the form of little memory. The default stores the number of its block for every
+  cell besides, which is one channel of the map.
+- Stratified numbers need a sampler that keeps neighbours together, as the walk down the tree does;
+  blocks sorted by probability, as closed forms need them, and alias tables do not.
+- Compensation is wrong where lights alone are sampled, and so it has to be asked for.
 """
 
 
@@ -156,15 +146,15 @@ def noise(emitter, sampler, repeat):
     return float((found.var(axis=0, ddof=1) / found.mean(axis=0) ** 2).mean())
 
 
-def least_seconds(functions, rounds=ROUNDS):
-    """Name → least processor time of a function; the functions take turns."""
-    best = dict.fromkeys(functions, np.inf)
+def least_seconds(function, rounds=ROUNDS):
+    """The least processor time of a function, after a first call that compiles its kernels."""
+    function(0)
+    seconds = []
     for round_ in range(rounds):
-        for name, function in functions.items():
-            began = time.process_time()
-            function(round_)
-            best[name] = min(best[name], time.process_time() - began)
-    return best
+        began = time.process_time()
+        function(round_)
+        seconds.append(time.process_time() - began)
+    return min(seconds)
 
 
 def picture(emitter):
@@ -209,46 +199,50 @@ def numpy_cdf(power):
 
 def measure(bitmap, repeat):
     """Sampler → its figures on a map; `envmap`'s are 1 where they are ratios."""
-    import mitsuba as mi
-
-    emitters = {name: entries | {"bitmap": bitmap} for name, entries in SAMPLERS.items()}
-    loaded = {name: mi.load_dict(emitter) for name, emitter in emitters.items()}
-    bright = luminance(np.array(bitmap, float))
-    power = cell_power(bright)
-
-    independent = {name: noise(emitter, "independent", repeat) for name, emitter in loaded.items()}
-    jittered = {name: noise(emitter, "multijitter", repeat) for name, emitter in loaded.items()}
-    seconds = least_seconds({name: picture(emitter) for name, emitter in loaded.items()})
-    builds = {
-        name: lambda _, emitter=emitter: emitter.sampler_of(bright)
-        for name, emitter in loaded.items()
-        if name != "`envmap`"
-    }
-    build = least_seconds(builds | {"NumPy": lambda _: numpy_cdf(power)})
-    loads = {n: lambda _, e=emitter: mi.load_dict(e) for n, emitter in emitters.items()}
-    load = least_seconds(loads, 1)
-    gradients = {name: gradient(emitter) for name, emitter in loaded.items()}
-    backward = least_seconds(gradients)
-    seeds = range(ROUNDS * repeat, ROUNDS * (repeat + 1))
-    sums = {name: sum(map(derivatives, seeds)) for name, derivatives in gradients.items()}
-    tables = {name: getattr(emitter, "points", None) for name, emitter in loaded.items()}
+    pixels = luminance(np.array(bitmap, float))
+    power = cell_power(pixels)
+    found = {n: figures(entries | {"bitmap": bitmap}, repeat) for n, entries in SAMPLERS.items()}
+    first = found["`envmap`"]
+    cdf = least_seconds(lambda _: numpy_cdf(power))
+    tables = {name: own["memory"] for name, own in found.items()}
     tables["`envmap`"] = tables["`mip`"]  # it has the same
-
-    first = "`envmap`"
+    noise_x_time = first["noise"] * first["time"]
     return {
         name: {
-            "noise": independent[name] / independent[first],
-            "time": seconds[name] / seconds[first],
-            "noise × time": independent[name] * seconds[name] / independent[first] / seconds[first],
-            "noise, multijitter": jittered[name] / jittered[first],
-            "gain by multijitter": independent[name] / jittered[name],
-            "build": build[name] / build["NumPy"] if name in build else np.nan,
-            "load": load[name] / load[first],
-            "memory [%]": 100 * tables[name].nbytes / (12 * bright.size),
-            "gradient": backward[name] / backward[first],
-            "gradient's sum": sums[name] / sums[first],
+            "noise": own["noise"] / first["noise"],
+            "time": own["time"] / first["time"],
+            "noise × time": own["noise"] * own["time"] / noise_x_time,
+            "noise, multijitter": own["jittered"] / first["jittered"],
+            "gain by multijitter": own["noise"] / own["jittered"],
+            "build": own["build"] / cdf,
+            "load": own["load"] / first["load"],
+            "memory [%]": 100 * tables[name] / (12 * pixels.size),
+            "gradient": own["backward"] / first["backward"],
+            "gradient's sum": own["sum"] / first["sum"],
         }
-        for name in SAMPLERS
+        for name, own in found.items()
+    }
+
+
+def figures(entries, repeat):
+    """One emitter's own figures. Kernels contain every emitter that is alive, so it is alone."""
+    import mitsuba as mi
+
+    gc.collect()
+    emitter = mi.load_dict(entries)
+    derivatives = gradient(emitter)
+    seeds = range(ROUNDS * repeat, ROUNDS * (repeat + 1))
+    ours = hasattr(emitter, "points")
+    bright = luminance(np.array(entries["bitmap"], float))
+    return {
+        "noise": noise(emitter, "independent", repeat),
+        "jittered": noise(emitter, "multijitter", repeat),
+        "time": least_seconds(picture(emitter)),
+        "build": least_seconds(lambda _: emitter.sampler_of(bright)) if ours else np.nan,
+        "load": least_seconds(lambda _: mi.load_dict(entries)),
+        "memory": emitter.points.nbytes if ours else np.nan,
+        "sum": sum(derivatives(seed) for seed in seeds),
+        "backward": least_seconds(derivatives),
     }
 
 
