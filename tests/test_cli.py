@@ -428,7 +428,7 @@ TRAPS = [
     (["render", "nothing"], ["nothing", "ward", "car_paint"]),
     (["render", "bounds.xml", "ward"], ["alone"]),
     (["render", "bounds.xml", "--scene", "vase"], ["bounds.xml", "leave --scene"]),
-    (["render", "bounds.xml", "--size", "9"], ["bounds.xml", "--size out"]),
+    (["render", "bounds.xml", "--size", "9"], ["bounds.xml", "leave", "--size"]),
     (["render", "bounds.xml#wall"], ["bounds.xml#wall is a place", "as --scene bounds.xml#wall"]),
     ([*WARD, "--envmap", ""], ["'' should be the path of an environment map"]),
     ([*WARD, "--scene", "vaes"], ["vaes", "did you mean vase?", "cornell_box"]),

@@ -63,6 +63,7 @@ def shown():
     objects = [
         named,
         bk.audit(named),
+        bk.audit_environment("sky"),
         fit,
         bk.models()["ggx"](alpha_u=0.1),
         bk.models(),
