@@ -31,13 +31,13 @@ def mesh_scene(path):
     made = []  # the same mesh serves every material, and is read once
 
     def build(bsdf, size=(512, 512)):
-        made[:] = made or [_read(path)]
+        made[:] = made or [read(path)]
         return studio(size) | {"mesh": mesh(*made[0], bsdf)}
 
     return build
 
 
-def _read(path):
+def read(path):
     """(points, normals, uv, faces) of the mesh in a file, in the ball's place."""
     import mitsuba as mi
 

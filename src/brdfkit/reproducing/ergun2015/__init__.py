@@ -20,4 +20,16 @@ where the thesis gives no figure to compare ours to, *not run* where a file is m
 # The probes and the meshes are looked for beside the measurements, and shipped maps stand in
 NEEDS: dict[str, str] = {}
 
-PARTS = ("block_criteria", "block_law", "block_sampling")
+PARTS = (
+    "block_criteria",
+    "block_law",
+    "block_sampling",
+    "convex_rays",
+    "convex_reads",
+    "convex_pictures",
+    "convex_settings",
+    "moving_parts",
+    "lobe_scenes",
+    "lobe_speeds",
+    "lobe_views",
+)

@@ -6,9 +6,13 @@ PROBES = "grace", "uffizi", "pisa", "ennis"
 SHIPPED = "studio", "sky", "room"
 
 
-def read_probes(sources):
-    """Name → radiance (height, width, 3): of the thesis's probes where all are at hand, else of the
-    maps that brdfkit brings."""
+def find_probes(sources):
+    """Name → file of the thesis's probes where all are at hand, else name → name of the maps that
+    brdfkit brings."""
     files = {name: sources.beside(f"environments/{name}.hdr") for name in PROBES}
-    found = files if all(files.values()) else {name: name for name in SHIPPED}
-    return {name: load(file)[1].astype(float) for name, file in found.items()}
+    return files if all(files.values()) else {name: name for name in SHIPPED}
+
+
+def read_probes(sources):
+    """Name → radiance (height, width, 3) of each of the probes."""
+    return {name: load(file)[1].astype(float) for name, file in find_probes(sources).items()}

@@ -1,0 +1,129 @@
+"""A mesh on a ground under the environment `studio`, with shadows of several kinds.
+
+All pictures take the same samples, by the integrator `convex_direct`: they differ by their shadows
+alone.
+"""
+
+import time
+from functools import cache, cached_property
+from importlib.util import find_spec
+
+import numpy as np
+
+from brdfkit.colours import to_srgb
+from brdfkit.picture_errors.psnr import psnr
+from brdfkit.rendering.environment import environment, light_by
+from brdfkit.reproducing.ergun2015.shapes import find_meshes
+from brdfkit.visibility.decomposition import decompose
+from brdfkit.visibility.height_fields import HeightFields
+from brdfkit.visibility.occluders import Occluders
+
+SIZE, SPP = 96, 64
+SWEPT = "spot"  # the mesh of which settings are varied, and that moves
+GREY = {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": 0.5}}
+SETTING = f"""Pictures of {SIZE} × {SIZE} pixels with {SPP} samples: a grey mesh on a ground, under
+the environment *studio*, whose longest side is 2. The truth has the shadows of its triangles."""
+NO_COACD = "coacd is not installed, which finds the parts; pip install 'brdfkit[visibility]'."
+
+
+@cache
+def studies(sources):
+    """Name → `Study` of the meshes that enclose a volume; made once for all parts of the page."""
+    found = {name: Study(shape) for name, shape in find_meshes(sources).items()}
+    return {name: study for name, study in found.items() if study.parts()}
+
+
+def swept(sources):
+    """(name, `Study`) of the mesh of which settings are varied."""
+    ((name, shape),) = find_meshes(sources, [SWEPT]).items()
+    return name, Study(shape)
+
+
+def has_coacd():
+    """Whether meshes can be decomposed here."""
+    return find_spec("coacd") is not None
+
+
+class Study:
+    """A mesh, and its pictures; `shape`: see `shapes`."""
+
+    def __init__(self, shape):
+        import mitsuba as mi
+
+        made = shape(GREY, (SIZE, SIZE))
+        buffers = mi.traverse(made["mesh"])
+        self.points = np.array(buffers["vertex_positions"], float).reshape(-1, 3)
+        self.faces = np.array(buffers["faces"], int).reshape(-1, 3)
+        light = environment("studio") | {"type": "kdtree_envmap"}
+        entries = light_by(light, made) | {"integrator": {"type": "convex_direct"}}
+        self.scene = mi.load_dict(entries, parallel=False)
+        self.ground = mi.load_dict({"type": "scene", "ground": made["ground"]}, parallel=False)
+
+    def parts(self, **settings):
+        """The convex parts of the mesh; see `decompose`."""
+        return decompose(self.points, self.faces, **settings)
+
+    @cached_property
+    def convex(self):
+        """The mesh as convex parts, by the default settings."""
+        return Occluders({"mesh": self.parts()})
+
+    @cached_property
+    def fields(self):
+        """The mesh as height fields."""
+        return HeightFields(self.points, self.faces)
+
+    @cached_property
+    def exact(self):
+        """The picture with the shadows of triangles."""
+        return self.render(None, self.scene)
+
+    def render(self, occluders, others=None, spp=SPP):
+        """A picture with the shadows of `occluders`, and of the scene `others`: by default of the
+        ground."""
+        integrator = self.scene.integrator()
+        integrator.set_casters(self.scene, occluders, others or self.ground)
+        return np.array(integrator.render(self.scene, seed=0, spp=spp), float)[..., :3]
+
+    def seconds(self, occluders):
+        """Seconds of CPU for a picture, the least of three."""
+        taken = []
+        for _ in range(3):
+            start = time.process_time()
+            self.render(occluders)
+            taken.append(time.process_time() - start)
+        return min(taken)
+
+    def quality(self, occluders):
+        """PSNR [dB] of the picture with the shadows of `occluders`: (linear, as shown)."""
+        picture = self.render(occluders)
+        error = np.mean((shown(self.exact, self.exact) - shown(picture, self.exact)) ** 2)
+        return psnr(self.exact, picture), -10 * np.log10(error)
+
+    def reads(self, occluders):
+        """Reads of maps per pixel, for the two shadow rays of one sample: (mean, deviation)."""
+        counting = Counting(occluders)
+        self.render(counting, spp=1)
+        reads = sum(np.array(found, float) for found in counting.reads)
+        return reads.mean(), reads.std()
+
+
+class Counting:
+    """Occluders that remember the reads of all rays."""
+
+    def __init__(self, occluders):
+        self.occluders, self.reads = occluders, []
+
+    def blocked(self, ray, active=True):
+        """As that of the occluders."""
+        import drjit as dr
+
+        blocked, reads = self.occluders.blocked(ray, active)
+        dr.schedule(reads)
+        self.reads.append(reads)
+        return blocked, reads
+
+
+def shown(picture, exact):
+    """A picture as it is shown: in sRGB, with white at the 95th percentile of the `exact` one."""
+    return to_srgb(picture / np.percentile(exact, 95))

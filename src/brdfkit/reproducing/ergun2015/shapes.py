@@ -1,0 +1,67 @@
+"""Shapes to light: meshes that lie beside the measurements, and a torus by code.
+
+A shape is a function of (BSDF, size), as in `brdfkit.rendering.scenes`: the dictionary of a scene.
+"""
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from brdfkit.files import contents
+from brdfkit.rendering import users_mesh
+from brdfkit.rendering.scenes._meshes import mesh, mesh_of_grid, revolve
+from brdfkit.rendering.scenes._studio import studio
+
+MESHES = (
+    "alligator",
+    "beetle",
+    "cheburashka",
+    "cow",
+    "fandisk",
+    "homer",
+    "rocker-arm",
+    "spot",
+    "stanford-bunny",
+    "suzanne",
+    "teapot",
+    "woody",
+)
+COLUMNS = 97  # of the torus's profile
+
+
+def find_meshes(sources, names=MESHES):
+    """Name → shape of the meshes, models/NAME.obj.xz; where one is missing, a torus for them all.
+
+    >>> find_meshes(sources, ["spot"])    # doctest: +SKIP
+    {'spot': <function ...>}
+    """
+    files = {name: sources.beside(file_of(name)) for name in names}
+    if not all(files.values()):
+        return {"torus": torus}
+    return {name: unpacked(file) for name, file in files.items()}
+
+
+def file_of(name):
+    """Where a mesh is looked for."""
+    return f"models/{name}.obj.xz"
+
+
+def unpacked(file):
+    """The shape of a compressed mesh."""
+    with TemporaryDirectory() as folder:
+        plain = Path(folder) / file.stem
+        plain.write_bytes(contents(file))
+        buffers = users_mesh.read(plain)
+    return lambda bsdf, size: studio(size) | {"mesh": mesh(*buffers, bsdf)}
+
+
+def torus(bsdf, size):
+    """A ring of the ball's size, leaning towards the camera."""
+    phi = np.linspace(0, 2 * np.pi, COLUMNS)
+    phi[-1] = 0  # the profile closes
+    points, normals = revolve(0.68 + 0.32 * np.cos(phi), 0.32 * np.sin(phi))
+    points = points.round(9)  # it closes around the axis, too
+    lean = np.array([[1, 0, 0], [0, 0.64, 0.768375], [0, -0.768375, 0.64]])
+    points = points @ lean + [0, 0, 1]
+    return studio(size) | {"mesh": mesh_of_grid(points, normals @ lean, bsdf)}
