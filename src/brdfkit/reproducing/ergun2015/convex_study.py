@@ -45,15 +45,13 @@ def has_coacd():
 
 
 class Study:
-    """A mesh, and its pictures; `shape`: see `shapes`."""
+    """A mesh, and its pictures; `shape`: a `Shape`."""
 
     def __init__(self, shape):
         import mitsuba as mi
 
-        made = shape(GREY, (SIZE, SIZE))
-        buffers = mi.traverse(made["mesh"])
-        self.points = np.array(buffers["vertex_positions"], float).reshape(-1, 3)
-        self.faces = np.array(buffers["faces"], int).reshape(-1, 3)
+        self.points, self.faces = shape.points, shape.faces
+        made = shape.build(GREY, (SIZE, SIZE))
         light = environment("studio") | {"type": "kdtree_envmap"}
         entries = light_by(light, made) | {"integrator": {"type": "convex_direct"}}
         self.scene = mi.load_dict(entries, parallel=False)

@@ -45,7 +45,8 @@ def run(sources, report):
     """The scenes, and the claims on them."""
     use_variant()
     shapes = {"ball": find_scene("ball"), "torus": torus}
-    shapes |= find_meshes(sources, ["teapot", "stanford-bunny"])
+    meshes = find_meshes(sources, ["teapot", "stanford-bunny"])
+    shapes |= {name: shape.build for name, shape in meshes.items()}
     probes = find_probes(sources)
     total, found, floors, balls = len(shapes) * len(probes) * len(ROUGHNESSES), [], [], []
     bsdfs, methods = [material(alpha) for alpha in ROUGHNESSES], integrators()

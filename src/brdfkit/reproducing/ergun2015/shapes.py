@@ -1,8 +1,7 @@
-"""Shapes to light: meshes that lie beside the measurements, and a torus by code.
+"""Shapes to light: meshes that lie beside the measurements, and a torus by code."""
 
-A shape is a function of (BSDF, size), as in `brdfkit.rendering.scenes`: the dictionary of a scene.
-"""
-
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -30,15 +29,22 @@ MESHES = (
 COLUMNS = 97  # of the torus's profile
 
 
-def find_meshes(sources, names=MESHES):
-    """Name → shape of the meshes, models/NAME.obj.xz; where one is missing, a torus for them all.
-
-    >>> find_meshes(sources, ["spot"])    # doctest: +SKIP
-    {'spot': <function ...>}
+@dataclass(frozen=True)
+class Shape:
+    """`build`: a function of (BSDF, size) that makes the dictionary of a scene, as those of
+    `brdfkit.rendering.scenes`; `points` (n, 3), `faces` (m, 3): its triangles as the file has them.
     """
+
+    build: Callable
+    points: np.ndarray
+    faces: np.ndarray
+
+
+def find_meshes(sources, names=MESHES):
+    """Name → `Shape` of the meshes, models/NAME.obj.xz; where one is missing, a torus for all."""
     files = {name: sources.beside(file_of(name)) for name in names}
     if not all(files.values()):
-        return {"torus": torus}
+        return {"torus": ring()}
     return {name: unpacked(file) for name, file in files.items()}
 
 
@@ -48,12 +54,22 @@ def file_of(name):
 
 
 def unpacked(file):
-    """The shape of a compressed mesh."""
+    """The `Shape` of a compressed mesh."""
     with TemporaryDirectory() as folder:
         plain = Path(folder) / file.stem
         plain.write_bytes(contents(file))
         buffers = users_mesh.read(plain)
-    return lambda bsdf, size: studio(size) | {"mesh": mesh(*buffers, bsdf)}
+    points, _, _, faces = buffers
+    return Shape(lambda bsdf, size: studio(size) | {"mesh": mesh(*buffers, bsdf)}, points, faces)
+
+
+def ring():
+    """The `Shape` of the torus."""
+    import mitsuba as mi
+
+    buffers = mi.traverse(torus({"type": "diffuse"}, (1, 1))["mesh"])
+    points, faces = (buffers[name] for name in ("vertex_positions", "faces"))
+    return Shape(torus, np.array(points, float).reshape(-1, 3), np.array(faces).reshape(-1, 3))
 
 
 def torus(bsdf, size):
