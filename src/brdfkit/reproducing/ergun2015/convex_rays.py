@@ -10,7 +10,7 @@ from brdfkit.visibility.convex_ray import enter
 from brdfkit.visibility.hull import Hull, hull
 from brdfkit.visibility.plane_map import ExactPlaneMap, RasterisedPlaneMap
 
-SECONDS = 15
+SECONDS = 2
 RAYS = 20_000
 CORNERS = 7, 12, 27, 40
 SIDES = 16, 32, 64, 128

@@ -80,7 +80,7 @@ class Study:
         """A picture with the shadows of `occluders`, and of the scene `others`: by default of the
         ground."""
         integrator = self.scene.integrator()
-        integrator.set_casters(self.scene, occluders, others or self.ground)
+        integrator.casters.set(self.scene, occluders, others or self.ground)
         return np.array(integrator.render(self.scene, seed=0, spp=spp), float)[..., :3]
 
     def seconds(self, occluders):
