@@ -26,14 +26,14 @@ def picture(audit):
     power = cell_power(bright)
     figure = Plot(figsize=SIZE, layout="constrained")
     above, below = figure.subfigures(2, 1, height_ratios=(1.45, 1))
-    _draw_map(above.subplots(), audit, rgb, environment_tree.build(power, DRAWN).blocks)
+    draw_map(above.subplots(), audit, rgb, environment_tree.build(power, DRAWN).blocks)
     left, right = below.subplots(1, 2)
     _draw_probabilities(left, power)
     _draw_shares(right, bright, solid_angle, audit)
     return figure
 
 
-def _draw_map(axes, audit, rgb, blocks):
+def draw_map(axes, audit, rgb, blocks):
     """Draw the tone-mapped map, the outlines of its blocks, and the brightest spot."""
     from matplotlib.collections import PolyCollection
 

@@ -3,11 +3,14 @@
 import numpy as np
 
 from brdfkit.colours import luminance
+from brdfkit.environments.auditing import audit_environment
+from brdfkit.environments.picture import DRAWN, draw_map
 from brdfkit.lighting import environment_tree
 from brdfkit.lighting.environment_map import cell_power
 from brdfkit.reproducing.claims import Claim, verdict
-from brdfkit.reproducing.ergun2015.probes import read_probes
-from brdfkit.reproducing.page import Section, Table
+from brdfkit.reproducing.drawing import figure
+from brdfkit.reproducing.ergun2015.probes import find_probes, read_probes
+from brdfkit.reproducing.page import Picture, Section, Table
 
 SECONDS = 3
 BLOCKS = 1024
@@ -33,7 +36,9 @@ def run(sources, report):
         verdict(len(best) == len(errors)),
     )
     rows = [(name, *(f"{e:.3g}" for e in row)) for name, row in errors.items()]
-    return Section("Which block to cut next", TEXT, [claim], [Table(("map", *CRITERIA), rows)])
+    picture = Picture("block_criteria", draw(next(iter(find_probes(sources).values()))))
+    table = Table(("map", *CRITERIA), rows)
+    return Section("Which block to cut next", TEXT, [claim], [table], [picture])
 
 
 def reconstruction_error(power, criterion, count=BLOCKS):
@@ -44,3 +49,12 @@ def reconstruction_error(power, criterion, count=BLOCKS):
     # Σ (power - mean)² = Σ power² - Σ n mean²
     kept = np.sum(means**2 * (x1 - x0) * (y1 - y0))
     return 1 - kept / np.sum(power**2)
+
+
+def draw(file):
+    """A map with its first blocks, by the sum of squared errors."""
+    drawn, audit = figure(8, 4.4), audit_environment(file)
+    rgb = audit.data.astype(float)
+    blocks = environment_tree.build(cell_power(luminance(rgb)), DRAWN, "sse").blocks
+    draw_map(drawn.subplots(), audit, rgb, blocks)
+    return drawn
