@@ -36,7 +36,7 @@ def run(sources, report):
         verdict(len(best) == len(errors)),
     )
     rows = [(name, *(f"{e:.3g}" for e in row)) for name, row in errors.items()]
-    picture = Picture("block_criteria", draw(next(iter(find_probes(sources).values()))))
+    picture = Picture("block_criteria", draw(*next(iter(find_probes(sources).items()))))
     table = Table(("map", *CRITERIA), rows)
     return Section("Which block to cut next", TEXT, [claim], [table], [picture])
 
@@ -51,10 +51,11 @@ def reconstruction_error(power, criterion, count=BLOCKS):
     return 1 - kept / np.sum(power**2)
 
 
-def draw(file):
+def draw(name, file):
     """A map with its first blocks, by the sum of squared errors."""
     drawn, audit = figure(8, 4.4), audit_environment(file)
     rgb = audit.data.astype(float)
     blocks = environment_tree.build(cell_power(luminance(rgb)), DRAWN, "sse").blocks
     draw_map(drawn.subplots(), audit, rgb, blocks)
+    drawn.axes[0].set_title(f"{name}: the first {DRAWN} blocks; the circle is the brightest pixel")
     return drawn

@@ -21,8 +21,8 @@ from brdfkit.visibility.occluders import Occluders
 SIZE, SPP = 96, 64
 SWEPT = "spot"  # the mesh of which settings are varied, and that moves
 GREY = {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": 0.5}}
-SETTING = f"""Pictures of {SIZE} × {SIZE} pixels with {SPP} samples: a grey mesh on a ground, under
-the environment *studio*, whose longest side is 2. The truth has the shadows of its triangles."""
+SETTING = f"""Pictures of {SIZE} × {SIZE} pixels with {SPP} samples: a grey mesh, whose longest side
+is 2, on a ground under the environment *studio*. The truth has the shadows of its triangles."""
 NO_COACD = "coacd is not installed, which finds the parts; pip install 'brdfkit[visibility]'."
 
 
