@@ -140,6 +140,14 @@ def test_a_map_is_needed(llvm_variant):
         llvm_variant.load_dict({"type": "kdtree_envmap"})
 
 
+def test_a_map_that_cannot_be_read_is_named(llvm_variant, tmp_path):
+    cut = tmp_path / "cut.exr"
+    cut.write_bytes(b"v/1\x01" + bytes(40))
+    with pytest.raises(RuntimeError) as error:
+        llvm_variant.load_dict({"type": "kdtree_envmap", "filename": str(cut)})
+    assert "cut.exr: Mitsuba cannot load it" in str(error.value).splitlines()[-1]
+
+
 def test_a_map_may_only_be_turned(llvm_variant):
     scaled = llvm_variant.ScalarTransform4f().scale(3)
     with pytest.raises(RuntimeError, match="to_world scales or shears"):

@@ -16,10 +16,20 @@ from brdfkit.distance_fields.parameters import number
 from brdfkit.errors import BrdfkitError
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class Combination(Node):
-    """Several solids made one, blended over the width `blend`."""
+    """Several solids made one, blended over the width `blend`.
 
-    blend: Any
+    Parameters
+    ----------
+    children : tuple of distance fields
+        At least one.
+    blend : number ≥ 0, default 0
+        The width over which they are blended; 0 for a sharp edge.
+    """
+
+    children: tuple[Node, ...] = ()
+    blend: Any = number(0.0, least=0)
 
     def __post_init__(self):
         object.__setattr__(self, "children", tuple(self.children))
@@ -60,9 +70,6 @@ class union(Combination):
         The width over which they are blended; 0 for a sharp edge.
     """
 
-    children: tuple[Node, ...] = ()
-    blend: Any = number(0.0, least=0)
-
     @property
     def exact_outside(self):
         return self.all_are("exact_outside")
@@ -86,9 +93,6 @@ class intersection(Combination):
     blend : number ≥ 0, default 0
         The width over which they are blended; 0 for a sharp edge.
     """
-
-    children: tuple[Node, ...] = ()
-    blend: Any = number(0.0, least=0)
 
     @property
     def exact_inside(self):
@@ -116,9 +120,6 @@ class difference(Combination):
     blend : number ≥ 0, default 0
         The width over which they are blended; 0 for a sharp edge.
     """
-
-    children: tuple[Node, ...] = ()
-    blend: Any = number(0.0, least=0)
 
     @property
     def exact_inside(self):

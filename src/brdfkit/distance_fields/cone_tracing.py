@@ -26,6 +26,7 @@ def cone_trace(
     slack: Any = 0.0,
     lipschitz: Any = 1.0,
     precision: Any = 1e-4,
+    t_min: Any = 0.0,
     steps: Any = 512,
     active: Any = True,
 ) -> Hit:
@@ -53,6 +54,8 @@ def cone_trace(
         L of f.
     precision : number > 0, default 1e-4
         How close f / L has to be to ρ.
+    t_min : number or array, default 0
+        Where the rays start, along them.
     steps : integer, default 512
         The steps after which a cone is given up.
     active : bool or array, default True
@@ -70,7 +73,7 @@ def cone_trace(
     Hit(t=..., found=True, ...)
     """
     with dr.suspend_grad():
-        t, count = start(o, 0.0)
+        t, count = start(o, t_min)
 
         def enough(t):
             return (1.0 + slack) * (radius + t * tangent) + precision

@@ -1,14 +1,15 @@
 """Sphere tracing: as f is no more than the distance, a step by f meets no surface.
 
+A ray is a cone of radius 0.
+
 [Hart 1996]; [Bálint et al. 2019, algorithm 2]
 """
 
 from collections.abc import Callable
 from typing import Any
 
-import drjit as dr
-
-from brdfkit.distance_fields.hits import Hit, start
+from brdfkit.distance_fields.cone_tracing import cone_trace
+from brdfkit.distance_fields.hits import Hit
 
 
 def sphere_trace(
@@ -54,16 +55,14 @@ def sphere_trace(
     >>> sphere_trace(sphere(1).distance, mi.ScalarPoint3f(0, 0, 3), mi.ScalarVector3f(0, 0, -1), 9)
     Hit(t=2.0, found=True, distance=0.0, steps=2)
     """
-    with dr.suspend_grad():
-        t, count = start(o, t_min)
-
-        def goes_on(t, f, i):
-            return active & (f > precision) & (t < t_max) & (i < steps)
-
-        def step(t, f, i):
-            t = t + f
-            return t, distance(o + d * t) / lipschitz, i + 1
-
-        first = distance(o + d * t) / lipschitz
-        t, f, count = dr.while_loop((t, first, count + 1), goes_on, step)
-        return Hit(t, active & (f <= precision) & (t < t_max), f, count)
+    return cone_trace(
+        distance,
+        o,
+        d,
+        t_max,
+        lipschitz=lipschitz,
+        precision=precision,
+        t_min=t_min,
+        steps=steps,
+        active=active,
+    )

@@ -8,7 +8,7 @@ import numpy as np
 from brdfkit.catalogue import shipped
 from brdfkit.errors import BrdfkitError, nearest, no_such
 from brdfkit.files import write_safely
-from brdfkit.host.load_by_mitsuba import load_by_mitsuba
+from brdfkit.host.picture_file import read_pixels
 from brdfkit.jit.threads import in_turn, two_threads
 
 HDR = ".exr", ".hdr", ".rgbe", ".pfm"
@@ -98,15 +98,8 @@ def read(path):
 
     Raises `BrdfkitError` for a file that it cannot read, because it is cut off, for instance.
     """
-    import mitsuba as mi
-
-    kind = mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False
-
-    def pixels(file, parallel):
-        return np.array(mi.Bitmap(file).convert(*kind))
-
     try:
-        return load_by_mitsuba(pixels, str(path), path)
+        return read_pixels(path, path)
     except BrdfkitError as error:
         reason = str(error).removesuffix(".")
         raise BrdfkitError(f"{reason}: fetch it again if it is cut off, or another.") from error

@@ -12,7 +12,7 @@ from brdfkit.colours import luminance
 from brdfkit.errors import BrdfkitError
 from brdfkit.host.channels import emission_of_rgb
 from brdfkit.host.declared import declared, flag, number, picture, text
-from brdfkit.jit.threads import two_threads
+from brdfkit.host.picture_file import pixels_of, read_pixels
 from brdfkit.lighting.environment_map import compensated, require_light
 
 MAP = {
@@ -115,12 +115,11 @@ def _pixels(mi, name, filename, bitmap):
     """
     if bool(filename) == (bitmap is not None):
         raise BrdfkitError(f"{name} needs a filename, or a bitmap in its place.")
-    if bitmap is None:
-        with two_threads():
-            bitmap = mi.Bitmap(str(mi.file_resolver().resolve(filename)))
-    kind = mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32
-    pixels = np.array(bitmap.convert(*kind, srgb_gamma=False))
     what = f"{name}: {filename or 'the bitmap'}"
+    if bitmap is None:
+        pixels = read_pixels(mi.file_resolver().resolve(filename), what)
+    else:
+        pixels = pixels_of(bitmap)
     if pixels.min(initial=0) < 0:
         raise BrdfkitError(f"{what} has values below 0; mend them.")
     require_light(what, pixels)

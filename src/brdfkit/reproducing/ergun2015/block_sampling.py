@@ -1,7 +1,5 @@
 """C3, C4, C6: pictures by samples of blocks beside those by cumulative sums."""
 
-import time
-
 import numpy as np
 
 from brdfkit.colours import luminance
@@ -13,6 +11,7 @@ from brdfkit.lighting.environment_map import cell_power
 from brdfkit.picture_errors.psnr import psnr
 from brdfkit.reproducing.claims import Claim, verdict
 from brdfkit.reproducing.ergun2015.probes import read_probes
+from brdfkit.reproducing.ergun2015.timing import least_seconds
 from brdfkit.reproducing.page import Section, Table
 
 SECONDS = 60
@@ -143,8 +142,8 @@ def integral_by_samples(rgb, how):
 def time_claim(maps):
     """C4: the time to prepare blocks and law, over that of cumulative sums."""
     power = [cell_power(luminance(rgb)) for rgb in maps.values()]
-    blocks = sum(fastest(lambda p=p: _prepare_blocks(p)) for p in power)
-    sums = sum(fastest(lambda p=p: _prepare_sums(p)) for p in power)
+    blocks = sum(least_seconds(_prepare_blocks, p) for p in power)
+    sums = sum(least_seconds(_prepare_sums, p) for p in power)
     return Claim(
         "To prepare the blocks takes no longer than to prepare cumulative sums.",
         "9.1",
@@ -166,16 +165,6 @@ def _prepare_blocks(power):
 def _prepare_sums(power):
     rows = power.cumsum(axis=1)
     rows[:, -1].cumsum()
-
-
-def fastest(function, times=3):
-    """The least time [s] of a few calls."""
-    taken = []
-    for _ in range(times):
-        start = time.perf_counter()
-        function()
-        taken.append(time.perf_counter() - start)
-    return min(taken)
 
 
 def quality_claim(differences, name):

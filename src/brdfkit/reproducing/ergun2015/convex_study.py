@@ -4,7 +4,6 @@ All pictures take the same samples, by the integrator `convex_direct`: they diff
 alone.
 """
 
-import time
 from functools import cache, cached_property
 from importlib.util import find_spec
 
@@ -14,6 +13,7 @@ from brdfkit.colours import to_srgb
 from brdfkit.picture_errors.psnr import psnr
 from brdfkit.rendering.environment import environment, light_by
 from brdfkit.reproducing.ergun2015.shapes import find_meshes
+from brdfkit.reproducing.ergun2015.timing import least_seconds
 from brdfkit.visibility.decomposition import decompose
 from brdfkit.visibility.height_fields import HeightFields
 from brdfkit.visibility.occluders import Occluders
@@ -85,12 +85,7 @@ class Study:
 
     def seconds(self, occluders):
         """Seconds of CPU for a picture, the least of three."""
-        taken = []
-        for _ in range(3):
-            start = time.process_time()
-            self.render(occluders)
-            taken.append(time.process_time() - start)
-        return min(taken)
+        return least_seconds(self.render, occluders)
 
     def quality(self, occluders):
         """PSNR [dB] of the picture with the shadows of `occluders`: (linear, as shown)."""

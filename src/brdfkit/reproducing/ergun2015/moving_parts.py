@@ -4,7 +4,6 @@ The thesis claims it, and shows no scene that moves.
 """
 
 import math
-import time
 
 import numpy as np
 
@@ -21,6 +20,7 @@ from brdfkit.reproducing.ergun2015.convex_study import (
     shown,
     swept,
 )
+from brdfkit.reproducing.ergun2015.timing import cpu_seconds
 from brdfkit.reproducing.page import Picture, Section
 
 SECONDS = 30
@@ -140,9 +140,4 @@ def update(scene, key, kind):
 
 def median_seconds(function, values):
     """Median seconds of CPU of a call of `function` with each of the `values`."""
-    seconds = []
-    for value in values:
-        start = time.process_time()
-        function(value)
-        seconds.append(time.process_time() - start)
-    return float(np.median(seconds))
+    return float(np.median([cpu_seconds(function, value) for value in values]))
