@@ -32,7 +32,7 @@ from brdfkit.measured import Measured
 from brdfkit.verbs.convert import convert
 from brdfkit.verbs.evaluate import albedo
 
-pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("small_tables")]
+pytestmark = pytest.mark.usefixtures("small_tables")
 WRITERS = {m.__name__.rpartition(".")[2]: m for m in formats() if hasattr(m, "write")}
 
 

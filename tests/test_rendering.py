@@ -26,7 +26,6 @@ def pair():
     return render([WHITE, GREY], spp=8, size=32)
 
 
-@pytest.mark.quick
 def test_equal_seeds_give_equal_pictures(pair):
     again = render([WHITE, GREY], spp=8, size=32)
     other = render([WHITE, GREY], spp=8, size=32, seed=1)
@@ -37,7 +36,6 @@ def test_equal_seeds_give_equal_pictures(pair):
         assert np.abs(other.pictures[name] - picture).max() > 1e-3
 
 
-@pytest.mark.quick
 def test_all_pictures_share_their_samples():
     twice = render([WHITE, WHITE, ("other", GREY)], spp=4, size=16)
     assert list(twice.pictures) == ["white", "white (2)", "other"]
@@ -92,7 +90,6 @@ def test_passes_add_up(spp):
     assert max(passes) <= 32
 
 
-@pytest.mark.quick
 def test_an_exr_reads_back_with_names_and_header(tmp_path):
     import OpenEXR
 
@@ -142,7 +139,6 @@ def stop_at(pictures):
     return progress
 
 
-@pytest.mark.quick
 def test_an_interrupted_render_keeps_what_every_picture_has():
     # two passes of 16 spp × two pictures
     kept = render([WHITE, GREY], spp=32, size=16, progress=stop_at(3))
@@ -170,7 +166,6 @@ def test_samples_are_added_until_the_noise_is_low_enough():
     assert not found.shortfall
 
 
-@pytest.mark.quick
 def test_a_noise_floor_that_takes_too_many_samples_is_said_to():
     found = render(WHITE, until=60, spp=16, size=16)
     assert found.asked == found.spp == 16
@@ -204,7 +199,6 @@ def test_a_value_that_is_none_of_a_brdf_is_said(value):
         render(huge, spp=1, size=4)
 
 
-@pytest.mark.quick
 def test_an_equal_material_has_no_error():
     twice = render([WHITE, ("again", WHITE)], spp=2, size=16)
     assert not any(twice.errors().exceeds("again", metric) for metric in METRICS)

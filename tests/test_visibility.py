@@ -415,7 +415,6 @@ def test_a_scene_is_freed_when_it_is_no_longer_used(llvm_variant):
     assert alive() is None
 
 
-@pytest.mark.quick
 def test_a_scene_at_the_address_of_a_freed_one_has_its_own_shadows(llvm_variant):
     integrator, first = llvm_variant.load_dict({"type": "convex_direct"}), None
     for x in range(8):
