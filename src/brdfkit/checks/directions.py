@@ -1,8 +1,10 @@
 """What the checks of emitters and of phase functions share: tests of samplers over the sphere.
 
-A sampler is given as two functions: `draw(u, v)`, of a point of the unit square, returns
-(direction, weight, density), and `pdf(direction)` the density.
+A sampler is given as two functions: `draw(u, v)`, of a point of the unit square, or of the unit
+cube, returns (direction, weight, density), and `pdf(direction)` the density.
 """
+
+from functools import cache
 
 import numpy as np
 
@@ -16,28 +18,31 @@ CELLS, SUBCELLS = 101, 32
 RINGS, POINTS = 512, 1024  # polar angles and azimuths of the quadrature
 
 
-def chi_squared(draw, pdf, tests):
+def chi_squared(draw, pdf, tests, dimensions=2):
     """The p-value of Pearson's χ² test that directions follow their density; None if it rejects.
 
-    `tests`: how many such tests a check runs, which share the significance level.
+    `tests`: how many such tests a check runs, which share the significance level; `dimensions`: how
+    many random numbers `draw` takes.
     """
     import drjit as dr
     import mitsuba as mi
     from mitsuba.chi2 import ChiSquareTest, SphericalDomain
 
     def sample(u):
-        direction, _, density = draw(u[0], u[1])
+        direction, _, density = draw(*(u[i] for i in range(dimensions)))
         return direction, dr.select(density > 0, mi.Float(1), 0)
 
-    test = ChiSquareTest(SphericalDomain(), sample, pdf, 2, SAMPLES, res=CELLS, ires=SUBCELLS)
+    test = ChiSquareTest(
+        SphericalDomain(), sample, pdf, dimensions, SAMPLES, res=CELLS, ires=SUBCELLS
+    )
     return test.p_value if test.run(SIGNIFICANCE, test_count=tests, quiet=True) else None
 
 
-def random_points(n, seed):
-    """`n` random points (u, v) of the unit square, as two `mi.Float`."""
+def random_points(n, seed, dimensions=2):
+    """`n` random points of the unit square, or cube, as one `mi.Float` for each axis."""
     import mitsuba as mi
 
-    u = np.random.default_rng(seed).random((2, n), np.float32)
+    u = np.random.default_rng(seed).random((dimensions, n), np.float32)
     return tuple(mi.Float(pad(row)) for row in u)
 
 
@@ -45,11 +50,18 @@ def quadrature():
     """Directions over the whole sphere, a `mi.Vector3f`, and their solid angles (n,)."""
     import mitsuba as mi
 
+    w, solid_angle = _even_grid()
+    return mi.Vector3f(w), solid_angle
+
+
+@cache
+def _even_grid():
+    """The directions (3, n) of `quadrature`, and their solid angles."""
     theta = (np.arange(RINGS) + 0.5) / RINGS * np.pi
     phi = (np.arange(POINTS) + 0.5) / POINTS * 2 * np.pi
     theta, phi = (a.ravel() for a in np.meshgrid(theta, phi, indexing="ij"))
     w = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)])
-    return mi.Vector3f(w.astype(np.float32)), np.sin(theta) * 2 * np.pi**2 / (RINGS * POINTS)
+    return w.astype(np.float32), np.sin(theta) * 2 * np.pi**2 / (RINGS * POINTS)
 
 
 def numbers(value, n):

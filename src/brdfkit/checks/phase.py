@@ -5,7 +5,7 @@ import numpy as np
 from brdfkit.checks import directions
 from brdfkit.checks.figures import larger
 from brdfkit.checks.registry import check_of
-from brdfkit.checks.variants import columns
+from brdfkit.checks.variants import WAVELENGTHS, columns
 
 # Two directions in which light travels: a phase function may treat the axes differently
 FORWARD = ((0.0, 0.0, 1.0), (0.6, 0.48, 0.64))
@@ -17,11 +17,13 @@ def sampler(subject, forward):
     import mitsuba as mi
 
     context, it = mi.PhaseFunctionContext(None), mi.MediumInteraction3f()
-    it.wi = -mi.Vector3f(*forward)
+    it.wi, it.p = -mi.Vector3f(*forward), mi.Point3f(0)
     it.sh_frame = mi.Frame3f(it.wi)
+    if mi.is_spectral:
+        it.wavelengths = WAVELENGTHS
 
-    def draw(u, v):
-        return subject.plugin.sample(context, it, mi.Float(0.5), mi.Point2f(u, v))
+    def draw(u, v, lobe):
+        return subject.plugin.sample(context, it, lobe, mi.Point2f(u, v))
 
     def value_and_pdf(wo):
         return subject.plugin.eval_pdf(context, it, wo)
@@ -35,7 +37,7 @@ def chi_squared(subject):
     p_values = []
     for forward in FORWARD:
         draw, value_and_pdf = sampler(subject, forward)
-        p = directions.chi_squared(draw, lambda wo, f=value_and_pdf: f(wo)[1], len(FORWARD))
+        p = directions.chi_squared(draw, lambda wo, f=value_and_pdf: f(wo)[1], len(FORWARD), 3)
         p_values.append(p)
     if None in p_values:
         return False, "rejected"
@@ -46,7 +48,7 @@ def chi_squared(subject):
 def weights(subject):
     """The weight of a sample = value / density, and its density is that of `eval_pdf`."""
     n, worst = 20_000, 0.0
-    u = directions.random_points(n, seed=1)
+    u = directions.random_points(n, seed=1, dimensions=3)
     for forward in FORWARD:
         draw, value_and_pdf = sampler(subject, forward)
         wo, weight, stated = draw(*u)
@@ -77,7 +79,7 @@ def mean_cosine(subject):
     """The weighted mean cosine of the samples = ∫ p μ dω by quadrature: no direction is missed."""
     import mitsuba as mi
 
-    u = directions.random_points(directions.SAMPLES, seed=2)
+    u = directions.random_points(directions.SAMPLES, seed=2, dimensions=3)
     w, solid_angle = directions.quadrature()
     worst = 0.0
     for forward in FORWARD:

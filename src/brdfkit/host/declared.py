@@ -115,6 +115,22 @@ def picture(meaning):
     return Setting(None, None, meaning, read)
 
 
+def bsdf(meaning):
+    """A BSDF, white and matte where the scene gives none."""
+
+    def read(value):
+        import mitsuba as mi
+
+        if value is None:
+            white = {"type": "rgb", "value": 1.0}
+            return mi.load_dict({"type": "diffuse", "reflectance": white}, parallel=False)
+        if not isinstance(value, mi.BSDF):
+            raise ValueError("a bsdf")
+        return value
+
+    return Setting(None, None, meaning, read, differentiable=True)
+
+
 def volume(default, meaning, coloured=True):
     """A volume of values ≥ 0, such as Mitsuba's gridvolume; a number or a colour makes a constant
     one. Not `coloured`: of one channel."""
