@@ -1,0 +1,1 @@
+"""Volumes: `majorants.py` bounds their extinction, `tracking.py` finds where light collides."""
