@@ -229,6 +229,22 @@ def test_render(cli, words, names):
 
 
 @pytest.mark.quick
+def test_render_by_a_tone_mapping(cli):
+    """The PNG shows it, of materials and scenes, the EXR has the same numbers."""
+    Path("room.xml").write_text(SCENE.format(alpha=0.3))
+    for words in (["ward", *SMALL], ["room.xml", "--spp", "1"]):
+        for name, tone in (("it", ()), ("dark", ("--tone-mapping", "reinhard", "--exposure", "0"))):
+            assert_fine(cli("render", *words, *tone, "-o", f"{name}.exr"))
+        linear = [OpenEXR.File(f"{n}.exr").channels()["RGB"].pixels for n in ("it", "dark")]
+        np.testing.assert_allclose(*linear, rtol=1e-4)
+        assert Path("it.png").read_bytes() != Path("dark.png").read_bytes()
+    wrong = cli("render", "ward", *SMALL, "--tone-mapping", "reinhart", "-o", "wrong.png")
+    assert wrong.exit_code == 2
+    assert "did you mean reinhard" in wrong.stderr
+    assert not Path("wrong.png").exists()
+
+
+@pytest.mark.quick
 def test_render_until_the_noise_is_low(cli):
     Path("room.xml").write_text(SCENE.format(alpha=0.3))
     for words in (["ward", "--size", "8"], ["room.xml"]):

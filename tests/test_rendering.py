@@ -266,6 +266,20 @@ def test_a_montage_holds_every_picture(pair, tmp_path):
 
 
 @pytest.mark.quick
+def test_pictures_by_a_curve():
+    """Only what is shown changes; a curve up to the brightest is that of the reference."""
+    pictures = {n: np.full((4, 4, 3), x, np.float32) for n, x in (("a", 4.0), ("b", 1.0))}
+    linear = Rendering(pictures, spp=1, seconds=0.0)
+    shown = linear.tone_mapped(bk.ToneMapping("logarithmic", exposure=2))
+    assert "logarithmic × 2" in shown.captions["a"]
+    before, after = (np.asarray(montage(r)) for r in (linear, shown))
+    middle = [(200, 200), (200, 540)]
+    assert [before[p].tolist() for p in middle] == [[255] * 3] * 2
+    assert after[middle[0]].tolist() == [255] * 3
+    assert 100 < after[middle[1]][0] < 250
+
+
+@pytest.mark.quick
 def test_what_is_as_light_and_red_is_not_green():
     red = np.broadcast_to([0.4, 0.0, 0.0], (8, 8, 3))
     green = np.broadcast_to([0.0, 0.4 * 0.2126 / 0.7152, 0.0], (8, 8, 3))

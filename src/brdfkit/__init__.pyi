@@ -33,6 +33,7 @@ from .ranking import Ranking as Ranking
 from .ranking import rank as rank
 from .rendering import Gallery as Gallery
 from .rendering import Rendering as Rendering
+from .rendering import ToneMapping as ToneMapping
 from .rendering import gallery as gallery
 from .rendering import preview as preview
 from .rendering import render as render

@@ -163,6 +163,43 @@ def scene_options(command, files=SCENE_FILES):
     return command
 
 
+def tone_options(command):
+    """Adds --tone-mapping, --exposure and --tone-by; the command gets `tone`, a `ToneMapping`."""
+
+    @click.option(
+        "--tone-mapping",
+        "curve",
+        default="range",
+        metavar="CURVE",
+        show_default=True,
+        help="How the PNG shows radiance: range (1 is white), reinhard, logarithmic or filmic, "
+        "before the curve of sRGB.",
+    )
+    @click.option(
+        "--exposure",
+        type=float,
+        default=1.0,
+        metavar="FACTOR",
+        show_default=True,
+        help="Multiply radiance by this number before.",
+    )
+    @click.option(
+        "--tone-by",
+        "by",
+        default="channel",
+        metavar="MEANS",
+        show_default=True,
+        help="What the curve is of: each channel, or luminance, which keeps colours.",
+    )
+    @functools.wraps(command)
+    def with_tone(*args, curve, exposure, by, **kwargs):
+        from brdfkit.rendering.tone_mapping import ToneMapping
+
+        return command(*args, tone=ToneMapping(curve, exposure, by), **kwargs)
+
+    return with_tone
+
+
 def values_option(command):
     """Adds --set, for the parameters of models."""
     option = click.option(

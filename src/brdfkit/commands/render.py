@@ -10,6 +10,7 @@ from brdfkit.commands._options import (
     output_options,
     render_options,
     scene_options,
+    tone_options,
     values_option,
 )
 from brdfkit.commands._stopping import status
@@ -37,12 +38,13 @@ from brdfkit.errors import BrdfkitError
     is_flag=True,
     help="Show the light of --envmap, by default studio, in a moment: no noise, no shadows.",
 )
+@tone_options
 @values_option
 @scene_options
 @render_options
 @output_options
 def render(
-    things, output, folders, quickly, values, scene, envmap, spp, until, size, seed, console
+    things, output, folders, quickly, tone, values, scene, envmap, spp, until, size, seed, console
 ):
     """Path-trace materials, or a scene.
 
@@ -71,48 +73,48 @@ def render(
         output = picture_file(output or Path(scenes[0]).with_suffix(".png").name)
         with console.progress("render") as progress:
             picture = render_scene(scenes[0], spp, seed, progress, until)
-        _write(picture, output)
+        _write(picture, output, tone)
     else:
         found = [material(thing, values) for thing in things]
         output = picture_file(output or f"{slug(found[0].name)}.png")
         where = {"size": size, "seed": seed, "scene": scene, "envmap": envmap}
         if quickly:
-            picture = _preview(found, output, spp, until, **where)
+            picture = _preview(found, output, spp, until, tone, **where)
         else:
-            picture = path_trace(found, output, console, spp, until, **where)
+            picture = path_trace(found, output, console, spp, until, tone, **where)
     _print_picture(picture, output, console)
     if picture.spp < picture.asked:
         click.get_current_context().exit(status())
 
 
-def path_trace(things, output, console, spp, until, **where):
+def path_trace(things, output, console, spp, until, tone="range", **where):
     """Render `things` side by side and write the picture; returns a `Rendering`.
 
-    `where`: what `brdfkit.render` takes besides.
+    `tone`: a `ToneMapping` or the name of one; `where`: what `brdfkit.render` takes besides.
     """
     from brdfkit.rendering.rendering import render as render_things
 
     with console.progress("render") as progress:
         spp = spp or (SPP if until is None else None)
         picture = render_things(things, spp, until=until, progress=progress, **where)
-    _write(picture, output)
+    _write(picture, output, tone)
     return picture
 
 
-def _preview(things, output, spp, until, scene, envmap, size, seed):
+def _preview(things, output, spp, until, tone, scene, envmap, size, seed):
     """Preview `things` and write the picture; returns a `Rendering`."""
     from brdfkit.rendering.preview import SIZE, SPP, STUDIO, preview
 
     if until is not None or seed:
         raise BrdfkitError("A preview has no noise: leave --until and --seed out.")
     picture = preview(things, envmap or STUDIO, size or SIZE, scene, spp=spp or SPP)
-    _write(picture, output)
+    _write(picture, output, tone)
     return picture
 
 
-def _write(picture, output):
+def _write(picture, output, tone):
     """Write a `Rendering`, and say so where it was interrupted or is not as good as asked for."""
-    picture.write(output)
+    picture.tone_mapped(tone).write(output)
     if picture.spp < picture.asked:
         say(f"interrupted; rendered with {picture.spp} of {picture.asked} samples per pixel.")
     elif picture.shortfall:

@@ -64,6 +64,8 @@ def montage(rendering):
     from PIL import Image, ImageDraw
 
     captions, differences = rendering.captions, colour_differences(rendering)
+    tone = rendering.tone_mapping
+    brightest = tone.brightest_of(rendering.pictures[rendering.reference])
     names = list(rendering.pictures)
 
     # sizes [pixels]
@@ -79,7 +81,8 @@ def montage(rendering):
     for i, name in enumerate(names):
         x, y = GAP + i % COLUMNS * (width + GAP), GAP + i // COLUMNS * row
         _draw_caption(draw, (x, y), name, captions[name], width, text)
-        page.paste(_image(_srgb(rendering.pictures[name]), zoom), (x, y + caption))
+        shown = tone(rendering.pictures[name], brightest)
+        page.paste(_image(_srgb(shown), zoom), (x, y + caption))
         y += caption + height + GAP
         if name in differences:
             page.paste(_image(_false_colour(differences[name]), zoom), (x, y))

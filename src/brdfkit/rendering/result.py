@@ -1,7 +1,7 @@
 """`Rendering`, what `render` returns: the pictures, their differences, and how to write them."""
 
 import io
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf, isfinite, isnan, nan
 from pathlib import Path
@@ -15,6 +15,7 @@ from brdfkit.picture_errors import ImageErrors, image_errors
 from brdfkit.picture_errors.noise import samples_for
 from brdfkit.picture_errors.psnr import psnr
 from brdfkit.rendering.montage import COLUMNS, TILE, montage, picture_suffix, write_exr
+from brdfkit.rendering.tone_mapping import ToneMapping
 
 BILLION = 1e9  # samples per pixel: a larger number tells nothing more
 WIDEST = 1100  # pixels of the pictures in a notebook
@@ -49,6 +50,8 @@ class Rendering(Shown):
         The noise floor that was asked for [dB].
     shadows : bool
         Whether the pictures have shadows, and light between surfaces; those of `preview` have not.
+    tone_mapping : ToneMapping
+        How the pictures are shown; by default radiance 1 is white. The numbers stay as they are.
     """
 
     pictures: dict[str, np.ndarray] = field(repr=False)
@@ -61,6 +64,7 @@ class Rendering(Shown):
     other_seed: np.ndarray | None = field(default=None, repr=False)
     until: float | None = None
     shadows: bool = True
+    tone_mapping: ToneMapping = field(default_factory=ToneMapping)
 
     @property
     def reference(self) -> str:
@@ -145,6 +149,35 @@ class Rendering(Shown):
         with write_safely(path.with_suffix(".png") if suffix == ".exr" else path) as beside:
             beside.write_bytes(png.getvalue())
 
+    def tone_mapped(self, tone_mapping: ToneMapping | str) -> "Rendering":
+        """The same pictures, shown by another curve, in notebooks and PNG files.
+
+        An EXR file and all errors and differences are of the radiance itself, as before.
+
+        Parameters
+        ----------
+        tone_mapping : ToneMapping or str
+            The curve, or its name: "range", "reinhard", "logarithmic", "filmic".
+
+        Returns
+        -------
+        Rendering
+            It shares the pictures.
+
+        Raises
+        ------
+        BrdfkitError
+            For the name of no curve.
+
+        Examples
+        --------
+        >>> shown = ToneMapping("reinhard", exposure=2)
+        >>> render("car_paint").tone_mapped(shown).write("paint.png")    # doctest: +SKIP
+        """
+        if not isinstance(tone_mapping, ToneMapping):
+            tone_mapping = ToneMapping(tone_mapping)
+        return replace(self, tone_mapping=tone_mapping)
+
     @property
     def captions(self) -> dict[str, str]:
         """A word or two on each picture, by its name."""
@@ -153,7 +186,8 @@ class Rendering(Shown):
         beside = f", {noise}" if noise else ""
         shadows = "" if self.shadows else ", no shadows"
         first = "reference" if self.differences else f"{self.spp} spp"
-        found = {self.reference: first + beside + shadows}
+        shown = f", {self.tone_mapping}" if str(self.tone_mapping) else ""
+        found = {self.reference: first + beside + shadows + shown}
         for name, value in self.psnr().items():
             near = f" ≈ {noise}" if value >= floor < inf else beside
             found[name] = "PSNR unknown" if isnan(value) else f"PSNR {value:.1f} dB{near}"

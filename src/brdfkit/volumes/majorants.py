@@ -33,7 +33,12 @@ class Majorants:
     array : mitsuba.Float
         The values in Dr.Jit's memory.
 
-    Raises `BrdfkitError` for values that are no bounds. It has no use in scalar variants.
+    It has no use in scalar variants.
+
+    Raises
+    ------
+    BrdfkitError
+        For values that are no bounds.
 
     Examples
     --------
