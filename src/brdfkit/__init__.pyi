@@ -56,5 +56,7 @@ from .verbs.prediction_error import PredictionError as PredictionError
 from .verbs.prediction_error import prediction_error as prediction_error
 from .verbs.profile import Profile as Profile
 from .verbs.profile import profile as profile
+from .volumes import TransferFunction as TransferFunction
+from .volumes import Volume as Volume
 
 __version__: str

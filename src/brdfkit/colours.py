@@ -36,6 +36,16 @@ def to_srgb(linear):
     return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
 
 
+def from_srgb(values):
+    """Linear values of sRGB's curve [IEC 1999], 0 to 1; the inverse of `to_srgb`.
+
+    >>> from_srgb(np.array([0.0, 0.735, 1.0])).round(3)
+    array([0. , 0.5, 1. ])
+    """
+    y = np.clip(values, 0, 1)
+    return np.where(y <= 0.04045, y / 12.92, ((y + 0.055) / 1.055) ** 2.4)
+
+
 def colour_science():
     """The package `colour`, imported without its change of how NumPy prints arrays."""
     with np.printoptions():

@@ -1,0 +1,31 @@
+"""Matplotlib's colour maps as control points."""
+
+import numpy as np
+
+from brdfkit.colours import from_srgb
+from brdfkit.errors import BrdfkitError, no_such
+from brdfkit.volumes.piecewise import places, require_order
+
+
+def points(colormap, opacity):
+    """The name of a colour map, its places (n,), 0 to 1, and RGBA (n, 4) in linear sRGB.
+
+    `opacity` (k, 2): points (place, A).
+    """
+    import matplotlib
+
+    if isinstance(colormap, str):
+        try:
+            colormap = matplotlib.colormaps[colormap]
+        except KeyError:
+            raise no_such("colour map", colormap, sorted(matplotlib.colormaps)) from None
+    ramp = np.asarray(opacity, float)
+    if ramp.ndim != 2 or ramp.shape[1] != 2:
+        raise BrdfkitError("opacity should be points (share of the range, A), (k, 2).")
+    at = require_order(ramp[:, 0], "the shares of opacity")
+    # the map's own colours, and the corners of the ramp; both ends of a step
+    shares = np.union1d(np.linspace(0, 1, colormap.N), np.clip(at, 0, 1))
+    low, high, t = places(shares, at)
+    alpha = (1 - t[:, 0]) * ramp[low, 1] + t[:, 0] * ramp[high, 1]
+    rgb = from_srgb(colormap(shares)[:, :3])
+    return colormap.name, shares, np.column_stack([rgb, alpha])

@@ -1,0 +1,180 @@
+"""`Volume`: values on a regular grid of voxels, and where in the world they lie."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from brdfkit.arguments import to_whole_number
+from brdfkit.errors import BrdfkitError
+from brdfkit.volumes import reconstruction, reducing
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Volume:
+    """Values on a regular grid of voxels. `load_volume` makes it of a file or a name.
+
+    Attributes
+    ----------
+    values : ndarray
+        float32 or integers (nz, ny, nx), x fastest: the order of Mitsuba's grids. float64 becomes
+        float32, booleans become uint8.
+    to_world : ndarray
+        (4, 4): from the indices (i, j, k) of a voxel's centre along x, y, z to a point of the
+        world, in the file's unit of length. The identity if None.
+    name : str
+        What it is called.
+    labels : bool
+        Whether values are names of tissues or materials, of which no mean can be taken: they are
+        never interpolated. Whole numbers in floats become integers.
+    unit : str
+        The unit of length, such as "mm"; empty where it is not known.
+    axes : str
+        "RAS" if x, y and z of the world point to the patient's right, front and head; empty for
+        other data.
+
+    Raises `BrdfkitError` for no voxels, values that are not finite, and nothing but zeros.
+
+    Examples
+    --------
+    >>> Volume(np.arange(24).reshape(2, 3, 4), np.diag([0.5, 0.5, 2, 1]), "ramp", unit="mm")
+    ramp: 4×3×2 voxels of 0.5×0.5×2 mm, int64, 0 to 23
+    """
+
+    values: NDArray
+    to_world: Any = None
+    name: str = "volume"
+    labels: bool = False
+    unit: str = ""
+    axes: str = ""
+
+    def __post_init__(self) -> None:
+        to_world = np.eye(4) if self.to_world is None else np.array(self.to_world, float)
+        object.__setattr__(self, "values", _checked(self.values, self.name, self.labels))
+        object.__setattr__(self, "to_world", require_transform(to_world, self.name))
+
+    @property
+    def size(self) -> tuple[int, int, int]:
+        """Number of voxels along x, y, z."""
+        nz, ny, nx = self.values.shape
+        return nx, ny, nz
+
+    @property
+    def spacing(self) -> tuple[float, float, float]:
+        """From a voxel's centre to the next one, along the axes x, y, z of the grid."""
+        x, y, z = np.linalg.norm(self.to_world[:3, :3], axis=0).tolist()
+        return x, y, z
+
+    @property
+    def cube_to_world(self) -> NDArray[np.float64]:
+        """(4, 4): from the unit cube to the box of all voxels, as Mitsuba's `gridvolume` has it.
+
+        The cube's corners are corners of voxels; centres lie half a voxel further in.
+        """
+        to_indices = np.diag([*self.size, 1.0])
+        to_indices[:3, 3] = -0.5
+        return self.to_world @ to_indices
+
+    @property
+    def bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The corners (low, high) of the smallest box along the world's axes around all voxels."""
+        corners = np.indices((2, 2, 2)).reshape(3, -1)
+        points = self.cube_to_world[:3] @ np.vstack([corners, np.ones(8)])
+        return points.min(axis=1), points.max(axis=1)
+
+    @cached_property
+    def range(self) -> tuple[float, float]:
+        """The least and the largest value."""
+        return float(self.values.min()), float(self.values.max())
+
+    @cached_property
+    def gradient_magnitude(self) -> NDArray[np.float32]:
+        """‖∇V‖ (nz, ny, nx) at the voxels' centres [value per unit of length].
+
+        By central differences, on the outermost voxels by one-sided ones.
+        """
+        return reconstruction.gradient_magnitude(self.values, self.to_world)
+
+    def resized(self, factor: int) -> "Volume":
+        """The volume with a voxel for each block of `factor`³ voxels.
+
+        Its value is the mean of those that the block has, as at the upper ends there may be fewer;
+        of labels that of the voxel at the block's middle.
+        """
+        factor = to_whole_number("factor", factor, 1)
+        slabs = (self.values[k : k + factor] for k in range(0, len(self.values), factor))
+        values = np.stack([reducing.reduced(slab, factor, self.labels) for slab in slabs])
+        to_world = reducing.transform(self.to_world, factor)
+        return Volume(values, to_world, self.name, self.labels, self.unit, self.axes)
+
+    def __call__(self, points: ArrayLike) -> NDArray:
+        """The values (n,) at `points` (n, 3) of the world: trilinear, of labels the nearest.
+
+        Beyond the outermost centres the value stays as it is there; outside of the box it is 0.
+        """
+        return reconstruction.values_at(self, points)
+
+    def gradient(self, points: ArrayLike, of_interpolant: bool = False) -> NDArray[np.float64]:
+        """∇V (n, 3) at `points` (n, 3) of the world [value per unit of length].
+
+        By central differences, a voxel to either side; or, `of_interpolant`, the derivative of the
+        trilinear interpolant itself, which jumps at the centres of voxels.
+        """
+        return reconstruction.gradient_at(self, points, of_interpolant)
+
+    def __repr__(self) -> str:
+        low, high = self.range
+        spacing = "×".join(f"{s:.4g}" for s in self.spacing)
+        kind = "labels" if self.labels else f"{low:.6g} to {high:.6g}"
+        return (
+            f"{self.name}: {'×'.join(map(str, self.size))} voxels of {spacing}"
+            f"{' ' * bool(self.unit)}{self.unit}, {self.values.dtype}, {kind}"
+        )
+
+
+def require_transform(to_world, name):
+    """`to_world`; `BrdfkitError` unless it is a (4, 4) that can be inverted."""
+    to_world = np.asarray(to_world, float)
+    fine = to_world.shape == (4, 4) and np.isfinite(to_world).all()
+    if not fine or not abs(np.linalg.det(to_world[:3, :3])) > 0:
+        raise BrdfkitError(
+            f"{name}: its transform from voxels to the world is no invertible 4×4 matrix: the "
+            "spacing or an axis is 0 or not finite; mend the header or give the spacing."
+        )
+    return to_world
+
+
+def _checked(values, name, labels):
+    """Voxels in one of the types that a `Volume` has; `BrdfkitError` where they cannot be used."""
+    values = np.asarray(values)
+    if values.ndim != 3 or not values.size:
+        raise BrdfkitError(
+            f"{name}: its values have the shape {values.shape}; they should be (nz, ny, nx), with "
+            "one voxel or more."
+        )
+    if values.dtype.kind not in "biuf":
+        raise BrdfkitError(f"{name}: its values are {values.dtype}, where real numbers belong.")
+    low, high = values.min(), values.max()  # not finite where a value is not
+    if not (np.isfinite(low) and np.isfinite(high)):
+        count = values.size - np.count_nonzero(np.isfinite(values))
+        raise BrdfkitError(
+            f"{name}: {count:,} of {values.size:,} voxels are not finite (NaN or infinite); "
+            "replace them, as by numpy.nan_to_num."
+        )
+    if low == high == 0:
+        raise BrdfkitError(f"{name}: all voxels are 0; check that it is the right file.")
+    if labels and values.dtype.kind == "f":
+        return _whole_numbers(values, name)
+    target = {"b": np.dtype(np.uint8), "f": np.dtype(np.float32)}.get(values.dtype.kind)
+    return np.ascontiguousarray(values, target or values.dtype.newbyteorder("="))
+
+
+def _whole_numbers(values, name):
+    whole = values.astype(np.int32)
+    if not (whole == values).all():
+        raise BrdfkitError(
+            f"{name}: its values are no whole numbers, and so no labels; leave labels=True away."
+        )
+    return whole
