@@ -58,5 +58,6 @@ from .verbs.profile import Profile as Profile
 from .verbs.profile import profile as profile
 from .volumes import TransferFunction as TransferFunction
 from .volumes import Volume as Volume
+from .volumes import load_volume as load_volume
 
 __version__: str

@@ -1,9 +1,11 @@
 """Volumes: values on a grid of voxels, from files or made, and what they mean to light.
 
 `volume.py` is one, `reconstruction.py` what it is between its voxels, `reducing.py` fewer voxels of
-it; `transfer_function.py`: colour and extinction of its values, with `piecewise.py`, `opacity.py`,
-`colour_maps.py`, and in files `stored.py`, `slicer_presets.py`, `presets/`.
+it; `loading.py` finds it in a file (`formats/`) or makes it (`made/`). `transfer_function.py`:
+colour and extinction of its values, with `piecewise.py`, `opacity.py`, `colour_maps.py`, and in
+files `stored.py`, `slicer_presets.py`, `presets/`.
 """
 
+from brdfkit.volumes.loading import load_volume as load_volume
 from brdfkit.volumes.transfer_function import TransferFunction as TransferFunction
 from brdfkit.volumes.volume import Volume as Volume

@@ -3,7 +3,7 @@
 An element ``<VolumeProperty>`` holds three lists of numbers, each after their count:
 
     scalarOpacity     value, opacity of a layer of d = 1 mm (VTK's ScalarOpacityUnitDistance, which
-                      a preset may state); values are HU in the presets for CT
+                      Slicer leaves as it is); values are HU in the presets for CT
     gradientOpacity   gradient magnitude, factor of the opacity
     colorTransfer     value, R, G, B as a screen shows them (sRGB)
 
@@ -26,7 +26,7 @@ from brdfkit.files import contents
 from brdfkit.volumes.piecewise import places, require_order
 
 PARTS = 8  # of a segment between two colours
-NUDGE = 1e-6  # relative, as Slicer moves on the second of two points at one value
+UNIT_DISTANCE = 1.0  # mm
 
 
 def read(cls, path, name):
@@ -58,7 +58,7 @@ def _convert(cls, preset):
     parts = [np.linspace(a, b, PARTS, endpoint=False) for a, b in pairwise(ends)]
     values = np.concatenate([*parts, ends[-1:]])
     rgba = np.column_stack([from_srgb(_at(values, colour)), np.clip(_at(values, opacity), 0, 1)])
-    function = cls.from_opacity(values, rgba, float(preset.get("scalarOpacityUnitDistance", 1)))
+    function = cls.from_opacity(values, rgba, UNIT_DISTANCE)
     name = preset.get("name", "preset")
     unit = "HU" if name.startswith("CT") else ""
     function = replace(function, name=name, value_unit=unit, length_unit="mm")
@@ -67,7 +67,7 @@ def _convert(cls, preset):
 
 
 def _points(preset, attribute, columns):
-    """The rows of a list of numbers, with places that rise; of equal ones the later is moved on."""
+    """The rows of a list of numbers, by values that rise."""
     try:
         count, *numbers = map(float, preset.get(attribute, "").split())
         rows = np.array(numbers).reshape(-1, columns)
@@ -81,7 +81,7 @@ def _points(preset, attribute, columns):
         )
     equal = np.diff(rows[:, 0]) == 0
     for i in np.flatnonzero(equal) + 1:
-        rows[i, 0] = rows[i - 1, 0] + NUDGE * max(abs(rows[i - 1, 0]), 1)
+        rows[i, 0] = np.nextafter(rows[i - 1, 0], np.inf)  # as Slicer does: a step
     require_order(rows[:, 0], f"{name}: the values of {attribute}")
     return rows
 

@@ -1,0 +1,72 @@
+"""The formats of volumes: every file of this folder is one, and is found by itself.
+
+A format's file defines
+
+- ``NAME``: the name for people; ``SUFFIXES``: such as ``(".nrrd", ".nhdr")``;
+- ``sniff(head)``: whether the first 4 kB (bytes, unpacked if gzip) look like this format;
+- ``find(file)``: what is in a `VolumeFile` (`_stored.py`), as `Stored`: the header alone is read,
+  and the voxels layer by layer when they are asked for.
+
+`_stored.py`, `_streams.py`, `_folders.py` and `_axes.py` have what several formats share. Packages
+of one format each (nibabel, pynrrd, pydicom, tifffile) are imported when a file needs them.
+"""
+
+import gzip
+import importlib
+import pkgutil
+import zlib
+from functools import cache
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.volumes.formats import _folders
+from brdfkit.volumes.formats._stored import Stored as Stored
+from brdfkit.volumes.formats._stored import VolumeFile as VolumeFile
+
+HEAD = 4096  # bytes that a format's `sniff` sees
+
+
+@cache
+def formats():
+    """The format modules of this folder, in alphabetical order."""
+    names = sorted(m.name for m in pkgutil.iter_modules(__path__) if not m.name.startswith("_"))
+    return tuple(importlib.import_module(f"{__name__}.{name}") for name in names)
+
+
+def has_format(name):
+    """Whether a file's name ends as those of a format do."""
+    return any(str(name).lower().endswith(module.SUFFIXES) for module in formats())
+
+
+def find(file):
+    """The `Stored` of a `VolumeFile`, by the format that recognises it, else by its suffix."""
+    if file.path.is_dir():
+        return _of_name(_folders.kind(file)).find(file)
+    if not (file.size is file.dtype is file.offset is None):  # what is told only of raw voxels
+        return _of_name("raw").find(file)
+    head = _head(file)
+    sniffed = [module for module in formats() if module.sniff(head)]
+    named = [m for m in formats() if str(file.path).lower().endswith(m.SUFFIXES)]
+    for module in (*sniffed, *named):
+        return module.find(file)
+    known = ", ".join(f"{module.NAME} ({' '.join(module.SUFFIXES)})" for module in formats())
+    raise file.error(f"is in no known format of volumes; read are {known}")
+
+
+def _of_name(name):
+    return next(module for module in formats() if module.__name__.endswith(f".{name}"))
+
+
+def _head(file):
+    try:
+        with file.path.open("rb") as stream:
+            head = stream.read(HEAD)
+        if not head:
+            raise file.error("the file is empty; fetch it again")
+        if head.startswith(b"\x1f\x8b"):
+            with gzip.open(file.path) as stream:
+                head = stream.read(HEAD)
+    except (EOFError, zlib.error, gzip.BadGzipFile) as error:
+        raise file.error(f"the compressed data are damaged ({error}); fetch it again") from error
+    except OSError as error:
+        raise BrdfkitError(f"{file.path}: cannot be read ({error.strerror}).") from error
+    return head

@@ -1,0 +1,86 @@
+"""NIfTI-1 and NIfTI-2: `.nii`, `.nii.gz`, and pairs of `.hdr` and `.img`.
+
+The header has two transforms to the world; of these the sform counts where it has a code, else the
+qform, as nibabel has it. The world is RAS. Voxels lie x fastest, and may be scaled by a slope.
+``brain.nii#3`` is the fourth of several volumes (from 0).
+"""
+
+from math import prod
+from pathlib import Path
+
+import numpy as np
+
+from brdfkit.volumes.formats._stored import Stored
+from brdfkit.volumes.formats._streams import layers, opener, require_bytes
+
+NAME = "NIfTI"
+SUFFIXES = (".nii", ".nii.gz", ".hdr", ".img")
+
+LABELS = 1002  # intent code
+UNITS = {"mm": "mm", "meter": "m", "micron": "µm"}
+
+
+def sniff(head):
+    """Whether the head has NIfTI-1's or NIfTI-2's magic number."""
+    return head[344:348] in (b"n+1\0", b"ni1\0") or head[4:8] in (b"n+2\0", b"ni2\0")
+
+
+def find(file):
+    """The volume of a NIfTI file."""
+    nibabel = file.package("nibabel", "nibabel")
+    try:
+        image = nibabel.load(file.path)
+        header, dtype = image.header, image.header.get_data_dtype()
+        shape = tuple(map(int, image.shape))
+        codes = [int(header[name]) for name in ("sform_code", "qform_code")]
+        unit = UNITS.get(header.get_xyzt_units()[0], "mm" if any(codes) else "")
+        slope, intercept = image.dataobj.slope, image.dataobj.inter
+        start, intent = int(image.dataobj.offset), int(header["intent_code"])
+    except Exception as error:
+        raise file.error(
+            f"is no NIfTI file, or damaged ({_line(error)}); fetch it again"
+        ) from error
+    if dtype.kind not in "iuf":
+        raise file.error(
+            f"holds {dtype} at each voxel, colours or vectors; one number belongs there"
+        )
+    shape, number = _one(file, shape)
+    path = Path(image.file_map["image"].filename)
+    packed = path.suffix.lower() == ".gz"
+    volume = prod(shape) * dtype.itemsize
+    require_bytes(file, path, 0 if packed else start + number * volume, shape, dtype, packed)
+    start += number * volume
+    stream = opener(path, 0, "gzip", start) if packed else opener(path, start)
+    scaled = (slope, intercept) != (1, 0)
+
+    def scaled_layers():
+        for layer in layers(file, stream, shape, dtype):
+            yield (layer * slope + intercept).astype(np.float32) if scaled else layer
+
+    return Stored(
+        shape=shape,
+        dtype=np.dtype(np.float32) if scaled else dtype,
+        layers=scaled_layers,
+        to_world=image.affine,
+        labels=intent == LABELS,
+        unit=unit,
+        axes="RAS" if any(codes) else "",
+    )
+
+
+def _one(file, shape):
+    """(nz, ny, nx) of one volume of a file, and its number."""
+    if len(shape) < 3 or min(shape) < 1:
+        raise file.error(f"has {'×'.join(map(str, shape))} voxels; three dimensions belong there")
+    count = prod(shape[3:])
+    if file.part is None and count > 1:
+        raise file.error(f"holds {count} volumes; name one, from 0: {file.path.name}#0")
+    part = file.part or "0"
+    number = int(part) if part.isdigit() else -1
+    if not 0 <= number < count:
+        raise file.error(f"has no volume '#{file.part}'; name one of 0 to {count - 1}")
+    return shape[2::-1], number
+
+
+def _line(error):
+    return (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")

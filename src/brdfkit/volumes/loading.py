@@ -1,0 +1,185 @@
+"""`load_volume`: a volume from a file, a folder or a name, within the memory that there is."""
+
+import itertools
+import math
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import psutil
+
+from brdfkit.arguments import to_whole_number
+from brdfkit.errors import BrdfkitError, nearest, no_such
+from brdfkit.volumes import formats, made, reducing
+from brdfkit.volumes.formats import VolumeFile
+from brdfkit.volumes.volume import Volume, require_transform
+
+MOST = 65  # up to which a `downsample` is proposed
+SPARE = 1.2  # times what the voxels take, for what Python and NumPy take beside them
+
+
+def load_volume(
+    path: str | os.PathLike[str],
+    downsample: int = 1,
+    labels: bool | None = None,
+    size: int | tuple[int, int, int] | None = None,
+    dtype: Any = None,
+    spacing: float | tuple[float, float, float] | None = None,
+    offset: int | None = None,
+) -> Volume:
+    """A volume of voxels from a file of any known format, a folder, or the name of a made one.
+
+    NIfTI, NRRD, DICOM, VTI, MetaImage, TIFF stacks, Mitsuba's .vol and raw voxels. The content
+    decides the format, then the suffix. Medical formats come in RAS: x, y and z of the world point
+    to the patient's right, front and head. The header alone is read before it is known that the
+    voxels fit into the memory.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file, or the folder of a series of DICOM or of TIFF files. ``model.vti#facies`` names
+        one of several arrays, ``scans#2`` a series, ``brain.nii#0`` a point in time. Or the name of
+        a volume that is made: ``marschner_lobb``, ``shepp_logan``, ``slab``, ``smoke``, ``sphere``.
+    downsample : int, default 1
+        Every block of so many voxels along each axis becomes one while the file is read; 1 or more.
+    labels : bool, optional
+        Whether the values are labels, of which no means are taken; as the file tells if it is None.
+    size : int or (int, int, int), optional
+        Voxels along x, y, z: of raw voxels; and of a made volume, one number for all three.
+    dtype : str or dtype, optional
+        The type of raw voxels, such as "uint16", or ">i2" for the other byte order.
+    spacing : float or (float, float, float), optional
+        From voxel to voxel along x, y, z, in place of what the file tells.
+    offset : int, optional
+        Bytes before raw voxels.
+
+    Returns
+    -------
+    Volume
+        The values, and where they lie.
+
+    Raises
+    ------
+    BrdfkitError
+        For every file that cannot be read, with what is wrong and what to do; where there is too
+        little memory, with a `downsample` that fits; for voxels that are not finite, or all 0.
+
+    Examples
+    --------
+    >>> load_volume("marschner_lobb", size=41)
+    marschner_lobb: 41×41×41 voxels of 0.04878×0.04878×0.04878, float32, 4.4e-05 to 0.999956
+    """
+    downsample = to_whole_number("downsample", downsample, 1)
+    voxels, steps = _triple("size", size, int), _triple("spacing", spacing, float)
+    text = os.fspath(path)
+    if text in made.names() and not os.path.exists(text):
+        if any(setting is not None for setting in (labels, dtype, spacing, offset)):
+            raise BrdfkitError(f"{text} is made: it takes size and downsample alone.")
+        volume = made.make(text, voxels)
+        return volume if downsample == 1 else volume.resized(downsample)
+    found, part = _locate(text)
+    file = VolumeFile(found, part, voxels, dtype, offset)
+    stored = formats.find(file)
+    if labels is not None:
+        stored = replace(stored, labels=labels)
+    if steps is not None:
+        stored = replace(stored, to_world=_spaced(stored.to_world, steps))
+    return _read(file, stored, downsample)
+
+
+def looks_like_volume(name: str) -> bool:
+    """Whether a word of the command line means a volume: a file by its suffix, a folder, a name."""
+    path, _ = _split(name)
+    return name in made.names() or formats.has_format(path) or Path(path).is_dir()
+
+
+def _read(file, stored, downsample):
+    """The `Volume` that was found in a file."""
+    require_transform(stored.to_world, file.path)
+    _require_memory(file, stored, downsample)
+    shape = reducing.shape(stored.shape, downsample)
+    values = np.empty(shape, _dtype(stored, downsample))
+    layers = stored.layers()
+    with np.errstate(over="ignore"):  # a double beyond float32 is infinite, which Volume refuses
+        for k in range(shape[0]):
+            slab = np.stack(list(itertools.islice(layers, downsample)))
+            values[k] = reducing.reduced(slab, downsample, stored.labels)
+    to_world = reducing.transform(stored.to_world, downsample)
+    name = _name(file)
+    return Volume(values, to_world, name, stored.labels, stored.unit, stored.axes)
+
+
+def _dtype(stored, downsample):
+    """The type of the voxels that are kept."""
+    if stored.dtype.kind == "f" or (downsample > 1 and not stored.labels):
+        return np.dtype(np.float32)
+    return stored.dtype.newbyteorder("=")
+
+
+def _require_memory(file, stored, downsample):
+    """Raise `BrdfkitError` where the voxels would take more memory than there is."""
+    available = psutil.virtual_memory().available
+    needed = _needed(stored, downsample)
+    if needed <= available:
+        return
+    fits = next((n for n in range(downsample + 1, MOST) if _needed(stored, n) <= available), None)
+    size = "×".join(map(str, stored.shape[::-1]))
+    raise file.error(
+        f"its {size} voxels would take about {needed / 1e9:,.2g} GB of memory, of which "
+        f"{available / 1e9:,.2g} GB are available; "
+        + (f"load it with downsample={fits}" if fits else "check that it is the right file")
+    )
+
+
+def _needed(stored, downsample):
+    """The memory [bytes] that loading takes at most."""
+    kept = math.prod(reducing.shape(stored.shape, downsample))
+    _, ny, nx = stored.shape
+    slab = ny * nx * (downsample * stored.dtype.itemsize + np.dtype(float).itemsize)
+    return SPARE * (kept * _dtype(stored, downsample).itemsize + slab)
+
+
+def _locate(text):
+    """The `Path` of a file or a folder, and the part that is named behind '#', or None."""
+    name, part = _split(text)
+    path = Path(name)
+    if path.exists():
+        return path, part
+    if not path.suffix and len(path.parts) == 1:
+        raise no_such("file or volume", text, made.names())
+    beside = {p.name for p in path.parent.glob("*")} if path.parent.is_dir() else set()
+    near = nearest(path.name, sorted(beside))
+    remedy = f"did you mean {path.with_name(near)}? Else check" if near else "check"
+    raise BrdfkitError(f"{path}: there is no such file; {remedy} the path.")
+
+
+def _split(text):
+    name, hash_sign, part = text.rpartition("#")
+    return (name, part) if hash_sign and not os.path.exists(text) else (text, None)
+
+
+def _name(file):
+    """The name of a volume: that of its file without the suffixes, and of its part."""
+    name = file.path.name
+    stem = name.removesuffix(".gz")[: -len(Path(name.removesuffix(".gz")).suffix) or None]
+    return f"{stem}#{file.part}" if file.part else stem
+
+
+def _triple(what, given, kind):
+    """Three numbers above 0 of a setting that is one, three or None."""
+    if given is None:
+        return None
+    numbers = np.ravel(given)
+    numbers = np.repeat(numbers, 3) if numbers.size == 1 else numbers
+    if numbers.size != 3 or numbers.dtype.kind not in "iuf" or not (numbers > 0).all():
+        raise BrdfkitError(f"{what} = {given!r} should be one or three numbers above 0.")
+    return tuple(kind(n) for n in numbers)
+
+
+def _spaced(to_world, spacing):
+    """The transform with another spacing along the same axes."""
+    found = to_world.copy()
+    found[:3, :3] *= np.array(spacing) / np.linalg.norm(found[:3, :3], axis=0)
+    return found

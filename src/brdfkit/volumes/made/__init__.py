@@ -1,0 +1,21 @@
+"""Volumes that are made, not loaded: every file of this folder is one, by its name.
+
+Such a file defines ``SIZE``, the number of voxels along each axis by default, and ``make(size)``,
+the `Volume` of `size` (nx, ny, nz) voxels. What is known of it exactly stands beside that.
+"""
+
+import importlib
+import pkgutil
+from functools import cache
+
+
+@cache
+def names():
+    """The names of the made volumes."""
+    return tuple(sorted(m.name for m in pkgutil.iter_modules(__path__) if m.name[0] != "_"))
+
+
+def make(name, size=None):
+    """The made volume of that name; `size`: (nx, ny, nz), by default its own."""
+    module = importlib.import_module(f"{__name__}.{name}")
+    return module.make(size or (module.SIZE,) * 3)
