@@ -2,9 +2,17 @@
 
 import numpy as np
 
+from brdfkit.arguments import to_pair
 from brdfkit.colours import from_srgb
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.volumes.piecewise import places, require_order
+
+
+def function(cls, colormap, values, opacity, extinction, colour):
+    """The transfer function, of the class `cls`, with the colours of a colour map."""
+    low, high = to_pair("values", values)
+    name, shares, rgba = points(colormap, opacity)
+    return cls(low + (high - low) * shares, rgba, extinction, colour, name=name)
 
 
 def points(colormap, opacity):

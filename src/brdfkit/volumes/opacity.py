@@ -8,6 +8,8 @@ import math
 
 import numpy as np
 
+from brdfkit.arguments import to_positive
+
 OPAQUE = 0.9999  # σ_t of an opacity of 1 has no end
 TOLERANCE = 1e-3  # of σ_t between points, relative to its largest value
 
@@ -24,6 +26,16 @@ def extinction(opacity, distance):
 def of_extinction(sigma, distance):
     """The opacity of a layer of thickness `distance`."""
     return -np.expm1(-np.asarray(sigma) * distance)
+
+
+def function(cls, values, rgba, distance, colour):
+    """The transfer function, of the class `cls`, of points whose A are opacities."""
+    given = cls(values, rgba, colour=colour)  # checks them
+    points, sigma = refined(given, to_positive("unit_distance", distance))
+    most = float(sigma.max()) or 1.0
+    result = given(points)
+    result[:, 3] = sigma / most
+    return cls(points, result, most, colour)
 
 
 def refined(function, distance):

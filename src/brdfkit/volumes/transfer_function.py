@@ -15,7 +15,6 @@ thickness d that lets 1 - a of the light through has σ_t = -ln(1 - a) / d (`opa
 """
 
 from dataclasses import dataclass, replace
-from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -23,14 +22,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.arguments import to_pair, to_positive, to_whole_number
 from brdfkit.errors import BrdfkitError, no_such
-from brdfkit.volumes import colour_maps, opacity, stored
+from brdfkit.volumes.conversions import Conversions
 from brdfkit.volumes.piecewise import places, require_order
 
 COLOURS = "albedo", "emission"  # what RGB means
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class TransferFunction:
+class TransferFunction(Conversions):
     """RGBA over a volume's values, or over values × gradient magnitudes; linear in between.
 
     Beyond the first and the last point it stays as it is there. Two points at one value are a step.
@@ -158,143 +157,6 @@ class TransferFunction:
         gradients = None if self.gradients is None else self.gradients * scale
         values = low + (self.values - first) * scale
         return replace(self, values=values, gradients=gradients, value_unit="")
-
-    @classmethod
-    def from_colormap(
-        cls,
-        colormap: str | Any,
-        values: tuple[float, float] = (0.0, 1.0),
-        opacity: ArrayLike = ((0.0, 0.0), (1.0, 1.0)),
-        extinction: float = 1.0,
-        colour: str = "emission",
-    ) -> "TransferFunction":
-        """A transfer function with the colours of a Matplotlib colour map.
-
-        Parameters
-        ----------
-        colormap : str or Colormap
-            Its name, such as "viridis", or the object. Its colours, of screens, are made linear.
-        values : (float, float), default (0.0, 1.0)
-            The values that have its first and its last colour.
-        opacity : array (k, 2), default ((0.0, 0.0), (1.0, 1.0))
-            Points (share of the way from the first value to the last, A).
-        extinction : float, default 1.0
-            σ_t where A is 1 [1/unit of length].
-        colour : str, default "emission"
-            What RGB means: "albedo" or "emission".
-
-        Returns
-        -------
-        TransferFunction
-            With a point for each of the map's colours.
-
-        Raises
-        ------
-        BrdfkitError
-            For a name that Matplotlib does not know.
-
-        Examples
-        --------
-        >>> TransferFunction.from_colormap("magma", (0, 255), extinction=0.1).range
-        (0.0, 255.0)
-        """
-        low, high = to_pair("values", values)
-        name, shares, rgba = colour_maps.points(colormap, opacity)
-        return cls(low + (high - low) * shares, rgba, extinction, colour, name=name)
-
-    @classmethod
-    def from_opacity(
-        cls,
-        values: ArrayLike,
-        rgba: ArrayLike,
-        unit_distance: float = 1.0,
-        colour: str = "emission",
-    ) -> "TransferFunction":
-        """A transfer function whose A are opacities `a` of a layer, as in VTK, Slicer and ParaView.
-
-        σ_t = -ln(1 - a) / d; between the points the opacity is linear, and σ_t is not.
-
-        Parameters
-        ----------
-        values : array (n,)
-            Of the control points, rising, in the data's own unit.
-        rgba : array (n, 4)
-            Linear R, G, B, and the opacity of a layer. More than 0.9999, through which nothing
-            would be seen at all, counts as that.
-        unit_distance : float, default 1.0
-            d: the thickness of the layer [unit of length], VTK's ScalarOpacityUnitDistance.
-        colour : str, default "emission"
-            What RGB means: "albedo" or "emission".
-
-        Returns
-        -------
-        TransferFunction
-            With more points than were given, by which σ_t is met to 1e-3 of its largest value.
-
-        Raises
-        ------
-        BrdfkitError
-            For points out of order, opacities beyond 0 to 1, and a distance that is not positive.
-
-        Examples
-        --------
-        >>> half = TransferFunction.from_opacity([0, 1], [[1, 1, 1, 0.5], [1, 1, 1, 0.5]], 2)
-        >>> half.extinction    # a layer of 2 lets half of the light through
-        0.34657359027997264
-        """
-        given = cls(values, rgba, colour=colour)  # checks them
-        distance = to_positive("unit_distance", unit_distance)
-        points, sigma = opacity.refined(given, distance)
-        extinction = float(sigma.max()) or 1.0
-        rgba = given(points)
-        rgba[:, 3] = sigma / extinction
-        return cls(points, rgba, extinction, colour)
-
-    @classmethod
-    def load(cls, path: str | PathLike[str]) -> "TransferFunction":
-        """The transfer function in a file, or a preset by its name.
-
-        Parameters
-        ----------
-        path : str or Path
-            A .json that `save` wrote; a preset of Slicer's, ``presets.xml#CT-Bone``; or the name of
-            one that comes with brdfkit, such as "ct_bone".
-
-        Returns
-        -------
-        TransferFunction
-            What the file holds.
-
-        Raises
-        ------
-        BrdfkitError
-            For what cannot be read, and for an unknown name.
-
-        Examples
-        --------
-        >>> TransferFunction.load("ct_bone").value_unit
-        'HU'
-        """
-        return stored.load(cls, path)
-
-    def save(self, path: str | PathLike[str]) -> None:
-        """Write the function to a .json, which `load` reads; its docstring says what is in it.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Raises
-        ------
-        BrdfkitError
-            Where it cannot be written.
-
-        Examples
-        --------
-        >>> TransferFunction.load("ct_bone").save("bone.json")    # doctest: +SKIP
-        """
-        stored.save(self, path)
 
     def __repr__(self) -> str:
         low, high = self.range
