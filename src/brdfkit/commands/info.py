@@ -1,4 +1,4 @@
-"""`brdfkit info`: prints and draws the audit of a measured material, or of an environment map."""
+"""`brdfkit info`: prints and draws what a measured material, a map or a volume holds."""
 
 from dataclasses import asdict, fields
 from pathlib import Path
@@ -15,39 +15,63 @@ from brdfkit.errors import BrdfkitError
     "-o",
     "--output",
     type=click.Path(path_type=Path),
-    help="Picture to write, .png, .pdf or .svg: a slice, the lobes and the albedo; or the map.",
+    help="Picture to write, .png, .pdf or .svg: a slice, the lobes and the albedo; or the map; or "
+    "three slices of a volume and its histograms.",
 )
+@click.option(
+    "--downsample",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Make one voxel of N×N×N of a volume while it is read.",
+)
+@click.option("--labels", is_flag=True, help="The values of a volume are labels, not densities.")
 @output_options
-def info(file, output, console):
-    """Audit a measurement or an environment map.
+def info(file, output, downsample, labels, console):
+    """Audit a measurement, an environment map or a volume.
 
     Prints what FILE holds (angles, coverage, reciprocity, noise, albedo and more; of a map, its
-    brightness and where its light comes from), and what is doubtful. FILE is a measured file, a map
-    (.exr, .hdr), or the name of one that brdfkit knows. Without FILE, lists what comes with
-    brdfkit; `brdfkit data` lists what is public.
+    brightness and where its light comes from; of a volume, its size, which way it lies and its
+    histograms), and what is doubtful. FILE is a measured file, a map (.exr, .hdr), a volume (.nii,
+    .nrrd, .mha, .vti, .tif, .raw, .vol, a folder of DICOM or TIFF), or the name of one that brdfkit
+    knows. Without FILE, lists what comes with brdfkit; `brdfkit data` lists what is public.
     """
-    from brdfkit.auditing import audit
     from brdfkit.catalogue import shipped
     from brdfkit.commands._targets import figure_file, write_figure
-    from brdfkit.environments import audit_environment
-    from brdfkit.environments.map_files import looks_like_map
-    from brdfkit.materials import measured_material
 
     if file is None and output:
-        raise BrdfkitError("--output draws a measurement or a map: name a FILE.")
+        raise BrdfkitError("--output draws a measurement, a map or a volume: name a FILE.")
     if file is None:
         _print_shipped(shipped.materials(), shipped.environments(), console)
         return
     output = output and figure_file(output)
-    is_map = looks_like_map(file)
+    read, audit = _ways(file, downsample, labels)
     with console.progress(f"read {file}"):
-        material = file if is_map else measured_material(file)
+        thing = read(file)
     with console.progress("audit"):
-        found = audit_environment(material) if is_map else audit(material)
+        found = audit(thing)
     if output:
         with console.progress("draw"):
             write_figure(found.picture(), output)
     print_audit(found, [output] if output else [], console)
+
+
+def _ways(file, downsample, labels):
+    """The functions that read and audit what the word `file` means: a map, a volume, a material."""
+    from brdfkit.auditing import audit
+    from brdfkit.environments import audit_environment
+    from brdfkit.environments.map_files import looks_like_map
+    from brdfkit.materials import measured_material
+    from brdfkit.volumes.loading import load_volume, looks_like_volume
+    from brdfkit.volumes.summary import summarise
+
+    if looks_like_volume(file):
+        how = {"downsample": downsample or 1, "labels": labels or None}
+        return lambda volume: load_volume(volume, **how), summarise
+    if downsample or labels:
+        raise BrdfkitError(f"{file} is no volume: --downsample and --labels are for volumes only.")
+    if looks_like_map(file):
+        return lambda name: name, audit_environment
+    return measured_material, audit
 
 
 def print_audit(found, written, console):

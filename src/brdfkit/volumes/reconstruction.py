@@ -8,6 +8,8 @@ import numpy as np
 
 from brdfkit.geometry.multilinear import bracket, corners
 
+LAYERS = 16  # of which gradients are taken at a time
+
 
 def values_at(volume, points):
     """The values (n,) at `points` (n, 3) of the world; 0 outside of the box."""
@@ -24,21 +26,25 @@ def gradient_at(volume, points, of_interpolant):
 
 def gradient_magnitude(values, to_world):
     """‖∇V‖ (nz, ny, nx) at the centres of voxels, by central differences."""
+    result = np.empty(values.shape, np.float32)
     to_indices = np.linalg.inv(to_world[:3, :3])
     metric = to_indices @ to_indices.T  # diagonal, unless the axes are oblique to each other
+    for k in range(0, len(values), LAYERS):
+        before, behind = min(k, 1), k + LAYERS + 1
+        slab = values[k - before : behind].astype(np.float32)
+        square = _square(slab, metric)[before : before + LAYERS]
+        result[k : k + LAYERS] = np.sqrt(np.maximum(square, 0))
+    return result
+
+
+def _square(values, metric):
+    """g · metric · g at each voxel, of the differences g along x, y, z."""
     slopes = [
-        np.gradient(values.astype(np.float32, copy=False), axis=2 - axis)
-        if values.shape[2 - axis] > 1
-        else np.float32(0)
-        for axis in range(3)
+        np.gradient(values, axis=axis) if values.shape[axis] > 1 else np.zeros_like(values)
+        for axis in (2, 1, 0)
     ]
-    square = np.zeros(values.shape, np.float32)
-    for a in range(3):
-        for b in range(a, 3):
-            share = metric[a, b] * (1 if a == b else 2)
-            if share:
-                square += np.float32(share) * slopes[a] * slopes[b]
-    return np.sqrt(np.maximum(square, 0))
+    pairs = [(a, b) for a in range(3) for b in range(3) if metric[a, b]]
+    return sum(np.float32(metric[a, b]) * slopes[a] * slopes[b] for a, b in pairs)
 
 
 def _indices(volume, points):

@@ -12,7 +12,7 @@ from brdfkit.volumes.formats._stored import Stored
 from brdfkit.volumes.formats._streams import layers, opener, require_bytes
 
 NAME = "raw voxels"
-SUFFIXES = (".raw", ".dat", ".bin")
+SUFFIXES = (".raw",)
 
 IN_NAME = re.compile(r"(\d+)x(\d+)x(\d+)_(u?int(?:8|16|32)|float(?:32|64))")
 HEADERS = ".mhd", ".nhdr"

@@ -1,0 +1,81 @@
+"""A `VolumeSummary` as a picture: three slices through the middle, and two histograms."""
+
+import io
+
+import numpy as np
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+
+from brdfkit.volumes.histograms import PARTS
+
+SIZE = 10.4, 7.2  # inches
+COLOUR = "#0072b2"
+PLANES = (("x", "y", "z"), ("x", "z", "y"), ("y", "z", "x"))  # across, up, and through
+
+
+def picture(summary):
+    """The picture of a `VolumeSummary` as a matplotlib `Figure`."""
+    figure = Figure(figsize=SIZE, layout="constrained")
+    above, below = figure.subfigures(2, 1, height_ratios=(1.3, 1))
+    for axes, (across, up, through) in zip(above.subplots(1, 3), PLANES, strict=True):
+        _draw_slice(axes, summary, "xyz".index(across), "xyz".index(up), "xyz".index(through))
+    if summary.labels:
+        _draw_values(below.subplots(), summary)
+        return figure
+    left, right = below.subplots(1, 2)
+    _draw_values(left, summary)
+    _draw_gradients(right, summary)
+    return figure
+
+
+def to_png(figure, dpi):
+    """The bytes of a figure as a PNG."""
+    png = io.BytesIO()
+    figure.savefig(png, format="png", dpi=dpi)
+    return png.getvalue()
+
+
+def _draw_slice(axes, summary, across, up, through):
+    """Draw the middle slice, with the two axes of the grid and where they go."""
+    middle = summary.size[through] // 2
+    voxels = np.take(summary.data.values, middle, axis=2 - through)  # (up, across): z is slowest
+    lengths = np.array(summary.size) * summary.spacing
+    colours = "tab20" if summary.labels else "gray"
+    axes.imshow(
+        voxels,
+        cmap=colours,
+        vmin=summary.least,
+        vmax=summary.largest,
+        origin="lower",
+        extent=(0, lengths[across], 0, lengths[up]),
+        interpolation="nearest",
+    )
+    unit = f" [{summary.unit}]" if summary.unit else ""
+    axes.set_xlabel(f"{'xyz'[across]}{unit} → {summary.directions[across]}")
+    axes.set_ylabel(f"{'xyz'[up]}{unit} → {summary.directions[up]}")
+    axes.set_title(f"slice {middle} along {'xyz'[through]}", fontsize=10)
+
+
+def _draw_values(axes, summary):
+    edges = np.linspace(summary.least, max(summary.largest, summary.least + 1e-9), PARTS + 1)
+    axes.stairs(summary.counts, edges, fill=True, color=COLOUR)
+    axes.set(yscale="log", xlabel="value", ylabel="voxels")
+    axes.set_title(f"{summary.name}".replace("$", r"\$"), fontsize=10)
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def _draw_gradients(axes, summary):
+    unit = f" per {summary.unit}" if summary.unit else ""
+    axes.set(xlabel="value", ylabel=f"gradient magnitude{unit}")
+    if not summary.joint.max() > 0 or summary.least == summary.largest:
+        return
+    reach = (summary.least, summary.largest, 0, summary.steepest or 1)
+    drawn = axes.imshow(
+        np.ma.masked_equal(summary.joint, 0),
+        norm=LogNorm(1, max(int(summary.joint.max()), 2)),
+        origin="lower",
+        extent=reach,
+        aspect="auto",
+        cmap="viridis",
+    )
+    axes.figure.colorbar(drawn, ax=axes, label="voxels")
