@@ -31,8 +31,9 @@ def points(colormap, opacity):
     if ramp.ndim != 2 or ramp.shape[1] != 2:
         raise BrdfkitError("opacity should be points (share of the range, A), (k, 2).")
     at = require_order(ramp[:, 0], "the shares of opacity")
-    # the map's own colours, and the corners of the ramp; both ends of a step
-    shares = np.union1d(np.linspace(0, 1, colormap.N), np.clip(at, 0, 1))
+    before_steps = np.nextafter(at[1:][np.diff(at) == 0], -np.inf)
+    corners = np.clip(np.concatenate([at, before_steps]), 0, 1)
+    shares = np.union1d(np.linspace(0, 1, colormap.N), corners)  # of the map and the ramp
     low, high, t = places(shares, at)
     alpha = (1 - t[:, 0]) * ramp[low, 1] + t[:, 0] * ramp[high, 1]
     rgb = from_srgb(colormap(shares)[:, :3])

@@ -107,7 +107,7 @@ def _step(file, slices):
         rows = np.reshape(_numbers(slices[0].ImageOrientationPatient), (2, 3))
         return np.cross(*rows) * float(slices[0].get("SliceThickness") or 1)
     steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
-    usual = float(np.median(steps))
+    usual = float(np.sort(steps)[(len(steps) - 1) // 2])  # the median; of two, the smaller
     if not steps.min() > 1e-3 * max(usual, 1e-6):
         raise file.error(
             "has several slices at one place, as of several times; keep those of one volume"

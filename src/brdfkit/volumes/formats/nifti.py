@@ -28,6 +28,8 @@ def sniff(head):
 def find(file):
     """The volume of a NIfTI file."""
     nibabel = file.package("nibabel", "nibabel")
+    if not str(file.path).lower().endswith(SUFFIXES):
+        raise file.error("is NIfTI by its content; rename it to .nii, or .nii.gz if it is packed")
     try:
         image = nibabel.load(file.path)
         header, dtype = image.header, image.header.get_data_dtype()

@@ -86,17 +86,35 @@ def _pages(file, tifffile, paths, shape):
 
 @contextmanager
 def _opened(file, tifffile, path):
-    """A file opened by tifffile; what fails within the block is an error for people."""
-    level = logging.getLogger("tifffile").level
+    """A file opened by tifffile; what fails within the block is an error for people.
+
+    So is what tifffile only logs: a chain of pages that is cut short would else be a smaller stack.
+    """
+    log, told = logging.getLogger("tifffile"), _Told(logging.ERROR)
+    propagate, log.propagate = log.propagate, False
+    log.addHandler(told)
     try:
-        logging.getLogger("tifffile").setLevel(logging.CRITICAL)  # it would tell of damage, too
         with tifffile.TiffFile(path) as tiff:
             yield tiff
+        if told.texts:
+            raise ValueError(told.texts[0])
     except Exception as error:  # of each of its decoders another
         problem = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
         raise file.error(f"{path.name} cannot be read as TIFF ({problem})") from error
     finally:
-        logging.getLogger("tifffile").setLevel(level)
+        log.removeHandler(told)
+        log.propagate = propagate
+
+
+class _Told(logging.Handler):
+    """Keeps the texts that are logged."""
+
+    def __init__(self, level):
+        super().__init__(level)
+        self.texts = []
+
+    def emit(self, record):
+        self.texts.append(record.getMessage())
 
 
 def _spacing(tiff):

@@ -23,7 +23,7 @@ def make(size, seed=0):
     kx = np.fft.rfftfreq(shape[2], 1 / shape[2])
     k = np.sqrt(kz[:, None, None] ** 2 + ky[:, None] ** 2 + kx**2)  # waves in the box
     spectrum = np.fft.rfftn(rng.standard_normal(shape)) * np.maximum(k, 1) ** EXPONENT
-    noise = np.fft.irfftn(spectrum, shape)
+    noise = np.fft.irfftn(spectrum, shape, axes=(0, 1, 2))
     density = 0.5 + 0.35 * (noise - noise.mean()) / (noise.std() or 1)
     fade = np.clip(2 * (1 - np.sqrt(x**2 + y**2 + z**2)), 0, 1)  # to 0 at the radius 1
     values = (np.clip(density, 0, 1) * fade).astype(np.float32)

@@ -1,0 +1,427 @@
+"""Files of volumes × their traps: written by other libraries, and read as these read them."""
+
+import struct
+
+import numpy as np
+import psutil
+import pytest
+import small_volumes as small
+import tifffile
+from small_volumes import ORIGIN, SHAPE, SPACING, TO_WORLD, values
+
+import brdfkit as bk
+from brdfkit.errors import BrdfkitError
+from brdfkit.volumes.formats import formats
+
+LPS = np.diag([-1, -1, 1, 1])
+
+
+def assert_alike(volume, expected, to_world):
+    """The values to the last bit, and the transform to 1e-5 of a voxel: headers have float32."""
+    np.testing.assert_array_equal(volume.values, expected)
+    np.testing.assert_allclose(volume.to_world, to_world, atol=2e-5)
+
+
+# Right ones
+
+ITK = {
+    "a.nii": {},
+    "a.nii.gz": {},
+    "a.hdr": {},
+    "a.nrrd": {"compressed": True},
+    "b.nrrd": {},
+    "a.nhdr": {},
+    "a.mha": {"compressed": True},
+    "b.mha": {"dtype": np.float64},
+    "a.mhd": {},
+    "b.mhd": {"compressed": True, "dtype": np.uint8},
+}
+
+
+@pytest.mark.parametrize("name", ITK)
+def test_what_itk_writes(tmp_path, name):
+    """Oblique axes, LPS to RAS, uneven spacing; packed, and beside a header."""
+    small.by_itk(tmp_path / name, **ITK[name])
+    volume = bk.load_volume(tmp_path / name)
+    assert_alike(volume, *small.read_by_itk(tmp_path / name))
+    assert_alike(volume, values(ITK[name].get("dtype", np.int16)), LPS @ TO_WORLD)
+    assert (volume.axes, volume.unit, volume.name) == ("RAS", "mm", name[0])
+    assert volume.labels is False
+
+
+@pytest.mark.parametrize(
+    "how",
+    [
+        {"sform": 1},
+        {"sform": 1, "qform": 1},  # which differ: the sform counts
+        {"sform": 0, "qform": 1},
+        {"order": ">", "dtype": np.float32},
+        {"slope": 0.5, "intercept": -1000.0},
+        {"intent_code": 1002, "dtype": np.uint8},
+        {"xyzt_units": 3, "dtype": np.int32},
+    ],
+    ids=str,
+)
+def test_nifti(tmp_path, how):
+    path = tmp_path / "a.nii"
+    small.nifti(path, **how)
+    volume = bk.load_volume(path)
+    expected = values(how.get("dtype", np.int16)) * how.get("slope", 1) + how.get("intercept", 0)
+    assert_alike(volume, expected, TO_WORLD)
+    assert volume.labels == (how.get("intent_code") == 1002)
+    assert volume.unit == ("µm" if "xyzt_units" in how else "mm")
+    expected, to_world = small.read_by_itk(path)
+    if "xyzt_units" in how:  # which ITK makes mm
+        to_world = np.diag([1000, 1000, 1000, 1]) @ to_world
+    assert_alike(volume, expected, to_world)
+
+
+def test_a_point_in_time_of_nifti(tmp_path):
+    import nibabel
+
+    path = tmp_path / "a.nii.gz"
+    times = np.stack([values(), values() + 1], axis=-1)
+    nibabel.save(nibabel.Nifti1Image(np.moveaxis(times, -1, 0).T, TO_WORLD), path)
+    assert_alike(bk.load_volume(f"{path}#1"), values() + 1, TO_WORLD)
+    assert bk.load_volume(f"{path}#1").name == "a#1"
+    with pytest.raises(BrdfkitError, match=r"holds 2 volumes; name one, from 0: a\.nii\.gz#0"):
+        bk.load_volume(path)
+    with pytest.raises(BrdfkitError, match=r"no volume '#2'; name one of 0 to 1"):
+        bk.load_volume(f"{path}#2")
+
+
+@pytest.mark.parametrize("encoding", ["raw", "gzip", "bzip2", "ascii"])
+@pytest.mark.parametrize("detached", [False, True])
+def test_nrrd(tmp_path, encoding, detached):
+    """Of pynrrd, in a space of its own, and a segmentation."""
+    import nrrd
+
+    header = {
+        "space": "left-anterior-superior",
+        "space directions": TO_WORLD[:3, :3].T,
+        "space origin": ORIGIN,
+        "encoding": encoding,
+        "Segment0_ID": "Segment_1",
+    }
+    path = tmp_path / ("a.nhdr" if detached else "a.nrrd")
+    nrrd.write(str(path), values(np.uint16), header, index_order="C", detached_header=detached)
+    volume = bk.load_volume(path)
+    assert_alike(volume, values(np.uint16), np.diag([-1, 1, 1, 1]) @ TO_WORLD)
+    assert (volume.labels, volume.axes) == (True, "RAS")
+
+
+def test_headers_of_others(tmp_path):
+    """By hand: no space, the other byte order, data at the end of their file, text."""
+    raw = b"some header" + values(">i2").tobytes()
+    (tmp_path / "a.raw").write_bytes(raw)
+    sizes = " ".join(map(str, SHAPE[::-1]))
+    nhdr = f"NRRD0004\ntype: short\ndimension: 3\nsizes: {sizes}\nspacings: 0.5 0.75 2\n"
+    nhdr += "endian: big\nencoding: raw\nbyte skip: -1\ndata file: a.raw\n\n"
+    mhd = f"NDims = 3\nDimSize = {sizes}\nElementType = MET_SHORT\nElementSpacing = 0.5 0.75 2\n"
+    detached = f"{mhd}BinaryDataByteOrderMSB = True\nHeaderSize = -1\nElementDataFile = a.raw\n"
+    text = f"{mhd}BinaryData = False\nElementDataFile = LOCAL\n"
+    text += " ".join(map(str, values().ravel()))
+    for name, header in {"a.nhdr": nhdr, "a.mhd": detached, "a.mha": text}.items():
+        (tmp_path / name).write_text(header)
+        volume = bk.load_volume(tmp_path / name)
+        frame = np.eye(4) if name == "a.nhdr" else LPS
+        assert_alike(volume, values(), frame @ np.diag([*SPACING, 1]))
+    with pytest.raises(BrdfkitError, match=r"has no header; open a\.mhd, which is one\.$"):
+        bk.load_volume(tmp_path / "a.raw")
+
+
+VTK = [
+    {"mode": "ascii", "cells": True},
+    {"mode": "ascii", "dtype": np.float64},
+    *[
+        {"mode": mode, "encoded": encoded, "packed": packed, "wide": wide, "cells": wide}
+        for mode, encoded in (("binary", True), ("appended", True), ("appended", False))
+        for packed in (True, False)
+        for wide in (True, False)
+    ],
+]
+
+
+@pytest.mark.parametrize("how", VTK, ids=str)
+def test_what_vtk_writes(tmp_path, how):
+    """Points and cells, oblique; text, and blocks in each of their codings."""
+    small.vti(tmp_path / "a.vti", **how)
+    volume = bk.load_volume(tmp_path / "a.vti")
+    middle = TO_WORLD @ np.array([0.5, 0.5, 0.5, 1]) if how.get("cells") else TO_WORLD[:, 3]
+    to_world = np.column_stack([TO_WORLD[:, :3], middle])
+    assert_alike(volume, values(how.get("dtype", np.int16)), to_world)
+    assert (volume.axes, volume.unit, volume.labels) == ("", "", False)
+
+
+def test_several_arrays_of_vtk(tmp_path):
+    small.vti(tmp_path / "a.vti", mode="ascii")
+    text = (tmp_path / "a.vti").read_text().replace(' Scalars="density"', "")
+    start, end = text.index("<DataArray"), text.index("</DataArray>") + len("</DataArray>")
+    second = text[start:end].replace("density", "facies").replace("-50", "-51")
+    (tmp_path / "b.vti").write_text(text[:end] + second + text[end:])
+    assert bk.load_volume(f"{tmp_path}/b.vti#facies").values.min() == -51
+    with pytest.raises(BrdfkitError, match=r"holds density, facies; name one: b\.vti#density"):
+        bk.load_volume(tmp_path / "b.vti")
+    with pytest.raises(BrdfkitError, match=r"no array 'face'; did you mean facies\?"):
+        bk.load_volume(f"{tmp_path}/b.vti#face")
+
+
+SLICES = {"spacing": 2, "unit": "um", "axes": "ZYX"}
+IMAGEJ = {"imagej": True, "resolution": (2, 4), "metadata": SLICES}
+OME = {"PhysicalSizeX": 0.5, "PhysicalSizeY": 0.25, "PhysicalSizeZ": 2, "axes": "ZYX"}
+
+
+@pytest.mark.parametrize(
+    ("how", "spacing"),
+    [
+        ({}, (1, 1, 1)),
+        ({"compression": "zlib", "byteorder": ">"}, (1, 1, 1)),
+        (IMAGEJ, (0.5, 0.25, 2)),
+        ({"ome": True, "metadata": OME}, (0.5, 0.25, 2)),
+        ({"bigtiff": True, "byteorder": ">"}, (1, 1, 1)),
+    ],
+)
+def test_tiff(tmp_path, how, spacing):
+    how = {"photometric": "minisblack", **how}
+    tifffile.imwrite(tmp_path / "a.tif", values(np.uint16), **how)
+    volume = bk.load_volume(tmp_path / "a.tif")
+    assert_alike(volume, values(np.uint16), np.diag([*spacing, 1]))
+    assert volume.unit == ("µm" if spacing != (1, 1, 1) else "")
+
+
+def test_a_folder_of_tiff(tmp_path):
+    """In the order of the numbers in the names, 2 before 10."""
+    for k, layer in enumerate(values(np.uint8)):
+        tifffile.imwrite(tmp_path / f"slice{4 * k + 2}.tif", layer)
+    (tmp_path / "notes.txt").write_text("not a slice")
+    volume = bk.load_volume(tmp_path, spacing=SPACING)
+    assert_alike(volume, values(np.uint8), np.diag([*SPACING, 1]))
+    tifffile.imwrite(tmp_path / "slice99.tif", values(np.uint8)[0, :2])
+    with pytest.raises(BrdfkitError, match=r"slice99\.tif is not as large as slice2\.tif"):
+        bk.load_volume(tmp_path)
+
+
+def test_dicom(tmp_path):
+    """Sorted by place, not by name; slope and intercept; one file of it is a slice."""
+    small.dicom(tmp_path, slope=0.5, intercept=-1024)
+    volume = bk.load_volume(tmp_path)
+    assert_alike(volume, *small.read_by_itk(tmp_path))
+    assert_alike(volume, values() * 0.5 - 1024, LPS @ TO_WORLD)
+    assert (volume.axes, volume.unit, volume.values.dtype) == ("RAS", "mm", np.float32)
+    assert bk.load_volume(tmp_path / "s19.dcm").size == (6, 5, 1)
+
+
+def test_what_is_wrong_with_series_of_dicom(tmp_path):
+    for name, how in {"gap": {"gap": 2}, "twice": {"twice": True}, "two": {}}.items():
+        (tmp_path / name).mkdir()
+        small.dicom(tmp_path / name, **how)
+    small.dicom(tmp_path / "two", intercept=7, series=2)
+    sentences = {
+        "gap": "slices are missing: 4 mm between the slices 2 and 3, elsewhere",
+        "twice": "has several slices at one place",
+        "two": r"holds several series by their numbers, 1 \(4 slices\), 2 \(4 slices\); name one",
+    }
+    for name, sentence in sentences.items():
+        with pytest.raises(BrdfkitError, match=sentence):
+            bk.load_volume(tmp_path / name)
+    assert bk.load_volume(f"{tmp_path}/two#2").values.min() == values().min() + 7
+
+
+def test_what_mitsuba_writes(tmp_path, llvm_variant):
+    mi = llvm_variant
+    grid = mi.VolumeGrid(values(np.float32)[..., None])
+    grid.write(str(tmp_path / "a.vol"))
+    volume = bk.load_volume(tmp_path / "a.vol")
+    np.testing.assert_array_equal(volume.values, values(np.float32))
+    np.testing.assert_allclose(volume.bounds, [[0, 0, 0], [1, 1, 1]], atol=1e-6)
+    np.testing.assert_allclose(volume.cube_to_world, np.eye(4), atol=1e-6)
+
+
+def test_raw(tmp_path):
+    data = values(">i2")
+    (tmp_path / "b.raw").write_bytes(b"header" + data.tobytes())
+    (tmp_path / "a_6x5x4_int16.raw").write_bytes(data.astype("<i2").tobytes())
+    told = {"size": SHAPE[::-1], "dtype": ">i2", "offset": 6, "spacing": SPACING}
+    assert_alike(bk.load_volume(tmp_path / "b.raw", **told), values(), np.diag([*SPACING, 1]))
+    assert_alike(bk.load_volume(tmp_path / "a_6x5x4_int16.raw"), values(), np.eye(4))
+    for change, sentence in (
+        ({"size": None}, r"has no header; give its size=\(nx, ny, nz\) and dtype"),
+        ({"offset": 4}, r"has 246 bytes, where 6×5×4 voxels of >i2 behind 4 bytes make 244"),
+        ({"dtype": "float32"}, "480 bytes, and the file has 240 for them"),
+        ({"dtype": "colour"}, "dtype = 'colour' should be one of numbers"),
+        ({"size": (1, 2)}, r"size = \(1, 2\) should be one or three numbers above 0"),
+        ({"spacing": 0}, "spacing = 0 should be one or three numbers above 0"),
+    ):
+        with pytest.raises(BrdfkitError, match=sentence):
+            bk.load_volume(tmp_path / "b.raw", **(told | change))
+
+
+# Downsampling, labels and memory
+
+
+def test_downsampling_while_reading_is_that_of_the_volume(tmp_path):
+    small.nifti(tmp_path / "a.nii")
+    small.nifti(tmp_path / "b.nii", intent_code=1002)
+    for name in ("a.nii", "b.nii"):
+        whole = bk.load_volume(tmp_path / name)
+        for factor in (2, 3, 9):
+            read = bk.load_volume(tmp_path / name, downsample=factor)
+            assert_alike(read, whole.resized(factor).values, whole.resized(factor).to_world)
+    assert read.values.dtype == np.int16
+    labels = bk.load_volume(tmp_path / "a.nii", downsample=2, labels=True)
+    assert set(labels.values.ravel()) < set(values().ravel())
+
+
+def test_memory_is_asked_for_before_voxels_are_read(tmp_path, monkeypatch):
+    """The header of a file of 24 GB that has room for them, sparse; and what would fit."""
+    size = (2000, 2000, 3000)
+    header = f"NDims = 3\nDimSize = {size[0]} {size[1]} {size[2]}\nElementType = MET_SHORT\n"
+    with (tmp_path / "a.mha").open("wb") as stream:
+        stream.write(f"{header}ElementDataFile = LOCAL\n".encode())
+        stream.truncate(2 * 2000 * 2000 * 3000 + 1000)
+    have = psutil.virtual_memory()._replace(available=4_000_000_000)
+    monkeypatch.setattr(psutil, "virtual_memory", lambda: have)
+    said = r"its 2000×2000×3000 voxels would take about 29 GB of memory, of which 4 GB are "
+    with pytest.raises(BrdfkitError, match=f"{said}available; load it with downsample=3"):
+        bk.load_volume(tmp_path / "a.mha")
+    have = have._replace(available=1000)
+    with pytest.raises(BrdfkitError, match="check that it is the right file"):
+        bk.load_volume(tmp_path / "a.mha")
+
+
+# Bad ones
+
+
+@pytest.fixture(scope="module")
+def good(tmp_path_factory):
+    """A file of each format, by its suffix."""
+    folder = tmp_path_factory.mktemp("good")
+    for name in ("a.nii", "a.nii.gz", "a.nrrd", "a.mha", "c.mha"):
+        small.by_itk(folder / name, compressed=name == "c.mha")
+    small.vti(folder / "a.vti", encoded=False)
+    small.vti(folder / "b.vti", mode="binary", packed=False)
+    for name, how in {"a.tif": {}, "b.tif": {"compression": "zlib", "metadata": None}}.items():
+        tifffile.imwrite(folder / name, values(np.uint16), photometric="minisblack", **how)
+    small.dicom(folder)
+    box = struct.pack("<3sB5i6f", b"VOL", 3, 1, *SHAPE[::-1], 1, 0, 0, 0, 1, 1, 1)
+    (folder / "a.vol").write_bytes(box + values(np.float32).tobytes())
+    (folder / "a_6x5x4_int16.raw").write_bytes(values().tobytes())
+    for unwanted in folder.glob("s1[678].dcm"):
+        unwanted.unlink()
+    return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
+
+
+def assert_refused(path):
+    """One sentence, which names the file."""
+    with pytest.raises(BrdfkitError) as told:
+        bk.load_volume(path)
+    assert path.name.partition("_")[0] in str(told.value)
+    assert "\n" not in str(told.value)
+    assert str(told.value).endswith(".")
+
+
+def test_files_cut_short(tmp_path, good):
+    """At any place."""
+    assert {name.partition(".")[2] for name in good} >= {"nii", "nii.gz", "mha", "vti", "dcm"}
+    for name, data in good.items():
+        path = tmp_path / name
+        for length in (0, 3, 100, len(data) // 2, len(data) - 40):
+            path.write_bytes(data[:length])
+            assert_refused(path)
+
+
+def test_files_that_are_something_else(tmp_path, good):
+    """Text under each suffix; and what is mislabelled is read by what it is."""
+    for name in good:
+        (tmp_path / name).write_bytes(b"This is a letter, not a volume. " * 20)
+        assert_refused(tmp_path / name)
+    (tmp_path / "b.vol").write_bytes(good["c.mha"])
+    np.testing.assert_array_equal(bk.load_volume(tmp_path / "b.vol").values, values())
+    (tmp_path / "b.vol").write_bytes(good["a.nii.gz"])
+    with pytest.raises(BrdfkitError, match=r"is NIfTI by its content; rename it to \.nii"):
+        bk.load_volume(tmp_path / "b.vol")
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("a.nii", struct.pack("<4h", 3, 6, 5, 4), struct.pack("<4h", 3, 30000, 30000, 30000)),
+        ("a.nii", struct.pack("<4h", 3, 6, 5, 4), struct.pack("<4h", 3, 6, -5, 4)),
+        ("a.nrrd", b"sizes: 6 5 4", b"sizes: 90000 90000 90000"),
+        ("a.nrrd", b"sizes: 6 5 4", b"sizes: 6 5 0"),
+        ("a.mha", b"DimSize = 6 5 4", b"DimSize = 90000 90000 90000"),
+        ("c.mha", b"DimSize = 6 5 4", b"DimSize = 90000 90000 90000"),
+        ("c.mha", b"DimSize = 6 5 4", b"DimSize = 6 5 5"),
+        ("a.vti", b"0 5 0 4 0 3", b"0 90000 0 90000 0 90000"),
+        ("a.vti", b"0 5 0 4 0 3", b"0 5 0 4 0 4"),
+        ("b.vti", b"0 5 0 4 0 3", b"0 5 0 4 0 2"),
+        ("a.vol", struct.pack("<3i", 6, 5, 4), struct.pack("<3i", 90000, 90000, 90000)),
+        ("a_6x5x4_int16.raw", b"", b""),
+    ],
+)
+def test_dimensions_that_lie(tmp_path, good, name, old, new, monkeypatch):
+    """Refused before anything is allocated for the voxels."""
+    if not old:
+        path = tmp_path / "a_6x5x90000_int16.raw"
+        path.write_bytes(good[name])
+    else:
+        path = tmp_path / name
+        assert old in good[name]
+        path.write_bytes(good[name].replace(old, new))
+    empty, allocated = np.empty, []
+
+    def recorded(shape, *args, **how):
+        allocated.append(int(np.prod(shape)))
+        return empty(shape, *args, **how)
+
+    monkeypatch.setattr(np, "empty", recorded)
+    assert_refused(path)
+    assert max(allocated, default=0) <= 150
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (lambda v: np.where(v == 0, np.nan, v), r"1 of 120 voxels are not finite"),
+        (lambda v: 0 * v, "all voxels are 0"),
+        (lambda v: np.where(v == 3, np.inf, v), r"1 of 120 voxels are not finite"),
+        (lambda v: v * 1e300, "of 120 voxels are not finite"),
+    ],
+)
+def test_values_that_cannot_be_rendered(tmp_path, change, sentence):
+    import nrrd
+
+    nrrd.write(str(tmp_path / "a.nrrd"), change(values(float)), index_order="C")
+    with pytest.raises(BrdfkitError, match=sentence):
+        bk.load_volume(tmp_path / "a.nrrd")
+
+
+def test_what_no_format_reads(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "colours.tif").write_bytes(b"")
+    tifffile.imwrite("colours.tif", np.zeros((4, 5, 6, 3), np.uint8), photometric="rgb")
+    (tmp_path / "a.xyz").write_text("a")
+    for name, sentence in {
+        "smok": "no file or volume 'smok'; did you mean smoke",
+        "none.nii": "there is no such file",
+        "empty": "the folder is empty",
+        "a.xyz": r"is in no known format of volumes; read are DICOM \(\.dcm",
+        "colours.tif": "colours, channels or times",
+    }.items():
+        with pytest.raises(BrdfkitError, match=sentence):
+            bk.load_volume(name)
+    with pytest.raises(BrdfkitError, match="smoke is made: it takes size and downsample alone"):
+        bk.load_volume("smoke", dtype="uint8")
+
+
+def test_a_package_that_is_missing_is_named(tmp_path, monkeypatch):
+    small.nifti(tmp_path / "a.nii")
+    monkeypatch.setitem(__import__("sys").modules, "nibabel", None)
+    with pytest.raises(BrdfkitError, match=r'needs the package nibabel; pip install "brdfkit\[vol'):
+        bk.load_volume(tmp_path / "a.nii")
+
+
+def test_no_two_formats_take_one_suffix():
+    suffixes = [suffix for module in formats() for suffix in module.SUFFIXES]
+    assert len(suffixes) == len(set(suffixes))
