@@ -33,6 +33,7 @@ class TransferFunction(Conversions):
     """RGBA over a volume's values, or over values × gradient magnitudes; linear in between.
 
     Beyond the first and the last point it stays as it is there. Two points at one value are a step.
+    Raises `BrdfkitError` for points that are out of order and for numbers out of range.
 
     Attributes
     ----------
@@ -51,8 +52,6 @@ class TransferFunction(Conversions):
         Such as "HU" and "mm"; for people.
     name : str
         What it is called.
-
-    Raises `BrdfkitError` for points that are out of order and for numbers out of range.
 
     Examples
     --------

@@ -16,6 +16,8 @@ from brdfkit.volumes import reconstruction, reducing
 class Volume:
     """Values on a regular grid of voxels. `load_volume` makes it of a file or a name.
 
+    Raises `BrdfkitError` for no voxels, values that are not finite, and nothing but zeros.
+
     Attributes
     ----------
     values : ndarray
@@ -34,8 +36,6 @@ class Volume:
     axes : str
         "RAS" if x, y and z of the world point to the patient's right, front and head; empty for
         other data.
-
-    Raises `BrdfkitError` for no voxels, values that are not finite, and nothing but zeros.
 
     Examples
     --------
