@@ -36,6 +36,7 @@ METHODS = {
         bk.Gallery: ["write"],
         bk.Rendering: ["write"],
         bk.Sweep: ["to_csv", "to_html", "to_parquet"],
+        bk.TransferFunction: ["from_colormap", "from_opacity", "load", "save"],
     }.items()
     for method in names
 }

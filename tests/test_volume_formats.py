@@ -1,6 +1,7 @@
 """Files of volumes × their traps: written by other libraries, and read as these read them."""
 
 import struct
+from pathlib import Path
 
 import numpy as np
 import psutil
@@ -11,7 +12,9 @@ from small_volumes import ORIGIN, SHAPE, SPACING, TO_WORLD, values
 
 import brdfkit as bk
 from brdfkit.errors import BrdfkitError
+from brdfkit.volumes import made
 from brdfkit.volumes.formats import formats
+from brdfkit.volumes.stored import presets
 
 LPS = np.diag([-1, -1, 1, 1])
 
@@ -420,6 +423,16 @@ def test_a_package_that_is_missing_is_named(tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "nibabel", None)
     with pytest.raises(BrdfkitError, match=r'needs the package nibabel; pip install "brdfkit\[vol'):
         bk.load_volume(tmp_path / "a.nii")
+
+
+def test_the_page_of_volumes_names_what_there_is():
+    page = (Path(__file__).parents[1] / "docs/volumes.md").read_text("utf-8")
+    for module in formats():
+        suffixes = " ".join(f"`{suffix}`" for suffix in module.SUFFIXES)
+        assert f"| {module.NAME} | {suffixes}" in page
+    for name in (*made.names(), *presets()):
+        assert f"`{name}`" in page
+        assert name in bk.load_volume.__doc__ or name in presets()
 
 
 def test_no_two_formats_take_one_suffix():

@@ -80,6 +80,17 @@ def fit_many(files: list[Path]) -> None:
     assert_type(found.rows[0].error, float)
 
 
+def volumes() -> None:
+    """Volumes, and what their values mean."""
+    head = bk.load_volume("smoke", size=32, downsample=2)
+    assert_type(head, bk.Volume)
+    assert_type(head.resized(2).spacing, tuple[float, float, float])
+    ramp = bk.TransferFunction([0, 1], [[1, 1, 1, 0], [1, 1, 1, 1]], extinction=2.0)
+    assert_type(ramp.table(64), NDArray[np.float32])
+    assert_type(bk.TransferFunction.from_opacity([0, 1], ramp.rgba), bk.TransferFunction)
+    assert_type(bk.TransferFunction.load("ct_bone").scaled_to(0, 1), bk.TransferFunction)
+
+
 def extend() -> None:
     """Plugins of one's own."""
     assert_type(bk.load_models("my_models/"), dict[str, type[bk.Model]])

@@ -45,8 +45,7 @@ class Stored:
     """A volume in a file, of which the header was read.
 
     `shape`: (nz, ny, nx); `dtype`: of the layers; `layers()`: gives them, (ny, nx), in the order of
-    z; `to_world`, `labels`, `unit`, `axes`: as `Volume` has them; `held` [bytes]: what reading
-    takes beside a layer.
+    z; `to_world`, `labels`, `unit`, `axes`: as `Volume` has them.
     """
 
     shape: tuple[int, int, int]
@@ -56,4 +55,3 @@ class Stored:
     labels: bool = False
     unit: str = ""
     axes: str = ""
-    held: int = 0
