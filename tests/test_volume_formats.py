@@ -333,6 +333,37 @@ def test_files_cut_short(tmp_path, good):
             assert_refused(path)
 
 
+@pytest.mark.parametrize(
+    ("name", "old", "new", "sentence"),
+    [
+        ("s19.dcm", b"0.75\\0.5", b"0.7x\\0.5", r"the header of s19\.dcm is damaged"),
+        ("s19.dcm", b"MONOCHROME2", b"MONOCHROME1", r"is MONOCHROME1 where MONOCHROME2 belongs"),
+        ("a.nrrd", b"NRRD0004\n", b"NRRD0004#", "its NRRD header is damaged"),
+        ("a.nrrd", b"origin: (10,", b"origin: (inf,", "no invertible 4×4 matrix"),
+        ("a.nrrd", b"type: short", b"type: shirt", "its type 'shirt' is not read"),
+        ("a.mha", b"= LOCAL", b"= a\0\x1b.z", "needs a.z beside it"),
+        ("a.mha", b"MET_SHORT", b"MET_OTHER", "has 1 channels of MET_OTHER"),
+        ("a.vti", b"vtkZLibDataCompressor", b"vtkLZ4DataCompressor", "packed by vtkLZ4DataCom"),
+        ("a.vti", b'type="Int16"', b'type="Int17"', "its header is damaged"),
+        ("a.vol", b"VOL\x03", b"VOL\x02", "has version 2 and encoding 1"),
+    ],
+)
+def test_damaged_headers(tmp_path, good, name, old, new, sentence):
+    assert old in good[name]
+    (tmp_path / name).write_bytes(good[name].replace(old, new, 1))
+    assert_refused(tmp_path / name)
+    with pytest.raises(BrdfkitError, match=sentence):
+        bk.load_volume(tmp_path / name)
+
+
+def test_a_checksum_that_differs(tmp_path, good):
+    """Of gzip's last eight bytes the first four; what is damaged between may still unpack."""
+    data = bytearray(good["a.nii.gz"])
+    data[-8] ^= 1
+    (tmp_path / "a.nii.gz").write_bytes(data)
+    assert_refused(tmp_path / "a.nii.gz")
+
+
 def test_files_that_are_something_else(tmp_path, good):
     """Text under each suffix; and what is mislabelled is read by what it is."""
     for name in good:

@@ -81,7 +81,8 @@ def load_volume(
         return volume if downsample == 1 else volume.resized(downsample)
     found, part = _locate(text)
     file = VolumeFile(found, part, voxels, dtype, offset)
-    stored = formats.find(file)
+    with np.errstate(all="ignore"):  # of a damaged header's numbers `require_transform` tells
+        stored = formats.find(file)
     if labels is not None:
         stored = replace(stored, labels=labels)
     if steps is not None:

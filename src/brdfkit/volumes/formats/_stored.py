@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.names import printable
 
 
 @dataclass(frozen=True)
@@ -27,8 +28,8 @@ class VolumeFile:
 
     def error(self, problem):
         """A `BrdfkitError` that names this file; `problem`: what is wrong and what to do, without a
-        full stop."""
-        return BrdfkitError(f"{self.path}: {problem}.")
+        full stop. Of what it quotes from headers, ends of lines and control characters go."""
+        return BrdfkitError(f"{self.path}: {printable(' '.join(problem.split()))}.")
 
     def package(self, name, brings):
         """The package `name`, which reads this format; how to install it where it is missing."""

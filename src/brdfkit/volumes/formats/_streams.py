@@ -18,7 +18,7 @@ def require_bytes(file, path, offset, shape, dtype, packed=False):
     """Raise `BrdfkitError` unless a file at `path` can hold the voxels that its header tells of."""
     try:
         present = path.stat().st_size - offset
-    except OSError as error:
+    except (OSError, ValueError) as error:  # a name out of a damaged header may hold anything
         raise file.error(f"needs {path.name} beside it; put the two in one folder") from error
     needed = prod(shape) * np.dtype(dtype).itemsize
     if needed > present * (MOST_ZLIB if packed else 1):
@@ -41,6 +41,7 @@ def layers(file, open_stream, shape, dtype):
                 if len(data) < size:
                     raise file.error(CUT_SHORT)
                 yield np.frombuffer(data, dtype).reshape(ny, nx)
+            stream.read(1)  # only at its end does gzip compare its checksum
     except (EOFError, OSError, zlib.error) as error:
         raise file.error(CUT_SHORT) from error
 
