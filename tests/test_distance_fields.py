@@ -170,7 +170,8 @@ def walk(node):
 
 
 def test_the_tree_has_every_kind():
-    assert walk(everything()) == set(kinds._KINDS)
+    own = {n for n, cls in kinds._KINDS.items() if cls.__module__.startswith("brdfkit.")}
+    assert walk(everything()) == own
 
 
 def test_numpy_and_dr_jit_agree(llvm_variant):
@@ -287,6 +288,8 @@ def test_json_is_the_same_field(tmp_path):
     np.testing.assert_array_equal(again(points_about()), field(points_about()))
     field.save(tmp_path / "scene.json")
     assert df.load(tmp_path / "scene.json").to_json() == field.to_json()
+    endless = df.sphere(0.3).repeat(1)
+    assert df.from_json(endless.to_json())([[7, 0, 0]]) == -0.3
 
 
 def test_what_is_printed_makes_the_field():

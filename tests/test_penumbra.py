@@ -6,12 +6,14 @@ import pytest
 from scipy.integrate import quad
 
 import brdfkit as bk
+from brdfkit import distance_fields as df
 from brdfkit.distance_fields.shadows import LightCone, edge, light_cone, soft_shadow
 from brdfkit.distance_fields.shadows.aaltonen import aaltonen
 from brdfkit.distance_fields.shadows.base import base
 from brdfkit.distance_fields.shadows.convex import convex
 from brdfkit.distance_fields.shadows.dense import dense
 from brdfkit.distance_fields.shadows.discrete import discrete
+from brdfkit.distance_fields.shadows.field import pieces_of
 from brdfkit.distance_fields.shadows.linear import linear
 from brdfkit.distance_fields.shadows.monte_carlo import halton_disc, monte_carlo, trace
 from brdfkit.distance_fields.shadows.quilez import quilez
@@ -421,6 +423,14 @@ def test_a_wrong_argument_is_one_sentence(wrong, said):
     given = {"radius": 1.0, "ball": 0.1} | wrong
     with pytest.raises(bk.BrdfkitError, match=said):
         soft_shadow(SPHERE, P(0, 0, 0), P(0, 0, 6), **given)
+
+
+def test_the_pieces_of_unions_that_are_moved_and_named():
+    things = (df.sphere(1) | df.box(1).at(1, 0, 0)).rotate(0.3).scale(2).made_of("gold")
+    field = things.at(0, 0, 1) | (df.plane() | df.torus(1, 0.2).k(0.1))
+    pieces, points = pieces_of(field), np.random.default_rng(0).uniform(-3, 3, (200, 3))
+    assert [piece.is_convex for piece in pieces] == [True, True, False]
+    np.testing.assert_allclose(np.min([p(points) for p in pieces], axis=0), field(points))
 
 
 @pytest.mark.parametrize(

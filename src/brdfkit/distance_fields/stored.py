@@ -91,6 +91,8 @@ def _to_data(value):
         return {"kind": value.kind} | own
     if isinstance(value, tuple):
         return [_to_data(v) for v in value]
+    if value is None:  # the copies of an endless repetition
+        return None
     if dr.is_tensor_v(value) or isinstance(value, np.ndarray):
         return np.asarray(dr.detach(value), float).tolist()
     return plain(value) if dr.is_array_v(value) else value

@@ -4,6 +4,10 @@ A field is a function of points, or a node with the method `distance(p)`, which 
 and `is_convex`. One of the `kind` "union" that `is_sharp` has its pieces as `children`.
 """
 
+from dataclasses import replace
+
+from brdfkit.distance_fields.motions import Motion
+
 
 def distance_of(field):
     """The function of points whose value is the distance."""
@@ -16,7 +20,10 @@ def lipschitz_of(field):
 
 
 def pieces_of(field):
-    """The fields whose minimum this one is: itself, or what a union holds, within unions too."""
+    """The fields whose minimum this one is: itself, or what a union holds, within unions and moved
+    ones too."""
     if getattr(field, "kind", None) == "union" and field.is_sharp:
         return [piece for child in field.children for piece in pieces_of(child)]
+    if isinstance(field, Motion):
+        return [replace(field, child=piece) for piece in pieces_of(field.child)]
     return [field]
