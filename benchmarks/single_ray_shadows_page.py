@@ -36,6 +36,7 @@ Made by `python benchmarks/single_ray_shadows.py`. Errors are root mean squares 
 light that is seen, from the light that truly arrives: 2048 rays (512 in frames), or the closed form
 of a half-plane. Times are ratios within one run. The marches are those of [Bálint et al. 2019], who
 published no errors; `quilez` and `aaltonen` are those of [Quílez 2010] and [Aaltonen 2018].
+What the errors look like: [the gallery](distance_fields.md).
 
 ![Errors over evaluations, and shadows on a ground](single_ray_shadows.png)
 """

@@ -75,6 +75,15 @@ def test_the_pages_of_materials_are_what_the_index_says():
         assert text.startswith(make.head(material)), name
 
 
+def test_the_gallery_of_distance_fields_shows_its_scenes_and_their_code():
+    """Otherwise: python docs/make_distance_fields.py"""
+    make = import_module("make_distance_fields")
+    page = make.PAGE.read_text(encoding="utf-8")
+    for function in make.SCENES + make.lessons.LESSONS:
+        assert "\n\n".join(make.section(function)) in page, function.__name__
+        assert make.file(function.__name__).stat().st_size < 300e3, function.__name__
+
+
 def test_the_pages_of_formats_are_what_their_docstrings_say():
     """Otherwise: make docs"""
     make = import_module("make_formats")

@@ -1,0 +1,162 @@
+"""Makes `docs/distance_fields.md`, a gallery of surfaces given by distance functions.
+
+    python docs/make_distance_fields.py     # a quarter of an hour on two cores
+
+Scenes (`distance_field_scenes.py`) that have a picture keep it: delete it to draw it anew. Lessons
+(`distance_field_lessons.py`), small pictures beside each other, are drawn and measured each time.
+"""
+
+import inspect
+import runpy
+import time
+from pathlib import Path
+
+import distance_field_lessons as lessons  # which imports brdfkit before Mitsuba
+import drjit as dr
+import mitsuba as mi
+import numpy as np
+from distance_field_scenes import SCENES
+from make_models import paragraphs, table
+from PIL import Image, ImageDraw, ImageFont
+
+from brdfkit.colours import to_srgb
+
+PAGE = Path(__file__).with_name("distance_fields.md")
+FOLDER = PAGE.with_suffix("")
+GYROID = PAGE.with_name("distance_field_gyroid.py")
+START = PAGE.with_name("distance_field_start.py")
+SIZE, SPP = (720, 450), 16  # of a scene
+SMALL, SMALL_SPP, TURNS = (300, 225), 4, 3  # of a lesson; its time is the least of some turns
+COLUMNS, LINE = 4, 22  # pictures in a row, pixels of a label
+INTRO = """A distance function says of each point how far the nearest surface is, negative inside.
+brdfkit combines such functions in Python and renders them by the Mitsuba integrator
+[`distance_field`](plugins/distance_field.md), with measured materials and soft shadows from a
+single march for each point and lamp. Nothing in these pictures is random but the places within a
+pixel, so that there is no noise. There is no light between surfaces either, only that of the lamps.
+
+[`make_distance_fields.py`](make_distance_fields.py) makes this page of the code that it shows."""
+BEGIN = """`|` is the union, `&` the intersection, `-` the difference, as in fogleman's
+[sdf](https://github.com/fogleman/sdf). A part has the material whose name `made_of` gives; the rest
+is grey."""
+SCENE = """What is common to the scenes, `scene`, `bulb`, `panel`, `camera` and `cove`, is in
+[`distance_field_stage.py`](distance_field_stage.py). Materials with a name are measured ones that
+come along: [all of them](materials/README.md)."""
+FIGURES = """*Error*: root mean square over the pixels, of linear values up to {brightest:.1f}, from
+`monte_carlo`, {rays} rays for each point. *Time*: of the whole picture, over that of `hard`."""
+MORE = """Errors of all methods on nine kinds of occluders: [errors of single-ray
+shadows](single_ray_shadows.md). Derivatives through shadows: the notebook [Shadow of a
+light](../notebooks/shadow_of_a_light.md)."""
+
+
+def page(figures):
+    """The text of the page; `figures`: what is said of the errors of a lesson, by its function."""
+    start = BEGIN, shown(START.stem, "A cut cube"), code(START.read_text(encoding="utf-8"))
+    scenes = [text for make in SCENES for text in (f"### {title(make)}", *section(make))]
+    own = "The node of one's own:", code(GYROID.read_text(encoding="utf-8"))
+    compared = [
+        text
+        for make in lessons.LESSONS
+        for text in (f"## {title(make)}", *section(make), figures[make])
+    ]
+    return paragraphs(
+        *("# Distance fields: a gallery", INTRO),
+        *("## A first picture", *start),
+        *("## Six scenes", SCENE, *scenes, *own),
+        *compared,
+        MORE,
+    )
+
+
+def title(make):
+    return inspect.getdoc(make).partition(": ")[0]
+
+
+def section(make):
+    """Sentences and picture by the docstring of a function, and the function itself."""
+    _, _, text = inspect.getdoc(make).partition(": ")
+    source = inspect.getsource(make).replace(f'    """{make.__doc__}"""\n', "")
+    return text[0].upper() + text[1:], shown(make.__name__, title(make)), code(source)
+
+
+def shown(name, title):
+    return f"![{title}](distance_fields/{name}.png)"
+
+
+def code(source):
+    return f"```python\n{source.strip()}\n```"
+
+
+def draw_scene(make):
+    """Draw the picture of a scene, if there is none."""
+    if not file(make.__name__).exists():
+        print(make.__name__, flush=True)
+        write(image(mi.render(mi.load_dict(with_film(make(), SIZE)), spp=SPP)), make.__name__)
+
+
+def draw_lesson(make):
+    """Draw the pictures of a lesson; return the table of their errors if one is the truth."""
+    found = {name: rendered(scene) for name, scene in make().items()}
+    write(sheet({name: image(picture) for name, (picture, _) in found.items()}), make.__name__)
+    if lessons.TRUTH not in found:
+        return ""
+    (truth, _), (_, unit) = found[lessons.TRUTH], found["hard"]
+    rows = [
+        (f"`{n}`", f"{np.sqrt(np.mean((p - truth) ** 2)):.4f}", f"{s / unit:.1f}")
+        for n, (p, s) in found.items()
+    ]
+    return paragraphs(
+        table("shadow, error, time", rows),
+        FIGURES.format(brightest=truth.max(), rays=lessons.RAYS),
+    )
+
+
+def rendered(scene):
+    """(linear picture, seconds of all threads) of a small scene, the first turn to compile."""
+    loaded, seconds = mi.load_dict(with_film(scene, SMALL)), []
+    for _ in range(1 + TURNS):
+        began = time.process_time()
+        picture = mi.render(loaded, spp=SMALL_SPP)
+        dr.eval(picture)
+        dr.sync_thread()
+        seconds.append(time.process_time() - began)
+    return np.array(picture), min(seconds[1:])
+
+
+def with_film(scene, size):
+    film = {"type": "hdrfilm", "width": size[0], "height": size[1], "pixel_format": "rgb"}
+    return scene | {"sensor": scene["sensor"] | {"film": film}}
+
+
+def sheet(pictures):
+    """One image of all pictures, with their labels below."""
+    columns = min(COLUMNS, len(pictures))
+    wide, high = SMALL[0], SMALL[1] + LINE
+    page = Image.new("RGB", (columns * wide, -(-len(pictures) // columns) * high), "white")
+    draw, font = ImageDraw.Draw(page), ImageFont.load_default(14)
+    for k, (label, picture) in enumerate(pictures.items()):
+        x, y = k % columns * wide, k // columns * high
+        page.paste(picture, (x, y))
+        draw.text((x + wide // 2, y + high - LINE // 2), label, "black", font, anchor="mm")
+    return page
+
+
+def image(linear):
+    return Image.fromarray((255 * to_srgb(np.array(linear)) + 0.5).astype(np.uint8))
+
+
+def file(name):
+    return FOLDER / f"{name}.png"
+
+
+def write(picture, name):
+    picture.save(file(name), optimize=True)
+
+
+if __name__ == "__main__":
+    mi.set_variant("llvm_ad_rgb")
+    FOLDER.mkdir(exist_ok=True)
+    write(image(runpy.run_path(str(START))["picture"]), START.stem)
+    for make in SCENES:
+        draw_scene(make)
+    figures = {make: draw_lesson(make) for make in lessons.LESSONS}
+    PAGE.write_text(page(figures), encoding="utf-8")
