@@ -1,25 +1,18 @@
 """Filtered importance sampling: a few directions of a BSDF, the same everywhere, and the mean
-light about each.
+light about each [Colbert & Křivánek 2007].
 
-A constant c is taken from the BSDF, for which the irradiance E is known; the directions see the
-rest: L = π c E + Σ (f - c) cosθ / (N p) · mean light. A matte surface is exact; any c is right, so
-that the lowest of a few values will do. [Colbert & Křivánek 2007]
+Where a BSDF is the same all over its surface, its directions are kept for a grid of views.
 """
 
-import numpy as np
-
-from brdfkit.geometry.directions import from_angles
-from brdfkit.host.arrays import Rows
 from brdfkit.host.channels import emission_of_rgb
-from brdfkit.lighting.scene_bsdfs import bsdfs_of, has_matte_part, is_one_of, matte_and_rest
-
-# κ of the lobes over 2π / (solid angle of a direction). Sharper ones leave gaps, in which a lamp is
-# lost, and wider ones blur: 64 directions of Ward's lobe under a probe with lamps (grace) come
-# nearest to the truth with this
-OVERLAP = 0.15
-PLASTIC = 1.32471795724474602596  # x³ = x + 1, the golden ratio of two dimensions
-SPREAD_OUT = from_angles(
-    np.arccos(1 - (np.arange(8) + 0.5) / 8), 2 * np.pi / PLASTIC * np.arange(8)
+from brdfkit.lighting.drawn_directions import Directions, constant_and_rest
+from brdfkit.lighting.drawn_views import DrawnViews
+from brdfkit.lighting.scene_bsdfs import (
+    KeptByValues,
+    bsdfs_of,
+    has_matte_part,
+    is_one_of,
+    is_same_everywhere,
 )
 
 
@@ -38,97 +31,39 @@ class FilteredSampling:
         rays = sampler.sample_count()
         if self.directions is None or self.directions.rays != rays:
             self.directions = Directions(self.count, rays)
-        matte, rest = matte_and_rest(mi)
-        bsdfs = bsdfs_of(scene)
-        apart = [bsdf for bsdf in bsdfs if has_matte_part(bsdf)]
-        total = mi.UnpolarizedSpectrum(0)
-        if apart:  # the directions are those of the other components
-            here = active & is_one_of(si.bsdf(), apart)
-            c = value(si, mi.Vector3f(0, 0, 1), here, matte)
-            found = even(c, si, light) + self.uneven(si, light, here, rest)
-            total = dr.select(here, found, total)
-        if len(apart) < len(bsdfs):
-            here = active & ~is_one_of(si.bsdf(), apart)
-            c = mi.UnpolarizedSpectrum(np.inf)
-            for wo in SPREAD_OUT.tolist():
-                c = dr.minimum(c, value(si, mi.Vector3f(wo), here, matte | rest) / wo[2])
-            found = even(c, si, light) + self.uneven(si, light, here, matte | rest, c)
-            total = dr.select(here, dr.maximum(found, 0), total)
+            self.views = KeptByValues(lambda bsdf: DrawnViews(bsdf, self.directions))
+        total, bsdfs = mi.UnpolarizedSpectrum(0), bsdfs_of(scene)
+        kept = [bsdf for bsdf in bsdfs if is_same_everywhere(bsdf)]
+        for bsdf, views in self.views.of(kept):
+            here = active & (si.bsdf() == mi.BSDFPtr(bsdf))
+            total = dr.select(here, views.radiance(si, light, here), total)
+        others = [bsdf for bsdf in bsdfs if bsdf not in kept]
+        for apart in (True, False):
+            group = [bsdf for bsdf in others if has_matte_part(bsdf) == apart]
+            if group:
+                here = active & is_one_of(si.bsdf(), group)
+                total = dr.select(here, self.drawn_here(si, light, here, apart), total)
         return total
 
-    def uneven(self, si, light, active, types, c=0):
-        """The radiance by the components of some `types` less the constant `c`."""
+    def drawn_here(self, si, light, active, apart):
+        """The radiance of BSDFs by directions that are drawn at the points `si` themselves."""
         import drjit as dr
         import mitsuba as mi
 
-        context, bsdf, spectrum = mi.BSDFContext(), si.bsdf(), emission_of_rgb()
-        context.type_mask = types
-        directions = self.directions
-        ray = dr.arange(mi.UInt32, dr.width(si)) % directions.rays  # those of a pixel are adjacent
+        bsdf, directions, spectrum = si.bsdf(), self.directions, emission_of_rgb()
+        c, *rest = constant_and_rest(bsdf, si, active, apart)
 
         def one(i, total):
-            u = directions.at(i, ray)
-            drawn, weight = bsdf.sample(context, si, u.x, mi.Point2f(u.y, u.z), active)
-            valid, density = active & (drawn.pdf > 0), directions.count * drawn.pdf
-            # A lobe as wide as the distance to the next direction; a mirror's has no width
-            mirror = mi.has_flag(drawn.sampled_type, mi.BSDFFlags.Delta)
-            kappa = dr.select(mirror, dr.inf, OVERLAP * 2 * dr.pi * density)
-            seen = spectrum(light.over_lobe(si.to_world(drawn.wo), kappa), si)
-            weight = mi.unpolarized_spectrum(weight)
-            cos = dr.maximum(drawn.wo.z * dr.sign(si.wi.z), 0)
-            weight -= c * dr.select(mirror, 0, cos / drawn.pdf)
-            return i + 1, total + dr.select(valid, weight * seen, 0)
+            place = directions.place(i, si)
+            wo, kappa, weight = directions.draw(place, bsdf, si, *rest, active)
+            seen = spectrum(light.over_lobe(si.to_world(wo), kappa), si)
+            return i + 1, total + weight * seen
 
         _, total = dr.while_loop(
             (mi.UInt32(0), mi.UnpolarizedSpectrum(0)),
             lambda i, total: active & (i < directions.per_ray),
             one,
         )
-        return total / directions.per_ray
-
-
-class Directions:
-    """The numbers that draw at least `count` directions of a pixel, dealt out to its `rays`."""
-
-    def __init__(self, count, rays):
-        self.rays, self.per_ray = rays, -(-count // rays)
-        self.count = rays * self.per_ray
-        self.points = Rows(points(self.count))
-
-    def at(self, i, ray):
-        """The three numbers of direction `i` of a ray, a `mi.Point3f`."""
-        import mitsuba as mi
-
-        return self.points.at(i * self.rays + ray, mi.Point3f)
-
-
-def even(c, si, light):
-    """The radiance by a BSDF that is the constant `c`."""
-    import drjit as dr
-    import mitsuba as mi
-
-    received = light.irradiance(si.to_world(mi.Vector3f(0, 0, dr.sign(si.wi.z))))
-    return dr.pi * c * emission_of_rgb()(received, si)
-
-
-def value(si, wo, active, types):
-    """BSDF times cosine of the components of some `types`, towards `wo` on the side of `si.wi`."""
-    import drjit as dr
-    import mitsuba as mi
-
-    context = mi.BSDFContext()
-    context.type_mask = types
-    wo = mi.Vector3f(wo.x, wo.y, wo.z * dr.sign(si.wi.z))
-    return mi.unpolarized_spectrum(si.bsdf().eval(context, si, wo, active))
-
-
-def points(count):
-    """`count` points (count, 3) of the unit cube, evenly spread, the same always.
-
-    Two coordinates advance by powers of the plastic number [Roberts 2018].
-
-    >>> points(2).shape
-    (2, 3)
-    """
-    i = np.arange(count) + 0.5
-    return np.stack([i / PLASTIC**2, i / count, i / PLASTIC], axis=1) % 1
+        received = light.irradiance(si.to_world(mi.Vector3f(0, 0, dr.sign(si.wi.z))))
+        total = total / directions.per_ray + dr.pi * c * spectrum(received, si)
+        return dr.maximum(total, 0)

@@ -10,11 +10,10 @@ import numpy as np
 from brdfkit.host.arrays import Rows, bracket, periodic_bracket
 from brdfkit.host.bsdf_material import eval_bsdf
 from brdfkit.host.channels import emission_of_rgb
-from brdfkit.lighting.scene_bsdfs import PAIRS, bsdfs_of, is_isotropic
+from brdfkit.lighting.scene_bsdfs import KeptByValues, bsdfs_of, is_isotropic
 from brdfkit.lighting.spherical_gaussians.lobes_of_material import lobe_table
 
 AZIMUTHS = 16  # of the views of an anisotropic BSDF
-KEPT = 16  # materials whose lobes are kept between pictures
 
 
 class LobeLight:
@@ -22,7 +21,7 @@ class LobeLight:
 
     def __init__(self, method, count):
         self.method, self.count = method, count
-        self.known = {}  # lobes by the values of a BSDF at some directions, which tell it apart
+        self.lobes = KeptByValues(self.fit)
 
     def radiance(self, scene, sampler, si, light, active):
         """The radiance towards `si.wi`, a spectrum of the current variant."""
@@ -30,24 +29,12 @@ class LobeLight:
         import mitsuba as mi
 
         bsdf, total = si.bsdf(), mi.Color3f(0)
-        for each, lobes in self.fitted(scene):
+        for each, lobes in self.lobes.of(bsdfs_of(scene)):
             here = active & (bsdf == mi.BSDFPtr(each))
             if not mi.has_flag(each.flags(), mi.BSDFFlags.BackSide):
                 here &= si.wi.z > 0
             total = dr.select(here, lobes.radiance(si, light, here), total)
         return emission_of_rgb()(total, si)
-
-    def fitted(self, scene):
-        """(BSDF, `ViewedLobes`) of every BSDF of a `scene`, as they are now."""
-        found = []
-        for bsdf in bsdfs_of(scene):
-            values = eval_bsdf(bsdf, *PAIRS).tobytes()
-            lobes = self.known.pop(values, None) or self.fit(bsdf)
-            self.known[values] = lobes  # the newest comes last
-            found.append((bsdf, lobes))
-        for oldest in list(self.known)[: -max(KEPT, len(found))]:
-            del self.known[oldest]
-        return found
 
     def fit(self, bsdf):
         """The lobes of a BSDF, a few seconds."""

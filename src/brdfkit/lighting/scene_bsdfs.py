@@ -1,4 +1,4 @@
-"""The BSDFs of a scene: whether their matte part can be told from the rest, whether they turn."""
+"""The BSDFs of a scene: what they are like, and what is made of them, kept between pictures."""
 
 import numpy as np
 
@@ -6,6 +6,7 @@ from brdfkit.geometry.directions import rotate_z
 from brdfkit.host.bsdf_material import eval_bsdf
 
 SAME = 1e-3  # of the largest value: differences that do not count
+KEPT = 16  # BSDFs of which something is kept between pictures
 
 
 def _pairs(count=64):
@@ -67,3 +68,57 @@ def is_isotropic(bsdf):
     """Whether the values of a BSDF stay when both directions turn about the normal."""
     value, turned = eval_bsdf(bsdf, *PAIRS), eval_bsdf(bsdf, *rotate_z(PAIRS, 1.0))
     return bool(np.abs(value - turned).max() <= SAME * value.max())
+
+
+def is_same_everywhere(bsdf):
+    """Whether the values of a BSDF at some directions say what it is at every point of a surface.
+
+    So not where it has a texture, or a mirror or refracted light, which those directions miss, or
+    where derivatives by its parameters are wanted; nor in a spectral variant.
+    """
+    import mitsuba as mi
+
+    flags = mi.BSDFFlags
+    missed = (flags.Delta, flags.Transmission, flags.Null)
+    if mi.is_spectral or any(mi.has_flag(bsdf.flags(), flag) for flag in missed):
+        return False
+    return not _changes(bsdf)
+
+
+def _changes(thing):
+    """Whether an object of Mitsuba's has textures that vary, or parameters with derivatives."""
+    import drjit as dr
+    import mitsuba as mi
+
+    found = []
+
+    class Parts(mi.TraversalCallback):
+        def put(self, name, value, *_):
+            if isinstance(value, mi.Texture) and value.is_spatially_varying():
+                found.append(name)
+            elif isinstance(value, mi.Object):
+                value.traverse(Parts())
+            elif dr.grad_enabled(value):
+                found.append(name)
+
+    thing.traverse(Parts())
+    return bool(found)
+
+
+class KeptByValues:
+    """What `make` makes of a BSDF, kept by the BSDF's values at some directions."""
+
+    def __init__(self, make):
+        self.make, self.known = make, {}
+
+    def of(self, bsdfs):
+        """(BSDF, what is made of it) of each of `bsdfs`, as they are now."""
+        found = []
+        for bsdf in bsdfs:
+            values = eval_bsdf(bsdf, *PAIRS).tobytes()
+            made = self.known.pop(values, None) or self.make(bsdf)
+            self.known[values] = made  # the newest comes last
+            found.append((bsdf, made))
+        for oldest in list(self.known)[: -max(KEPT, len(found))]:
+            del self.known[oldest]
+        return found
