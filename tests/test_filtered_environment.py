@@ -15,10 +15,14 @@ from brdfkit.lighting import paraboloid_levels as levels
 from brdfkit.lighting.filtered_map import FilteredMap, LobeMaps, Mips, picture
 from brdfkit.lighting.irradiance import irradiance
 from brdfkit.lighting.lobe_light import LobeLight
-from brdfkit.lighting.scene_bsdfs import has_matte_part, is_isotropic
+from brdfkit.lighting.scene_bsdfs import has_matte_part, is_isotropic, is_same_everywhere
 from brdfkit.lighting.sphere_filter import azimuths, convolve, row_angles, row_solid_angles
 from brdfkit.picture_errors.psnr import psnr
 from brdfkit.rendering.environment import environment
+from brdfkit.rendering.kept_materials import _measured_bsdf
+from brdfkit.rendering.scenes.ball import ball
+from brdfkit.rendering.shown_material import load_material
+from brdfkit.rendering.staging import stage
 
 SIDE = 128
 
@@ -243,6 +247,41 @@ def test_what_it_cannot_light_is_said(llvm_variant, light, more, settings, varia
         mi.set_variant("llvm_ad_rgb")
 
 
+@pytest.mark.parametrize(
+    ("bsdf", "alike"),
+    [(WARD, 42), ({"type": "twosided", "bsdf": TURNED}, 38), ({"type": "principled"}, 42)],
+)
+def test_directions_of_views_are_those_of_points(llvm_variant, monkeypatch, bsdf, alike):
+    """Pictures by directions that are drawn once for a grid of views, and at each point; PSNR."""
+    mi, module = llvm_variant, import_module("brdfkit.lighting.filtered_sampling")
+    light = example("kdtree_envmap")
+    by_views = shown(scene(mi, ours(), bsdf, light), 4)
+    monkeypatch.setattr(module, "is_same_everywhere", lambda bsdf: False)
+    assert psnr(shown(scene(mi, ours(), bsdf, light), 4), by_views) > alike
+
+
+@pytest.mark.quick
+def test_what_is_the_same_everywhere(llvm_variant):
+    import drjit as dr
+
+    mi, checks = llvm_variant, {"type": "checkerboard"}
+    for entries, same in (
+        (TURNED, True),
+        ({"type": "twosided", "bsdf": WARD}, True),
+        ({"type": "ward", "alpha_u": checks}, False),
+        ({"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": checks}}, False),
+        ({"type": "bumpmap", "arbitrary": checks, "bsdf": {"type": "diffuse"}}, False),
+        ({"type": "conductor"}, False),
+    ):
+        bsdf = mi.load_dict(entries)
+        assert is_same_everywhere(bsdf) == same, entries
+    bsdf = mi.load_dict(WARD)
+    parameters = mi.traverse(bsdf)
+    dr.enable_grad(parameters["diffuse_reflectance.value"])
+    parameters.update()
+    assert not is_same_everywhere(bsdf)
+
+
 # Shadows
 
 
@@ -310,6 +349,41 @@ def test_a_preview_is_the_same_each_time_and_has_no_shadows(llvm_variant, tmp_pa
     assert {file.name for file in tmp_path.iterdir()} == {"both.exr", "both.png"}
 
 
+def show_by(monkeypatch, mi, **settings):
+    """Let previews use an integrator of other settings, which is quicker."""
+    module = import_module("brdfkit.rendering.preview")
+    monkeypatch.setattr(module, "_integrator", lambda *_: mi.load_dict(ours(**settings)))
+
+
+def test_a_file_is_read_and_prepared_again_when_it_changes(llvm_variant, monkeypatch, tmp_path):
+    show_by(monkeypatch, llvm_variant, resolution=32)
+    file, prepared = tmp_path / "paint.npz", _measured_bsdf.cache_info
+    before, pictures = prepared().misses, []
+    for value in (0.1, 0.1, 0.2):
+        if not pictures or value != 0.1:
+            bk.save(bk.Measured.from_table(np.full((2, 2, 2, 3), value), name="paint"), file)
+        pictures.append(bk.preview(file, size=8).pictures["paint"])
+    assert prepared().misses == before + 2
+    np.testing.assert_array_equal(pictures[0], pictures[1])
+    assert pictures[2].max() > 1.1 * pictures[0].max()
+
+
+def test_a_ball_stands_in_the_shadow_and_the_light_of_its_ground(llvm_variant, monkeypatch):
+    """PSNR [dB] to all light, path-traced, with and without shadows."""
+    mi, size = llvm_variant, (32, 32)
+    show_by(monkeypatch, mi, shadows="convex")
+    shaded = bk.preview("ggx", size=size, shadows=True)
+    assert "approximate shadows" in str(shaded)
+
+    light, material = mi.load_dict(environment("studio")), load_material({"type": "ggx"}, "ggx")
+    staged = stage(ball(material, size), light, mi.load_dict(ours()), 4, ground=True)
+    plain = shown(mi.load_dict(staged), 4)
+    staged["integrator"] = {"type": "path", "max_depth": 6}
+    staged["sensor"]["sampler"] = {"type": "independent"}
+    truth = shown(mi.load_dict(staged), 1024)
+    assert psnr(truth, shaded.pictures["ggx"]) > psnr(truth, plain) + 4
+
+
 @pytest.mark.quick
 @pytest.mark.parametrize(
     ("given", "said"),
@@ -317,7 +391,8 @@ def test_a_preview_is_the_same_each_time_and_has_no_shadows(llvm_variant, tmp_pa
         ({"envmap": "nowhere.exr"}, "nowhere.exr"),
         ({"scene": "cornell_box"}, "A preview shows a shape"),
         ({"scene": "nothing.obj"}, "no such mesh"),
-        ({"method": "gm"}, "did you mean gmm"),
+        ({"scene": 3}, "scene = 3 should be a scene's name or a mesh's file"),
+        ({"method": "gm"}, "^filtered_environment: there is no method 'gm'; did you mean gmm"),
         ({"size": 0}, "size = 0"),
         ({"spp": 0}, "spp"),
         ({"spp": 3}, "spp = 3 should be a square number"),
@@ -329,9 +404,7 @@ def test_what_cannot_be_previewed_is_said(llvm_variant, given, said):
 
 
 def test_a_preview_has_the_same_colours_in_a_spectral_variant(llvm_variant, monkeypatch):
-    coarse = ours(resolution=32, samples=9)  # quick, and the same in both
-    module = import_module("brdfkit.rendering.preview")
-    monkeypatch.setattr(module, "_integrator", lambda *_: llvm_variant.load_dict(coarse))
+    show_by(monkeypatch, llvm_variant, resolution=32, samples=9)
     rgb = bk.preview("lambert", size=16, spp=25).pictures["lambert"]
     llvm_variant.set_variant("llvm_ad_spectral")
     try:

@@ -1,4 +1,4 @@
-"""Environment map by blocks: light from all around, sampled by the blocks of a tree.
+"""Environment map by blocks: bright parts are sampled more often, by a small table of its blocks.
 
     {"type": "kdtree_envmap", "filename": "studio.exr", "scale": 1.0, "to_world": ...}
 

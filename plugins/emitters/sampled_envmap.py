@@ -1,4 +1,4 @@
-"""Environment map by the usual samplers: what `kdtree_envmap` is compared with, one beside another.
+"""Environment map by the usual samplers: to compare them with `kdtree_envmap`, and each other.
 
     {"type": "sampled_envmap", "filename": "studio.exr", "sampler": "alias"}
 

@@ -1,4 +1,4 @@
-"""Direct light with shadows of convex parts: no triangle is asked whether a point sees the light.
+"""Direct light with shadows of convex parts: those of meshes, which may move between pictures.
 
     L = L_e + Σ_s ρ(ω_s, ω_o) L(ω_s) V(ω_s) cosθ_s / (p_b(ω_s) + p_e(ω_s))
 

@@ -1,4 +1,4 @@
-"""Emission and absorption: volumes that glow and dim what is behind them, and scatter nothing.
+"""Emission and absorption: volumes that glow and dim what is behind them, but do not scatter light.
 
     L = T(0, d) L_behind + ∫ T(0, s) e(s) ds,   T(0, s) = exp(-∫ σ(t) dt) from 0 to s
 

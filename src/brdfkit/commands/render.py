@@ -38,13 +38,27 @@ from brdfkit.errors import BrdfkitError
     is_flag=True,
     help="Show the light of --envmap, by default studio, in a moment: no noise, no shadows.",
 )
+@click.option("--shadows", is_flag=True, help="Show the ground and the shadows in a --preview.")
 @tone_options
 @values_option
 @scene_options
 @render_options
 @output_options
 def render(
-    things, output, folders, quickly, tone, values, scene, envmap, spp, until, size, seed, console
+    things,
+    output,
+    folders,
+    quickly,
+    shadows,
+    tone,
+    values,
+    scene,
+    envmap,
+    spp,
+    until,
+    size,
+    seed,
+    console,
 ):
     """Path-trace materials, or a scene.
 
@@ -57,12 +71,19 @@ def render(
     from brdfkit.host.users_plugins import load_plugins
     from brdfkit.names import slug
     from brdfkit.rendering import render_scene
+    from brdfkit.rendering.users_mesh import SUFFIXES
 
     for folder in folders:
         load_plugins(folder)
     scenes = [t for t in things if t.lower().endswith(".xml")]
     for place in (t for t in things if ".xml#" in t.lower()):
         raise BrdfkitError(f"{place} is a place for a material: give it as --scene {place}.")
+    for mesh in (t for t in things if t.lower().endswith(SUFFIXES)):
+        raise BrdfkitError(
+            f"{mesh} is a mesh, which needs a material: render ggx --scene {mesh}, for instance."
+        )
+    if shadows and not quickly:
+        raise BrdfkitError("--shadows is for --preview: path-traced pictures have them anyway.")
     if scenes:
         if len(things) > 1 or values:
             raise BrdfkitError("A scene is rendered alone and without --set: name one SCENE.xml.")
@@ -79,7 +100,7 @@ def render(
         output = picture_file(output or f"{slug(found[0].name)}.png")
         where = {"size": size, "seed": seed, "scene": scene, "envmap": envmap}
         if quickly:
-            picture = _preview(found, output, spp, until, tone, **where)
+            picture = _preview(found, output, spp, until, shadows, tone, **where)
         else:
             picture = path_trace(found, output, console, spp, until, tone, **where)
     _print_picture(picture, output, console)
@@ -101,13 +122,14 @@ def path_trace(things, output, console, spp, until, tone="range", **where):
     return picture
 
 
-def _preview(things, output, spp, until, tone, scene, envmap, size, seed):
+def _preview(things, output, spp, until, shadows, tone, scene, envmap, size, seed):
     """Preview `things` and write the picture; returns a `Rendering`."""
     from brdfkit.rendering.preview import SIZE, SPP, STUDIO, preview
 
     if until is not None or seed:
         raise BrdfkitError("A preview has no noise: leave --until and --seed out.")
-    picture = preview(things, envmap or STUDIO, size or SIZE, scene, spp=spp or SPP)
+    size, spp = size or SIZE, spp or SPP
+    picture = preview(things, envmap or STUDIO, size, scene, spp=spp, shadows=shadows)
     _write(picture, output, tone)
     return picture
 

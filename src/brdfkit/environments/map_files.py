@@ -10,6 +10,7 @@ from brdfkit.errors import BrdfkitError, nearest, no_such
 from brdfkit.files import write_safely
 from brdfkit.host.picture_file import read_pixels
 from brdfkit.jit.threads import in_turn, two_threads
+from brdfkit.model import labels
 
 HDR = ".exr", ".hdr", ".rgbe", ".pfm"
 EIGHT_BIT = ".png", ".jpg", ".jpeg", ".bmp", ".tga"
@@ -44,8 +45,12 @@ def find(name):
 
 
 def looks_like_map(name):
-    """Whether a word of the command line means an environment map: by its suffix, or its name."""
-    return Path(name).suffix.lower() in HDR + EIGHT_BIT or name in shipped.environments()
+    """Whether a word of the command line means an environment map: by its suffix, or its name,
+    which may be misspelt where it is like no material's."""
+    if Path(name).suffix or "/" in name or Path(name).exists():
+        return Path(name).suffix.lower() in HDR + EIGHT_BIT
+    materials = [*labels.models(), *shipped.materials()]
+    return bool(nearest(name, shipped.environments())) and not nearest(name, materials)
 
 
 def load(given):

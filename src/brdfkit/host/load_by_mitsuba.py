@@ -3,11 +3,14 @@
 from brdfkit.errors import BrdfkitError
 from brdfkit.jit.threads import two_threads
 
+OURS = "BrdfkitError: "
+
 
 def load_by_mitsuba(function, source, name):
     """The object that a `function` of Mitsuba's, such as `load_dict`, makes of `source`.
 
-    Raises `BrdfkitError`, which names it `name`, where Mitsuba cannot.
+    Raises `BrdfkitError`, which names it `name`, where Mitsuba cannot; a sentence of a plugin of
+    ours stands for itself.
     """
     try:
         with two_threads():
@@ -16,5 +19,7 @@ def load_by_mitsuba(function, source, name):
         lines = [line.strip() for line in str(error).splitlines() if line.strip()]
         # a plugin written in Python reports its whole traceback: people need its last line only
         reason = lines[-1] if any("Traceback" in line for line in lines) else " ".join(lines)
-        reason = reason.removeprefix("BrdfkitError: ")
+        if OURS in reason:
+            reason = reason.partition(OURS)[2]
+            raise BrdfkitError(f"{name}: {reason.removeprefix(f'{name}: ')}") from error
         raise BrdfkitError(f"{name}: Mitsuba cannot load it ({reason.rstrip('.')}).") from error

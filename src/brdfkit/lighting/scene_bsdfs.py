@@ -76,33 +76,32 @@ def is_same_everywhere(bsdf):
     So not where it has a texture, or a mirror or refracted light, which those directions miss, or
     where derivatives by its parameters are wanted; nor in a spectral variant.
     """
+    import drjit as dr
     import mitsuba as mi
 
     flags = mi.BSDFFlags
     missed = (flags.Delta, flags.Transmission, flags.Null)
     if mi.is_spectral or any(mi.has_flag(bsdf.flags(), flag) for flag in missed):
         return False
-    return not _changes(bsdf)
+    differentiated = any(dr.grad_enabled(value) for _, value in mi.traverse(bsdf))
+    return not (differentiated or _has_texture(bsdf))
 
 
-def _changes(thing):
-    """Whether an object of Mitsuba's has textures that vary, or parameters with derivatives."""
-    import drjit as dr
+def _has_texture(thing):
+    """Whether an object of Mitsuba's, or one that it consists of, has a texture that varies."""
     import mitsuba as mi
 
     found = []
 
     class Parts(mi.TraversalCallback):
         def put(self, name, value, *_):
-            if isinstance(value, mi.Texture) and value.is_spatially_varying():
-                found.append(name)
+            if isinstance(value, mi.Texture):
+                found.append(value.is_spatially_varying())
             elif isinstance(value, mi.Object):
                 value.traverse(Parts())
-            elif dr.grad_enabled(value):
-                found.append(name)
 
     thing.traverse(Parts())
-    return bool(found)
+    return any(found)
 
 
 class KeptByValues:

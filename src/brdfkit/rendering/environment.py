@@ -20,11 +20,7 @@ def environment(given):
     import mitsuba as mi
 
     name, rgb = load_light(given)
-    height, width = rgb.shape[:2]
-    # the integral of cos theta over a pixel, as far as it lies above the horizon
-    edges = np.minimum(np.arange(height + 1) / height * np.pi, np.pi / 2)
-    projected = np.pi / width * np.diff(np.sin(edges) ** 2)
-    received = luminance(rgb.astype(float)).sum(axis=1) @ projected
+    received = luminance(_received(rgb))
     if not received > 0:
         raise BrdfkitError(f"{name}: the map gives no light from above; choose another.")
     return {
@@ -33,6 +29,24 @@ def environment(given):
         "scale": ILLUMINANCE / received,
         "to_world": mi.ScalarTransform4f().rotate([1, 0, 0], 90),  # the map has y up
     }
+
+
+def on_ground(light, reflectance):
+    """The dictionary of a `light`, see `environment`, whose lower half is matte ground in it."""
+    import mitsuba as mi
+
+    rgb = np.array(light["bitmap"])
+    rgb[len(rgb) // 2 :] = reflectance / np.pi * _received(rgb)
+    return light | {"bitmap": mi.Bitmap(rgb)}
+
+
+def _received(rgb):
+    """The irradiance (3,) of the ground by a map (height, width, 3)."""
+    height, width = rgb.shape[:2]
+    # the integral of cos theta over a pixel, as far as it lies above the horizon
+    edges = np.minimum(np.arange(height + 1) / height * np.pi, np.pi / 2)
+    projected = np.pi / width * np.diff(np.sin(edges) ** 2)
+    return projected @ rgb.astype(float).sum(axis=1)
 
 
 def light_by(light, scene):

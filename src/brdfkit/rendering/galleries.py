@@ -11,7 +11,7 @@ from brdfkit.documents.parts import SOFT
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import write_safely
 from brdfkit.names import make_unique, printable
-from brdfkit.rendering.inputs import Renderable, as_list, describe
+from brdfkit.rendering.inputs import Renderable, as_list, identify
 from brdfkit.rendering.rendering import SceneLike, render
 from brdfkit.rendering.result import Rendering
 
@@ -126,7 +126,7 @@ def gallery(
     listed = [as_list(row) for row in rows]
     if not listed:
         raise BrdfkitError("There is nothing to render; give at least one row.")
-    columns = [[describe(thing)[0] for thing in row[1:]] for row in listed]
+    columns = [[identify(thing)[0] for thing in row[1:]] for row in listed]
     for names in columns:
         if names != columns[0]:
             raise BrdfkitError(

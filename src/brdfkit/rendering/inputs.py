@@ -5,7 +5,7 @@ from typing import Any, TypeAlias
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit
 from brdfkit.jit.llvm import use_variant
-from brdfkit.materials import MaterialLike, material
+from brdfkit.materials import Material, MaterialLike, material
 from brdfkit.model import Model
 from brdfkit.names import make_unique
 
@@ -36,21 +36,28 @@ def _is_pair(thing):
 
 def describe_all(things):
     """(BSDF dictionaries, parameters' values) of things to render, each by a name of its own."""
-    materials: dict[str, dict[str, Any]] = {}
-    parameters: dict[str, dict[str, Any]] = {}
-    for thing in things:
-        name, bsdf, values = describe(thing)
-        name = make_unique(name, materials)
-        materials[name] = bsdf
-        if values:
-            parameters[name] = values
-    return materials, parameters
+    materials = name_all(things)
+    entries = {name: found.scene_dict() for name, found in materials.items()}
+    return entries, parameters_of(materials)
 
 
-def describe(thing):
-    """(name, BSDF dictionary, parameters' values by name) of a thing to render."""
+def name_all(things: list[Renderable]) -> dict[str, Material]:
+    """The materials that things to render are, each by a name of its own."""
+    materials: dict[str, Material] = {}
+    for name, found in map(identify, things):
+        materials[make_unique(name, materials)] = found
+    return materials
+
+
+def parameters_of(materials: dict[str, Material]) -> dict[str, dict[str, Any]]:
+    """The parameters' values of the `materials` that have any, by their names."""
+    models = {name: found for name, found in materials.items() if isinstance(found, Model | Fit)}
+    return {name: dict(found.values) for name, found in models.items() if found.values}
+
+
+def identify(thing: Any) -> tuple[str, Material]:
+    """(name, material) of a thing to render."""
     if _is_pair(thing):
-        return thing[0], *describe(thing[1])[1:]
+        return thing[0], identify(thing[1])[1]
     found = material(thing)
-    values = found.values if isinstance(found, Model | Fit) else {}
-    return str(found.name), found.scene_dict(), dict(values)
+    return str(found.name), found

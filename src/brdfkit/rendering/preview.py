@@ -1,7 +1,8 @@
-"""`preview`: pictures of materials under an environment, without noise and without shadows.
+"""`preview`: pictures of materials under an environment, without noise.
 
-The integrator `filtered_environment` sees every pixel with the same directions. It and the light
-are kept between calls: the light is then filtered once, and a picture takes milliseconds.
+The integrator `filtered_environment` sees every pixel with the same directions. What takes long is
+kept between calls: the filtered light, materials, the shape and what casts its shadows. So the
+first picture takes seconds, and the next one of any size milliseconds.
 """
 
 import time
@@ -19,16 +20,19 @@ from brdfkit.host.load_by_mitsuba import load_by_mitsuba
 from brdfkit.jit.threads import in_turn
 from brdfkit.rendering import users_mesh
 from brdfkit.rendering.environment import environment as light_of
-from brdfkit.rendering.environment import light_by
-from brdfkit.rendering.inputs import Renderable, as_list, describe_all, mitsuba
+from brdfkit.rendering.environment import on_ground
+from brdfkit.rendering.inputs import Renderable, as_list, mitsuba, name_all, parameters_of
+from brdfkit.rendering.kept_materials import bsdf_of, keep
 from brdfkit.rendering.memory import require_memory
 from brdfkit.rendering.rendering import to_size
 from brdfkit.rendering.result import Rendering
-from brdfkit.rendering.scene_loading import find_scene
-from brdfkit.rendering.shown_material import load_material, mask
+from brdfkit.rendering.scenes._studio import GROUND
+from brdfkit.rendering.shown_material import mask
+from brdfkit.rendering.staging import Shape, stage
 from brdfkit.rendering.tracing import rgb
 
 STUDIO, SIZE, SPP = "studio", 256, 4
+SHOWN = {False: "no shadows", True: "approximate shadows"}
 
 
 def preview(
@@ -38,12 +42,13 @@ def preview(
     scene: str | Path = "ball",
     method: str = "filtered_sampling",
     spp: int = SPP,
+    shadows: bool = False,
 ) -> Rendering:
     """Show one or several materials under an environment, without noise, in milliseconds.
 
-    The light that a material reflects straight from the environment; shadows, and light between
-    surfaces, are missing. Equal calls give equal pictures. The first call takes seconds: it filters
-    the light and compiles.
+    The light that a material reflects straight from the environment; light between surfaces is
+    missing. Equal calls give equal pictures. The first call takes seconds: it filters the light and
+    compiles; the first one of a measured material looks it up at many directions.
 
     Parameters
     ----------
@@ -55,14 +60,17 @@ def preview(
     size : int or (int, int), default 256
         Side, or width and height, of a picture [pixels].
     scene : str or Path, default "ball"
-        What is seen: a scene of `render`, without its ground and its own light, or a mesh (.obj,
-        .ply).
+        What is seen: a scene of `render` without its own light, or a mesh (.obj, .ply).
     method : str, default "filtered_sampling"
         How light and material meet, a method of the integrator `filtered_environment`: "gmm" is
         more exact, and fits lobes to a material first, which takes seconds.
     spp : int, default 4
         Rays per pixel, a square number, which make edges smooth. A spectral variant needs 9, or a
         larger odd one: with fewer, all rays have the same four wavelengths.
+    shadows : bool, default False
+        Whether to show the ground as well, the shadows on it and on the shape itself, and the light
+        that the ground throws back. A mesh casts those of its convex parts, for which coacd is
+        needed; they are found at the first call. A picture takes 5 to 20 times as long.
 
     Returns
     -------
@@ -80,13 +88,14 @@ def preview(
     >>> preview(["car_paint", "ggx"]).write("paint.png")    # doctest: +SKIP
     >>> preview("ward", envmap="probe.exr", scene="teapot.obj", size=512)    # doctest: +SKIP
     """
-    size, subjects = to_size(size), as_list(things)
+    size, subjects = to_size(size), [keep(thing) for thing in as_list(things)]
     spp = to_whole_number("spp", spp, least=1)
     require_memory(size, len(subjects))
     mitsuba()  # sets a variant, on which the dictionaries depend
     _require_rays(spp)
-    materials, parameters = describe_all(subjects)
-    return _show(materials, parameters, envmap, size, scene, method, spp)
+    if not isinstance(scene, str | Path):
+        raise BrdfkitError(f"scene = {scene!r:.60} should be a scene's name or a mesh's file.")
+    return _show(name_all(subjects), envmap, size, scene, method, spp, bool(shadows))
 
 
 def _require_rays(spp):
@@ -106,54 +115,58 @@ def _require_rays(spp):
 
 
 @in_turn
-def _show(materials, parameters, envmap, size, scene, method, spp):
-    """The `Rendering` of BSDFs' dictionaries by name, and of their parameters' values."""
+def _show(materials, envmap, size, scene, method, spp, shadows):
+    """The `Rendering` of materials by name."""
     import mitsuba as mi
 
-    start, build = time.perf_counter(), find_scene(scene)
-    light = _light(mi.variant(), envmap, find(envmap).stat().st_mtime_ns)
-    integrator = _integrator(mi.variant(), method)
+    start, variant = time.perf_counter(), mi.variant()
+    shape = _shape(variant, scene, _changed(scene))
+    light = _light(variant, envmap, _changed(find(envmap)), shadows)
+    integrator = _integrator(variant, method, shadows)
     both_sides = Path(scene).suffix.lower() in users_mesh.SUFFIXES
     pictures, seen = {}, None
-    for name, bsdf in materials.items():
-        material = load_material(bsdf, name, both_sides)
-        staged = stage(build(material, size), light, integrator, spp)
+    for name, found in materials.items():
+        material = bsdf_of(found, name, variant, both_sides)
+        staged = stage(shape.build(material, size), light, integrator, spp, ground=shadows)
         loaded = load_by_mitsuba(mi.load_dict, staged, name)
+        if shadows:
+            integrator.casters.set(loaded, *shape.casters)
         seen = mask(loaded, material) if seen is None else seen
         pictures[name] = rgb(integrator.render(loaded, seed=0, spp=spp)).astype(np.float32)
     first, seconds = next(iter(pictures.values())), time.perf_counter() - start
-    return Rendering(pictures, spp, seconds, 0, parameters, seen, spp, first, shadows=False)
+    parameters = parameters_of(materials)
+    return Rendering(
+        pictures, spp, seconds, 0, parameters, seen, spp, first, shadows=SHOWN[shadows]
+    )
+
+
+def _changed(path):
+    """When a file was changed; None for a name."""
+    return Path(path).stat().st_mtime_ns if Path(path).is_file() else None
 
 
 @lru_cache(maxsize=4)
-def _light(variant, envmap, changed):
-    """The emitter of an environment map, whose file was `changed` at a time."""
+def _light(variant, envmap, changed, ground):
+    """The emitter of an environment map, whose file was `changed` at a time; its lower half is the
+    `ground` in its light, or its own."""
     import mitsuba as mi
 
-    return load_by_mitsuba(mi.load_dict, light_of(envmap), envmap)
+    light = light_of(envmap)
+    light = on_ground(light, GROUND) if ground else light
+    return load_by_mitsuba(mi.load_dict, light, envmap)
 
 
 @lru_cache(maxsize=4)
-def _integrator(variant, method):
+def _integrator(variant, method, shadows):
     """The integrator, which keeps the light that it has filtered."""
     import mitsuba as mi
 
     entries = {"type": "filtered_environment", "method": method}
-    return load_by_mitsuba(mi.load_dict, entries, "preview")
+    entries["shadows"] = "convex" if shadows else "none"
+    return load_by_mitsuba(mi.load_dict, entries, entries["type"])
 
 
-def stage(scene, light, integrator, spp):
-    """The dictionary of a scene without its ground, under another light.
-
-    Its rays go through the middles of pixels, or of equal parts of them: nothing is random. Raises
-    `BrdfkitError` for a scene that has no sky in whose place the light could be.
-    """
-    if not isinstance(scene, dict) or "sky" not in scene:
-        raise BrdfkitError(
-            "A preview shows a shape: name a scene under the sky, such as ball or knot, or a mesh."
-        )
-    sensor = dict(scene["sensor"])
-    sensor["film"] = sensor["film"] | {"rfilter": {"type": "box"}}
-    sensor["sampler"] = {"type": "stratified", "jitter": False, "sample_count": spp}
-    kept = {key: part for key, part in light_by(light, scene).items() if key != "ground"}
-    return kept | {"sensor": sensor, "integrator": integrator}
+@lru_cache(maxsize=4)
+def _shape(variant, scene, changed):
+    """The `Shape` of a scene, whose file was `changed` at a time."""
+    return Shape(scene)

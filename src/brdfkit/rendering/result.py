@@ -48,8 +48,8 @@ class Rendering(Shown):
         sample per pixel.
     until : float or None
         The noise floor that was asked for [dB].
-    shadows : bool
-        Whether the pictures have shadows, and light between surfaces; those of `preview` have not.
+    shadows : str
+        What pictures of `preview` show of shadows; "" for path-traced ones, which show all light.
     tone_mapping : ToneMapping
         How the pictures are shown; by default radiance 1 is white. The numbers stay as they are.
     """
@@ -63,7 +63,7 @@ class Rendering(Shown):
     asked: int | None = None
     other_seed: np.ndarray | None = field(default=None, repr=False)
     until: float | None = None
-    shadows: bool = True
+    shadows: str = ""
     tone_mapping: ToneMapping = field(default_factory=ToneMapping)
 
     @property
@@ -184,7 +184,7 @@ class Rendering(Shown):
         floor = self.noise_floor
         noise = "" if isnan(floor) else "no noise" if floor == inf else f"noise {floor:.1f} dB"
         beside = f", {noise}" if noise else ""
-        shadows = "" if self.shadows else ", no shadows"
+        shadows = f", {self.shadows}" if self.shadows else ""
         first = "reference" if self.differences else f"{self.spp} spp"
         shown = f", {self.tone_mapping}" if str(self.tone_mapping) else ""
         found = {self.reference: first + beside + shadows + shown}
@@ -197,8 +197,8 @@ class Rendering(Shown):
     def head(self) -> str:
         """Size, samples per pixel and time, in a line."""
         height, width = self.pictures[self.reference].shape[:2]
-        without = "" if self.shadows else ", no shadows"
-        return f"{width}×{height} pixels, {self.spp} spp, {self.seconds:.1f} s{without}"
+        shown = f", {self.shadows}" if self.shadows else ""
+        return f"{width}×{height} pixels, {self.spp} spp, {self.seconds:.1f} s{shown}"
 
     @property
     def shortfall(self) -> str:
@@ -218,7 +218,7 @@ class Rendering(Shown):
         short = (Paragraph(self.shortfall, BAD),) if self.shortfall else ()
         picture = Picture(
             self._draw,
-            f"{'path-traced pictures' if self.shadows else 'previews'} of {names}",
+            f"{'previews' if self.shadows else 'path-traced pictures'} of {names}",
             min(shown, WIDEST),
         )
         return Document(self.head, (picture, Table(tuple(self.captions.items())), *short))

@@ -6,8 +6,8 @@ import numpy as np
 
 from brdfkit.colours import to_srgb
 from brdfkit.picture_errors.psnr import psnr
-from brdfkit.rendering.preview import stage
 from brdfkit.rendering.shown_material import load_material
+from brdfkit.rendering.staging import stage
 from brdfkit.reproducing.ergun2015.unshadowed import unshadowed
 
 METHODS = "gmm", "kde", "warped", "filtered_sampling"
