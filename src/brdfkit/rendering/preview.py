@@ -32,7 +32,7 @@ from brdfkit.rendering.staging import Shape, stage
 from brdfkit.rendering.tracing import rgb
 
 STUDIO, SIZE, SPP = "studio", 256, 4
-SHOWN = {False: "no shadows", True: "approximate shadows"}
+SHADOWS = {False: "no shadows", True: "approximate shadows"}
 
 
 def preview(
@@ -136,7 +136,7 @@ def _show(materials, envmap, size, scene, method, spp, shadows):
     first, seconds = next(iter(pictures.values())), time.perf_counter() - start
     parameters = parameters_of(materials)
     return Rendering(
-        pictures, spp, seconds, 0, parameters, seen, spp, first, shadows=SHOWN[shadows]
+        pictures, spp, seconds, 0, parameters, seen, spp, first, shadows=SHADOWS[shadows]
     )
 
 

@@ -197,8 +197,8 @@ class Rendering(Shown):
     def head(self) -> str:
         """Size, samples per pixel and time, in a line."""
         height, width = self.pictures[self.reference].shape[:2]
-        shown = f", {self.shadows}" if self.shadows else ""
-        return f"{width}×{height} pixels, {self.spp} spp, {self.seconds:.1f} s{shown}"
+        shadows = f", {self.shadows}" if self.shadows else ""
+        return f"{width}×{height} pixels, {self.spp} spp, {self.seconds:.1f} s{shadows}"
 
     @property
     def shortfall(self) -> str:
