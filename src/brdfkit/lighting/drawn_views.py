@@ -95,8 +95,6 @@ def _seen_from(views):
 
 
 def _columns(colour, number, count):
-    """`count` rows (count, 4) of a colour or a vector, and a number."""
-    import mitsuba as mi
-
-    columns = *np.array(mi.Color3f(colour)), np.array(number)
-    return np.column_stack([np.broadcast_to(column, count) for column in columns])
+    """`count` rows (count, 4) of a colour, grey in mono variants, or a vector, and a number."""
+    three = np.broadcast_to(np.array(colour), (3, count))
+    return np.column_stack([*three, np.broadcast_to(np.array(number), count)])
