@@ -6,7 +6,7 @@ import drjit as dr
 import numpy as np
 import pytest
 
-from brdfkit.distance_fields import box, plane, sphere
+from brdfkit.distance_fields import box, kinds, plane, sphere, torus
 
 GREY = {"type": "diffuse", "reflectance": 0.5}
 BALL = {"type": "sphere", "center": [2, 0, 3], "radius": 0.6}
@@ -23,10 +23,10 @@ def lit(shape):
     return {**shape, "emitter": {"type": "area", "radiance": 10.0}}
 
 
-def scene(mi, node, light, size=24, **integrator):
+def scene(mi, node, light, size=24, view=([-1, 0, 0.4], [-0.5, 0, 0]), **integrator):
     """The ground about the origin from above, without what casts the shadow."""
     given = {"bsdf": GREY, "field": node.to_json()}
-    camera = mi.ScalarTransform4f().look_at([-1, 0, 0.4], [-0.5, 0, 0], [0, 0, 1])
+    camera = mi.ScalarTransform4f().look_at(*view, [0, 0, 1])
     film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}}
     return mi.load_dict(
         {
@@ -174,6 +174,71 @@ def test_derivatives_are_those_of_differences(mi, name):
     assert forward == pytest.approx(backward, rel=1e-3)
 
 
+def along(mi, loaded, name, step=None, spp=1024):
+    """How each pixel changes with a parameter, or with a vector's x: by Dr.Jit, or differences."""
+    parameters = mi.traverse(loaded)
+    start = type(parameters[name])(parameters[name])
+
+    def image(x):
+        parameters[name] = start + (mi.Vector3f(x, 0, 0) if dr.size_v(start) == 3 else x)
+        parameters.update()
+        return mi.render(loaded, parameters, spp=spp, seed=1 if step else 0, seed_grad=2)
+
+    if step:
+        return (np.array(image(step), float) - np.array(image(-step)))[:, :, 0] / (2 * step)
+    x = mi.Float(0)
+    dr.enable_grad(x)
+    found = image(x)
+    dr.forward(x)
+    parameters[name] = start
+    return np.array(dr.grad(found), float)[:, :, 0]
+
+
+def test_a_silhouette_moves_as_in_closed_form(mi):
+    """A black disc before a white sky: its area changes by 2πr per radius, its moment by πr²."""
+    size, r = 16, 0.6
+    film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}}
+    black = {"type": "diffuse", "reflectance": 0.0}
+    field = sphere(r).at(0.1, 0, 0).to_json()
+    camera = mi.ScalarTransform4f().look_at([0, 0, 2], [0, 0, 0], [0, 1, 0])
+    loaded = mi.load_dict(
+        {
+            "type": "scene",
+            "integrator": {"type": "distance_field", "field": field, "bsdf": black, "samples": 1},
+            "sensor": {"type": "orthographic", "to_world": camera, "film": film},
+            "sky": {"type": "constant", "radiance": 1.0},
+        }
+    )
+    pixel = 2 / size
+    x = (np.arange(size) + 0.5) * pixel - 1
+    grown = along(mi, loaded, "integrator.translate.sphere.radius").sum() * pixel**2
+    shifted = (x * along(mi, loaded, "integrator.translate.offset")).sum() * pixel**2
+    assert grown == pytest.approx(-2 * np.pi * r, rel=0.05)
+    assert abs(shifted) == pytest.approx(np.pi * r**2, rel=0.05)
+
+
+SEEN = {
+    "a ring before itself": (torus(0.5, 0.2).at(0, 0, 0.5), "translate.torus.tube"),
+    "two that blend": (
+        sphere(0.4).at(0.3, 0, 0.5) | box(0.5).at(-0.2, 0, 0.4).k(0.2),
+        "union.0.translate.sphere.radius",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SEEN)
+def test_a_silhouette_moves_as_by_differences(mi, name):
+    """Before a lit ground, with shadows on both; the sum within 5 %, and pixel by pixel."""
+    solid, parameter = SEEN[name]
+    view = [0, -2.2, 1.8], [0, 0, 0.3]
+    loaded = scene(mi, plane() | solid, lit(BALL), size=16, view=view)
+    parameter = f"integrator.union.1.{parameter}"
+    found = along(mi, loaded, parameter)
+    expected = along(mi, loaded, parameter, step=0.02)
+    assert found.sum() == pytest.approx(expected.sum(), rel=0.05)
+    assert np.abs(found - expected).sum() < 0.2 * np.abs(expected).sum()  # without them 0.5
+
+
 @pytest.mark.parametrize("integrator", ["prb", "prb_projective"])
 def test_mitsuba_has_no_derivative_of_a_shadow(mi, integrator):
     """Of the same ball as a grid that Mitsuba renders; it is out of view, and its shadow is not."""
@@ -205,6 +270,27 @@ def test_mitsuba_has_no_derivative_of_a_shadow(mi, integrator):
 
 
 # Bad input
+
+
+@pytest.mark.quick
+def test_a_field_that_is_no_distance_is_refused(mi, monkeypatch):
+    """Of kinds that a user defines: one that is too steep, far away, and one with holes."""
+    monkeypatch.setattr(kinds, "_KINDS", kinds._KINDS.copy())
+
+    class steep(sphere):
+        def distance(self, p):
+            return 2 * super().distance(p)
+
+    class holed(plane):
+        def distance(self, p):
+            return super().distance(p) + dr.sqrt(p.x)
+
+    for field, said in (
+        (plane() | steep(1).at(30, 0, 1), "field: .*yet its surface is within .* its slope"),
+        (holed(), r"field: the field is nan at \(-.*; a distance is finite"),
+    ):
+        with pytest.raises(RuntimeError, match=said):
+            scene(mi, field, POINT)
 
 
 @pytest.mark.quick

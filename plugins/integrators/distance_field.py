@@ -24,20 +24,28 @@ and disks instead of the spheres about them. `exact`: a ray to every sample; `sh
 A sky, `constant` or `envmap`, is always sampled so.
 
 Derivatives go to all parameters of the field (`mi.traverse` lists them, by the names of
-`field.parameters()`), to bsdfs and to lamps, through what is seen and through soft shadows, where
-Mitsuba's `prb` has none. What appears or vanishes at a silhouette as it moves is missing in them,
-and so are the shadows of `estimated`, `exact` and the sky. There is no light between surfaces; a
-lamp casts no shadow; other shapes of Mitsuba's are refused.
+`field.parameters()`), to bsdfs and to lamps, through what is seen, its silhouettes and soft
+shadows, where Mitsuba's `prb` has none. Silhouettes are taken ε/2 outside of where they are, with
+ε = 2.8 pixels over the root of the samples per pixel. The silhouettes of lamps, and the shadows of
+`estimated`, `exact` and the sky, are missing. The derivative of a shadow is that of its exact
+minimum, whatever `epsilon` is: finite differences of a picture whose `epsilon` is 0.05 are wrong
+instead, at single points by 40 %.
 
-[Bálint et al. 2019]
+A field whose steps are not safe, or that is not finite, is refused, as far as random walks find out
+(`check_steps`). There is no light between surfaces; a lamp casts no shadow; other shapes of
+Mitsuba's are refused.
+
+[Bálint et al. 2019]; [Wang et al. 2024]
 """
 
 from brdfkit.distance_fields import from_json, load
+from brdfkit.distance_fields.checking import check_steps
 from brdfkit.distance_fields.shading.direct_light import SHADINGS, SHADOWS, DirectLight
 from brdfkit.distance_fields.shading.exposed import exposed
 from brdfkit.distance_fields.shading.lamps import lamps_of
 from brdfkit.distance_fields.shading.parts import parts_of
 from brdfkit.distance_fields.shading.seen_point import seen_point
+from brdfkit.distance_fields.shading.silhouettes import near_miss
 from brdfkit.distance_fields.shadows.shadow import DIRECTIONS
 from brdfkit.errors import BrdfkitError
 from brdfkit.host.declared import count, declared, plain_number, text, word
@@ -96,15 +104,27 @@ def define(mi):
             # What lies before them
             end = dr.minimum(shown.t, self.far)
             seen = seen_point(self.now, ray, end, self.precision, active)
-            here = active & seen.found
+            light = dr.select(seen.found, self.reflected(scene, seen, sampler, active), radiance)
+
+            # What comes before them as a silhouette moves
+            if dr.grad_enabled(self.now.distance(ray(0))):
+                end = dr.minimum(seen.si.t, end)
+                miss = near_miss(self.now, ray, end, self.precision, active)
+                with dr.suspend_grad():
+                    front = self.reflected(scene, miss.seen, sampler, active)
+                light = miss.covered(light, front)
+            return mi.depolarizer(light), active, []
+
+        def reflected(self, scene, seen, sampler, active):
+            """The light that a `SeenPoint` sends to the camera."""
+            here, light = active & seen.found, mi.UnpolarizedSpectrum(0)
             bsdf = self.parts.bsdf(self.now, self.larger, seen.si.p)
-            lit = mi.UnpolarizedSpectrum(0)
             for lamp in lamps_of(scene):
-                lit += self.light.by_lamp(lamp, self.now, seen, bsdf, sampler, here)
+                light += self.light.by_lamp(lamp, self.now, seen, bsdf, sampler, here)
             sky = scene.environment()
             if sky is not None:
-                lit += self.light.by_rays(sky, self.now, seen, bsdf, sampler, here)
-            return mi.depolarizer(dr.select(here, lit, radiance)), active, []
+                light += self.light.by_rays(sky, self.now, seen, bsdf, sampler, here)
+            return light
 
         def to_string(self):
             return f"DistanceField[{self.tree}]"
@@ -113,12 +133,18 @@ def define(mi):
 
 
 def field_of(filename, field):
-    """The field of a file, or of a text; `BrdfkitError` where there is none, or are both."""
+    """The field of a file, or of a text; `BrdfkitError` for none, both, and what is no distance."""
     if bool(filename) == bool(field):
         raise BrdfkitError(
             "distance_field: give the field as a filename, or in Python as field.to_json()."
         )
-    return load(resolve_file(filename)) if filename else from_json(field, "distance_field: field")
+    where = filename or "distance_field: field"
+    found = load(resolve_file(filename)) if filename else from_json(field, where)
+    try:
+        check_steps(found)
+    except BrdfkitError as error:
+        raise BrdfkitError(f"{where}: {error}") from error
+    return found
 
 
 def example():

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import drjit as dr
 
+from brdfkit.distance_fields.shading.recorded import recorded
 from brdfkit.distance_fields.shadows import edge, light_cone
 from brdfkit.distance_fields.shadows.by_name import METHODS, SOFT, by_name
 from brdfkit.distance_fields.sphere_tracing import sphere_trace
@@ -69,6 +70,7 @@ class DirectLight:
             visible = found.visible
         return mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * visible
 
+    @recorded
     def shadow_of(self, lamp, field, seen, ds):
         """The cone to a lamp, and the `Shadow` in it.
 
@@ -89,6 +91,7 @@ class DirectLight:
 
         return self.by_samples(emitter, shows, si, bsdf, sampler, active)
 
+    @recorded
     def is_blocked(self, field, seen, ds, active):
         """Whether the ray to a sample of an emitter meets the field."""
         settings = {"lipschitz": field.lipschitz, "precision": seen.ball / 2, "active": active}

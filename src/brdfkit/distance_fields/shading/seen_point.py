@@ -16,6 +16,7 @@ import drjit as dr
 from brdfkit.distance_fields.cone_tracing import cone_trace
 from brdfkit.distance_fields.hits import reattach
 from brdfkit.distance_fields.normals import normal
+from brdfkit.distance_fields.shading.recorded import recorded
 
 FINEST = 1e-3  # [unit]: half of the differences of normals; single precision allows no less
 
@@ -34,6 +35,7 @@ class SeenPoint:
     found: Any
 
 
+@recorded
 def seen_point(field, ray, far, precision, active):
     """The `SeenPoint` of each `mi.RayDifferential3f`, with derivatives by the field's parameters.
 
