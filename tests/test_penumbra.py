@@ -393,6 +393,49 @@ def test_derivatives_are_those_of_the_minimum(name, method):
     assert derivative == pytest.approx((exact(at + 1e-3) - exact(at - 1e-3)) / 2e-3, rel=0.01)
 
 
+class Ring(Field):
+    """A torus about its axis, not convex: many rays pass through it twice, or by its two sides."""
+
+    is_convex = False
+
+    def __init__(self, centre, axis, radius, tube):
+        self.centre, self.axis, self.radius, self.tube = centre, axis, radius, tube
+
+    def distance(self, p):
+        q = p - self.centre
+        z = dr.dot(q, self.axis)
+        across = dr.safe_sqrt(dr.squared_norm(q) - z * z)
+        return dr.sqrt(dr.square(across - self.radius) + z * z) - self.tube
+
+
+@pytest.mark.parametrize("direction", "AB")
+def test_derivatives_of_rings_are_those_of_the_minimum(direction):
+    """Though ε is large; there differences of the march itself are wrong, often in some rays."""
+    rng, many = np.random.default_rng(0), 2000
+    centre = vectors(np.column_stack([rng.normal(0, 0.5, (many, 2)), rng.uniform(1.2, 5, many)]))
+    axis = dr.normalize(vectors(rng.normal(size=(many, 3))))
+    radius, tube = rng.uniform(0.2, 1, many), rng.uniform(0.1, 0.4, many)
+    cone = light_cone(P(0, 0, 0) + 0 * centre, P(0, 0, 6), 1.0, 0.02)
+
+    def share(method, x, *settings):
+        ring = Ring(centre, axis, Float(radius) + x, Float(tube * radius))
+        return method(ring, cone, *settings).visible
+
+    def differences(method, step, *settings):
+        ends = (np.array(share(method, x, *settings)) for x in (step, -step))
+        return np.subtract(*ends) / (2 * step)
+
+    x = dr.zeros(Float, many)
+    dr.enable_grad(x)
+    found = share(linear, x, 1 / 20, direction)
+    dr.forward(x)
+    expected = differences(dense, 1e-4)
+    rough = differences(linear, 1e-2, 1 / 20, direction)
+    scale = np.abs(expected).sum()
+    assert np.abs(np.array(dr.grad(found)) - expected).sum() < 0.005 * scale
+    assert np.abs(rough - expected).sum() > 0.02 * scale
+
+
 # Backends, precisions, and what is refused
 
 
