@@ -72,6 +72,29 @@ def test_light_falls_as_in_mitsuba(mi):
         assert found.mean() == pytest.approx(known.mean(), rel=tolerance), (lamp["type"], settings)
 
 
+@pytest.mark.parametrize("bsdf", ["conductor", "roughconductor", "ggx"])
+def test_a_sky_with_a_sun_in_what_shines(mi, bsdf):
+    """A ball under a map, without its lamp: as in Mitsuba's `direct`, also where it is a mirror."""
+    texels = np.full((16, 32, 3), 0.2, np.float32)
+    texels[4:7, 8:16] = 4
+    sky = {"type": "envmap", "bitmap": mi.Bitmap(texels)}
+    shiny = {"type": bsdf, "alpha": 0.05} if bsdf == "roughconductor" else {"type": bsdf}
+    view = [0, -3, 2], [0, 0, 0]
+    given = {"view": view, "bsdf": shiny, "samples": 1}
+    ours = scene(mi, sphere(1), sky, **given)
+    known = mi.load_dict(
+        {
+            "type": "scene",
+            "integrator": {"type": "direct"},
+            "sensor": ours.sensors()[0],
+            "sky": sky,
+            "ball": {"type": "sphere", "bsdf": shiny},
+        }
+    )
+    found, known = (np.array(mi.render(s, spp=1024))[8:16, 8:16] for s in (ours, known))
+    assert found.mean() == pytest.approx(known.mean(), rel=0.02)
+
+
 def test_shadows_beside_the_truth(mi):
     """Of the light that a method finds too much or too little; the rivals are far too dark."""
     light = lit(BALL)

@@ -21,7 +21,7 @@ of what is in the way.
 sphere, A cosθ / d² of other lamps) and the share: no noise. `estimated`: `samples` samples of the
 lamp, of which the shadow's edge lets some through: highlights in the lamp's shape, and rectangles
 and disks instead of the spheres about them. `exact`: a ray to every sample; `shadow` is not asked.
-A sky, `constant` or `envmap`, is always sampled so.
+A sky, `constant` or `envmap`, is always sampled so, and by the bsdf as well.
 
 Derivatives go to all parameters of the field (`mi.traverse` lists them, by the names of
 `field.parameters()`), to bsdfs and to lamps, through what is seen, its silhouettes and soft
@@ -32,7 +32,8 @@ minimum, whatever `epsilon` is: finite differences of a picture whose `epsilon` 
 instead, at single points by 40 %.
 
 A field whose steps are not safe, or that is not finite, is refused, as far as random walks find out
-(`check_steps`). There is no light between surfaces; a lamp casts no shadow; other shapes of
+(`check_steps`); the bound of the Mandelbulb is measured, not proven, so that rays and shadows may
+miss some detail of it. There is no light between surfaces; a lamp casts no shadow; other shapes of
 Mitsuba's are refused.
 
 [Bálint et al. 2019]; [Wang et al. 2024]
@@ -123,7 +124,7 @@ def define(mi):
                 light += self.light.by_lamp(lamp, self.now, seen, bsdf, sampler, here)
             sky = scene.environment()
             if sky is not None:
-                light += self.light.by_rays(sky, self.now, seen, bsdf, sampler, here)
+                light += self.light.by_sky(sky, self.now, seen, bsdf, sampler, here)
             return light
 
         def to_string(self):

@@ -102,16 +102,58 @@ class DirectLight:
         """The mean over samples of an emitter of those for which `shows(ds)`."""
         import mitsuba as mi
 
-        def one(i, sampler, total):
+        def one(sampler):
             ds, light = emitter.sample_direction(si, sampler.next_2d(active), active)
             value = bsdf.eval(mi.BSDFContext(), si, si.to_local(ds.d), active)
             found = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light)
-            return i + 1, sampler, total + dr.select(shows(ds), found, 0)
+            return dr.select(shows(ds), found, 0)
+
+        return self.mean(one, sampler, active)
+
+    def by_sky(self, sky, field, seen, bsdf, sampler, active):
+        """The same for an environment, and as many samples of the BSDF, weighted by balance."""
+        import mitsuba as mi
+
+        si, context = seen.si, mi.BSDFContext()
+
+        def shows(ds):
+            return (self.shadow == "none") | ~self.is_blocked(field, seen, ds, active)
+
+        def one(sampler):
+            ds, light = sky.sample_direction(si, sampler.next_2d(active), active)
+            wo = si.to_local(ds.d)
+            value = mi.unpolarized_spectrum(bsdf.eval(context, si, wo, active))
+            share = ds.pdf / (ds.pdf + bsdf.pdf(context, si, wo, active))
+            by_light = value * mi.unpolarized_spectrum(light) * dr.detach(share)
+            total = dr.select(shows(ds), by_light, 0)
+
+            with dr.suspend_grad():
+                drawn, weight = bsdf.sample(
+                    context, si, sampler.next_1d(active), sampler.next_2d(active), active
+                )
+                there = dr.zeros(mi.SurfaceInteraction3f, dr.width(si.p))
+                there.wavelengths, there.wi = si.wavelengths, -si.to_world(drawn.wo)
+                ds = dr.zeros(mi.DirectionSample3f, dr.width(si.p))
+                ds.d, ds.dist = -there.wi, dr.inf
+                mirror = mi.has_flag(drawn.sampled_type, mi.BSDFFlags.Delta)
+                other = dr.select(mirror, 0, sky.pdf_direction(si, ds, active))
+                found = (drawn.pdf > 0) & shows(ds)
+            value = mi.unpolarized_spectrum(bsdf.eval(context, si, drawn.wo, active))
+            ratio = dr.select(mirror, mi.unpolarized_spectrum(weight), value / drawn.pdf)
+            radiance = mi.unpolarized_spectrum(sky.eval(there, active))
+            by_bsdf = ratio * radiance * drawn.pdf / (drawn.pdf + other)
+            return total + dr.select(found, by_bsdf, 0)
+
+        return self.mean(one, sampler, active)
+
+    def mean(self, one, sampler, active):
+        """The mean of `one(sampler)` over all samples."""
+        import mitsuba as mi
 
         _, _, total = dr.while_loop(
             (mi.UInt32(0), sampler, mi.UnpolarizedSpectrum(0)),
             lambda i, sampler, total: active & (i < self.samples),
-            one,
+            lambda i, sampler, total: (i + 1, sampler, total + one(sampler)),
             max_iterations=self.samples,
         )
         return total / self.samples
