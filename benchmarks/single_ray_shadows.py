@@ -36,7 +36,6 @@ RESULTS = Path(__file__).with_suffix(".json")
 LANES, TRUE_RAYS, HIT = 4096, 2048, 1e-4  # random scenes of a kind, and rays of the truth
 SIZE, FRAME_RAYS = 160, 512  # pixels along a side of a frame, and rays of its truth
 RAYS = 1, 2, 4, 8, 16, 32, 64, 128
-EPSILONS = 1 / 10, 1 / 20, 1 / 30, 1 / 256
 MARCHES = {m.__name__: m for m in (base, linear, discrete, convex)}
 REPEATS = 8
 
@@ -106,40 +105,12 @@ def measure_frame(scene, radius):
     return compare(field, cone, np.array(monte_carlo(field, cone, FRAME_RAYS, HIT).visible))
 
 
-def measure_order(scene):
-    """The marches of both directions and every ε in a frame."""
-    field, cone = scene(), ground_scenes.ground(SIZE, 1.0)
-    calls = {
-        f"{name} 1/{round(1 / e)} {direction}": partial(march, field, cone, e, direction)
-        for name, march in MARCHES.items()
-        for e in EPSILONS
-        for direction in "AB"
-    }
-    return {k: {"evaluations": n, "seconds": s} for k, (_, n, s) in timed(calls).items()}
-
-
-def measure_epsilons(radius):
-    """The share of a frame where `linear` is more than 1/100 from τ(r_min), by 1/ε."""
-    field, cone = ground_scenes.complicated(), ground_scenes.ground(SIZE, radius)
-    model = np.array(dense(field, cone, 4000).visible)
-    found = {}
-    for n in (2, 4, 8, 16, 32, 64, 128, 256):
-        error = np.abs(np.array(linear(field, cone, 1 / n).visible) - model)
-        found[str(n)] = float(np.mean(error > 0.01))
-    return found
-
-
 def parts():
     """Name → what measures it."""
     found = {f"occluder {k.__name__}": partial(measure_occluder, k) for k in occluders.KINDS}
-    scenes = ground_scenes.cube, ground_scenes.simple, ground_scenes.complicated
-    for scene in scenes:
+    for scene in (ground_scenes.cube, ground_scenes.simple, ground_scenes.complicated):
         for radius in (0.2, 1.0):
             found[f"frame {scene.__name__} {radius}"] = partial(measure_frame, scene, radius)
-    for scene in scenes[1:]:
-        found[f"order {scene.__name__}"] = partial(measure_order, scene)
-    for radius in (0.25, 0.5, 1.0, 2.0, 4.0):
-        found[f"epsilon {radius}"] = partial(measure_epsilons, radius)
     return found | {"gradients": shadow_gradients.measure}
 
 

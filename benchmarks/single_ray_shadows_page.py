@@ -1,4 +1,4 @@
-"""The page of `single_ray_shadows.py`: its tables beside those of the thesis."""
+"""The page of `single_ray_shadows.py`."""
 
 from pathlib import Path
 
@@ -12,23 +12,6 @@ SHOWN = (
     "monte_carlo 4", "monte_carlo 16", "monte_carlo 64",
 )  # fmt: skip
 MARCHES = "base", "linear", "discrete", "convex"
-# Tables 6.1 and 6.2 of the thesis [ms of a frame], columns as MARCHES, and a frame without shadows
-PRINTED = {
-    "simple": (0.7005, {
-        "1/10 A": (3.2398, 1.4602, 2.1093, 1.1499), "1/10 B": (5.0921, 1.1903, 1.7534, 1.0872),
-        "1/20 A": (4.9836, 1.8421, 3.1535, 1.5558), "1/20 B": (5.5431, 1.5759, 2.7334, 1.4943),
-        "1/30 A": (5.8127, 2.2051, 4.1393, 1.9534), "1/30 B": (5.7696, 1.9465, 3.7289, 1.8854),
-        "1/256 A": (34.153, 9.2220, 25.495, 10.233), "1/256 B": (37.060, 9.6777, 25.546, 10.547),
-    }),
-    "complicated": (18.686, {
-        "1/10 A": (29.429, 27.769, 32.197, 32.188), "1/10 B": (26.889, 25.226, 31.966, 31.870),
-        "1/20 A": (33.607, 30.304, 40.233, 40.203), "1/20 B": (31.387, 27.717, 40.290, 40.309),
-        "1/30 A": (38.011, 32.760, 47.382, 47.364), "1/30 B": (36.018, 30.240, 48.028, 47.961),
-        "1/256 A": (136.24, 90.70, 171.89, 171.47), "1/256 B": (143.22, 92.02, 182.56, 182.48),
-    }),
-}  # fmt: skip
-RIGHT = {"0.25": 16, "0.5": 16, "1.0": 32, "2.0": 32, "4.0": 64}  # section 6.3, by light radius
-FEW = 1e-3  # of the pixels may be off by more than 1/100
 
 INTRODUCTION = """# Errors of single-ray shadows
 
@@ -36,7 +19,8 @@ Made by `python benchmarks/single_ray_shadows.py`. Errors are root mean squares 
 light that is seen, from the light that truly arrives: 2048 rays (512 in frames), or the closed form
 of a half-plane. Times are ratios within one run. The marches are those of [Bálint et al. 2019], who
 published no errors; `quilez` and `aaltonen` are those of [Quílez 2010] and [Aaltonen 2018].
-What the errors look like: [the gallery](distance_fields.md).
+What the errors look like: [the gallery](distance_fields.md); what the thesis claims:
+[its page](reproduce/balint2019.md).
 
 ![Errors over evaluations, and shadows on a ground](single_ray_shadows.png)
 """
@@ -75,17 +59,6 @@ EQUAL = """## At equal error
 How many times as long as the method rays take that have its error (interpolated between 1, 2, 4 ...
 128 rays).
 """
-ORDER = """## The order of the variants
-
-Evaluations and time over those of `linear` with the same ε and direction; printed: times of the
-thesis's shadows alone, on a GPU, its tables 6.1 and 6.2 less the frame without shadows. Below, the
-evaluations of `linear` in direction B over those in A.
-"""
-EPSILON = """## The right ε
-
-The largest ε = 1/2, 1/4 ... at which less than 1 of 1000 pixels of the complicated frame is more
-than 1/100 from τ(r_min), by the radius of the light. The thesis judged pictures by eye.
-"""
 GRADIENTS = """## Derivatives
 
 By Dr.Jit (ε = 1/20), by finite differences of the same method (ε = 1/256, 1/2000), and by
@@ -98,8 +71,7 @@ def write(results):
     parts = [
         INTRODUCTION,
         OCCLUDERS, occluders(results), MODEL, model(results), FRAMES, frames(results),
-        EQUAL, equal(results), ORDER, order(results), EPSILON, epsilons(results),
-        GRADIENTS, gradients(results),
+        EQUAL, equal(results), GRADIENTS, gradients(results),
     ]  # fmt: skip
     PAGE.write_text("\n".join(parts), encoding="utf-8")
     figure.draw(results).savefig(PAGE.with_suffix(".png"), dpi=90)
@@ -166,35 +138,6 @@ def times_faster(rows, label):
     at = np.interp(-np.log(own["rmse"]), -error, seconds)
     beyond = "> " if np.log(own["rmse"]) < error.min() else ""
     return f"{beyond}{np.exp(at) / own['seconds']:.1f}"
-
-
-def order(results):
-    rows, directions = [], []
-    for scene, measured in named(results, "order").items():
-        bare, printed = PRINTED[scene]
-        for setting, times in printed.items():
-            linear = measured[f"linear {setting}"]
-            for k, march in enumerate(MARCHES):
-                if march == "linear":
-                    continue
-                own = measured[f"{march} {setting}"]
-                ratios = [own[key] / linear[key] for key in ("evaluations", "seconds")]
-                ratios.append((times[k] - bare) / (times[1] - bare))
-                rows.append([scene, setting, march, *(f"{r:.2f}" for r in ratios)])
-            if setting.endswith("A"):
-                other = measured[f"linear {setting[:-1]}B"]["evaluations"] / linear["evaluations"]
-                ours_and_theirs = other, (printed[setting[:-1] + "B"][1] - bare) / (times[1] - bare)
-                directions.append([scene, setting[:-2], *(f"{r:.2f}" for r in ours_and_theirs)])
-    head = ["scene", "ε, direction", "", "evaluations", "time", "printed"]
-    return table(head, rows) + "\n" + table(["scene", "ε", "B over A", "printed"], directions)
-
-
-def epsilons(results):
-    rows = []
-    for radius, shares in named(results, "epsilon").items():
-        right = min((int(n) for n, share in shares.items() if share < FEW), default=None)
-        rows.append([radius, f"1/{right}", f"1/{RIGHT[radius]}"])
-    return table(["radius", "ours", "printed"], rows)
 
 
 def gradients(results):

@@ -11,8 +11,8 @@ from brdfkit.lighting.environment_map import cell_power
 from brdfkit.picture_errors.psnr import psnr
 from brdfkit.reproducing.claims import Claim, verdict
 from brdfkit.reproducing.ergun2015.probes import read_probes
-from brdfkit.reproducing.ergun2015.timing import least_seconds
 from brdfkit.reproducing.page import Section, Table
+from brdfkit.reproducing.timing import least_seconds
 
 SECONDS = 60
 BLOCKS, SIZE, SPP, REFERENCE = 4096, 96, 16, 4096

@@ -13,7 +13,7 @@ from brdfkit.colours import to_srgb
 from brdfkit.picture_errors.psnr import psnr
 from brdfkit.rendering.environment import environment, light_by
 from brdfkit.reproducing.ergun2015.shapes import find_meshes
-from brdfkit.reproducing.ergun2015.timing import least_seconds
+from brdfkit.reproducing.timing import least_seconds
 from brdfkit.visibility.decomposition import decompose
 from brdfkit.visibility.height_fields import HeightFields
 from brdfkit.visibility.occluders import Occluders

@@ -20,8 +20,8 @@ from brdfkit.reproducing.ergun2015.convex_study import (
     shown,
     swept,
 )
-from brdfkit.reproducing.ergun2015.timing import cpu_seconds
 from brdfkit.reproducing.page import Picture, Section
+from brdfkit.reproducing.timing import cpu_seconds
 
 SECONDS = 30
 MOVES, FRAMES = 20, 6

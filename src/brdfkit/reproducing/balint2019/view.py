@@ -1,0 +1,68 @@
+"""What a camera sees of a scene: points with empty balls about them, from which shadows begin."""
+
+from functools import cached_property
+
+import drjit as dr
+import numpy as np
+from drjit.llvm import Array3f, Float, UInt
+
+from brdfkit.distance_fields import cone_trace, normal, pixel_tangent
+from brdfkit.distance_fields.shadows import light_cone
+
+FAR, PRECISION = 100.0, 1e-4
+STEP = 1e-3  # of the differences of normals
+SKY, AMBIENT = 0.8, 0.15  # of pictures
+
+
+class View:
+    """The points of a `Scene` that a square picture of `size` pixels by side sees."""
+
+    def __init__(self, scene, size):
+        self.scene, self.size = scene, size
+        eye, d, tangent = (
+            Array3f(scene.eye),
+            directions(scene, size),
+            pixel_tangent(scene.fov, size),
+        )
+        field = scene.field
+        how = {"lipschitz": field.lipschitz, "tangent": tangent, "precision": PRECISION}
+        hit = cone_trace(field.distance, eye, d, FAR, **how)
+        self.seen = np.array(hit.found)
+        lanes = dr.compress(hit.found)
+        self.points = dr.gather(Array3f, eye + d * hit.t, lanes)
+        self.ball = dr.gather(Float, hit.distance, lanes)
+        dr.eval(self.points, self.ball)
+
+    def cones(self, radius):
+        """The cones from all points to a light of this radius."""
+        cones = light_cone(self.points, Array3f(self.scene.light), radius, self.ball)
+        dr.eval(cones)
+        return cones
+
+    @cached_property
+    def facing(self):
+        """The cosine between normal and light (n,), 0 where a point looks away."""
+        n = normal(self.scene.field.distance, self.points, dr.maximum(self.ball, STEP))
+        l = dr.normalize(Array3f(self.scene.light) - self.points)
+        return np.array(dr.maximum(dr.dot(n, l), 0))
+
+    def shaded(self, visible):
+        """A picture (size, size) of grey surfaces, by the shares (n,) of the light they see."""
+        return self.image(AMBIENT + (1 - AMBIENT) * self.facing * visible, SKY)
+
+    def image(self, values, other=np.nan):
+        """Values of the points as an image (size, size), `other` where there is none."""
+        found = np.full(self.seen.shape, other)
+        found[self.seen] = values
+        return found.reshape(self.size, self.size)
+
+
+def directions(scene, size):
+    """The directions of the rays through the middles of pixels, in rows from above."""
+    i = dr.arange(UInt, size * size)
+    x = (Float(i % size) + 0.5) / size * 2 - 1
+    y = 1 - (Float(i // size) + 0.5) / size * 2
+    ahead = dr.normalize(Array3f(scene.target) - Array3f(scene.eye))
+    right = dr.normalize(dr.cross(ahead, Array3f(0, 0, 1)))
+    up = dr.cross(right, ahead)
+    return dr.normalize(ahead + (right * x + up * y) * np.tan(np.radians(scene.fov) / 2))
