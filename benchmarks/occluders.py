@@ -4,9 +4,10 @@ Every lane is another scene: a cone along z, and an occluder in its way that cov
 """
 
 import numpy as np
-from drjit.llvm import Float
-from shadow_fields import Box, HalfSpace, Sphere, Union, vector
+from drjit.llvm import Array3f, Float
 
+from brdfkit.distance_fields import box, plane
+from brdfkit.distance_fields import sphere as ball
 from brdfkit.distance_fields.shadows import LightCone
 
 LENGTH, START = 6.0, 0.02  # of the cones, and their first radius
@@ -32,60 +33,53 @@ class Lanes:
     def radius(self, t):
         return START + t * self.tan
 
-    def frame(self):
-        """Unit vectors: across the axis in a random direction, across both, along the axis."""
-        phi = self.uniform(0, 2 * np.pi)
-        cos, sin, zero = np.cos(phi), np.sin(phi), 0 * phi
-        return [
-            np.stack(v, 1) for v in ((cos, sin, zero), (-sin, cos, zero), (zero, zero, zero + 1))
-        ]
+    def azimuth(self):
+        """Random directions across the axis [rad]."""
+        return self.uniform(0, 2 * np.pi)
 
-    def place(self, t, across, direction):
-        """The point at t, this far from the axis in a `direction`."""
-        return direction * across[:, None] + np.stack([0 * t, 0 * t, t], 1)
+    def place(self, t, across, azimuth):
+        """The point at t, this far from the axis."""
+        return vector(np.stack([across * np.cos(azimuth), across * np.sin(azimuth), t], 1))
 
     def wall(self, t, edge, thickness):
         """A wall across the axis at t, with a straight edge at `edge` radii from the axis."""
-        e = self.frame()
-        centre = self.place(t, 3 + edge * self.radius(t), e[0])
-        return Box(centre, np.stack([0 * t + 3, 0 * t + 9, thickness], 1), e)
+        azimuth, size = self.azimuth(), np.stack([0 * t + 6, 0 * t + 18, 2 * thickness], 1)
+        centre = self.place(t, 3 + edge * self.radius(t), azimuth)
+        return box(vector(size)).rotate(number(azimuth)).translate(centre)
 
     def sphere(self, t, radius):
         """A sphere whose rim is between 1.2 radii of the cone beyond the axis and 1 before it."""
         across = radius + self.uniform(-1.2, 1) * self.radius(t)
-        return Sphere(self.place(t, across, self.frame()[0]), radius)
+        return ball(number(radius)).translate(self.place(t, across, self.azimuth()))
 
 
 def half_plane(lanes):
-    """A half-space through the apex of the cone, whose share is known: `true_half_plane`."""
+    """A half-space whose plane goes through the apex of the cone; its share is τ(`lanes.edge`)."""
     lanes.edge = lanes.uniform(-1, 1)
-    e, beta = lanes.frame(), np.arctan(lanes.edge * lanes.tan)[:, None]
-    normal = e[0] * np.cos(beta) + e[2] * np.sin(beta)
-    return HalfSpace(normal, (-normal[:, 2] * START / lanes.tan).astype(np.float32))
+    azimuth, beta = lanes.azimuth(), np.arctan(lanes.edge * lanes.tan)
+    across = np.cos(azimuth) * np.cos(beta), np.sin(azimuth) * np.cos(beta)
+    normal = vector(np.stack([*across, np.sin(beta)], 1))
+    return plane(normal).at(0, 0, number(-START / lanes.tan))
 
 
 def edge(lanes):
     """The long edge of a bar, turned about itself at random."""
-    e, turn = lanes.frame(), lanes.uniform(0, np.pi / 2)[:, None]
-    axes = [
-        e[0] * np.cos(turn) + e[2] * np.sin(turn),
-        e[1],
-        e[2] * np.cos(turn) - e[0] * np.sin(turn),
-    ]
+    azimuth, turn = lanes.azimuth(), lanes.uniform(0, np.pi / 2)
     half = np.stack([lanes.uniform(0.3, 0.6), np.full(lanes.n, 9.0), lanes.uniform(0.3, 0.6)], 1)
-    reach = half[:, 0] * np.cos(turn[:, 0]) + half[:, 2] * np.sin(turn[:, 0])
+    reach = half[:, 0] * np.cos(turn) + half[:, 2] * np.sin(turn)
     t = lanes.uniform(1, 5)
-    return Box(lanes.place(t, reach + lanes.uniform(-1, 1) * lanes.radius(t), e[0]), half, axes)
+    centre = lanes.place(t, reach + lanes.uniform(-1, 1) * lanes.radius(t), azimuth)
+    turned = box(vector(2 * half)).rotate(number(-turn), (0, 1, 0))
+    return turned.rotate(number(azimuth)).translate(centre)
 
 
 def corner(lanes):
     """The right-angled corner of a plate, pointing to the axis."""
-    e = lanes.frame()
-    axes = [(e[0] + e[1]) / np.sqrt(2), (e[0] - e[1]) / np.sqrt(2), e[2]]
-    t = lanes.uniform(1, 5)
-    half = np.stack([np.full(lanes.n, 3.0), np.full(lanes.n, 3.0), lanes.uniform(0.1, 0.4)], 1)
+    azimuth, t = lanes.azimuth(), lanes.uniform(1, 5)
+    size = np.stack([np.full(lanes.n, 6.0), np.full(lanes.n, 6.0), lanes.uniform(0.2, 0.8)], 1)
     across = 3 * np.sqrt(2) + lanes.uniform(-0.8, 0.8) * lanes.radius(t)
-    return Box(lanes.place(t, across, e[0]), half, axes)
+    turned = box(vector(size)).rotate(number(azimuth + np.pi / 4))
+    return turned.translate(lanes.place(t, across, azimuth))
 
 
 def sphere(lanes):
@@ -97,22 +91,21 @@ def small_sphere(lanes):
     """A sphere that lies within the cone, about half as wide."""
     t = lanes.uniform(1, 5)
     across = lanes.uniform(0, 1) * lanes.radius(t)
-    return Sphere(
-        lanes.place(t, across, lanes.frame()[0]), lanes.uniform(0.3, 0.8) * lanes.radius(t)
-    )
+    centre = lanes.place(t, across, lanes.azimuth())
+    return ball(number(lanes.uniform(0.3, 0.8) * lanes.radius(t))).translate(centre)
 
 
 def two_walls(lanes):
     """The edges of two walls, one behind the other: Fig. 6.19."""
     near, far = lanes.uniform(1, 2.5), lanes.uniform(3, 5)
     thick = np.full(lanes.n, 0.2)
-    walls = (lanes.wall(t, lanes.uniform(-0.7, 0.7), thick) for t in (near, far))
-    return Union(*walls)
+    a, b = (lanes.wall(t, lanes.uniform(-0.7, 0.7), thick) for t in (near, far))
+    return a | b
 
 
 def two_spheres(lanes):
     """Two spheres, anywhere."""
-    return Union(*(sphere(lanes) for _ in range(2)))
+    return sphere(lanes) | sphere(lanes)
 
 
 def thin_wall(lanes):
@@ -123,10 +116,21 @@ def thin_wall(lanes):
 
 def thin_rod(lanes):
     """A rod across the cone, narrower than it."""
-    t, e = lanes.uniform(1, 5), lanes.frame()
+    t, azimuth = lanes.uniform(1, 5), lanes.azimuth()
     rho = lanes.radius(t)
-    half = [lanes.uniform(0.1, 0.4) * rho, np.full(lanes.n, 9.0), lanes.uniform(0.1, 0.4) * rho]
-    return Box(lanes.place(t, lanes.uniform(0, 1) * rho, e[0]), np.stack(half, 1), e)
+    size = [lanes.uniform(0.2, 0.8) * rho, np.full(lanes.n, 18.0), lanes.uniform(0.2, 0.8) * rho]
+    centre = lanes.place(t, lanes.uniform(0, 1) * rho, azimuth)
+    return box(vector(np.stack(size, 1))).rotate(number(azimuth)).translate(centre)
+
+
+def number(values):
+    """Numbers (n,) as an array of Dr.Jit's."""
+    return Float(np.ascontiguousarray(values, np.float32))
+
+
+def vector(values):
+    """Points (n, 3) as a vector of Dr.Jit's."""
+    return Array3f(*(number(column) for column in np.transpose(values)))
 
 
 KINDS = [

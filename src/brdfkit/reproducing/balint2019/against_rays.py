@@ -40,7 +40,7 @@ def run(sources, report):
     tables = [error_table(found), equal_table(found)]
     caption = (
         f"The cube and the light of radius {RADII[1]:g}. Below: the difference from the first, "
-        "±0.3: dark is too dark."
+        "±0.3: black is too dark, white too bright."
     )
     picture = Picture("against_rays", draw(large), caption)
     return Section("One march against many rays", TEXT, claims, tables, [picture])

@@ -52,7 +52,7 @@ class View:
 
     def image(self, values, other=np.nan):
         """Values of the points as an image (size, size), `other` where there is none."""
-        found = np.full(self.seen.shape, other)
+        found = np.full(self.seen.shape, other, float)
         found[self.seen] = values
         return found.reshape(self.size, self.size)
 
