@@ -32,7 +32,7 @@ MEASURED_EVERY = 11  # cases; tracing slows them
 def cases(kind):
     """How many seeds a small file gets with each mutation: a large one is read slowly."""
     size = sum(len(CORPUS[k][1]) for k in {kind, kind.replace(" table", "")})
-    return 100 if size < 10_000 else 25 if size < 1_000_000 else 4
+    return 70 if size < 10_000 else 17 if size < 1_000_000 else 4
 
 
 def put(folder, kind, data):
