@@ -11,12 +11,13 @@ import brdfkit as bk
 from brdfkit.checks.plugin_subject import example
 from brdfkit.cli import main
 from brdfkit.geometry.directions import from_angles
+from brdfkit.geometry.latitude_rows import solid_angles
 from brdfkit.lighting import paraboloid_levels as levels
 from brdfkit.lighting.filtered_map import FilteredMap, LobeMaps, Mips, picture
 from brdfkit.lighting.irradiance import irradiance
 from brdfkit.lighting.lobe_light import LobeLight
 from brdfkit.lighting.scene_bsdfs import has_matte_part, is_isotropic, is_same_everywhere
-from brdfkit.lighting.sphere_filter import azimuths, convolve, row_angles, row_solid_angles
+from brdfkit.lighting.sphere_filter import azimuths, convolve, row_angles
 from brdfkit.picture_errors.psnr import psnr
 from brdfkit.rendering.environment import environment
 from brdfkit.rendering.kept_materials import _measured_bsdf
@@ -39,7 +40,9 @@ def quadrature(axes, kernel, height=256):
     """∫ sky kernel(axis·ω) dω (n, 3), by points on a fine grid."""
     theta, phi = np.meshgrid(row_angles(height), azimuths(2 * height), indexing="ij")
     w = from_angles(theta, phi).reshape(-1, 3)
-    light = sky(w) * np.repeat(row_solid_angles(height, 2 * height), 2 * height)[:, None]
+    light = (
+        sky(w) * np.repeat(solid_angles(height, 2 * height, at_poles=False), 2 * height)[:, None]
+    )
     return np.stack([kernel(w @ axis) @ light for axis in axes])
 
 

@@ -6,6 +6,7 @@ Of maps in the convention of Mitsuba, by latitude and longitude with rows at the
 import numpy as np
 
 from brdfkit.environments.conventions import convention
+from brdfkit.geometry import latitude_rows
 
 
 def directions(height, width, dx=0.0, dy=0.0):
@@ -19,9 +20,8 @@ def directions(height, width, dx=0.0, dy=0.0):
 
 
 def solid_angles(height, width):
-    """The solid angles [sr] (height, width) of the pixels; the outermost rows are at the poles."""
-    edges = np.clip(np.arange(height + 1) - 0.5, 0, height - 1) / (height - 1) * np.pi
-    rows = 2 * np.pi / width * -np.diff(np.cos(edges))
+    """The solid angles [sr] (height, width) of the pixels."""
+    rows = latitude_rows.solid_angles(height, width, at_poles=True)
     return np.repeat(rows[:, None], width, axis=1)
 
 

@@ -7,6 +7,8 @@ sum over the rows is exact up to the map's own resolution, at the poles too.
 
 import numpy as np
 
+from brdfkit.geometry.latitude_rows import solid_angles
+
 ROUNDING = 1e-7  # of the largest: frequencies that count for nothing
 
 
@@ -28,15 +30,6 @@ def azimuths(width):
     return (np.arange(width) + 0.5) * 2 * np.pi / width
 
 
-def row_solid_angles(height, width):
-    """Solid angle (height,) [sr] of a pixel of each row.
-
-    >>> row_solid_angles(2, 1).sum() / np.pi
-    4.0
-    """
-    return -np.diff(np.cos(np.arange(height + 1) * np.pi / height)) * 2 * np.pi / width
-
-
 def convolve(picture, kernel, reach):
     """∫ picture(ω') kernel(ω·ω') dω' at the pixels ω of the `picture` (height, width, channels).
 
@@ -51,7 +44,7 @@ def convolve(picture, kernel, reach):
     theta, rows = row_angles(height), int(np.ceil(reach / np.pi * height))
     sin, cos = np.sin(theta)[:, None], np.cos(theta)[:, None]
     turn = np.cos(np.arange(width // 2 + 1) * 2 * np.pi / width)  # half a turn: the kernel is even
-    light = rfft(picture * row_solid_angles(height, width)[:, None, None], axis=1)
+    light = rfft(picture * solid_angles(height, width, at_poles=False)[:, None, None], axis=1)
     light = light.view(float)  # real and imaginary parts side by side: the weights are real
     found = np.zeros_like(light)
     for i in range((height + 1) // 2):
@@ -74,6 +67,6 @@ def halve(picture):
     (2, 4, 1)
     """
     height, width = picture.shape[:2]
-    area = row_solid_angles(height, width)[:, None, None]
+    area = solid_angles(height, width, at_poles=False)[:, None, None]
     four = (picture * area).reshape(height // 2, 2, width // 2, 2, -1).sum(axis=(1, 3))
     return four / (4 * area.reshape(-1, 2, 1, 1).mean(axis=1))

@@ -5,6 +5,7 @@ import numpy as np
 from brdfkit.colours import luminance
 from brdfkit.environments.map_files import load_light
 from brdfkit.errors import BrdfkitError
+from brdfkit.geometry.latitude_rows import projected_solid_angles
 
 ILLUMINANCE = 1.0  # of the ground, as from sky and softbox
 
@@ -42,11 +43,7 @@ def on_ground(light, reflectance):
 
 def _received(rgb):
     """The irradiance (3,) of the ground by a map (height, width, 3)."""
-    height, width = rgb.shape[:2]
-    # the integral of cos theta over a pixel, as far as it lies above the horizon
-    edges = np.minimum(np.arange(height + 1) / height * np.pi, np.pi / 2)
-    projected = np.pi / width * np.diff(np.sin(edges) ** 2)
-    return projected @ rgb.astype(float).sum(axis=1)
+    return projected_solid_angles(*rgb.shape[:2]) @ rgb.astype(float).sum(axis=1)
 
 
 def light_by(light, scene):
