@@ -1,11 +1,16 @@
 """Convex parts of meshes: hulls, plane maps, Algorithm 3, the tree, the integrator's shadows."""
 
 import gc
+import os
+import signal
 import sys
+import threading
+import time
 import weakref
 
 import drjit as dr
 import numpy as np
+import psutil
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -14,13 +19,13 @@ from scipy.spatial import ConvexHull, Delaunay
 from brdfkit.errors import BrdfkitError
 from brdfkit.visibility import decomposition
 from brdfkit.visibility.convex_ray import enter
-from brdfkit.visibility.decomposition import decompose, is_closed
+from brdfkit.visibility.decomposition import decompose
 from brdfkit.visibility.height_fields import HeightFields
 from brdfkit.visibility.hierarchy import Hierarchy
-from brdfkit.visibility.holes import close_holes
 from brdfkit.visibility.hull import LEAST_THICKNESS, hull
 from brdfkit.visibility.lobes import visible_share
 from brdfkit.visibility.occluders import Occluders
+from brdfkit.visibility.pieces import is_closed, solids
 from brdfkit.visibility.plane_map import ExactPlaneMap, RasterisedPlaneMap
 
 RAYS = 20_000
@@ -306,23 +311,83 @@ def solid(points, faces):
 
 @pytest.mark.quick
 def test_the_holes_of_a_scan_are_closed():
-    """Three of a torus, of one triangle and of several; it then has nearly its old volume."""
+    """Three of a torus, of one triangle and of several; it then has nearly its old volume, also
+    where some of its triangles, or most of them, are turned."""
     points, faces = torus()
     worn = np.delete(faces, [0, 1, 2, 3, 500, 1000, 1001], axis=0)
     assert not is_closed(worn)
-    points, mended = close_holes(points, worn)
-    assert is_closed(mended)
-    assert solid(points, mended) == pytest.approx(solid(*torus()), rel=1e-3)
+    for turned in (0.0, 0.1, 0.9, 1.0):
+        flipped = np.random.default_rng(0).random(len(worn)) < turned
+        ((at, mended),), others = solids(points, np.where(flipped[:, None], worn[:, ::-1], worn))
+        assert is_closed(mended)
+        assert not len(others)
+        assert solid(at, mended) == pytest.approx(solid(*torus()), rel=1e-3)
+
+
+def turned_inside_out(points, faces):
+    return points, faces[:, ::-1]
+
+
+def joined(*meshes):
+    """One mesh of several, with points of its own for each."""
+    starts = np.cumsum([0, *(len(points) for points, _ in meshes)])
+    points = np.concatenate([points for points, _ in meshes])
+    return points, np.concatenate([f + k for (_, f), k in zip(meshes, starts[:-1], strict=True)])
 
 
 @pytest.mark.quick
-def test_openings_and_several_pieces_stay_as_they_are():
-    points, faces = torus()
-    lid = points[faces].mean(axis=1)[:, 2] < 0  # the lower half of the torus
-    assert len(close_holes(points, faces[lid])[1]) == lid.sum()
-    two = np.concatenate([points, points + 3])
-    worn = np.concatenate([faces[1:], faces + len(points)])
-    assert len(close_holes(two, worn)[1]) == len(worn)
+def test_solids_that_run_into_each_other_are_cut_one_by_one():
+    """Two boxes, one of them inside out: cut as one they confuse coacd."""
+    boxes = box([0, 0, 0], [2, 2, 2]), turned_inside_out(*box([1, 1, 1], [3, 4, 5]))
+    parts = decompose(*joined(*boxes))
+    assert sorted(volume([part]) for part in parts) == pytest.approx([8, 24])
+
+
+@pytest.mark.quick
+def test_an_opening_is_closed_where_the_mesh_covers_it():
+    """A box without its lid; beside it, and above it, another that stands open, too."""
+    points, faces = box([0, 0, 0], [1, 1, 1])
+    low = points, faces[points[faces][..., 2].min(axis=1) < 1]
+    high = points * [1, 1, -1] + [0, 0, 2], low[1]  # upside down, and so inside out
+    assert len(solids(*low)[0]) == 0
+    closed, others = solids(*joined(low, (high[0] + [2, 0, 0], high[1])))
+    assert (len(closed), len(others)) == (0, 20)
+    closed, others = solids(*joined(low, high))
+    assert [solid(*piece) for piece in closed] == pytest.approx([1, 1])
+    assert not len(others)
+
+
+# The process of coacd
+
+
+def test_ctrl_c_ends_the_process_that_cuts(monkeypatch, tmp_path):
+    program, pid = tmp_path / "program.py", tmp_path / "pid"
+    program.write_text(f"import os, time\nopen({str(pid)!r}, 'w').write(str(os.getpid()))\n")
+    with program.open("a") as file:
+        file.write("time.sleep(100)\n")
+    monkeypatch.setattr(decomposition, "PROGRAM", program)
+
+    def press():
+        while not (pid.is_file() and pid.read_text()):
+            time.sleep(0.01)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    pressing = threading.Thread(target=press)
+    pressing.start()
+    with pytest.raises(KeyboardInterrupt):
+        decompose(*corner())
+    pressing.join()
+    assert not psutil.pid_exists(int(pid.read_text()))
+    assert sorted(tmp_path.iterdir()) == [pid, program]
+
+
+def test_where_coacd_fails_it_is_said(monkeypatch, tmp_path):
+    program = tmp_path / "program.py"
+    program.write_text("raise SystemExit(3)")
+    monkeypatch.setattr(decomposition, "PROGRAM", program)
+    with pytest.raises(BrdfkitError, match=r"20 triangles \(exit status 3\); repair the mesh"):
+        decompose(*corner())
+    assert list(tmp_path.iterdir()) == [program]
 
 
 @pytest.mark.quick

@@ -13,7 +13,7 @@ are.
 
 [Ergun 2015, section 7.2]. A picture is the mean of its passes: more passes with other seeds refine
 it. Shadows are approximate: too large where a hull is thicker than the mesh, and missing on a point
-from what is nearer than a hundredth of the mesh's size. The light should be an environment, such as
+from what is nearer than 1.5 % of the mesh's size. The light should be an environment, such as
 `kdtree_envmap`; other lights are sampled by themselves alone. There is no indirect light, and what
 comes back is unpolarised.
 

@@ -6,7 +6,7 @@
 | --- | --- |
 | Concavity | `concavity`, coacd's threshold: the largest distance between a part and its hull |
 | NVerticesPerCH | `hull_vertices`, coacd's max_ch_vertex |
-| NTargetTrianglesDecimatedMesh | none; a mesh that is not closed is remeshed, as if decimated |
+| NTargetTrianglesDecimatedMesh | none; a mesh with an opening is remeshed, as if decimated |
 | NClusters, ConnectDist, SmallClusterThreshold, AddExtraDistPoints, AddFacesPoints | none |
 
 A decomposition takes seconds to minutes. It is kept in the user's cache folder, as an .npz file
@@ -14,18 +14,27 @@ named by the checksum of the mesh and the settings, and is made once.
 """
 
 import hashlib
+import json
+import signal
+import subprocess
+import sys
+import threading
+from importlib.util import find_spec
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from scipy.spatial import ConvexHull
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import make_folder, write_safely
-from brdfkit.visibility.holes import close_holes
 from brdfkit.visibility.hull import hull
+from brdfkit.visibility.pieces import solids
 
+PROGRAM = Path(__file__).with_name("coacd_process.py")
 # The search for cuts: coacd's defaults (150, 20, 3 and 2000) find as many parts in 4 times the time
 SEARCH = {"mcts_iterations": 20, "mcts_nodes": 10, "mcts_max_depth": 2, "resolution": 500}
+AS = "preprocess_mode"  # coacd's: "off" for a closed mesh, "on" for one that is to be made closed
 CONCAVITY = 0.03
 HULL_VERTICES = 256
 
@@ -35,34 +44,41 @@ def decompose(points, faces, concavity=CONCAVITY, hull_vertices=HULL_VERTICES):
 
     points, faces : the vertices (n, 3) of the mesh, and of each triangle (m, 3) their numbers.
     concavity : the largest distance between a part and its hull, 0.01 to 1, where the longest side
-        of the mesh's bounding box is 2. Larger: fewer parts.
+        of the bounding box of the piece of the mesh is 2. Larger: fewer parts.
     hull_vertices : vertices that a hull has at most, 8 to 10,000; a hull of more is simplified.
 
-    A closed mesh that is convex already is its own part, for which coacd is not asked. The holes of
-    a scan are closed (`holes.py`). Another mesh that is not closed has no inside: coacd then makes
-    a closed one around it, by voxels of 1/50 of its size, which is that much too thick.
+    Each closed piece of the mesh is cut by itself (`pieces.py`, which closes the holes of scans);
+    one that is convex is a part as it is. What has an opening has no inside: coacd then makes a
+    closed mesh around it, by voxels of 1/50 of its size, which is that much too thick.
 
-    The same mesh always has the same parts. Raises `BrdfkitError` where coacd is not installed, and
-    for settings out of range.
+    The same mesh always has the same parts, whichever way its triangles are turned. Raises
+    `BrdfkitError` where coacd or libigl is not installed, and for settings out of range.
     """
     if not 0.01 <= concavity <= 1:
         raise BrdfkitError(f"concavity = {concavity:g} should be between 0.01 and 1.")
     if not 8 <= hull_vertices <= 10_000:
         raise BrdfkitError(f"hull_vertices = {hull_vertices} should be between 8 and 10000.")
     points, faces = weld(points, faces)
-    whole = hull(points)
+    if hull(points) is None:
+        return []
+    settings = SEARCH | {"threshold": float(concavity), "max_ch_vertex": int(hull_vertices)}
+    closed, others = solids(points, faces)
+    parts = [part for piece in closed for part in _cut(*piece, settings | {AS: "off"})]
+    if len(others):
+        parts += _cut(points, others, settings | {AS: "on"})
+    return parts
+
+
+def _cut(points, faces, settings):
+    """The parts of one mesh; kept, but of one that is convex."""
+    whole = hull(points[np.unique(faces)])
     if whole is None:
         return []
-    if is_closed(faces) and _fills_its_hull(points, faces):
+    if settings[AS] == "off" and _fills_its_hull(points, faces):
         return [whole]
-    if not is_closed(faces):
-        mended = close_holes(points, faces)
-        points, faces = mended if is_closed(mended[1]) else (points, faces)
-    settings = SEARCH | {"threshold": float(concavity), "max_ch_vertex": int(hull_vertices)}
-    settings["preprocess_mode"] = "off" if is_closed(faces) else "on"
     file = cache() / f"{_checksum(points, faces, settings)}.npz"
     if not file.is_file():
-        _write(file, _run_coacd(points, faces, settings))
+        _run_coacd(points, faces, settings, file)
     with np.load(file) as stored:
         parts = np.split(stored["points"], stored["ends"][:-1])
     return [found for part in parts if (found := hull(part)) is not None]
@@ -85,13 +101,6 @@ def weld(points, faces):
     return points, faces[(a != b) & (b != c) & (c != a)]
 
 
-def is_closed(faces):
-    """Whether every edge of the welded `faces` (m, 3) belongs to two of them."""
-    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-    _, count = np.unique(edges, axis=0, return_counts=True)
-    return bool(np.all(count == 2))
-
-
 def _fills_its_hull(points, faces):
     """Whether a closed mesh is convex: its volume is that of its hull, within a millionth."""
     corners = points[faces] - points.mean(axis=0)
@@ -99,18 +108,38 @@ def _fills_its_hull(points, faces):
     return volume > (1 - 1e-6) * ConvexHull(points).volume
 
 
-def _run_coacd(points, faces, settings):
-    """The corners of each part's hull, a list of arrays (n, 3)."""
-    try:
-        import coacd
-    except ImportError as error:
+def _run_coacd(points, faces, settings, file):
+    """Write the parts of a mesh to `file`, by a process that does not outlive this call."""
+    if not find_spec("coacd"):
         raise BrdfkitError(
             "Convex parts are found by coacd, which is not installed; pip install "
             "'brdfkit[visibility]'."
-        ) from error
-    coacd.set_log_level("off")
-    found = coacd.run_coacd(coacd.Mesh(points, faces), **settings, decimate=True, seed=0)
-    return [corners for corners, _ in found]
+        )
+    settings = settings | {"decimate": True, "seed": 0}
+    make_folder(file.parent)
+    with TemporaryDirectory() as folder, write_safely(file) as beside:
+        mesh = Path(folder) / "mesh.npz"
+        np.savez(mesh, points=points, faces=faces)
+        program = [sys.executable, "-P", PROGRAM, mesh, beside, json.dumps(settings)]
+        status = _run(program)
+        if status:
+            raise BrdfkitError(
+                f"coacd could not cut a mesh of {len(faces):,} triangles (exit status {status}); "
+                "repair the mesh, or give a larger concavity."
+            )
+
+
+def _run(program):
+    """The exit status of a program, which ends with this call, also by Ctrl-C."""
+    if threading.current_thread() is threading.main_thread():
+        # Python's own handler: that of Mitsuba, while it renders, waits for the picture
+        signal.signal(signal.SIGINT, signal.getsignal(signal.SIGINT))
+    process = subprocess.Popen(program, stderr=subprocess.DEVNULL)
+    try:
+        return process.wait()
+    finally:
+        process.kill()
+        process.wait()
 
 
 def _checksum(points, faces, settings):
@@ -119,11 +148,3 @@ def _checksum(points, faces, settings):
     digest.update(np.ascontiguousarray(points, "<f8"))
     digest.update(np.ascontiguousarray(faces, "<i8"))
     return digest.hexdigest()
-
-
-def _write(file, parts):
-    """Store the corners of all parts, and after how many of them each part ends."""
-    make_folder(file.parent)
-    ends = np.cumsum([len(part) for part in parts])
-    with write_safely(file) as beside:
-        np.savez_compressed(beside, points=np.concatenate(parts), ends=ends)

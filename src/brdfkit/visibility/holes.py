@@ -1,25 +1,29 @@
-"""Closes the small holes of a mesh, as scans have them: each by a fan of triangles."""
+"""Closes the holes of a piece of a mesh, each by a fan of triangles, unless it is an opening."""
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-WIDEST = 0.3  # of a hole over the longest side of the mesh; a wider one is an opening
+WIDEST = 0.3  # of a hole over the longest side of the mesh; a wider one may be an opening
+COVERED = 0.75  # winding number in the middle of a hole, from which on the mesh is around it
 
 
-def close_holes(points, faces):
-    """The welded mesh with its holes closed, each from the mean of its corners.
+def close_holes(points, faces, mesh):
+    """The points and faces of a piece with its holes closed, each from the mean of its corners.
 
-    It comes back as it is where it has an opening or several pieces, which may cross each other, or
-    where the edges at its holes are no plain loops.
+    points, faces : a piece whose triangles all face out.
+    mesh : the faces (m, 3) of all pieces, among the same points.
+
+    A wide hole is closed where the mesh covers it, as the body of a teapot covers the foot of its
+    spout: in its middle the winding number [Jacobson et al. 2013] is 1, at an opening 1/2. A piece
+    comes back as it is where it has an opening, or where two of its holes share a corner.
     """
     loops = _loops(faces)
-    size = np.ptp(points, axis=0).max()
-    if not loops or _pieces(faces) > 1:
+    if not loops:
         return points, faces
-    if max(np.ptp(points[loop], axis=0).max() for loop in loops) > WIDEST * size:
+    middles = np.array([points[loop].mean(axis=0) for loop in loops])
+    size = np.ptp(points[mesh], axis=(0, 1)).max()
+    wide = np.array([np.ptp(points[loop], axis=0).max() > WIDEST * size for loop in loops])
+    if wide.any() and _winding_number(points, mesh, middles[wide]).min() < COVERED:
         return points, faces
-    middles = [points[loop].mean(axis=0) for loop in loops]
     fans = [
         [a, b, len(points) + k]
         for k, loop in enumerate(loops)
@@ -28,10 +32,17 @@ def close_holes(points, faces):
     return np.concatenate([points, middles]), np.concatenate([faces, fans])
 
 
+def _winding_number(points, faces, at):
+    """How often the faces wind around each of the points `at` (n, 3)."""
+    import igl
+
+    return igl.winding_number(points, faces, at)
+
+
 def _loops(faces):
     """The corners around each hole, lists in the order of the triangles that close it.
 
-    Empty where the mesh is closed, or two holes share a corner.
+    Empty where the piece is closed, or two holes share a corner.
     """
     edges = set(map(tuple, np.concatenate([faces[:, [i, (i + 1) % 3]] for i in range(3)]).tolist()))
     border = [(b, a) for a, b in edges if (b, a) not in edges]
@@ -49,12 +60,3 @@ def _loops(faces):
             corner = following.pop(corner)
         loops.append(loop)
     return loops
-
-
-def _pieces(faces):
-    """Into how many pieces without a common vertex the triangles fall."""
-    _, numbers = np.unique(faces, return_inverse=True)
-    a, b, c = numbers.reshape(-1, 3).T
-    links = np.concatenate([a, b]), np.concatenate([b, c])
-    n = numbers.max() + 1
-    return connected_components(coo_array((np.ones(len(links[0])), links), shape=(n, n)))[0]

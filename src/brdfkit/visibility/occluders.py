@@ -10,7 +10,7 @@ from brdfkit.visibility.hierarchy import Hierarchy
 from brdfkit.visibility.plane_map import RasterisedPlaneMap
 
 RESOLUTION = 128  # texels
-CLEARANCE = 0.02  # over half of the longest side of an object
+CLEARANCE = 0.03  # over half of the longest side of an object: as far as hulls bulge by default
 
 
 class Occluders:

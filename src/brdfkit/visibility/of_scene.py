@@ -3,8 +3,9 @@
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.visibility.decomposition import decompose, is_closed, weld
+from brdfkit.visibility.decomposition import decompose, weld
 from brdfkit.visibility.occluders import Occluders
+from brdfkit.visibility.pieces import is_closed
 
 
 def occluders_of(scene, concavity, resolution):

@@ -13,7 +13,7 @@ from brdfkit.visibility.occluders import Occluders
 SECONDS = 60
 CONCAVITIES = 0.02, 0.03, 0.05, 0.1, 0.2, 0.4
 RESOLUTIONS = 8, 16, 32, 64, 128, 256
-CLEARANCES = 0.0, 0.005, 0.01, 0.02, 0.04
+CLEARANCES = 0.0, 0.005, 0.01, 0.02, 0.03, 0.04
 PEAKED = 1  # dB above both ends, to be called a maximum
 TITLE = "Settings of convex shadows"
 PEAK = "The PSNR is highest at a middle concavity.", "Figure 9.8", "at about 40 %, on Armadillo"

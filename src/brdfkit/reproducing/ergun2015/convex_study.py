@@ -23,7 +23,9 @@ SWEPT = "spot"  # the mesh of which settings are varied, and that moves
 GREY = {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": 0.5}}
 SETTING = f"""Pictures of {SIZE} × {SIZE} pixels with {SPP} samples: a grey mesh, whose longest side
 is 2, on a ground under the environment *studio*. The truth has the shadows of its triangles."""
-NO_COACD = "coacd is not installed, which finds the parts; pip install 'brdfkit[visibility]'."
+NO_COACD = (
+    "coacd or libigl is not installed, which find the parts; pip install 'brdfkit[visibility]'."
+)
 
 
 @cache
@@ -41,7 +43,7 @@ def swept(sources):
 
 def has_coacd():
     """Whether meshes can be decomposed here."""
-    return find_spec("coacd") is not None
+    return all(find_spec(name) for name in ("coacd", "igl"))
 
 
 class Study:
