@@ -13,6 +13,8 @@ SIZE = 10.4, 9.4  # inches
 MIDDLE_GREY = 0.18  # what the geometric mean of the map is shown as
 BLOCKS = 4096  # as many as `kdtree_envmap` makes by default ...
 DRAWN = 256  # ... of which the first are drawn
+MOST_ROWS = 1024  # of a map that are drawn, more than the picture has
+POINTS = 1000  # of the curve of shares
 COLOUR = "#0072b2"
 LAW_COLOURS = {"hyperbolic": "#d55e00", "steps": "#009e73"}
 SIDES = ("−z", "+x", "+z", "−x", "−z")  # along the horizon
@@ -42,7 +44,8 @@ def draw_map(axes, audit, rgb, blocks):
     exposure = MIDDLE_GREY / np.exp(np.log(seen).mean()) if seen.size else 1
     half = 0.5 / (audit.height - 1)  # a row
     extent = 0, 1, -half, 1 + half
-    axes.imshow(to_srgb(rgb * exposure), extent=extent, aspect="auto", interpolation="nearest")
+    shown = rgb[:: 1 + audit.height // MOST_ROWS, :: 1 + audit.height // MOST_ROWS]
+    axes.imshow(to_srgb(shown * exposure), extent=extent, aspect="auto", interpolation="nearest")
     # a cell lies between four pixels, the first and the last row of which are at the poles
     x0, x1, y0, y1 = blocks.T / np.repeat((audit.width, audit.height - 1), 2)[:, None]
     x0, x1 = x0 + 0.5 / audit.width, x1 + 0.5 / audit.width
@@ -88,7 +91,8 @@ def _draw_shares(axes, bright, solid_angle, audit):
     if not audit.mean > 0:
         return
     areas, light = shares(bright, solid_angle / solid_angle.sum())
-    axes.plot(areas[1:], light[1:], color=COLOUR)
+    drawn = np.unique(areas.searchsorted(np.geomspace(areas[1], 1, POINTS)))
+    axes.plot(areas[drawn], light[drawn], color=COLOUR)
     axes.plot(0.01, audit.brightest_share, "o", color="#d55e00")
     axes.annotate(
         f"brightest 1 %: {100 * audit.brightest_share:.0f} %",
