@@ -47,6 +47,8 @@ def test_every_plugin_has_a_page():
 def test_loads_in_every_variant(name, chosen, variant):
     import mitsuba as mi
 
+    if (OTHERS[name], chosen) == ("volumes", "scalar_rgb"):
+        pytest.skip("volumes are not registered there, see `register_all`")
     variant(chosen)
     base, _ = KINDS[OTHERS[name]]
     plugin = mi.load_dict(example(name))

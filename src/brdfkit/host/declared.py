@@ -131,22 +131,22 @@ def bsdf(meaning):
     return Setting(None, None, meaning, read, differentiable=True)
 
 
-def volume(default, meaning, coloured=True):
-    """A volume of values ≥ 0, such as Mitsuba's gridvolume; a number or a colour makes a constant
-    one. Not `coloured`: of one channel."""
+def volume(default, meaning, coloured=True, least=0.0):
+    """A volume of values from `least` on, such as Mitsuba's gridvolume; a number or a colour makes
+    a constant one. Not `coloured`: of one channel."""
 
     def read(value):
         import mitsuba as mi
 
         if isinstance(value, mi.Volume):
-            require_volume(value, coloured)
+            require_volume(value, coloured, least)
             return value
         if coloured and is_colour(value):
             return volume_of_colour(value)
         if isinstance(value, bool) or not isinstance(value, int | float):
             constant = "a number or a colour" if coloured else "or a number"
             raise ValueError(f"a volume, such as a gridvolume, {constant}")
-        _require_within(value, (0, math.inf))
+        _require_within(value, (least, math.inf))
         return constant_volume(value)
 
     return Setting(default, None, meaning, read, differentiable=True)

@@ -3,16 +3,17 @@
 import numpy as np
 
 
-def require_volume(volume, coloured):
+def require_volume(volume, coloured, least=0.0):
     """Raise a ValueError, which says what a `mi.Volume` should be, unless its values are usable.
 
-    They are finite and not negative; unless `coloured`, there is one of them at a point.
+    They are finite and `least` or more; unless `coloured`, there is one of them at a point. Those
+    within a plugin of ours were checked as that was made.
     """
     import mitsuba as mi
 
     parameters = mi.traverse(volume)
     for name in parameters.keys():  # noqa: SIM118
-        if name != "data" and not name.endswith("value"):
+        if name.startswith("values.") or not (name == "data" or name.endswith("value")):
             continue
         values = np.array(parameters[name], float)
         channels = values.shape[-1] if values.ndim == 4 else values.size
@@ -20,8 +21,9 @@ def require_volume(volume, coloured):
             raise ValueError("a volume of one channel")
         if channels > 1 and mi.is_spectral:  # the coefficients of spectra
             continue
-        if not np.isfinite(values).all() or values.min() < 0:
-            raise ValueError("a volume of finite values, not negative")
+        if not np.isfinite(values).all() or values.min() < least:
+            limit = ", not negative" if least == 0 else ""
+            raise ValueError(f"a volume of finite values{limit}")
 
 
 def constant_volume(value):

@@ -4,8 +4,9 @@
 it; `loading.py` finds it in a file (`formats/`) or makes it (`made/`). `transfer_function.py`:
 colour and extinction of its values, with `piecewise.py`, `opacity.py`, `colour_maps.py`, and in
 files `stored.py`, `slicer_presets.py`, `presets/`. `summary.py` is what `brdfkit info VOLUME`
-tells, by `histograms.py`, `report.py` and `picture.py`. For renderers `majorants.py` bounds the
-extinction, and `tracking.py` finds where light collides.
+tells, by `histograms.py`, `report.py` and `picture.py`. For renderers `transfer_lookup.py` is the
+function's texture, and `block_bounds.py` bounds of it; `majorants.py` bounds the extinction, and
+`tracking.py` finds where light collides.
 """
 
 from brdfkit.volumes.loading import load_volume as load_volume

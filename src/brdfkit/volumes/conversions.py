@@ -140,3 +140,17 @@ class Conversions:
         >>> TransferFunction.load("ct_bone").save("bone.json")    # doctest: +SKIP
         """
         stored.save(self, path)
+
+    def to_json(self) -> str:
+        """The text that `save` writes, for the parameter `transfer` of Mitsuba's plugins.
+
+        Returns
+        -------
+        str
+            JSON.
+
+        Examples
+        --------
+        >>> volume = {"type": "transfer_function", "transfer": glass.to_json()}    # doctest: +SKIP
+        """
+        return stored.to_json(self)

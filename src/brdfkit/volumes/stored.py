@@ -45,10 +45,11 @@ def save(function, path):
     if Path(path).suffix.lower() != ".json":
         raise BrdfkitError(f"{path}: transfer functions are written as .json; choose that suffix.")
     with write_safely(path) as beside:
-        beside.write_text(_to_json(function), encoding="utf-8")
+        beside.write_text(to_json(function), encoding="utf-8")
 
 
-def _to_json(function):
+def to_json(function):
+    """The text of a transfer function, as it stands in a file."""
     words = {word: getattr(function, word) for word in WORDS}
     record = {"kind": KIND, **words, "extinction": function.extinction}
     if function.gradients is None:
@@ -68,21 +69,24 @@ def _rows(value):
 
 
 def _read_json(cls, path):
+    return from_json(cls, contents(path), path)
+
+
+def from_json(cls, text, where):
+    """The transfer function, of the class `cls`, in a `text`; errors call it `where`."""
     try:
-        record = json.loads(contents(path))
+        record = json.loads(text)
     except ValueError as error:
-        if isinstance(error, BrdfkitError):
-            raise
-        raise BrdfkitError(f"{path}: is no JSON ({error}); mend it.") from error
+        raise BrdfkitError(f"{where}: is no JSON ({error}); mend it.") from error
     if not isinstance(record, dict) or record.get("kind") != KIND:
-        raise BrdfkitError(f'{path}: is no transfer function; its "kind" should be "{KIND}".')
+        raise BrdfkitError(f'{where}: is no transfer function; its "kind" should be "{KIND}".')
     unknown = sorted(set(record) - ALLOWED)
     if unknown:
-        raise no_such("field", unknown[0], sorted(ALLOWED), str(path))
+        raise no_such("field", unknown[0], sorted(ALLOWED), str(where))
     try:
         return _from_record(cls, record)
     except BrdfkitError as error:
-        raise BrdfkitError(f"{path}: {error}") from error
+        raise BrdfkitError(f"{where}: {error}") from error
 
 
 def _from_record(cls, record):

@@ -1,0 +1,77 @@
+"""A transfer function as a texture, looked up by renderers: derivatives by all of its numbers."""
+
+import drjit as dr
+import numpy as np
+
+STEPS = 1024  # of a table over values, at least
+
+
+class TransferLookup:
+    """A `TransferFunction` in the memory of Mitsuba's current variant.
+
+    Attributes
+    ----------
+    table : `mi.TensorXf` (n, 4) of RGBA at even steps of the values, or (m, n, 4), m of gradient
+        magnitudes. Optimisers may change it; its numbers should stay 0 or more, and A 1 or less.
+    extinction : `mi.Float`, σ_t where A is 1 [1/unit of length].
+    function : the `TransferFunction` that it was made of.
+    """
+
+    def __init__(self, function):
+        import mitsuba as mi
+
+        self.function, n = function, 1 + steps(function.values)
+        self.table = mi.TensorXf(function.table(n))
+        self.extinction = mi.Float(function.extinction)
+        ranges = function.range, function.gradient_range
+        sizes = self.table.shape[-2::-1]  # n, and m
+        # Ends of the range are centres of texels: (place - low) · scale + first
+        self.axes = [
+            (mi.Float(low), mi.Float((size - 1) / size / (high - low)), 0.5 / size)
+            for (low, high), size in zip(ranges[: len(sizes)], sizes, strict=True)
+        ]
+        dr.make_opaque(self.table, self.extinction, self.axes)
+        self.changed()
+
+    def changed(self):
+        """To be called after `table` or `extinction` were assigned."""
+        import mitsuba as mi
+
+        kind = mi.Texture1f if len(self.axes) == 1 else mi.Texture2f
+        self.texture = kind(self.table, use_accel=False, wrap_mode=dr.WrapMode.Clamp)
+
+    def __call__(self, places, active=True):
+        """σ_t, and RGB as a `mi.Color3f` in linear sRGB; `places`: [value], or [value, ‖∇V‖]."""
+        import mitsuba as mi
+
+        at = [
+            (x - low) * scale + first
+            for x, (low, scale, first) in zip(places, self.axes, strict=True)
+        ]
+        point = mi.Point1f if len(at) == 1 else mi.Point2f
+        r, g, b, a = self.texture.eval(point(*at), active)
+        return self.extinction * a, mi.Color3f(r, g, b)
+
+    def table_over_values(self):
+        """(n, 4) in NumPy: the table, or of each value the largest over gradient magnitudes."""
+        table = np.array(self.table)
+        return table if table.ndim == 2 else table.max(axis=0)
+
+    def steps_of(self, values):
+        """Places of `values`, NumPy's, in the table: 0 is its first row, n - 1 its last."""
+        low, high = self.function.range
+        return np.clip((values - low) / (high - low), 0, 1) * (self.table.shape[-2] - 1)
+
+
+def steps(values, least=STEPS):
+    """How many even steps, from `least` on to twice as many, best meet all `values` (k,), rising.
+
+    So that corners of a function, and labels, lie on rows of its table.
+
+    >>> steps(np.array([0.0, 7.0, 29.0]))
+    1044
+    """
+    places = (values - values[0]) / (values[-1] - values[0])
+    counts = np.arange(least, 2 * least)
+    beside = places * counts[:, None]
+    return int(counts[np.abs(beside - np.rint(beside)).max(axis=1).round(6).argmin()])
