@@ -1,21 +1,33 @@
 """A transfer function as a texture, looked up by renderers: derivatives by all of its numbers."""
 
+from dataclasses import dataclass
+from typing import Any
+
 import drjit as dr
 import numpy as np
+
+from brdfkit.volumes.transfer_function import TransferFunction
 
 STEPS = 1024  # of a table over values, at least
 
 
+@dataclass(init=False, eq=False)  # of a dataclass `dr.freeze` finds the arrays
 class TransferLookup:
     """A `TransferFunction` in the memory of Mitsuba's current variant.
 
-    Attributes
-    ----------
+    function : what it was made of.
     table : `mi.TensorXf` (n, 4) of RGBA at even steps of the values, or (m, n, 4), m of gradient
         magnitudes. Optimisers may change it; its numbers should stay 0 or more, and A 1 or less.
     extinction : `mi.Float`, σ_t where A is 1 [1/unit of length].
-    function : the `TransferFunction` that it was made of.
+    axes : (low, scale, first) of values, and of gradient magnitudes.
+    texture : the table as a `mi.Texture1f` or `mi.Texture2f`.
     """
+
+    function: TransferFunction
+    table: Any
+    extinction: Any
+    axes: list[Any]
+    texture: Any
 
     def __init__(self, function):
         import mitsuba as mi
