@@ -76,6 +76,11 @@ def define(mi):
 
         def optics(self, it, active=True):
             """σ_t, and RGB in linear sRGB, from one look-up."""
+            rgb, a = self.rgba(it, active)
+            return self.lookup.extinction * a, rgb
+
+        def rgba(self, it, active=True):
+            """RGB in linear sRGB, and A."""
             return self.lookup(self.places(it, active), active)
 
         def places(self, it, active=True):

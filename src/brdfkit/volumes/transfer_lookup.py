@@ -53,7 +53,7 @@ class TransferLookup:
         self.texture = kind(self.table, use_accel=False, wrap_mode=dr.WrapMode.Clamp)
 
     def __call__(self, places, active=True):
-        """σ_t, and RGB as a `mi.Color3f` in linear sRGB; `places`: [value], or [value, ‖∇V‖]."""
+        """RGB, a `mi.Color3f` in linear sRGB, and A; `places`: [value], or [value, ‖∇V‖]."""
         import mitsuba as mi
 
         at = [
@@ -62,7 +62,7 @@ class TransferLookup:
         ]
         point = mi.Point1f if len(at) == 1 else mi.Point2f
         r, g, b, a = self.texture.eval(point(*at), active)
-        return self.extinction * a, mi.Color3f(r, g, b)
+        return mi.Color3f(r, g, b), a
 
     def table_over_values(self):
         """(n, 4) in NumPy: the table, or of each value the largest over gradient magnitudes."""

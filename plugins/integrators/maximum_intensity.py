@@ -1,0 +1,103 @@
+"""Maximum intensity: the colour of the largest value along each ray.
+
+    L = A RGB + (1 - A) L_behind,   (RGB, A) = T(v),   v = max V(t) along the ray
+
+with the transfer function T of a `volume` of the type `transfer_function`, as in angiography and
+for PET. Of a colour map alone, A is 1: `TransferFunction.from_colormap(name, range, [(0, 1), (1,
+1)])`. Another volume is shown in grey: L = v. L_behind is the emission of the first surface, which
+ends the ray, or of the environment.
+
+The largest value is looked for in each of `steps` equal parts of the part of the ray within the
+volume's box, at one random share of all of them, and then nearer and nearer about the largest
+found. It is never above the true one, and comes near as the steps become shorter than the voxels.
+So each ray has its maximum, and a pixel is the mean of its rays, over all passes.
+
+[Lesar 2018, eq. 6.1]. Derivatives are those of the colour by the largest value, and of that by the
+values about it.
+"""
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.host.channels import emission_of_rgb
+from brdfkit.host.declared import count, declared, flag, volume
+from brdfkit.volumes.along_ray import light_behind, within
+from brdfkit.volumes.largest_value import largest_along
+from brdfkit.volumes.transfer_function import TransferFunction
+
+PARAMETERS = {
+    "volume": volume(0.0, "of the type transfer_function, or one that is shown in grey", False),
+    "steps": count(256, (1, 1_000_000), "parts that a ray is cut into"),
+    "jitter": flag(True, "whether the place in each part is random"),
+}
+
+
+def define(mi):
+    """The class of `mi.SamplingIntegrator` for the current variant."""
+
+    class MaximumIntensity(declared(mi.SamplingIntegrator, PARAMETERS)):
+        def __init__(self, props):
+            super().__init__(props)
+            self.light = emission_of_rgb()
+            self.has_colours = hasattr(self.volume, "optics")
+
+        def value(self, it, active):
+            if self.has_colours:
+                return self.volume.places(it, active)[0]
+            return self.volume.eval_1(it, active)
+
+        def colour(self, it, active):
+            """RGB and A."""
+            if self.has_colours:
+                return self.volume.rgba(it, active)
+            return mi.Color3f(self.volume.eval_1(it, active)), 1
+
+        def sample(self, scene, sampler, ray, medium=None, active=True):
+            end, behind = light_behind(scene, ray, active)
+            near, far = within(ray, self.volume)
+            far = dr.minimum(far, end)
+            inside = active & (far > near)
+
+            def at(t):
+                it = mi.Interaction3f()
+                it.p, it.wavelengths = ray(t), ray.wavelengths
+                return it
+
+            place = sampler.next_1d(active) if self.jitter else mi.Float(0.5)
+            t = largest_along(
+                lambda t: self.value(at(t), inside), near, far, self.steps, place, inside
+            )
+            it = at(t)
+            rgb, a = self.colour(it, inside)
+            radiance = dr.select(inside, a * self.light(rgb, it) + (1 - a) * behind, behind)
+            return mi.depolarizer(dr.select(active, radiance, 0)), active, []
+
+    return MaximumIntensity
+
+
+def reference():
+    """A scene, and the radiance (3,) of each of its pixels: A RGB + (1 - A) L of the largest value.
+
+    Between two voxels the values of a volume rise to its middle one.
+    """
+    import mitsuba as mi
+
+    rgb, a, behind = np.array([0.9, 0.5, 0.1]), 0.75, 0.3
+    hill = np.array([0, 4, 1], np.float32).reshape(3, 1, 1, 1)
+    function = TransferFunction([0, 4, 9], [[0, 0, 0, 0], [*rgb, a], [1, 1, 1, 1]])
+    camera = mi.ScalarTransform4f().look_at([0.5, 0.5, 3], [0.5, 0.5, 0], [0, 1, 0])
+    camera = camera @ mi.ScalarTransform4f().scale(0.4)
+    film = {"type": "hdrfilm", "width": 8, "height": 8, "rfilter": {"type": "box"}}
+    film["pixel_format"] = "luminance" if mi.is_monochromatic else "rgb"
+    volume = {
+        "type": "transfer_function",
+        "values": {"type": "gridvolume", "grid": mi.VolumeGrid(hill)},
+        "transfer": function.to_json(),
+    }
+    scene = {
+        "type": "scene",
+        "integrator": {"type": "maximum_intensity", "volume": volume, "steps": 16},
+        "sensor": {"type": "orthographic", "to_world": camera, "film": film},
+        "behind": {"type": "constant", "radiance": {"type": "rgb", "value": behind}},
+    }
+    return scene, a * rgb + (1 - a) * behind
