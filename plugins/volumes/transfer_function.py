@@ -105,6 +105,9 @@ def define(mi):
                 return float(rows[:, :3].max())
             return float(self.majorants.max())
 
+        def resolution(self):
+            return self.values.resolution()
+
         @cached_property
         def spectrum(self):
             """A function (rgb, it) → spectrum, of what RGB means."""

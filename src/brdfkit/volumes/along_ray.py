@@ -1,22 +1,29 @@
-"""What integrators ask of a camera ray: where it is within a volume, and what it sees behind it."""
+"""What integrators ask of a ray: where it is within a volume's box, and what it sees behind it."""
 
 import drjit as dr
 
 
-def within(ray, volume):
-    """The distances at which a ray enters and leaves the box of a volume.
+def to_cube(volume):
+    """The transform from the world to the unit cube that the volume's box is.
 
-    The second is smaller if it misses. The box is oblique where the volume has a `to_local`.
+    That of a volume with a `to_local` may be oblique; that of another is along the world's axes.
     """
     import mitsuba as mi
 
-    o, d = mi.Point3f(ray.o), mi.Vector3f(ray.d)
-    low, high = (mi.Point3f(corner) for corner in (volume.bbox().min, volume.bbox().max))
-    to_local = getattr(volume, "to_local", None)
-    if to_local is not None:
-        o, d, low, high = to_local @ o, to_local @ d, mi.Point3f(0), mi.Point3f(1)
+    if hasattr(volume, "to_local"):
+        return volume.to_local
+    box = volume.bbox()
+    return mi.Transform4f().translate(box.min).scale(box.extents()).inverse()
+
+
+def within(ray, volume):
+    """The distances at which a ray enters and leaves a volume's box; the second is smaller if it
+    misses."""
+    import mitsuba as mi
+
+    o, d = to_cube(volume) @ mi.Point3f(ray.o), to_cube(volume) @ mi.Vector3f(ray.d)
     inverse = dr.rcp(d)
-    a, b = (low - o) * inverse, (high - o) * inverse
+    a, b = -o * inverse, (1 - o) * inverse
     return dr.maximum(dr.max(dr.minimum(a, b)), 0), dr.min(dr.maximum(a, b))
 
 

@@ -9,9 +9,9 @@ def largest_along(value, near, far, steps, place, active):
     """The distance from `near` to `far` at which `value(t)` is largest.
 
     One value is asked for at both ends, and in each of `steps` equal parts at the share `place` of
-    it; then nearer and nearer on both sides of the largest. So what is narrower than a part may be missed, and
-    what is found is a value on the ray, never more than the largest. Nothing has derivatives here:
-    the largest value changes as the values at its place do.
+    it; then nearer and nearer on both sides of the largest. So what is narrower than a part may be
+    missed, and what is found is a value on the ray, never more than the largest. Nothing has
+    derivatives here: the largest value changes as the values at its place do.
     """
     import mitsuba as mi
 
