@@ -5,15 +5,15 @@
 Inside is where F = V - `level` > 0; of a volume of the type `transfer_function`, where its A is
 above the level. The first point of a ray that is inside is looked for at the ends of `steps` equal
 parts of its way through the volume's box, and then refined, so that no picture shows the parts:
-without that the surface lies half a part too deep, or one D / (N + 1) of a way D with N random
-points [Lesar 2018, section 6.3.2]. What is thinner than a part may be missed. A box that cuts the
-solid shows its face.
+without that the surface lies half a part too deep, and D / (N + 1) of a way D with N random points,
+as in [Lesar 2018, eq. 6.2]. What is thinner than a part may be missed. A box that cuts the solid
+shows its face.
 
-The normal is -∇F, by differences of a voxel to each side, which is smoother than the derivative
-of the interpolated values. A bsdf within the integrator is the material, by default Mitsuba's
-`diffuse`; u and v are x and y, the tangent is the x axis laid onto the surface. Every light of the
-scene lights it, drawn by the lights and by the bsdf. With `shadows` the surface, too, hides lights
-from itself; shapes do in any case, and are seen by their own light alone.
+The normal is -∇F, by differences of a voxel to each side, which is smoother than the derivative of
+the interpolated values. `bsdf` is the material, white and matte by default; u and v are x and y,
+the tangent is the x axis laid onto the surface. Every light of the scene lights it, drawn by the
+lights and by the bsdf. With `shadows` the surface, too, hides lights from itself; shapes do in any
+case, and are seen by their own light alone.
 
 Derivatives go to the values, the level, the transfer function, the bsdf and the lights: the
 surface moves as F changes. What appears or vanishes at a silhouette or at the edge of a shadow is
@@ -25,7 +25,7 @@ import numpy as np
 
 from brdfkit.distance_fields.shading.seen_point import interaction
 from brdfkit.errors import BrdfkitError
-from brdfkit.host.declared import count, declared, flag, number, volume
+from brdfkit.host.declared import bsdf, count, declared, flag, number, volume
 from brdfkit.volumes.along_ray import light_behind, within
 from brdfkit.volumes.first_crossing import first_above, first_crossing, reattach
 from brdfkit.volumes.normals import face_normal, facing, gradient, per_voxel
@@ -35,6 +35,7 @@ PARAMETERS = {
     "volume": volume(1.0, "the values, or of the type transfer_function", False, least=-np.inf),
     "level": number(0.5, (-1e9, 1e9), "value, or A, above which is inside"),
     "steps": count(256, (1, 1_000_000), "parts that a ray is cut into"),
+    "bsdf": bsdf("the material"),
     "shadows": flag(False, "whether the surface hides lights from itself"),
 }
 
@@ -43,14 +44,6 @@ def define(mi):
     """The class of `mi.SamplingIntegrator` for the current variant."""
 
     class Isosurface(declared(mi.SamplingIntegrator, PARAMETERS)):
-        def __init__(self, props):
-            super().__init__(props)
-            self.bsdf = bsdf_of(mi, props)
-
-        def traverse(self, callback):
-            super().traverse(callback)
-            callback.put("bsdf", self.bsdf, mi.ParamFlags.Differentiable)
-
         def f(self, p, active=True):
             """F at points."""
             it = mi.Interaction3f()
@@ -101,17 +94,6 @@ def define(mi):
             return active & ~(crossed & (above > 0))
 
     return Isosurface
-
-
-def bsdf_of(mi, props):
-    """The bsdf that a scene gives, or a matte one; `BrdfkitError` for anything else, or for two."""
-    found = {name: thing for name, thing in props.objects() if name not in PARAMETERS}
-    for name, thing in found.items():
-        if not isinstance(thing, mi.BSDF):
-            raise BrdfkitError(f"isosurface: {name} is no bsdf; only one bsdf belongs here.")
-    if len(found) > 1:
-        raise BrdfkitError(f"isosurface: there are the bsdfs {', '.join(found)}; give one.")
-    return next(iter(found.values()), None) or mi.load_dict({"type": "diffuse"})
 
 
 def reference():

@@ -6,7 +6,8 @@ colour and extinction of its values, with `piecewise.py`, `opacity.py`, `colour_
 files `stored.py`, `slicer_presets.py`, `presets/`. `summary.py` is what `brdfkit info VOLUME`
 tells, by `histograms.py`, `report.py` and `picture.py`. For renderers `transfer_lookup.py` is the
 function's texture, and `block_bounds.py` bounds of it; `majorants.py` bounds the extinction, and
-`tracking.py` finds where light collides.
+`tracking.py` finds where light collides. Rays are helped by `along_ray.py`, `largest_value.py` and
+`first_crossing.py`, level sets by `normals.py` and `surface_light.py`.
 """
 
 from brdfkit.volumes.loading import load_volume as load_volume
