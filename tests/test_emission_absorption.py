@@ -129,7 +129,7 @@ def test_gradients_by_a_transfer_function(llvm_variant):
     rng = np.random.default_rng(3)
     function = TransferFunction([0, 5], rng.uniform(0.2, 1, (2, 4)), 3, "emission")
     values = rng.uniform(1, 4, (4, 4, 4))
-    e = rng.uniform(0.5, 2, (4, 4, 4, 1)).astype(np.float32)
+    e = rng.uniform(4, 6, (4, 4, 4, 1)).astype(np.float32)
     emission = {"type": "gridvolume", "grid": mi.VolumeGrid(e)}
     glow = {"extinction": coloured(mi, values, function), "emission": emission}
     loaded = scene(mi, {**glow, "steps": 16})
