@@ -8,7 +8,6 @@ from scipy.optimize import brentq
 from brdfkit import TransferFunction, Volume
 from brdfkit.volumes.first_crossing import first_above, first_crossing
 
-pytestmark = pytest.mark.quick
 SUN = {"type": "directional", "direction": [0, 0, -1], "irradiance": 2.0}
 SKY = {"type": "constant", "radiance": 0.5}
 GREY = {"type": "diffuse", "reflectance": 0.5}
@@ -139,6 +138,7 @@ def test_of_a_transfer_function_and_an_oblique_box(mi):
     assert (np.array(si.n).T * outwards).sum(axis=1).min() > 0.998
 
 
+@pytest.mark.quick
 def test_a_box_that_cuts_the_solid_shows_its_face(mi):
     loaded = scene(mi, SUN, volume=gridvolume(mi, np.ones((2, 2, 2))))
     o, d = np.array([[0.3, 0.4, 2], [0.3, 2, 0.5]]), -np.eye(3)[[2, 1]]
@@ -243,6 +243,7 @@ def test_derivatives_are_those_of_differences(mi):
 # Bad input
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("given", "said"),
     [

@@ -7,8 +7,6 @@ import pytest
 from brdfkit import TransferFunction, Volume
 from brdfkit.volumes.largest_value import largest_along
 
-pytestmark = pytest.mark.quick
-
 
 @pytest.fixture
 def mi(llvm_variant):

@@ -7,7 +7,6 @@ import pytest
 from brdfkit import TransferFunction, Volume
 from brdfkit.volumes.block_bounds import block_ranges, largest_between
 
-pytestmark = pytest.mark.quick
 RNG = np.random.default_rng(6)
 HILLS = TransferFunction(
     [-20, 5, 5, 40, 100],
@@ -75,6 +74,7 @@ def test_what_is_looked_up_is_the_function_of_the_value(mi):
     np.testing.assert_allclose(found[smooth], expected[smooth], atol=2e-3)
 
 
+@pytest.mark.quick
 def test_labels_have_their_own_colours(mi):
     labels = np.arange(30).reshape(2, 3, 5)
     rgba = RNG.random((30, 4))
@@ -119,6 +119,7 @@ def test_colours_in_other_variants(mi, variant, request):
 # Bounds
 
 
+@pytest.mark.quick
 def test_the_largest_value_between_two_places():
     """Against the function at very many places; its corners are among them."""
     rows = RNG.random(37)
@@ -191,6 +192,7 @@ def test_mitsuba_renders_a_transfer_function(mi):
 # Bad input
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("given", "said"),
     [
@@ -207,6 +209,7 @@ def test_what_cannot_be_looked_up_is_said(mi, given, said):
         mi.load_dict({"type": "transfer_function", **given})
 
 
+@pytest.mark.quick
 def test_values_that_are_not_finite_are_refused(mi):
     with pytest.raises(RuntimeError, match="should be a volume of finite values"):
         mi.load_dict(volume(mi, np.full((2, 2, 2), np.nan), HILLS))
