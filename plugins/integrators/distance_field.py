@@ -45,7 +45,7 @@ from brdfkit.distance_fields.shading.direct_light import SHADINGS, SHADOWS, Dire
 from brdfkit.distance_fields.shading.exposed import exposed
 from brdfkit.distance_fields.shading.lamps import lamps_of
 from brdfkit.distance_fields.shading.parts import parts_of
-from brdfkit.distance_fields.shading.seen_point import seen_point
+from brdfkit.distance_fields.shading.seen_point import FINEST, seen_point
 from brdfkit.distance_fields.shading.silhouettes import near_miss
 from brdfkit.distance_fields.shadows.shadow import DIRECTIONS
 from brdfkit.errors import BrdfkitError
@@ -75,7 +75,8 @@ def define(mi):
             super().__init__(props)
             self.bsdfs = dict(props.objects())
             self.tree = field_of(self.filename, self.field)
-            self.parts, self.values = parts_of(self.tree, self.bsdfs), exposed(self.tree)
+            self.parts = parts_of(self.tree, self.bsdfs, FINEST * self.precision)
+            self.values = exposed(self.tree)
             how = "shadow", "direction", "epsilon", "rays", "shading", "samples", "far"
             self.light = DirectLight(**{name: getattr(self, name) for name in how})
             self.parameters_changed([])

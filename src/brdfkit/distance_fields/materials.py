@@ -8,12 +8,11 @@ from dataclasses import dataclass, field, replace
 
 import drjit as dr
 
+from brdfkit.distance_fields.boxes import plain
 from brdfkit.distance_fields.motions import Motion
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.offsets import dilate
 from brdfkit.errors import BrdfkitError
-
-GROWTH = 1e-3  # [unit]: less than all details, and more than what single precision rounds
 
 
 def _name(what, value, rules):
@@ -59,17 +58,20 @@ def material_names(node):
     return sorted({name for child in node.children for name in material_names(child)})
 
 
-def grown(node, material):
-    """The field with all parts of a `material` grown by a little."""
+def grown(node, material, growth):
+    """The field with all parts of a `material` grown by a little, `growth`."""
     if node.kind == "made_of":
-        return dilate(node.child, GROWTH) if node.material == material else node
+        return dilate(node.child, growth) if node.material == material else node
+    if node.kind == "scale":
+        growth = growth / plain(node.factor)
     if hasattr(node, "child"):
-        return replace(node, child=grown(node.child, material))
+        return replace(node, child=grown(node.child, material, growth))
     if node.children:
-        return replace(node, children=tuple(grown(child, material) for child in node.children))
+        children = tuple(grown(child, material, growth) for child in node.children)
+        return replace(node, children=children)
     return node
 
 
-def share(node, larger, p):
+def share(node, larger, p, growth):
     """How much of the surface at p, 0 to 1, belongs to what is `grown` in the field `larger`."""
-    return dr.abs(larger.distance(p) - node.distance(p)) / GROWTH
+    return dr.abs(larger.distance(p) - node.distance(p)) / growth

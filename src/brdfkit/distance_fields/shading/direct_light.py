@@ -78,7 +78,7 @@ class DirectLight:
         """
         centre, radius = lamp.sphere(seen.si, ds, self.far)
         beside = centre + type(centre)(0, 0, 1) * (2 * radius + 1)
-        cone = light_cone(dr.select(seen.found, seen.si.p, beside), centre, radius, seen.ball)
+        cone = light_cone(dr.select(seen.found, seen.middle, beside), centre, radius, seen.ball)
         how = self.epsilon, self.direction, self.rays
         return cone, by_name(self.shadow, field, cone, *how)
 
@@ -96,7 +96,7 @@ class DirectLight:
         """Whether the ray to a sample of an emitter meets the field."""
         settings = {"lipschitz": field.lipschitz, "precision": seen.ball / 2, "active": active}
         far = dr.minimum(ds.dist, self.far)
-        return sphere_trace(field.distance, seen.si.p, ds.d, far, **settings).found
+        return sphere_trace(field.distance, seen.middle, ds.d, far, **settings).found
 
     def by_samples(self, emitter, shows, si, bsdf, sampler, active):
         """The mean over samples of an emitter of those for which `shows(ds)`."""

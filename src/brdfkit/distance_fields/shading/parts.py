@@ -7,21 +7,24 @@ from brdfkit.errors import BrdfkitError
 
 
 class Parts:
-    """The BSDFs of a field: `named`, name → BSDF, and `other`, that of all else."""
+    """The BSDFs of a field: `named`, name → BSDF, and `other`, that of all else.
 
-    def __init__(self, named, other):
-        self.named, self.other = named, other
+    growth : less than all details [unit], and more than what single precision rounds.
+    """
+
+    def __init__(self, named, other, growth):
+        self.named, self.other, self.growth = named, other, growth
 
     def larger(self, field):
         """Name → the field with the parts of this name grown, which `bsdf` needs."""
-        return {name: grown(field, name) for name in self.named}
+        return {name: grown(field, name, self.growth) for name in self.named}
 
     def bsdf(self, field, larger, p):
         """The `mi.BSDFPtr` at points of the surface: of the part with the largest share."""
         import mitsuba as mi
 
         with dr.suspend_grad():
-            shares = {name: share(field, each, p) for name, each in larger.items()}
+            shares = {n: share(field, each, p, self.growth) for n, each in larger.items()}
             found, most = mi.BSDFPtr(self.other), 1 - sum(shares.values(), mi.Float(0))
             for name, here in shares.items():
                 found = dr.select(here > most, mi.BSDFPtr(self.named[name]), found)
@@ -29,7 +32,7 @@ class Parts:
         return found
 
 
-def parts_of(field, bsdfs):
+def parts_of(field, bsdfs, growth):
     """The `Parts` of a field, of the BSDFs that a scene gives: name → BSDF.
 
     One whose name is that of no part is for all parts without a name; where there is none, they are
@@ -54,4 +57,4 @@ def parts_of(field, bsdfs):
             "parts by field.made_of(NAME), and give one bsdf at most for all others."
         )
     other = bsdfs[others[0]] if others else mi.load_dict({"type": "diffuse"})
-    return Parts({name: bsdfs[name] for name in names}, other)
+    return Parts({name: bsdfs[name] for name in names}, other, growth)

@@ -1,8 +1,9 @@
 """Where camera rays meet a field: by cones as wide as a sample's part of a pixel.
 
-A cone ends where it touches the surface, so that no object is missed, thin as it may be. The end,
-with the empty ball about it that touches the surface, is what is shaded: shadows begin at that
-ball. Objects so look larger by half a pixel's diagonal over the root of the samples per pixel.
+A cone ends where it touches the surface, so that no object is missed, thin as it may be. Shadows
+begin at the empty ball about its end. What is shaded lies ahead, where the ray meets the plane that
+touches both, so that lamps are as far away as they are. Objects look larger by half a pixel's
+diagonal over the root of the samples per pixel.
 
 [Bálint et al. 2019, section 2.7]
 """
@@ -18,19 +19,21 @@ from brdfkit.distance_fields.hits import reattach
 from brdfkit.distance_fields.normals import normal
 from brdfkit.distance_fields.shading.recorded import recorded
 
-FINEST = 1e-3  # [unit]: half of the differences of normals; single precision allows no less
+FINEST = 10.0  # over `precision`: half of the differences of normals; less than all details
+SLANTED = 0.1  # the cosine to the surface below which a ray is taken no further
 
 
 @dataclass(frozen=True)
 class SeenPoint:
     """What a camera ray meets.
 
-    si : `mi.SurfaceInteraction3f`.
-    ball : Float, the radius of the empty ball about its point.
+    si : `mi.SurfaceInteraction3f`, on the surface.
+    middle, ball : the centre and the radius of an empty ball close to it.
     found : Bool, whether the ray meets the field at all.
     """
 
     si: Any
+    middle: Any
     ball: Any
     found: Any
 
@@ -50,8 +53,9 @@ def seen_point(field, ray, far, precision, active):
     if dr.grad_enabled(f(ray(t))):
         t = reattach(f, ray.o, ray.d, t)
     ball = dr.maximum(hit.distance, precision / 2)  # of rays that meet nothing
-    n = normal(f, ray(t), dr.maximum(ball, FINEST))
-    return SeenPoint(interaction(ray, t, n, hit.found), ball, hit.found)
+    n = normal(f, ray(t), dr.maximum(ball, FINEST * precision))
+    ahead = dr.detach(ball / dr.maximum(-dr.dot(n, ray.d), SLANTED))
+    return SeenPoint(interaction(ray, t, ray(t + ahead), n, hit.found), ray(t), ball, hit.found)
 
 
 def cone_of(ray):
@@ -63,13 +67,13 @@ def cone_of(ray):
     return dr.detach(across) / sqrt(2), dr.detach(turned) / sqrt(2)
 
 
-def interaction(ray, t, n, found):
-    """The `mi.SurfaceInteraction3f`: u and v are x and y, the tangent is the x axis laid onto the
-    surface; where that stands upright, the z axis."""
+def interaction(ray, t, p, n, found):
+    """The `mi.SurfaceInteraction3f` at p: u and v are x and y, the tangent is the x axis laid onto
+    the surface; where that stands upright, the z axis."""
     import mitsuba as mi
 
     si = dr.zeros(mi.SurfaceInteraction3f, dr.width(t))
-    si.t, si.p = dr.select(found, t, dr.inf), ray(t)
+    si.t, si.p = dr.select(found, t, dr.inf), p
     si.time, si.wavelengths = ray.time, ray.wavelengths
     si.n = si.sh_frame.n = mi.Normal3f(n)
     si.uv = mi.Point2f(si.p.x, si.p.y)

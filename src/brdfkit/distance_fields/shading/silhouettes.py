@@ -61,9 +61,9 @@ def near_miss(field, ray, far, precision, active):
         t = nearest_pass(gap, rho, tangent, dr.detach(far), active)
         found = active & (t > 0)
         ball = dr.maximum(field.distance(ray(t)) / field.lipschitz, precision / 2)
-        n = normal(field.distance, ray(t), dr.maximum(ball, FINEST))
+        n = normal(field.distance, ray(t), dr.maximum(ball, FINEST * precision))
         n = dr.normalize(n - ray.d * (dr.dot(n, ray.d) + GRAZING))
-        seen = SeenPoint(interaction(ray, t, n, found), ball, found)
+        seen = SeenPoint(interaction(ray, t, ray(t), n, found), ray(t), ball, found)
     return NearMiss(seen, gap(t), BAND * rho(t))
 
 
