@@ -18,7 +18,7 @@ def check(
     distance: Callable[[Any], Any],
     low: ArrayLike,
     high: ArrayLike,
-    lipschitz: float = 1.0,
+    lipschitz: float | None = None,
     samples: int = 100_000,
     seed: int = 0,
 ) -> None:
@@ -30,11 +30,11 @@ def check(
     Parameters
     ----------
     distance : callable
-        f(p) of points; as a node's `distance`.
+        f(p) of points; or a node.
     low, high : three numbers
         The corners of the box in which it is checked.
-    lipschitz : float, default 1
-        The bound L.
+    lipschitz : float, optional
+        The bound L; by default that of the node, else 1.
     samples : integer, default 100_000
         How many pairs are drawn.
     seed : integer, default 0
@@ -51,6 +51,9 @@ def check(
     brdfkit.errors.BrdfkitError: the field changes by 3 per unit near (0.6, 0.2, 0.04), more ...
     """
     rng, low, high = np.random.default_rng(seed), np.asarray(low, float), np.asarray(high, float)
+    if lipschitz is None:
+        lipschitz = getattr(distance, "lipschitz", 1.0)
+    distance = getattr(distance, "distance", distance)
     a = rng.uniform(low, high, (samples, 3))
     step = rng.normal(size=(samples, 3))
     step *= 10.0 ** rng.uniform(-4, 0, (samples, 1)) / np.linalg.norm(step, axis=1, keepdims=True)

@@ -32,6 +32,8 @@ class Combination(Node):
     blend: Any = number(0.0, least=0)
 
     def __post_init__(self):
+        if isinstance(self.children, Node):
+            raise BrdfkitError(f"{self.kind}: give the fields as one list, [a, b].")
         object.__setattr__(self, "children", tuple(self.children))
         if not self.children:
             raise BrdfkitError(f"{self.kind}: there is nothing in it; give at least one field.")

@@ -13,5 +13,7 @@ def evaluate(distance, points):
     points = np.asarray(points, float)
     if points.ndim != 2 or points.shape[1] != 3:
         raise BrdfkitError(f"points have the shape {points.shape}; it should be (n, 3).")
+    if not len(points):
+        return np.zeros(0)
     values = np.asarray(distance(double_precision.vector(points)), float)
     return np.broadcast_to(values, len(points)).copy()

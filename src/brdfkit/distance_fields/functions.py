@@ -31,8 +31,8 @@ def _function(glsl, drjit):
 
 def _root(a):
     """√a with the derivative 0 at a = 0; `dr.safe_sqrt` has a wrong one close to it, too."""
-    positive = a > 0
-    return dr.select(positive, dr.sqrt(dr.select(positive, a, 1.0)), 0.0)
+    nothing = a <= 0  # false of NaN, which stays
+    return dr.select(nothing, 0.0, dr.sqrt(dr.select(nothing, 1.0, a)))
 
 
 sqrt = _function("sqrt", _root)

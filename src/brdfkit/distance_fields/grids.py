@@ -27,7 +27,10 @@ from brdfkit.jit.padding import pad
 def _values(what, values, rules):
     """The values of a grid: an array of NumPy's, or a tensor of Dr.Jit's."""
     if not dr.is_tensor_v(values):
-        values = np.asarray(values, float)
+        try:
+            values = np.asarray(values, float)
+        except ValueError:
+            raise BrdfkitError(f"{what} should be numbers, in rows of one length.") from None
         if not np.isfinite(values).all():
             at = np.argwhere(~np.isfinite(values))[0].tolist()
             raise BrdfkitError(f"{what} is not finite at (z, y, x) = {at}; check the values.")

@@ -12,6 +12,6 @@ def add(cls):
 
 def kind(name, where=""):
     """The class of nodes of this name; `where` begins the error for a name that is none."""
-    if name not in _KINDS:
+    if not isinstance(name, str) or name not in _KINDS:
         raise no_such("node", name, sorted(_KINDS), where)
     return _KINDS[name]

@@ -7,6 +7,8 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 
+LARGEST = 1e300
+
 
 def number(default, least=None, above=None):
     """A field that holds a number, or an array of Dr.Jit's, which may carry derivatives."""
@@ -36,7 +38,7 @@ def _number(what, value, rules):
         return value
     least, above = rules["least"], rules["above"]
     low = least if least is not None else above
-    valid = isinstance(value, int | float | np.number) and np.isfinite(value)
+    valid = isinstance(value, int | float | np.number) and abs(value) < LARGEST
     if valid and (low is None or value > low or (value == least)):
         return float(value)
     bound = "" if low is None else (f" above {low:g}" if above is not None else f" from {low:g} on")

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from brdfkit.arguments import to_whole_number
 from brdfkit.distance_fields.kinds import kind
 from brdfkit.errors import BrdfkitError
 
@@ -32,20 +33,26 @@ def to_grid(node, resolution=64, bounds=None):
 
 def box_around(node, bounds=None):
     """The box (low, high) to sample: `bounds`, or that of the surface and a margin."""
-    low, high = (np.asarray(c, float) for c in (bounds or node.bounds()))
+    corners = node.bounds() if bounds is None else bounds
+    try:
+        low, high = np.asarray(corners, float).reshape(2, 3)
+    except (TypeError, ValueError):
+        raise BrdfkitError(
+            f"bounds = {bounds!r} should be two corners, (low, high), of three numbers each."
+        ) from None
     if not np.isfinite([low, high]).all():
         raise BrdfkitError("the field is endless; give bounds, (low, high).")
     if not (low < high).all():
         raise BrdfkitError(
             f"the box from {_place(low)} to {_place(high)} is empty; there is no surface in it."
         )
-    margin = 0.0 if bounds else MARGIN * (high - low).max()
+    margin = MARGIN if bounds is None else 0.0 * (high - low).max()
     return low - margin, high + margin
 
 
 def axes_of(low, high, resolution):
     """The coordinates along x, y and z of cubic cells that begin at `low` and cover the box."""
-    step = (high - low).max() / resolution
+    step = (high - low).max() / to_whole_number("resolution", resolution, least=1)
     counts = np.ceil((high - low) / step - 1e-9).astype(int)
     return [start + step * np.arange(n + 1) for start, n in zip(low, counts, strict=True)]
 

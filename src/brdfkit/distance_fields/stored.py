@@ -3,6 +3,7 @@
 import json
 from dataclasses import MISSING, fields
 from os import PathLike
+from os.path import isfile
 from typing import Any
 
 import drjit as dr
@@ -46,7 +47,7 @@ def from_json(text: str, where: str = "the field") -> Any:
     """
     try:
         data = json.loads(text)
-    except ValueError as error:
+    except (ValueError, TypeError, RecursionError) as error:
         raise BrdfkitError(f"{where}: is no JSON ({error}); check the file.") from error
     return _to_node(data, where)
 
@@ -83,6 +84,14 @@ def load(path: str | PathLike[str]) -> Any:
         return from_json(contents(path).decode(), str(path))
     except UnicodeDecodeError as error:
         raise BrdfkitError(f"{path}: is no text; a distance field is JSON.") from error
+
+
+def is_field(path: str | PathLike[str]) -> bool:
+    """Whether there is a file that begins as those that `save` wrote."""
+    if not isfile(path):
+        return False
+    with open(path, "rb") as file:
+        return file.read(100).lstrip().startswith(b'{"kind"')
 
 
 def _to_data(value):
