@@ -270,11 +270,12 @@ def test_vertices_of_a_mesh_lie_on_the_surface_and_f_never_overstates():
     assert (outward > 0).all()
 
 
-def test_a_mesh_becomes_a_grid():
+def test_a_mesh_becomes_a_grid(tmp_path):
     pytest.importorskip("igl")
     solid = df.rounded_box((1, 2, 1.5), 0.2).at(0.3, 0, 0)
     mesh = df.to_mesh(solid, 48)
-    sampled = df.from_mesh(tuple(mesh), 32)
+    mesh.write(tmp_path / "solid.ply")
+    sampled = df.from_mesh(tmp_path / "solid.ply", 32)
     points = np.random.default_rng(0).uniform(sampled.low, sampled.high, (2000, 3))
     error = np.abs(sampled(points) - solid(points)).max()
     assert error <= sampled.half_diagonal + 0.02  # and the mesh is less round than the solid
@@ -561,6 +562,10 @@ WRONG = {
         "no surface in it",
     ),
     "all outside": (lambda: df.sphere(1).to_grid(8, ((2, 2, 2), (3, 3, 3))), "is all outside"),
+    "no cells": (lambda: df.sphere(1).to_grid(0), "resolution = 0 should be a whole number"),
+    "no corners": (lambda: df.sphere(1).to_grid(8, (1, 2)), r"\(1, 2\) should be two corners"),
+    "no list": (lambda: df.union(df.sphere(1), df.box(1)), "give the fields as one list"),
+    "slope of a node": (lambda: df.check(df.mandelbulb(), (0, 0, 0), (1, 1, 1)), "its bound 3"),
     "endless": (lambda: df.plane().to_grid(8), "is endless; give bounds"),
     "open mesh": (open_mesh, "not closed: 3 edges"),
     "no such node": (lambda: df.from_json('{"kind": "spere"}', "a.json"), "a.json: .*mean sphere"),
@@ -569,6 +574,10 @@ WRONG = {
         "a.json: .*mean radius",
     ),
     "no kind": (lambda: df.from_json("[1]"), 'should be an object with a "kind"'),
+    "kind of no name": (lambda: df.from_json('{"kind": ["box"]}'), "there is no node"),
+    "nested deeply": (lambda: df.from_json('{"child":' * 20_000), "is no JSON"),
+    "no text": (lambda: df.from_json(None), "is no JSON"),
+    "huge": (lambda: df.sphere(10**400), "should be a finite number"),
     "no JSON": (lambda: df.from_json("{", "a.json"), "a.json: is no JSON"),
     "bad child": (lambda: df.from_json('{"kind": "shell"}'), "shell needs child"),
     "bad value": (
@@ -585,6 +594,7 @@ WRONG = {
     "no parameter": (lambda: df.sphere(1).with_parameters({"radius": 1}), "mean sphere.radius"),
     "points": (lambda: df.sphere(1)([1, 2, 3]), r"shape \(3,\); it should be \(n, 3\)"),
     "grid of nan": (lambda: df.grid(np.full((2, 2, 2), np.nan)), "not finite at"),
+    "ragged grid": (lambda: df.grid([[[1, 2], [1]]]), "numbers, in rows of one length"),
     "flat grid": (lambda: df.grid(np.ones((2, 2))), r"should be \(z, y, x\)"),
     "name": (lambda: df.sphere(1).to_glsl("a b"), "should be a word"),
 }

@@ -10,8 +10,18 @@ from brdfkit.distance_fields.grids import grid
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.sampling import MARGIN, axes_of, to_grid
 from brdfkit.errors import BrdfkitError
-from brdfkit.files import contents
+from brdfkit.files import contents, write_safely
 
+HEAD = """ply
+format binary_little_endian 1.0
+element vertex {vertices}
+property float x
+property float y
+property float z
+element face {faces}
+property list uchar int vertex_indices
+end_header
+"""
 INSTALL = 'is not installed; pip install "brdfkit[distance_fields]".'
 
 
@@ -20,6 +30,15 @@ class Mesh(NamedTuple):
 
     vertices: NDArray
     faces: NDArray
+
+    def write(self, path: str | PathLike[str]) -> None:
+        """Write a binary PLY file, which Mitsuba and modellers read."""
+        rows = np.empty(len(self.faces), [("count", "u1"), ("corners", "<i4", 3)])
+        rows["count"], rows["corners"] = 3, self.faces
+        head = HEAD.format(vertices=len(self.vertices), faces=len(rows))
+        data = np.asarray(self.vertices, "<f4").tobytes() + rows.tobytes()
+        with write_safely(path) as beside:
+            beside.write_bytes(head.encode() + data)
 
 
 def to_mesh(node: Node, resolution: int = 64, bounds: Any = None) -> Mesh:
@@ -47,6 +66,7 @@ def to_mesh(node: Node, resolution: int = 64, bounds: Any = None) -> Mesh:
     Examples
     --------
     >>> vertices, faces = to_mesh(sphere(1) - box(1))
+    >>> to_mesh(sphere(1) - box(1)).write("cut.ply")    # doctest: +SKIP
     """
     try:
         from skimage.measure import marching_cubes
