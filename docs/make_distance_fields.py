@@ -35,6 +35,16 @@ single march for each point and lamp. Nothing in these pictures is random but th
 pixel, so that there is no noise. There is no light between surfaces either, only that of the lamps.
 
 [`make_distance_fields.py`](make_distance_fields.py) makes this page of the code that it shows."""
+LOOK = """`bk.render` shows any field, of any size. A part with the name of a material that
+brdfkit knows is made of it. In a notebook the picture appears below the cell.
+
+```python
+import brdfkit as bk
+from brdfkit.distance_fields import box, plane, sphere, to_mesh
+
+cup = (sphere(1) - sphere(0.9) - box(2).at(0, 0, 1.3)).at(0, 0, 1).made_of("blasted_gold")
+bk.render(cup | plane()).write("cup.png")
+```"""
 BEGIN = """`|` is the union, `&` the intersection, `-` the difference, as in fogleman's
 [sdf](https://github.com/fogleman/sdf). A part has the material whose name `made_of` gives; the rest
 is grey."""
@@ -43,6 +53,16 @@ SCENE = """What is common to the scenes, `scene`, `bulb`, `panel`, `camera` and 
 come along: [all of them](materials/README.md)."""
 FIGURES = """*Error*: root mean square over the pixels, of linear values up to {brightest:.1f}, from
 `monte_carlo`, {rays} rays for each point. *Time*: of the whole picture, over that of `hard`."""
+BECOMES = """A file: `load` reads it again, `brdfkit render cup.json` shows it. Scene files name it:
+`<integrator type="distance_field"><string name="filename" value="cup.json"/> ...`. A mesh, for
+Mitsuba and modellers, also of what is endless, within bounds. GLSL, one function without loops.
+
+```python
+cup.save("cup.json")
+to_mesh(cup, resolution=128).write("cup.ply")
+to_mesh(plane() - cup, bounds=((-2, -2, -1), (2, 2, 1))).write("dent.ply")
+print(cup.to_glsl())  # float field(vec3 p) { ... }
+```"""
 MORE = """Errors of all methods on nine kinds of occluders: [errors of single-ray
 shadows](single_ray_shadows.md). Derivatives through shadows: the notebook [Shadow of a
 light](../notebooks/shadow_of_a_light.md)."""
@@ -60,7 +80,9 @@ def page(figures):
     ]
     return paragraphs(
         *("# Distance fields: a gallery", INTRO),
-        *("## A first picture", *start),
+        *("## A quick look", LOOK),
+        *("## What a field becomes", BECOMES),
+        *("## A scene of Mitsuba's", *start),
         *("## Six scenes", SCENE, *scenes, *own),
         *compared,
         MORE,

@@ -22,6 +22,7 @@ from small_files import merl
 import brdfkit as bk
 from brdfkit.catalogue import shipped
 from brdfkit.cli import main
+from brdfkit.distance_fields import sphere
 from brdfkit.plugins import discovery
 from brdfkit.rendering.scenes import scene_names
 
@@ -271,10 +272,12 @@ def test_render_in_another_scene(cli):
 
 
 @pytest.mark.quick
-def test_render_a_scene_and_a_fit(cli):
+def test_render_a_scene_a_fit_and_a_field(cli):
     Path("room.xml").write_text(SCENE.format(alpha=0.3))
     assert_fine(cli("fit", "paint.binary", "-m", "ward", "-o", "."))
-    for words, made in ((["room.xml"], "room.png"), (["ward.json", *SMALL], "ward.png")):
+    sphere(1).save("ball.json")
+    files = (["room.xml"], ["ward.json", *SMALL], ["ball.json", "--size", "8"])
+    for words, made in zip(files, ("room.png", "ward.png", "ball.png"), strict=True):
         result = cli("render", *words, "--spp", "1")
         assert_fine(result)
         assert f"written: {made}" in result.stdout

@@ -8,6 +8,7 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.colours import luminance
+from brdfkit.distance_fields import plane, sphere
 from brdfkit.errors import BrdfkitError
 from brdfkit.picture_errors.metrics import METRICS
 from brdfkit.rendering import Rendering, memory, render, render_scene
@@ -207,6 +208,21 @@ def test_an_equal_material_has_no_error():
     assert np.isnan(render(WHITE, spp=1, size=16).noise_floor)
 
 
+@pytest.mark.parametrize("size", [1e-4, 1e4])
+def test_a_field_fills_its_picture(size):
+    """Whatever its size; one part is of the material that it is named after, one is grey."""
+
+    def picture(size):
+        field = sphere(1).made_of("blasted_gold") | plane().at(0, 0, -1).made_of("nothing_known")
+        return render(field.scale(size), size=24).pictures["field"]
+
+    one, other = picture(1), picture(size)
+    np.testing.assert_allclose(other.mean(), one.mean(), rtol=0.01)
+    red, _, blue = other[10:14, 10:14].mean(axis=(0, 1))
+    assert red > 2 * blue
+    assert np.ptp(other[-1], axis=-1).max() < 0.02
+
+
 @pytest.mark.quick
 def test_an_interrupt_before_the_first_pass_is_raised():
     def stop(done, total):
@@ -242,6 +258,7 @@ def test_what_cannot_be_written_leaves_nothing(pair, tmp_path, path):
         ({"things": WHITE, "size": (8,)}, "pixels above 0"),
         ({"things": WHITE, "seed": 2**31}, "out of bounds"),
         ({"things": WHITE, "seed": -1}, "seed = -1"),
+        ({"things": sphere(1), "scene": "knot"}, "leave scene and envmap out"),
     ],
 )
 def test_what_cannot_be_rendered_is_said(arguments, message):

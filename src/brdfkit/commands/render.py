@@ -18,7 +18,7 @@ from brdfkit.errors import BrdfkitError
 
 
 @click.command()
-@click.argument("things", nargs=-1, required=True, metavar="FIT|NAME|FILE|SCENE.xml...")
+@click.argument("things", nargs=-1, required=True, metavar="FIT|NAME|FILE|SCENE.xml|FIELD.json...")
 @click.option(
     "-o",
     "--output",
@@ -65,9 +65,12 @@ def render(
     Materials (fits, models, measured files) are rendered side by side. The others are compared to
     the first, by several metrics, beside their noise floor: the first with another seed. A
     SCENE.xml of Mitsuba's is rendered alone, in its own size, and without --spp with its own
-    samples per pixel. Ctrl-C keeps the samples that all pictures have.
+    samples per pixel; a FIELD.json of distances alone, too, under lamps. Ctrl-C keeps the samples
+    that all pictures have.
     """
     from brdfkit.commands._targets import material, picture_file
+    from brdfkit.distance_fields import load as load_field
+    from brdfkit.distance_fields.stored import is_field
     from brdfkit.host.users_plugins import load_plugins
     from brdfkit.names import slug
     from brdfkit.rendering import render_scene
@@ -84,7 +87,18 @@ def render(
         )
     if shadows and not quickly:
         raise BrdfkitError("--shadows is for --preview: path-traced pictures have them anyway.")
-    if scenes:
+    fields = [t for t in things if is_field(t)]
+    if fields:
+        if len(things) > 1 or values or scene != "ball" or envmap is not None or quickly:
+            raise BrdfkitError(
+                f"{fields[0]} is a distance field: it is rendered alone, without --set, --scene, "
+                "--envmap and --preview."
+            )
+        output = picture_file(output or Path(fields[0]).with_suffix(".png").name)
+        where = {"size": size, "seed": seed}
+        field = load_field(fields[0])
+        picture = path_trace(field, output, console, spp, until, tone, usual=None, **where)
+    elif scenes:
         if len(things) > 1 or values:
             raise BrdfkitError("A scene is rendered alone and without --set: name one SCENE.xml.")
         if scene != "ball" or envmap is not None or size or quickly:
@@ -108,15 +122,16 @@ def render(
         click.get_current_context().exit(status())
 
 
-def path_trace(things, output, console, spp, until, tone="range", **where):
+def path_trace(things, output, console, spp, until, tone="range", usual=SPP, **where):
     """Render `things` side by side and write the picture; returns a `Rendering`.
 
-    `tone`: a `ToneMapping` or the name of one; `where`: what `brdfkit.render` takes besides.
+    `tone`: a `ToneMapping` or the name of one; `usual`: samples per pixel where neither `spp` nor
+    `until` is given; `where`: what `brdfkit.render` takes besides.
     """
     from brdfkit.rendering.rendering import render as render_things
 
     with console.progress("render") as progress:
-        spp = spp or (SPP if until is None else None)
+        spp = spp or (usual if until is None else None)
         picture = render_things(things, spp, until=until, progress=progress, **where)
     _write(picture, output, tone)
     return picture

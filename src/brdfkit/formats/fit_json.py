@@ -35,6 +35,8 @@ def read(source):
             found["settings"] |= {"bounds": {n: tuple(pair) for n, pair in bounds.items()}}
         found["certainty"] = _to_certainty(given.get("certainty"))
     except (ValueError, KeyError, TypeError, RecursionError):
+        if source.data.lstrip().startswith(b'{"kind"'):
+            raise source.error("is a distance field; load it by brdfkit.distance_fields") from None
         raise source.error("is no fit that brdfkit saved, or is damaged; fit it again") from None
     try:
         return Fit(model=labels.model(label)(**values), **found)

@@ -11,8 +11,10 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from brdfkit.arguments import to_positive, to_whole_number
+from brdfkit.distance_fields import Node
 from brdfkit.errors import BrdfkitError
 from brdfkit.jit.threads import in_turn
+from brdfkit.rendering import field
 from brdfkit.rendering.inputs import Renderable, as_list, describe_all, mitsuba
 from brdfkit.rendering.memory import require_memory
 from brdfkit.rendering.result import Rendering
@@ -26,7 +28,7 @@ SceneLike: TypeAlias = str | Path | Callable[[dict[str, Any], tuple[int, int]], 
 
 
 def render(
-    things: Renderable | Iterable[Renderable],
+    things: Renderable | Iterable[Renderable] | Node,
     spp: int | None = None,
     size: int | tuple[int, int] | None = None,
     seed: int = 0,
@@ -45,7 +47,9 @@ def render(
     ----------
     things : Measured, Fit, Model, str, Path, dict or (str, one of these), or several
         The materials, the reference first: objects, names or paths, BSDFs' dictionaries, which may
-        hold a "name", or pairs of a name and one of these.
+        hold a "name", or pairs of a name and one of these. Or a field of
+        `brdfkit.distance_fields`, which is shown alone, under lamps with soft shadows; its parts
+        may have materials' names, `field.made_of("car_paint")`.
     spp : int, optional
         Samples per pixel, by default 256; with `until`, the most of them, by default 16,384.
     size : int or (int, int), optional
@@ -86,8 +90,13 @@ def render(
     >>> print(render(["car_paint", "ggx"], until=45).errors())    # doctest: +SKIP
     """
     until = _to_decibels(until)
-    spp, seed = _to_samples(spp, SPP, until), to_whole_number("seed", seed, least=0)
+    default = field.SPP if isinstance(things, Node) else SPP
+    spp, seed = _to_samples(spp, default, until), to_whole_number("seed", seed, least=0)
     size = None if size is None else to_size(size)
+    if isinstance(things, Node):
+        if scene != "ball" or envmap is not None:
+            raise BrdfkitError("A distance field is shown by itself: leave scene and envmap out.")
+        return _render_field(things, spp, size or field.SIZE, seed, progress, until)
     subjects = as_list(things)
     require_memory(size or SIZE, len(subjects))
     mitsuba()  # sets a variant, on which the dictionaries depend
@@ -185,6 +194,15 @@ def _rendering(traced, seed, until, parameters=None, mask=None):
         traced.other_seed,
         until,
     )
+
+
+@in_turn
+def _render_field(node, spp, size, seed, progress, until):
+    """The `Rendering` of a distance field, freed in its turn as in `_load_and_trace`."""
+    require_memory(size, 1)
+    mitsuba()
+    traced = trace({"field": field.field_scene(node, size)}, spp, seed, progress, until)
+    return _rendering(traced, seed, until)
 
 
 @in_turn
