@@ -131,6 +131,21 @@ def bsdf(meaning):
     return Setting(None, None, meaning, read, differentiable=True)
 
 
+def phase(meaning):
+    """A phase function, by which light goes evenly anywhere where the scene gives none."""
+
+    def read(value):
+        import mitsuba as mi
+
+        if value is None:
+            return mi.load_dict({"type": "isotropic"}, parallel=False)
+        if not isinstance(value, mi.PhaseFunction):
+            raise ValueError("a phase function")
+        return value
+
+    return Setting(None, None, meaning, read, differentiable=True)
+
+
 def volume(default, meaning, coloured=True, least=0.0):
     """A volume of values from `least` on, such as Mitsuba's gridvolume; a number or a colour makes
     a constant one. Not `coloured`: of one channel."""

@@ -1,0 +1,178 @@
+"""Single scattering: volumes in the light of a scene, by random collisions, without bias.
+
+    L = T(0, d) L_behind + ∫ T(0, s) [e(s) + σ(s) α(s) ∫ p(ω, ω') L_in(s, ω') dω'] ds
+    T(0, s) = exp(-∫ σ dt) from 0 to s
+
+`extinction` σ · `scale`, in whose box all of it lies, `albedo` α and `emission` e, radiance per
+length, are volumes; `phase` p is any phase function. L_in is the light that comes straight from an
+emitter, through the volume. An `extinction` of the type `transfer_function` has a colour as well:
+α is the albedo times it, or σ times it is added to e. e is D65 where it is 1 in spectral variants.
+
+Every emitter shines: points, directions, surfaces, environments. A surface before, in or behind
+the volume shows what it emits, and by its BSDF the light of the emitters that reaches it through
+the volume; it casts a shadow, also where its BSDF lets light pass. Behind all is the environment.
+
+Light collides by Woodcock tracking; what comes through to an emitter is found by ratio tracking,
+once towards a sample of the emitters, once in a direction that the phase function, or the BSDF,
+draws, and these are weighted by the power heuristic. `majorants` are the bounds of σ by which both
+step: `local`, those of coarse cells, or `global`, one for all. They are found anew when parameters
+change; an extinction above them is an error, or else a pixel that is no number.
+
+`max_depth` as in Mitsuba's `volpath`, and with its means: 1 is what shines by itself and is seen
+through the volume, 2 is single scattering, more is multiple scattering.
+
+Derivatives go to all of the volumes, to the phase function, the BSDFs and the emitters' radiance,
+and are without bias; where a surface's edge moves they have no part.
+
+[Lesar 2018, section 6.3]; [Woodcock et al. 1965]; [Novák et al. 2014]; [Veach & Guibas 1995].
+"""
+
+import math
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.host.declared import count, declared, number, phase, volume, word
+from brdfkit.volumes import emitters
+from brdfkit.volumes.medium import Medium
+from brdfkit.volumes.vertex import Vertex
+
+ROULETTE = 5  # scatterings after which faint paths end at random
+LEAST_CHANCE, MOST_CHANCE = 0.05, 0.95  # of going on then
+
+PARAMETERS = {
+    "extinction": volume(1.0, "σ: collisions per unit of length", coloured=False),
+    "scale": number(1.0, (0.0, math.inf), "what σ is multiplied by"),
+    "albedo": volume(1.0, "α: the share of what collides that is scattered"),
+    "emission": volume(0.0, "e: radiance that is added per unit of length"),
+    "phase": phase("p: where light is scattered to, by default evenly anywhere"),
+    "max_depth": count(2, (1, 1_000_000), "segments of a path at most, 2 for single scattering"),
+    "majorants": word(("local", "global"), "bounds of σ: of coarse cells, or one for all"),
+}
+
+
+def define(mi):
+    """The class of `mi.SamplingIntegrator` for the current variant."""
+
+    class SingleScattering(declared(mi.SamplingIntegrator, PARAMETERS)):
+        def __init__(self, props):
+            self.name, self.emits = props.plugin_name(), "emission" in props
+            super().__init__(props)
+            self.medium = Medium(self.extinction, self.scale, self.albedo, self.emission)
+            self.parameters_changed()
+
+        def parameters_changed(self, keys=()):
+            if not mi.variant().startswith("scalar"):
+                self.medium.bound(self.majorants == "local")
+
+        def sample(self, scene, sampler, ray, medium=None, active=True):
+            if mi.variant().startswith("scalar"):
+                raise BrdfkitError(
+                    f"{self.name} does not run in {mi.variant()}; set llvm_ad_rgb or cuda_ad_rgb."
+                )
+
+            def goes_on(depth, ray, throughput, *_):
+                return active & (depth < self.max_depth) & dr.any(throughput != 0)
+
+            def step(depth, ray, throughput, radiance, density, sampler):
+                going = goes_on(depth, ray, throughput)
+                light, weight, vertex = self.segment(scene, ray, density, sampler, going)
+                radiance += throughput * light
+                throughput *= weight
+                radiance += throughput * self.direct(scene, vertex, sampler)
+                wo, weight, density = vertex.sample(sampler)
+                ray = vertex.interaction.spawn_ray(wo)
+                throughput = roulette(depth, throughput * weight, sampler)
+                return depth + 1, ray, throughput, radiance, density, sampler
+
+            one, zero = mi.UnpolarizedSpectrum(1), mi.UnpolarizedSpectrum(0)
+            state = mi.UInt32(1), mi.Ray3f(ray), one, zero, mi.Float(0), sampler
+            if self.max_depth > 1:
+                state = dr.while_loop(state, goes_on, step, max_iterations=self.max_depth - 1)
+            _, ray, throughput, radiance, density, _ = state
+            going = active & dr.any(throughput != 0)
+            radiance += throughput * self.last_segment(scene, ray, density, sampler, going)
+            return mi.depolarizer(dr.select(active, radiance, 0)), active, []
+
+        def segment(self, scene, ray, density, sampler, active):
+            """Follow rays to where they collide or end: the light found, what scatters there, as a
+            factor, and the vertex."""
+            si = scene.ray_intersect(ray, active)
+            t, share = self.medium.collide(ray, si.t, sampler, active)
+            in_medium = active & ~dr.isinf(t)
+            ends = active & ~in_medium
+
+            mei = dr.zeros(mi.MediumInteraction3f)
+            mei.t, mei.p, mei.wi, mei.sh_frame = t, ray(t), -ray.d, mi.Frame3f(-ray.d)
+            mei.time, mei.wavelengths = ray.time, ray.wavelengths
+            sigma, albedo, light = self.medium.matter(mei, in_medium)
+            log_sigma = dr.log(dr.select(in_medium, sigma, 1))
+            share = dr.select(in_medium, share * dr.replace_grad(mi.Float(1), log_sigma), share)
+
+            light = (
+                dr.select(in_medium, light, emitters.seen(scene, ray, si, density, ends)) * share
+            )
+            if self.emits:
+                light += self.medium.glow(ray, si.t, sampler, active)
+            vertex = Vertex(self.phase, mei, in_medium, si, ends & si.is_valid())
+            return light, dr.select(in_medium, albedo, 1) * share, vertex
+
+        def direct(self, scene, vertex, sampler):
+            """Light from a sample of the emitters that is scattered into the rays at a vertex."""
+            it, active = vertex.interaction, vertex.active
+            ds, light, ray, lit = emitters.sampled(scene, it, sampler, active)
+            value, pdf = vertex.eval_pdf(ds.d)
+            weight = dr.select(
+                ds.delta, 1, emitters.power_heuristic(dr.select(lit, ds.pdf, 1), dr.detach(pdf))
+            )
+            share = self.medium.transmittance(ray, ray.maxt, sampler, lit)
+            return dr.select(lit, value * light * (weight * share), 0)
+
+        def last_segment(self, scene, ray, density, sampler, active):
+            """The light that comes through along rays."""
+            si = scene.ray_intersect(ray, active)
+            own = self.medium.colour == "emission"
+            light = mi.UnpolarizedSpectrum(0)
+            if emitters.met_by_rays(scene):
+                light += emitters.seen(scene, ray, si, density, active)
+                light *= self.medium.transmittance(ray, si.t, sampler, active)
+            if self.emits or own:
+                light += self.medium.glow(ray, si.t, sampler, active, own)
+            return light
+
+    return SingleScattering
+
+
+def roulette(depth, throughput, sampler):
+    """The throughput of paths of which faint ones end at random, and others stand for them."""
+    chance = dr.clip(dr.max(dr.detach(throughput)), LEAST_CHANCE, MOST_CHANCE)
+    chance = dr.select(depth < ROULETTE, 1, chance)
+    return dr.select(sampler.next_1d() < chance, throughput / chance, 0)
+
+
+def reference():
+    """A scene, and the radiance (3,) of each of its pixels.
+
+    An even cube in the sun, which is behind the camera: [Lesar 2018, section 6.3] in closed form.
+    """
+    import mitsuba as mi
+
+    sigma, albedo, g, irradiance = 2.0, 0.5, -0.3, np.array([0.9, 0.6, 0.3])
+    camera = mi.ScalarTransform4f().look_at([0.5, 0.5, 3], [0.5, 0.5, 0], [0, 1, 0])
+    film = {"type": "hdrfilm", "width": 8, "height": 8, "rfilter": {"type": "box"}}
+    film["pixel_format"] = "luminance" if mi.is_monochromatic else "rgb"
+    colour = {"type": "rgb", "value": irradiance.tolist()}
+    scene = {
+        "type": "scene",
+        "integrator": {
+            "type": "single_scattering",
+            "extinction": sigma,
+            "albedo": albedo,
+            "phase": {"type": "hg", "g": g},
+        },
+        "sensor": {"type": "orthographic", "to_world": camera.scale(0.4), "film": film},
+        "sun": {"type": "directional", "direction": [0, 0, -1], "irradiance": colour},
+    }
+    back = (1 - g**2) / (4 * math.pi * (1 + g**2 + 2 * g) ** 1.5)  # Henyey-Greenstein at μ = -1
+    return scene, irradiance * albedo * back * (1 - math.exp(-2 * sigma)) / 2

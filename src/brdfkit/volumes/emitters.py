@@ -1,0 +1,57 @@
+"""The light of a scene's emitters: what a ray meets of it, and what a sample of it sends.
+
+Both may find the same light, and are weighted by the power heuristic [Veach & Guibas 1995].
+"""
+
+import drjit as dr
+
+
+def seen(scene, ray, si, density, active=True):
+    """The light that rays see where they meet a surface, or nothing, weighted.
+
+    density : with which the rays were drawn [sr⁻¹]; 0 where no sample of an emitter is like them.
+    """
+    import mitsuba as mi
+
+    light = mi.unpolarized_spectrum(si.emitter(scene).eval(si, active))
+    with dr.suspend_grad():
+        rival = active & (density > 0)
+        origin = dr.zeros(mi.Interaction3f)
+        origin.p, origin.time, origin.wavelengths = ray.o, ray.time, ray.wavelengths
+        ds = mi.DirectionSample3f(scene, si, origin)
+        pdf = scene.pdf_emitter_direction(origin, ds, rival)
+        weight = dr.select(rival, power_heuristic(density, pdf), 1)
+    return dr.select(active, light * weight, 0)
+
+
+def sampled(scene, it, sampler, active):
+    """A sample of the emitters as `it` sees them: the `mi.DirectionSample3f`, its light over its
+    density, the ray to it, and whether no surface is between.
+
+    The light has the derivatives by what the emitter emits.
+    """
+    import mitsuba as mi
+
+    with dr.suspend_grad():
+        ds, light = scene.sample_emitter_direction(it, sampler.next_2d(active), False, active)
+        # The sky's distance is that of a sphere about the surfaces, which volumes may leave
+        infinite = mi.has_flag(ds.emitter.flags(), mi.EmitterFlags.Infinite)
+        ray = it.spawn_ray(ds.d)
+        ray.maxt = dr.select(infinite, dr.inf, ds.dist * (1 - mi.math.ShadowEpsilon))
+        lit = active & (ds.pdf > 0)
+        lit = lit & ~scene.ray_test(ray, lit)
+    attached = mi.unpolarized_spectrum(scene.eval_emitter_direction(it, ds, lit))
+    light = dr.replace_grad(mi.unpolarized_spectrum(light), attached / dr.select(lit, ds.pdf, 1))
+    return ds, light, ray, lit
+
+
+def met_by_rays(scene):
+    """Whether a scene has emitters that rays may meet: not points and directions alone."""
+    import mitsuba as mi
+
+    return not all(mi.has_flag(e.flags(), mi.EmitterFlags.Delta) for e in scene.emitters())
+
+
+def power_heuristic(density, other):
+    """The weight of what was drawn with a `density` > 0, and might have been with the `other`."""
+    return 1 / (1 + dr.square(other / density))
