@@ -45,13 +45,15 @@ def settings():
     }
     tinted = {"type": "constvolume", "value": {"type": "rgb", "value": [0.9, 0.5, 0.2]}}
     hg = {"type": "hg", "g": 0.6}
+    plastic = {"type": "roughplastic", "alpha": 0.3}
+    glossy = {"type": "bsdf_phase", "bsdf": plastic, "density": _grid(mi)}
     function = TransferFunction(
         [0, 2, 6], [[0.9, 0.3, 0.1, 0], [0.2, 0.8, 0.4, 0.2], [0.4, 0.4, 0.9, 1]], extinction=8
     )
     return {
         "even medium, sun": _setting(1.5, sun, phase=hg),
         "even medium, point": _setting(4.0, point, albedo=0.6),
-        "grid, panel": _setting(_grid(mi), panel, phase={"type": "hg", "g": -0.4}),
+        "grid, panel": _setting(_grid(mi), panel, phase=glossy),
         "grid, even sky": _setting(_grid(mi), even, phase={"type": "rayleigh"}),
         "grid, sky of Mitsuba's": _setting(_grid(mi), map_of_mitsuba, phase={"type": "schlick"}),
         "grid, sky by blocks": _setting(_grid(mi), map_of_ours, phase={"type": "mie_hazy"}),

@@ -82,7 +82,7 @@ def define(mi):
                 throughput *= weight
                 radiance += throughput * self.direct(scene, vertex, sampler)
                 wo, weight, density = vertex.sample(sampler)
-                ray = vertex.interaction.spawn_ray(wo)
+                ray = dr.select(vertex.active, vertex.interaction.spawn_ray(wo), ray)
                 throughput = roulette(depth, throughput * weight, sampler)
                 return depth + 1, ray, throughput, radiance, density, sampler
 
@@ -123,9 +123,7 @@ def define(mi):
             it, active = vertex.interaction, vertex.active
             ds, light, ray, lit = emitters.sampled(scene, it, sampler, active)
             value, pdf = vertex.eval_pdf(ds.d)
-            weight = dr.select(
-                ds.delta, 1, emitters.power_heuristic(dr.select(lit, ds.pdf, 1), dr.detach(pdf))
-            )
+            weight = dr.select(ds.delta, 1, emitters.power_heuristic(ds.pdf, dr.detach(pdf)))
             share = self.medium.transmittance(ray, ray.maxt, sampler, lit)
             return dr.select(lit, value * light * (weight * share), 0)
 

@@ -40,8 +40,9 @@ def sampled(scene, it, sampler, active):
         ray.maxt = dr.select(infinite, dr.inf, ds.dist * (1 - mi.math.ShadowEpsilon))
         lit = active & (ds.pdf > 0)
         lit = lit & ~scene.ray_test(ray, lit)
-    attached = mi.unpolarized_spectrum(scene.eval_emitter_direction(it, ds, lit))
-    light = dr.replace_grad(mi.unpolarized_spectrum(light), attached / dr.select(lit, ds.pdf, 1))
+        ds.pdf = dr.select(lit, ds.pdf, 1)
+    attached = mi.unpolarized_spectrum(scene.eval_emitter_direction(it, ds, lit)) / ds.pdf
+    light = dr.replace_grad(mi.unpolarized_spectrum(light), attached)
     return ds, light, ray, lit
 
 
