@@ -46,11 +46,9 @@ def sampled(scene, it, sampler, active):
     return ds, light, ray, lit
 
 
-def met_by_rays(scene):
-    """Whether a scene has emitters that rays may meet: not points and directions alone."""
-    import mitsuba as mi
-
-    return not all(mi.has_flag(e.flags(), mi.EmitterFlags.Delta) for e in scene.emitters())
+def are_met(scene, si):
+    """Whether rays that end at `si` end at an emitter."""
+    return si.emitter(scene).flags() != 0  # a missing one has none
 
 
 def power_heuristic(density, other):

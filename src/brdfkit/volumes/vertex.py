@@ -73,3 +73,13 @@ class Vertex:
 
     def either(self, in_medium, on_surface):
         return dr.select(self.in_medium, in_medium, on_surface)
+
+
+def medium_interaction(ray, t):
+    """The `mi.MediumInteraction3f` of rays at t."""
+    import mitsuba as mi
+
+    mei = dr.zeros(mi.MediumInteraction3f)
+    mei.t, mei.p, mei.time, mei.wavelengths = t, ray(t), ray.time, ray.wavelengths
+    mei.wi, mei.sh_frame = -ray.d, mi.Frame3f(-ray.d)
+    return mei
