@@ -91,9 +91,9 @@ def load_volume(
 
 
 def looks_like_volume(name: str) -> bool:
-    """Whether a word of the command line means a volume: a file by its suffix, a folder, a name."""
+    """Whether a word of the command line means a volume: a file by its suffix, a series, a name."""
     path, _ = _split(name)
-    return name in made.names() or formats.has_format(path) or Path(path).is_dir()
+    return name in made.names() or formats.has_format(path) or formats.is_series(Path(path))
 
 
 def _read(file, stored, downsample):

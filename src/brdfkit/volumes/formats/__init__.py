@@ -37,6 +37,16 @@ def has_format(name):
     return any(str(name).lower().endswith(module.SUFFIXES) for module in formats())
 
 
+def is_series(folder):
+    """Whether a folder holds a stack of TIFF, or a series of DICOM, of which one file is enough."""
+    if not folder.is_dir():
+        return False
+    sniff = _of_name("dicom").sniff
+    return bool(_folders.pictures(folder)) or any(
+        sniff(_folders.head(path, HEAD)) for path in _folders.files(folder)
+    )
+
+
 def find(file):
     """The `Stored` of a `VolumeFile`, by the format that recognises it, else by its suffix."""
     if file.path.is_dir():

@@ -20,3 +20,12 @@ def kind(file):
     if not files(file.path):
         raise file.error("the folder is empty; name one with a series of DICOM or a stack of TIFF")
     return "tiff" if pictures(file.path) else "dicom"
+
+
+def head(path, size):
+    """The first bytes of a file; none of one that cannot be read."""
+    try:
+        with path.open("rb") as stream:
+            return stream.read(size)
+    except OSError:
+        return b""
