@@ -79,7 +79,7 @@ def define(mi):
             flat = dr.squared_norm(outwards) == 0
             n = dr.normalize(dr.select(flat, -ray.d, outwards))
             n = dr.select(on_face, face_normal(ray(t), self.volume), n)
-            return interaction(ray, t, facing(n, ray.d), found)
+            return interaction(ray, t, ray(t), facing(n, ray.d), found)
 
         def is_free(self, ray, active):
             """Whether the surface leaves light through, from where the ray begins to its end."""
