@@ -182,17 +182,23 @@ def test_light_is_that_of_mitsuba_on_a_plane(mi, bsdf):
     np.testing.assert_allclose(found, expected, rtol=0.02)
 
 
-def test_shadows_are_those_of_the_volume(mi):
-    """A plate above half of the ground, the sun right above: from between them, the ground."""
+@pytest.mark.parametrize("moved", [(0, 0, 0), (-0.2, -0.5, -0.25)])
+def test_shadows_are_those_of_the_volume(mi, moved):
+    """A plate above half of the ground, the sun right above: from between them, the ground.
+
+    Moved, one of the points is the origin, to which the sky is near where there are no shapes.
+    """
     values = np.full((16, 16, 16), -1.0)
     values[:4], values[12:14, :, :8] = 1, 1
     o = np.array([[0.2, 0.5, 0.6], [0.4, 0.5, 0.6], [0.6, 0.5, 0.6], [0.8, 0.5, 0.6]])
     d = np.tile([0, 0, -1.0], (4, 1))
+    box = mi.ScalarTransform4f().translate(moved)
     for shadows in (False, True):
-        loaded = scene(mi, SUN, volume=gridvolume(mi, values), shadows=shadows)
+        volume = gridvolume(mi, values, to_world=box)
+        loaded = scene(mi, SUN, volume=volume, shadows=shadows)
         light = 0.5 / np.pi * 2
         expected = [0 if shadows else light] * 2 + [light] * 2
-        np.testing.assert_allclose(seen(mi, loaded, o, d)[:, 0], expected, atol=1e-3)
+        np.testing.assert_allclose(seen(mi, loaded, o + moved, d)[:, 0], expected, atol=1e-3)
 
 
 # Derivatives

@@ -34,16 +34,26 @@ def sampled(scene, it, sampler, active):
 
     with dr.suspend_grad():
         ds, light = scene.sample_emitter_direction(it, sampler.next_2d(active), False, active)
-        # The sky's distance is that of a sphere about the surfaces, which volumes may leave
-        infinite = mi.has_flag(ds.emitter.flags(), mi.EmitterFlags.Infinite)
-        ray = it.spawn_ray(ds.d)
-        ray.maxt = dr.select(infinite, dr.inf, ds.dist * (1 - mi.math.ShadowEpsilon))
+        ray = ray_to(it, ds)
         lit = active & (ds.pdf > 0)
         lit = lit & ~scene.ray_test(ray, lit)
         ds.pdf = dr.select(lit, ds.pdf, 1)
     attached = mi.unpolarized_spectrum(scene.eval_emitter_direction(it, ds, lit)) / ds.pdf
     light = dr.replace_grad(mi.unpolarized_spectrum(light), attached)
     return ds, light, ray, lit
+
+
+def ray_to(it, ds):
+    """The ray from `it` to a sample of an emitter; to the sky it has no end.
+
+    Mitsuba's distance of the sky is that of a sphere about the shapes, which volumes may leave.
+    """
+    import mitsuba as mi
+
+    infinite = mi.has_flag(ds.emitter.flags(), mi.EmitterFlags.Infinite)
+    ray = it.spawn_ray(ds.d)
+    ray.maxt = dr.select(infinite, dr.inf, ds.dist * (1 - mi.math.ShadowEpsilon))
+    return ray
 
 
 def are_met(scene, si):

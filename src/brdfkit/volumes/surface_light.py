@@ -7,6 +7,8 @@ direction that the BSDF drew stays as it is in the world while the surface turns
 
 import drjit as dr
 
+from brdfkit.volumes.emitters import ray_to
+
 
 def direct_light(scene, si, bsdf, sampler, shows, active):
     """The radiance that a surface sends to where it is looked at from.
@@ -30,7 +32,7 @@ def by_emitters(scene, si, bsdf, sample, shows, active):
     value, pdf = bsdf.eval_pdf(mi.BSDFContext(), si, si.to_local(ds.d), active)
     weight = dr.select(ds.delta, 1, ds.pdf / dr.select(active, ds.pdf + pdf, 1))
     found = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * weight
-    return dr.select(active & shows(si.spawn_ray_to(ds.p), active), found, 0)
+    return dr.select(active & shows(ray_to(si, ds), active), found, 0)
 
 
 def by_bsdf(scene, si, bsdf, sample1, sample2, shows, active):
