@@ -79,7 +79,7 @@ def test_opacity_of_a_layer_becomes_extinction():
         sigma = function.extinction * function(at)[:, 3]
         given = TF(values, rgba, colour="emission")
         exact = opacity.extinction(given(at)[:, 3], distance)
-        assert np.abs(sigma - exact).max() <= 1.001e-3 * function.extinction
+        assert np.abs(sigma - exact).max() <= 1.001e-5 * function.extinction
         np.testing.assert_allclose(function(at)[:, :3], given(at)[:, :3], atol=1e-9)
         sample = 0.1  # VTK: 1 - (1 - a)^(s / d)
         vtk = 1 - (1 - np.minimum(given(at)[:, 3], opacity.OPAQUE)) ** (sample / distance)

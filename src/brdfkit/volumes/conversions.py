@@ -80,7 +80,7 @@ class Conversions:
         Returns
         -------
         TransferFunction
-            With more points than were given, by which σ_t is met to 1e-3 of its largest value.
+            With more points than were given, by which σ_t is met to 1e-5 of its largest value.
 
         Raises
         ------

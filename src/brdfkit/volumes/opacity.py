@@ -11,7 +11,7 @@ import numpy as np
 from brdfkit.arguments import to_positive
 
 OPAQUE = 0.9999  # σ_t of an opacity of 1 has no end
-TOLERANCE = 1e-3  # of σ_t between points, relative to its largest value
+TOLERANCE = 1e-5  # of σ_t between points, relative to its largest value
 
 
 def extinction(opacity, distance):

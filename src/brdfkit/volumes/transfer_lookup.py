@@ -8,7 +8,7 @@ import numpy as np
 
 from brdfkit.volumes.transfer_function import TransferFunction
 
-STEPS = 1024  # of a table over values, at least
+STEPS = 4096  # of a table over values, at least: a step in a function is one of them wide
 
 
 @dataclass(init=False, eq=False)  # of a dataclass `dr.freeze` finds the arrays
@@ -81,7 +81,7 @@ def steps(values, least=STEPS):
     So that corners of a function, and labels, lie on rows of its table.
 
     >>> steps(np.array([0.0, 7.0, 29.0]))
-    1044
+    4118
     """
     places = (values - values[0]) / (values[-1] - values[0])
     counts = np.arange(least, 2 * least)
