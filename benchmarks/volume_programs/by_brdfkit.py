@@ -1,0 +1,99 @@
+"""brdfkit: its integrators and transfer functions."""
+
+import mitsuba as mi
+import numpy as np
+
+import brdfkit
+
+from .case import BEHIND, PIXELS
+
+NAME = "brdfkit"
+SETTINGS = {
+    "defaults": "128 steps along a ray, 256 for largest values and isosurfaces",
+    "careful": "2048 steps",
+}
+
+
+def version():
+    return brdfkit.__version__
+
+
+def picture(case, setting="defaults"):
+    """RGB (height, width, 4), of rays through the middles of pixels."""
+    integrator = {"type": case.renderer, **INTEGRATORS[case.renderer](case)}
+    if setting == "careful":
+        integrator["steps"] = 2048
+    light = {"type": "constant", "radiance": BEHIND}
+    towards = case.eye[0].tolist()
+    if case.renderer == "isosurface":
+        light = {"type": "directional", "direction": towards, "irradiance": float(np.pi)}
+    return render(case, {"type": "scene", "integrator": integrator, "light": light})
+
+
+def render(case, scene, samples=1):
+    """RGB (height, width, 4) of a scene of Mitsuba's, the mean of some samples; no opacity."""
+    loaded = mi.load_dict(scene)
+    together = min(samples, 256)
+    o, d = (np.tile(x.T, together).astype(np.float32) for x in case.rays)
+    total = np.zeros((PIXELS, PIXELS, 3))
+    for turn in range(samples // together):
+        sampler = mi.load_dict({"type": "independent"})
+        sampler.seed(turn, o.shape[1])
+        ray = mi.RayDifferential3f(mi.Ray3f(mi.Point3f(o), mi.Vector3f(d)))
+        found = np.array(loaded.integrator().sample(loaded, sampler, ray)[0]).T
+        total += found.reshape(together, PIXELS, PIXELS, 3).sum(axis=0, dtype=float)
+    return np.concatenate([total / samples, np.full((PIXELS, PIXELS, 1), np.nan)], axis=-1)
+
+
+def emission_absorption(case):
+    return {"extinction": coloured(case)}
+
+
+def maximum_intensity(case):
+    return {"volume": coloured(case), "jitter": False}
+
+
+def isosurface(case):
+    matte = {"type": "diffuse", "reflectance": {"type": "rgb", "value": case.told["albedo"]}}
+    return {"volume": values(case), "level": case.told["level"], "bsdf": matte}
+
+
+INTEGRATORS = {f.__name__: f for f in (emission_absorption, maximum_intensity, isosurface)}
+
+
+def coloured(case):
+    """The volume with its transfer function."""
+    return {
+        "type": "transfer_function",
+        "values": values(case),
+        "transfer": function(case).to_json(),
+    }
+
+
+def function(case):
+    given = case.transfer
+    if "opacity_unit_distance" in given:
+        opacity = given["values"], given["rgba"], given["opacity_unit_distance"]
+        return brdfkit.TransferFunction.from_opacity(*opacity)
+    gradients = given.get("gradients")
+    return brdfkit.TransferFunction(
+        given["values"], given["rgba"], given["extinction"], "emission", gradients
+    )
+
+
+def values(case):
+    """A gridvolume in the cube from -1 to 1, with gradient magnitudes where they are asked for."""
+    spacing = case.spacing
+    to_world = np.diag([*spacing, 1.0])
+    to_world[:3, 3] = spacing / 2 - 1
+    volume = brdfkit.Volume(case.voxels, to_world, labels=case.told["labels"])
+    channels = [volume.values.astype(np.float32)]
+    if "gradients" in case.transfer:
+        channels.append(volume.gradient_magnitude)
+    return {
+        "type": "gridvolume",
+        "grid": mi.VolumeGrid(np.stack(channels, axis=-1)),
+        "raw": True,
+        "filter_type": "nearest" if volume.labels else "trilinear",
+        "to_world": mi.ScalarTransform4f(volume.cube_to_world),
+    }
