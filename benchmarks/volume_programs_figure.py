@@ -1,0 +1,54 @@
+"""The figure of `volume_programs.py`: exact pictures, the programs', and differences × 10."""
+
+import numpy as np
+from volume_programs.case import NAMES, Case
+
+from brdfkit.colours import to_srgb
+from brdfkit.reproducing.drawing import figure
+
+TIMES = 10
+SHOWN = (
+    ("brdfkit", "defaults"),
+    ("VTK", "typed in"),
+    ("VTK", "careful"),
+    ("PyVista", "careful"),
+    ("K3D", "right unit"),
+    ("Mitsuba", "gridvolume"),
+)
+
+
+def draw(pictures):
+    """The figure, of pictures (case, program, setting) → RGB and opacity."""
+    page = figure(13, 11.5)
+    axes = page.subplots(len(NAMES), 1 + 2 * len(SHOWN))
+    for a in axes.flat:
+        a.set_axis_off()
+    for row, name in zip(axes, NAMES, strict=True):
+        exact = Case(name).exact
+        show(row[0], exact[..., :3])
+        row[0].set_title(name, size=9)
+        for k, (program, setting) in enumerate(SHOWN):
+            found = pictures.get((name, program, setting))
+            if found is None:
+                continue
+            part = channels(found)
+            show(row[1 + 2 * k], found[..., part])
+            row[2 + 2 * k].imshow(grey(0.5 + TIMES * (found - exact)[..., part]))
+            if name == NAMES[0]:
+                row[1 + 2 * k].set_title(f"{program},\n{setting}", size=9)
+                row[2 + 2 * k].set_title(f"× {TIMES}", size=9)
+    return page
+
+
+def channels(picture):
+    """RGB, or the opacity where there is no RGB."""
+    return slice(3) if np.isfinite(picture[..., 0]).all() else slice(3, 4)
+
+
+def show(axes, linear):
+    axes.imshow(grey(to_srgb(np.clip(linear, 0, 1))))
+
+
+def grey(pixels):
+    """Three channels between 0 and 1."""
+    return np.clip(np.broadcast_to(pixels, (*pixels.shape[:2], 3)), 0, 1)
