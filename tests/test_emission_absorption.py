@@ -123,6 +123,40 @@ def test_jitter_has_the_same_mean(llvm_variant):
     assert found.mean() == pytest.approx(truth, abs=1e-3)
 
 
+@pytest.mark.parametrize("wall", [False, True])
+@pytest.mark.parametrize("of", ["extinction", "emission", "light"])
+def test_gradients_by_even_matter_and_the_light_behind(llvm_variant, of, wall):
+    """Forward and backward: those of e (1 - exp(-σ)) / σ + exp(-σ) L by σ, e and L."""
+    mi = llvm_variant
+    sigma, e, light = 1.3, 0.4, 0.5
+    lamp = {"type": "rectangle", "emitter": {"type": "area", "radiance": light}}
+    integrator = {"extinction": sigma, "emission": e, "steps": 8}
+    loaded = scene(mi, integrator, **({"wall": lamp} if wall else {}))
+    through = np.exp(-sigma)
+    seen = (1 - through) / sigma
+    exact = {"extinction": e * (through - seen) / sigma - through * light, "emission": seen}
+    name = f"integrator.{of}.value.value"
+    if of == "light":
+        name = "wall.emitter.radiance.value" if wall else "behind.radiance.value"
+
+    parameters = mi.traverse(loaded)
+    leaf = type(parameters[name])(parameters[name])
+    dr.enable_grad(leaf)
+    parameters[name] = leaf
+    parameters.update()
+
+    def mean():
+        return dr.mean(mi.render(loaded, parameters, spp=1), axis=None)
+
+    shown = mean()
+    dr.forward_from(leaf)
+    forward = dr.grad(shown).array[0]
+    dr.clear_grad(leaf)
+    dr.backward_from(mean())
+    backward = np.array(dr.grad(leaf)).sum()
+    np.testing.assert_allclose([forward, backward], exact.get(of, through), rtol=1e-5)
+
+
 def test_gradients_by_a_transfer_function(llvm_variant):
     """Of a picture's mean, along random changes: those of differences with the same samples."""
     mi = llvm_variant

@@ -24,6 +24,7 @@ import numpy as np
 
 from brdfkit.host.channels import emission_of_rgb, white
 from brdfkit.host.declared import count, declared, flag, volume
+from brdfkit.jit.recorded import recorded
 from brdfkit.model.numerics import expm1
 from brdfkit.volumes.along_ray import light_behind, within
 
@@ -54,6 +55,7 @@ def define(mi):
             sigma, rgb = self.extinction.optics(it, active)
             return sigma, e + sigma * self.light(rgb, it)
 
+        @recorded
         def sample(self, scene, sampler, ray, medium=None, active=True):
             # The part of the ray within the volume, cut into steps
             end, behind = light_behind(scene, ray, active)

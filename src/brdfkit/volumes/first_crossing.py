@@ -2,9 +2,12 @@
 
 import drjit as dr
 
+from brdfkit.jit.recorded import recorded
+
 HALVINGS = 8  # of a step, before a last linear one
 
 
+@recorded
 def first_above(f, near, far, steps, active):
     """The first of `steps` + 1 even places from `near` to `far` where `f(t)` is above 0.
 
@@ -26,6 +29,7 @@ def first_above(f, near, far, steps, active):
         )
 
 
+@recorded
 def first_crossing(f, near, far, steps, active):
     """The distance from `near` to `far` where `f(t)` first rises above 0, and whether it does.
 

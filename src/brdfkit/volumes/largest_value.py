@@ -2,9 +2,12 @@
 
 import drjit as dr
 
+from brdfkit.jit.recorded import recorded
+
 HALVINGS = 8  # of a step: its place is found to 1/256 of one, its value still nearer
 
 
+@recorded
 def largest_along(value, near, far, steps, place, active):
     """The distance from `near` to `far` at which `value(t)` is largest.
 

@@ -17,7 +17,7 @@ import drjit as dr
 from brdfkit.distance_fields.cone_tracing import cone_trace
 from brdfkit.distance_fields.hits import reattach
 from brdfkit.distance_fields.normals import normal
-from brdfkit.distance_fields.shading.recorded import recorded
+from brdfkit.jit.recorded import recorded
 
 FINEST = 10.0  # over `precision`: half of the differences of normals; less than all details
 SLANTED = 0.1  # the cosine to the surface below which a ray is taken no further

@@ -19,8 +19,8 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.distance_fields.normals import normal
-from brdfkit.distance_fields.shading.recorded import recorded
 from brdfkit.distance_fields.shading.seen_point import FINEST, SeenPoint, cone_of, interaction
+from brdfkit.jit.recorded import recorded
 
 BAND = 4.0  # ε over ρ
 STEPS = 512  # of a march, as of `cone_trace`
