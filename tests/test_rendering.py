@@ -100,6 +100,7 @@ def test_an_exr_reads_back_with_names_and_header(tmp_path):
     rendering.write(tmp_path / "both.exr")
     assert sorted(p.name for p in tmp_path.iterdir()) == ["both.exr", "both.png"]
     expected = rendering.pictures | {"difference: lambert": rendering.differences["lambert"]}
+    expected["standard error: white"] = rendering.standard_error
     with OpenEXR.File(str(tmp_path / "both.exr"), separate_channels=True) as file:
         parts = {part.name(): part for part in file.parts}
         assert list(parts) == list(expected)

@@ -29,13 +29,16 @@ def picture_suffix(path):
 
 
 def write_exr(rendering, path):
-    """Write every picture and difference as a named part; see `Rendering.write`."""
+    """Write every picture, difference and error as a named part; see `Rendering.write`."""
     import OpenEXR
 
     parts = []
     # title of a part → (name of the picture, its values)
     named = {name: (name, p) for name, p in rendering.pictures.items()}
     named |= {f"difference: {n}": (n, d) for n, d in rendering.differences.items()}
+    if rendering.standard_error is not None:
+        first = rendering.reference
+        named[f"standard error: {first}"] = first, rendering.standard_error
     for title, (name, picture) in named.items():
         header = {
             "type": OpenEXR.scanlineimage,

@@ -24,12 +24,12 @@ from brdfkit.rendering.environment import on_ground
 from brdfkit.rendering.inputs import Renderable, as_list, mitsuba, name_all, parameters_of
 from brdfkit.rendering.kept_materials import bsdf_of, keep
 from brdfkit.rendering.memory import require_memory
+from brdfkit.rendering.progressive import rgb
 from brdfkit.rendering.rendering import to_size
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scenes._studio import GROUND
 from brdfkit.rendering.shown_material import mask
 from brdfkit.rendering.staging import Shape, stage
-from brdfkit.rendering.tracing import rgb
 
 STUDIO, SIZE, SPP = "studio", 256, 4
 SHADOWS = {False: "no shadows", True: "approximate shadows"}

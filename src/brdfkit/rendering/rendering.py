@@ -191,8 +191,9 @@ def _rendering(traced, seed, until, parameters=None, mask=None):
         parameters or {},
         mask,
         traced.asked,
-        traced.other_seed,
+        traced.first.other_seed,
         until,
+        standard_error=traced.first.standard_error,
     )
 
 

@@ -48,6 +48,8 @@ class Rendering(Shown):
         sample per pixel.
     until : float or None
         The noise floor that was asked for [dB].
+    standard_error : ndarray, shape (height, width, 3), or None
+        Of the numbers of the reference, as its passes tell; rough for a few. None for one pass.
     shadows : str
         What pictures of `preview` show of shadows; "" for path-traced ones, which show all light.
     tone_mapping : ToneMapping
@@ -65,6 +67,7 @@ class Rendering(Shown):
     until: float | None = None
     shadows: str = ""
     tone_mapping: ToneMapping = field(default_factory=ToneMapping)
+    standard_error: np.ndarray | None = field(default=None, repr=False)
 
     @property
     def reference(self) -> str:
@@ -122,8 +125,9 @@ class Rendering(Shown):
 
         The EXR has one named part a picture and one a difference ("difference: NAME"), each
         with R, G, B float32 and, in its header, spp, seed, brdfkit (the version), parameters (JSON)
-        and noise_floor [dB]. A difference is picture minus reference, linear. The PNG shows the
-        pictures side by side, captioned, over their differences in colour (CIEDE2000).
+        and noise_floor [dB]. A difference is picture minus reference, linear. "standard error:
+        NAME" is that of the reference. The PNG shows the pictures side by side, captioned, over
+        their differences in colour (CIEDE2000).
 
         Parameters
         ----------

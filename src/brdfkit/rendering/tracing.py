@@ -1,5 +1,6 @@
 """Path-traces several scenes together: each pass renders every picture once."""
 
+import sys
 import time
 from dataclasses import dataclass
 from math import isqrt
@@ -7,8 +8,9 @@ from math import isqrt
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.picture_errors.noise import Halves, samples_for
+from brdfkit.picture_errors.noise import Accumulated, samples_for
 from brdfkit.picture_errors.psnr import psnr
+from brdfkit.rendering.progressive import Progressive
 
 # Samples per pixel in one pass, at most; progress is reported after each. A power of two, so that a
 # block of one thread holds all samples of a pixel: see `brdfkit.reporting.pictures`
@@ -18,61 +20,55 @@ RAYS = 2**23  # camera rays in one pass, at most; bounds the memory to about 1 G
 
 @dataclass(frozen=True)
 class Traced:
-    """What `trace` makes: the pictures by name; `other_seed`, the first one as with another seed
-    (None for one pass); the samples per pixel reached and asked for; and the seconds."""
+    """What `trace` makes: the pictures by name; `first`, what the first one adds up to; the samples
+    per pixel reached and asked for; and the seconds."""
 
     pictures: dict[str, np.ndarray]
-    other_seed: np.ndarray | None
+    first: Accumulated
     spp: int
     asked: int
     seconds: float
 
 
-def trace(loaded, spp, seed, progress, until=None, mask=None):
+def trace(loaded, spp, seed, progress, until=None, mask=None, limit=None, most=PASS, frozen=False):
     """The `Traced` pictures of `loaded`, scenes by name; the first is the reference.
 
-    Each pass renders every picture once, and there are at least two, for the noise. Where a noise
-    floor `until` [dB] is given, over the `mask`, they end as soon as it is reached; `spp` is then
-    the most. Ctrl-C ends after the last pass that all pictures have; it is raised where there is
+    Each pass renders every picture once, of `most` samples per pixel at most, and there are at
+    least two, for the noise. Where a noise floor `until` [dB] is given, over the `mask`, they end
+    as soon as it is reached; `spp` is then the most; with a `limit` [s] before a pass that would
+    end later. Ctrl-C ends after the last pass that all pictures have; it is raised where there is
     none. `progress`: called with (done, total) after each picture of a pass.
     """
     if seed >= 2**31:
         raise BrdfkitError(f"The seed {seed} is out of bounds; give one from 0 to 2³¹ - 1.")
     start = time.perf_counter()
-
-    # the passes, and their seeds: a pass has the same seed in every picture
     pixels = max(int(np.prod(s.sensors()[0].film().crop_size())) for s in loaded.values())
-    passes = list(passes_of(spp, max(1, min(PASS, RAYS // pixels, (spp + 1) // 2))))
-    seeds = np.random.SeedSequence(seed).generate_state(len(passes))
-
-    # sums over the samples; a pass counts once all pictures have it
-    reference, *_ = loaded
-    sums, halves, reached = dict.fromkeys(loaded, 0.0), Halves(), 0
+    passes = list(passes_of(spp, max(1, min(most, RAYS // pixels, (spp + 1) // 2))))
+    growing, reference = Progressive(loaded, seed, frozen), next(iter(loaded))
     expected = len(passes)
     try:
-        for number, (count, pass_seed) in enumerate(zip(passes, seeds, strict=True)):
-            finished = {}
-            for name, scene in loaded.items():
-                # not mi.render: it turns Ctrl-C into a RuntimeError
-                image = scene.integrator().render(scene, seed=int(pass_seed), spp=count)
-                finished[name] = sums[name] + count * rgb(image)
-                if len(finished) == len(loaded):
-                    halves = halves.plus((finished[reference] - sums[reference]) / count, count)
-                    sums, reached = finished, reached + count
-                    expected = _passes_needed(passes, number + 1, halves, until, mask)
+        for number, count in enumerate(passes):
+            generated = {}
+            for name in loaded:
+                generated[name] = growing.generate(name, count)
+                if len(generated) == len(loaded):
+                    growing.integrate(generated, count)
+                    halves = growing.accumulated[reference].halves
+                    expected = min(
+                        _passes_needed(passes, number + 1, halves, until, mask),
+                        _passes_within(limit, time.perf_counter() - start, number + 1),
+                    )
                 if progress:
-                    progress(number * len(loaded) + len(finished), expected * len(loaded))
+                    progress(number * len(loaded) + len(generated), expected * len(loaded))
             if number + 1 == expected:
                 break
     except KeyboardInterrupt:
-        if not reached:
+        if not growing.accumulated[reference].passes:
             raise
 
-    pictures = {name: (s / reached).astype(np.float32) for name, s in sums.items()}
-    other = halves.other_seed
-    other = None if other is None else other.astype(np.float32)
-    asked = sum(passes[:expected])
-    return Traced(pictures, other, reached, asked, time.perf_counter() - start)
+    pictures = {name: found.picture for name, found in growing.accumulated.items()}
+    first, asked = growing.accumulated[reference], sum(passes[:expected])
+    return Traced(pictures, first, first.spp, asked, time.perf_counter() - start)
 
 
 def _passes_needed(passes, done, halves, until, mask):
@@ -85,6 +81,11 @@ def _passes_needed(passes, done, halves, until, mask):
     samples = samples_for(until, floor, sum(halves.spp))
     needed = np.searchsorted(np.cumsum(passes), samples) + 1
     return int(np.clip(needed, done + 1, len(passes)))
+
+
+def _passes_within(limit, seconds, done):
+    """How many passes end within a `limit` [s], `done` or more, which took so many seconds."""
+    return sys.maxsize if limit is None else max(done, int(limit / seconds * done))
 
 
 def passes_of(spp, largest):
@@ -100,9 +101,3 @@ def passes_of(spp, largest):
         count -= count % isqrt(count)
         yield count
         spp -= count
-
-
-def rgb(image):
-    """(height, width, 3) float64 of a film; one channel counts as grey, alpha is dropped."""
-    values = np.array(image, float)
-    return np.repeat(values[..., :1], 3, axis=-1) if values.shape[-1] < 3 else values[..., :3]
