@@ -33,9 +33,9 @@ def scene(llvm_variant):
     )
 
 
-@pytest.fixture(params=[False, True], ids=["plain", "frozen"])
-def growing(scene, request):
-    return Progressive({"wall": scene}, seed=3, frozen=request.param)
+@pytest.fixture
+def growing(scene):
+    return Progressive({"wall": scene}, seed=3)
 
 
 def grow(growing, passes, spp=2):

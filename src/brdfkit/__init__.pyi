@@ -38,6 +38,7 @@ from .rendering import gallery as gallery
 from .rendering import preview as preview
 from .rendering import render as render
 from .rendering import render_scene as render_scene
+from .rendering import render_volume as render_volume
 from .reporting.report import report as report
 from .reproducing import Reproduction as Reproduction
 from .reproducing import reproduce as reproduce

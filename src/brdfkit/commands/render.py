@@ -1,4 +1,4 @@
-"""`brdfkit render`: renders materials or a scene."""
+"""`brdfkit render`: renders materials, a scene or a volume."""
 
 from pathlib import Path
 
@@ -14,11 +14,14 @@ from brdfkit.commands._options import (
     values_option,
 )
 from brdfkit.commands._stopping import status
+from brdfkit.commands._volumes import render_volume, the_volume, volume_options
 from brdfkit.errors import BrdfkitError
 
 
 @click.command()
-@click.argument("things", nargs=-1, required=True, metavar="FIT|NAME|FILE|SCENE.xml|FIELD.json...")
+@click.argument(
+    "things", nargs=-1, required=True, metavar="FIT|NAME|FILE|SCENE.xml|FIELD.json|VOLUME..."
+)
 @click.option(
     "-o",
     "--output",
@@ -43,6 +46,7 @@ from brdfkit.errors import BrdfkitError
 @values_option
 @scene_options
 @render_options
+@volume_options
 @output_options
 def render(
     things,
@@ -58,15 +62,18 @@ def render(
     until,
     size,
     seed,
+    of_volume,
     console,
 ):
-    """Path-trace materials, or a scene.
+    """Path-trace materials, a scene or a volume.
 
     Materials (fits, models, measured files) are rendered side by side. The others are compared to
     the first, by several metrics, beside their noise floor: the first with another seed. A
     SCENE.xml of Mitsuba's is rendered alone, in its own size, and without --spp with its own
-    samples per pixel; a FIELD.json of distances alone, too, under lamps. Ctrl-C keeps the samples
-    that all pictures have.
+    samples per pixel; a FIELD.json of distances alone, too, under lamps. A VOLUME, .nii, .nrrd,
+    .mha, .vti, .tif, .vol, a folder of DICOM, or a made one such as smoke, is rendered alone; --set
+    gives parameters of its renderer, which `brdfkit plugins RENDERER` lists. Ctrl-C keeps the
+    samples that all pictures have.
     """
     from brdfkit.commands._targets import material, picture_file
     from brdfkit.distance_fields import load as load_field
@@ -108,6 +115,13 @@ def render(
         output = picture_file(output or Path(scenes[0]).with_suffix(".png").name)
         with console.progress("render") as progress:
             picture = render_scene(scenes[0], spp, seed, progress, until)
+        _write(picture, output, tone)
+    elif volume := the_volume(things, of_volume):
+        if scene != "ball" or quickly:
+            raise BrdfkitError(f"{volume} is a volume: leave --scene and --preview out.")
+        output = picture_file(output or f"{slug(Path(volume).name.partition('.')[0])}.png")
+        how = {"spp": spp, "until": until, "size": size, "seed": seed, "envmap": envmap}
+        picture = render_volume(volume, of_volume, values, console, **how)
         _write(picture, output, tone)
     else:
         found = [material(thing, values) for thing in things]

@@ -1,4 +1,4 @@
-"""`render` and `preview`: pictures of materials; their scene, their passes and their files."""
+"""Pictures of materials, `render` and `preview`, and of volumes: scenes, passes and files."""
 
 from brdfkit.rendering.galleries import Gallery as Gallery
 from brdfkit.rendering.galleries import gallery as gallery
@@ -7,3 +7,4 @@ from brdfkit.rendering.rendering import render as render
 from brdfkit.rendering.rendering import render_scene as render_scene
 from brdfkit.rendering.result import Rendering as Rendering
 from brdfkit.rendering.tone_mapping import ToneMapping as ToneMapping
+from brdfkit.rendering.volumes import render_volume as render_volume

@@ -8,6 +8,7 @@ from brdfkit.jit.llvm import use_variant
 from brdfkit.materials import Material, MaterialLike, material
 from brdfkit.model import Model
 from brdfkit.names import make_unique
+from brdfkit.volumes import Volume
 
 Renderable: TypeAlias = MaterialLike | tuple[str, MaterialLike]
 
@@ -57,6 +58,8 @@ def parameters_of(materials: dict[str, Material]) -> dict[str, dict[str, Any]]:
 
 def identify(thing: Any) -> tuple[str, Material]:
     """(name, material) of a thing to render."""
+    if isinstance(thing, Volume):
+        raise BrdfkitError(f"{thing.name} is a volume, not a material: call render_volume.")
     if _is_pair(thing):
         return thing[0], identify(thing[1])[1]
     found = material(thing)

@@ -5,7 +5,7 @@ and *reset* forgets them, as after a change of the scene. `tracing.py` does so u
 good enough; a program with a window may, too.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -23,23 +23,19 @@ class Progressive:
         Each with a camera and an integrator. They may change, by `mitsuba.traverse`: `reset` then.
     seed : int
         Of the samples, at least 0; equal seeds give equal passes.
-    frozen : bool
-        Whether passes repeat the kernels of the first two without Python (`drjit.freeze`), which
-        makes short ones many times as fast. Not every plugin may be frozen; those of volumes may.
     accumulated : dict of str to Accumulated
         What was integrated, by the scene's name.
 
     Examples
     --------
-    >>> growing = Progressive({"head": scene}, frozen=True)    # doctest: +SKIP
+    >>> growing = Progressive({"head": scene})    # doctest: +SKIP
     >>> for _ in range(30):
     ...     growing.integrate({"head": growing.generate("head", spp=1)}, spp=1)
     >>> show(growing.accumulated["head"].picture)
     """
 
-    def __init__(self, scenes: Mapping[str, Any], seed: int = 0, frozen: bool = False) -> None:
+    def __init__(self, scenes: Mapping[str, Any], seed: int = 0) -> None:
         self.scenes, self.seed = dict(scenes), seed
-        self._passes = {name: _frozen() if frozen else _pass for name in scenes}
         self.reset()
 
     def reset(self) -> None:
@@ -55,25 +51,15 @@ class Progressive:
 
         number = self.accumulated[name].passes
         seed = np.random.SeedSequence(self.seed).generate_state(number + 1)[number]
-        return rgb(self._passes[name](self.scenes[name], mi.UInt32(int(seed)), spp))
+        scene = self.scenes[name]
+        # not mi.render: it turns Ctrl-C into a RuntimeError. drjit.freeze makes it no faster
+        return rgb(scene.integrator().render(scene, seed=mi.UInt32(int(seed)), spp=spp))
 
     def integrate(self, generated: Mapping[str, NDArray], spp: int) -> None:
         """Add the pictures of a pass, those of all scenes at once."""
         self.accumulated = {
             name: before.plus(generated[name], spp) for name, before in self.accumulated.items()
         }
-
-
-def _pass(scene, seed, spp):
-    # not mi.render: it turns Ctrl-C into a RuntimeError
-    return scene.integrator().render(scene, seed=seed, spp=spp)
-
-
-def _frozen() -> Callable[..., Any]:
-    """`_pass` with a memory of kernels for one scene."""
-    import drjit as dr
-
-    return dr.freeze(_pass)
 
 
 def rgb(image: Any) -> NDArray:

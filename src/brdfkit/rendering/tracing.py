@@ -30,7 +30,7 @@ class Traced:
     seconds: float
 
 
-def trace(loaded, spp, seed, progress, until=None, mask=None, limit=None, most=PASS, frozen=False):
+def trace(loaded, spp, seed, progress, until=None, mask=None, limit=None, most=PASS):
     """The `Traced` pictures of `loaded`, scenes by name; the first is the reference.
 
     Each pass renders every picture once, of `most` samples per pixel at most, and there are at
@@ -44,7 +44,7 @@ def trace(loaded, spp, seed, progress, until=None, mask=None, limit=None, most=P
     start = time.perf_counter()
     pixels = max(int(np.prod(s.sensors()[0].film().crop_size())) for s in loaded.values())
     passes = list(passes_of(spp, max(1, min(most, RAYS // pixels, (spp + 1) // 2))))
-    growing, reference = Progressive(loaded, seed, frozen), next(iter(loaded))
+    growing, reference = Progressive(loaded, seed), next(iter(loaded))
     expected = len(passes)
     try:
         for number, count in enumerate(passes):

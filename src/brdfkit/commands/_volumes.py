@@ -1,0 +1,90 @@
+"""`brdfkit render` of a volume: its options, and its picture."""
+
+import functools
+
+import click
+
+from brdfkit.errors import BrdfkitError
+
+NUMBER = {"type": float, "metavar": "NUMBER"}
+OPTIONS = {
+    "--renderer": {
+        "metavar": "NAME",
+        "help": "single_scattering, emission_absorption, maximum_intensity or isosurface.",
+    },
+    "--transfer": {
+        "metavar": "NAME|FILE",
+        "help": "Transfer function: ct_bone, ct_lung, ct_skin, mri_head, mri_edges; or .json.",
+    },
+    "--density": NUMBER | {"help": "Multiply the transfer function's extinction by this number."},
+    "--azimuth": NUMBER | {"help": "Where the camera stands [degrees]: 0 is the front, 90 right."},
+    "--elevation": NUMBER | {"help": "How high the camera stands [degrees]."},
+    "--background": NUMBER | {"help": "Radiance of the background, 0 is black."},
+    "--seconds": NUMBER | {"help": "Add samples for so long [s]."},
+    "--labels": {"is_flag": True, "help": "The values are labels, not densities."},
+    "--downsample": {
+        "type": click.IntRange(min=1),
+        "metavar": "N",
+        "help": "Make one voxel of N×N×N while it is read.",
+    },
+}
+
+
+def volume_options(command):
+    """Adds OPTIONS to a command; it gets those that were given as `of_volume`, values by name."""
+    names = [option.removeprefix("--") for option in OPTIONS]
+
+    @functools.wraps(command)
+    def with_given(*args, **kwargs):
+        values = {name: kwargs.pop(name) for name in names}
+        given = {name: v for name, v in values.items() if not (v is None or v is False)}
+        return command(*args, of_volume=given, **kwargs)
+
+    for option, how in reversed(OPTIONS.items()):
+        text = {"help": f"Of a volume: {how['help'][0].lower()}{how['help'][1:]}"}
+        with_given = click.option(option, **how | text)(with_given)
+    return with_given
+
+
+def the_volume(things, of_volume):
+    """The volume that is the one of `things` to render; None where they are materials."""
+    from brdfkit.volumes.loading import looks_like_volume
+
+    found = [thing for thing in things if looks_like_volume(thing)]
+    if not found and of_volume:
+        option = f"--{next(iter(of_volume))}"
+        raise BrdfkitError(f"{option} is for volumes only, and {things[0]} is none: leave it out.")
+    if found and len(things) > 1:
+        raise BrdfkitError(f"{found[0]} is a volume, which is rendered alone: name nothing else.")
+    return found[0] if found else None
+
+
+def render_volume(name, of_volume, values, console, **how):
+    """The `Rendering` of the volume of this name or file.
+
+    `of_volume`: options of volumes; `values`: of --set; `how`: what `brdfkit.render_volume` takes.
+    """
+    from brdfkit.rendering.volumes import render_volume
+    from brdfkit.volumes import load_volume
+
+    loading = {key: of_volume.pop(key) for key in ("labels", "downsample") if key in of_volume}
+    settings = dict(map(_setting, values))
+    with console.progress(f"read {name}"):
+        volume = load_volume(name, **loading)
+    with console.progress("render") as progress:
+        given = {key: value for key, value in how.items() if value is not None}
+        return render_volume(volume, progress=progress, **given, **of_volume, **settings)
+
+
+def _setting(text):
+    """(name, value) of a NAME=VALUE: a number, R,G,B, true, false or a word."""
+    name, equals, value = text.partition("=")
+    if not (name and equals and value):
+        raise BrdfkitError(f"{text!r} should read PARAMETER=VALUE.")
+    if value in ("true", "false"):
+        return name, value == "true"
+    try:
+        numbers = [float(part) for part in value.split(",")]
+    except ValueError:
+        return name, value
+    return name, numbers[0] if len(numbers) == 1 else numbers

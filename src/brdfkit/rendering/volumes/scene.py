@@ -1,0 +1,103 @@
+"""The scene of a volume: its voxels, transfer function, renderer, light and camera for Mitsuba."""
+
+import numpy as np
+
+from brdfkit.errors import no_such
+from brdfkit.materials import material
+from brdfkit.rendering.scenes._studio import camera
+from brdfkit.rendering.volumes import looks
+from brdfkit.rendering.volumes.framing import FOV, direction, origin_and_target
+from brdfkit.rendering.volumes.light import background_light, environment_light
+
+# The renderers, plugins of their names, and the parameter that is the volume
+RENDERERS = {
+    "single_scattering": "extinction",
+    "emission_absorption": "extinction",
+    "maximum_intensity": "volume",
+    "isosurface": "volume",
+}
+UNLIT = "emission_absorption", "maximum_intensity"  # by themselves alone
+# Illuminance of level ground. Single scattering by a dense volume reflects much less of it than a
+# surface, and should look as bright
+LIGHT = {"single_scattering": 10.0, "isosurface": 3.0}
+LEAST_STEPS = 64  # of a ray
+
+
+def scene(volume, transfer, renderer, size, view, light, settings):
+    """The dictionary of the scene.
+
+    transfer : a `TransferFunction`, or None for the surface of a level
+    view : (azimuth, elevation) [degrees]
+    light : (envmap, background)
+    settings : further parameters of the integrator
+    """
+    towards, (width, height) = direction(volume, *view), size
+    envmap, background = light
+    entries = integrator(volume, transfer, renderer, settings)
+    shows = looks.shows(transfer, entries.get("level", 0))
+    origin, target = origin_and_target(volume, shows, towards, width / height)
+    if renderer in UNLIT:
+        emitter = background_light(0.0 if background is None else background)
+    else:
+        aspect = width / height
+        emitter = environment_light(envmap, LIGHT[renderer], background, towards, aspect)
+    return {
+        "type": "scene",
+        "integrator": entries,
+        "sensor": camera(origin, target, FOV, size),
+        "sky": emitter,
+    }
+
+
+def integrator(volume, transfer, renderer, settings):
+    """The dictionary of the integrator, which has the volume in it."""
+    if renderer not in RENDERERS:
+        raise no_such("renderer", renderer, RENDERERS)
+    shown = _grid(volume, transfer) if transfer is None else _with_function(volume, transfer)
+    entries = {"type": renderer, RENDERERS[renderer]: shown}
+    if renderer != "single_scattering":
+        entries["steps"] = max(LEAST_STEPS, *volume.size)
+    if renderer == "emission_absorption":
+        entries["jitter"] = True
+    if renderer == "isosurface":
+        entries |= {"bsdf": looks.CLAY, "shadows": True}
+        entries["level"] = looks.level(volume) if transfer is None else 0.5
+    return entries | {name: _plugin(name, value) for name, value in settings.items()}
+
+
+def _plugin(name, value):
+    """The value of an integrator's parameter, in which a name may stand for a plugin."""
+    if name == "bsdf":
+        return material(value).scene_dict()
+    return {"type": value} if name == "phase" and isinstance(value, str) else value
+
+
+def _with_function(volume, transfer):
+    return {
+        "type": "transfer_function",
+        "values": _grid(volume, transfer),
+        "transfer": transfer.to_json(),
+        "to_world": _to_world(volume),
+    }
+
+
+def _grid(volume, transfer):
+    """Mitsuba's gridvolume of the values, and of gradient magnitudes where a function has them."""
+    import mitsuba as mi
+
+    channels = [volume.values]
+    if transfer is not None and transfer.gradients is not None:
+        channels.append(volume.gradient_magnitude)
+    return {
+        "type": "gridvolume",
+        "grid": mi.VolumeGrid(np.stack(channels, axis=-1).astype(np.float32)),
+        "raw": True,
+        "filter_type": "nearest" if volume.labels else "trilinear",
+        "to_world": _to_world(volume),
+    }
+
+
+def _to_world(volume):
+    import mitsuba as mi
+
+    return mi.ScalarTransform4f(volume.cube_to_world.tolist())

@@ -1,0 +1,197 @@
+"""Pictures of volumes: what is seen from where, behind what, in what light; limits and errors."""
+
+from math import exp
+
+import numpy as np
+import pytest
+
+from brdfkit import BrdfkitError, TransferFunction, Volume, load_volume, render, render_volume
+from brdfkit.rendering.volumes import looks
+from brdfkit.rendering.volumes.scene import RENDERERS
+
+pytestmark = pytest.mark.usefixtures("module_in_llvm")
+RNG = np.random.default_rng(15)
+WHITE = TransferFunction([0, 1], [[1, 1, 1, 0], [1, 1, 1, 1]], 50, name="white")
+
+
+def seen(volume, renderer="maximum_intensity", spp=1, size=32, **how):
+    """The picture alone (height, width, 3)."""
+    found = render_volume(volume, renderer=renderer, spp=spp, size=size, **how)
+    return found.pictures[found.reference]
+
+
+def dot(axes, *where):
+    """A volume with one bright voxel: `where` along x, y, z, 0 to 4."""
+    values = np.full((5, 5, 5), 0.2)
+    values[where[::-1]] = 1
+    return Volume(values, np.diag([1, 1, 1, 1]), axes=axes)
+
+
+@pytest.mark.parametrize(
+    ("axes", "azimuth", "where", "upper", "left"),
+    [
+        ("RAS", 0, (4, 4, 4), True, True),  # from the front, the patient's right is on our left
+        ("RAS", 0, (0, 4, 0), False, False),
+        ("RAS", 90, (0, 4, 4), True, True),  # from the patient's left, the front is on our left
+        ("RAS", 180, (4, 0, 4), True, False),
+        ("", 0, (4, 0, 4), True, False),  # from -y, as x, z of a chart
+        ("", 90, (4, 4, 0), False, False),  # from +x
+    ],
+)
+def test_the_world_is_seen_from_where_it_is_said(axes, azimuth, where, upper, left):
+    grey = TransferFunction.from_colormap("gray", (0, 1), [(0, 1), (1, 1)])
+    view = {"transfer": grey, "azimuth": azimuth, "elevation": 0}
+    picture = seen(dot(axes, *where), **view)[..., 0]
+    y, x = np.unravel_index(picture.argmax(), picture.shape)
+    assert (y < 12, y > 20, x < 12, x > 20) == (upper, not upper, left, not left)
+
+
+@pytest.mark.parametrize("size", [(48, 48), (60, 30), (30, 60)])
+@pytest.mark.parametrize("view", [(30, 15), (200, -80), (90, 90)])
+def test_all_that_shows_is_in_the_picture(size, view):
+    """A narrow block in a corner of an oblique grid fills the picture, and is not cut."""
+    values = np.zeros((16, 12, 10))
+    values[1:7, 2:4, 5:9] = 1
+    oblique = RNG.normal(size=(3, 3)) @ np.diag([1, 2, 3])
+    to_world = np.block([[oblique, np.array([[50], [-7], [9]])], [np.zeros(3), 1]])
+    look = {"transfer": WHITE, "background": 0, "azimuth": view[0], "elevation": view[1]}
+    block = Volume(values, to_world)
+    shown = seen(block, "emission_absorption", size=size, **look)[..., 0] > 0.5
+    rows, columns = np.flatnonzero(shown.any(axis=1)), np.flatnonzero(shown.any(axis=0))
+    for found, n in ((rows, size[1]), (columns, size[0])):
+        assert found[0] > 0
+        assert found[-1] < n - 1
+    filled = max(np.ptp(rows) / size[1], np.ptp(columns) / size[0])
+    assert 0.7 < filled < 1
+
+
+def test_the_light_of_a_known_block():
+    """Through the middle of a cube of edge 2: RGB (1 - exp(-σ d)) + exp(-σ d) behind."""
+    cube = Volume(np.full((4, 4, 4), 3.0), np.diag([0.5, 0.5, 0.5, 1]))
+    rgb = [0.8, 0.4, 0.2]
+    glow = TransferFunction([0, 3], [[*rgb, 1], [*rgb, 1]], 0.6, "emission")
+    look = {"azimuth": 0, "elevation": 0, "density": 2, "background": (0, 0.5, 1)}
+    for renderer in ("emission_absorption", "single_scattering"):
+        more = {} if renderer == "emission_absorption" else {"albedo": 0}
+        picture = seen(cube, renderer, 64, 15, transfer=glow, **look, **more)[7, 7]
+        through = exp(-0.6 * 2 * 2)
+        expected = (1 - through) * np.array(rgb) + through * np.array([0, 0.5, 1])
+        noise = 0 if renderer == "emission_absorption" else 0.15  # 4 of (0.09 of 1 - 0.09) / 64
+        np.testing.assert_allclose(picture, expected, rtol=2e-3, atol=noise)
+
+
+@pytest.mark.parametrize("renderer", RENDERERS)
+def test_behind_a_volume_is_the_background(renderer):
+    """The corners of the picture see nothing else, however bright the environment is there."""
+    picture = seen(load_volume("sphere", size=16), renderer, background=0.07)
+    corners = picture[[0, 0, -1, -1], [0, -1, 0, -1]]
+    np.testing.assert_allclose(corners, 0.07, rtol=1e-3)
+    assert np.isfinite(picture).all()
+    assert picture[16, 16].max() > 0.1
+
+
+def test_the_environment_shows_without_a_background():
+    light = {"azimuth": 0, "elevation": 0, "size": 24, "spp": 16}
+    light["envmap"] = "sky"
+    around = seen("sphere", "isosurface", background=None, **light)
+    plain = seen("sphere", "isosurface", background=0.02, **light)
+    assert around[0, 0, 1] > 5 * plain[0, 0, 1]
+    np.testing.assert_allclose(around[12, 12], plain[12, 12], rtol=0.2)  # lit from all sides else
+
+
+def test_a_volume_of_any_unit_is_as_dense():
+    """Where no unit is known, the extinction goes with the size."""
+    values = RNG.random((8, 8, 8))
+    pictures = [seen(Volume(values, np.diag([s, s, s, 1])), "emission_absorption") for s in (1, 30)]
+    np.testing.assert_allclose(*pictures, rtol=1e-3, atol=1e-4)
+
+
+# What it looks like if nobody says
+
+
+@pytest.mark.parametrize(
+    ("values", "settings", "name"),
+    [
+        ([-1000, 0, 1500], {"axes": "RAS"}, "ct_bone"),
+        ([0, 90, 255], {"axes": "RAS"}, "mri_head"),
+        ([0, 90, 255], {}, "RdYlBu_r"),
+        ([0, 1, 29], {"labels": True, "axes": "RAS"}, "a colour for each label"),
+    ],
+)
+def test_looks_go_by_the_data(values, settings, name):
+    volume = Volume(np.reshape(values, (1, 1, 3)), **settings)
+    assert looks.transfer_function(volume, "single_scattering").name == name
+
+
+def test_labels_have_colours_and_0_has_none():
+    labels = Volume(np.arange(30).reshape(2, 3, 5), labels=True)
+    rgba = looks.transfer_function(labels, "single_scattering")(np.arange(30))
+    assert rgba[0, 3] == 0
+    assert (rgba[1:, 3] == 1).all()
+    assert all((rgba[i, :3] != rgba[i + 1, :3]).any() for i in range(1, 29))
+
+
+def test_the_level_parts_the_values_best():
+    """Otsu's, by trying all thresholds."""
+    values = np.concatenate([RNG.normal(0, 1, 700), RNG.normal(7, 2, 300)])
+
+    def between(t):
+        low, high = values[values <= t], values[values > t]
+        return len(low) * len(high) * (low.mean() - high.mean()) ** 2
+
+    best = max(np.linspace(values.min() + 0.01, values.max() - 0.01, 500), key=between)
+    found = looks.level(Volume(values.reshape(10, 10, 10)))
+    assert between(found) == pytest.approx(between(best), rel=1e-3)
+
+
+def test_a_surface_is_of_any_material():
+    grey = {"type": "diffuse", "reflectance": 0.2}
+    dark, light = (seen("sphere", "isosurface", 4, bsdf=bsdf) for bsdf in (grey, "lambert"))
+    assert light[16, 16].mean() > 1.5 * dark[16, 16].mean()
+
+
+# Limits, and what is wrong
+
+
+def test_samples_are_added_for_so_long():
+    found = render_volume("sphere", renderer="maximum_intensity", size=16, seconds=1e-3)
+    assert found.spp == found.asked == 4
+    assert found.standard_error is None
+    found = render_volume("sphere", renderer="maximum_intensity", size=16, seconds=0.5)
+    assert found.spp == found.asked >= 8
+    assert found.seconds < 2
+    assert found.standard_error.shape == (16, 16, 3)
+
+
+def test_ctrl_c_keeps_the_passes():
+    def stop(done, total):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    found = render_volume("sphere", size=16, spp=64, progress=stop)
+    assert (found.spp, found.asked) == (8, 64)
+    assert found.parameters["sphere"]["renderer"] == "single_scattering"
+
+
+@pytest.mark.parametrize(
+    ("how", "message"),
+    [
+        ({"renderer": "isosurfac"}, "did you mean isosurface?"),
+        ({"transfer": "ct_bon"}, "did you mean ct_bone?"),
+        ({"background": (1, -1, 0)}, "at least 0"),
+        ({"density": 0}, "density = 0 should be a number above 0"),
+        ({"seconds": "1"}, "seconds"),
+        ({"azimuth": np.nan}, "azimuth"),
+        ({"nonsense": 3}, "nonsense"),
+        ({"phase": "hgg"}, "hgg"),
+    ],
+)
+def test_what_is_wrong_is_said(how, message):
+    with pytest.raises(BrdfkitError, match=message.replace("?", r"\?")) as raised:
+        render_volume("sphere", size=8, spp=1, **how)
+    assert "\n" not in str(raised.value)
+
+
+def test_render_says_where_volumes_belong():
+    with pytest.raises(BrdfkitError, match="call render_volume"):
+        render(load_volume("sphere", size=4))
