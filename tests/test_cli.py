@@ -257,6 +257,33 @@ def test_render_until_the_noise_is_low(cli):
     assert re.search(r"\n lambert .*\n noise floor ", result.stdout, re.DOTALL)
 
 
+def test_render_a_volume(cli):
+    """By a renderer of it, with its parameters, by a tone mapping; what is meant for other things
+    is refused."""
+    words = "smoke", "--renderer", "isosurface", "--set", "level=0.4", "--set", "shadows=false"
+    result = cli("render", *words, "--set", "bsdf=lambert", *SMALL, "-o", "it.exr", "--json")
+    assert_fine(result)
+    record = json.loads(result.stdout)
+    assert record["pictures"] == ["smoke"]
+    assert record["spp"] == 2
+    header = OpenEXR.File("it.exr").header()
+    assert json.loads(header["parameters"])["level"] == 0.4
+    assert_fine(cli("render", "sphere", "--tone-mapping", "filmic", "--azimuth", "0", *SMALL))
+    assert Path("sphere.png").exists()
+    for words, said in (
+        (["smoke", "--renderer", "isosurfac"], "did you mean isosurface?"),
+        (["smoke", "--set", "level"], "'level' should read PARAMETER=VALUE."),
+        (["smoke", "--density", "0"], "density = 0.0 should be a number above 0."),
+        (["smoke", "ward"], "smoke is a volume, which is rendered alone"),
+        (["smoke", "--scene", "knot"], "leave --scene and --preview out"),
+        (["ward", "--transfer", "ct_bone"], "--transfer is for volumes only"),
+    ):
+        result = cli("render", *words, *SMALL, "-o", "wrong.png")
+        assert result.exit_code == 2
+        assert said in result.stderr
+        assert not Path("wrong.png").exists()
+
+
 @pytest.mark.quick
 def test_render_in_another_scene(cli):
     """A scene file keeps its size, unless another is given; the help names every scene."""

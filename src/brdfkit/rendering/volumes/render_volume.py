@@ -15,7 +15,6 @@ from brdfkit.rendering.inputs import mitsuba
 from brdfkit.rendering.memory import require_memory
 from brdfkit.rendering.rendering import to_size
 from brdfkit.rendering.result import Rendering
-from brdfkit.rendering.scene_loading import SIZE
 from brdfkit.rendering.tracing import trace
 from brdfkit.rendering.volumes import looks
 from brdfkit.rendering.volumes.scene import RENDERERS, scene
@@ -32,7 +31,7 @@ def render_volume(
     transfer: TransferFunction | str | Path | None = None,
     renderer: str = "single_scattering",
     spp: int | None = None,
-    size: int | tuple[int, int] = SIZE,
+    size: int | tuple[int, int] = 512,
     seed: int = 0,
     progress: Callable[[int, int], object] | None = None,
     until: float | None = None,
@@ -86,7 +85,7 @@ def render_volume(
         How high the camera stands [degrees, -90 to 90].
     density : float, default 1
         By which the transfer function's extinction is multiplied, above 0.
-    **settings
+    **settings : number, str, bool or dict
         Further parameters of the integrator, which `brdfkit plugins RENDERER` lists, such as
         ``max_depth=8``, ``phase="rayleigh"``, ``level=110``, ``bsdf="gold"``.
 
