@@ -25,6 +25,8 @@ from brdfkit.cli import main
 from brdfkit.distance_fields import sphere
 from brdfkit.plugins import discovery
 from brdfkit.rendering.scenes import scene_names
+from brdfkit.rendering.volumes.scene import RENDERERS
+from brdfkit.volumes.stored import presets
 
 SMALL = ("--size", "16", "--spp", "2")
 SHAPE = (6, 4, 8)
@@ -268,6 +270,7 @@ def test_render_a_volume(cli):
     assert record["spp"] == 2
     header = OpenEXR.File("it.exr").header()
     assert json.loads(header["parameters"])["level"] == 0.4
+    assert all(name in cli("render", "--help").stdout for name in (*RENDERERS, *presets()))
     assert_fine(cli("render", "sphere", "--tone-mapping", "filmic", "--azimuth", "0", *SMALL))
     assert Path("sphere.png").exists()
     for words, said in (

@@ -208,6 +208,7 @@ def values_option(command):
         "values",
         multiple=True,
         metavar="PARAMETER=VALUE",
-        help="Set a parameter of the models to a number or R,G,B; repeat it for more.",
+        help="Set a parameter of the models, or of the renderer of a volume, to a number or R,G,B; "
+        "repeat it for more.",
     )
     return option(command)

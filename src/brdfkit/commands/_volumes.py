@@ -1,25 +1,33 @@
 """`brdfkit render` of a volume: its options, and its picture."""
 
 import functools
+from pathlib import Path
 
 import click
 
+import brdfkit
+from brdfkit.commands._errors import say
 from brdfkit.errors import BrdfkitError
 
+# by the names of their files: to import them takes a second
+PRESETS = (Path(brdfkit.__file__).parent / "volumes" / "presets").glob("*.json")
 NUMBER = {"type": float, "metavar": "NUMBER"}
 OPTIONS = {
     "--renderer": {
         "metavar": "NAME",
-        "help": "single_scattering, emission_absorption, maximum_intensity or isosurface.",
+        "help": "single_scattering, emission_absorption, maximum_intensity or isosurface. "
+        "Default: single_scattering.",
     },
     "--transfer": {
         "metavar": "NAME|FILE",
-        "help": "Transfer function: ct_bone, ct_lung, ct_skin, mri_head, mri_edges; or .json.",
+        "help": f"Transfer function: {', '.join(sorted(path.stem for path in PRESETS))}; or .json. "
+        "Default: by the data.",
     },
     "--density": NUMBER | {"help": "Multiply the transfer function's extinction by this number."},
-    "--azimuth": NUMBER | {"help": "Where the camera stands [degrees]: 0 is the front, 90 right."},
-    "--elevation": NUMBER | {"help": "How high the camera stands [degrees]."},
-    "--background": NUMBER | {"help": "Radiance of the background, 0 is black."},
+    "--azimuth": NUMBER
+    | {"help": "Where the camera stands [degrees]: 0 is in front. Default: 30."},
+    "--elevation": NUMBER | {"help": "How high the camera stands [degrees]. Default: 20."},
+    "--background": NUMBER | {"help": "Radiance of the background, 0 is black. Default: 0.02."},
     "--seconds": NUMBER | {"help": "Add samples for so long [s]."},
     "--labels": {"is_flag": True, "help": "The values are labels, not densities."},
     "--downsample": {
@@ -31,7 +39,7 @@ OPTIONS = {
 
 
 def volume_options(command):
-    """Adds OPTIONS to a command; it gets those that were given as `of_volume`, values by name."""
+    """Adds OPTIONS to a command; it gets `of_volume`, the values of those that were given."""
     names = [option.removeprefix("--") for option in OPTIONS]
 
     @functools.wraps(command)
@@ -66,11 +74,14 @@ def render_volume(name, of_volume, values, console, **how):
     """
     from brdfkit.rendering.volumes import render_volume
     from brdfkit.volumes import load_volume
+    from brdfkit.volumes.report import may_be_labels
 
     loading = {key: of_volume.pop(key) for key in ("labels", "downsample") if key in of_volume}
     settings = dict(map(_setting, values))
     with console.progress(f"read {name}"):
         volume = load_volume(name, **loading)
+    if may_be_labels(volume) and "labels" not in loading:
+        say(f"{volume.name} may hold labels, not densities: if so, add --labels.")
     with console.progress("render") as progress:
         given = {key: value for key, value in how.items() if value is not None}
         return render_volume(volume, progress=progress, **given, **of_volume, **settings)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from brdfkit.volumes import histograms
 from brdfkit.volumes.histograms import PARTS, STEPS, bars, shades
 
 PATIENT = (("left", "right"), ("back", "front"), ("feet", "head"))
@@ -66,6 +67,11 @@ def findings(summary):
     if summary.least == summary.largest:
         found.append("of one value all over")
     return tuple(found)
+
+
+def may_be_labels(volume):
+    """Whether a volume, which does not say so, has few values, all whole by type."""
+    return not volume.labels and 0 < histograms.different(volume.values) <= FEW
 
 
 def _times(numbers):

@@ -39,7 +39,7 @@ def render_volume(
     envmap: str | Path = "studio",
     background: float | tuple[float, float, float] | None = BACKGROUND,
     azimuth: float = 30.0,
-    elevation: float = 15.0,
+    elevation: float = 20.0,
     density: float = 1.0,
     **settings: Any,
 ) -> Rendering:
@@ -81,7 +81,7 @@ def render_volume(
         default 0.02, nearly black. None shows the environment.
     azimuth : float, default 30
         Where the camera stands [degrees]: 0 is the patient's front, or -y; 90 the left side, or +x.
-    elevation : float, default 15
+    elevation : float, default 20
         How high the camera stands [degrees, -90 to 90].
     density : float, default 1
         By which the transfer function's extinction is multiplied, above 0.
