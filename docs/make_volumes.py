@@ -14,7 +14,7 @@ from brdfkit.colours import to_srgb
 from brdfkit.rendering.volumes.scene import RENDERERS
 
 PICTURE = Path(__file__).with_name("volumes.jpg")
-VOLUMES = ("smoke", "marschner_lobb", "shepp_logan")
+VOLUMES = ("smoke", "marschner_lobb")
 SIZE, VOXELS, SPP, LINE = 250, 128, 128, 28
 
 
