@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from brdfkit import BrdfkitError, TransferFunction, Volume, load_volume, render, render_volume
+from brdfkit.rendering.tracing import _passes_within
 from brdfkit.rendering.volumes import looks
 from brdfkit.rendering.volumes.scene import RENDERERS
 
@@ -102,8 +103,11 @@ def test_the_environment_shows_without_a_background():
 def test_a_volume_of_any_unit_is_as_dense():
     """Where no unit is known, the extinction goes with the size."""
     values = RNG.random((8, 8, 8))
-    pictures = [seen(Volume(values, np.diag([s, s, s, 1])), "emission_absorption") for s in (1, 30)]
-    np.testing.assert_allclose(*pictures, rtol=1e-3, atol=1e-4)
+    pictures = [
+        seen(Volume(values, np.diag([s, s, s, 1])), "emission_absorption") for s in (1, 1e-3, 1e5)
+    ]
+    for picture in pictures[1:]:
+        np.testing.assert_allclose(picture, pictures[0], rtol=1e-3, atol=1e-3)
 
 
 # What it looks like if nobody says
@@ -157,10 +161,8 @@ def test_samples_are_added_for_so_long():
     found = render_volume("sphere", renderer="maximum_intensity", size=16, seconds=1e-3)
     assert found.spp == found.asked == 4
     assert found.standard_error is None
-    found = render_volume("sphere", renderer="maximum_intensity", size=16, seconds=0.5)
-    assert found.spp == found.asked >= 8
-    assert found.seconds < 2
-    assert found.standard_error.shape == (16, 16, 3)
+    assert _passes_within(10, seconds=2, done=4) == 20
+    assert _passes_within(1, seconds=2, done=4) == 4
 
 
 def test_ctrl_c_keeps_the_passes():
@@ -170,6 +172,7 @@ def test_ctrl_c_keeps_the_passes():
 
     found = render_volume("sphere", size=16, spp=64, progress=stop)
     assert (found.spp, found.asked) == (8, 64)
+    assert found.standard_error.shape == (16, 16, 3)
     assert found.parameters["sphere"]["renderer"] == "single_scattering"
 
 

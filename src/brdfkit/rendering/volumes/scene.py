@@ -44,9 +44,15 @@ def scene(volume, transfer, renderer, size, view, light, settings):
     return {
         "type": "scene",
         "integrator": entries,
-        "sensor": camera(origin, target, FOV, size),
+        "sensor": camera(origin, target, FOV, size) | _clips(origin, target),
         "sky": emitter,
     }
+
+
+def _clips(origin, target):
+    """From where to where the camera sees: volumes are of any unit of length."""
+    distance = float(np.linalg.norm(origin - target))
+    return {"near_clip": 1e-3 * distance, "far_clip": 1e3 * distance}
 
 
 def integrator(volume, transfer, renderer, settings):
