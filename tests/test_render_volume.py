@@ -162,6 +162,7 @@ def test_samples_are_added_for_so_long():
     assert found.spp == found.asked == 4
     assert found.standard_error is None
     assert _passes_within(10, seconds=2, done=4) == 20
+    assert _passes_within(2.5, seconds=2, done=1) == 2  # the first one compiles
     assert _passes_within(1, seconds=2, done=4) == 4
 
 

@@ -103,7 +103,7 @@ def render(
     materials, parameters = describe_all(subjects)
     where = scene, size, envmap
     traced, mask = _load_and_trace(materials, where, spp, seed, progress, until)
-    return _rendering(traced, seed, until, parameters, mask)
+    return rendering_of(traced, seed, until, parameters, mask)
 
 
 @in_turn
@@ -154,7 +154,7 @@ def render_scene(
     require_memory(scene.sensors()[0].film().size(), 1, path)
     spp = _to_samples(spp, scene.sensors()[0].sampler().sample_count(), until)
     traced = trace({path.stem: scene}, spp, seed, progress, until)
-    return _rendering(traced, seed, until)
+    return rendering_of(traced, seed, until)
 
 
 def to_size(size: int | tuple[int, int]) -> tuple[int, int]:
@@ -181,7 +181,7 @@ def _to_samples(spp, default, until):
     return to_whole_number("spp", MOST if spp is None else spp, least=2)
 
 
-def _rendering(traced, seed, until, parameters=None, mask=None):
+def rendering_of(traced, seed, until, parameters=None, mask=None):
     """The `Rendering` of `Traced` pictures."""
     return Rendering(
         traced.pictures,
@@ -203,7 +203,7 @@ def _render_field(node, spp, size, seed, progress, until):
     require_memory(size, 1)
     mitsuba()
     traced = trace({"field": field.field_scene(node, size)}, spp, seed, progress, until)
-    return _rendering(traced, seed, until)
+    return rendering_of(traced, seed, until)
 
 
 @in_turn

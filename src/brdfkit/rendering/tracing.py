@@ -35,8 +35,8 @@ def trace(loaded, spp, seed, progress, until=None, mask=None, limit=None, most=P
 
     Each pass renders every picture once, of `most` samples per pixel at most, and there are at
     least two, for the noise. Where a noise floor `until` [dB] is given, over the `mask`, they end
-    as soon as it is reached; `spp` is then the most; with a `limit` [s] before a pass that would
-    end later. Ctrl-C ends after the last pass that all pictures have; it is raised where there is
+    as soon as it is reached; `spp` is then the most; with a `limit` [s] after the pass in which it
+    is over. Ctrl-C ends after the last pass that all pictures have; it is raised where there is
     none. `progress`: called with (done, total) after each picture of a pass.
     """
     if seed >= 2**31:
@@ -84,8 +84,10 @@ def _passes_needed(passes, done, halves, until, mask):
 
 
 def _passes_within(limit, seconds, done):
-    """How many passes end within a `limit` [s], `done` or more, which took so many seconds."""
-    return sys.maxsize if limit is None else max(done, int(limit / seconds * done))
+    """About how many passes begin within a `limit` [s], of which those `done` took so long."""
+    if limit is None:
+        return sys.maxsize
+    return done if seconds >= limit else max(done + 1, int(limit / seconds * done))
 
 
 def passes_of(spp, largest):

@@ -11,6 +11,7 @@ AIR, TISSUE = -900, 200  # HU: a scan of computed tomography reaches below and a
 # Mean free paths across a volume, where it is densest
 GLOWING, DENSE, OPAQUE = 10, 40, 400
 RAMP = [(0, 0), (0.1, 0), (1, 1)]  # share of the range, A
+BRIGHTEST = 99.9  # percentile: a few bright voxels should not hide a scan
 LEVELS = 256  # of the histogram by which a surface is found
 CLAY = {
     "type": "roughplastic",
@@ -41,7 +42,8 @@ def transfer_function(volume, renderer):
     if volume.axes and low < AIR and high > TISSUE:
         return TransferFunction.load("ct_bone")
     if volume.axes:
-        return TransferFunction.load("mri_head").scaled_to(low, high)
+        brightest = float(np.percentile(volume.values, BRIGHTEST))
+        return TransferFunction.load("mri_head").scaled_to(low, max(brightest, (low + high) / 2))
     return from_colormap("RdYlBu_r", (low, high), RAMP, DENSE / across, "albedo")
 
 
@@ -49,7 +51,7 @@ def _labels(volume, extinction):
     """The colours of Matplotlib's tab20 in turn; 0 is nothing, and lets everything through."""
     import matplotlib as mpl
 
-    labels = np.arange(max(2, int(volume.range[1]) + 1))
+    labels = np.union1d(np.unique(volume.values), [0, 1])
     colours = np.array(mpl.colormaps["tab20"].colors)
     rgba = np.column_stack([from_srgb(colours[(labels - 1) % len(colours)]), labels > 0])
     return TransferFunction(labels, rgba, extinction, name="a colour for each label")

@@ -13,7 +13,7 @@ from brdfkit.host.load_by_mitsuba import load_by_mitsuba
 from brdfkit.jit.threads import in_turn
 from brdfkit.rendering.inputs import mitsuba
 from brdfkit.rendering.memory import require_memory
-from brdfkit.rendering.rendering import to_size
+from brdfkit.rendering.rendering import rendering_of, to_size
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.tracing import trace
 from brdfkit.rendering.volumes import looks
@@ -116,35 +116,30 @@ def render_volume(
         raise no_such("renderer", renderer, RENDERERS)
     volume = volume if isinstance(volume, Volume) else load_volume(volume)
     require_memory(size, 1)
-    mitsuba()  # sets a variant, on which the dictionaries depend
+    mi = mitsuba()  # sets a variant, on which the dictionaries depend
+    if mi.variant().startswith("scalar"):
+        raise BrdfkitError(f"Volumes do not render in {mi.variant()}; set llvm_ad_rgb.")
     function = _function(volume, transfer, renderer, to_positive("density", density))
-    traced = _load_and_trace(
-        (volume, function, renderer, size, view, light, settings),
-        (spp, seed, progress, until, None, limit, PASS),
-    )
-    shown = {"renderer": renderer, "transfer": getattr(function, "name", None), **settings}
-    return Rendering(
-        traced.pictures,
-        traced.spp,
-        traced.seconds,
-        seed,
-        {volume.name: shown},
-        None,
-        traced.asked,
-        traced.first.other_seed,
-        until,
-        standard_error=traced.first.standard_error,
-    )
+    described = volume, function, renderer, size, view, light, settings
+    how = {"progress": progress, "until": until, "limit": limit, "most": PASS}
+    traced = _load_and_trace(described, spp=spp, seed=seed, **how)
+    words = {name: value if _is_plain(value) else str(value) for name, value in settings.items()}
+    shown = {"renderer": renderer, "transfer": getattr(function, "name", None), **words}
+    return rendering_of(traced, seed, until, {volume.name: shown})
 
 
 @in_turn
-def _load_and_trace(described, how):
+def _load_and_trace(described, **how):
     """The result of `trace` for a scene; it is freed as this function returns, in its turn."""
     import mitsuba as mi
 
-    name = described[0].name
-    loaded = load_by_mitsuba(mi.load_dict, scene(*described), name)
-    return trace({name: loaded}, *how)
+    volume, *_ = described
+    loaded = load_by_mitsuba(mi.load_dict, scene(*described), volume.name)
+    return trace({volume.name: loaded}, **how)
+
+
+def _is_plain(value):
+    return isinstance(value, bool | int | float | str)
 
 
 def _function(volume, transfer, renderer, density):
