@@ -87,7 +87,7 @@ def render_volume(
         By which the transfer function's extinction is multiplied, above 0.
     **settings : number, str, bool or dict
         Further parameters of the integrator, which `brdfkit plugins RENDERER` lists, such as
-        ``max_depth=8``, ``phase="rayleigh"``, ``level=110``, ``bsdf="gold"``.
+        ``max_depth=8``, ``phase="rayleigh"``, ``level=110``, ``bsdf="dusty_gold"``.
 
     Returns
     -------
