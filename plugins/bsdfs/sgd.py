@@ -46,9 +46,12 @@ class ShiftedGamma:
 
     def G1(self, w):
         """Smith's 1 / (1 + Λ), Λ = ∫ P₂₂ (y - arctan y) / π ds over y² = s tan²θ - 1 > 0."""
+        # As wide as w: else Dr.Jit would sum derivatives over all w at each of the nodes
+        wide = dr.zeros(type(w.z), dr.width(w.z))
+        slopes = ShiftedGamma(self.alpha + wide, self.p + wide)
         scale = self.alpha * self.alpha * _slope_squared(w)
         above, total = 0, 0
-        for s, mass in self._slopes():
+        for s, mass in slopes._slopes():
             y = dr.sqrt(dr.maximum(s * scale - 1, 1e-6))
             above, total = above + mass * (y - dr.atan(y)), total + mass
         return 1 / (1 + above / (dr.pi * total))

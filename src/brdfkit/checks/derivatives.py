@@ -64,17 +64,17 @@ def plugin_gradient(subject):
         return False, f"not in traverse: {', '.join(missing)}"
     names = [name for name in model.free_values if not _is_spectrum(mi, model, name)]
 
-    # the derivative of the sum over all directions and channels, against that of the formula
+    # the derivatives of the sum over all directions and channels, against those of the formula
+    with _track_gradients(subject.bsdf, names) as values:
+        image = subject.bsdf.eval(
+            mi.BSDFContext(), subject.interaction(wi), mi.Vector3f(wo.astype(np.float32).T)
+        )
+        dr.backward(_total(mi, image), dr.ADFlag.Default | dr.ADFlag.AllowNoGrad)
+        found = [float(np.sum(np.array(dr.grad(value)))) for value in values]
     worst = 0.0
-    for name in names:
-        with _track_gradient(subject.bsdf, name) as value:
-            image = subject.bsdf.eval(
-                mi.BSDFContext(), subject.interaction(wi), mi.Vector3f(wo.astype(np.float32).T)
-            )
-            dr.backward(_total(mi, image), dr.ADFlag.Default | dr.ADFlag.AllowNoGrad)
-            found = float(np.sum(np.array(dr.grad(value))))
+    for name, derivative in zip(names, found, strict=True):
         expected = exact_derivative(model, subject.weights, name, wi, wo) * wo[:, 2:]
-        difference = abs(found - float(expected.sum()))
+        difference = abs(derivative - float(expected.sum()))
         worst = larger(worst, difference / max(float(np.abs(expected).sum()), 1e-6))
 
     left_out = len(model.free_values) - len(names)
@@ -99,7 +99,7 @@ def sampling_gradient(subject):
     worst = 0.0
     for name in free_shapes(model):
         # derivatives of the weights, sample by sample
-        with _track_gradient(subject.bsdf, name) as value:
+        with _track_gradients(subject.bsdf, [name]) as [value]:
             weight = sample_weights(subject, wi, n, seed=8)
             dr.forward_from(value)
             own = np.array(dr.grad(mi.unpolarized_spectrum(weight)))
@@ -114,21 +114,19 @@ def sampling_gradient(subject):
 
 
 @contextmanager
-def _track_gradient(bsdf, name):
-    """Within the block Dr.Jit tracks derivatives by a parameter of the BSDF; gives its value."""
+def _track_gradients(bsdf, names):
+    """Within the block Dr.Jit tracks derivatives by parameters of the BSDF; gives their values."""
     import mitsuba as mi
 
     parameters = mi.traverse(bsdf)
-    key = next(k for k in parameters.keys() if k.split(".")[0] == name)  # noqa: SIM118
-    value = type(parameters[key])(parameters[key])
-    dr.enable_grad(value)
-    parameters[key] = value
-    parameters.update()
+    keys = {key.split(".")[0]: key for key in parameters.keys()}  # noqa: SIM118
+    values = {key: type(parameters[key])(parameters[key]) for key in map(keys.get, names)}
+    dr.enable_grad(list(values.values()))
+    parameters.update(values)
     try:
-        yield value
+        yield list(values.values())
     finally:
-        parameters[key] = dr.detach(value)
-        parameters.update()
+        parameters.update({key: dr.detach(value) for key, value in values.items()})
 
 
 def _total(mi, image):

@@ -15,9 +15,9 @@ from brdfkit.plugins.discovery import MODELS
 SIGNIFICANCE = 0.01
 SAMPLES = 1_000_000
 # Cells of the histogram, and points to integrate the density in a cell, both along each axis. Where
-# the first number rejects, the same samples are compared with the finer integral: narrow lobes
-# need it.
-CELLS, SUBCELLS = 48, (64, 128)
+# a number rejects, the same samples are compared with the next, finer integral: narrow lobes need
+# it.
+CELLS, SUBCELLS = 48, (16, 64, 128)
 
 
 @check_of(MODELS)
@@ -44,7 +44,7 @@ def chi_squared(subject):
             wo, jacobian = _to_direction(mi, point, si.wi)
             return subject.bsdf.pdf(mi.BSDFContext(), si, wo) * jacobian
 
-        # the finer integral decides where the coarser one rejects
+        # the finest integral decides where the coarser ones reject
         for subcells in SUBCELLS:
             test = ChiSquareTest(domain, sample, pdf, 3, SAMPLES, res=CELLS, ires=subcells)
             if test.run(SIGNIFICANCE, test_count=len(INCIDENCES), quiet=True):
@@ -103,7 +103,7 @@ def weights(subject):
     worst = 0.0
     for _degrees, wi in incidences():
         n = 20_000
-        si = subject.interaction(np.tile(wi, (n, 1)))
+        si = subject.interaction(wi)
         drawn, weight = subject.bsdf.sample(mi.BSDFContext(), si, *uniform(n, seed=3))
         value, pdf = subject.bsdf.eval_pdf(mi.BSDFContext(), si, drawn.wo)
         value_2 = subject.bsdf.eval(mi.BSDFContext(), si, drawn.wo)
@@ -129,7 +129,7 @@ def sample_weights(subject, wi, samples=SAMPLES, seed=1):
     """The weights of samples at one incidence, a spectrum of the variant."""
     import mitsuba as mi
 
-    si = subject.interaction(np.tile(wi, (samples, 1)))
+    si = subject.interaction(wi)
     return subject.bsdf.sample(mi.BSDFContext(), si, *uniform(samples, seed))[1]
 
 

@@ -79,35 +79,27 @@ def require_finite_slopes(model, values, names, wi, wo):
     The derivatives are taken in reverse mode: in forward mode Dr.Jit gives no finite derivative of
     0^p by p, which is 0.
     """
-    bound = {n: double_precision.scalar(v) for n, v in values.items()}
+    # One value for each pair, so that its derivative is that of the pair, and no sum is taken
+    count = len(wi.x)
+    bound = {n: double_precision.array(np.full(count, v)) for n, v in values.items()}
     for name in names:
         dr.enable_grad(bound[name])
     lobes = [lobe.eval(wi, wo) for _, lobe in model.bind(bound).terms()]
-    if not any(dr.grad_enabled(lobe) for lobe in lobes):
-        return
     for weight, lobe in zip(model.weights(), lobes, strict=True):
         if not dr.grad_enabled(lobe):
             continue
         dr.clear_grad(bound)
-        dr.backward(dr.sum(lobe), dr.ADFlag.ClearInterior)
-        for name in names:
-            slope = np.array(dr.grad(bound[name]))[0]
-            if not np.isfinite(slope):
-                row = _find_undefined_row(model, values, name, weight, wi, wo)
+        dr.backward(lobe, dr.ADFlag.ClearInterior)
+        slopes = {name: dr.grad(bound[name]) for name in names}
+        dr.eval(slopes)  # in one kernel
+        for name, found in slopes.items():
+            slope = np.array(found)
+            if not np.isfinite(slope).all():
+                row = int(np.argmin(np.isfinite(slope)))
                 raise BrdfkitError(
                     f"{model.type_name()}: the derivative by {name} of the lobe of {weight} is "
-                    f"{slope:g} at {describe_pair(wi, wo, row)}; {REMEDY}."
+                    f"{slope[row]:g} at {describe_pair(wi, wo, row)}; {REMEDY}."
                 )
-
-
-def _find_undefined_row(model, values, name, weight, wi, wo):
-    """The index of the first direction pair at which the lobe of `weight` has no finite derivative
-    by `name`, in forward mode."""
-    bound = {n: double_precision.scalar(v) for n, v in values.items()}
-    dr.enable_grad(bound[name])
-    lobe = dict(model.bind(bound).terms())[weight].eval(wi, wo)
-    dr.forward_from(bound[name])
-    return int(np.argmin(np.isfinite(np.array(dr.grad(lobe)))))
 
 
 def describe_pair(wi, wo, row):

@@ -3,7 +3,6 @@
 from functools import cache
 
 import numpy as np
-from scipy.stats import qmc
 
 from brdfkit.pictures.half_vectors import HalfVectors
 from brdfkit.pictures.normals import facing
@@ -41,6 +40,8 @@ def _disc(side):
 
 def _look(brdf, x, y):
     """The radiance (n, channels) that is seen of the ball at places `x`, `y` (n,)."""
+    from scipy.stats import qmc
+
     # All pixels by the same points: their errors are alike, and the picture has no grain
     points = np.stack([qmc.Halton(3, rng=seed).random(DIRECTIONS) for seed in range(2)])
     for_light, for_brdf = np.repeat(points[:, None], len(x), axis=1)

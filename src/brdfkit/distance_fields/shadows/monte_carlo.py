@@ -8,7 +8,6 @@ at the surface point to that at the light, through the apex of the cone.
 
 import drjit as dr
 import numpy as np
-from scipy.stats.qmc import Halton
 
 from brdfkit.distance_fields.shadows.field import distance_of, lipschitz_of
 from brdfkit.distance_fields.shadows.shadow import Shadow
@@ -62,5 +61,7 @@ def trace(field, cone, x, y, hit):
 
 def halton_disc(n):
     """x and y of Halton's first n points, uniform over the unit disc."""
+    from scipy.stats.qmc import Halton
+
     u, phi = Halton(2, scramble=False).random(n + 1)[1:].T  # the first is the corner (0, 0)
     return np.sqrt(u) * np.cos(2 * np.pi * phi), np.sqrt(u) * np.sin(2 * np.pi * phi)
