@@ -98,7 +98,7 @@ class Volume:
         return reconstruction.gradient_magnitude(self.values, self.to_world)
 
     def resized(self, factor: int) -> "Volume":
-        """The volume with a voxel for each block of `factor`³ voxels.
+        """The volume with a voxel for each block of factor × factor × factor voxels.
 
         Its value is the mean of those that the block has, as at the upper ends there may be fewer;
         of labels that of the voxel at the block's middle.
