@@ -49,7 +49,7 @@ ALBEDOS = {
 }
 
 
-def albedo(model, degrees, n_theta=400, n_phi=720):
+def albedo(model, degrees, n_theta=200, n_phi=360):
     """Quadrature of f cosθ over one half of the hemisphere: Gauss-Legendre in θ, even in φ."""
     x, w = gauss_legendre(n_theta)
     theta, w = (x + 1) * np.pi / 4, w * np.pi / 4
