@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from brdfkit.distance_fields.boxes import plain, turn
 from brdfkit.distance_fields.functions import Point, cos, dot, minus, normalized, sin
@@ -91,6 +90,8 @@ class rotate(Motion):
         return self.child.distance(turned)
 
     def bounds(self, level=0.0):
+        from scipy.spatial.transform import Rotation
+
         axis = plain(self.axis)
         by = Rotation.from_rotvec(plain(self.angle) * axis / np.linalg.norm(axis))
         return turn(self.child.bounds(level), by.as_matrix())
