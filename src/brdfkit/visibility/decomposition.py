@@ -24,7 +24,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import make_folder, write_safely
@@ -103,6 +102,8 @@ def weld(points, faces):
 
 def _fills_its_hull(points, faces):
     """Whether a closed mesh is convex: its volume is that of its hull, within a millionth."""
+    from scipy.spatial import ConvexHull
+
     corners = points[faces] - points.mean(axis=0)
     volume = abs(np.linalg.det(corners).sum()) / 6
     return volume > (1 - 1e-6) * ConvexHull(points).volume

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
 LEAST_THICKNESS = 1e-4  # of a part over its longest extent; a thinner one encloses nothing
 
@@ -42,6 +41,8 @@ def hull(points):
     >>> hull(corners).planes[:, 3].round(3).tolist()    # a cube, in its unit frame
     [0.577, 0.577, 0.577, 0.577, 0.577, 0.577]
     """
+    from scipy.spatial import ConvexHull, QhullError
+
     points = np.asarray(points, float)
     low, high = points.min(axis=0), points.max(axis=0)
     size = np.max(high - low)
