@@ -1,12 +1,15 @@
 """Progressive pictures: what passes add up to, how sure that is, and a reset as a fresh start."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from brdfkit import TransferFunction, Volume
 from brdfkit.picture_errors.noise import Accumulated
 from brdfkit.rendering.progressive import Progressive
+from brdfkit.rendering.volumes.scene import scene as volume_scene
 
-pytestmark = pytest.mark.quick
 RNG = np.random.default_rng(3)
 
 
@@ -79,6 +82,28 @@ def test_a_changed_scene_shows_after_a_reset(growing, llvm_variant):
     np.testing.assert_allclose(np.mean(grow(growing, 3), axis=0), 2 * before, rtol=1e-5)
 
 
+def test_a_changed_volume_shows_after_a_reset(llvm_variant):
+    """Its bounds are found anew: twice the extinction is as another volume with it."""
+    volume = Volume(RNG.random((4, 4, 4)))
+    white = TransferFunction([0, 1], [[0.9] * 3 + [0], [0.9] * 3 + [1]])
+
+    def scene_of(function):
+        view = (8, 8), (30, 20), ("studio", 0.02), {}
+        return llvm_variant.load_dict(volume_scene(volume, function, "single_scattering", *view))
+
+    growing = Progressive({"volume": scene_of(white)})
+    growing.integrate({"volume": growing.generate("volume", 4)}, 4)
+    parameters = llvm_variant.traverse(growing.scenes["volume"])
+    parameters["integrator.extinction.extinction"] = 2.0
+    parameters.update()
+    growing.reset()
+    fresh = Progressive({"volume": scene_of(replace(white, extinction=2))})
+    np.testing.assert_allclose(
+        growing.generate("volume", 4), fresh.generate("volume", 4), rtol=1e-4, atol=1e-5
+    )
+
+
+@pytest.mark.quick
 def test_standard_errors_are_those_of_the_mean():
     """Of 4,000 pixels, 9 passes of 1 to 3 samples. Mean and square of (mean - truth) / error
     are off by 4 standard errors once in 16,000: Student's t of 8 degrees has the variance 8 / 6,
@@ -93,6 +118,7 @@ def test_standard_errors_are_those_of_the_mean():
     assert Accumulated().plus(np.ones(3), 4).standard_error is None
 
 
+@pytest.mark.quick
 def test_sums_do_not_stall():
     """0/1 of mean 0.1: half floats are off by 0.097 after 10,000 passes [Lesar 2018, chapter 6]."""
     passes = RNG.random((10_000, 20)) < 0.1

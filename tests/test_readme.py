@@ -4,6 +4,7 @@ import re
 import shlex
 from pathlib import Path
 
+import nibabel
 import numpy as np
 import pytest
 import small_files
@@ -48,6 +49,8 @@ def here(tmp_path, monkeypatch, llvm_variant):
     Path("cayman.brdf").write_bytes(small_files.cornell())
     Path("gold-metallic-paint.binary").write_bytes(small_files.merl())
     bk.convert_environment(np.ones((4, 8, 3)), "sky.exr")
+    brain = np.random.default_rng(0).integers(0, 255, (6, 6, 6), np.uint8)
+    nibabel.save(nibabel.Nifti1Image(brain, np.eye(4)), "brain.nii.gz")
     Path("my_model.py").write_text(USER_MODEL, encoding="utf-8")
     return tmp_path
 
@@ -65,6 +68,7 @@ def here(tmp_path, monkeypatch, llvm_variant):
                 "ggx.png",
                 "cayman.binary",
                 "au.npz",
+                "brain.png",
                 "sky.png",
                 "mine.exr",
             },
