@@ -30,20 +30,20 @@ class Traced:
     seconds: float
 
 
-def trace(loaded, spp, seed, progress, until=None, mask=None, limit=None, most=PASS):
+def trace(loaded, spp, seed, progress, until=None, mask=None, limit=None, most=None):
     """The `Traced` pictures of `loaded`, scenes by name; the first is the reference.
 
-    Each pass renders every picture once, of `most` samples per pixel at most, and there are at
-    least two, for the noise. Where a noise floor `until` [dB] is given, over the `mask`, they end
-    as soon as it is reached; `spp` is then the most; with a `limit` [s] after the pass in which it
-    is over. Ctrl-C ends after the last pass that all pictures have; it is raised where there is
-    none. `progress`: called with (done, total) after each picture of a pass.
+    Each pass renders every picture once, of `most` samples per pixel at most, by default PASS, and
+    there are at least two, for the noise. Where a noise floor `until` [dB] is given, over the
+    `mask`, they end as soon as it is reached; `spp` is then the most; with a `limit` [s] after the
+    pass in which it is over. Ctrl-C ends after the last pass that all pictures have; it is raised
+    where there is none. `progress`: called with (done, total) after each picture of a pass.
     """
     if seed >= 2**31:
         raise BrdfkitError(f"The seed {seed} is out of bounds; give one from 0 to 2³¹ - 1.")
     start = time.perf_counter()
     pixels = max(int(np.prod(s.sensors()[0].film().crop_size())) for s in loaded.values())
-    passes = list(passes_of(spp, max(1, min(most, RAYS // pixels, (spp + 1) // 2))))
+    passes = list(passes_of(spp, max(1, min(most or PASS, RAYS // pixels, (spp + 1) // 2))))
     growing, reference = Progressive(loaded, seed), next(iter(loaded))
     expected = len(passes)
     try:
