@@ -5,9 +5,9 @@ import math
 import drjit as dr
 import numpy as np
 import pytest
-from volpath_settings import settings, z_scores
 
 from brdfkit import TransferFunction
+from brdfkit.reproducing.lesar2018.volpath_settings import pictures, settings, z_scores
 
 DEVIATIONS = 4.5  # of a mean: one in 150 000 is farther
 SIZE = 32  # pixels along the edges of a picture
@@ -177,7 +177,10 @@ THREE = "grid, sky by blocks", "transfer function, surfaces", "scattered five ti
 @pytest.mark.parametrize("name", THREE)
 def test_the_light_is_that_of_volpath(name, llvm_variant):
     """Three of ten settings."""
-    assert np.abs(z_scores(settings()[name], spp=16)).max() < DEVIATIONS
+    scene = settings()[name]
+    kinds = enumerate(("single_scattering", "volpath"))
+    both = [pictures(scene, kind, spp=16, first=16 * i)[0] for i, kind in kinds]
+    assert np.abs(z_scores(*both)).max() < DEVIATIONS
 
 
 # Derivatives

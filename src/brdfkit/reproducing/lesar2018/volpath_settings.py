@@ -1,5 +1,8 @@
 """Ten settings in which `single_scattering` and Mitsuba's `volpath` should show the same light."""
 
+import time
+
+import drjit as dr
 import numpy as np
 
 from brdfkit import TransferFunction
@@ -109,23 +112,35 @@ def _setting(extinction, others, albedo=0.8, phase=None, function=None, scale=1.
     return scene
 
 
-def z_scores(scene, spp, passes=16, tiles=2):
-    """How far the two pictures are apart, in standard errors: (tiles, tiles, 3) of their parts.
+def pictures(scene, integrator, spp, passes=16, first=0):
+    """Pictures (passes, SIZE, SIZE, 3) of seeds from `first` on, and the CPU seconds of each.
 
     scene : one of `settings()`.
-    spp : samples of a pixel in each of the `passes`, of which the errors are found.
+    spp : samples of a pixel in each pass.
     """
     import mitsuba as mi
 
-    means, errors = [], []
-    for first, integrator in enumerate(("single_scattering", "volpath")):
-        loaded = mi.load_dict(scene(integrator))
-        seeds = np.arange(passes) + first * passes
-        found = np.stack([np.array(mi.render(loaded, spp=spp, seed=int(k))) for k in seeds])
-        edge = SIZE // tiles
-        parts = found.reshape(passes, tiles, edge, tiles, edge, 3).astype(float)
+    @dr.freeze  # what is left is the rendering, not how it is prepared
+    def render(scene, seed):
+        return mi.render(scene, spp=spp, seed=seed)
+
+    loaded, found, seconds = mi.load_dict(scene(integrator), parallel=False), [], []
+    for seed in range(first, first + passes):
+        start = time.process_time()
+        found.append(np.array(render(loaded, mi.UInt32(seed)), float))
+        seconds.append(time.process_time() - start)
+    return np.stack(found), np.array(seconds)
+
+
+def z_scores(ours, others, tiles=2):
+    """How far the means of two sets of `pictures` are apart: (tiles, tiles, 3) of their parts.
+
+    In standard errors, of independent pixels, which are found from the passes.
+    """
+    means, errors, edge = [], [], SIZE // tiles
+    for found in (ours, others):
+        parts = found.reshape(-1, tiles, edge, tiles, edge, 3)
         means.append(parts.mean(axis=(0, 2, 4)))
-        # of independent pixels
-        variance = parts.var(axis=0, ddof=1) / passes
+        variance = parts.var(axis=0, ddof=1) / len(found)
         errors.append(variance.sum(axis=(1, 3)) / edge**4)
     return (means[0] - means[1]) / np.sqrt(sum(errors))

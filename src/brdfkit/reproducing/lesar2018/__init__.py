@@ -1,0 +1,37 @@
+"""Lesar (2018): path tracing for direct volume rendering with web technologies."""
+
+TITLE = "Lesar 2018, reproduced"
+INTRODUCTION = """Ž. Lesar, *Path tracing for direct volume rendering with web technologies* (in
+Slovenian), MSc thesis, University of Ljubljana, 2018 [Lesar 2018]. Made by
+`brdfkit reproduce lesar2018`, which runs each claim again and sets what came out beside what is
+printed.
+
+The thesis has formulas, one table of times on two graphics chips, and pictures. It names no data,
+no transfer function, camera or light, no albedo and no error of any picture; its curves of PSNR
+have no numbers that could be read. So our data are others, times are ratios within one run, of
+seconds of CPU, and errors are ours to find. Where it says "computed apart", the thesis prints no
+value, and the one beside ours is by a program that shares no line with brdfkit.
+
+A claim is *confirmed* where our figures agree, *not confirmed* where they do not, *not stated*
+where the thesis gives no figure to compare ours to, and *not run* where what it needs is not at
+hand."""
+
+NEEDS: dict[str, str] = {}  # scans are used where they lie beside the measurements
+
+PARTS = (
+    "phase_functions",
+    "schlick",
+    "phase_samplers",
+    "free_paths",
+    "ray_marching",
+    "single_scattering",
+    "against_volpath",
+    "largest_values",
+    "isosurface_depth",
+    "half_floats",
+    "four_renderers",
+    "transfer_functions",
+    "tone_mappers",
+    "convergence",
+    "iteration_times",
+)

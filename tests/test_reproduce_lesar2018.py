@@ -1,0 +1,165 @@
+"""Lesar (2018) reproduced: its parts at tiny sizes, values computed apart, and its verdicts."""
+
+import numpy as np
+import pytest
+
+import brdfkit as bk
+from brdfkit.jit import llvm
+
+if llvm.loaded_version() < llvm.OLDEST:
+    pytest.skip("needs LLVM", allow_module_level=True)
+
+from brdfkit.reproducing.lesar2018 import (
+    against_volpath,
+    convergence,
+    four_renderers,
+    free_paths,
+    half_floats,
+    isosurface_depth,
+    iteration_times,
+    largest_values,
+    ray_marching,
+    schlick,
+    single_scattering,
+    tone_mappers,
+    transfer_functions,
+    two_lobes,
+)
+
+
+def verdicts(*parts, **settings):
+    """The verdicts on the claims of some parts, in their order."""
+    found = bk.reproduce("lesar2018", parts=list(parts), **settings)
+    return [claim.verdict for claim in found.claims]
+
+
+def change(monkeypatch, settings):
+    """Set the constants of modules for a test."""
+    for module, values in settings.items():
+        for name, value in values.items():
+            monkeypatch.setattr(module, name, value)
+
+
+def test_phase_functions():
+    """All densities, 35 values apart; a BSDF is none; Schlick's sign, and the range of its g."""
+    yes, no = "confirmed", "not confirmed"
+    assert verdicts("phase_functions") == [yes, yes, yes, no]
+    assert verdicts("schlick") == [no, no, "not stated"]
+
+
+def test_paths_and_places(monkeypatch):
+    """T, mean place and look-ups by three majorants and by none; depths and largest values."""
+    change(monkeypatch, {free_paths: {"RAYS": 1 << 16}, isosurface_depth: {"RAYS": 20_000}})
+    change(monkeypatch, {largest_values: {"RAYS": 60, "ITERATIONS": 32, "DENSE": 2048}})
+    found = verdicts("free_paths", "isosurface_depth", "largest_values")
+    assert found == ["confirmed"] * 5 + ["not confirmed"]
+    found = isosurface_depth.at_random(10, np.random.default_rng(1))
+    assert found == pytest.approx(0.0916, abs=0.002)
+
+
+@pytest.mark.parametrize("steps", ray_marching.KNOWN)
+def test_a_segment_that_does_not_dim_itself_is_of_first_order(steps):
+    off = ray_marching.plain_march(steps) - ray_marching.EXACT
+    assert off == pytest.approx(ray_marching.KNOWN[steps][1], rel=0.01)
+
+
+@pytest.mark.quick
+def test_slabs_in_closed_form():
+    known = [0.172314, 0.004882, 0.017146, 0.002585, 0.032698]
+    found = [single_scattering.closed_form(*slab) for slab in single_scattering.SLABS]
+    np.testing.assert_allclose(found, known, atol=6e-7)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("g", "k", "mean", "distance"),
+    [(0.3, 0.45015, 0.31346, 0.0113), (0.9, 0.99405, 0.97108, 0.2103)],
+)
+def test_how_near_schlicks_is(g, k, mean, distance):
+    assert schlick.figures(g) == pytest.approx((k, mean, distance), abs=6e-5)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("name", "error", "largest"),
+    [("Rayleigh", 0.023, 0.044), ("Mie hazy", 0.054, 0.17), ("Mie murky", 0.103, 0.67)],
+)
+def test_two_lobes_of_schlicks(name, error, largest):
+    _, *found = two_lobes.fit(*two_lobes.TARGETS[name])
+    assert found == pytest.approx((error, largest), abs=0.005)
+
+
+def test_a_mean_in_16_bits_stops(monkeypatch):
+    """At 0.0015, where 32 bits go on as 1/√n."""
+    change(monkeypatch, {half_floats: {"PIXELS": 1024, "SHOWN": (100, 1000, 1500)}})
+    assert verdicts("half_floats") == ["not confirmed"]
+    mean, draw = half_floats.NOISES["even, 0.45 to 0.55"]
+    half, full = (half_floats.errors(mean, draw, kind)[0][[999, -1]] for kind in ("f2", "f4"))
+    assert half == pytest.approx([0.0015, 0.0015], rel=0.02)
+    assert full == pytest.approx([0.00091, 0.00075], rel=0.05)
+
+
+def test_pictures_where_no_scan_is_at_hand(monkeypatch, tmp_path):
+    """Of the phantom alone; a page, and its pictures."""
+    monkeypatch.delenv("BRDFKIT_DATA", raising=False)
+    small = {"SIZE": 16, "FEWER": 4}
+    change(
+        monkeypatch,
+        {
+            four_renderers: small | {"SPP": {}},
+            tone_mappers: small,
+            transfer_functions: small | {"SPP": 1, "FRAME": 16},
+        },
+    )
+    parts = "four_renderers", "transfer_functions", "tone_mappers"
+    assert verdicts(*parts, output=tmp_path) == ["not run"] + ["confirmed"] * 3
+    assert len(list(tmp_path.glob("*.png"))) == 3
+    assert "Not at hand: MRI, frog." in (tmp_path / "lesar2018.md").read_text(encoding="utf-8")
+
+
+def test_convergence_at_a_small_size(monkeypatch):
+    """The slope, and equal curves."""
+    change(monkeypatch, {convergence: {"ITERATIONS": {32: 200, 36: 40, 40: 40}, "VOXELS": 12}})
+    change(monkeypatch, {convergence: {"SHOWN": (10, 30, 150)}})
+    assert verdicts("convergence")[:3] == ["confirmed", "confirmed", "not stated"]
+
+
+def test_the_end_of_a_run_as_its_reference():
+    """Noise of a known variance: 0.13, 3.01 and 10 dB too large, and lower by another run."""
+    rng, runs = np.random.default_rng(0), []
+    for _ in range(2):
+        means = np.cumsum(rng.normal(size=(1000, 5000)).astype("f4"), axis=0)
+        kept = {n: means[n - 1] / n for n in (30, 500, 900, 1000)}
+        runs.append(convergence.Run(kept[1000], np.ones(1), kept))
+    for n, inflated in ((30, 0.13), (500, 3.01), (900, 10)):
+        _, same, least, another, most = convergence.inflation(*runs, n)
+        assert same == pytest.approx(least, abs=0.2)
+        assert least == pytest.approx(inflated, abs=0.005)
+        assert another == pytest.approx(most, abs=0.2)
+
+
+@pytest.mark.quick
+def test_times_beside_the_printed(monkeypatch):
+    """As if each time were that of the phone; single scattering is the slowest."""
+
+    def phone(renderer, *cell):
+        slow = {"single_scattering": 2, "maximum_intensity": 0.5}
+        return slow.get(renderer, 1) * iteration_times.PRINTED["phone"][cell]
+
+    monkeypatch.setattr(iteration_times, "time_of", phone)
+    assert verdicts("iteration_times") == ["confirmed"] * 3 + ["not confirmed"]
+    monkeypatch.setattr(iteration_times, "time_of", lambda name, v, f: f**2 / len(name))
+    assert verdicts("iteration_times") == ["not confirmed"] * 4
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(("bias", "verdict"), [(0, "confirmed"), (0.1, "not confirmed")])
+def test_a_bias_against_volpath_is_found(bias, verdict, monkeypatch):
+    rng = np.random.default_rng(0)
+
+    def pictures(scene, kind, spp, passes, first):
+        mean = 1 + bias * (kind == "volpath")
+        return mean + rng.normal(size=(passes, 16, 16, 3)), np.ones(passes)
+
+    monkeypatch.setattr(against_volpath, "pictures", pictures)
+    assert verdicts("against_volpath")[0] == verdict
