@@ -18,7 +18,7 @@ the box of the values; an oblique grid needs its own, `Volume.cube_to_world`, in
 of brdfkit take one such volume and look σ_t and RGB up at once. Derivatives go to the function's
 table, to its extinction and to the values.
 
-[Lesar 2018, section 6.1]; [Kniss et al. 2002]. RGB is linear sRGB; in spectral variants it becomes
+[Lesar 2018, chapter 6]; [Kniss et al. 2002]. RGB is linear sRGB; in spectral variants it becomes
 the sum of three basis spectra [Mallett & Yuksel 2019], times D65 where it is an emission.
 """
 

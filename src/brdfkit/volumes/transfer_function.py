@@ -10,7 +10,7 @@ So under "emission" RGB is the radiance of a piece so thick that nothing is seen
 colour of what is called compositing elsewhere. RGB is linear sRGB. A is no opacity: a layer of
 thickness d that lets 1 - a of the light through has σ_t = -ln(1 - a) / d (`opacity.py`).
 
-[Lesar 2018, section 6.1] leaves the meaning open; value × gradient magnitude is from [Kniss et al.
+[Lesar 2018, chapter 6] leaves the meaning open; value × gradient magnitude is from [Kniss et al.
 2002].
 """
 
