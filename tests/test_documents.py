@@ -16,6 +16,7 @@ from brdfkit.geometry.directions import from_angles
 from brdfkit.pictures.ball import WHITE, ball
 from brdfkit.pictures.lights import studio
 from brdfkit.pictures.normals import facing
+from brdfkit.volumes.summary import summarise
 
 NASTY = "a<b> & \"c\" 'd'"
 VOID = {"img", "br", "path"}
@@ -78,6 +79,7 @@ def shown():
         rendering,
         rendering.errors(),
         bk.gallery([[(NASTY, named), fit]], spp=2, size=32),
+        summarise(bk.load_volume("slab", size=8)),
     ]
     return {type(thing).__name__: thing for thing in objects}
 
