@@ -60,7 +60,9 @@ def test_every_check_in_other_variants(name, variant):
     assert report, str(report)
 
 
-def test_random_model(configured):
+def test_random_model(form, configured):
+    if form.endswith("fresnel=coloured"):
+        pytest.skip("Schlick's formula with another colour")
     # Beyond 80° Ward-Dür gains energy by its formula, which is what `energy` would find
     report = bk.check(random_model(configured, 0), only=set(checks[MODELS]) - {"energy"})
     assert report, str(report)
