@@ -23,16 +23,17 @@ def lit(shape):
     return {**shape, "emitter": {"type": "area", "radiance": 10.0}}
 
 
-def scene(mi, node, light, size=24, view=([-1, 0, 0.4], [-0.5, 0, 0]), **integrator):
+def scene(mi, node, light, size=24, view=([-1, 0, 0.4], [-0.5, 0, 0]), unit=1, **integrator):
     """The ground about the origin from above, without what casts the shadow."""
     given = {"bsdf": GREY, "field": node.to_json()}
-    camera = mi.ScalarTransform4f().look_at(*view, [0, 0, 1])
+    camera = mi.ScalarTransform4f().look_at(*(unit * np.array(view)).tolist(), [0, 0, 1])
     film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}}
+    clips = {"near_clip": 0.01 * unit, "far_clip": 1e4 * unit}
     return mi.load_dict(
         {
             "type": "scene",
             "integrator": {"type": "distance_field", **given, **integrator},
-            "sensor": {"type": "perspective", "fov": 60, "to_world": camera, "film": film},
+            "sensor": {"type": "perspective", "fov": 60, "to_world": camera, **clips, "film": film},
             "lamp": light,
         }
     )
@@ -70,6 +71,16 @@ def test_light_falls_as_in_mitsuba(mi):
         }
         found, known = (np.array(mi.render(s, spp=64)) for s in (ours, mi.load_dict(given)))
         assert found.mean() == pytest.approx(known.mean(), rel=tolerance), (lamp["type"], settings)
+
+
+def test_the_unit_of_length_does_not_matter(mi):
+    """A ball on the ground, its soft shadow, and the sky; in metres, in kilometres, in microns."""
+    means = []
+    for unit in (1, 1e4, 1e-5):
+        field = plane() | sphere(0.3 * unit).at(-0.5 * unit, 0, 0.3 * unit)
+        lamp = lit({"type": "sphere", "center": [0, unit, 2 * unit], "radius": 0.4 * unit})
+        means.append(picture(mi, field, lamp, unit=unit).mean())
+    np.testing.assert_allclose(means[1:], means[0], rtol=1e-3)
 
 
 def test_large_pixels_are_as_light_as_small_ones(mi):

@@ -41,6 +41,7 @@ Mitsuba's are refused.
 
 from brdfkit.distance_fields import from_json, load
 from brdfkit.distance_fields.checking import check_steps
+from brdfkit.distance_fields.extent import sphere_about
 from brdfkit.distance_fields.shading.direct_light import SHADINGS, SHADOWS, DirectLight
 from brdfkit.distance_fields.shading.exposed import exposed
 from brdfkit.distance_fields.shading.lamps import lamps_of
@@ -61,9 +62,10 @@ PARAMETERS = {
     "rays": count(64, (1, 65_536), "rays of monte_carlo"),
     "shading": word(SHADINGS, "how light is summed up"),
     "samples": count(4, (1, 65_536), "samples of a lamp or the sky, each time"),
-    "far": plain_number(1e3, (1e-3, 1e9), "where rays end [unit]"),
-    "precision": plain_number(1e-4, (1e-9, 1e3), "radius of the thinnest rays [unit]"),
+    "far": plain_number(0.0, (0, 1e9), "where rays end [unit]; 0: by the size of the field"),
+    "precision": plain_number(0.0, (0, 1e3), "radius of the thinnest rays [unit]; 0: by the size"),
 }
+FAR, PRECISION = 1e3, 1e-4  # in radii of a sphere about the field; FAR in units if that is more
 
 
 def define(mi):
@@ -75,6 +77,9 @@ def define(mi):
             super().__init__(props)
             self.bsdfs = dict(props.objects())
             self.tree = field_of(self.filename, self.field)
+            size = sphere_about(self.tree)[1]
+            self.far = self.far or FAR * max(size, 1)
+            self.precision = self.precision or PRECISION * size
             self.parts = parts_of(self.tree, self.bsdfs, FINEST * self.precision)
             self.values = exposed(self.tree)
             how = "shadow", "direction", "epsilon", "rays", "shading", "samples", "far"

@@ -7,9 +7,8 @@ these materials, all others are grey.
 
 import numpy as np
 
-from brdfkit.distance_fields.boxes import join
+from brdfkit.distance_fields.extent import sphere_about
 from brdfkit.distance_fields.materials import material_names
-from brdfkit.distance_fields.shadows.field import pieces_of
 from brdfkit.errors import BrdfkitError
 from brdfkit.host.load_by_mitsuba import load_by_mitsuba
 from brdfkit.materials import material
@@ -36,8 +35,6 @@ def field_scene(field, size):
         "integrator": {
             "type": "distance_field",
             "field": field.to_json(),
-            "far": 1e3 * radius,
-            "precision": 1e-4 * radius,
             **{name: bsdf(name) for name in material_names(field)},
         },
         "sensor": {
@@ -58,14 +55,6 @@ def field_scene(field, size):
             "emitter": {"type": "area", "radiance": radiance},
         }
     return load_by_mitsuba(mi.load_dict, scene, "field")
-
-
-def sphere_about(field):
-    """The middle (3,) and the radius of a sphere about what of a field is not endless."""
-    boxes = [piece.bounds() for piece in pieces_of(field)]
-    boxes = [box for box in boxes if np.isfinite(box).all() and np.less(*box).all()]
-    low, high = join(boxes or [(-np.ones(3), np.ones(3))])
-    return (low + high) / 2, np.linalg.norm(high - low) / 2
 
 
 def bsdf(name):

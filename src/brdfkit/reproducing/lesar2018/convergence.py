@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from typing import Any
 
-import drjit as dr
 import numpy as np
 
 from brdfkit.colours import to_srgb
@@ -12,6 +11,7 @@ from brdfkit.jit.threads import in_turn
 from brdfkit.reproducing.claims import UNSTATED, Claim, verdict
 from brdfkit.reproducing.drawing import COLOURS, figure, tidy
 from brdfkit.reproducing.lesar2018.clouds import cloud
+from brdfkit.reproducing.lesar2018.iterations import iteration
 from brdfkit.reproducing.lesar2018.stage import stage
 from brdfkit.reproducing.page import Picture, Section, Table
 
@@ -69,16 +69,11 @@ def run(sources, report):
 
 def accumulate(scene, iterations, first):
     """A `Run` of the iterations that begin with the seed `first`."""
-    import mitsuba as mi
-
-    @dr.freeze
-    def iteration(scene, seed):
-        return mi.render(scene, spp=1, seed=seed)
-
+    render = iteration()
     mean = square = 0.0
     kept, wanted = {}, {*range(1, 10), *np.geomspace(10, iterations, 30).astype(int), *SHOWN}
     for n in range(1, iterations + 1):
-        found = np.array(iteration(scene, mi.UInt32(first + n)))
+        found = np.array(render(scene, first + n))
         change = found - mean
         mean = mean + change / n
         square = square + change * (found - mean)

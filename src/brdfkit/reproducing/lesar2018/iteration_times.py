@@ -1,11 +1,10 @@
 """Table 7.1: the time of an iteration by renderer, size of the volume and size of the frame."""
 
-import drjit as dr
-
 from brdfkit.jit.llvm import use_variant
 from brdfkit.jit.threads import in_turn
 from brdfkit.reproducing.claims import Claim, verdict
 from brdfkit.reproducing.lesar2018.clouds import cloud
+from brdfkit.reproducing.lesar2018.iterations import iteration
 from brdfkit.reproducing.lesar2018.renderers import RENDERERS
 from brdfkit.reproducing.lesar2018.stage import stage
 from brdfkit.reproducing.page import Section, Table
@@ -59,17 +58,11 @@ def run(sources, report):
 
 def time_of(renderer, voxels, frame):
     """Seconds of CPU of an iteration."""
-    import mitsuba as mi
-
     scene = stage(cloud(renderer, voxels), frame)
-    seeds = iter(range(1, 100))
-
-    @dr.freeze
-    def iteration(scene, seed):
-        return mi.render(scene, spp=1, seed=seed)
+    seeds, render = iter(range(1, 100)), iteration()
 
     def once():
-        iteration(scene, mi.UInt32(next(seeds))).numpy()
+        render(scene, next(seeds)).numpy()
 
     once()  # compiles
     once()  # and is frozen

@@ -2,11 +2,11 @@
 
 import time
 
-import drjit as dr
 import numpy as np
 
 from brdfkit import TransferFunction
 from brdfkit.lighting.environment_emitter import small_sky
+from brdfkit.reproducing.lesar2018.iterations import iteration
 
 SIZE = 16  # pixels along the edges of a picture
 
@@ -120,14 +120,11 @@ def pictures(scene, integrator, spp, passes=16, first=0):
     """
     import mitsuba as mi
 
-    @dr.freeze  # what is left is the rendering, not how it is prepared
-    def render(scene, seed):
-        return mi.render(scene, spp=spp, seed=seed)
-
+    render = iteration(spp)
     loaded, found, seconds = mi.load_dict(scene(integrator), parallel=False), [], []
     for seed in range(first, first + passes):
         start = time.process_time()
-        found.append(np.array(render(loaded, mi.UInt32(seed)), float))
+        found.append(np.array(render(loaded, seed), float))
         seconds.append(time.process_time() - start)
     return np.stack(found), np.array(seconds)
 

@@ -1,0 +1,30 @@
+"""Iterations of a scene: what is left of them is the rendering, not how it is prepared."""
+
+from functools import partial
+
+import drjit as dr
+
+
+def iteration(spp=1):
+    """A function (scene, seed) → the picture of `mi.render`, with so many samples per pixel.
+
+    Recorded at its first call, and replayed: Mitsuba prepares each render for as long as a small
+    picture takes. Dr.Jit records nothing while BSDFs of other scenes are alive, as in a notebook;
+    then each is prepared.
+    """
+    import mitsuba as mi
+
+    def render(scene, seed):
+        return mi.render(scene, spp=spp, seed=seed)
+
+    recorded = dr.freeze(render)
+
+    def call(state, scene, seed):
+        if state["recorded"]:
+            try:
+                return recorded(scene, mi.UInt32(seed))
+            except RuntimeError:
+                state["recorded"] = False
+        return render(scene, seed)
+
+    return partial(call, {"recorded": True})
