@@ -28,6 +28,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.host.declared import count, declared, plain_number
+from brdfkit.host.reference_camera import reference_film
 from brdfkit.visibility.casters import Casters
 from brdfkit.visibility.decomposition import CONCAVITY
 from brdfkit.visibility.occluders import RESOLUTION
@@ -113,14 +114,12 @@ def reference():
     albedo, sky, half, height = 0.5, np.array([0.9, 0.6, 0.3]), 0.5, 0.5
     t = mi.ScalarTransform4f
     camera = t().look_at([0, 0, height / 2], [0, 0, 0], [0, 1, 0]).scale(1e-3)
-    film = {"type": "hdrfilm", "width": 16, "height": 16, "rfilter": {"type": "box"}}
-    film["pixel_format"] = "luminance" if mi.is_monochromatic else "rgb"
     grey = {"type": "rgb", "value": [albedo] * 3}
     cube = t().translate([0, 0, height + half]).scale(half)
     scene = {
         "type": "scene",
         "integrator": {"type": "convex_direct"},
-        "sensor": {"type": "orthographic", "to_world": camera, "film": film},
+        "sensor": {"type": "orthographic", "to_world": camera, "film": reference_film(16)},
         "sky": {"type": "constant", "radiance": {"type": "rgb", "value": sky.tolist()}},
         "ground": {"type": "rectangle", "bsdf": {"type": "diffuse", "reflectance": grey}},
         "cube": {"type": "cube", "to_world": cube},

@@ -52,6 +52,8 @@ from brdfkit.distance_fields.shadows.shadow import DIRECTIONS
 from brdfkit.errors import BrdfkitError
 from brdfkit.host.declared import count, declared, plain_number, text, word
 from brdfkit.host.properties import resolve_file
+from brdfkit.host.reference_camera import reference_film
+from brdfkit.host.variants import refuse_scalar
 
 PARAMETERS = {
     "filename": text("", "file of the field, as JSON"),
@@ -97,11 +99,7 @@ def define(mi):
             self.larger = self.parts.larger(self.now)
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
-            if mi.variant().startswith("scalar"):
-                raise BrdfkitError(
-                    f"distance_field does not run in {mi.variant()}; set llvm_ad_rgb or "
-                    "cuda_ad_rgb."
-                )
+            refuse_scalar("distance_field")
             # What the camera sees of lamps and the sky
             shown = scene.ray_intersect(mi.Ray3f(ray), active)
             emitter, radiance = shown.emitter(scene), mi.UnpolarizedSpectrum(0)
@@ -169,8 +167,6 @@ def reference():
     albedo, radiance, r, d = 0.5, [0.9, 0.6, 0.3], 0.5, 2.0
     t = mi.ScalarTransform4f
     camera = t().look_at([0.01, 0, 1], [0.01, 0, 0], [0, 1, 0]).scale(1e-3)
-    film = {"type": "hdrfilm", "width": 8, "height": 8, "rfilter": {"type": "box"}}
-    film["pixel_format"] = "luminance" if mi.is_monochromatic else "rgb"
     grey = {"type": "rgb", "value": [albedo] * 3}
     light = {"type": "area", "radiance": {"type": "rgb", "value": radiance}}
     scene = {
@@ -179,7 +175,7 @@ def reference():
             **example(),
             "bsdf": {"type": "diffuse", "reflectance": grey},
         },
-        "sensor": {"type": "orthographic", "to_world": camera, "film": film},
+        "sensor": {"type": "orthographic", "to_world": camera, "film": reference_film()},
         "lamp": {"type": "sphere", "center": [0, 0, d], "radius": r, "emitter": light},
     }
     return scene, [albedo * (r / d) ** 2 * value for value in radiance]

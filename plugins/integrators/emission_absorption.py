@@ -24,6 +24,7 @@ import numpy as np
 
 from brdfkit.host.channels import emission_of_rgb, white
 from brdfkit.host.declared import count, declared, flag, volume
+from brdfkit.host.reference_camera import through_unit_cube
 from brdfkit.jit.recorded import recorded
 from brdfkit.model.numerics import expm1
 from brdfkit.volumes.along_ray import light_behind, within
@@ -98,13 +99,7 @@ def reference():
 
     All rays cross one unit of a homogeneous volume.
     """
-    import mitsuba as mi
-
     sigma, e, behind = 2.0, np.array([0.9, 0.5, 0.1]), 0.3
-    camera = mi.ScalarTransform4f().look_at([0.5, 0.5, 3], [0.5, 0.5, 0], [0, 1, 0])
-    camera = camera @ mi.ScalarTransform4f().scale(0.4)
-    film = {"type": "hdrfilm", "width": 8, "height": 8, "rfilter": {"type": "box"}}
-    film["pixel_format"] = "luminance" if mi.is_monochromatic else "rgb"
     scene = {
         "type": "scene",
         "integrator": {
@@ -113,7 +108,7 @@ def reference():
             "emission": {"type": "constvolume", "value": {"type": "rgb", "value": e.tolist()}},
             "steps": 16,
         },
-        "sensor": {"type": "orthographic", "to_world": camera, "film": film},
+        "sensor": through_unit_cube(),
         "behind": {"type": "constant", "radiance": {"type": "rgb", "value": behind}},
     }
     return scene, e * (1 - np.exp(-sigma)) / sigma + np.exp(-sigma) * behind

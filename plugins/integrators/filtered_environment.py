@@ -30,6 +30,8 @@ import drjit as dr
 
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.host.declared import count, declared, plain_number, text, word
+from brdfkit.host.reference_camera import reference_film
+from brdfkit.host.variants import refuse_scalar
 from brdfkit.lighting.filtered_light import FILTERS, FilteredLight
 from brdfkit.lighting.filtered_sampling import FilteredSampling
 from brdfkit.lighting.lobe_light import LobeLight
@@ -101,10 +103,7 @@ def _shading(mi, method, samples, lobes):
 
 def _only_environment(mi, scene):
     """The environment of a `scene`; `BrdfkitError` where it has none, or other lights."""
-    if mi.variant().startswith("scalar"):
-        raise BrdfkitError(
-            f"filtered_environment does not run in {mi.variant()}; set llvm_ad_rgb or cuda_ad_rgb."
-        )
+    refuse_scalar("filtered_environment")
     if scene.environment() is None:
         raise BrdfkitError(
             "filtered_environment: the scene has no environment to light it; add an envmap."
@@ -123,12 +122,10 @@ def reference():
 
     albedo, radiance = 0.4, 0.7
     camera = mi.ScalarTransform4f().look_at([0, 0, 3], [0, 0, 0], [0, 1, 0])
-    film = {"type": "hdrfilm", "width": 8, "height": 8, "rfilter": {"type": "box"}}
-    film["pixel_format"] = "luminance" if mi.is_monochromatic else "rgb"
     scene = {
         "type": "scene",
         "integrator": {"type": "filtered_environment", "resolution": 64},
-        "sensor": {"type": "perspective", "fov": 20, "to_world": camera, "film": film},
+        "sensor": {"type": "perspective", "fov": 20, "to_world": camera, "film": reference_film()},
         "wall": {
             "type": "rectangle",
             "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": albedo}},

@@ -23,9 +23,10 @@ missing in them.
 import drjit as dr
 import numpy as np
 
-from brdfkit.distance_fields.shading.seen_point import interaction
-from brdfkit.errors import BrdfkitError
 from brdfkit.host.declared import bsdf, count, declared, flag, number, volume
+from brdfkit.host.reference_camera import through_unit_cube
+from brdfkit.host.surface_point import interaction
+from brdfkit.host.variants import refuse_scalar
 from brdfkit.volumes.along_ray import light_behind, within
 from brdfkit.volumes.first_crossing import first_above, first_crossing, reattach
 from brdfkit.volumes.normals import face_normal, facing, gradient, per_voxel
@@ -53,10 +54,7 @@ def define(mi):
             return self.volume.eval_1(it, active) - self.level
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
-            if mi.variant().startswith("scalar"):
-                raise BrdfkitError(
-                    f"isosurface does not run in {mi.variant()}; set llvm_ad_rgb or cuda_ad_rgb."
-                )
+            refuse_scalar("isosurface")
             end, behind = light_behind(scene, ray, active)
             near, far = within(ray, self.volume)
             far = dr.minimum(far, end)
@@ -105,10 +103,6 @@ def reference():
 
     albedo, radiance = [0.6, 0.5, 0.2], 0.7
     ramp = np.array([3, 2, 1], np.float32).reshape(3, 1, 1, 1)
-    camera = mi.ScalarTransform4f().look_at([0.5, 0.5, 3], [0.5, 0.5, 0], [0, 1, 0])
-    camera = camera @ mi.ScalarTransform4f().scale(0.4)
-    film = {"type": "hdrfilm", "width": 8, "height": 8, "rfilter": {"type": "box"}}
-    film["pixel_format"] = "luminance" if mi.is_monochromatic else "rgb"
     scene = {
         "type": "scene",
         "integrator": {
@@ -117,7 +111,7 @@ def reference():
             "level": 1.7,
             "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": albedo}},
         },
-        "sensor": {"type": "orthographic", "to_world": camera, "film": film},
+        "sensor": through_unit_cube(),
         "sky": {"type": "constant", "radiance": {"type": "rgb", "value": radiance}},
     }
     return scene, [radiance * value for value in albedo]

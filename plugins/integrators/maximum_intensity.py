@@ -21,6 +21,7 @@ import numpy as np
 
 from brdfkit.host.channels import emission_of_rgb
 from brdfkit.host.declared import count, declared, flag, volume
+from brdfkit.host.reference_camera import through_unit_cube
 from brdfkit.volumes.along_ray import light_behind, within
 from brdfkit.volumes.largest_value import largest_along
 from brdfkit.volumes.transfer_function import TransferFunction
@@ -85,10 +86,6 @@ def reference():
     rgb, a, behind = np.array([0.9, 0.5, 0.1]), 0.75, 0.3
     hill = np.array([0, 4, 1], np.float32).reshape(3, 1, 1, 1)
     function = TransferFunction([0, 4, 9], [[0, 0, 0, 0], [*rgb, a], [1, 1, 1, 1]])
-    camera = mi.ScalarTransform4f().look_at([0.5, 0.5, 3], [0.5, 0.5, 0], [0, 1, 0])
-    camera = camera @ mi.ScalarTransform4f().scale(0.4)
-    film = {"type": "hdrfilm", "width": 8, "height": 8, "rfilter": {"type": "box"}}
-    film["pixel_format"] = "luminance" if mi.is_monochromatic else "rgb"
     volume = {
         "type": "transfer_function",
         "values": {"type": "gridvolume", "grid": mi.VolumeGrid(hill)},
@@ -97,7 +94,7 @@ def reference():
     scene = {
         "type": "scene",
         "integrator": {"type": "maximum_intensity", "volume": volume, "steps": 16},
-        "sensor": {"type": "orthographic", "to_world": camera, "film": film},
+        "sensor": through_unit_cube(),
         "behind": {"type": "constant", "radiance": {"type": "rgb", "value": behind}},
     }
     return scene, a * rgb + (1 - a) * behind

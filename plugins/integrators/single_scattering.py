@@ -35,8 +35,9 @@ import math
 import drjit as dr
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
 from brdfkit.host.declared import count, declared, number, phase, volume, word
+from brdfkit.host.reference_camera import through_unit_cube
+from brdfkit.host.variants import refuse_scalar
 from brdfkit.volumes import emitters
 from brdfkit.volumes.medium import Medium
 from brdfkit.volumes.vertex import Vertex, medium_interaction
@@ -70,10 +71,7 @@ def define(mi):
                 self.medium.bound(self.majorants == "local")
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
-            if mi.variant().startswith("scalar"):
-                raise BrdfkitError(
-                    f"{self.name} does not run in {mi.variant()}; set llvm_ad_rgb or cuda_ad_rgb."
-                )
+            refuse_scalar(self.name)
 
             def goes_on(depth, ray, throughput, *_):
                 return active & (depth < self.max_depth) & dr.any(throughput != 0)
@@ -153,12 +151,8 @@ def reference():
 
     An even cube in the sun, which is behind the camera.
     """
-    import mitsuba as mi
 
     sigma, albedo, g, irradiance = 2.0, 0.5, -0.3, np.array([0.9, 0.6, 0.3])
-    camera = mi.ScalarTransform4f().look_at([0.5, 0.5, 3], [0.5, 0.5, 0], [0, 1, 0])
-    film = {"type": "hdrfilm", "width": 8, "height": 8, "rfilter": {"type": "box"}}
-    film["pixel_format"] = "luminance" if mi.is_monochromatic else "rgb"
     colour = {"type": "rgb", "value": irradiance.tolist()}
     scene = {
         "type": "scene",
@@ -168,7 +162,7 @@ def reference():
             "albedo": albedo,
             "phase": {"type": "hg", "g": g},
         },
-        "sensor": {"type": "orthographic", "to_world": camera.scale(0.4), "film": film},
+        "sensor": through_unit_cube(),
         "sun": {"type": "directional", "direction": [0, 0, -1], "irradiance": colour},
     }
     back = (1 - g**2) / (4 * math.pi * (1 + g**2 + 2 * g) ** 1.5)  # Henyey-Greenstein at μ = -1

@@ -31,8 +31,10 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.host.channels import emission_of_rgb, spectrum_of_rgb
 from brdfkit.host.declared import declared, text, volume, word
 from brdfkit.host.properties import resolve_file
+from brdfkit.host.variants import refuse_scalar
 from brdfkit.volumes import stored
 from brdfkit.volumes.block_bounds import block_ranges, largest_between
+from brdfkit.volumes.extinction_bounds import data_of
 from brdfkit.volumes.transfer_function import TransferFunction
 from brdfkit.volumes.transfer_lookup import TransferLookup
 
@@ -50,11 +52,7 @@ def define(mi):
 
     class TransferFunctionVolume(declared(mi.Volume, PARAMETERS)):
         def __init__(self, props):
-            if mi.variant().startswith("scalar"):
-                raise BrdfkitError(
-                    f"transfer_function does not run in {mi.variant()}; set llvm_ad_rgb or "
-                    "cuda_ad_rgb."
-                )
+            refuse_scalar("transfer_function")
             values = props.get("values", 0)
             if "to_world" not in props and isinstance(values, mi.Volume):
                 props["to_world"] = box_of(mi, values)
@@ -130,14 +128,6 @@ def box_of(mi, values):
     """The transform from the unit cube to the box of a volume along the world's axes."""
     box = values.bbox()
     return mi.ScalarTransform4f().translate(box.min).scale(box.extents())
-
-
-def data_of(values):
-    """The values (nz, ny, nx) of a gridvolume, in NumPy; None of another volume."""
-    import mitsuba as mi
-
-    data = mi.traverse(values).get("data")
-    return None if data is None else np.array(data)[..., 0]
 
 
 def function_of(transfer, values):

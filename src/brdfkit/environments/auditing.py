@@ -99,7 +99,7 @@ class EnvironmentAudit(Shown):
         )
 
     def _draw(self):
-        from brdfkit.plotting import to_png
+        from brdfkit.figures import to_png
 
         return to_png(self.picture(), DPI)
 

@@ -13,9 +13,7 @@ A format's file defines
 """
 
 import gzip
-import importlib
 import lzma
-import pkgutil
 from contextlib import contextmanager
 from functools import cache
 
@@ -23,6 +21,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.files import COMPRESSED, GZIP
 from brdfkit.formats._source import Source as Source
 from brdfkit.formats._source import format_suffix
+from brdfkit.modules import modules_in
 
 HEAD = 4096  # bytes that a format's `sniff` sees
 
@@ -30,8 +29,7 @@ HEAD = 4096  # bytes that a format's `sniff` sees
 @cache
 def formats():
     """The format modules of this folder, in alphabetical order."""
-    names = sorted(m.name for m in pkgutil.iter_modules(__path__) if not m.name.startswith("_"))
-    return tuple(importlib.import_module(f"{__name__}.{name}") for name in names)
+    return modules_in(__name__, __path__)
 
 
 def has_format(path):

@@ -2,4 +2,3 @@
 
 from brdfkit.plotting.lobe_plots import Plot as Plot
 from brdfkit.plotting.lobe_plots import plot as plot
-from brdfkit.plotting.lobe_plots import to_png as to_png

@@ -1,6 +1,5 @@
 """`plot`: the lobes of BRDFs in the plane of incidence, measured and modelled."""
 
-import io
 import math
 from collections.abc import Iterable
 from itertools import cycle
@@ -10,6 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.figures import to_png
 from brdfkit.materials import MaterialLike, materials
 from brdfkit.measured import Measured
 from brdfkit.names import make_unique
@@ -70,13 +70,6 @@ class Plot(Figure):
 
     def _repr_png_(self):
         return to_png(self)
-
-
-def to_png(figure, dpi=100):
-    """The bytes of a matplotlib `Figure` as a PNG."""
-    png = io.BytesIO()
-    figure.savefig(png, format="png", dpi=dpi)
-    return png.getvalue()
 
 
 def _find_materials(things):

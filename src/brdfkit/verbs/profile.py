@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 from brdfkit.arguments import to_whole_number
 from brdfkit.documents import Document, Picture, Shown
 from brdfkit.errors import BrdfkitError
+from brdfkit.figures import to_png
 from brdfkit.fitting import Fit
 from brdfkit.fitting.profiling import curvature, follow
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike
-from brdfkit.plotting import Plot, to_png
+from brdfkit.plotting import Plot
 from brdfkit.verbs.refit import refit
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 BLOCK = 8  # voxels along the side of a block, about
+NEARBY = 0.01  # [voxel]: a point at the edge of a block belongs to either block, by rounding
 SLACK = 1e-3  # steps of the table, and 1e-6 of the bound: a kernel's single precision
 
 
@@ -15,14 +16,19 @@ def block_ranges(values):
     low = high = values
     for axis, n in enumerate(values.shape):
         count = max(1, n // BLOCK)
-        edges = np.arange(count + 1) * n / count
-        # the centres, at ½, 3/2 ..., on both sides of each end
-        first = np.clip(np.floor(edges[:-1] - 0.5).astype(int), 0, n - 1)
-        last = np.clip(np.ceil(edges[1:] - 0.5).astype(int), 0, n - 1)
-        spans = [np.arange(a, b + 1) for a, b in zip(first, last, strict=True)]
-        low = np.stack([low.take(span, axis).min(axis) for span in spans], axis)
-        high = np.stack([high.take(span, axis).max(axis) for span in spans], axis)
+        low, high = along_blocks(low, axis, count, np.min), along_blocks(high, axis, count, np.max)
     return low, high
+
+
+def along_blocks(values, axis, count, reduce):
+    """`reduce`, np.min or np.max, of the voxels by which points of each of `count` equal blocks
+    along an axis are interpolated: the centres on both sides of its ends, too."""
+    n = values.shape[axis]
+    edges = np.arange(count + 1) * n / count - 0.5  # in voxels, whose centres are whole numbers
+    first = np.clip(np.floor(edges[:-1] - NEARBY), 0, n - 1).astype(int)
+    last = np.clip(np.ceil(edges[1:] + NEARBY), 0, n - 1).astype(int)
+    blocks = (values.take(range(a, b + 1), axis) for a, b in zip(first, last, strict=True))
+    return np.stack([reduce(block, axis) for block in blocks], axis)
 
 
 def largest_between(rows, low, high):

@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 from brdfkit.arguments import to_whole_number
 from brdfkit.errors import BrdfkitError
 from brdfkit.jit.padding import pad
+from brdfkit.volumes.block_bounds import along_blocks
 
 VOXELS = 16  # along the edges of a cell
-NEARBY = 0.01  # [voxel]: a point at the edge of a cell belongs to either cell, by rounding
 ROUNDING = 1e-5  # by which an interpolated extinction may exceed what it is interpolated from
 
 
@@ -90,8 +90,8 @@ class Majorants:
         """
         found = np.asarray(values, np.float32)
         voxels = to_whole_number("voxels", voxels, 1)
-        for axis in range(found.ndim):
-            found = _largest_along(found, axis, voxels)
+        for axis, n in enumerate(found.shape):
+            found = along_blocks(found, axis, -(-n // voxels), np.max)
         return cls(found, cube_to_world)
 
     def require(
@@ -147,14 +147,3 @@ class Majorants:
     def world_to_cells(self) -> NDArray[np.float64]:
         """(4, 4): from the world to where a cell is a unit cube, the first from (0, 0, 0)."""
         return np.diag([*self.shape, 1.0]) @ np.linalg.inv(self.cube_to_world)
-
-
-def _largest_along(values, axis, voxels):
-    """The largest of the values by which points of each cell are interpolated, along one axis."""
-    n = values.shape[axis]
-    cells = -(-n // voxels)
-    edges = np.arange(cells + 1) * n / cells - 0.5  # in voxels, whose centres are whole numbers
-    first = np.clip(np.floor(edges[:-1] - NEARBY), 0, n - 1).astype(int)
-    last = np.clip(np.ceil(edges[1:] + NEARBY), 0, n - 1).astype(int)
-    blocks = (values.take(range(a, b + 1), axis) for a, b in zip(first, last, strict=True))
-    return np.stack([block.max(axis) for block in blocks], axis)

@@ -1,7 +1,5 @@
 """A `VolumeSummary` as a picture: three slices through the middle, and two histograms."""
 
-import io
-
 import numpy as np
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
@@ -26,13 +24,6 @@ def picture(summary):
     _draw_values(left, summary)
     _draw_gradients(right, summary)
     return figure
-
-
-def to_png(figure, dpi):
-    """The bytes of a figure as a PNG."""
-    png = io.BytesIO()
-    figure.savefig(png, format="png", dpi=dpi)
-    return png.getvalue()
 
 
 def _draw_slice(axes, summary, across, up, through):

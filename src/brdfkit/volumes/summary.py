@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from brdfkit.documents import Document, Paragraph, Picture, Shown, Table
 from brdfkit.documents.parts import BAD
+from brdfkit.figures import to_png
 from brdfkit.volumes import histograms, report
 from brdfkit.volumes.volume import Volume
 
@@ -107,8 +108,6 @@ class VolumeSummary(Shown):
         )
 
     def _draw(self):
-        from brdfkit.volumes.picture import to_png
-
         return to_png(self.picture(), DPI)
 
 

@@ -84,19 +84,22 @@ class DirectLight:
 
     def by_rays(self, emitter, field, seen, bsdf, sampler, active):
         """The same for any emitter, with a ray to each sample."""
-        si = seen.si
 
         def shows(ds):
-            return (self.shadow == "none") | ~self.is_blocked(field, seen, ds, active)
+            return self.is_free(field, seen, ds, active)
 
-        return self.by_samples(emitter, shows, si, bsdf, sampler, active)
+        return self.by_samples(emitter, shows, seen.si, bsdf, sampler, active)
 
     @recorded
-    def is_blocked(self, field, seen, ds, active):
-        """Whether the ray to a sample of an emitter meets the field."""
+    def is_free(self, field, seen, ds, active):
+        """Whether the ray to a sample of an emitter misses the field, or no shadow is wanted."""
+        import mitsuba as mi
+
+        if self.shadow == "none":
+            return mi.Bool(True)
         settings = {"lipschitz": field.lipschitz, "precision": seen.ball / 2, "active": active}
         far = dr.minimum(ds.dist, self.far)
-        return sphere_trace(field.distance, seen.middle, ds.d, far, **settings).found
+        return ~sphere_trace(field.distance, seen.middle, ds.d, far, **settings).found
 
     def by_samples(self, emitter, shows, si, bsdf, sampler, active):
         """The mean over samples of an emitter of those for which `shows(ds)`."""
@@ -116,16 +119,13 @@ class DirectLight:
 
         si, context = seen.si, mi.BSDFContext()
 
-        def shows(ds):
-            return (self.shadow == "none") | ~self.is_blocked(field, seen, ds, active)
-
         def one(sampler):
             ds, light = sky.sample_direction(si, sampler.next_2d(active), active)
             wo = si.to_local(ds.d)
             value = mi.unpolarized_spectrum(bsdf.eval(context, si, wo, active))
             share = ds.pdf / (ds.pdf + bsdf.pdf(context, si, wo, active))
             by_light = value * mi.unpolarized_spectrum(light) * dr.detach(share)
-            total = dr.select(shows(ds), by_light, 0)
+            total = dr.select(self.is_free(field, seen, ds, active), by_light, 0)
 
             with dr.suspend_grad():
                 drawn, weight = bsdf.sample(
@@ -137,7 +137,7 @@ class DirectLight:
                 ds.d, ds.dist = -there.wi, dr.inf
                 mirror = mi.has_flag(drawn.sampled_type, mi.BSDFFlags.Delta)
                 other = dr.select(mirror, 0, sky.pdf_direction(si, ds, active))
-                found = (drawn.pdf > 0) & shows(ds)
+                found = (drawn.pdf > 0) & self.is_free(field, seen, ds, active)
             value = mi.unpolarized_spectrum(bsdf.eval(context, si, drawn.wo, active))
             ratio = dr.select(mirror, mi.unpolarized_spectrum(weight), value / drawn.pdf)
             radiance = mi.unpolarized_spectrum(sky.eval(there, active))

@@ -17,6 +17,7 @@ import drjit as dr
 from brdfkit.distance_fields.cone_tracing import cone_trace
 from brdfkit.distance_fields.hits import reattach
 from brdfkit.distance_fields.normals import normal
+from brdfkit.host.surface_point import interaction
 from brdfkit.jit.recorded import recorded
 
 FINEST = 10.0  # over `precision`: half of the differences of normals; less than all details
@@ -65,21 +66,3 @@ def cone_of(ray):
     across = dr.maximum(dr.norm(ray.o_x - ray.o), dr.norm(ray.o_y - ray.o))
     turned = dr.maximum(dr.norm(ray.d_x - ray.d), dr.norm(ray.d_y - ray.d))
     return dr.detach(across) / sqrt(2), dr.detach(turned) / sqrt(2)
-
-
-def interaction(ray, t, p, n, found):
-    """The `mi.SurfaceInteraction3f` at p: u and v are x and y, the tangent is the x axis laid onto
-    the surface; where that stands upright, the z axis."""
-    import mitsuba as mi
-
-    si = dr.zeros(mi.SurfaceInteraction3f, dr.width(t))
-    si.t, si.p = dr.select(found, t, dr.inf), p
-    si.time, si.wavelengths = ray.time, ray.wavelengths
-    si.n = si.sh_frame.n = mi.Normal3f(n)
-    si.uv = mi.Point2f(si.p.x, si.p.y)
-    upright = dr.abs(n.x) > 0.999
-    si.dp_du = mi.Vector3f(dr.select(upright, 0, 1), 0, dr.select(upright, 1, 0))
-    si.dp_dv = mi.Vector3f(0, 1, 0)
-    si.initialize_sh_frame()
-    si.wi = si.to_local(-ray.d)
-    return si

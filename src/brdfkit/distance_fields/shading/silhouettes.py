@@ -19,7 +19,8 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.distance_fields.normals import normal
-from brdfkit.distance_fields.shading.seen_point import FINEST, SeenPoint, cone_of, interaction
+from brdfkit.distance_fields.shading.seen_point import FINEST, SeenPoint, cone_of
+from brdfkit.host.surface_point import interaction
 from brdfkit.jit.recorded import recorded
 
 BAND = 4.0  # ε over ρ

@@ -14,9 +14,9 @@ file whose name begins with an underscore is no scene: it holds what several sce
 """
 
 import importlib
-import pkgutil
 
 from brdfkit.errors import no_such
+from brdfkit.modules import names_in
 
 
 def scene_names():
@@ -25,7 +25,7 @@ def scene_names():
     >>> "ball" in scene_names()
     True
     """
-    return sorted(m.name for m in pkgutil.iter_modules(__path__) if not m.name.startswith("_"))
+    return list(names_in(__path__))
 
 
 def scene(name):

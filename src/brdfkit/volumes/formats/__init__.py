@@ -12,12 +12,11 @@ of one format each (nibabel, pynrrd, pydicom, tifffile) are imported when a file
 """
 
 import gzip
-import importlib
-import pkgutil
 import zlib
 from functools import cache
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.modules import modules_in
 from brdfkit.volumes.formats import _folders
 from brdfkit.volumes.formats._stored import Stored as Stored
 from brdfkit.volumes.formats._stored import VolumeFile as VolumeFile
@@ -28,8 +27,7 @@ HEAD = 4096  # bytes that a format's `sniff` sees
 @cache
 def formats():
     """The format modules of this folder, in alphabetical order."""
-    names = sorted(m.name for m in pkgutil.iter_modules(__path__) if not m.name.startswith("_"))
-    return tuple(importlib.import_module(f"{__name__}.{name}") for name in names)
+    return modules_in(__name__, __path__)
 
 
 def has_format(name):

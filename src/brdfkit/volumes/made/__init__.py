@@ -5,14 +5,15 @@ the `Volume` of `size` (nx, ny, nz) voxels. What is known of it exactly stands b
 """
 
 import importlib
-import pkgutil
 from functools import cache
+
+from brdfkit.modules import names_in
 
 
 @cache
 def names():
     """The names of the made volumes."""
-    return tuple(sorted(m.name for m in pkgutil.iter_modules(__path__) if m.name[0] != "_"))
+    return names_in(__path__)
 
 
 def make(name, size=None):
