@@ -504,14 +504,19 @@ def drawn(axis, labels, coordinate):
 
 
 def test_a_table_of_the_size_of_merl_takes_two_seconds():
-    """Of processor time, at most, the best of five: other tests beside share its caches."""
+    """Where NumPy sorts four million numbers in 0.04 s: on any machine, at most 50 times as long.
+
+    Processor time, the best of five: other tests beside share the caches.
+    """
     values = tabulated(lambert(0.5), (90, 90, 180))
-    assert any(_seconds(Measured.from_table(values)) <= 2 for _ in range(5))
+    numbers = np.random.default_rng(1).random(4_000_000)
+    audits = (_seconds(Measured.from_table(values).audit) for _ in range(5))
+    assert any(audit <= 50 * _seconds(lambda: np.sort(numbers)) for audit in audits)
 
 
-def _seconds(data):
+def _seconds(function):
     began = time.process_time()
-    data.audit()
+    function()
     return time.process_time() - began
 
 

@@ -1,11 +1,6 @@
 """Files, safely: written whole or not at all, read within a limit, compressed or not."""
 
-import gzip
-import hashlib
-import lzma
 import os
-import secrets
-import zlib
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -30,7 +25,7 @@ def write_safely(path):
     ...     beside.write_text("{}")
     """
     target = require_writable(path)
-    beside = target.with_name(f".brdfkit-{secrets.token_hex(4)}{target.suffix}")
+    beside = target.with_name(f".brdfkit-{os.urandom(4).hex()}{target.suffix}")
     try:
         beside.touch(exist_ok=False)
         yield beside
@@ -107,6 +102,8 @@ def sha256(path):
 
     Raises `BrdfkitError` when it is missing, no regular file or unreadable.
     """
+    import hashlib  # only here: `--help` should be instant
+
     path = Path(path)
     with _reading(path), path.open("rb") as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()
@@ -118,11 +115,6 @@ def _reading(path):
     try:
         _require_file(path)
         yield
-    except (gzip.BadGzipFile, zlib.error, lzma.LZMAError, EOFError) as error:
-        raise BrdfkitError(
-            f"{path}: the compressed data are damaged or cut short ({_reason(error)}); "
-            "fetch the file again."
-        ) from error
     except OSError as error:
         raise BrdfkitError(
             f"{path}: cannot be read ({_reason(error)}); check its permissions."
@@ -149,20 +141,30 @@ def _read(path):
         first = stream.read(8)
     for suffix, magic in COMPRESSED.items():
         if first and (path.suffix.lower() == suffix or first.startswith(magic)):
-            return _decompress(path, gzip.open if suffix == GZIP else lzma.open)
+            return _decompress(path, suffix)
     if path.stat().st_size > LIMIT:
         raise _too_large(path)
     return path.read_bytes()
 
 
-def _decompress(path, open_stream):
+def _decompress(path, suffix):
     """All bytes of a compressed file, `LIMIT` at most: a small file may unpack to terabytes."""
+    import gzip  # only here: `--help` should be instant
+    import lzma
+    import zlib
+
     data = bytearray()
-    with open_stream(path) as stream:
-        while chunk := stream.read(CHUNK):
-            data += chunk
-            if len(data) > LIMIT:
-                raise _too_large(path)
+    try:
+        with (gzip.open if suffix == GZIP else lzma.open)(path) as stream:
+            while chunk := stream.read(CHUNK):
+                data += chunk
+                if len(data) > LIMIT:
+                    raise _too_large(path)
+    except (gzip.BadGzipFile, zlib.error, lzma.LZMAError, EOFError) as error:
+        raise BrdfkitError(
+            f"{path}: the compressed data are damaged or cut short ({_reason(error)}); "
+            "fetch the file again."
+        ) from error
     return bytes(data)
 
 
