@@ -80,15 +80,16 @@ def text(default, meaning):
     return Setting(default, None, meaning, read)
 
 
-def word(allowed, meaning):
-    """One of the `allowed` words, of which the first is the default."""
+def word(allowed, meaning, default=None):
+    """One of the `allowed` words; the `default` is the first of them unless said."""
 
     def read(value):
         if not isinstance(value, str) or value not in allowed:
             raise ValueError("one of " + ", ".join(allowed))
         return value
 
-    return Setting(next(iter(allowed)), None, f"{meaning}: {', '.join(allowed)}", read)
+    default = default or next(iter(allowed))
+    return Setting(default, None, f"{meaning}: {', '.join(allowed)}", read)
 
 
 def flag(default, meaning):

@@ -1,0 +1,99 @@
+"""Direct light of point, spot and directional lights, shadowed by shadow maps.
+
+    L = L_e + Σ_lights ρ(ω_l, ω_o) cosθ_l E_l V,   V from a map of what the light sees
+
+Before each picture every light gets its maps: depths, ray-traced through a `projection`, for each
+part of a `partition` of the scene. V is what the `filter` reads there. So the picture has all
+faults of the technique, and no others: compare it with `direct`, whose V is a ray to the light.
+
+The techniques are those of [Ergun 2008, section 2.2]. The bias is automatic: each texel is compared
+with the depth of the surface's own plane in its middle, less `bias` of the light's way through the
+scene. There is no indirect light, and other lights than these three are refused.
+"""
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.host.declared import count, declared, plain_number, word
+from brdfkit.host.reference_camera import reference_film
+from brdfkit.host.variants import refuse_scalar
+from brdfkit.shadow_maps.bias import AUTOMATIC, Bias
+from brdfkit.shadow_maps.light_shadow import FILTERS, PARTITIONS, PROJECTIONS, LightShadow
+from brdfkit.shadow_maps.placement import Placement
+
+PARAMETERS = {
+    "projection": word(PROJECTIONS, "how a map sees the scene", "focused"),
+    "filter": word(FILTERS, "how a map is read", "depth"),
+    "partition": word(PARTITIONS, "how maps share the scene", "whole"),
+    "resolution": count(1024, (1, 16384), "texels along a side of each map"),
+    "bias": plain_number(AUTOMATIC.constant, (0.0, 1.0), "over the light's way through the scene"),
+}
+
+
+def define(mi):
+    """The class of `mi.SamplingIntegrator` for the current variant."""
+
+    class ShadowMapped(declared(mi.SamplingIntegrator, PARAMETERS)):
+        def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
+            refuse_scalar("shadow_map")
+            sensor = scene.sensors()[sensor] if isinstance(sensor, int) else sensor
+            self.lights = [
+                (emitter, self.shadow(scene, sensor, emitter)) for emitter in scene.emitters()
+            ]
+            return super().render(scene, sensor, seed, spp, develop, evaluate)
+
+        def shadow(self, scene, sensor, emitter):
+            """The `LightShadow` of an `emitter` of the scene."""
+            return LightShadow(
+                scene,
+                Placement.of_scene(scene, sensor, emitter),
+                self.projection,
+                self.filter,
+                self.partition,
+                self.resolution,
+                Bias(constant=self.bias, plane=True),
+            )
+
+        def sample(self, scene, sampler, ray, medium=None, active=True):
+            si = scene.ray_intersect(mi.Ray3f(ray), active)
+            seen = active & si.is_valid()
+            bsdf, context = si.bsdf(), mi.BSDFContext()
+            radiance = mi.UnpolarizedSpectrum(0)
+            for emitter, shadow in self.lights:
+                ds, light = emitter.sample_direction(si, sampler.next_2d(seen), seen)
+                value = bsdf.eval(context, si, si.to_local(ds.d), seen)
+                lit = shadow.lit(si.p, si.n, seen)
+                radiance += mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * lit
+            return mi.depolarizer(dr.select(seen, radiance, 0)), active, []
+
+    return ShadowMapped
+
+
+def reference():
+    """A scene, and the radiance (3,) of each of its pixels: ρ E cosθ / π, out of all shadows.
+
+    The sun shines aslant on a wide ground; a ball shadows another part of it.
+    """
+    import mitsuba as mi
+
+    albedo, irradiance = 0.5, np.array([0.9, 0.6, 0.3])
+    t = mi.ScalarTransform4f
+    camera = t().look_at([0, 0, 4], [0, 0, 0], [0, 1, 0])
+    film = reference_film()
+    scene = {
+        "type": "scene",
+        "integrator": {"type": "shadow_map", "resolution": 64},
+        "sensor": {"type": "perspective", "fov": 20, "to_world": camera, "film": film},
+        "sun": {
+            "type": "directional",
+            "direction": [1, 0, -1],
+            "irradiance": {"type": "rgb", "value": irradiance.tolist()},
+        },
+        "ground": {
+            "type": "rectangle",
+            "to_world": t().scale(5),
+            "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": albedo}},
+        },
+        "ball": {"type": "sphere", "center": [-1, 0, 2], "radius": 0.3},
+    }
+    return scene, albedo / np.pi * irradiance * np.sqrt(0.5)

@@ -1,0 +1,73 @@
+"""Convex bodies, by their corners and by their planes: what a light's projection must hold."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+
+
+@dataclass(frozen=True)
+class Body:
+    """A convex body of the corners (n, 3) within the planes (m, 4): a·x + d ≤ 0 inside."""
+
+    corners: np.ndarray
+    planes: np.ndarray
+
+    @classmethod
+    def around(cls, points):
+        """The convex hull of points (n, 3).
+
+        Raises `BrdfkitError` where they enclose no volume.
+        """
+        from scipy.spatial import ConvexHull, QhullError
+
+        points = np.asarray(points, float)
+        try:
+            hull = ConvexHull(points)
+        except (QhullError, ValueError) as error:
+            raise BrdfkitError("the part of the scene to be shadowed has no volume.") from error
+        return cls(points[hull.vertices], hull.equations)
+
+    def __and__(self, other):
+        """What two bodies share; `BrdfkitError` where they share no volume."""
+        from scipy.spatial import HalfspaceIntersection
+
+        planes = np.vstack([self.planes, other.planes])
+        inside = _innermost(planes)
+        if inside is None:
+            raise BrdfkitError("no part of the scene is before the camera and in the light.")
+        return Body.around(HalfspaceIntersection(planes, inside).intersections)
+
+    def towards(self, light, reach):
+        """The body with all that lies between it and a `Light`; to a directional one, a way
+        `reach` long."""
+        if light.is_directional:
+            return self.swept(reach * light.point[:3])
+        return Body.around(np.vstack([self.corners, light.point[:3]]))
+
+    def swept(self, by):
+        """The body with all that it passes on a way `by` (3,)."""
+        return Body.around(np.vstack([self.corners, self.corners + by]))
+
+
+def box(low, high):
+    """The `Body` of an axis-aligned box; one without a thickness gets a little."""
+    low, high = np.asarray(low, float), np.asarray(high, float)
+    least = 1e-4 * max((high - low).max(), 1e-30)
+    grown = np.maximum(least - (high - low), 0) / 2
+    ends = np.stack([low - grown, high + grown])
+    return Body.around([[ends[i, 0], ends[j, 1], ends[k, 2]] for i, j, k in np.ndindex(2, 2, 2)])
+
+
+def _innermost(planes):
+    """The centre of the largest ball within the planes; None where there is none."""
+    from scipy.optimize import linprog
+
+    # maximise r with a·x + |a| r ≤ -d
+    norms = np.linalg.norm(planes[:, :3], axis=1)
+    system = np.column_stack([planes[:, :3], norms])
+    bounds = [(None, None)] * 3 + [(0, None)]
+    found = linprog([0, 0, 0, -1], system, -planes[:, 3], bounds=bounds)
+    scale = np.abs(planes[:, 3]).max() + 1e-30
+    return found.x[:3] if found.success and found.x[3] > 1e-9 * scale else None

@@ -1,0 +1,72 @@
+"""A light as one homogeneous point: where it is, or the direction from which it shines."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.projective.body import Body
+from brdfkit.projective.homogeneous import axes_about
+
+NEAREST = 1e-3  # where the pyramid of a spot begins, over where it ends
+WIDEST = math.radians(80)  # half the angle of a pyramid that one map may hold
+
+
+@dataclass(frozen=True)
+class Light:
+    """A point, spot or directional light.
+
+    point : (4,), (x, y, z, 1) of a light at a place, (x, y, z, 0) of one far away: the unit vector
+        to it.
+    axis, cutoff : where a spot shines, a unit vector (3,), and half the angle of its cone [rad];
+        None of other lights.
+    """
+
+    point: np.ndarray
+    axis: np.ndarray | None = None
+    cutoff: float | None = None
+
+    @classmethod
+    def of_emitter(cls, emitter):
+        """Of one of Mitsuba's emitters `point`, `spot` and `directional`."""
+        import mitsuba as mi
+
+        flags = emitter.flags()
+        parameters = mi.traverse(emitter)
+        to_world = np.array(emitter.world_transform().matrix, float).reshape(4, 4)
+        axis = to_world[:3, 2] / np.linalg.norm(to_world[:3, 2])
+        if mi.has_flag(flags, mi.EmitterFlags.DeltaDirection) and "irradiance.value" in parameters:
+            return cls(np.append(-axis, 0))
+        if mi.has_flag(flags, mi.EmitterFlags.DeltaPosition):
+            place = parameters["position"] if "position" in parameters else to_world[:3, 3]
+            point = np.append(np.ravel(place), 1)
+            if "cutoff_angle" in parameters:
+                cutoff = np.radians(np.ravel(parameters["cutoff_angle"])[0])
+                return cls(point, axis, float(cutoff))
+            return cls(point)
+        raise BrdfkitError(
+            f"{emitter.class_name()} has no single place or direction, which shadow maps and "
+            "volumes need; use point, spot or directional lights."
+        )
+
+    @property
+    def is_directional(self):
+        return self.point[3] == 0
+
+    def pyramid(self, reach):
+        """The `Body` of the square pyramid about a spot's cone, from 1/1000 of `reach` to it."""
+        across = axes_about(self.axis)[:2]
+        slope = math.tan(min(self.cutoff, WIDEST))
+        ends = [
+            d * (self.axis + slope * (i * across[0] + j * across[1]))
+            for d in (NEAREST * reach, reach)
+            for i in (-1, 1)
+            for j in (-1, 1)
+        ]
+        return Body.around(self.point[:3] + np.array(ends))
+
+    def towards(self, points):
+        """The unit vectors (n, 3) from points (n, 3) to the light."""
+        to_light = self.point[:3] - self.point[3] * np.asarray(points, float)
+        return to_light / np.linalg.norm(to_light, axis=1, keepdims=True)

@@ -1,0 +1,58 @@
+"""All shadow maps of one light."""
+
+import importlib
+
+import drjit as dr
+
+from brdfkit import modules
+from brdfkit.shadow_maps import filters, partitions, projections
+from brdfkit.shadow_maps.bias import AUTOMATIC
+from brdfkit.shadow_maps.shadow_map import ShadowMap
+
+PROJECTIONS = modules.names_in(projections.__path__)
+FILTERS = modules.names_in(filters.__path__)
+PARTITIONS = modules.names_in(partitions.__path__)
+
+
+class LightShadow:
+    """The shadow of a scene in one light, by a technique.
+
+    scene : a `mi.Scene`.
+    placement : the `Placement` of the camera and the light in it.
+    projection, filter, partition : names of files in the folders of those names.
+    resolution : texels along a side of each map.
+    bias : a `Bias`.
+    """
+
+    def __init__(
+        self,
+        scene,
+        placement,
+        projection="focused",
+        filter="depth",
+        partition="whole",
+        resolution=1024,
+        bias=AUTOMATIC,
+    ):
+        project = _file(projections, projection).projection
+        lookup = _file(filters, filter).Lookup
+        self.parts = _file(partitions, partition).parts(placement, project)
+        self.maps = [
+            ShadowMap(scene, part.projection, placement.reach, lookup, resolution, bias)
+            for part in self.parts
+        ]
+
+    def lit(self, p, n, active=True):
+        """The share of the light, in [0, 1], that arrives at points `p` with normals `n`."""
+        import mitsuba as mi
+
+        found, left = mi.Float(1), mi.Bool(active)
+        for part, its_map in zip(self.parts, self.maps, strict=True):
+            here = left & part.contains(p)
+            found = dr.select(here, its_map.lit(p, n, here), found)
+            left &= ~here
+        return found
+
+
+def _file(package, name):
+    return importlib.import_module(f"{package.__name__}.{name}")

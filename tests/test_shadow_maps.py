@@ -1,0 +1,40 @@
+"""Shadow maps of every light against shadow rays."""
+
+import numpy as np
+import pytest
+from shadow_scenes import LIGHTS, objects_on_a_ground, seen_from
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.shadow_maps.light_shadow import PROJECTIONS, LightShadow
+from brdfkit.shadow_maps.placement import Placement
+
+pytestmark = pytest.mark.usefixtures("llvm_variant")
+
+
+def placement_of(scene):
+    return Placement.of_scene(scene, scene.sensors()[0], scene.emitters()[0])
+
+
+@pytest.mark.parametrize("kind", LIGHTS)
+@pytest.mark.parametrize("projection", PROJECTIONS)
+def test_the_error_falls_with_the_resolution(kind, projection):
+    """What differs is borders: their share of the picture is as the width of a texel."""
+    scene = objects_on_a_ground(kind)
+    si, facing, lit = seen_from(scene)
+    placement = placement_of(scene)
+
+    def wrong(resolution):
+        shadow = LightShadow(scene, placement, projection, resolution=resolution)
+        return ((np.array(shadow.lit(si.p, si.n)) != lit) & facing).sum() / facing.sum()
+
+    coarse, fine = wrong(64), wrong(1024)
+    assert coarse < 0.02
+    assert fine < 0.002
+
+
+def test_a_light_among_the_objects_is_one_sentence():
+    scene = objects_on_a_ground("point")
+    placement = placement_of(scene)
+    placement.light.point[:3] = [2, 2, 1]
+    with pytest.raises(BrdfkitError, match="one map cannot look all around"):
+        LightShadow(scene, placement)
