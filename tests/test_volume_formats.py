@@ -1,6 +1,9 @@
 """Files of volumes × their traps: written by other libraries, and read as these read them."""
 
+import gzip
 import struct
+import tracemalloc
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -252,8 +255,11 @@ def test_raw(tmp_path):
         ({"offset": 4}, r"has 246 bytes, where 6×5×4 voxels of >i2 behind 4 bytes make 244"),
         ({"dtype": "float32"}, "480 bytes, and the file has 240 for them"),
         ({"dtype": "colour"}, "dtype = 'colour' should be one of numbers"),
-        ({"size": (1, 2)}, r"size = \(1, 2\) should be one or three numbers above 0"),
+        ({"size": (1, 2)}, r"size = \(1, 2\) should be one or three whole numbers above 0"),
         ({"spacing": 0}, "spacing = 0 should be one or three numbers above 0"),
+        ({"size": 4.7}, "size = 4.7 should be one or three whole numbers above 0"),
+        ({"size": np.inf}, "size = inf should be one or three whole numbers above 0"),
+        ({"offset": -6}, "offset = -6 should be a whole number, at least 0"),
     ):
         with pytest.raises(BrdfkitError, match=sentence):
             bk.load_volume(tmp_path / "b.raw", **(told | change))
@@ -388,6 +394,7 @@ def test_files_that_are_something_else(tmp_path, good):
         ("c.mha", b"DimSize = 6 5 4", b"DimSize = 6 5 5"),
         ("a.vti", b"0 5 0 4 0 3", b"0 90000 0 90000 0 90000"),
         ("a.vti", b"0 5 0 4 0 3", b"0 5 0 4 0 4"),
+        ("a.vti", b"0 5 0 4 0 3", b"0 99999999999999999999 0 4 0 3"),
         ("b.vti", b"0 5 0 4 0 3", b"0 5 0 4 0 2"),
         ("a.vol", struct.pack("<3i", 6, 5, 4), struct.pack("<3i", 90000, 90000, 90000)),
         ("a_6x5x4_int16.raw", b"", b""),
@@ -413,6 +420,34 @@ def test_dimensions_that_lie(tmp_path, good, name, old, new, monkeypatch):
     assert max(allocated, default=0) <= 150
 
 
+def test_blocks_and_pages_that_lie(tmp_path, good):
+    """What lies behind the header is held to the size of the file, too."""
+    path, said = tmp_path / "a.vti", "cut short or damaged"
+    small.vti(path, encoded=False, wide=True)
+    data, sizes = path.read_bytes(), struct.pack("<3Q", 4, 64, 48)  # blocks, of 64 bytes, the last
+    assert data.count(sizes) == 1
+    for lie in (sizes + struct.pack("<Q", 2**62), struct.pack("<3Q", 2**61, 0, 240) + bytes(8)):
+        at = data.index(sizes)
+        path.write_bytes(data[:at] + lie + data[at + len(lie) :])
+        with pytest.raises(BrdfkitError, match=said):
+            bk.load_volume(path)
+    bomb = zlib.compress(bytes(2**26))
+    tracemalloc.start()
+    path.write_bytes(data[: data.index(sizes)] + struct.pack("<4Q", 1, 240, 0, len(bomb)) + bomb)
+    with pytest.raises(BrdfkitError, match="all voxels are 0"):
+        bk.load_volume(path)
+
+    page = struct.pack("<2H2I", 257, 4, 1, SHAPE[1])  # of TIFF: its number of rows
+    data, longer = good["b.tif"], struct.pack("<2H2I", 257, 4, 1, 10**8)
+    at = data.index(page, data.index(page) + 1)  # of the second page
+    (tmp_path / "b.tif").write_bytes(data[:at] + longer + data[at + len(page) :])
+    with pytest.raises(BrdfkitError, match="cannot be read as TIFF"):
+        bk.load_volume(tmp_path / "b.tif")
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 2**25
+
+
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
@@ -436,17 +471,23 @@ def test_what_no_format_reads(tmp_path, monkeypatch):
     (tmp_path / "colours.tif").write_bytes(b"")
     tifffile.imwrite("colours.tif", np.zeros((4, 5, 6, 3), np.uint8), photometric="rgb")
     (tmp_path / "a.xyz").write_text("a")
+    (tmp_path / "a.mha.gz").write_bytes(gzip.compress(b"ObjectType = Image"))
     for name, sentence in {
         "smok": "no file or volume 'smok'; did you mean smoke",
         "none.nii": "there is no such file",
         "empty": "the folder is empty",
         "a.xyz": r"is in no known format of volumes; read are DICOM \(\.dcm",
         "colours.tif": "colours, channels or times",
+        "a.mha.gz": "is MetaImage packed by gzip, which is not read; unpack it",
     }.items():
         with pytest.raises(BrdfkitError, match=sentence):
             bk.load_volume(name)
     with pytest.raises(BrdfkitError, match="smoke is made: it takes size and downsample alone"):
         bk.load_volume("smoke", dtype="uint8")
+    with pytest.raises(BrdfkitError, match=r"smoke: .* of memory, .* give a smaller size"):
+        bk.load_volume("smoke", size=100_000)
+    with pytest.raises(BrdfkitError, match=r"and no ndarray; of an array brdfkit.Volume\(array\)"):
+        bk.load_volume(values())
 
 
 def test_a_package_that_is_missing_is_named(tmp_path, monkeypatch):

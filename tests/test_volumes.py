@@ -71,6 +71,11 @@ def test_resizing_keeps_means_places_and_labels():
         (np.full((2, 2, 2), 0.5), {"labels": True}, "no whole numbers, and so no labels"),
         (np.ones((2, 2, 2)), {"to_world": np.zeros((4, 4))}, "no invertible 4×4 matrix"),
         (np.ones((2, 2, 2)), {"to_world": np.eye(3)}, "no invertible 4×4 matrix"),
+        (np.ones((2, 2, 2)), {"to_world": np.diag([1, 1, 1, 2])}, "no invertible 4×4 matrix"),
+        (np.full((2, 2, 2), 1e60), {}, "8 of 8 voxels are not finite"),
+        (np.full((2, 2, 2), 1e-60), {}, "all voxels are 0"),
+        (np.reshape([-3e38, 3e38], (1, 1, 2)), {}, "too large or too near to each other"),
+        (np.reshape([1e-42, 2e-42], (1, 1, 2)), {}, "too large or too near to each other"),
     ],
 )
 def test_what_is_no_volume(given, how, sentence):

@@ -73,10 +73,20 @@ def load_volume(
     """
     downsample = to_whole_number("downsample", downsample, 1)
     voxels, steps = _triple("size", size, int), _triple("spacing", spacing, float)
-    text = os.fspath(path)
+    offset = None if offset is None else to_whole_number("offset", offset, 0)
+    try:
+        text = os.fspath(path)
+    except TypeError:
+        kind = type(path).__name__
+        raise BrdfkitError(
+            f"A volume is a Volume, or the path or name of one, and no {kind}; of an array "
+            "brdfkit.Volume(array) makes one."
+        ) from None
     if text in made.names() and not os.path.exists(text):
         if any(setting is not None for setting in (labels, dtype, spacing, offset)):
             raise BrdfkitError(f"{text} is made: it takes size and downsample alone.")
+        if voxels is not None:
+            _require_memory_to_make(text, voxels)
         volume = made.make(text, voxels)
         return volume if downsample == 1 else volume.resized(downsample)
     found, part = _locate(text)
@@ -134,6 +144,16 @@ def _require_memory(file, stored, downsample):
     )
 
 
+def _require_memory_to_make(name, size):
+    """Raise `BrdfkitError` where a made volume would take more memory than there is."""
+    available, needed = psutil.virtual_memory().available, made.needed(name, size)
+    if needed > available:
+        raise BrdfkitError(
+            f"{name}: {'×'.join(map(str, size))} voxels would take about {needed / 1e9:,.2g} GB of "
+            f"memory, of which {available / 1e9:,.2g} GB are available; give a smaller size."
+        )
+
+
 def _needed(stored, downsample):
     """The memory [bytes] that loading takes at most."""
     kept = math.prod(reducing.shape(stored.shape, downsample))
@@ -174,8 +194,10 @@ def _triple(what, given, kind):
         return None
     numbers = np.ravel(given)
     numbers = np.repeat(numbers, 3) if numbers.size == 1 else numbers
-    if numbers.size != 3 or numbers.dtype.kind not in "iuf" or not (numbers > 0).all():
-        raise BrdfkitError(f"{what} = {given!r} should be one or three numbers above 0.")
+    fine = numbers.size == 3 and numbers.dtype.kind in "iuf" and (numbers > 0).all()
+    if not fine or not all(np.isfinite(n) and kind(n) == n for n in numbers):
+        whole = "whole " if kind is int else ""
+        raise BrdfkitError(f"{what} = {given!r} should be one or three {whole}numbers above 0.")
     return tuple(kind(n) for n in numbers)
 
 

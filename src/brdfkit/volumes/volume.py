@@ -11,6 +11,8 @@ from brdfkit.arguments import to_whole_number
 from brdfkit.errors import BrdfkitError
 from brdfkit.volumes import reconstruction, reducing
 
+MOST = 1e30  # of values, and the inverse of their span: renderers have 32 bits
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Volume:
@@ -138,6 +140,7 @@ def require_transform(to_world, name):
     """`to_world`; `BrdfkitError` unless it is a (4, 4) that can be inverted."""
     to_world = np.asarray(to_world, float)
     fine = to_world.shape == (4, 4) and np.isfinite(to_world).all()
+    fine = fine and (to_world[3] == (0, 0, 0, 1)).all()
     if not fine or not abs(np.linalg.det(to_world[:3, :3])) > 0:
         raise BrdfkitError(
             f"{name}: its transform from voxels to the world is no invertible 4×4 matrix: the "
@@ -156,6 +159,9 @@ def _checked(values, name, labels):
         )
     if values.dtype.kind not in "biuf":
         raise BrdfkitError(f"{name}: its values are {values.dtype}, where real numbers belong.")
+    if values.dtype.kind == "f" and not labels:
+        with np.errstate(over="ignore"):  # beyond float32 they are infinite
+            values = values.astype(np.float32, copy=False)
     low, high = values.min(), values.max()  # not finite where a value is not
     if not (np.isfinite(low) and np.isfinite(high)):
         count = values.size - np.count_nonzero(np.isfinite(values))
@@ -163,12 +169,18 @@ def _checked(values, name, labels):
             f"{name}: {count:,} of {values.size:,} voxels are not finite (NaN or infinite); "
             "replace them, as by numpy.nan_to_num."
         )
+    span, largest = float(high) - float(low), max(-float(low), float(high))
+    if largest > MOST or 0 < span < 1 / MOST:
+        raise BrdfkitError(
+            f"{name}: its values, {low:g} to {high:g}, are too large or too near to each other for "
+            "32 bits; multiply them by a number."
+        )
     if low == high == 0:
         raise BrdfkitError(f"{name}: all voxels are 0; check that it is the right file.")
     if labels and values.dtype.kind == "f":
         return _whole_numbers(values, name)
-    target = {"b": np.dtype(np.uint8), "f": np.dtype(np.float32)}.get(values.dtype.kind)
-    return np.ascontiguousarray(values, target or values.dtype.newbyteorder("="))
+    boolean = values.dtype.kind == "b"
+    return np.ascontiguousarray(values, np.uint8 if boolean else values.dtype.newbyteorder("="))
 
 
 def _whole_numbers(values, name):

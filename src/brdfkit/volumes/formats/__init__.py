@@ -51,13 +51,20 @@ def find(file):
         return _of_name(_folders.kind(file)).find(file)
     if not (file.size is file.dtype is file.offset is None):  # what is told only of raw voxels
         return _of_name("raw").find(file)
-    head = _head(file)
+    head, packed = _head(file)
     sniffed = [module for module in formats() if module.sniff(head)]
     named = [m for m in formats() if str(file.path).lower().endswith(m.SUFFIXES)]
     for module in (*sniffed, *named):
+        if packed and not has_packed(module):
+            raise file.error(f"is {module.NAME} packed by gzip, which is not read; unpack it")
         return module.find(file)
     known = ", ".join(f"{module.NAME} ({' '.join(module.SUFFIXES)})" for module in formats())
     raise file.error(f"is in no known format of volumes; read are {known}")
+
+
+def has_packed(module):
+    """Whether files of a format may be packed by gzip as a whole."""
+    return any(suffix.endswith(".gz") for suffix in module.SUFFIXES)
 
 
 def _of_name(name):
@@ -65,16 +72,18 @@ def _of_name(name):
 
 
 def _head(file):
+    """The first bytes of a file, unpacked, and whether they were packed by gzip."""
     try:
         with file.path.open("rb") as stream:
             head = stream.read(HEAD)
         if not head:
             raise file.error("the file is empty; fetch it again")
-        if head.startswith(b"\x1f\x8b"):
+        packed = head.startswith(b"\x1f\x8b")
+        if packed:
             with gzip.open(file.path) as stream:
                 head = stream.read(HEAD)
     except (EOFError, zlib.error, gzip.BadGzipFile) as error:
         raise file.error(f"the compressed data are damaged ({error}); fetch it again") from error
     except OSError as error:
         raise BrdfkitError(f"{file.path}: cannot be read ({error.strerror}).") from error
-    return head
+    return head, packed

@@ -74,8 +74,9 @@ def numbers(path, start, dtype):
 def numbers_in(text, dtype):
     """A stream of the numbers in a `text`, as bytes; what is no number is damage."""
     try:
-        return io.BytesIO(np.array(text.split(), float).astype(dtype).tobytes())
-    except ValueError as error:
+        with np.errstate(over="ignore", invalid="raise"):
+            return io.BytesIO(np.array(text.split(), float).astype(dtype).tobytes())
+    except (ValueError, FloatingPointError) as error:  # no number, or none of this type
         raise EOFError from error
 
 

@@ -58,8 +58,11 @@ def opener(file, start, stop, encoding, shape, dtype):
                 return
             stream = raw if encoding.form == "raw" else Base64(raw)
             size = prod(shape) * dtype.itemsize
+            room = stop - start
             yield (
-                Packed(stream, encoding, size) if encoding.packed else plain(stream, encoding, size)
+                Packed(stream, encoding, size, room)
+                if encoding.packed
+                else plain(stream, encoding, size, room)
             )
 
     return open_stream
@@ -92,34 +95,39 @@ class Base64:
 
 
 class Packed:
-    """A stream of `expected` bytes in blocks that zlib packed."""
+    """A stream of `expected` bytes in blocks that zlib packed, within `room` bytes of the file."""
 
-    def __init__(self, stream, encoding, expected):
+    def __init__(self, stream, encoding, expected, room):
         self.stream, self.ready = stream, b""
-        count, block, last = _sizes(stream, encoding, 3)
+        count, block, last = _sizes(stream, encoding, 3, room)
         _require((count - bool(last)) * block + last, expected)
-        self.packed_sizes = iter(_sizes(stream, encoding, count))
+        packed_sizes = _sizes(stream, encoding, count, room)
+        if sum(packed_sizes) > room:
+            raise EOFError
+        self.packed_sizes, self.most = iter(packed_sizes), min(block, expected)
 
     def read(self, size):
         """The next `size` bytes, fewer at the end."""
         parts, missing = [self.ready], size - len(self.ready)
         while missing > 0 and (packed := next(self.packed_sizes, 0)):
-            parts.append(zlib.decompress(self.stream.read(packed)))
+            unpacker = zlib.decompressobj()
+            parts.append(unpacker.decompress(self.stream.read(packed), self.most))
             missing -= len(parts[-1])
         data = b"".join(parts)
         self.ready = data[size:]
         return data[:size]
 
 
-def plain(stream, encoding, expected):
+def plain(stream, encoding, expected, room):
     """The stream itself, behind its number of bytes, which is to be `expected`."""
-    _require(*_sizes(stream, encoding, 1), expected)
+    _require(*_sizes(stream, encoding, 1, room), expected)
     return stream
 
 
-def _sizes(stream, encoding, count):
-    data = stream.read(count * encoding.size_type.itemsize)
-    if len(data) < count * encoding.size_type.itemsize:
+def _sizes(stream, encoding, count, room):
+    needed = count * encoding.size_type.itemsize
+    data = stream.read(needed) if needed <= room else b""
+    if len(data) < needed:
         raise EOFError
     return np.frombuffer(data, encoding.size_type).tolist()
 

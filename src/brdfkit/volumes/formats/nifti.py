@@ -78,7 +78,7 @@ def _one(file, shape):
     if file.part is None and count > 1:
         raise file.error(f"holds {count} volumes; name one, from 0: {file.path.name}#0")
     part = file.part or "0"
-    number = int(part) if part.isdigit() else -1
+    number = int(part) if part.isdecimal() else -1
     if not 0 <= number < count:
         raise file.error(f"has no volume '#{file.part}'; name one of 0 to {count - 1}")
     return shape[2::-1], number

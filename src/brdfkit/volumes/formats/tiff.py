@@ -78,10 +78,9 @@ def _pages(file, tifffile, paths, shape):
     for path in paths:
         with _opened(file, tifffile, path) as tiff:
             for page in tiff.pages:
-                pixels = page.asarray()
-                if pixels.shape != shape:
+                if page.shape != shape:  # asked before its pixels are made room for
                     raise ValueError("its pages differ in size")
-                yield pixels
+                yield page.asarray()
 
 
 @contextmanager

@@ -49,7 +49,7 @@ def find(file):
         dtype = _dtype(array)
         start, stop = bodies[int(array.get("place"))]
         place = int(array.get("offset", 0))
-    except (AttributeError, TypeError, ValueError) as error:
+    except (AttributeError, OverflowError, TypeError, ValueError) as error:
         raise file.error(f"its header is damaged ({error}); fetch it again") from error
     if min(shape) < 1:
         raise file.error(f"has {shape[::-1]} {'cells' if of_cells else 'points'}: no volume")

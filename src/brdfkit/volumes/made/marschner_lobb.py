@@ -13,6 +13,7 @@ from brdfkit.volumes.made._grid import centres, filling_cube
 from brdfkit.volumes.volume import Volume
 
 SIZE = 40
+BYTES = 13  # that a voxel takes while it is made
 FREQUENCY, ALPHA = 6.0, 0.25
 
 

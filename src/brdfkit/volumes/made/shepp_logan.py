@@ -12,6 +12,7 @@ from brdfkit.volumes.made._grid import centres, filling_cube
 from brdfkit.volumes.volume import Volume
 
 SIZE = 64
+BYTES = 14  # that a voxel takes while it is made
 ELLIPSOIDS = (  # value, a, b, c, x, y, z, φ [degrees]
     (1.0, 0.69, 0.92, 0.81, 0.0, 0.0, 0.0, 0),
     (-0.8, 0.6624, 0.874, 0.78, 0.0, -0.0184, 0.0, 0),

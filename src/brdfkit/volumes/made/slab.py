@@ -11,6 +11,7 @@ from brdfkit.volumes.made._grid import centres, filling_cube
 from brdfkit.volumes.volume import Volume
 
 SIZE = 64
+BYTES = 5  # that a voxel takes while it is made
 FIRST, SLOPE = 0.25, 1.5
 
 

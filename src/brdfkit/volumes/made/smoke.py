@@ -10,6 +10,7 @@ from brdfkit.volumes.made._grid import centres, filling_cube
 from brdfkit.volumes.volume import Volume
 
 SIZE = 64
+BYTES = 62  # that a voxel takes while it is made
 EXPONENT = -11 / 6  # of the amplitude: half of that of the power
 
 

@@ -11,6 +11,7 @@ from brdfkit.volumes.made._grid import centres, filling_cube
 from brdfkit.volumes.volume import Volume
 
 SIZE = 64
+BYTES = 12  # that a voxel takes while it is made
 RADIUS = 0.5
 POINTS = 4  # along each axis of a voxel
 
