@@ -134,7 +134,8 @@ class Majorants:
             place = ", ".join(f"{c:.3g}" for c in p[worst])
             raise BrdfkitError(
                 f"The extinction is {sigma[worst]:.4g} at ({place}), its majorant "
-                f"{bound[worst]:.4g}: no bound, and pictures would be wrong; raise the majorant."
+                f"{bound[worst]:.4g}: no bound, and pictures would be wrong; raise the majorant; "
+                "of a grid that is turned, mirrored or repeated in its box take the global one."
             )
 
     @property

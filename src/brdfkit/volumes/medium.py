@@ -13,13 +13,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import drjit as dr
+import numpy as np
 
+from brdfkit.errors import BrdfkitError
 from brdfkit.host.channels import emission_of_rgb, spectrum_of_rgb, white
 from brdfkit.volumes.along_ray import within
 from brdfkit.volumes.extinction_bounds import extinction_bounds
 from brdfkit.volumes.tracking import collide, transmittance
 
 TESTED = 1 << 14  # points at which an extinction is held against its majorants
+MOST_COLLISIONS = 1e6  # across a box; of smaller steps single precision loses some, and all in time
 
 
 @dataclass(init=False, eq=False)
@@ -50,11 +53,12 @@ class Medium:
     def bound(self, local):
         """Find the majorants anew: those of coarse cells if `local`, else one.
 
-        Raises `BrdfkitError` for an extinction that they do not bound.
+        Raises `BrdfkitError` for an extinction that they do not bound, or that is in another unit.
         """
         with dr.suspend_grad():
             self.majorants = extinction_bounds(self.extinction, self.scale, local)
             self.majorants.require(self.sigma, TESTED)
+        require_unit(self.majorants)
 
     def sigma(self, p, active=True):
         """σ at points."""
@@ -120,3 +124,14 @@ class Medium:
         """The part of rays, up to `end`, within the box."""
         near, far = within(ray, self.extinction)
         return near, dr.minimum(far, end)
+
+
+def require_unit(majorants):
+    """Raise `BrdfkitError` for bounds so large for their box that no ray would get through it."""
+    collisions = float(majorants.values.max()) * np.linalg.norm(majorants.cube_to_world[:3, :3])
+    if collisions > MOST_COLLISIONS:
+        raise BrdfkitError(
+            f"The extinction reaches {majorants.values.max():.3g} per unit of length, and light "
+            f"would collide {collisions:.2g} times across the volume, which takes forever; check "
+            "the unit of length, or lower the extinction."
+        )
