@@ -134,6 +134,22 @@ def test_labels_have_colours_and_0_has_none():
     assert all((rgba[i, :3] != rgba[i + 1, :3]).any() for i in range(1, 29))
 
 
+def test_labels_of_atlases_have_colours_of_their_own():
+    """Also those that are far apart, as in the atlases of FreeSurfer and Allen."""
+    given = [0, 1, 2, 12175, 614454277]
+    labels = Volume(np.reshape(given, (1, 1, 5)), labels=True)
+    picture = seen(labels, "emission_absorption", transfer=_one_colour_each(given), azimuth=0)
+    row = picture[16].round(2)
+    for k in range(1, len(given)):
+        assert (row == round(0.1 * k, 2)).all(axis=1).any(), k
+
+
+def _one_colour_each(labels):
+    k = np.arange(len(labels))
+    rgba = np.column_stack([0.1 * k, 0.1 * k, 0.1 * k, k > 0])
+    return TransferFunction(labels, rgba, 100.0, "emission")
+
+
 def test_the_level_parts_the_values_best():
     """Otsu's, by trying all thresholds."""
     values = np.concatenate([RNG.normal(0, 1, 700), RNG.normal(7, 2, 300)])
@@ -187,6 +203,7 @@ def test_ctrl_c_keeps_the_passes():
         ({"seconds": "1"}, "seconds"),
         ({"azimuth": np.nan}, "azimuth"),
         ({"nonsense": 3}, "nonsense"),
+        ({"density": 1e9}, "check the unit of length"),
         ({"phase": "hgg"}, "hgg"),
     ],
 )

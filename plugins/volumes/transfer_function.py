@@ -35,10 +35,9 @@ from brdfkit.host.variants import refuse_scalar
 from brdfkit.volumes import stored
 from brdfkit.volumes.block_bounds import block_ranges, largest_between
 from brdfkit.volumes.extinction_bounds import data_of
-from brdfkit.volumes.transfer_function import TransferFunction
+from brdfkit.volumes.transfer_function import SHARES, TransferFunction
 from brdfkit.volumes.transfer_lookup import TransferLookup
 
-SHARES = "share of the range"  # a unit of values
 CHANNELS = {1: "values alone", 2: "values and gradient magnitudes"}
 PARAMETERS = {
     "values": volume(0.0, "what the function is a function of", least=-np.inf),

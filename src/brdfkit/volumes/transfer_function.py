@@ -26,6 +26,7 @@ from brdfkit.volumes.conversions import Conversions
 from brdfkit.volumes.piecewise import places, require_order
 
 COLOURS = "albedo", "emission"  # what RGB means
+SHARES = "share of the range"  # a unit of values, of functions for any data
 
 
 @dataclass(frozen=True, eq=False, repr=False)

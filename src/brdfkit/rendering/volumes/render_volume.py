@@ -19,6 +19,7 @@ from brdfkit.rendering.tracing import trace
 from brdfkit.rendering.volumes import looks
 from brdfkit.rendering.volumes.scene import RENDERERS, scene
 from brdfkit.volumes import TransferFunction, Volume, load_volume
+from brdfkit.volumes.transfer_function import SHARES
 
 SPP = 64  # samples per pixel
 MOST = 16_384  # of them, where a noise floor or a time is asked for
@@ -150,6 +151,9 @@ def _function(volume, transfer, renderer, density):
         transfer = looks.transfer_function(volume, renderer)
     elif not isinstance(transfer, TransferFunction):
         transfer = TransferFunction.load(transfer)
+    low, high = volume.range
+    if transfer.value_unit == SHARES and low < high:  # the camera wants to know what shows
+        transfer = transfer.scaled_to(low, high)
     return replace(transfer, extinction=density * transfer.extinction)
 
 

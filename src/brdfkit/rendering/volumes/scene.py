@@ -1,5 +1,7 @@
 """The scene of a volume: its voxels, transfer function, renderer, light and camera for Mitsuba."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from brdfkit.errors import no_such
@@ -79,12 +81,26 @@ def _plugin(name, value):
 
 
 def _with_function(volume, transfer):
+    if volume.labels and transfer.gradients is None:
+        volume, transfer = _numbered(volume, transfer)
     return {
         "type": "transfer_function",
         "values": _grid(volume, transfer),
         "transfer": transfer.to_json(),
         "to_world": _to_world(volume),
     }
+
+
+def _numbered(volume, transfer):
+    """The volume with its labels numbered 1, 2 ... in their order, and the function of the numbers.
+
+    A renderer looks functions up in a table, in which labels of atlases, thousands or millions
+    apart, would share a row.
+    """
+    labels, places = np.unique(volume.values, return_inverse=True)
+    rgba = transfer([labels[0], *labels])
+    values = np.int32(places.reshape(volume.values.shape) + 1)
+    return replace(volume, values=values), replace(transfer, values=np.arange(len(rgba)), rgba=rgba)
 
 
 def _grid(volume, transfer):
