@@ -25,7 +25,9 @@ for single scattering, more for multiple scattering. The means are equal, but fo
 loses: 1.3e-4 σ of the light of thick media, and some light of spheres that are near.
 
 Derivatives go to the volumes, the phase function, the BSDFs and the emitters' radiance, at any
-`max_depth`, without bias; what appears or vanishes at a surface's edge is missing in them.
+`max_depth`, without bias where σ is above 0; where it is 0, the light that more of it would scatter
+is missing in them, so that a search for a volume begins above 0. What appears or vanishes at a
+surface's edge is missing, too.
 
 [Lesar 2018, chapter 6]; [Woodcock et al. 1965]; [Novák et al. 2014]; [Veach & Guibas 1995].
 """
@@ -43,7 +45,7 @@ from brdfkit.volumes.medium import Medium
 from brdfkit.volumes.vertex import Vertex, medium_interaction
 
 ROULETTE = 5  # scatterings after which faint paths end at random
-LEAST_CHANCE, MOST_CHANCE = 0.05, 0.95  # of going on then
+LEAST_CHANCE = 0.05  # of going on then
 
 PARAMETERS = {
     "extinction": volume(1.0, "σ: collisions per unit of length", coloured=False),
@@ -140,8 +142,12 @@ def define(mi):
 
 
 def roulette(depth, throughput, sampler):
-    """The throughput of paths of which faint ones end at random, and others stand for them."""
-    chance = dr.clip(dr.max(dr.detach(throughput)), LEAST_CHANCE, MOST_CHANCE)
+    """The throughput of paths of which faint ones end at random, and others stand for them.
+
+    Paths as bright as at first all go on: in white clouds, where they are long, a few that stand
+    for very many would else be missed, and pictures be too dark.
+    """
+    chance = dr.clip(dr.max(dr.detach(throughput)), LEAST_CHANCE, 1)
     chance = dr.select(depth < ROULETTE, 1, chance)
     return dr.select(sampler.next_1d() < chance, throughput / chance, 0)
 

@@ -6,7 +6,8 @@ collision at t, which has the density σ(t) T(t), T = exp(-τ), has the derivati
     ∂(f σ T) / (σ T) = ∂f + f (∂σ(t)/σ(t) - ∂τ),   ∂τ = ∫ ∂σ ds from 0 to t = mean of t ∂σ(ut)
 
 for u even in [0, 1), and the share T that comes through has -T ∂τ. So one more look-up, at one u,
-makes each unbiased, also where σ meets its majorant and null collisions have no derivative.
+makes each unbiased, also where σ meets its majorant and null collisions have no derivative. Nothing
+collides where σ = 0: there only ∂τ is found.
 """
 
 from dataclasses import dataclass
