@@ -255,8 +255,8 @@ def test_a_white_cloud_in_even_light_is_not_seen(llvm_variant):
         "sensor": {"type": "perspective", "fov": 15, "to_world": camera, "film": film},
         "sky": {"type": "constant"},
     }
-    means = [np.mean(mi.render(mi.load_dict(scene), spp=1024, seed=k)) for k in range(4)]
-    assert np.sqrt(np.mean(np.subtract(means, 1) ** 2)) < 0.008  # usually 0.0024
+    means = [np.mean(mi.render(mi.load_dict(scene), spp=256, seed=k)) for k in range(4)]
+    assert np.sqrt(np.mean(np.subtract(means, 1) ** 2)) < 0.016  # usually 0.005
 
 
 # Majorants
