@@ -6,7 +6,7 @@ import drjit as dr
 import numpy as np
 import pytest
 
-from brdfkit import TransferFunction
+from brdfkit import BrdfkitError, TransferFunction
 from brdfkit.reproducing.lesar2018.volpath_settings import pictures, settings, z_scores
 
 DEVIATIONS = 4.5  # of a mean: one in 150 000 is farther
@@ -272,6 +272,9 @@ def test_majorants_follow_the_parameters(llvm_variant):
     parameters.update()
     picture = mi.render(new, spp=4, seed=2)
     np.testing.assert_array_equal(mi.render(old, spp=4, seed=2), picture)
+    parameters[name] = -parameters[name]
+    with pytest.raises(BrdfkitError, match="clip it at 0, as after a step of an optimiser"):
+        parameters.update()
 
 
 def test_an_extinction_above_its_majorant_is_an_error(llvm_variant):

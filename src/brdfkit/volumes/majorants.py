@@ -97,7 +97,7 @@ class Majorants:
     def require(
         self, extinction: Callable[[Any, Any], Any], samples: int = 1 << 18, seed: int = 0
     ) -> None:
-        """Raise an error if an extinction is above its majorant at a random point.
+        """Raise an error if an extinction is above its majorant, or below 0, at a random point.
 
         That none is found is no proof, except for what `of_grid` bounds.
 
@@ -113,7 +113,7 @@ class Majorants:
         Raises
         ------
         BrdfkitError
-            For an extinction above its majorant, or not finite; it says where.
+            For an extinction above its majorant, below 0 or not finite; it says where.
 
         Examples
         --------
@@ -128,12 +128,16 @@ class Majorants:
         p = u @ self.cube_to_world[:3, :3].T + self.cube_to_world[:3, 3]
         points = mi.Point3f(*(mi.Float(pad(c.astype(np.float32))) for c in p.T))
         sigma = np.broadcast_to(np.array(extinction(points, mi.Bool(True))), len(u))
+        if (sigma < 0).any():
+            raise BrdfkitError(
+                f"The extinction is {sigma.min():.4g} at {_place(p[int(sigma.argmin())])}, and a "
+                "volume cannot add to light: clip it at 0, as after a step of an optimiser."
+            )
         above = ~(sigma <= bound * (1 + ROUNDING))  # or no number
         if above.any():
             worst = int(np.argmax(np.where(above, sigma - bound, 0)))
-            place = ", ".join(f"{c:.3g}" for c in p[worst])
             raise BrdfkitError(
-                f"The extinction is {sigma[worst]:.4g} at ({place}), its majorant "
+                f"The extinction is {sigma[worst]:.4g} at {_place(p[worst])}, its majorant "
                 f"{bound[worst]:.4g}: no bound, and pictures would be wrong; raise the majorant; "
                 "of a grid that is turned, mirrored or repeated in its box take the global one."
             )
@@ -148,3 +152,7 @@ class Majorants:
     def world_to_cells(self) -> NDArray[np.float64]:
         """(4, 4): from the world to where a cell is a unit cube, the first from (0, 0, 0)."""
         return np.diag([*self.shape, 1.0]) @ np.linalg.inv(self.cube_to_world)
+
+
+def _place(p):
+    return f"({', '.join(f'{c:.3g}' for c in p)})"
