@@ -7,7 +7,7 @@ from scipy.ndimage import map_coordinates
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.volumes.majorants import Majorants
-from brdfkit.volumes.tracking import collide, transmittance
+from brdfkit.volumes.tracking import FAINT, collide, divide, transmittance
 
 N = 1 << 17
 DEVIATIONS = 4.5  # of a mean: one in 150 000 is farther
@@ -55,6 +55,12 @@ def test_collisions_in_a_linear_medium(bounds, llvm_variant):
     share, _ = transmittance(linear, majorants, along_z(mi), 0, dr.inf, sampler(mi, seed=1))
     require_mean(np.array(share), THROUGH, 1e-6)
     assert np.std(np.array(share)) < np.sqrt(THROUGH * (1 - THROUGH))  # of tracking's 0 and 1
+    share, collided, t, _ = divide(linear, majorants, along_z(mi), 0, dr.inf, sampler(mi, seed=2))
+    share, collided, t = np.array(share), np.array(collided), np.array(t)
+    require_mean(share, THROUGH, 1e-6)
+    require_mean(collided, 1 - THROUGH, 1e-6)
+    require_mean(collided * np.where(collided > 0, t - 1 - MEAN, 0), 0, 1e-5)
+    np.testing.assert_allclose((share + collided)[share > FAINT], 1, rtol=1e-5)
 
 
 def test_an_extinction_above_its_majorant(llvm_variant):
@@ -62,10 +68,10 @@ def test_an_extinction_above_its_majorant(llvm_variant):
     mi, low = llvm_variant, Majorants([[[1.5]]], TALL)
     with pytest.raises(BrdfkitError, match=r"extinction is 3\.2.* its majorant 1\.5.*raise"):
         low.require(linear)
-    for track in (collide, transmittance):
-        found, _ = track(linear, low, along_z(mi), 0, dr.inf, sampler(mi))
+    for track in (collide, transmittance, divide):
+        found, *_ = track(linear, low, along_z(mi), 0, dr.inf, sampler(mi))
         assert np.isnan(np.array(found)).any()
-        below, _ = track(linear, low, along_z(mi), 0, 1.8, sampler(mi))  # z < 0.8
+        below, *_ = track(linear, low, along_z(mi), 0, 1.8, sampler(mi))  # z < 0.8
         assert not np.isnan(np.array(below)).any()
 
 
@@ -144,8 +150,8 @@ def test_rays_that_miss_or_are_not_asked(llvm_variant):
     mi, majorants = llvm_variant, Majorants([[[3.0]]])
     beside = mi.Ray3f(mi.Point3f([0.5, 2, 0.5], 0.5, -1), mi.Vector3f(0, 0, 1))
     asked = mi.Bool([True, True, False])
-    for track, expected in ((collide, [np.inf] * 3), (transmittance, [1.0] * 3)):
-        numbers = sampler(mi, 3)
-        found, lookups = track(lambda p, active: 0 * p.x, majorants, beside, 0, 9, numbers, asked)
-        np.testing.assert_array_equal(np.array(found), expected)
+    for track, expected in ((collide, np.inf), (transmittance, 1.0), (divide, 1.0)):
+        rays = majorants, beside, 0, 9, sampler(mi, 3), asked
+        found, *_, lookups = track(lambda p, active: 0 * p.x, *rays)
+        np.testing.assert_array_equal(np.array(found), [expected] * 3)
         np.testing.assert_array_equal(np.array(lookups)[1:], 0)

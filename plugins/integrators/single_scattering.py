@@ -13,12 +13,13 @@ Every emitter shines: points, directions, surfaces, environments. A surface befo
 the volume shows what it emits, and by its BSDF the light of the emitters that reaches it through
 the volume; it casts a shadow, also where its BSDF lets light pass. Behind all is the environment.
 
-Light collides by Woodcock tracking. What comes through to an emitter is found by ratio tracking,
-once towards a sample of the emitters, once in a direction that the phase function or the BSDF
-draws; the power heuristic weights the two. `majorants` are the bounds of σ by which both step:
-`local`, those of coarse cells, several times faster for scans with much that is empty, or
-`global`, one for all. They are found anew when parameters change; an extinction above them is an
-error, and were one missed, a pixel that is no number.
+Ratio tracking along a ray finds both the share of light that comes through and a collision of the
+rest: each sample has what is seen behind the volume, and light that is scattered in it. Likewise it
+finds what comes through to an emitter, once towards a sample of the emitters, once in a direction
+that the phase function or the BSDF draws; the power heuristic weights the two. `majorants` are the
+bounds of σ by which it steps: `local`, those of coarse cells, several times faster for scans with
+much that is empty, or `global`, one for all. They are found anew when parameters change; an
+extinction above them is an error, and were one missed, a pixel that is no number.
 
 `max_depth` is that of Mitsuba's `volpath`: 1 for what shines by itself, seen through the volume, 2
 for single scattering, more for multiple scattering. The means are equal, but for what `volpath`
@@ -80,7 +81,7 @@ def define(mi):
 
             def step(depth, ray, throughput, radiance, density, sampler):
                 going = goes_on(depth, ray, throughput)
-                light, weight, vertex = self.segment(scene, ray, density, sampler, going)
+                light, vertex, weight = self.segment(scene, ray, density, sampler, going)
                 radiance += throughput * light
                 throughput *= weight
                 radiance += throughput * self.direct(scene, vertex, sampler)
@@ -99,24 +100,27 @@ def define(mi):
             return mi.depolarizer(dr.select(active, radiance, 0)), active, []
 
         def segment(self, scene, ray, density, sampler, active):
-            """Follow rays to where they collide or end: the light found, the share of light that
-            is scattered there, and the vertex."""
+            """Follow rays to where they collide and where they end: the light found, one of the
+            two as the vertex, and the share of light that is scattered there."""
             si = scene.ray_intersect(ray, active)
-            t, weight = self.medium.collide(ray, si.t, sampler, active)
-            in_medium = active & ~dr.isinf(t)
-            ends = active & ~in_medium
+            share, collided, t = self.medium.divide(ray, si.t, sampler, active)
+            light = share * emitters.seen(scene, ray, si, density, active)
 
+            # From one of the two ends the path goes on: the collision, or a surface behind it
+            passed = dr.select(si.is_valid(), dr.detach(share), 0)
+            in_medium = active & (sampler.next_1d(active) * (collided + passed) < collided)
             mei = medium_interaction(ray, t)
             sigma, albedo, own = self.medium.matter(mei, in_medium)
-            # the weight is 1, with the derivatives of σ T at a collision, of T where there is none
+            # 1, with the derivatives of σ T at a collision, of T at a surface
+            depth = self.medium.depth(ray, dr.select(in_medium, t, si.t), sampler, active)
             log_sigma = dr.log(dr.select(in_medium, sigma, 1))
-            weight = weight * dr.replace_grad(mi.Float(1), log_sigma)
-            light = dr.select(in_medium, own, emitters.seen(scene, ray, si, density, ends))
-            light = weight * light
+            weight = (collided + passed) * dr.replace_grad(mi.Float(1), log_sigma - depth)
+            light += dr.select(in_medium, weight * own, 0)
             if self.emits:
                 light += self.medium.glow(ray, si.t, sampler, active)
-            vertex = Vertex(self.phase, mei, in_medium, si, ends & si.is_valid())
-            return light, weight * dr.select(in_medium, albedo, 1), vertex
+            on_surface = active & ~in_medium & si.is_valid()
+            vertex = Vertex(self.phase, mei, in_medium, si, on_surface)
+            return light, vertex, weight * dr.select(in_medium, albedo, 1)
 
         def direct(self, scene, vertex, sampler):
             """Light from a sample of the emitters that is scattered into the rays at a vertex."""

@@ -20,7 +20,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.host.channels import emission_of_rgb, spectrum_of_rgb, white
 from brdfkit.volumes.along_ray import within
 from brdfkit.volumes.extinction_bounds import extinction_bounds
-from brdfkit.volumes.tracking import collide, transmittance
+from brdfkit.volumes.tracking import divide, transmittance
 
 TESTED = 1 << 14  # points at which an extinction is held against its majorants
 MOST_COLLISIONS = 1e6  # across a box; of smaller steps single precision loses some, and all in time
@@ -83,23 +83,21 @@ class Medium:
             light = self.light(rgb, it)
         return self.scale * sigma, albedo, light
 
-    def collide(self, ray, end, sampler, active):
-        """Where light first collides before `end`, infinity if nowhere; and T / T_now.
+    def divide(self, ray, end, sampler, active):
+        """The share of light that comes through before `end`, that which collides, and where.
 
-        The latter is 1, or NaN where σ was above its majorant, and has the derivatives of T.
+        The first has the derivatives of T, and is NaN where σ was above its majorant.
         """
-        import mitsuba as mi
-
         near, far = self.inside(ray, end)
-        t, _ = collide(self.sigma, self.majorants, ray, near, far, sampler, active)
-        depth = self.depth(ray, near, dr.minimum(t, far), sampler, active)
-        return t, dr.replace_grad(dr.select(dr.isnan(t), dr.nan, mi.Float(1)), -depth)
+        share, collided, t, _ = divide(self.sigma, self.majorants, ray, near, far, sampler, active)
+        depth = self.depth(ray, end, sampler, active)
+        return dr.replace_grad(share, -share * depth), collided, t
 
     def transmittance(self, ray, end, sampler, active):
         """A random share of light, of the mean T from the ray's origin to `end`."""
         near, far = self.inside(ray, end)
         share, _ = transmittance(self.sigma, self.majorants, ray, near, far, sampler, active)
-        return dr.replace_grad(share, -share * self.depth(ray, near, far, sampler, active))
+        return dr.replace_grad(share, -share * self.depth(ray, end, sampler, active))
 
     def glow(self, ray, end, sampler, active, own=False):
         """The radiance that e adds along rays, from a random place. With `own`, σ RGB as well."""
@@ -116,8 +114,9 @@ class Medium:
             e += sigma * light
         return length * self.transmittance(ray, t, sampler, active) * e
 
-    def depth(self, ray, near, far, sampler, active):
-        """The optical depth between two places of rays, by σ at a random one between them."""
+    def depth(self, ray, end, sampler, active):
+        """The optical depth of rays up to `end`, by σ at a random place."""
+        near, far = self.inside(ray, end)
         length = dr.maximum(far - near, 0)
         return length * self.sigma(ray(near + sampler.next_1d(active) * length), active)
 
