@@ -15,8 +15,9 @@ the volume; it casts a shadow, also where its BSDF lets light pass. Behind all i
 
 Ratio tracking along a ray finds both the share of light that comes through and a collision of the
 rest: each sample has what is seen behind the volume, and light that is scattered in it. Likewise it
-finds what comes through to an emitter, once towards a sample of the emitters, once in a direction
-that the phase function or the BSDF draws; the power heuristic weights the two. `majorants` are the
+finds what comes through to an emitter, once towards a sample of the emitters, of several mostly the
+brightest of two, once in a direction that the phase function or the BSDF draws; the power heuristic
+weights the two. `majorants` are the
 bounds of σ by which it steps: `local`, those of coarse cells, several times faster for scans with
 much that is empty, or `global`, one for all. They are found anew when parameters change; an
 extinction above them is an error, and were one missed, a pixel that is no number.
@@ -46,7 +47,7 @@ from brdfkit.volumes.medium import Medium
 from brdfkit.volumes.vertex import Vertex, medium_interaction
 
 ROULETTE = 5  # scatterings after which faint paths end at random
-LEAST_CHANCE = 0.05  # of going on then
+LEAST_CHANCE = 0.05  # of going on then, and of being one of two
 
 PARAMETERS = {
     "extinction": volume(1.0, "σ: collisions per unit of length", coloured=False),
@@ -123,13 +124,30 @@ def define(mi):
             return light, vertex, weight * dr.select(in_medium, albedo, 1)
 
         def direct(self, scene, vertex, sampler):
-            """Light from a sample of the emitters that is scattered into the rays at a vertex."""
-            it, active = vertex.interaction, vertex.active
-            ds, light, ray, lit = emitters.sampled(scene, it, sampler, active)
+            """Light of the emitters that is scattered into the rays at a vertex.
+
+            Of several emitters, two halves have a sample each, of which one is followed.
+            """
+            u = sampler.next_2d(vertex.active)
+            if len(scene.emitters()) > 1:
+                halves = [mi.Point2f((u.x + k) / 2, u.y) for k in range(2)]
+                both = [self.unshadowed(scene, vertex, half) for half in halves]
+                ray, light, lit = one_of(*both, sampler.next_1d(vertex.active))
+            else:
+                ray, light, lit = self.unshadowed(scene, vertex, u)
+            with dr.suspend_grad():
+                lit = lit & ~scene.ray_test(ray, lit)
+            share = self.medium.transmittance(ray, ray.maxt, sampler, lit)
+            return dr.select(lit, light * share, 0)
+
+        def unshadowed(self, scene, vertex, u):
+            """The ray to a sample of the emitters, the light that would be scattered, and whether
+            there is a sample."""
+            it = vertex.interaction
+            ds, light, there = emitters.sampled(scene, it, u, vertex.active)
             value, pdf = vertex.eval_pdf(ds.d)
             weight = dr.select(ds.delta, 1, emitters.power_heuristic(ds.pdf, dr.detach(pdf)))
-            share = self.medium.transmittance(ray, ray.maxt, sampler, lit)
-            return dr.select(lit, value * light * (weight * share), 0)
+            return emitters.ray_to(it, ds), value * light * weight, there
 
         def last_segment(self, scene, ray, density, sampler, active):
             """The light that comes through along rays."""
@@ -143,6 +161,17 @@ def define(mi):
             return light
 
     return SingleScattering
+
+
+def one_of(first, second, u):
+    """Of two (ray, light, mask) mostly the brighter one, whose light stands for the mean of both."""
+    brightness = [dr.detach(dr.max(light)) for _, light, _ in (first, second)]
+    both = brightness[0] + brightness[1]
+    chance = dr.select(both > 0, brightness[0] / both, 0.5)
+    chance = dr.clip(chance, LEAST_CHANCE, 1 - LEAST_CHANCE)
+    is_first = u < chance
+    ray, light, mask = (dr.select(is_first, a, b) for a, b in zip(first, second, strict=True))
+    return ray, light / (2 * dr.select(is_first, chance, 1 - chance)), mask
 
 
 def roulette(depth, throughput, sampler):

@@ -24,23 +24,22 @@ def seen(scene, ray, si, density, active=True):
     return dr.select(active, light * weight, 0)
 
 
-def sampled(scene, it, sampler, active):
-    """A sample of the emitters as `it` sees them: the `mi.DirectionSample3f`, its light over its
-    density, the ray to it, and whether no surface is between.
+def sampled(scene, it, sample, active):
+    """A sample of the emitters as `it` sees them, by an even `sample` of two numbers: the
+    `mi.DirectionSample3f`, its light over its density, were nothing between, and whether there is
+    one.
 
     The light has the derivatives by what the emitter emits.
     """
     import mitsuba as mi
 
     with dr.suspend_grad():
-        ds, light = scene.sample_emitter_direction(it, sampler.next_2d(active), False, active)
-        ray = ray_to(it, ds)
-        lit = active & (ds.pdf > 0)
-        lit = lit & ~scene.ray_test(ray, lit)
-        ds.pdf = dr.select(lit, ds.pdf, 1)
-    attached = mi.unpolarized_spectrum(scene.eval_emitter_direction(it, ds, lit)) / ds.pdf
+        ds, light = scene.sample_emitter_direction(it, sample, False, active)
+        there = active & (ds.pdf > 0)
+        ds.pdf = dr.select(there, ds.pdf, 1)
+    attached = mi.unpolarized_spectrum(scene.eval_emitter_direction(it, ds, there)) / ds.pdf
     light = dr.replace_grad(mi.unpolarized_spectrum(light), attached)
-    return ds, light, ray, lit
+    return ds, dr.select(there, light, 0), there
 
 
 def ray_to(it, ds):
