@@ -219,6 +219,16 @@ def test_derivatives_are_those_of_the_closed_form(llvm_variant):
         require_mean(found.sum(axis=1), expected[name], 1e-5)
 
 
+def test_derivatives_by_lamps_of_which_one_is_dark(llvm_variant):
+    """A sample of the dark one is rare, and counts for more."""
+    mi, (sigma, albedo, g, depth, cosine, known) = llvm_variant, SLABS[0]
+    lamps = {"dark": {**sun(cosine)["sun"], "irradiance": 0.0}, **sun(SLABS[1][4])}
+    scene = slab(mi, sigma, depth, lamps, albedo=albedo, phase=hg(g))
+    expected = {"dark.irradiance.value": known, "sun.irradiance.value": SLABS[1][-1]}
+    for name, found in gradients(mi, scene, expected).items():
+        require_mean(found.sum(axis=1), expected[name], 1e-6)
+
+
 def test_derivatives_by_voxels_and_by_a_transfer_function(llvm_variant):
     """Differences of a quadrature, by each voxel and by points of the function."""
     mi, depth, n, cosine = llvm_variant, 1.5, 3, -0.6

@@ -164,7 +164,7 @@ def define(mi):
 
 
 def one_of(first, second, u):
-    """Of two (ray, light, mask) mostly the brighter one, whose light stands for the mean of both."""
+    """Of two (ray, light, mask) mostly the brighter one; its light stands for the mean of both."""
     brightness = [dr.detach(dr.max(light)) for _, light, _ in (first, second)]
     both = brightness[0] + brightness[1]
     chance = dr.select(both > 0, brightness[0] / both, 0.5)
