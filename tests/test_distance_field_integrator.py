@@ -6,7 +6,10 @@ import drjit as dr
 import numpy as np
 import pytest
 
+from brdfkit import BrdfkitError
 from brdfkit.distance_fields import box, kinds, plane, sphere, torus
+from brdfkit.distance_fields.shading.direct_light import DirectLight
+from brdfkit.rendering.progressive import Progressive
 
 GREY = {"type": "diffuse", "reflectance": 0.5}
 BALL = {"type": "sphere", "center": [2, 0, 3], "radius": 0.6}
@@ -369,3 +372,17 @@ def test_what_is_in_the_scene_is_checked(mi, more, said):
     with pytest.raises(RuntimeError) as error:
         mi.render(scene(mi, plane(), more["lamp"]), spp=1)
     assert re.search(said, str(error.value.__cause__))
+
+
+@pytest.mark.parametrize("error", [BrdfkitError("say what to do."), KeyboardInterrupt()])
+def test_what_is_raised_within_a_loop_arrives_as_it_is(mi, monkeypatch, error):
+    """An error, or Ctrl-C, while Dr.Jit records the loop over samples of a lamp."""
+
+    def is_free(*_):
+        raise error
+
+    monkeypatch.setattr(DirectLight, "is_free", is_free)
+    loaded = scene(mi, plane(), lit(BALL), shading="exact")
+    with pytest.raises(type(error)) as found:
+        Progressive({"plane": loaded}).generate("plane", 1)
+    assert found.value is error

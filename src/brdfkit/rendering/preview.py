@@ -17,6 +17,7 @@ from brdfkit.arguments import to_whole_number
 from brdfkit.environments.map_files import find
 from brdfkit.errors import BrdfkitError
 from brdfkit.host.load_by_mitsuba import load_by_mitsuba
+from brdfkit.jit.first_error import first_error
 from brdfkit.jit.threads import in_turn
 from brdfkit.rendering import users_mesh
 from brdfkit.rendering.environment import environment as light_of
@@ -132,7 +133,8 @@ def _show(materials, envmap, size, scene, method, spp, shadows):
         if shadows:
             integrator.casters.set(loaded, *shape.casters)
         seen = mask(loaded, material) if seen is None else seen
-        pictures[name] = rgb(integrator.render(loaded, seed=0, spp=spp)).astype(np.float32)
+        with first_error():
+            pictures[name] = rgb(integrator.render(loaded, seed=0, spp=spp)).astype(np.float32)
     first, seconds = next(iter(pictures.values())), time.perf_counter() - start
     parameters = parameters_of(materials)
     return Rendering(

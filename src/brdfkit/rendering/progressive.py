@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from brdfkit.jit.first_error import first_error
 from brdfkit.picture_errors.noise import Accumulated
 
 
@@ -53,7 +54,8 @@ class Progressive:
         seed = np.random.SeedSequence(self.seed).generate_state(number + 1)[number]
         scene = self.scenes[name]
         # not mi.render: it turns Ctrl-C into a RuntimeError. drjit.freeze makes it no faster
-        return rgb(scene.integrator().render(scene, seed=mi.UInt32(int(seed)), spp=spp))
+        with first_error():
+            return rgb(scene.integrator().render(scene, seed=mi.UInt32(int(seed)), spp=spp))
 
     def integrate(self, generated: Mapping[str, NDArray], spp: int) -> None:
         """Add the pictures of a pass, those of all scenes at once."""
