@@ -140,12 +140,12 @@ def rings():
 
 
 def colonnade():
-    """Colonnade: thirteen fluted columns, of which a ray meets only the one of its cell, and a low
-    sun. The shadows are as sharp as the sun is small, and soften with their length.
+    """Colonnade: thirteen fluted columns, of which a ray meets only the one of its cell, and of
+    its sixteen flutes two, and a low sun. The shadows are as sharp as the sun is small, and soften
+    with their length.
     """
     flute = capped_cylinder((0.5, 0, 0.35), (0.5, 0, 3.95), 0.07)
-    flutes = union([flute.rotate(i * pi / 8) for i in range(16)])
-    shaft = capped_cone((0, 0, 0), (0, 0, 4.2), 0.5, 0.42) - flutes.k(0.03)
+    shaft = capped_cone((0, 0, 0), (0, 0, 4.2), 0.5, 0.42) - flute.circular_array(16).k(0.03)
     base = torus(0.48, 0.12).at(0, 0, 0.14) | rounded_box((1.3, 1.3, 0.2), 0.03).at(0, 0, -0.08)
     echinus = capped_cone((0, 0, 4.1), (0, 0, 4.35), 0.42, 0.6).dilate(0.03)
     column = shaft | base | echinus | rounded_box((1.4, 1.4, 0.22), 0.03).at(0, 0, 4.5)

@@ -33,6 +33,7 @@ SOLIDS = st.one_of(
     st.builds(lambda e, a, b: df.capped_cone(*e, a, b), ends, size, st.floats(0.0, 1.0)),
 )
 k = st.one_of(st.just(0.0), size)
+AWAY = st.tuples(st.floats(-9, 9), st.floats(-9, 9), st.just(0.0))
 
 
 def larger(trees):
@@ -46,6 +47,8 @@ def larger(trees):
         st.builds(df.translate, trees, place),
         st.builds(df.rotate, trees, st.floats(-4, 4), direction),
         st.builds(df.scale, trees, st.floats(0.3, 3)),
+        st.builds(df.circular_array, trees, st.integers(1, 7)),
+        st.builds(df.circular_array, st.builds(df.translate, trees, AWAY), st.integers(3, 7)),
         st.builds(repeated, trees, st.sampled_from([None, 0, 1, 2]), st.floats(1.1, 2.0)),
     )
 
@@ -123,6 +126,19 @@ def test_what_is_called_exact_is_the_distance(field, seed):
 
 
 @settings(max_examples=60, deadline=None)
+@given(TREES, AWAY, st.integers(3, 7), st.integers(0, 2**32 - 1))
+def test_a_circular_array_is_the_union_of_all_copies(child, offset, copies, seed):
+    """Also where two of them are enough; within overlaps it is an estimate on both sides."""
+    child = child.at(offset)
+    array = child.circular_array(copies)
+    points = around(array, 300, seed)
+    alone = [values(child.rotate(k * array.sector), points) for k in range(copies)]
+    found, expected = values(array, points), np.min(alone, axis=0)
+    np.testing.assert_array_equal(found <= 0, expected <= 0)
+    np.testing.assert_allclose(found[found > 0], expected[found > 0], rtol=1e-9, atol=1e-12)
+
+
+@settings(max_examples=60, deadline=None)
 @given(TREES, TREES, st.integers(0, 2**32 - 1))
 def test_signs_are_those_of_sets(a, b, seed):
     points = around(a, 300, seed)
@@ -157,7 +173,18 @@ def everything():
     ring = df.torus(0.4, 0.1).at(0.6, -0.8, 0.5)
     sampled = df.torus(0.6, 0.2).to_grid(12).at(-0.5, 0.9, 0.3)
     hole = df.sphere(0.3).at(0, 0, 0.4)
-    whole = rods | cone | solids | rounded.at(0, 1.2, 0) | bulb | below | ring | sampled
+    crown = df.capsule((0.5, 0, 0), (0.6, 0.1, 0.3), 0.05).circular_array(7, 0.2)
+    whole = (
+        crown.at(-0.8, -0.6, -0.5)
+        | rods
+        | cone
+        | solids
+        | rounded.at(0, 1.2, 0)
+        | bulb
+        | below
+        | ring
+        | sampled
+    )
     return whole.dilate(0.02) - hole.made_of("felt").k(0.1)
 
 
@@ -273,7 +300,7 @@ def test_vertices_of_a_mesh_lie_on_the_surface_and_f_never_overstates():
 def test_a_mesh_becomes_a_grid(tmp_path):
     pytest.importorskip("igl")
     solid = df.rounded_box((1, 2, 1.5), 0.2).at(0.3, 0, 0)
-    mesh = df.to_mesh(solid, 48)
+    mesh = solid.to_mesh(48)
     mesh.write(tmp_path / "solid.ply")
     sampled = df.from_mesh(tmp_path / "solid.ply", 32)
     points = np.random.default_rng(0).uniform(sampled.low, sampled.high, (2000, 3))

@@ -6,17 +6,18 @@
 array([2.])
 
 `solids.py`, `rods.py`, `fractals.py`, `grids.py`: what there is; `combinations.py`, `offsets.py`,
-`motions.py`, `repetition.py`: what becomes of it, by the operators of `operators.py`;
-`materials.py`: what it is made of. They are the nodes (`node.py`) of a tree, whose formulas, made
-of `functions.py`, run on Dr.Jit's arrays of any backend, on NumPy's points (`evaluation.py`), and
-on symbols (`symbols.py`), which make GLSL (`glsl.py`) of them. `stored.py`: files; `sampling.py`,
-`meshing.py`: grids and meshes; `checking.py`: whether a distance is one; `intersecting.py`,
-`sphere_tracing.py`, `cone_tracing.py`, `raymarching.py`: where rays meet it (`hits.py`), and how
-that moves; `normals.py`. `shadows/`: soft shadows; `shading/`: pictures, for the integrator
-`distance_field`.
+`motions.py`, `repetition.py`, `circular_arrays.py`: what becomes of it, by the operators of
+`operators.py`; `materials.py`: what it is made of. They are the nodes (`node.py`) of a tree, whose
+formulas, made of `functions.py`, run on Dr.Jit's arrays of any backend, on NumPy's points
+(`evaluation.py`), and on symbols (`symbols.py`), which make GLSL (`glsl.py`) of them. `stored.py`:
+files; `sampling.py`, `meshing.py`, `mesh_distances.py`: grids and meshes; `checking.py`: whether a
+distance is one; `intersecting.py`, `sphere_tracing.py`, `cone_tracing.py`, `raymarching.py`: where
+rays meet it (`hits.py`), and how that moves; `normals.py`. `shadows/`: soft shadows; `shading/`:
+pictures, for the integrator `distance_field`.
 """
 
 from brdfkit.distance_fields.checking import check as check
+from brdfkit.distance_fields.circular_arrays import circular_array as circular_array
 from brdfkit.distance_fields.combinations import difference as difference
 from brdfkit.distance_fields.combinations import intersection as intersection
 from brdfkit.distance_fields.combinations import union as union
@@ -28,8 +29,8 @@ from brdfkit.distance_fields.hits import Hit as Hit
 from brdfkit.distance_fields.hits import reattach as reattach
 from brdfkit.distance_fields.intersecting import intersect as intersect
 from brdfkit.distance_fields.materials import made_of as made_of
+from brdfkit.distance_fields.mesh_distances import from_mesh as from_mesh
 from brdfkit.distance_fields.meshing import Mesh as Mesh
-from brdfkit.distance_fields.meshing import from_mesh as from_mesh
 from brdfkit.distance_fields.meshing import to_mesh as to_mesh
 from brdfkit.distance_fields.motions import rotate as rotate
 from brdfkit.distance_fields.motions import scale as scale

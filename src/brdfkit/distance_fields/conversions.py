@@ -34,3 +34,9 @@ class Conversions:
         from brdfkit.distance_fields.sampling import to_grid
 
         return to_grid(self, resolution, bounds)
+
+    def to_mesh(self, resolution: int = 64, bounds: Any = None) -> Any:
+        """The surface as triangles: `brdfkit.distance_fields.to_mesh`."""
+        from brdfkit.distance_fields.meshing import to_mesh
+
+        return to_mesh(self, resolution, bounds)

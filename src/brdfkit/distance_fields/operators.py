@@ -62,6 +62,10 @@ class Operators:
         """
         return kind("repeat")(self, spacing, copies)
 
+    def circular_array(self, copies: int, offset: Any = 0.0) -> Any:
+        """So many `copies` around the z axis, after a move by `offset` along x."""
+        return kind("circular_array")(self.at(offset, 0, 0) if offset else self, copies)
+
 
 class Smooth(NamedTuple):
     """A field that the next operator blends in over the width `k`."""
