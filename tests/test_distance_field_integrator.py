@@ -362,6 +362,15 @@ def test_what_cannot_be_rendered_is_said(mi, given, said):
 
 @pytest.mark.quick
 @pytest.mark.parametrize(
+    "bsdf", [{"type": "mask", "opacity": 0.5, "of": GREY}, {"type": "dielectric"}]
+)
+def test_a_bsdf_that_lets_light_through_is_said_to_be_dark(mi, bsdf):
+    with pytest.warns(UserWarning, match="the bsdf glass lets light through"):
+        scene(mi, plane() | sphere(1).made_of("glass"), POINT, glass=bsdf)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
     ("more", "said"),
     [
         ({"lamp": {"type": "cube"}}, "the shape 'lamp' is no lamp; besides the field"),

@@ -1,5 +1,7 @@
 """The BSDF of each part of a field, by the name of its material."""
 
+import warnings
+
 import drjit as dr
 
 from brdfkit.distance_fields.materials import grown, material_names, share
@@ -36,7 +38,8 @@ def parts_of(field, bsdfs, growth):
     """The `Parts` of a field, of the BSDFs that a scene gives: name → BSDF.
 
     One whose name is that of no part is for all parts without a name; where there is none, they are
-    Mitsuba's `diffuse`. Raises `BrdfkitError` for a name without a BSDF, and for too many BSDFs.
+    Mitsuba's `diffuse`. Raises `BrdfkitError` for a name without a BSDF, and for too many BSDFs;
+    warns of those that let light through.
     """
     import mitsuba as mi
 
@@ -44,6 +47,13 @@ def parts_of(field, bsdfs, growth):
     for name, thing in bsdfs.items():
         if not isinstance(thing, mi.BSDF):
             raise BrdfkitError(f"distance_field: {name} is no bsdf; only bsdfs belong here.")
+        if mi.has_flag(thing.flags(), mi.BSDFFlags.Transmission):
+            warnings.warn(
+                f"distance_field: the bsdf {name} lets light through, but only what it reflects is "
+                "shown, the rest is dark; give one that is opaque, as plastic or roughconductor, "
+                "and cut holes into the field itself, a - b.",
+                stacklevel=2,
+            )
     for name in names:
         if name not in bsdfs:
             raise BrdfkitError(
