@@ -18,10 +18,13 @@ surface to the lamp, B back; `epsilon` is the largest error of that share, withi
 of what is in the way.
 
 `shading` = `split`: the BSDF towards the lamp's middle, the radiance, a solid angle (π (r/d)² of a
-sphere, A cosθ / d² of other lamps) and the share: no noise. `estimated`: `samples` samples of the
-lamp, of which the shadow's edge lets some through: highlights in the lamp's shape, and rectangles
-and disks instead of the spheres about them. `exact`: a ray to every sample; `shadow` is not asked.
-A sky, `constant` or `envmap`, is always sampled so, and by the bsdf as well.
+sphere, A cosθ / d² of other lamps) and the share: no noise. Shiny materials show a large lamp as a
+small one then: of rough metal with α = 0.1 beside a lamp with r/d = 0.2 a picture is 9 % too dark,
+with r/d = 0.1 2 %; highlights are right within 6 % up to r/d = α/2 (the gallery has the table).
+`estimated`: `samples` samples of the lamp, of which the shadow's edge lets some through: highlights
+in the lamp's shape, and rectangles and disks instead of the spheres about them. `exact`: a ray to
+every sample; `shadow` is not asked. A sky, `constant` or `envmap`, is always sampled so, and by the
+bsdf as well.
 
 Derivatives go to all parameters of the field (`mi.traverse` lists them, by the names of
 `field.parameters()`), to bsdfs and to lamps, through what is seen, its silhouettes and soft
@@ -33,8 +36,9 @@ instead, at single points by 40 %.
 
 A field whose steps are not safe, or that is not finite, is refused, as far as random walks find out
 (`check_steps`); the bound of the Mandelbulb is measured, not proven, so that rays and shadows may
-miss some detail of it. There is no light between surfaces; a lamp casts no shadow; other shapes of
-Mitsuba's are refused.
+miss some detail of it. There is no light between surfaces; mirrors show the sky, but no lamp; what
+passes through a bsdf, as `dielectric` and `mask`, is dark, with a warning; a lamp casts no shadow;
+other shapes of Mitsuba's are refused.
 
 [Bálint et al. 2019]; [Wang et al. 2024]
 """
