@@ -92,6 +92,20 @@ def test_large_pixels_are_as_light_as_small_ones(mi):
     assert low == pytest.approx(high, rel=0.02)  # where the cone ends, it is 8 % lighter
 
 
+def test_sharp_edges_do_not_glint(mi):
+    """A cube of shiny metal, none of whose faces mirrors the lamp, as in Mitsuba's `direct`."""
+    metal = {"type": "roughconductor", "alpha": 0.3, "distribution": "ggx"}
+    lamp = {**POINT, "position": [2, -1, 4]}
+    view = [0.5, -4, 2.5], [0, 0, 0]
+    ours = scene(mi, box(1).rotate(np.radians(35)), lamp, view=view, bsdf=metal)
+    turned = mi.ScalarTransform4f().rotate([0, 0, 1], 35).scale(0.5)
+    given = {"type": "scene", "integrator": {"type": "direct"}, "sensor": ours.sensors()[0]}
+    cube = {"type": "cube", "to_world": turned, "bsdf": metal}
+    theirs = mi.load_dict({**given, "lamp": lamp, "cube": cube})
+    found, known = (np.array(mi.render(s, spp=256)).mean() for s in (ours, theirs))
+    assert found == pytest.approx(known, rel=0.05)  # by the normals of the cones 13 % more
+
+
 @pytest.mark.parametrize("bsdf", ["conductor", "roughconductor", "ggx"])
 def test_a_sky_with_a_sun_in_what_shines(mi, bsdf):
     """A ball under a map, without its lamp: as in Mitsuba's `direct`, also where it is a mirror."""

@@ -1,9 +1,10 @@
 """Where camera rays meet a field: by cones as wide as a sample's part of a pixel.
 
 A cone ends where it touches the surface, so that no object is missed, thin as it may be. Shadows
-begin at the empty ball about its end. What is shaded lies ahead, where the ray meets the plane that
-touches both, so that lamps are as far away as they are. Objects look larger by half a pixel's
-diagonal over the root of the samples per pixel.
+begin at the empty ball about its end. Before a sharp edge such a ball sees a round one, which would
+glint; so the ray goes on to where a much smaller ball is, which has the normal. What is shaded lies
+ahead, where the ray meets the plane that touches that one, so that lamps are as far away as they
+are. Objects look larger by half a pixel's diagonal over the root of the samples per pixel.
 
 [Bálint et al. 2019, section 2.7]
 """
@@ -17,10 +18,12 @@ import drjit as dr
 from brdfkit.distance_fields.cone_tracing import cone_trace
 from brdfkit.distance_fields.hits import reattach
 from brdfkit.distance_fields.normals import normal
+from brdfkit.distance_fields.sphere_tracing import sphere_trace
 from brdfkit.host.surface_point import interaction
 from brdfkit.jit.recorded import recorded
 
 FINEST = 10.0  # over `precision`: half of the differences of normals; less than all details
+CLOSE = 1 / 8  # the smaller ball over the first
 SLANTED = 0.1  # the cosine to the surface below which a ray is taken no further
 
 
@@ -54,8 +57,14 @@ def seen_point(field, ray, far, precision, active):
     if dr.grad_enabled(f(ray(t))):
         t = reattach(f, ray.o, ray.d, t)
     ball = dr.maximum(hit.distance, precision / 2)  # of rays that meet nothing
-    n = normal(f, ray(t), dr.maximum(ball, FINEST * precision))
-    ahead = dr.detach(ball / dr.maximum(-dr.dot(n, ray.d), SLANTED))
+    with dr.suspend_grad():
+        end, close = dr.minimum(far, t + ball / SLANTED), dr.maximum(CLOSE * ball, precision / 4)
+        settings = {"lipschitz": lipschitz, "precision": close, "t_min": t, "active": hit.found}
+        closer = sphere_trace(f, ray.o, ray.d, end, **settings)
+        gap = dr.select(closer.found, closer.distance, ball)
+        ahead = dr.select(closer.found, closer.t - t, 0)
+    n = normal(f, ray(t + ahead), dr.maximum(gap, FINEST * precision))
+    ahead = ahead + dr.detach(gap / dr.maximum(-dr.dot(n, ray.d), SLANTED))
     return SeenPoint(interaction(ray, t, ray(t + ahead), n, hit.found), ray(t), ball, hit.found)
 
 
