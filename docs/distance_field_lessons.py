@@ -4,11 +4,13 @@
 from math import pi
 
 from distance_field_gyroid import gyroid
+from distance_field_highlights import highlights
 from distance_field_stage import bulb, camera, scene
 
 from brdfkit.distance_fields import box, capped_cone, plane, rounded_box, sphere, torus
 
 TRUTH, RAYS = "monte_carlo", 128
+TRUTHS = TRUTH, "exact"
 
 
 def shadows_of(field, lamp, view, *shadows):
@@ -103,4 +105,4 @@ def bounds():
     return found
 
 
-LESSONS = methods, leaks, points, blends, bounds
+LESSONS = methods, leaks, points, highlights, blends, bounds

@@ -15,6 +15,7 @@ import distance_field_lessons as lessons  # which imports brdfkit before Mitsuba
 import drjit as dr
 import mitsuba as mi
 import numpy as np
+from distance_field_highlights import SIZES, errors_by_roughness, highlights
 from distance_field_scenes import SCENES
 from make_models import paragraphs, table
 from PIL import Image, ImageDraw, ImageFont
@@ -31,8 +32,9 @@ COLUMNS, LINE = 4, 22  # pictures in a row, pixels of a label
 INTRO = """A distance function says of each point how far the nearest surface is, negative inside.
 brdfkit combines such functions in Python and renders them by the Mitsuba integrator
 [`distance_field`](plugins/distance_field.md), with measured materials and soft shadows from a
-single march for each point and lamp. Nothing in these pictures is random but the places within a
-pixel, so that there is no noise. There is no light between surfaces either, only that of the lamps.
+single march for each point and lamp. Nothing is random but the places within a pixel, so that there
+is no noise, unless it is asked for. There is no light between surfaces either, only that of the
+lamps.
 
 [`make_distance_fields.py`](make_distance_fields.py) makes this page of the code that it shows."""
 LOOK = """`bk.render` shows any field, of any size. A part with the name of a material that
@@ -40,7 +42,7 @@ brdfkit knows is made of it. In a notebook the picture appears below the cell.
 
 ```python
 import brdfkit as bk
-from brdfkit.distance_fields import box, plane, sphere, to_mesh
+from brdfkit.distance_fields import box, plane, sphere
 
 cup = (sphere(1) - sphere(0.9) - box(2).at(0, 0, 1.3)).at(0, 0, 1).made_of("blasted_gold")
 bk.render(cup | plane()).write("cup.png")
@@ -52,15 +54,19 @@ SCENE = """What is common to the scenes, `scene`, `bulb`, `panel`, `camera` and 
 [`distance_field_stage.py`](distance_field_stage.py). Materials with a name are measured ones that
 come along: [all of them](materials/README.md)."""
 FIGURES = """*Error*: root mean square over the pixels, of linear values up to {brightest:.1f}, from
-`monte_carlo`, {rays} rays for each point. *Time*: of the whole picture, over that of `hard`."""
+`{truth}`, {rays} rays for each point. *Time*: of the whole picture, over that of `{first}`."""
+ROUGHNESSES = """How far `split` is from `exact`, for a ball and a ground of rough metal: of the
+mean of the picture, and as root mean square over that of the picture. It is right within 6 % where
+the lamp's radius over its distance is at most half of α, the roughness of GGX. For more, take
+`shading="estimated"`; its shadows have no derivatives."""
 BECOMES = """A file: `load` reads it again, `brdfkit render cup.json` shows it. Scene files name it:
 `<integrator type="distance_field"><string name="filename" value="cup.json"/> ...`. A mesh, for
 Mitsuba and modellers, also of what is endless, within bounds. GLSL, one function without loops.
 
 ```python
 cup.save("cup.json")
-to_mesh(cup, resolution=128).write("cup.ply")
-to_mesh(plane() - cup, bounds=((-2, -2, -1), (2, 2, 1))).write("dent.ply")
+cup.to_mesh(resolution=128).write("cup.ply")
+(plane() - cup).to_mesh(bounds=((-2, -2, -1), (2, 2, 1))).write("dent.ply")
 print(cup.to_glsl())  # float field(vec3 p) { ... }
 ```"""
 MORE = """Errors of all methods on nine kinds of occluders: [errors of single-ray
@@ -119,17 +125,27 @@ def draw_lesson(make):
     """Draw the pictures of a lesson; return the table of their errors if one is the truth."""
     found = {name: rendered(scene) for name, scene in make().items()}
     write(sheet({name: image(picture) for name, (picture, _) in found.items()}), make.__name__)
-    if lessons.TRUTH not in found:
+    first, last = next(iter(found)), list(found)[-1]
+    if last not in lessons.TRUTHS:
         return ""
-    (truth, _), (_, unit) = found[lessons.TRUTH], found["hard"]
+    (truth, _), (_, unit) = found[last], found[first]
     rows = [
         (f"`{n}`", f"{np.sqrt(np.mean((p - truth) ** 2)):.4f}", f"{s / unit:.1f}")
         for n, (p, s) in found.items()
     ]
-    return paragraphs(
-        table("shadow, error, time", rows),
-        FIGURES.format(brightest=truth.max(), rays=lessons.RAYS),
-    )
+    said = {"brightest": truth.max(), "truth": last, "rays": lessons.RAYS, "first": first}
+    more = by_roughness() if make is highlights else ""
+    return paragraphs(table("method, error, time", rows), FIGURES.format(**said), more)
+
+
+def by_roughness():
+    """What is said of the errors of highlights by roughness and by the size of the lamp."""
+    rows = [
+        (f"α = {alpha:g}", *(f"{100 * mean:+.0f} %, {rms:.2f}" for mean, rms in errors))
+        for alpha, *errors in errors_by_roughness()
+    ]
+    head = ", ".join(["radius / distance", *(f"{size:g}" for size in SIZES)])
+    return paragraphs(ROUGHNESSES, table(head, rows))
 
 
 def rendered(scene):
