@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from small_files import adaptive, rgl_file
 
+import brdfkit as bk
+
 # A right renderer is further off once in 7,000 tests, for some 100 tests
 SIGMA = 3.8 + 0.5
 COUNTS = {"BSDF": (1, 0), "emitter": (0, 1), "both": (1, 1)}
@@ -40,17 +42,15 @@ def radiance(mi, bsdf, counts, spp=2**15):
     return np.mean(runs, axis=0), np.std(runs, axis=0, ddof=1) / 4
 
 
-def materials():
-    import brdfkit as bk
-
-    gold = bk.load("dusty_gold")
-    measured = {"dusty_gold": gold, "dusty_gold in RGL's file": adaptive(rgl_file(gold))}
-    return {n: m() for n, m in bk.models().items()} | measured
+MATERIALS = bk.models() | {
+    "dusty_gold": lambda: bk.load("dusty_gold"),
+    "dusty_gold in RGL's file": lambda: adaptive(rgl_file(bk.load("dusty_gold"))),
+}
 
 
-@pytest.mark.parametrize("name", materials())
+@pytest.mark.parametrize("name", MATERIALS)
 def test_the_light_is_the_same_by_any_samples(name, llvm_variant):
-    bsdf = materials()[name].scene_dict()
+    bsdf = MATERIALS[name]().scene_dict()
     counts = COUNTS | UNEVEN if name in ("ward", "dusty_gold") else COUNTS
     found = {label: radiance(llvm_variant, bsdf, n) for label, n in counts.items()}
     light, error = found["both"]
