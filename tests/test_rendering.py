@@ -3,6 +3,7 @@
 import json
 from types import SimpleNamespace
 
+import drjit as dr
 import numpy as np
 import pytest
 
@@ -13,6 +14,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.picture_errors.metrics import METRICS
 from brdfkit.rendering import Rendering, memory, render, render_scene
 from brdfkit.rendering.montage import montage
+from brdfkit.rendering.scene_loading import load_scenes
 from brdfkit.rendering.scenes.ball import ball
 from brdfkit.rendering.tracing import passes_of
 
@@ -42,6 +44,20 @@ def test_all_pictures_share_their_samples():
     assert list(twice.pictures) == ["white", "white (2)", "other"]
     assert np.abs(twice.differences["white (2)"]).max() < 1e-5
     assert twice.psnr()["white (2)"] > 80
+
+
+def test_all_pictures_are_made_by_one_kernel(module_in_llvm):
+    """What is compiled for the first material is compiled for all of them."""
+    materials = {f"{share}": {"type": "diffuse", "reflectance": share} for share in (0.2, 0.8)}
+    scenes, _ = load_scenes(materials, "ball", (8, 8))
+    kernels = []
+    with dr.scoped_set_flag(dr.JitFlag.KernelHistory):
+        for scene in scenes.values():
+            dr.kernel_history_clear()
+            dr.eval(module_in_llvm.render(scene, spp=1))
+            kernels.append({kernel["hash"] for kernel in dr.kernel_history([dr.KernelType.JIT])})
+    assert kernels[0]
+    assert kernels[0] == kernels[1]
 
 
 def test_seeds_agree_in_the_mean():

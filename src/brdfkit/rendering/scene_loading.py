@@ -28,11 +28,15 @@ def load_scenes(materials, given, size=None, envmap=None):
     if suffix != scene_file.SUFFIX:
         size = size or SIZE
     light = None if envmap is None else environment(envmap)
-    scenes, seen = {}, None
+    scenes, seen, sky = {}, None, None
     for name, bsdf in materials.items():
         material = None if callable(given) else load_material(bsdf, name, both_sides=bool(suffix))
         made = build(material or bsdf, size)
         made = light_by(light, made) if light else made
+        if material and isinstance(made, dict) and "sky" in made:
+            # one object in all scenes, of which the kernels have the number: so they are the same
+            sky = sky or load_by_mitsuba(mi.load_dict, made["sky"], name)
+            made["sky"] = sky
         loaded = load_by_mitsuba(mi.load_dict, made, name) if isinstance(made, dict) else made
         _require_scene(loaded)
         if material and not scenes:
