@@ -23,7 +23,7 @@ from brdfkit.measured import Measured
 
 CORPUS = {**FILES, **written(), "curet table": ("table.txt", curet_table())}
 LEAST_CASES = 20_000
-LONGEST = 2.0  # seconds of the processor, a case
+LONGEST = 2.0  # seconds of the processor, a case, where NumPy sorts four million numbers in 0.04
 MOST_MEMORY = 64e6  # bytes, or
 MOST_OF_SIZE = 32  # times the file's size
 MEASURED_EVERY = 11  # cases; tracing slows them
@@ -87,7 +87,16 @@ def within_limits(path, size, trace):
         assert not trace or tracemalloc.get_traced_memory()[1] < most
     finally:
         tracemalloc.stop()
-    assert time.process_time() - began < LONGEST
+    took = time.process_time() - began
+    assert took < LONGEST or took < LONGEST / 0.04 * seconds_to_sort()
+
+
+def seconds_to_sort():
+    """How slow the machine is now, with what else runs beside."""
+    numbers = np.random.default_rng(0).random(4_000_000)
+    began = time.process_time()
+    numbers.sort()
+    return time.process_time() - began
 
 
 @pytest.mark.parametrize("mutation", EVERY, ids=lambda mutation: mutation.__name__)

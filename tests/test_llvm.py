@@ -158,7 +158,7 @@ def python(code, **environment):
     """The finished process of `code`, without what this process told Dr.Jit."""
     env = {k: v for k, v in os.environ.items() if k != llvm.VARIABLE} | environment
     command = [sys.executable, "-c", textwrap.dedent(code)]
-    done = subprocess.run(command, capture_output=True, text=True, env=env, timeout=60)
+    done = subprocess.run(command, capture_output=True, text=True, env=env, timeout=300)
     assert done.returncode >= 0, f"killed by signal {-done.returncode}: {done.stderr}"
     assert done.returncode == 0, done.stderr
     return done

@@ -100,7 +100,7 @@ except Exception as error:
 def read(folder, before=""):
     """What another process says of the pickle."""
     program = [sys.executable, "-c", before + READ]
-    done = subprocess.run(program, cwd=folder, capture_output=True, text=True, timeout=60)
+    done = subprocess.run(program, cwd=folder, capture_output=True, text=True, timeout=300)
     return done.stdout + done.stderr
 
 

@@ -87,12 +87,12 @@ def test_make_notebook(tmp_path):
         viewer = _get(f"{address}/lab/api/settings/@jupyterlab/docmanager-extension:plugin")
     finally:
         os.killpg(server.pid, signal.SIGTERM)
-        server.wait(20)
+        server.wait(300)
     assert shown["type"] == "notebook"
     assert b"Jupytext Notebook" in viewer.read()
 
 
-def _get(address, patience=60):
+def _get(address, patience=300):
     """The answer of a server that may still be starting, for `patience` seconds."""
     end = time.monotonic() + patience
     while True:

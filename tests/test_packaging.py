@@ -21,7 +21,7 @@ def run(*words, cwd, **environment):
         text=True,
         cwd=cwd,
         env=os.environ | environment,
-        timeout=120,
+        timeout=300,
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout

@@ -26,7 +26,7 @@ with bk.progress("a < b") as bar:
                 drawn.append(message["content"]["data"])
             return super().process_message(message, *rest)
 
-    Client(notebook, timeout=60).execute()
+    Client(notebook, timeout=300).execute()
     shown = [data["text/html"] for data in drawn[:-1]]
     assert [f'value="{done}" max="3"' in html for done, html in enumerate(shown)] == [True] * 3
     assert all("a &lt; b" in html for html in shown)

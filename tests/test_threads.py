@@ -25,7 +25,7 @@ THREADS = 8
 
 def assert_runs(code):
     command = [sys.executable, "-c", textwrap.dedent(code)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
     assert (done.returncode, done.stderr) == (0, "")
 
 
@@ -132,7 +132,7 @@ def test_a_turn_may_take_another_and_ends_with_an_error():
     with pytest.raises(ZeroDivisionError):
         countdown(3)
     with ThreadPoolExecutor(1) as pool:  # another thread gets its turn
-        assert pool.submit(in_turn(lambda: "mine")).result(timeout=10) == "mine"
+        assert pool.submit(in_turn(lambda: "mine")).result(timeout=300) == "mine"
 
 
 @pytest.mark.quick
@@ -159,7 +159,7 @@ def test_a_cached_property_waits_for_its_turn_without_a_lock_of_its_own():
         first = pool.submit(lambda: thing.value)
         computing.wait(10)
         second = pool.submit(ask, other)
-        assert (first.result(timeout=10), second.result(timeout=10)) == (1, 1)
+        assert (first.result(timeout=300), second.result(timeout=300)) == (1, 1)
 
 
 def load_while_a_signal_comes(received, done):
