@@ -20,12 +20,12 @@ import pytest
 
 TOP = Path(__file__).parents[1]
 NOTEBOOKS = sorted(path for path in (TOP / "notebooks").glob("*.md") if path.stem != "README")
-SMALLER = {  # pictures and searches of which what a notebook asserts is as true
+SMALLER = {  # smaller pictures and shorter searches, of which the notebooks' asserts hold, too
     r"spp=32, size=\d+": "spp=8, size=32",
     r"size=(256|128)\)": "size=32)",
     r"starts=4": "starts=1",
 }
-# as the tests do themselves, see conftest.py: so they share kernels, too
+# a notebook has as many threads as a test (conftest.py): more would wait for the other tests'
 SHARE_THE_CORES = f"import brdfkit.jit.threads as t; t.use_threads({dr.thread_count()}); del t"
 
 

@@ -1,8 +1,7 @@
 """No fit has become worse: every model on thirty materials, against the list of optima.
 
-Each row in four is fitted, on the next material the next row, so that each model has its turn on
-every other material, by each loss: the whole list would take two minutes. `python tests/optima.py`
-runs all of it.
+Each model is fitted on every other material, by one loss and the other in turn: the whole list
+would take two minutes. `python tests/optima.py` runs all of it.
 """
 
 import optima
