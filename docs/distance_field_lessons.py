@@ -3,7 +3,6 @@
 
 from math import pi
 
-from distance_field_gyroid import gyroid
 from distance_field_highlights import highlights
 from distance_field_stage import bulb, camera, scene
 
@@ -83,26 +82,4 @@ def blends():
     }
 
 
-class hasty(gyroid):
-    """The same wall, with a bound that is wrong."""
-
-    lipschitz = 1.0
-    distance = gyroid.distance
-
-
-def bounds():
-    """What a bound is: a step of f / L meets no surface where L bounds the slope of f. Every node
-    knows its L, and operators pass it on. With an L that is too small, rays step through walls;
-    `check` finds that by samples, and says where.
-    """
-    lights = {"lamp": bulb([-3, -4, 5], 0.8, [85, 80, 72])}
-    view = camera([0, -6, 3], [0.1, 0, 0.8], 27)
-    found = {}
-    for wall in gyroid, hasty:
-        field = (wall(0.35).scale(0.17) & sphere(0.9)).at(0, 0, 0.9).made_of("lace") | plane()
-        label = f"{wall.__name__}, L = {field.lipschitz:.3g}"
-        found[label] = scene(field, {"lace": "satin_plastic"}, lights, view)
-    return found
-
-
-LESSONS = methods, leaks, points, highlights, blends, bounds
+LESSONS = methods, leaks, points, highlights, blends
