@@ -36,8 +36,11 @@ FINDINGS = """## Why they differ
   brdfkit, Mitsuba and K3D. Voxels repeated beyond the faces and six clipping planes mend that in
   VTK ("careful"); its cropping planes were off by up to 0.4 of a voxel.
 - **Steps.** VTK's own samples are so far apart that they miss a narrow peak (`layer`);
-  `SetSampleDistance` mends that. brdfkit's 128 steps along a ray miss it as well: 256 find it to
-  2 % of white, 512 to 0.7 %.
+  `SetSampleDistance` mends that. brdfkit has no more samples, but where the function has peaks or
+  jumps that a step would jump over, it takes the function's means between the values at the ends
+  of a step [Engel et al. 2001]: it is 1.2 % of white off at most, and was 48 % by samples. Labels
+  (`labels`) are not mended by that, as there is nothing between them: 1.9 % at edges, 0.1 % in
+  2048 steps.
 - **Look-up first, or interpolation first.** All interpolate values, and look them up then. But
   Mitsuba's gridvolume holds σ_t itself, looked up at the voxels, so that a step becomes a ramp
   (`step`), and a thin layer is what voxels happen to be in it (`layer`). brdfkit's volume

@@ -81,7 +81,8 @@ def test_the_errors_of_a_known_volume(llvm_variant):
     The radiance by quadrature, and the errors in as many steps by an implementation in NumPy.
     """
     mi = llvm_variant
-    s = 2 - (np.arange(1024) + 0.5) / 512  # seen from z = 1
+    n = 16_384  # the values stay as they are beyond the outermost centres: these are at the faces
+    s = 2 - 2 * (np.arange(n) + 0.5) / n  # seen from z = 1
     unit = 2  # the cube's edge has the length 1 here: σ and e are per twice the length
     rgba = [[0, 0, 0, 0.25 / 3.25], [0, 0, 0, 1]]
     sigma = coloured(mi, s, TransferFunction([0, 2], rgba, 3.25 * unit))
@@ -107,6 +108,21 @@ def test_a_transfer_function_glows(llvm_variant, colour):
     seen = -np.expm1(-1.5)
     expected = np.array([0.9, 0.5, 0.1]) * seen + 0.4 * seen / 1.5 + 0.5 * (1 - seen)
     np.testing.assert_allclose(found, np.broadcast_to(expected, found.shape), rtol=1e-5)
+
+
+@pytest.mark.parametrize("steps", [1, 7])
+@pytest.mark.parametrize("jitter", [False, True])
+def test_a_peak_that_is_thinner_than_a_step(llvm_variant, steps, jitter):
+    """RGB (1 - T) + T L, T = exp(-∫ σ): exact, as the values are linear along the ray."""
+    mi = llvm_variant
+    rgb, wide, n = [0.9, 0.5, 0.1], 0.01, 4096
+    points = [[*rgb, 0], [*rgb, 0], [*rgb, 1], [*rgb, 0], [*rgb, 0]]
+    peak = TransferFunction([0, 0.4 - wide, 0.4, 0.4 + wide, 1], points, 150, "emission")
+    layer = coloured(mi, np.linspace(0, 1, n), peak)
+    found = picture(mi, {"extinction": layer, "steps": steps, "jitter": jitter})
+    through = np.exp(-150 * wide * (1 - 1 / n))  # the values are 0 to 1 from centre to centre
+    expected = np.array(rgb) * (1 - through) + through * 0.5
+    np.testing.assert_allclose(found, np.broadcast_to(expected, found.shape), rtol=5e-4)
 
 
 def test_jitter_has_the_same_mean(llvm_variant):
@@ -157,16 +173,24 @@ def test_gradients_by_even_matter_and_the_light_behind(llvm_variant, of, wall):
     np.testing.assert_allclose([forward, backward], exact.get(of, through), rtol=1e-5)
 
 
-def test_gradients_by_a_transfer_function(llvm_variant):
-    """Of a picture's mean, along random changes: those of differences with the same samples."""
+SMOOTH, THIN = [0, 5], [0, 2.3, 2.5, 2.7, 5]
+
+
+@pytest.mark.parametrize(("points", "step"), [(SMOOTH, 0.02), (THIN, 0.002)])
+def test_gradients_by_a_transfer_function(llvm_variant, points, step):
+    """Of a picture's mean, along random changes: those of differences with the same samples.
+
+    A thin function is one of means between values.
+    """
     mi = llvm_variant
     rng = np.random.default_rng(3)
-    function = TransferFunction([0, 5], rng.uniform(0.2, 1, (2, 4)), 3, "emission")
+    function = TransferFunction(points, rng.uniform(0.2, 1, (len(points), 4)), 3, "emission")
     values = rng.uniform(1, 4, (4, 4, 4))
     e = rng.uniform(4, 6, (4, 4, 4, 1)).astype(np.float32)
     emission = {"type": "gridvolume", "grid": mi.VolumeGrid(e)}
     glow = {"extinction": coloured(mi, values, function), "emission": emission}
     loaded = scene(mi, {**glow, "steps": 16})
+    assert loaded.integrator().sees_between == (points == THIN)
     parameters = mi.traverse(loaded)
     leaves = {}
     keys = "extinction.table", "extinction.extinction", "extinction.values.data", "emission.data"
@@ -180,13 +204,13 @@ def test_gradients_by_a_transfer_function(llvm_variant):
     for name, leaf in leaves.items():
         start = np.array(leaf)
         change, means = rng.random(start.shape).astype(np.float32), []
-        for step in (-0.02, 0.02):
-            parameters[name] = type(leaf)(start + step * change)
+        for by in (-step, step):
+            parameters[name] = type(leaf)(start + by * change)
             parameters.update()
             means.append(float(np.array(mi.render(loaded, spp=16, seed=2), float).mean()))
         parameters[name] = type(leaf)(start)
         exact = float((np.array(dr.grad(leaf)) * change).sum())
-        assert exact == pytest.approx((means[1] - means[0]) / 0.04, rel=0.002), name
+        assert exact == pytest.approx((means[1] - means[0]) / (2 * step), rel=0.002), name
 
 
 def test_a_surface_in_the_volume_ends_the_ray(llvm_variant):

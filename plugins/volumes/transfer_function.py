@@ -35,8 +35,10 @@ from brdfkit.host.variants import refuse_scalar
 from brdfkit.volumes import stored
 from brdfkit.volumes.block_bounds import block_ranges, largest_between
 from brdfkit.volumes.extinction_bounds import data_of
+from brdfkit.volumes.preintegration import is_thin
 from brdfkit.volumes.transfer_function import SHARES, TransferFunction
 from brdfkit.volumes.transfer_lookup import TransferLookup
+from brdfkit.volumes.voxel_steps import is_trilinear, typical
 
 CHANNELS = {1: "values alone", 2: "values and gradient magnitudes"}
 PARAMETERS = {
@@ -75,6 +77,29 @@ def define(mi):
             """σ_t, and RGB in linear sRGB, from one look-up."""
             rgb, a = self.rgba(it, active)
             return self.lookup.extinction * a, rgb
+
+        def is_missed_by(self, steps):
+            """Whether the function has peaks or jumps that so many steps of a ray would jump over.
+
+            Then `integrals` and `mean_optics` see them. Never of labels or gradient magnitudes.
+            """
+            data = data_of(self.values)
+            if data is None or self.function.gradients is not None:
+                return False
+            low, high = self.function.range
+            change = typical(data) * max(1, max(data.shape) / steps)  # of the value, in a step
+            reach = change / (high - low) * self.lookup.integrals.steps
+            thin = is_thin(np.array(self.lookup.table), reach)
+            return thin and is_trilinear(self.values, data, self.to_local)
+
+        def integrals(self, it, active=True):
+            """At an end of a part of a ray, for `mean_optics`; of a function of values alone."""
+            return self.lookup.integrals_at(self.values.eval_1(it, active))
+
+        def mean_optics(self, front, back):
+            """The means of σ_t and of σ_t RGB between two ends."""
+            rgb, a = self.lookup.mean_between(front, back)
+            return self.lookup.extinction * a, self.lookup.extinction * rgb
 
         def rgba(self, it, active=True):
             """RGB in linear sRGB, and A."""

@@ -6,6 +6,7 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
+from brdfkit.volumes.preintegration import Preintegration
 from brdfkit.volumes.transfer_function import TransferFunction
 
 STEPS = 4096  # of a table over values, at least: a step in a function is one of them wide
@@ -21,6 +22,7 @@ class TransferLookup:
     extinction : `mi.Float`, σ_t where A is 1 [1/unit of length].
     axes : (low, scale, first) of values, and of gradient magnitudes.
     texture : the table as a `mi.Texture1f` or `mi.Texture2f`.
+    integrals : its `Preintegration`; None of a function of gradient magnitudes.
     """
 
     function: TransferFunction
@@ -28,6 +30,7 @@ class TransferLookup:
     extinction: Any
     axes: list[Any]
     texture: Any
+    integrals: Any
 
     def __init__(self, function):
         import mitsuba as mi
@@ -51,6 +54,7 @@ class TransferLookup:
 
         kind = mi.Texture1f if len(self.axes) == 1 else mi.Texture2f
         self.texture = kind(self.table, use_accel=False, wrap_mode=dr.WrapMode.Clamp)
+        self.integrals = Preintegration(self.table) if len(self.axes) == 1 else None
 
     def __call__(self, places, active=True):
         """RGB, a `mi.Color3f` in linear sRGB, and A; `places`: [value], or [value, ‖∇V‖]."""
@@ -62,6 +66,18 @@ class TransferLookup:
         ]
         point = mi.Point1f if len(at) == 1 else mi.Point2f
         r, g, b, a = self.texture.eval(point(*at), active)
+        return mi.Color3f(r, g, b), a
+
+    def integrals_at(self, value):
+        """What `mean_between` takes, of one value."""
+        low, scale, _ = self.axes[0]
+        return self.integrals.at((value - low) * scale * (self.integrals.steps + 1))
+
+    def mean_between(self, front, back):
+        """The means of A RGB, a `mi.Color3f`, and of A, as the value goes from one to the other."""
+        import mitsuba as mi
+
+        r, g, b, a = self.integrals.mean(front, back)
         return mi.Color3f(r, g, b), a
 
     def table_over_values(self):
