@@ -281,6 +281,24 @@ def test_downsampling_while_reading_is_that_of_the_volume(tmp_path):
     assert set(labels.values.ravel()) < set(values().ravel())
 
 
+@pytest.mark.parametrize("dtype", ["uint8", "float32"])
+def test_means_of_what_may_be_labels_are_told(tmp_path, recwarn, dtype):
+    """Not where the user says what they are, nor of many values, nor of halves."""
+    given = {"size": 20, "dtype": dtype, "downsample": 2}
+    tissues = np.arange(8000) // 1000
+    for name, kept in {"a": tissues, "b": np.arange(8000) % 250, "c": tissues / 2 + 0.25}.items():
+        kept.astype(dtype).tofile(tmp_path / f"{name}.raw")
+    with pytest.warns(UserWarning, match="a has 8 different values, all whole, of which means we"):
+        bk.load_volume(tmp_path / "a.raw", **given)
+    recwarn.clear()
+    for labels in (True, False):
+        bk.load_volume(tmp_path / "a.raw", **given, labels=labels)
+    bk.load_volume(tmp_path / "a.raw", **given | {"downsample": 1})
+    for name in "bc" if dtype == "float32" else "b":
+        bk.load_volume(tmp_path / f"{name}.raw", **given)
+    assert not recwarn.list
+
+
 def test_memory_is_asked_for_before_voxels_are_read(tmp_path, monkeypatch):
     """The header of a file of 24 GB that has room for them, sparse; and what would fit."""
     size = (2000, 2000, 3000)

@@ -225,6 +225,7 @@ def run(*words):
     return CliRunner().invoke(main, [str(word) for word in words])
 
 
+@pytest.mark.filterwarnings("default:.*means were taken")
 def test_info(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     small.by_itk("a.nii.gz")
@@ -237,6 +238,11 @@ def test_info(tmp_path, monkeypatch):
     assert (record["size"], record["unit"], record["labels"]) == ([3, 3, 2], "mm", False)
     assert sum(record["counts"]) == 18
     assert "labels" in run("info", "a.nii.gz", "--labels").output
+    tissues = np.repeat(np.arange(4, dtype=np.uint8), 250)
+    tissues.tofile("tissues_10x10x10_uint8.raw")
+    told = run("info", "tissues_10x10x10_uint8.raw", "--downsample", 2)
+    assert "4 different values, all whole, of which means were taken" in told.output
+    (tmp_path / "tissues_10x10x10_uint8.raw").unlink()
     for words, sentence in {
         ("car_paint", "--labels"): "car_paint is no volume",
         ("none.nrrd",): "there is no such file",

@@ -5,6 +5,7 @@ import numpy as np
 PARTS = 48  # of the range of values
 STEPS = 24  # of the range of gradient magnitudes
 MOST = 2_000_000  # voxels of the joint histogram, evenly spread
+FEW = 64  # different whole numbers: they may be labels
 
 
 def counts(volume):

@@ -3,6 +3,7 @@
 import itertools
 import math
 import os
+import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from brdfkit.arguments import to_whole_number
 from brdfkit.errors import BrdfkitError, nearest, no_such
 from brdfkit.volumes import formats, made, reducing
 from brdfkit.volumes.formats import VolumeFile
+from brdfkit.volumes.histograms import FEW
 from brdfkit.volumes.volume import Volume, require_transform
 
 MOST = 65  # up to which a `downsample` is proposed
@@ -46,6 +48,7 @@ def load_volume(
         Every block of so many voxels along each axis becomes one while the file is read; 1 or more.
     labels : bool, optional
         Whether the values are labels, of which no means are taken; as the file tells if it is None.
+        Then a warning says where means are taken of values that may be labels.
     size : int or (int, int, int), optional
         Voxels along x, y, z: of raw voxels; and of a made volume, one number for all three.
     dtype : str or dtype, optional
@@ -97,7 +100,7 @@ def load_volume(
         stored = replace(stored, labels=labels)
     if steps is not None:
         stored = replace(stored, to_world=_spaced(stored.to_world, steps))
-    return _read(file, stored, downsample)
+    return _read(file, stored, downsample, doubtful=labels is None and downsample > 1)
 
 
 def looks_like_volume(name: str) -> bool:
@@ -106,20 +109,36 @@ def looks_like_volume(name: str) -> bool:
     return name in made.names() or formats.has_format(path) or formats.is_series(Path(path))
 
 
-def _read(file, stored, downsample):
-    """The `Volume` that was found in a file."""
+def _read(file, stored, downsample, doubtful):
+    """The `Volume` that was found in a file; `doubtful`: whether to ask if it has means at all."""
     require_transform(stored.to_world, file.path)
     _require_memory(file, stored, downsample)
     shape = reducing.shape(stored.shape, downsample)
     values = np.empty(shape, _dtype(stored, downsample))
     layers = stored.layers()
+    different: set[float] = set()  # values of one voxel of each block
     with np.errstate(over="ignore"):  # a double beyond float32 is infinite, which Volume refuses
         for k in range(shape[0]):
             slab = np.stack(list(itertools.islice(layers, downsample)))
             values[k] = reducing.reduced(slab, downsample, stored.labels)
+            if doubtful and len(different) <= FEW:
+                different.update(np.unique(slab[0, ::downsample, ::downsample]).tolist())
     to_world = reducing.transform(stored.to_world, downsample)
     name = _name(file)
+    if not stored.labels and _may_be_labels(different, values.size):
+        warnings.warn(
+            f"{name} has {len(different)} different values, all whole, of which means were taken: "
+            "if they are labels, load it with labels=True (--labels), else with labels=False.",
+            stacklevel=3,
+        )
     return Volume(values, to_world, name, stored.labels, stored.unit, stored.axes)
+
+
+def _may_be_labels(different, count):
+    """Whether few whole numbers are the values of many voxels, of which there are `count`."""
+    return 1 < len(different) <= min(FEW, count / 8) and all(
+        float(v).is_integer() for v in different
+    )
 
 
 def _dtype(stored, downsample):

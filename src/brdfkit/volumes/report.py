@@ -3,14 +3,13 @@
 import numpy as np
 
 from brdfkit.volumes import histograms
-from brdfkit.volumes.histograms import PARTS, STEPS, bars, shades
+from brdfkit.volumes.histograms import FEW, PARTS, STEPS, bars, shades
 
 PATIENT = (("left", "right"), ("back", "front"), ("feet", "head"))
 WORLD = (("-x", "+x"), ("-y", "+y"), ("-z", "+z"))
 LINES = 4  # of the histogram of value × gradient magnitude
 
 # What is beyond is a finding:
-FEW = 64  # different whole numbers
 UNEVEN = 3.0  # the largest spacing over the smallest
 TURNED = 1.0  # degrees
 CLIPPED = 0.01  # of the voxels at the largest value
