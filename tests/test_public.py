@@ -37,6 +37,7 @@ METHODS = {
         bk.Rendering: ["write"],
         bk.Sweep: ["to_csv", "to_html", "to_parquet"],
         bk.TransferFunction: ["from_colormap", "from_opacity", "load", "save"],
+        bk.Volume: ["scene_dict"],
     }.items()
     for method in names
 }

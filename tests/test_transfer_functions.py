@@ -1,6 +1,7 @@
 """Transfer functions: their points, opacity and extinction, files, presets, and bad ones."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -67,6 +68,23 @@ def test_scaling_to_another_range():
     assert (scaled.range, scaled.value_unit) == ((-1, 1), "")
     np.testing.assert_allclose(scaled.gradients, [0, 0.2])
     np.testing.assert_allclose(scaled(0, 9), RAMP(15))
+
+
+def test_lengths_in_another_unit():
+    """An extinction of 2 per mm is one of 0.002 per µm; pixels have no length."""
+    bone = replace(TF.load("mri_edges"), extinction=2.0)
+    fine = bone.per("um")
+    assert fine.extinction == pytest.approx(0.002)
+    np.testing.assert_allclose(fine.gradients, bone.gradients / 1000)
+    assert "extinction 0.002 per um" in str(fine)
+    assert fine.per("mm").extinction == pytest.approx(2)
+    assert bone.per("mm") is bone
+    for function, unit in ((bone, "pixels"), (replace(bone, length_unit=""), "mm")):
+        with pytest.raises(BrdfkitError, match=f"cannot be converted to 1/{unit}: units are m, "):
+            function.per(unit)
+    image = bk.Volume(np.ones((2, 2, 2)), unit="pixels")
+    with pytest.raises(BrdfkitError, match="extinction is per mm, which cannot"):
+        image.scene_dict("mri_head")
 
 
 def test_opacity_of_a_layer_becomes_extinction():

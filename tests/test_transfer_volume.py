@@ -1,5 +1,7 @@
 """Transfer functions in Mitsuba: what is looked up, its bounds, Mitsuba's own media, bad input."""
 
+from dataclasses import replace
+
 import drjit as dr
 import numpy as np
 import pytest
@@ -114,6 +116,35 @@ def test_colours_in_other_variants(mi, variant, request):
     assert (light[0] > 1.2 * light[-1]) == mi.is_spectral  # D65 is bluish
     sigma = mi.load_dict(volume(mi, values, grey)).eval(it)
     np.testing.assert_allclose(np.ravel(sigma), 1, atol=1e-5)
+
+
+# The dictionaries of a volume
+
+
+def test_a_volume_in_a_scene_is_where_it_is(mi):
+    """Oblique, of µm, and with a function of gradient magnitudes per mm; labels by the nearest."""
+    values = RNG.uniform(-30, 110, (4, 5, 6))
+    turned = np.array(mi.ScalarTransform4f().translate([1, 2, 3]).rotate([0.6, 0.8, 0], 30).matrix)
+    known = Volume(values, turned @ np.diag([20, 30, 40, 1.0]), unit="µm")
+    inside = np.diag([*known.size, 1.0])[:3, :3] @ RNG.uniform(0.01, 0.99, (3, 200)) - 0.5
+    points = (known.to_world[:3, :3] @ inside + known.to_world[:3, 3:]).T
+    it = dr.zeros(mi.Interaction3f, len(points))
+    it.p = mi.Point3f(np.ascontiguousarray(points.T, np.float32))
+    found = mi.load_dict(known.scene_dict()).eval_1(it)
+    np.testing.assert_allclose(found, known(points), atol=2e-2)
+
+    whole = Volume(np.rint(values).astype(int), known.to_world, labels=True)
+    found = mi.load_dict(whole.scene_dict()).eval_1(it)
+    assert (np.array(found) == whole(points)).mean() > 0.99  # but at edges of voxels, by rounding
+
+    per_mm = replace(HILLS, length_unit="mm").over_gradients([[0, 0], [1000, 0.2], [4000, 1]])
+    seen = mi.load_dict(known.scene_dict(per_mm))
+    assert seen.function.extinction == pytest.approx(4e-3)
+    assert seen.function.gradient_range == (0, 4)
+    magnitudes = Volume(known.gradient_magnitude, known.to_world)(points)
+    expected = per_mm(known(points), 1000 * magnitudes)
+    smooth = np.abs(known(points) - 5) > 0.5
+    np.testing.assert_allclose(looked_up(mi, seen, points)[smooth], expected[smooth], atol=5e-3)
 
 
 # Bounds

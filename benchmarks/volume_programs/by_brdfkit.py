@@ -55,7 +55,7 @@ def maximum_intensity(case):
 
 def isosurface(case):
     matte = {"type": "diffuse", "reflectance": {"type": "rgb", "value": case.told["albedo"]}}
-    return {"volume": values(case), "level": case.told["level"], "bsdf": matte}
+    return {"volume": volume(case).scene_dict(), "level": case.told["level"], "bsdf": matte}
 
 
 INTEGRATORS = {f.__name__: f for f in (emission_absorption, maximum_intensity, isosurface)}
@@ -63,11 +63,7 @@ INTEGRATORS = {f.__name__: f for f in (emission_absorption, maximum_intensity, i
 
 def coloured(case):
     """The volume with its transfer function."""
-    return {
-        "type": "transfer_function",
-        "values": values(case),
-        "transfer": function(case).to_json(),
-    }
+    return volume(case).scene_dict(function(case))
 
 
 def function(case):
@@ -81,19 +77,9 @@ def function(case):
     )
 
 
-def values(case):
-    """A gridvolume in the cube from -1 to 1, with gradient magnitudes where they are asked for."""
+def volume(case):
+    """The volume, in the cube from -1 to 1."""
     spacing = case.spacing
     to_world = np.diag([*spacing, 1.0])
     to_world[:3, 3] = spacing / 2 - 1
-    volume = brdfkit.Volume(case.voxels, to_world, labels=case.told["labels"])
-    channels = [volume.values.astype(np.float32)]
-    if "gradients" in case.transfer:
-        channels.append(volume.gradient_magnitude)
-    return {
-        "type": "gridvolume",
-        "grid": mi.VolumeGrid(np.stack(channels, axis=-1)),
-        "raw": True,
-        "filter_type": "nearest" if volume.labels else "trilinear",
-        "to_world": mi.ScalarTransform4f(volume.cube_to_world),
-    }
+    return brdfkit.Volume(case.voxels, to_world, labels=case.told["labels"])

@@ -33,7 +33,7 @@ def picture(case, setting):
             return None
         v, _, sigma = case.sampled()
         grid = np.interp(case.voxels, v, sigma).astype(np.float32)[..., None]
-        extinction = by_brdfkit.values(case) | {"grid": mi.VolumeGrid(grid)}
+        extinction = by_brdfkit.volume(case).scene_dict() | {"grid": mi.VolumeGrid(grid)}
     cube = {
         "type": "cube",
         "bsdf": {"type": "null"},

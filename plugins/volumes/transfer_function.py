@@ -9,7 +9,7 @@ the largest value. `values` is a gridvolume, of any values, with `"raw": True`; 
 of gradient magnitudes has these as its second channel (`Volume.gradient_magnitude`). Labels have
 `"filter_type": "nearest"`. Values are interpolated first, and looked up then.
 
-So Mitsuba's own integrators render a scan:
+`Volume.scene_dict(transfer)` makes all of this. So Mitsuba's own integrators render a scan:
 
     {"type": "heterogeneous", "albedo": {..., "output": "colour"}, "sigma_t": {...}}
 

@@ -72,7 +72,7 @@ def load_volume(
     Examples
     --------
     >>> load_volume("marschner_lobb", size=41)
-    marschner_lobb: 41×41×41 voxels of 0.04878×0.04878×0.04878, float32, 4.4e-05 to 0.999956
+    marschner_lobb: 41×41×41 voxels of 0.04878×0.04878×0.04878 units, float32, 4.4e-05 to 0.999956
     """
     downsample = to_whole_number("downsample", downsample, 1)
     voxels, steps = _triple("size", size, int), _triple("spacing", spacing, float)

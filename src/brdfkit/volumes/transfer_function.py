@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 from brdfkit.arguments import to_pair, to_positive, to_whole_number
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.volumes.conversions import Conversions
+from brdfkit.volumes.length_units import METRES, ratio
 from brdfkit.volumes.piecewise import places, require_order
 
 COLOURS = "albedo", "emission"  # what RGB means
@@ -49,8 +50,11 @@ class TransferFunction(Conversions):
         What RGB means: "albedo" or "emission".
     gradients : ndarray
         The gradient magnitudes (m,), rising [value per unit of length]; None if it has only values.
-    value_unit, length_unit : str
-        Such as "HU" and "mm"; for people.
+    value_unit : str
+        Such as "HU"; for people.
+    length_unit : str
+        Such as "mm": a volume in another unit that is known has the function `per` that one. Empty:
+        the unit of whatever volume.
     name : str
         What it is called.
 
@@ -143,6 +147,24 @@ class TransferFunction(Conversions):
         rgba = np.repeat(self.rgba[None], len(points), axis=0)
         rgba[..., 3] *= points[:, 1:]
         return replace(self, rgba=rgba, gradients=points[:, 0])
+
+    def per(self, unit: str) -> "TransferFunction":
+        """The same function with its extinction, and its gradients, per another unit of length.
+
+        Raises `BrdfkitError` where the function's unit or that one is unknown.
+        """
+        if unit == self.length_unit:
+            return self
+        factor = ratio(unit, self.length_unit)
+        if factor is None:
+            raise BrdfkitError(
+                f"{self.name}: its extinction is per {self.length_unit or 'unit of length'}, which "
+                f"cannot be converted to 1/{unit}: units are {', '.join(METRES)}; set length_unit "
+                "to the volume's unit, and the extinction."
+            )
+        gradients = None if self.gradients is None else self.gradients * factor
+        extinction = self.extinction * factor
+        return replace(self, extinction=extinction, gradients=gradients, length_unit=unit)
 
     def scaled_to(self, low: float, high: float) -> "TransferFunction":
         """The function with its values mapped to the range `low` to `high`, and gradients likewise.

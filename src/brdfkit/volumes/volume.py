@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.arguments import to_whole_number
 from brdfkit.errors import BrdfkitError
-from brdfkit.volumes import reconstruction, reducing
+from brdfkit.volumes import in_mitsuba, reconstruction, reducing
+from brdfkit.volumes.transfer_function import TransferFunction
 
 MOST = 1e30  # of values, and the inverse of their span: renderers have 32 bits
 
@@ -34,7 +36,7 @@ class Volume:
         Whether values are names of tissues or materials, of which no mean can be taken: they are
         never interpolated. Whole numbers in floats become integers.
     unit : str
-        The unit of length, such as "mm"; empty where it is not known.
+        The unit of length, such as "mm"; empty where it is not known, and printed as "units".
     axes : str
         "RAS" if x, y and z of the world point to the patient's right, front and head; empty for
         other data.
@@ -126,13 +128,42 @@ class Volume:
         """
         return reconstruction.gradient_at(self, points, of_interpolant)
 
+    def scene_dict(
+        self, transfer: TransferFunction | str | PathLike[str] | None = None
+    ) -> dict[str, Any]:
+        """The dictionary for `mitsuba.load_dict`, in the current variant.
+
+        Parameters
+        ----------
+        transfer : TransferFunction, str or Path, optional
+            What the values mean, or a preset's name, or a file: for media, and for the integrators
+            of brdfkit. Its lengths are converted to the volume's unit. None gives the values alone.
+
+        Returns
+        -------
+        dict
+            Of the type "transfer_function", or "gridvolume" for values alone, labels by the nearest
+            voxel; it lies where the volume does.
+
+        Raises
+        ------
+        BrdfkitError
+            For a function that cannot be read, and for units of length of which one is unknown.
+
+        Examples
+        --------
+        >>> head = load_volume("brain.nii.gz")    # doctest: +SKIP
+        >>> {"type": "isosurface", "volume": head.scene_dict()}    # doctest: +SKIP
+        """
+        return in_mitsuba.scene_dict(self, transfer)
+
     def __repr__(self) -> str:
         low, high = self.range
         spacing = "×".join(f"{s:.4g}" for s in self.spacing)
         kind = "labels" if self.labels else f"{low:.6g} to {high:.6g}"
         return (
             f"{self.name}: {'×'.join(map(str, self.size))} voxels of {spacing}"
-            f"{' ' * bool(self.unit)}{self.unit}, {self.values.dtype}, {kind}"
+            f" {self.unit or 'units'}, {self.values.dtype}, {kind}"
         )
 
 

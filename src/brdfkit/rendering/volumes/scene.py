@@ -1,7 +1,5 @@
 """The scene of a volume: its voxels, transfer function, renderer, light and camera for Mitsuba."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from brdfkit.errors import no_such
@@ -61,8 +59,7 @@ def integrator(volume, transfer, renderer, settings):
     """The dictionary of the integrator, which has the volume in it."""
     if renderer not in RENDERERS:
         raise no_such("renderer", renderer, RENDERERS)
-    shown = _grid(volume, transfer) if transfer is None else _with_function(volume, transfer)
-    entries = {"type": renderer, RENDERERS[renderer]: shown}
+    entries = {"type": renderer, RENDERERS[renderer]: volume.scene_dict(transfer)}
     if renderer != "single_scattering":
         entries["steps"] = max(LEAST_STEPS, *volume.size)
     if renderer == "emission_absorption":
@@ -78,48 +75,3 @@ def _plugin(name, value):
     if name == "bsdf":
         return material(value).scene_dict()
     return {"type": value} if name == "phase" and isinstance(value, str) else value
-
-
-def _with_function(volume, transfer):
-    if volume.labels and transfer.gradients is None:
-        volume, transfer = _numbered(volume, transfer)
-    return {
-        "type": "transfer_function",
-        "values": _grid(volume, transfer),
-        "transfer": transfer.to_json(),
-        "to_world": _to_world(volume),
-    }
-
-
-def _numbered(volume, transfer):
-    """The volume with its labels numbered 1, 2 ... in their order, and the function of the numbers.
-
-    A renderer looks functions up in a table, in which labels of atlases, thousands or millions
-    apart, would share a row.
-    """
-    labels, places = np.unique(volume.values, return_inverse=True)
-    rgba = transfer([labels[0], *labels])
-    values = np.int32(places.reshape(volume.values.shape) + 1)
-    return replace(volume, values=values), replace(transfer, values=np.arange(len(rgba)), rgba=rgba)
-
-
-def _grid(volume, transfer):
-    """Mitsuba's gridvolume of the values, and of gradient magnitudes where a function has them."""
-    import mitsuba as mi
-
-    channels = [volume.values]
-    if transfer is not None and transfer.gradients is not None:
-        channels.append(volume.gradient_magnitude)
-    return {
-        "type": "gridvolume",
-        "grid": mi.VolumeGrid(np.stack(channels, axis=-1).astype(np.float32)),
-        "raw": True,
-        "filter_type": "nearest" if volume.labels else "trilinear",
-        "to_world": _to_world(volume),
-    }
-
-
-def _to_world(volume):
-    import mitsuba as mi
-
-    return mi.ScalarTransform4f(volume.cube_to_world.tolist())

@@ -2,7 +2,6 @@
 
 from functools import cache
 
-from brdfkit.reproducing.lesar2018.stage import gridvolume, transferred
 from brdfkit.volumes import TransferFunction
 from brdfkit.volumes.made import make
 
@@ -19,10 +18,10 @@ def smoke(voxels):
 def cloud(renderer, voxels):
     """The dictionary of a renderer with smoke of `voxels`³."""
     rgba = [[0.95, 0.8, 0.6, 0], [0.85, 0.9, 0.95, 1]]
-    coloured = transferred(smoke(voxels), TransferFunction([0, 1], rgba, EXTINCTION))
+    coloured = smoke(voxels).scene_dict(TransferFunction([0, 1], rgba, EXTINCTION))
     volume = {
         "maximum_intensity": {"volume": coloured},
-        "isosurface": {"volume": gridvolume(smoke(voxels)), "level": LEVEL},
+        "isosurface": {"volume": smoke(voxels).scene_dict(), "level": LEVEL},
         "emission_absorption": {"extinction": coloured},
         "single_scattering": {"extinction": coloured, "phase": {"type": "hg", "g": 0.3}},
     }

@@ -6,7 +6,6 @@ from brdfkit.jit.llvm import use_variant
 from brdfkit.jit.threads import in_turn
 from brdfkit.reproducing.claims import Claim, verdict
 from brdfkit.reproducing.drawing import COLOURS, figure, tidy
-from brdfkit.reproducing.lesar2018.stage import gridvolume
 from brdfkit.reproducing.page import Picture, Section
 from brdfkit.volumes.largest_value import largest_along
 from brdfkit.volumes.made import make
@@ -59,7 +58,7 @@ def refined(volume, o, d, rng):
     """The largest value (ray,) by the integrator's own search."""
     import mitsuba as mi
 
-    grid = mi.load_dict(gridvolume(volume), parallel=False)
+    grid = mi.load_dict(volume.scene_dict(), parallel=False)
     o, d = (np.ascontiguousarray(x.T, np.float32) for x in (o, d))
     ray = mi.Ray3f(mi.Point3f(o), mi.Vector3f(d))
 

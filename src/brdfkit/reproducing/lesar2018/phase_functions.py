@@ -8,7 +8,6 @@ from brdfkit.jit.threads import in_turn
 from brdfkit.reproducing.claims import Claim, verdict
 from brdfkit.reproducing.drawing import COLOURS, figure, tidy
 from brdfkit.reproducing.lesar2018.phases import PLUGINS, moments, of_plugin
-from brdfkit.reproducing.lesar2018.stage import gridvolume
 from brdfkit.reproducing.page import Picture, Section, Table
 from brdfkit.volumes.made import make
 
@@ -94,7 +93,7 @@ def integral_of_bsdf():
     import mitsuba as mi
 
     grey = {"type": "diffuse", "reflectance": {"type": "rgb", "value": ALBEDO}}
-    density = gridvolume(make("slab", (8, 8, 8)))
+    density = make("slab", (8, 8, 8)).scene_dict()
     entries = {"type": "bsdf_phase", "bsdf": grey, "density": density}
     phase = mi.load_dict(entries, parallel=False)
     it = mi.MediumInteraction3f()

@@ -1,6 +1,6 @@
 """The four renderers of the thesis, each with a volume of one of the scans."""
 
-from brdfkit.reproducing.lesar2018.stage import gridvolume, stage, transferred
+from brdfkit.reproducing.lesar2018.stage import stage
 from brdfkit.volumes import TransferFunction
 
 CLAY = {
@@ -14,23 +14,23 @@ def maximum_intensity(scan):
     """Largest values, in the colours of a map."""
     low, high = scan.window
     function = TransferFunction.from_colormap("magma", (low, high), [(0, 1), (1, 1)])
-    return {"volume": transferred(scan.density, function)}
+    return {"volume": scan.density.scene_dict(function)}
 
 
 def isosurface(scan):
     """A surface of clay."""
-    volume = gridvolume(scan.density)
+    volume = scan.density.scene_dict()
     return {"volume": volume, "level": scan.level, "bsdf": CLAY, "shadows": True}
 
 
 def emission_absorption(scan):
     """Tissues that glow."""
-    return {"extinction": transferred(scan.coloured, scan.function)}
+    return {"extinction": scan.coloured.scene_dict(scan.function)}
 
 
 def single_scattering(scan):
     """Tissues in the light."""
-    return {"extinction": transferred(scan.coloured, scan.function)}
+    return {"extinction": scan.coloured.scene_dict(scan.function)}
 
 
 RENDERERS = {

@@ -7,29 +7,6 @@ DISTANCE = 3.95
 LAMP, SKY = 3.2, 0.35  # irradiance, radiance
 
 
-def gridvolume(volume):
-    """The dictionary of a volume's voxels."""
-    import mitsuba as mi
-
-    values = volume.values.astype(np.float32)[..., None]
-    return {
-        "type": "gridvolume",
-        "grid": mi.VolumeGrid(values),
-        "raw": True,
-        "filter_type": "nearest" if volume.labels else "trilinear",
-        "to_world": mi.ScalarTransform4f(volume.cube_to_world),
-    }
-
-
-def transferred(volume, function):
-    """The dictionary of a volume with the colours of a transfer function."""
-    import mitsuba as mi
-
-    to_world = mi.ScalarTransform4f(volume.cube_to_world)
-    entries = {"values": gridvolume(volume), "transfer": function.to_json()}
-    return {"type": "transfer_function", "to_world": to_world, **entries}
-
-
 def stage(integrator, size, eye=(0, -1, 0), up=(0, 0, 1), lit=True):
     """A scene of a volume in the cube from -1 to 1, seen from the direction `eye`.
 

@@ -9,7 +9,7 @@ from brdfkit.rendering.tone_mapping import ToneMapping
 from brdfkit.reproducing.claims import Claim, verdict
 from brdfkit.reproducing.drawing import COLOURS, figure, tidy
 from brdfkit.reproducing.lesar2018.scans import scans
-from brdfkit.reproducing.lesar2018.stage import gridvolume, stage
+from brdfkit.reproducing.lesar2018.stage import stage
 from brdfkit.reproducing.page import Picture, Section
 
 SECONDS = 4
@@ -28,7 +28,7 @@ def run(sources, report):
 
     scan = scans(sources, FEWER)[0]
     report(1, 3)
-    volume = {"type": "maximum_intensity", "volume": gridvolume(scan.density)}
+    volume = {"type": "maximum_intensity", "volume": scan.density.scene_dict()}
     found = np.array(mi.render(stage(volume, SIZE, scan.eye, scan.up, lit=False), spp=SPP), float)
     light = found / scan.density.range[1]
     seen = light[light > 0]

@@ -10,7 +10,7 @@ from brdfkit.jit.threads import in_turn
 from brdfkit.reproducing.claims import Claim, verdict
 from brdfkit.reproducing.drawing import figure
 from brdfkit.reproducing.lesar2018.scans import DENSE, dense, scans
-from brdfkit.reproducing.lesar2018.stage import stage, transferred
+from brdfkit.reproducing.lesar2018.stage import stage
 from brdfkit.reproducing.page import Picture, Section
 from brdfkit.reproducing.timing import cpu_seconds
 from brdfkit.volumes import TransferFunction
@@ -69,7 +69,7 @@ def functions(scan):
 
 def scene(scan, function, size):
     """A scan in the light."""
-    volume = transferred(scan.coloured, function)
+    volume = scan.coloured.scene_dict(function)
     return stage({"type": "single_scattering", "extinction": volume}, size, scan.eye, scan.up)
 
 
