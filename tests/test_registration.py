@@ -298,3 +298,26 @@ def test_a_wrong_declaration_is_refused(folder, declared, said):
     with pytest.raises(bk.BrdfkitError, match=r"users_wrong\.py.*") as caught:
         bk.load_models(folder)
     assert said in str(caught.value)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (
+            {"type": "ward", "alpa_u": 0.1},
+            "ward: there is no parameter 'alpa_u'; did you mean alpha_u",
+        ),
+        ({"type": "koenderink", "ordre": 8}, "koenderink: .* 'ordre'; did you mean order"),
+        ({"type": "schlick", "g": 0.1}, "schlick: there is no parameter 'g'; there are k."),
+        ({"type": "mie_hazy", "k": 0.1}, "mie_hazy: there is no parameter 'k'; there are none."),
+        ({"type": "transfer_function", "vales": 1.0}, "'vales'; did you mean values"),
+        (
+            {"type": "emission_absorption", "light": {"type": "constant"}},
+            "no parameter 'light'; the",
+        ),
+    ],
+)
+def test_a_parameter_that_is_none_is_said(llvm_variant, given, said):
+    with pytest.raises(RuntimeError, match=said):
+        llvm_variant.load_dict(given)

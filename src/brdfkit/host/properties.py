@@ -4,7 +4,18 @@ import os
 
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
+from brdfkit.errors import BrdfkitError, no_such
+
+
+def require_known(props, plugin, known):
+    """Raise `BrdfkitError` for a property that the `plugin`, which was made, has not asked for.
+
+    Mitsuba would print all such properties, objects with all that is in them. known : the names of
+    the plugin's own parameters.
+    """
+    unknown = props.unqueried()
+    if unknown:
+        raise no_such("parameter", unknown[0], known, plugin)
 
 
 def require_within_bounds(props, model, name):

@@ -9,6 +9,7 @@ from functools import cache
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.host import bsdf
+from brdfkit.host.properties import require_known
 from brdfkit.model import Model, labels
 from brdfkit.plugins import discovery
 from brdfkit.plugins.discovery import KINDS, MODELS
@@ -43,9 +44,15 @@ def _make(kind, name, props):
     source = discovery.sources(kind)[name]
     model = labels.model_in(source) if kind == MODELS else None
     if model is None:
-        return _define(discovery.module(source), mi.variant())(props)
-    options = {option: props[option] for option in model.options if option in props}
-    return _define(model.configured(**options), mi.variant())(props)
+        module = discovery.module(source)
+        made, known = _define(module, mi.variant())(props), getattr(module, "PARAMETERS", None)
+    else:
+        options = {option: props[option] for option in model.options if option in props}
+        made = _define(model.configured(**options), mi.variant())(props)
+        known = [*model.parameters, *model.options]
+    if known is not None:  # else the plugin reads its properties by itself
+        require_known(props, name, known)
+    return made
 
 
 @cache
