@@ -202,8 +202,8 @@ def test_ctrl_c_keeps_the_passes():
         ({"density": 0}, "density = 0 should be a number above 0"),
         ({"seconds": "1"}, "seconds"),
         ({"azimuth": np.nan}, "azimuth"),
-        ({"nonsense": 3}, "nonsense"),
         ({"density": 1e9}, "check the unit of length"),
+        ({"stepz": 3, "renderer": "emission_absorption"}, "'stepz'; did you mean steps?"),
         ({"phase": "hgg"}, "hgg"),
     ],
 )
