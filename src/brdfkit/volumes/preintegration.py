@@ -35,10 +35,12 @@ class Preintegration:
         """table : `mi.TensorXf` (n, 4), RGBA at even steps."""
         import mitsuba as mi
 
-        alpha = table[:, 3:]
-        rows = mi.TensorXf(dr.concat([table[:, :3] * alpha, alpha], axis=1))
-        sums = dr.cumsum(rows, axis=0) - (rows + rows[:1]) / 2  # by trapezoids
-        self.steps, self.rows, self.sums = table.shape[0] - 1, rows.array, sums.array
+        flat, place = table.array, dr.arange(mi.UInt32, len(table.array))
+        alpha = dr.gather(mi.Float, flat, place | 3)  # of each number's row
+        self.steps = table.shape[0] - 1
+        self.rows = dr.select((place & 3) == 3, alpha, flat * alpha)
+        first = dr.gather(mi.Float, self.rows, place & 3)
+        self.sums = dr.custom(Cumulative, self.rows) - (self.rows + first) / 2  # by trapezoids
         dr.make_opaque(self.rows, self.sums)
 
     def at(self, x):
@@ -69,6 +71,26 @@ class Preintegration:
         beyond = (within0 - x0) * row0 + (x1 - within1) * row1
         whole = s1 - s0 + beyond
         return dr.select(apart, whole / dr.select(apart, x1 - x0, 1), (row0 + row1) / 2)
+
+
+class Cumulative(dr.CustomOp):
+    """Cumulative sums of rows, in NumPy. Derivatives of slices, `dr.concat` and `dr.cumsum` of tensors
+    were zeros at times in Dr.Jit 1.5; so the rows are gathered."""
+
+    def eval(self, rows):
+        return cumulative(rows)
+
+    def forward(self):
+        self.set_grad_out(cumulative(self.grad_in("rows")))
+
+    def backward(self):
+        self.set_grad_in("rows", cumulative(self.grad_out(), -1))
+
+
+def cumulative(flat, way=1):
+    """The sums of each row of four and those before it; of those behind it if the `way` is -1."""
+    rows = np.array(flat, float).reshape(-1, 4)
+    return type(flat)(np.cumsum(rows[::way], axis=0)[::way].astype(np.float32).ravel())
 
 
 def is_thin(table, reach):
