@@ -74,8 +74,11 @@ class Preintegration:
 
 
 class Cumulative(dr.CustomOp):
-    """Cumulative sums of rows, in NumPy. Derivatives of slices, `dr.concat` and `dr.cumsum` of tensors
-    were zeros at times in Dr.Jit 1.5; so the rows are gathered."""
+    """Cumulative sums of rows, in NumPy.
+
+    Derivatives through tensors' slices, `dr.concat` and `dr.cumsum` were at times zeros in Dr.Jit
+    1.5: so rows are gathered, too.
+    """
 
     def eval(self, rows):
         return cumulative(rows)
