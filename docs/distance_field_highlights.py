@@ -1,13 +1,13 @@
+# ruff: noqa: I001, for brdfkit comes first: it chooses the LLVM that Mitsuba loads
 """Highlights of round lamps, and how far those of `shading="split"` are from right, for the page
 `distance_fields.md`."""
 
 from math import sqrt
 
+from brdfkit.distance_fields import plane, sphere
+from distance_field_stage import bulb, camera, scene
 import mitsuba as mi
 import numpy as np
-from distance_field_stage import bulb, camera, scene
-
-from brdfkit.distance_fields import plane, sphere
 
 ROUGHNESSES = 0.05, 0.1, 0.2, 0.4  # α of GGX
 SIZES = 0.05, 0.1, 0.2  # of the lamp: its radius over its distance from the ball
