@@ -5,8 +5,9 @@ import pytest
 from shadow_scenes import LIGHTS, objects_on_a_ground, seen_from
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.shadow_maps.light_shadow import PROJECTIONS, LightShadow
+from brdfkit.shadow_maps.light_shadow import LightShadow
 from brdfkit.shadow_maps.placement import Placement
+from brdfkit.shadow_maps.techniques import FILES
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 
@@ -16,7 +17,7 @@ def placement_of(scene):
 
 
 @pytest.mark.parametrize("kind", LIGHTS)
-@pytest.mark.parametrize("projection", PROJECTIONS)
+@pytest.mark.parametrize("projection", FILES["projection"])
 def test_the_error_falls_with_the_resolution(kind, projection):
     """What differs is borders: their share of the picture is as the width of a texel."""
     scene = objects_on_a_ground(kind)

@@ -18,15 +18,17 @@ from brdfkit.host.declared import count, declared, plain_number, word
 from brdfkit.host.reference_camera import reference_film
 from brdfkit.host.variants import refuse_scalar
 from brdfkit.shadow_maps.bias import AUTOMATIC, Bias
-from brdfkit.shadow_maps.light_shadow import FILTERS, PARTITIONS, PROJECTIONS, LightShadow
+from brdfkit.shadow_maps.light_shadow import LightShadow
 from brdfkit.shadow_maps.placement import Placement
+from brdfkit.shadow_maps.techniques import FILES, all_settings, settings_of
 
 PARAMETERS = {
-    "projection": word(PROJECTIONS, "how a map sees the scene", "focused"),
-    "filter": word(FILTERS, "how a map is read", "depth"),
-    "partition": word(PARTITIONS, "how maps share the scene", "whole"),
+    "projection": word(FILES["projection"], "how a map sees the scene", "focused"),
+    "filter": word(FILES["filter"], "how a map is read", "depth"),
+    "partition": word(FILES["partition"], "how maps share the scene", "whole"),
     "resolution": count(1024, (1, 16384), "texels along a side of each map"),
     "bias": plain_number(AUTOMATIC.constant, (0.0, 1.0), "over the light's way through the scene"),
+    **all_settings(),
 }
 
 
@@ -44,14 +46,15 @@ def define(mi):
 
         def shadow(self, scene, sensor, emitter):
             """The `LightShadow` of an `emitter` of the scene."""
+            names = {kind: getattr(self, kind) for kind in FILES}
+            settings = [n for kind, name in names.items() for n in settings_of(kind, name)]
             return LightShadow(
                 scene,
                 Placement.of_scene(scene, sensor, emitter),
-                self.projection,
-                self.filter,
-                self.partition,
-                self.resolution,
-                Bias(constant=self.bias, plane=True),
+                resolution=self.resolution,
+                bias=Bias(constant=self.bias, plane=True),
+                **names,
+                **{name: getattr(self, name) for name in settings},
             )
 
         def sample(self, scene, sampler, ray, medium=None, active=True):

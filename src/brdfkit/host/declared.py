@@ -168,6 +168,22 @@ def volume(default, meaning, coloured=True, least=0.0):
     return Setting(default, None, meaning, read, differentiable=True)
 
 
+def read(settings, get, owner):
+    """Name → value of `settings` (name → `Setting`), from `get(name, default)`.
+
+    Raises `BrdfkitError`, which names the `owner`, for a value that is none of the allowed ones.
+    """
+    found = {}
+    for name, setting in settings.items():
+        value = get(name, setting.default)
+        try:
+            found[name] = setting.read(value)
+        except (TypeError, ValueError) as error:
+            said = f"{owner}: {name} = {_shorten(value)} should be {error}."
+            raise BrdfkitError(said) from error
+    return found
+
+
 def declared(base, parameters):
     """A class derived from `base`, one of Mitsuba's, with the `parameters` (name → `Setting`).
 
@@ -177,14 +193,8 @@ def declared(base, parameters):
     class Declared(base):
         def __init__(self, props):
             super().__init__(props)
-            for name, setting in parameters.items():
-                value = props.get(name, setting.default)
-                try:
-                    setattr(self, name, setting.read(value))
-                except (TypeError, ValueError) as error:
-                    raise BrdfkitError(
-                        f"{props.plugin_name()}: {name} = {_shorten(value)} should be {error}."
-                    ) from error
+            for name, value in read(parameters, props.get, props.plugin_name()).items():
+                setattr(self, name, value)
 
         def traverse(self, callback):
             import mitsuba as mi

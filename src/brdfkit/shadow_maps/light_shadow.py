@@ -1,17 +1,10 @@
 """All shadow maps of one light."""
 
-import importlib
-
 import drjit as dr
 
-from brdfkit import modules
-from brdfkit.shadow_maps import filters, partitions, projections
 from brdfkit.shadow_maps.bias import AUTOMATIC
 from brdfkit.shadow_maps.shadow_map import ShadowMap
-
-PROJECTIONS = modules.names_in(projections.__path__)
-FILTERS = modules.names_in(filters.__path__)
-PARTITIONS = modules.names_in(partitions.__path__)
+from brdfkit.shadow_maps.techniques import techniques
 
 
 class LightShadow:
@@ -22,6 +15,7 @@ class LightShadow:
     projection, filter, partition : names of files in the folders of those names.
     resolution : texels along a side of each map.
     bias : a `Bias`.
+    settings : those of the three files, by the names in their `SETTINGS`.
     """
 
     def __init__(
@@ -33,12 +27,13 @@ class LightShadow:
         partition="whole",
         resolution=1024,
         bias=AUTOMATIC,
+        **settings,
     ):
-        project = _file(projections, projection).projection
-        lookup = _file(filters, filter).Lookup
-        self.parts = _file(partitions, partition).parts(placement, project)
+        names = {"projection": projection, "filter": filter, "partition": partition}
+        chosen = techniques(names, settings)
+        self.parts = chosen["partition"](placement, chosen["projection"])
         self.maps = [
-            ShadowMap(scene, part.projection, placement.reach, lookup, resolution, bias)
+            ShadowMap(scene, part.projection, placement.reach, chosen["filter"], resolution, bias)
             for part in self.parts
         ]
 
@@ -52,7 +47,3 @@ class LightShadow:
             found = dr.select(here, its_map.lit(p, n, here), found)
             left &= ~here
         return found
-
-
-def _file(package, name):
-    return importlib.import_module(f"{package.__name__}.{name}")
