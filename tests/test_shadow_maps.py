@@ -5,7 +5,7 @@ import pytest
 from shadow_scenes import LIGHTS, objects_on_a_ground, seen_from
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.shadow_maps.light_shadow import LightShadow
+from brdfkit.shadow_maps.light_shadow import DEPTHS, LightShadow
 from brdfkit.shadow_maps.placement import Placement
 from brdfkit.shadow_maps.techniques import FILES
 
@@ -31,6 +31,19 @@ def test_the_error_falls_with_the_resolution(kind, projection):
     coarse, fine = wrong(64), wrong(1024)
     assert coarse < 0.02
     assert fine < 0.002
+
+
+@pytest.mark.parametrize("kind", ["directional", "point"])
+def test_linear_depth_has_the_shadows_of_projected_depth(kind):
+    scene = objects_on_a_ground(kind)
+    si, facing, _ = seen_from(scene)
+    placement = placement_of(scene)
+    projected, linear = (
+        LightShadow(scene, placement, "trapezoidal", resolution=256, depth=depth)
+        for depth in DEPTHS
+    )
+    differ = np.array(projected.lit(si.p, si.n) != linear.lit(si.p, si.n)) & facing
+    assert differ.sum() / facing.sum() < 1e-3
 
 
 def test_a_light_among_the_objects_is_one_sentence():

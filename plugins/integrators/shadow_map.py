@@ -18,7 +18,7 @@ from brdfkit.host.declared import count, declared, plain_number, word
 from brdfkit.host.reference_camera import reference_film
 from brdfkit.host.variants import refuse_scalar
 from brdfkit.shadow_maps.bias import AUTOMATIC, Bias
-from brdfkit.shadow_maps.light_shadow import LightShadow
+from brdfkit.shadow_maps.light_shadow import DEPTHS, LightShadow
 from brdfkit.shadow_maps.placement import Placement
 from brdfkit.shadow_maps.techniques import FILES, all_settings, settings_of
 
@@ -28,6 +28,7 @@ PARAMETERS = {
     "partition": word(FILES["partition"], "how maps share the scene", "whole"),
     "resolution": count(1024, (1, 16384), "texels along a side of each map"),
     "bias": plain_number(AUTOMATIC.constant, (0.0, 1.0), "over the light's way through the scene"),
+    "depth": word(DEPTHS, "what a map holds"),
     **all_settings(),
 }
 
@@ -53,6 +54,7 @@ def define(mi):
                 Placement.of_scene(scene, sensor, emitter),
                 resolution=self.resolution,
                 bias=Bias(constant=self.bias, plane=True),
+                depth=self.depth,
                 **names,
                 **{name: getattr(self, name) for name in settings},
             )

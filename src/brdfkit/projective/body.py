@@ -1,6 +1,7 @@
 """Convex bodies, by their corners and by their planes: what a light's projection must hold."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -29,6 +30,16 @@ class Body:
             raise BrdfkitError("the part of the scene to be shadowed has no volume.") from error
         return cls(points[hull.vertices], hull.equations)
 
+    @cached_property
+    def middle(self):
+        """The centre of its volume (3,), which moves as steadily as the body does."""
+        from scipy.spatial import ConvexHull
+
+        inside = self.corners.mean(axis=0)
+        sides = self.corners[ConvexHull(self.corners).simplices] - inside
+        volumes = np.abs(np.linalg.det(sides))
+        return inside + volumes @ sides.sum(axis=1) / (4 * volumes.sum())
+
     def __and__(self, other):
         """What two bodies share; `BrdfkitError` where they share no volume."""
         from scipy.spatial import HalfspaceIntersection
@@ -39,16 +50,13 @@ class Body:
             raise BrdfkitError("no part of the scene is before the camera and in the light.")
         return Body.around(HalfspaceIntersection(planes, inside).intersections)
 
-    def towards(self, light, reach):
-        """The body with all that lies between it and a `Light`; to a directional one, a way
-        `reach` long."""
-        if light.is_directional:
-            return self.swept(reach * light.point[:3])
-        return Body.around(np.vstack([self.corners, light.point[:3]]))
-
-    def swept(self, by):
-        """The body with all that it passes on a way `by` (3,)."""
-        return Body.around(np.vstack([self.corners, self.corners + by]))
+    def towards(self, light, length):
+        """The body with all that lies between it and a `Light`, at least a `length` far."""
+        ways = light.point[:3] - light.point[3] * self.corners
+        share = 2 * length / max(np.linalg.norm(ways, axis=1).min(), 1e-30)
+        # not to the light itself if it is far: hulls of long needles are inexact
+        share = share if light.is_directional else min(share, 1)
+        return Body.around(np.vstack([self.corners, self.corners + share * ways]))
 
 
 def box(low, high):

@@ -95,6 +95,15 @@ class Camera:
         """The same camera with other planes."""
         return replace(self, near=near, far=far)
 
+    def moved_back(self, points):
+        """The same camera, so far back that `points` (n, 3) are before its near plane, and opened
+        until it sees all of them."""
+        view = self.view.copy()
+        view[2, 3] -= max(0, self.near - self.depths(points).min())
+        x, y, z, _ = transform(view, *np.asarray(points, float).T)
+        near, far = -z.max(), max(-z.min(), -1.001 * z.max())  # with room for points in a plane
+        return Camera(view, np.abs(x / z).max(), np.abs(y / z).max(), near, far)
+
     def fitted(self, points):
         """The same camera, its planes drawn in to `points` (n, 3), such as the corners of a scene.
 

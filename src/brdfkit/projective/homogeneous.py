@@ -25,6 +25,12 @@ def project(matrix, x, y, z):
     return x / w, y / w, z / w
 
 
+def unit(x, y, z):
+    """The vector (x, y, z), of length 1."""
+    length = (x * x + y * y + z * z) ** 0.5
+    return x / length, y / length, z / length
+
+
 def project_all(matrix, points):
     """The points (n, 3), transformed and divided by w: (n, 3)."""
     return np.column_stack(project(matrix, *np.asarray(points, float).T))

@@ -7,7 +7,7 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.projective.body import Body
-from brdfkit.projective.homogeneous import axes_about
+from brdfkit.projective.homogeneous import axes_about, unit
 
 NEAREST = 1e-3  # where the pyramid of a spot begins, over where it ends
 WIDEST = math.radians(80)  # half the angle of a pyramid that one map may hold
@@ -65,6 +65,18 @@ class Light:
             for j in (-1, 1)
         ]
         return Body.around(self.point[:3] + np.array(ends))
+
+    def way(self, x, y, z):
+        """How far light has come when it is at a point; of a light far away, from the origin."""
+        a, b, c = (self.point[i] for i in range(3))
+        if self.is_directional:
+            return -(a * x + b * y + c * z)
+        return ((x - a) ** 2 + (y - b) ** 2 + (z - c) ** 2) ** 0.5
+
+    def direction(self, x, y, z):
+        """Where light goes at a point: the components of a unit vector."""
+        a, b, c = (self.point[i] for i in range(3))
+        return (-a, -b, -c) if self.is_directional else unit(x - a, y - b, z - c)
 
     def towards(self, points):
         """The unit vectors (n, 3) from points (n, 3) to the light."""

@@ -24,19 +24,18 @@ def depth_pass(scene, projection, resolution):
     ray = ray_of_light(opaque, x, y, scene.bbox())
     si = scene.ray_intersect(ray)
     depth = opaque.to_map(*si.p)[2]
-    # before the plane where w = 0 the projection tells no depth: in front of everything
-    depth = dr.select(opaque.is_before(*si.p), depth, -dr.inf)
-    return mi.TensorXf(dr.select(si.is_valid(), depth, dr.inf), (resolution, resolution))
+    # beyond the horizon of a warped map there are no rays
+    seen = si.is_valid() & opaque.is_before(*si.p)
+    return mi.TensorXf(dr.select(seen, depth, dr.inf), (resolution, resolution))
 
 
 def ray_of_light(opaque, x, y, bounds):
     """The `mi.Ray3f` of light at the place (x, y) of a map, from outside `bounds`."""
     import mitsuba as mi
 
-    through = mi.Point3f(*opaque.from_map(x, y, mi.Float(0)))
-    to_light = mi.Vector3f(opaque.light.point.xyz)
+    origin, direction = (mi.Vector3f(*vector) for vector in opaque.ray(x, y))
     if opaque.light.is_directional:
         radius = np.linalg.norm(np.ravel(bounds.extents())) / 2
-        away = dr.norm(through - mi.Point3f(bounds.center())) + dr.opaque(mi.Float, float(radius))
-        return mi.Ray3f(through + away * to_light, -to_light)
-    return mi.Ray3f(mi.Point3f(to_light), dr.normalize(through - to_light))
+        away = dr.norm(origin - mi.Vector3f(bounds.center())) + dr.opaque(mi.Float, float(radius))
+        origin -= away * direction
+    return mi.Ray3f(mi.Point3f(origin), direction)

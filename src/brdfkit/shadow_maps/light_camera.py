@@ -1,55 +1,69 @@
-"""A camera at a light, fitted to points: orthographic for one far away, else perspective."""
+"""A camera at a light, fitted to points: perspective, or orthographic where the light is far away.
+
+Of a light l = (q, w) in homogeneous coordinates about the middle of the points p, the rays are
+w p - q, for any w: a light at a place, far away, or behind an eye, where w < 0 [Ergun 2008, 2.2.2].
+"""
 
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.projective.homogeneous import (
-    axes_about,
-    project_all,
-    rigid,
-    to_unit_cube,
-    transform,
-)
+from brdfkit.projective.homogeneous import axes_about, project_all, rigid, to_unit_cube
 from brdfkit.projective.light import NEAREST
 from brdfkit.shadow_maps.projection import Projection
 
 
-def around(light, corners):
-    """The `Projection` whose cube encloses the `corners` (n, 3) of a body.
+def around(light, body):
+    """The `Projection` whose cube encloses a `Body`.
 
     Raises `BrdfkitError` for a point light that the body surrounds.
     """
-    view = frame(light, corners)
-    matrix = view if light.is_directional else one_apex(view, corners) @ view
+    return fitted(view(light.point, body.corners, body.middle), light, body.corners)
+
+
+def fitted(matrix, light, corners):
+    """The `Projection` by a `matrix` (4, 4) through the light, then stretched so that its cube just
+    encloses `corners` (n, 3)."""
     ends = project_all(matrix, corners)
-    low, high = ends.min(axis=0), ends.max(axis=0)
-    return Projection.by(to_unit_cube(low, high) @ matrix, light)
+    return Projection.by(to_unit_cube(ends.min(axis=0), ends.max(axis=0)) @ matrix, light)
 
 
-def frame(light, corners):
-    """The matrix (4, 4) into a frame at the light that looks along z at the middle of `corners`."""
-    middle = corners.mean(axis=0)
-    if light.is_directional:
-        origin, z = middle, -light.point[:3]
-    else:
-        origin = light.point[:3]
-        z = middle - origin if light.axis is None else light.axis
-        z = z / np.linalg.norm(z)
-    return rigid(axes_about(z), origin)
+def view(light, corners, middle):
+    """The matrix (4, 4) of a camera at the point `light` (4,) that looks at `corners` (n, 3).
 
+    x and y are of one scale, tangents or lengths, at right angles to the ray to the `middle` (3,),
+    a point among the corners; depth is from -1 to 1 for the corners.
 
-def one_apex(view, corners):
-    """The perspective matrix (4, 4) of a camera along z whose planes enclose `corners`.
-
-    Raises `BrdfkitError` where corners are behind it.
+    Raises `BrdfkitError` where no plane parts the light from the corners.
     """
-    z = transform(view, *np.asarray(corners).T)[2]
-    n, f = z.min(), z.max()
-    if n < NEAREST * f / 2 or f <= 0:
+    to_middle = rigid(np.eye(3), middle)
+    *q, w = to_middle @ light
+    q = np.array(q)
+    rays = w * (corners - middle) - q
+    axis = axis_of(rays)
+    before = rays @ axis
+    if not before.min() > NEAREST / 2 * before.max():
         raise BrdfkitError(
             "the light is among what it shadows: one map cannot look all around; use a spot light, "
             "or move the light out of the scene's box."
         )
-    matrix = np.diag([1.0, 1.0, (f + n) / (f - n), 0])
-    matrix[2, 3], matrix[3, 2] = -2 * f * n / (f - n), 1
-    return matrix
+    matrix = np.zeros((4, 4))
+    matrix[:3, :3] = axes_about(-q / np.linalg.norm(q))
+    matrix[3] = [*(w * axis), -axis @ q]
+    matrix = matrix @ to_middle
+    depths = project_all(matrix, corners)[:, 2]
+    low, high = depths.min(), depths.max()
+    return to_unit_cube([-1, -1, low], [1, 1, high]) @ matrix
+
+
+def axis_of(rays):
+    """The axis (3,) of the narrowest cone that holds `rays` (n, 3); 0 where none holds them."""
+    from scipy.optimize import nnls
+
+    lengths = np.linalg.norm(rays, axis=1, keepdims=True)
+    if lengths.min() < 1e-9 * lengths.max():
+        return np.zeros(3)
+    # towards the point of the convex hull of their directions that is nearest to 0
+    units = rays / lengths
+    weights, _ = nnls(np.vstack([units.T, np.ones(len(units))]), np.array([0, 0, 0, 1.0]))
+    axis = weights @ units
+    return axis / max(np.linalg.norm(axis), 1e-9)

@@ -1,10 +1,16 @@
 """All shadow maps of one light."""
 
+from dataclasses import replace
+
 import drjit as dr
 
+from brdfkit.errors import no_such
 from brdfkit.shadow_maps.bias import AUTOMATIC
+from brdfkit.shadow_maps.light_depth import LightDepth
 from brdfkit.shadow_maps.shadow_map import ShadowMap
 from brdfkit.shadow_maps.techniques import techniques
+
+DEPTHS = ("projected", "linear")
 
 
 class LightShadow:
@@ -15,6 +21,8 @@ class LightShadow:
     projection, filter, partition : names of files in the folders of those names.
     resolution : texels along a side of each map.
     bias : a `Bias`.
+    depth : what maps hold: "projected", the third coordinate of the projection's cube, in which
+        planes stay planes, or "linear", the way of the light.
     settings : those of the three files, by the names in their `SETTINGS`.
     """
 
@@ -27,14 +35,18 @@ class LightShadow:
         partition="whole",
         resolution=1024,
         bias=AUTOMATIC,
+        depth="projected",
         **settings,
     ):
         names = {"projection": projection, "filter": filter, "partition": partition}
         chosen = techniques(names, settings)
+        if depth not in DEPTHS:
+            raise no_such("depth", depth, DEPTHS)
+        linear = LightDepth.through(placement) if depth == "linear" else None
         self.parts = chosen["partition"](placement, chosen["projection"])
         self.maps = [
-            ShadowMap(scene, part.projection, placement.reach, chosen["filter"], resolution, bias)
-            for part in self.parts
+            ShadowMap(scene, projection, placement.reach, chosen["filter"], resolution, bias)
+            for projection in (replace(part.projection, depth=linear) for part in self.parts)
         ]
 
     def lit(self, p, n, active=True):

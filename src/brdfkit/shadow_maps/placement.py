@@ -13,12 +13,14 @@ from brdfkit.projective.light import Light
 @dataclass(frozen=True)
 class Placement:
     """A `camera`, its planes drawn in to the scene, a `light`, and the box `low`, `high` (3,) of
-    the `scene`."""
+    the `scene`; `nearest`, about the distance of the nearest surface seen, which tunes projections
+    and bounds nothing."""
 
     camera: Camera
     light: Light
     low: np.ndarray
     high: np.ndarray
+    nearest: float = 0.0
 
     @classmethod
     def of_scene(cls, scene, sensor, emitter):
@@ -26,7 +28,8 @@ class Placement:
         bounds = scene.bbox()
         low, high = (np.array(end, float).ravel() for end in (bounds.min, bounds.max))
         camera = Camera.of_sensor(sensor).fitted(box(low, high).corners)
-        return cls(camera, Light.of_emitter(emitter), low, high)
+        nearest = nearest_seen(scene, sensor, camera)
+        return cls(camera, Light.of_emitter(emitter), low, high, nearest)
 
     @cached_property
     def scene(self):
@@ -34,12 +37,17 @@ class Placement:
         whole = box(self.low, self.high)
         return whole if self.light.axis is None else whole & self.light.pyramid(self.reach)
 
+    @property
+    def size(self):
+        """The diagonal of the scene's box [unit of length]."""
+        return float(np.linalg.norm(self.high - self.low))
+
     @cached_property
     def reach(self):
         """A distance [unit of length] that no ray of light through the scene exceeds."""
         corners = box(self.low, self.high).corners
         if self.light.is_directional:
-            return float(np.linalg.norm(self.high - self.low))
+            return self.size
         return float(np.linalg.norm(corners - self.light.point[:3], axis=1).max())
 
     @cached_property
@@ -48,6 +56,25 @@ class Placement:
         return Body.around(self.camera.corners()) & self.scene
 
     @cached_property
+    def depths(self):
+        """z_n and z_f, the distances along the view between which the camera sees something."""
+        depths = self.camera.depths(self.seen.corners)
+        return min(max(depths.min(), self.nearest), depths.max()), depths.max()
+
+    @cached_property
     def body(self):
         """B = ((V ∩ S) + light) ∩ S: what the camera may see and what may shadow it."""
-        return self.seen.towards(self.light, self.reach) & self.scene
+        return self.seen.towards(self.light, self.size) & self.scene
+
+
+def nearest_seen(scene, sensor, camera, side=64):
+    """The distance along the view of the nearest surface that `side`² rays of a picture hit."""
+    import drjit as dr
+    import mitsuba as mi
+
+    index = dr.arange(mi.UInt32, side**2)
+    place = mi.Point2f(index % side, index // side)
+    ray, _ = sensor.sample_ray(0.0, 0.5, (place + 0.5) / side, mi.Point2f(0.5))
+    si = scene.ray_intersect(ray)
+    seen = np.array(si.is_valid())
+    return float(camera.depths(np.array(si.p).T[seen]).min()) if seen.any() else 0.0

@@ -7,4 +7,4 @@ from brdfkit.shadow_maps.light_camera import around
 
 
 def projection(placement):
-    return around(placement.light, placement.body.corners)
+    return around(placement.light, placement.body)
