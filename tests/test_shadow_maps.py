@@ -46,6 +46,16 @@ def test_linear_depth_has_the_shadows_of_projected_depth(kind):
     assert differ.sum() / facing.sum() < 1e-3
 
 
+def test_the_nearest_surface_is_found():
+    scene = objects_on_a_ground("point")
+    si, _, _ = seen_from(scene)
+    placement = placement_of(scene)
+    seen = np.array(si.is_valid())
+    depths = placement.camera.depths(np.array(si.p).T[seen])
+    assert placement.nearest == pytest.approx(depths.min(), rel=0.02)
+    assert placement.depths[0] == placement.nearest
+
+
 def test_a_light_among_the_objects_is_one_sentence():
     scene = objects_on_a_ground("point")
     placement = placement_of(scene)

@@ -251,11 +251,13 @@ def test_plane_optimal_is_the_projection_by_five_pairs_of_points(light):
 @pytest.mark.quick
 def test_the_ground_is_the_plane_unless_said():
     """Depth on the plane is 1, the greatest; a table half way up is another plane."""
-    scene, ground = seen_from("perpendicular"), np.array([[0, -9, 0], [2, 5, 0], [-4, 8, 0]])
-    for height, plane in ((0, ""), (1.5, [0, 0, 2, -3])):
-        found = project("plane_optimal", scene, plane=plane)
-        depths = found.to_map(*(ground + np.array([0, 0, height])).T)[2]
-        assert np.ptp(depths) < 1e-9
+    eye, sun = camera(*VIEWS["perpendicular"]), LIGHTS["directional"]
+    scene = placement(eye, sun, nearest=2.5)
+    flat = placement(eye, sun, low=[-20, -20, 0], high=[20, 20, 0], nearest=2.5)
+    ground = np.array([[0, -9, 0], [2, 5, 0], [-4, 8, 0]])
+    for where, plane, height in ((scene, "", 0), (flat, "", 0), (scene, [0, 0, 2, -3], 1.5)):
+        found = project("plane_optimal", where, plane=plane)
+        assert np.ptp(found.to_map(*(ground + np.array([0, 0, height])).T)[2]) < 1e-9
     assert project("plane_optimal", scene).to_map(*ground[0])[2] == pytest.approx(1)
 
 

@@ -1,4 +1,9 @@
-"""Depth that grows evenly along every ray of light, whatever a projection does to it."""
+"""Depth that grows evenly along every ray of light, whatever a projection does to it.
+
+Moments of it bound the light more closely. But a plane is bent on a warped map of it, so that wide
+filters, which follow the receiver's plane, see the plane shadow itself where texels are large;
+depths by the projection's own matrix keep planes planes, and are the default.
+"""
 
 from dataclasses import dataclass, replace
 from typing import Any

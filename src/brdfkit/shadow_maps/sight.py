@@ -19,7 +19,9 @@ from brdfkit.projective.light import Light
 from brdfkit.shadow_maps.light_camera import fitted, view
 
 APEX = plain_number(
-    1.0, (1e-3, np.inf), "n over its best: less gives more of a map to what is near the eye"
+    1.0,
+    (1e-3, np.inf),
+    "of light_space_ and logarithmic_perspective: n over the formula's; less favours what is near",
 )
 
 

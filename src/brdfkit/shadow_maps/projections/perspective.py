@@ -12,10 +12,13 @@ of the map shows that; and every step of the camera moves all texels.
 from brdfkit.projective.homogeneous import project_all
 from brdfkit.shadow_maps.light_camera import fitted, view
 
+NEAREST = 1 / 200  # of the distances before the camera, over the farthest: depths are as 1 / z
+
 
 def projection(placement):
     corners, middle = placement.body.corners, placement.body.middle
-    camera = placement.camera.between(*placement.depths).moved_back(corners).matrix
+    z_n, z_f = placement.depths
+    camera = placement.camera.between(max(z_n, NEAREST * z_f), z_f).moved_back(corners).matrix
     cube, (middle,) = project_all(camera, corners), project_all(camera, [middle])
     seen = view(camera @ placement.light.point, cube, middle)
     return fitted(seen @ camera, placement.light, corners)

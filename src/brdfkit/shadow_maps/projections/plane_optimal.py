@@ -76,7 +76,8 @@ def faces_by_light(placement):
     """The planes (4,) of the scene's box, normals inwards, the one with most light first."""
     sizes = placement.high - placement.low
     middle = (placement.low + placement.high) / 2
-    light = np.abs(placement.light.direction(*middle)) * np.prod(sizes) / np.maximum(sizes, 1e-30)
+    areas = np.roll(sizes, 1) * np.roll(sizes, 2)
+    light = np.abs(placement.light.direction(*middle)) * areas
     return [
         np.append(side * np.eye(3)[axis], -side * end[axis])
         for axis in np.argsort(-light)
