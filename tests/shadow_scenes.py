@@ -4,10 +4,19 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
+from brdfkit.shadow_maps.placement import Placement
+
 LIGHTS = ("directional", "point", "spot")
 
 
+def placement_of(scene):
+    return Placement.of_scene(scene, scene.sensors()[0], scene.emitters()[0])
+
+
 def light(kind):
+    """A light of a kind, or a sun that shines along a direction (x, y, z)."""
+    if not isinstance(kind, str):
+        return {"type": "directional", "direction": kind}
     to_world = mi.ScalarTransform4f().look_at([-4, 2, 8], [0, 0, 0], [0, 1, 0])
     return {
         "directional": {"type": "directional", "direction": [1, -0.5, -2]},
@@ -34,8 +43,9 @@ def objects_on_a_ground(kind, size=128):
     )
 
 
-def seen_from(scene, size=128):
-    """The surface in the middle of each pixel, where it faces the light, and whether it is lit."""
+def seen_from(scene, size=128, with_gap=False):
+    """The surface in the middle of each pixel, where it faces the light, and whether it is lit;
+    and, if asked for, how far it is along the ray of light to what shadows it."""
     sensor, emitter = scene.sensors()[0], scene.emitters()[0]
     index = dr.arange(mi.UInt32, size**2)
     pixel = mi.Point2f(
@@ -46,4 +56,31 @@ def seen_from(scene, size=128):
     ray = si.spawn_ray(ds.d)
     ray.maxt = ds.dist
     facing = np.array(si.is_valid() & (dr.dot(si.n, ds.d) > 0))
-    return si, facing, np.array(~scene.ray_test(ray))
+    found = si, facing, np.array(~scene.ray_test(ray))
+    return (*found, np.array(scene.ray_intersect(ray).t)) if with_gap else found
+
+
+def half_plane(kind, size=0.05):
+    """A wide sheet, x < 0, that a light shines past onto a ground, straight down; the ground's
+    normal; places on it, over the width of the penumbra, and that width.
+
+    size : of the light, a diameter or a tangent.
+    """
+    t = mi.ScalarTransform4f
+    d_b, d_r, wide = 4.0, 6.0, 40.0
+    down = {"type": "directional", "direction": [0, 0, -1]}
+    lamp = {"type": "point", "position": [0, 0, d_r]}
+    camera = t().look_at([0, 0, 1], [0, 0, 0], [0, 1, 0])
+    film = {"type": "hdrfilm", "width": 8, "height": 8}
+    half = t().translate([-wide / 2, 0, d_r - d_b]).scale(wide / 2)
+    scene = mi.load_dict(
+        {
+            "type": "scene",
+            "light": down if kind == "directional" else lamp,
+            "camera": {"type": "perspective", "fov": 50, "to_world": camera, "film": film},
+            "ground": {"type": "rectangle", "to_world": t().scale(wide)},
+            "sheet": {"type": "rectangle", "to_world": half},
+        }
+    )
+    w = size * (d_r - d_b) / (1 if kind == "directional" else d_b)
+    return scene, placement_of(scene), np.linspace(-0.9, 0.9, 200), (0, 0, 1), size, w

@@ -2,18 +2,13 @@
 
 import numpy as np
 import pytest
-from shadow_scenes import LIGHTS, objects_on_a_ground, seen_from
+from shadow_scenes import LIGHTS, objects_on_a_ground, placement_of, seen_from
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.shadow_maps.light_shadow import DEPTHS, LightShadow
-from brdfkit.shadow_maps.placement import Placement
 from brdfkit.shadow_maps.techniques import FILES
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
-
-
-def placement_of(scene):
-    return Placement.of_scene(scene, scene.sensors()[0], scene.emitters()[0])
 
 
 @pytest.mark.parametrize("kind", LIGHTS)
@@ -54,6 +49,22 @@ def test_the_nearest_surface_is_found():
     depths = placement.camera.depths(np.array(si.p).T[seen])
     assert placement.nearest == pytest.approx(depths.min(), rel=0.02)
     assert placement.depths[0] == placement.nearest
+
+
+@pytest.mark.parametrize("kind", LIGHTS)
+@pytest.mark.parametrize("filter", FILES["filter"])
+def test_the_error_of_a_filter_falls_with_the_resolution(kind, filter):
+    """Borders are as wide as a number of texels."""
+    scene = objects_on_a_ground(kind)
+    si, facing, lit = seen_from(scene)
+
+    def wrong(resolution):
+        shadow = LightShadow(scene, placement_of(scene), filter=filter, resolution=resolution)
+        return (np.abs(np.array(shadow.lit(si.p, si.n)) - lit) * facing).sum() / facing.sum()
+
+    coarse, fine = wrong(64), wrong(512)
+    assert coarse < 0.08
+    assert fine < 0.012
 
 
 def test_a_light_among_the_objects_is_one_sentence():

@@ -14,19 +14,32 @@ def depth_pass(scene, projection, resolution):
     scene : a `mi.Scene`.
     projection : a `Projection`.
     """
+    opaque = projection.opaque()
+    si = scene.ray_intersect(rays_of_light(scene, opaque, resolution))
+    return square(dr.select(si.is_valid(), depth_of(opaque, si.p), dr.inf), resolution)
+
+
+def rays_of_light(scene, opaque, resolution):
+    """The `mi.Ray3f` of light through the middle of each texel of an opaque `Projection`."""
     import mitsuba as mi
 
-    opaque = projection.opaque()
     index = dr.arange(mi.UInt32, resolution**2)
     texel = dr.opaque(mi.Float, 2 / resolution)
     x = (mi.Float(index % resolution) + 0.5) * texel - 1
     y = (mi.Float(index // resolution) + 0.5) * texel - 1
-    ray = ray_of_light(opaque, x, y, scene.bbox())
-    si = scene.ray_intersect(ray)
-    depth = opaque.to_map(*si.p)[2]
-    # beyond the horizon of a warped map there are no rays
-    seen = si.is_valid() & opaque.is_before(*si.p)
-    return mi.TensorXf(dr.select(seen, depth, dr.inf), (resolution, resolution))
+    return ray_of_light(opaque, x, y, scene.bbox())
+
+
+def depth_of(opaque, p):
+    """The depth of points; infinity beyond the horizon of a warped map, where no rays are."""
+    return dr.select(opaque.is_before(*p), opaque.to_map(*p)[2], dr.inf)
+
+
+def square(values, resolution):
+    """The values of texels as a `mi.TensorXf` (resolution, resolution)."""
+    import mitsuba as mi
+
+    return mi.TensorXf(values, (resolution, resolution))
 
 
 def ray_of_light(opaque, x, y, bounds):

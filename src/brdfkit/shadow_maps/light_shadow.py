@@ -8,7 +8,7 @@ from brdfkit.errors import no_such
 from brdfkit.shadow_maps.bias import AUTOMATIC
 from brdfkit.shadow_maps.light_depth import LightDepth
 from brdfkit.shadow_maps.shadow_map import ShadowMap
-from brdfkit.shadow_maps.techniques import techniques
+from brdfkit.shadow_maps.techniques import seen_by, techniques
 
 DEPTHS = ("projected", "linear")
 
@@ -44,8 +44,9 @@ class LightShadow:
             raise no_such("depth", depth, DEPTHS)
         linear = LightDepth.through(placement) if depth == "linear" else None
         self.parts = chosen["partition"](placement, chosen["projection"])
+        see = seen_by(filter)
         self.maps = [
-            ShadowMap(scene, projection, placement.reach, chosen["filter"], resolution, bias)
+            ShadowMap(scene, projection, placement.reach, chosen["filter"], resolution, bias, see)
             for projection in (replace(part.projection, depth=linear) for part in self.parts)
         ]
 

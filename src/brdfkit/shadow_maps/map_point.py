@@ -15,6 +15,9 @@ class MapPoint:
     slope_u, slope_v : change of depth in the plane of the surface, per texel; 0 where planes are
         not followed.
     active : whether the map shows the point at all.
+    p : the point itself, as far as it was moved along its normal.
+    projection : the map's, opaque.
+    half : texels along half a side.
     """
 
     u: Any
@@ -23,10 +26,29 @@ class MapPoint:
     slope_u: Any
     slope_v: Any
     active: Any
+    p: Any
+    projection: Any
+    half: Any
 
     def depth_at(self, u, v):
         """The depth of the surface's plane at another place of the map."""
         return self.depth + self.slope_u * (u - self.u) + self.slope_v * (v - self.v)
+
+    def before(self, depth):
+        """The `mi.Point3f` on the same ray of light that has a `depth` of the projection's cube."""
+        import mitsuba as mi
+
+        x, y = self.u / self.half - 1, self.v / self.half - 1
+        return mi.Point3f(*self.projection.from_map(x, y, depth))
+
+    def across(self):
+        """The ways on the map (u, v), in texels, of the point's two ways of length 1 across the
+        light."""
+        import mitsuba as mi
+
+        ways = mi.coordinate_system(self.projection.to_light(self.p))
+        steps = [self.projection.along(self.p, way) for way in ways]
+        return [(u * self.half, v * self.half) for u, v, _ in steps]
 
 
 def map_point(projection, resolution, p, n, bias, reach, active=True):
@@ -56,7 +78,8 @@ def map_point(projection, resolution, p, n, bias, reach, active=True):
     if not bias.plane:
         slope_u, slope_v = mi.Float(0), mi.Float(0)
     active = active & projection.is_before(*p)
-    return MapPoint((x + 1) * half, (y + 1) * half, depth, slope_u, slope_v, active)
+    u, v = (x + 1) * half, (y + 1) * half
+    return MapPoint(u, v, depth, slope_u, slope_v, active, p, projection, half)
 
 
 def plane_on_map(projection, half, p, n):

@@ -14,10 +14,13 @@ class ShadowMap:
     lookup : of a file of `filters/`, its class `Lookup`.
     resolution : texels along a side.
     bias : a `Bias`.
+    see : of that file, its function `see` where it has one: what the map holds in place of depths.
     """
 
-    def __init__(self, scene, projection, reach, lookup, resolution=1024, bias=AUTOMATIC):
-        self.depths = depth_pass(scene, projection, resolution)
+    def __init__(
+        self, scene, projection, reach, lookup, resolution=1024, bias=AUTOMATIC, see=depth_pass
+    ):
+        self.depths = see(scene, projection, resolution)
         self.lookup = lookup(self.depths)
         self.projection = projection.opaque()
         self.resolution, self.bias, self.reach = resolution, bias, reach

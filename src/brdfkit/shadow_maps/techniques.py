@@ -6,12 +6,14 @@ arguments of `LightShadow`, too, and parameters of the integrator `shadow_map`. 
 name means the same share the `Setting`.
 """
 
+from dataclasses import replace
 from functools import partial
 
 from brdfkit import modules
 from brdfkit.errors import no_such
 from brdfkit.host.declared import read
 from brdfkit.shadow_maps import filters, partitions, projections
+from brdfkit.shadow_maps.depth_pass import depth_pass
 
 MADE_BY = {
     "projection": (projections, "projection"),
@@ -34,13 +36,21 @@ def settings_of(kind, name):
     return getattr(FILES[kind][name], "SETTINGS", {})
 
 
+def seen_by(filter):
+    """What a filter's maps hold: its function `see`, or `depth_pass`."""
+    return getattr(FILES["filter"][filter], "see", depth_pass)
+
+
 def all_settings():
-    """Name → `Setting` of all files."""
+    """Name → `Setting` of all files; its meaning says which files have it."""
+    owners = {}
+    for kind, files in FILES.items():
+        for file in files:
+            for name, setting in settings_of(kind, file).items():
+                owners.setdefault(name, (setting, []))[1].append(file)
     return {
-        name: setting
-        for kind, files in FILES.items()
-        for file in files
-        for name, setting in settings_of(kind, file).items()
+        name: replace(setting, meaning=f"{', '.join(files)}: {setting.meaning}")
+        for name, (setting, files) in owners.items()
     }
 
 

@@ -21,3 +21,20 @@ class Texels:
         within = active & (column >= 0) & (column < size) & (row >= 0) & (row < size)
         found = dr.gather(mi.Float, self.values, mi.UInt32(row * size + column), within)
         return dr.select(within, found, dr.inf)
+
+    def depth_under(self, point, u, v):
+        """The value at a place of the map, and the depth that the plane of a `MapPoint` has in the
+        middle of that texel."""
+        import mitsuba as mi
+
+        u, v = dr.floor(u), dr.floor(v)
+        there = point.depth_at(u + 0.5, v + 0.5)
+        return self.at(mi.Int32(u), mi.Int32(v), point.active), there
+
+    def lit(self, point, u, v):
+        """1 where the texel at a place of the map leaves a `MapPoint` lit, 0 where it saw
+        something nearer."""
+        import mitsuba as mi
+
+        seen, depth = self.depth_under(point, u, v)
+        return dr.select(depth > seen, mi.Float(0), 1)

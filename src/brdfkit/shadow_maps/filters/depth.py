@@ -1,9 +1,11 @@
 """One look-up: a point is dark where the map saw something nearer to the light.
 
+    lit = [z ≤ f(u, v)]
+
+The border of a shadow runs along the edges of texels, in steps.
+
 [Williams 1978], [Ergun 2008, 2.2.1.2]
 """
-
-import drjit as dr
 
 from brdfkit.shadow_maps.texels import Texels
 
@@ -16,8 +18,4 @@ class Lookup:
 
     def lit(self, point):
         """The share of the light that arrives at a `MapPoint`: 0 or 1."""
-        import mitsuba as mi
-
-        u, v = dr.floor(point.u), dr.floor(point.v)
-        nearest = self.texels.at(mi.Int32(u), mi.Int32(v), point.active)
-        return dr.select(point.depth_at(u + 0.5, v + 0.5) > nearest, mi.Float(0), 1)
+        return self.texels.lit(point, point.u, point.v)

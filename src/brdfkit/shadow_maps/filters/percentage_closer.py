@@ -1,0 +1,27 @@
+"""Percentage-closer filter (PCF): the share of n × n texels that leave the point lit.
+
+    lit = 1/n² Σ_ij [z ≤ f_ij]
+
+Depths are compared first and averaged then: an average of depths is the depth of nothing. The
+borders of shadows are n texels wide, in n² steps, whatever is between the objects; the derivative
+by their place is 0 between the steps.
+
+[Reeves et al. 1987], [Ergun 2008, 2.2.1.3]
+"""
+
+from brdfkit.shadow_maps.texels import Texels
+from brdfkit.shadow_maps.window import WIDTH, mean_lit
+
+SETTINGS = {"width": WIDTH}
+
+
+class Lookup:
+    """The mean of comparisons over a window of texels, `width` along a side."""
+
+    def __init__(self, depths, width):
+        self.texels, self.width = Texels(depths), width
+
+    def lit(self, point):
+        """The share of the light that arrives at a `MapPoint`."""
+        evenly = [1 / self.width] * self.width
+        return mean_lit(self.texels, point, self.width, lambda begin: evenly)

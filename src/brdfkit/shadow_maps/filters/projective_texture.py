@@ -1,0 +1,52 @@
+"""Projective shadow texture: casters in one flat colour, thrown onto what is behind them.
+
+The light draws the silhouettes of casters, and receivers look up whether one covers their texel.
+An object is a caster or a receiver of one shadow, never both, so that none shadows itself. Here,
+that is as a map of depths midway between each caster's last surface and the first of another shape
+behind it; one look-up of that tells which of the two a point belongs to. There is no acne and no
+bias; shapes that were merged into one do not shadow each other.
+
+[Ergun 2008, 2.2.1.1], [Woo 1992]
+"""
+
+import drjit as dr
+
+from brdfkit.shadow_maps.depth_pass import depth_of, rays_of_light, square
+from brdfkit.shadow_maps.texels import Texels
+
+DEEPEST = 64  # surfaces of one caster that a ray goes through
+
+
+class Lookup:
+    """A map of where shadows begin, texel by texel."""
+
+    def __init__(self, depths):
+        self.texels = Texels(depths)
+
+    def lit(self, point):
+        """The share of the light that arrives at a `MapPoint`: 0 or 1."""
+        return self.texels.lit(point, point.u, point.v)
+
+
+def see(scene, projection, resolution):
+    """The `mi.TensorXf` (resolution, resolution) of the depths between casters and receivers."""
+    import mitsuba as mi
+
+    opaque = projection.opaque()
+    ray = rays_of_light(scene, opaque, resolution)
+    first = scene.ray_intersect(ray)
+    caster = dr.reinterpret_array(mi.UInt32, first.shape)
+
+    def is_same(i, last, t, shape):
+        return (shape == caster) & (i < DEEPEST)
+
+    def step(i, last, t, shape):
+        behind = mi.SurfaceInteraction3f(first)
+        behind.p = ray(t)
+        si = scene.ray_intersect(behind.spawn_ray(ray.d))
+        return i + 1, t, t + si.t, dr.reinterpret_array(mi.UInt32, si.shape)
+
+    start = mi.UInt32(0), mi.Float(first.t), mi.Float(first.t), mi.UInt32(caster)
+    _, last, t, _ = dr.while_loop(start, lambda *s: first.is_valid() & is_same(*s), step)
+    depth = (depth_of(opaque, ray(last)) + depth_of(opaque, ray(t))) / 2
+    return square(dr.select(first.is_valid() & dr.isfinite(t), depth, dr.inf), resolution)

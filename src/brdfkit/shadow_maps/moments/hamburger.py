@@ -1,0 +1,47 @@
+"""The Hamburger moment problem: the most light that four moments of the occluders' depth allow.
+
+Of all distributions with the moments b₁ ... b₄, that with the least mass in front of t has three
+depths, t, z₂ and z₃, where z₂ and z₃ are the roots of c₁ + c₂ z + c₃ z² and
+
+    | 1  b₁ b₂ |       | 1  |
+    | b₁ b₂ b₃ | · c = | t  |
+    | b₂ b₃ b₄ |       | t² |
+
+[Peters & Klein 2015]; the middle is that of [Münstermann et al. 2018]
+"""
+
+import drjit as dr
+
+MIDDLE = 0.0, 0.375, 0.0, 0.375  # moments of [-1, 1] well within what is possible
+LEAST_ROOT = 1e-7  # 1 over a root that is as good as infinite: t is one of two depths, then
+
+
+def most_lit(b, t, rounding=0.0):
+    """The greatest P(X ≥ t) of a distribution with the moments `b`, four numbers.
+
+    Exact where X has two values, or three of which one is t.
+
+    rounding : by how much, 0 to 1, the moments are drawn towards the middle, lest rounding makes
+        them those of no distribution.
+    """
+    b1, b2, b3, b4 = ((1 - rounding) * own + rounding * m for own, m in zip(b, MIDDLE, strict=True))
+
+    # B = L D Lᵀ, L with the columns (1, b1, b2), (1, l32), (1); then L y = (1, t, t²), D Lᵀ c = y
+    d2 = b2 - b1 * b1
+    l32 = (b3 - b1 * b2) / d2
+    d3 = b4 - b2 * b2 - l32 * l32 * d2
+    y2 = t - b1
+    y3 = t * t - b2 - l32 * y2
+    c3 = y3 / d3
+    c2 = y2 / d2 - l32 * c3
+    c1 = 1 - b1 * c2 - b2 * c3
+
+    c3 = dr.mulsign(dr.maximum(dr.abs(c3), LEAST_ROOT * dr.abs(c2)), c3)
+    p, q = c2 / c3, c1 / c3
+    root = dr.sqrt(dr.maximum(p * p / 4 - q, 0))
+    z2, z3 = -p / 2 - root, -p / 2 + root
+
+    one = (t * z3 - b1 * (t + z3) + b2) / ((z3 - z2) * (t - z2))
+    two = (z2 * z3 - b1 * (z2 + z3) + b2) / ((t - z2) * (t - z3))
+    dark = dr.select(t <= z2, 0, dr.select(t <= z3, one, 1 - two))
+    return 1 - dr.clip(dark, 0, 1)
