@@ -9,8 +9,7 @@ of the comparisons of 2 × 2 texels. The borders of shadows are n - 1 texels wid
 [Reeves et al. 1987], [Ergun 2008, 2.2.1.3]
 """
 
-from brdfkit.shadow_maps.texels import Texels
-from brdfkit.shadow_maps.window import WIDTH, mean_lit
+from brdfkit.shadow_maps.window import WIDTH, Windows
 
 SETTINGS = {"width": WIDTH}
 
@@ -19,11 +18,11 @@ class Lookup:
     """The mean of comparisons over a square, `width` - 1 texels along a side; of 1, `depth`'s."""
 
     def __init__(self, depths, width):
-        self.texels, self.width = Texels(depths), width
+        self.windows, self.width = Windows(depths, width), width
 
     def lit(self, point):
         """The share of the light that arrives at a `MapPoint`."""
-        return mean_lit(self.texels, point, self.width, self.weights)
+        return self.windows.mean_lit(point, self.weights)
 
     def weights(self, begin):
         """Of the columns or rows of a window that begins at `begin`, 0 to 1, in its first texel."""

@@ -2,10 +2,10 @@
 
     z⁺ = exp(c⁺ z),  z⁻ = -exp(-c⁻ z);   lit = min(p_max(z⁺), p_max(z⁻))
 
-Far behind the nearest occluder the exponential takes what lies between for nothing, so that little
-light bleeds into a second shadow; the negative one (`moments` 4; it is left out by 2) does the same
-for depths close to the receiver, where the positive one leaks. Large exponents are limited by the
-numbers' range, 3e38.
+The exponential makes gaps between far occluders nothing beside one to the nearest, so that hardly
+any light bleeds into a second shadow far behind it. It leaks where the receiver is close behind the
+second; there the other bound, of z⁻, is the lower one. An exponent of 0 leaves that out, which
+halves the memory. Exponents are limited by the numbers' range, 3e38.
 
 [Lauritzen & McCool 2008]
 """

@@ -9,8 +9,7 @@ by their place is 0 between the steps.
 [Reeves et al. 1987], [Ergun 2008, 2.2.1.3]
 """
 
-from brdfkit.shadow_maps.texels import Texels
-from brdfkit.shadow_maps.window import WIDTH, mean_lit
+from brdfkit.shadow_maps.window import WIDTH, Windows
 
 SETTINGS = {"width": WIDTH}
 
@@ -19,9 +18,9 @@ class Lookup:
     """The mean of comparisons over a window of texels, `width` along a side."""
 
     def __init__(self, depths, width):
-        self.texels, self.width = Texels(depths), width
+        self.windows, self.width = Windows(depths, width), width
 
     def lit(self, point):
         """The share of the light that arrives at a `MapPoint`."""
         evenly = [1 / self.width] * self.width
-        return mean_lit(self.texels, point, self.width, lambda begin: evenly)
+        return self.windows.mean_lit(point, lambda begin: evenly)

@@ -34,19 +34,19 @@ def see(scene, projection, resolution):
 
     opaque = projection.opaque()
     ray = rays_of_light(scene, opaque, resolution)
-    first = scene.ray_intersect(ray)
+    first = scene.ray_intersect_preliminary(ray)
     caster = dr.reinterpret_array(mi.UInt32, first.shape)
 
-    def is_same(i, last, t, shape):
-        return (shape == caster) & (i < DEEPEST)
+    def goes_on(i, last, t, shape):
+        return first.is_valid() & (shape == caster) & (i < DEEPEST)
 
     def step(i, last, t, shape):
-        behind = mi.SurfaceInteraction3f(first)
-        behind.p = ray(t)
-        si = scene.ray_intersect(behind.spawn_ray(ray.d))
-        return i + 1, t, t + si.t, dr.reinterpret_array(mi.UInt32, si.shape)
+        place = ray(t)
+        begin = t + mi.math.RayEpsilon * (1 + dr.max(dr.abs(place)))
+        hit = scene.ray_intersect_preliminary(mi.Ray3f(ray(begin), ray.d))
+        return i + 1, t, begin + hit.t, dr.reinterpret_array(mi.UInt32, hit.shape)
 
     start = mi.UInt32(0), mi.Float(first.t), mi.Float(first.t), mi.UInt32(caster)
-    _, last, t, _ = dr.while_loop(start, lambda *s: first.is_valid() & is_same(*s), step)
+    _, last, t, _ = dr.while_loop(start, goes_on, step)
     depth = (depth_of(opaque, ray(last)) + depth_of(opaque, ray(t))) / 2
     return square(dr.select(first.is_valid() & dr.isfinite(t), depth, dr.inf), resolution)

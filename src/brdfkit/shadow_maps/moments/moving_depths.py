@@ -79,8 +79,8 @@ def see(scene, projection, resolution):
     ray = rays_of_light(scene, opaque, resolution)
     hit = scene.ray_intersect_preliminary(ray)
     si = hit.compute_surface_interaction(ray)
-    valid = si.is_valid()
-    depths = square(dr.select(valid, depth_of(opaque, si.p), dr.inf), resolution)
+    valid = si.is_valid() & opaque.is_before(*si.p)
+    depths = square(dr.select(si.is_valid(), depth_of(opaque, si.p), dr.inf), resolution)
     values = dr.clip(depths, -1, 1)
     if not dr.grad_enabled(values):
         return MovingDepths(values)
