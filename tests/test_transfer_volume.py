@@ -8,6 +8,7 @@ import pytest
 
 from brdfkit import TransferFunction, Volume
 from brdfkit.volumes.block_bounds import block_ranges, largest_between
+from brdfkit.volumes.transfer_lookup import TransferLookup
 
 RNG = np.random.default_rng(6)
 HILLS = TransferFunction(
@@ -244,3 +245,13 @@ def test_what_cannot_be_looked_up_is_said(mi, given, said):
 def test_values_that_are_not_finite_are_refused(mi):
     with pytest.raises(RuntimeError, match="should be a volume of finite values"):
         mi.load_dict(volume(mi, np.full((2, 2, 2), np.nan), HILLS))
+
+
+def test_a_narrow_peak_is_seen_and_one_that_is_too_narrow_is_told(mi):
+    """A table of 4096 rows would miss both."""
+    rgba = [[1, 1, 1, 0], [1, 1, 1, 0], [1, 0, 0, 1], [1, 1, 1, 0], [1, 1, 1, 0]]
+    peak = TransferFunction([0, 0.5, 0.50005, 0.5001, 1], rgba)
+    _, a = TransferLookup(peak)([mi.Float(0.50005)])
+    assert a[0] == pytest.approx(1, abs=0.01)
+    with pytest.warns(UserWarning, match="1e-06 of its range apart"):
+        TransferLookup(replace(peak, values=np.array([0, 0.5, 0.500001, 0.500002, 1])))

@@ -1,5 +1,6 @@
 """A transfer function as a texture, looked up by renderers: derivatives by all of its numbers."""
 
+import warnings
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,7 +10,8 @@ import numpy as np
 from brdfkit.volumes.preintegration import Preintegration
 from brdfkit.volumes.transfer_function import TransferFunction
 
-STEPS = 4096  # of a table over values, at least: a step in a function is one of them wide
+# Of a table over values, at least: a step in a function is one of them wide; and at most, or twice
+STEPS, MOST = 2**12, 2**15
 
 
 @dataclass(init=False, eq=False)  # of a dataclass `dr.freeze` finds the arrays
@@ -91,17 +93,30 @@ class TransferLookup:
         return np.clip((values - low) / (high - low), 0, 1) * (self.table.shape[-2] - 1)
 
 
-def steps(values, least=STEPS):
-    """How many even steps, from `least` on to twice as many, best meet all `values` (k,), rising.
+def steps(values):
+    """How many even steps, `STEPS` or more, best meet all `values` (k,), rising.
 
-    So that corners of a function, and labels, lie on rows of its table.
+    So that corners of a function, and labels, lie on rows of its table. Values that are nearer to
+    each other have more steps, up to a limit, beyond which a warning tells that they share a row.
 
     >>> steps(np.array([0.0, 7.0, 29.0]))
     4118
     """
-    if np.ptp(np.diff(values)) == 0:  # any number of them, as of labels
-        return (len(values) - 1) * -(-least // (len(values) - 1))
     places = (values - values[0]) / (values[-1] - values[0])
+    gaps = np.diff(places)
+    gap = gaps[gaps > 0].min()
+    if gap < 0.5 / MOST:
+        warnings.warn(
+            f"values of the transfer function are {gap:.1g} of its range apart; what is between "
+            f"them is not seen below {0.5 / MOST:.1g}: number labels anew, or cut the range.",
+            stacklevel=2,
+        )
+    least = int(np.clip(np.ceil(1 / gap), STEPS, MOST))
+    if np.ptp(gaps) == 0:  # any number of them, as of labels
+        return (len(values) - 1) * -(-least // (len(values) - 1))
     counts = np.arange(least, 2 * least)
-    beside = places * counts[:, None]
-    return int(counts[np.abs(beside - np.rint(beside)).max(axis=1).round(6).argmin()])
+    worst = np.zeros(len(counts))
+    for place in places:
+        beside = place * counts
+        worst = np.maximum(worst, np.abs(beside - np.rint(beside)))
+    return int(counts[worst.round(6).argmin()])

@@ -1,0 +1,76 @@
+"""What a camera sees of a scene in one light, with exact shadows: what techniques are held to."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import drjit as dr
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Seen:
+    """The surfaces in the middle of all pixels, row by row.
+
+    scene : the `mi.Scene`.
+    emitter : one of its lights, with a place or a direction.
+    si : the `mi.SurfaceInteraction3f` of each pixel.
+    size : (height, width) of the picture.
+    """
+
+    scene: Any
+    emitter: Any
+    si: Any
+    size: tuple[int, int]
+
+    @classmethod
+    def by(cls, scene, sensor, emitter, size):
+        """Of a `sensor` whose picture has the `size` (height, width)."""
+        import mitsuba as mi
+
+        height, width = size
+        index = dr.arange(mi.UInt32, height * width)
+        pixel = mi.Point2f(index % width, index // width) + 0.5
+        place = pixel / mi.Point2f(width, height)
+        ray, _ = sensor.sample_ray(0.0, 0.5, place, mi.Point2f(0.5))
+        si = scene.ray_intersect(ray)
+        dr.eval(si)
+        return cls(scene, emitter, si, (height, width))
+
+    @cached_property
+    def to_light(self):
+        """The `mi.DirectionSample3f` to the light, and its light there without a shadow."""
+        import mitsuba as mi
+
+        return self.emitter.sample_direction(self.si, mi.Point2f(0.5))
+
+    @cached_property
+    def facing(self):
+        """Whether (pixels,) there is a surface and it faces the light: elsewhere all is dark."""
+        ds, _ = self.to_light
+        towards = dr.dot(self.si.n, ds.d) * dr.dot(self.si.n, self.si.to_world(self.si.wi))
+        return np.array(self.si.is_valid() & (towards > 0))
+
+    @cached_property
+    def exact(self):
+        """Whether (pixels,) a shadow ray reaches the light."""
+        ds, _ = self.to_light
+        ray = self.si.spawn_ray(ds.d)
+        ray.maxt = ds.dist
+        return np.array(~self.scene.ray_test(ray, self.si.is_valid()))
+
+    @cached_property
+    def unshadowed(self):
+        """The radiance (pixels, 3) of each surface by the light, without its shadow."""
+        import mitsuba as mi
+
+        ds, light = self.to_light
+        valid = self.si.is_valid()
+        value = self.si.bsdf().eval(mi.BSDFContext(), self.si, self.si.to_local(ds.d), valid)
+        radiance = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light)
+        rgb = mi.Color3f(radiance) if mi.is_rgb else mi.Color3f(radiance[0])
+        return np.array(dr.select(valid, rgb, 0)).T
+
+    def picture(self, lit):
+        """The picture (height, width, 3) by the shares (pixels,) of the light that arrive."""
+        return (self.unshadowed * np.asarray(lit)[:, None]).reshape(*self.size, 3)
