@@ -1,4 +1,5 @@
 from . import distance_fields as distance_fields
+from . import shadows as shadows
 from .auditing import Audit as Audit
 from .auditing import audit as audit
 from .checks import check as check

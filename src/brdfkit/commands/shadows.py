@@ -1,0 +1,76 @@
+"""`brdfkit shadows`: techniques of shadow maps on a user's scene, against exact shadows."""
+
+from dataclasses import asdict
+from pathlib import Path
+
+import click
+
+import brdfkit
+from brdfkit.commands._options import output_options
+
+# by the names of their files: to import them takes a second
+FOLDER = Path(brdfkit.__file__).with_name("shadow_maps")
+
+
+def technique(kind, default, help):
+    """An option that chooses files of a folder of `shadow_maps`, by their names."""
+    names = ", ".join(sorted(file.stem for file in (FOLDER / f"{kind}s").glob("[!_]*.py")))
+    usual = ", ".join(default) or "all"
+    return click.option(
+        f"--{kind}",
+        f"{kind}s",
+        multiple=True,
+        default=default,
+        metavar="NAME",
+        help=f"{help}: {names}; may be repeated. Default: {usual}.",
+    )
+
+
+@click.command()
+@click.argument("scene", metavar="SCENE.xml", type=click.Path(path_type=Path))
+@technique("projection", (), "How a map sees the scene")
+@technique("filter", ("depth", "percentage_closer", "variance", "moment"), "How a map is read")
+@technique("partition", ("whole",), "How maps share the scene")
+@click.option(
+    "--map",
+    "resolution",
+    default=512,
+    show_default=True,
+    type=click.IntRange(1, 16384),
+    metavar="N",
+    help="Texels along a side of each map.",
+)
+@click.option(
+    "--size",
+    default=512,
+    show_default=True,
+    type=click.IntRange(min=8),
+    metavar="N",
+    help="Side of the pictures [pixels].",
+)
+@output_options
+def shadows(scene, projections, filters, partitions, resolution, size, console):
+    """Score shadow techniques on a scene.
+
+    Every combination of the techniques is held to exact shadows, by rays, in all views (sensors)
+    and lights of the scene, which are point, spot or directional ones.
+    """
+    from brdfkit.shadows import compare
+    from brdfkit.shadows.comparing import PROJECTIONS
+
+    with console.progress("compare shadows") as progress:
+        found = compare(
+            scene,
+            projections or PROJECTIONS,
+            filters,
+            partitions,
+            resolution,
+            (size, size),
+            progress,
+        )
+    if console.as_json:
+        each = {label: [asdict(one) for one in all_of] for label, all_of in found.scores.items()}
+        console.json({"scores": each, "lights": found.lights})
+        return
+    console.table(found.columns, found.table())
+    console.out.print(found.meaning)

@@ -1,0 +1,96 @@
+"""Scores of one technique: its maps are made, read for all pixels, and held to shadow rays."""
+
+import time
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.picture_errors.psnr import psnr
+from brdfkit.shadow_maps.aliasing import aliasing
+from brdfkit.shadow_maps.bias_errors import acne
+from brdfkit.shadow_maps.light_shadow import LightShadow
+from brdfkit.shadow_maps.projection import Projection
+from brdfkit.shadows.aliasing_error import aliasing_error
+from brdfkit.shadows.camera_path import path
+from brdfkit.shadows.scores import Scores
+from brdfkit.shadows.stability import flicker
+from brdfkit.shadows.texture_use import share_used
+
+MARGIN = 4  # pixels about shadows in which a soft border is no acne
+EVERY = 7  # of the pixels one is watched while the camera moves
+
+
+def score(seen, placement, technique):
+    """The `Scores` of a technique, and the shares of light (pixels,) that it lets through.
+
+    seen : what the camera sees, a `Seen`.
+    placement : of its camera and light.
+    technique : keyword arguments of `LightShadow`.
+    """
+
+    def look(shadow):
+        return shadow.lit(seen.si.p, seen.si.n, seen.si.is_valid())
+
+    shadow = LightShadow(seen.scene, placement, **technique)
+    lit, look_up = timed(lambda: look(shadow))
+    _, both = timed(lambda: look(LightShadow(seen.scene, placement, **technique)))
+    lit = np.array(lit)
+    facing, exact = seen.facing, seen.exact
+    pictures = (image.reshape(seen.size) for image in (lit, exact, facing))
+    use, fineness = use_of_maps(shadow, seen, placement)
+    scores = Scores(
+        psnr=psnr(seen.picture(exact), seen.picture(lit), facing.reshape(seen.size)),
+        wrong=float(np.abs(lit - exact)[facing].mean()),
+        acne=acne(*pictures, MARGIN),
+        texture_use=use,
+        aliasing=fineness,
+        flicker=unsteadiness(seen, placement, technique),
+        build=max(both - look_up, 0.0),
+        look_up=look_up,
+    )
+    return scores, lit
+
+
+def timed(function):
+    """What a function returns, evaluated, and its processor time [s] when it runs again."""
+    for _ in range(2):  # at first kernels are compiled
+        began = time.process_time()
+        found = function()
+        dr.eval(found)
+        dr.sync_thread()
+        seconds = time.process_time() - began
+    return found, seconds
+
+
+def use_of_maps(shadow, seen, placement):
+    """Q1, the share of the maps' texels that are used, and Q2, the aliasing error [dB]."""
+    import mitsuba as mi
+
+    height, width = seen.size
+    camera = Projection.by(placement.camera.matrix, placement.light).opaque()
+    p, n, left = seen.si.p, seen.si.n, mi.Bool(seen.facing)
+    places, areas = [], []
+    for part, its_map in zip(shadow.parts, shadow.maps, strict=True):
+        here = left & part.contains(p)
+        x, y, _ = its_map.projection.to_map(*p)
+        texels = its_map.projection, its_map.resolution
+        e = aliasing(texels, (camera, (width, height)), p, n)
+        chosen = np.array(here)
+        places.append((np.array([x, y]).T[chosen] + 1) / 2)
+        areas.append(np.array(e)[chosen])
+        left &= ~here
+    return share_used(places), aliasing_error(np.concatenate(areas))
+
+
+def unsteadiness(seen, placement, technique):
+    """The flicker of the shadow on points that keep their places, while the camera moves."""
+    import mitsuba as mi
+
+    watched = mi.UInt32(np.flatnonzero(seen.facing)[::EVERY])
+    p = dr.gather(mi.Point3f, seen.si.p, watched)
+    n = dr.gather(mi.Normal3f, seen.si.n, watched)
+    exact = seen.exact[np.array(watched)]
+    shares = [
+        np.array(LightShadow(seen.scene, moved, **technique).lit(p, n)) for moved in path(placement)
+    ]
+    return flicker(shares, [exact] * len(shares))

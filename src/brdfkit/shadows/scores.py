@@ -1,0 +1,57 @@
+"""What one technique does in one view and one light."""
+
+from dataclasses import dataclass, fields
+from math import nan
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Scores:
+    """Errors against exact shadows, and what they cost.
+
+    Attributes
+    ----------
+    psnr : float
+        Q3, of the picture lit by this light alone, against the one with exact shadows [dB].
+    wrong : float
+        The share of light that is wrong where the surface faces the light: mean |lit - exact|.
+    acne : float
+        The share of light that lit surfaces lack, away from shadows.
+    texture_use : float
+        Q1, the share of the maps' texels that the picture uses.
+    aliasing : float
+        Q2, how fine the texels are beside the pixels [dB].
+    flicker : float
+        The mean change of the error from picture to picture while the camera moves.
+    build, look_up : float
+        Processor time to make the maps, and to read them for all pixels [s].
+    """
+
+    psnr: float = nan
+    wrong: float = nan
+    acne: float = nan
+    texture_use: float = nan
+    aliasing: float = nan
+    flicker: float = nan
+    build: float = nan
+    look_up: float = nan
+
+
+NAMES = tuple(field.name for field in fields(Scores))
+
+
+def mean(scores):
+    """The `Scores` that are means of several; of dB as in the thesis, not of squared errors.
+
+    A picture without an error has infinite dB: it counts as 99.
+    """
+    table = np.array([[getattr(one, name) for name in NAMES] for one in scores])
+    return Scores(*np.minimum(table, 99.0).mean(axis=0).tolist())
+
+
+def between_lights(scores):
+    """The relative `Scores`: the mean difference of neighbours, (light 1, light 2) of each view."""
+    table = np.array([[getattr(one, name) for name in NAMES] for one in scores])
+    table = np.minimum(table, 99.0)
+    return Scores(*np.abs(table[::2] - table[1::2]).mean(axis=0).tolist())
