@@ -20,11 +20,9 @@ included; those through filters that compare are 0. There is no indirect light, 
 than these three are refused.
 """
 
-import drjit as dr
-import numpy as np
-
 from brdfkit.host.declared import count, declared, flag, plain_number, word
-from brdfkit.host.reference_camera import reference_film
+from brdfkit.host.direct_light import direct_light
+from brdfkit.host.reference_shadow import beside_a_shadow
 from brdfkit.host.variants import refuse_scalar
 from brdfkit.shadow_maps.bias import AUTOMATIC, Bias
 from brdfkit.shadow_maps.light_shadow import DEPTHS, LightShadow
@@ -73,44 +71,11 @@ def define(mi):
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
             si = scene.ray_intersect(mi.Ray3f(ray), active)
-            seen = active & si.is_valid()
-            bsdf, context = si.bsdf(), mi.BSDFContext()
-            radiance = mi.UnpolarizedSpectrum(0)
-            for emitter, shadow in self.lights:
-                ds, light = emitter.sample_direction(si, sampler.next_2d(seen), seen)
-                value = bsdf.eval(context, si, si.to_local(ds.d), seen)
-                lit = shadow.lit(si.p, si.n, seen)
-                radiance += mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * lit
-            return mi.depolarizer(dr.select(seen, radiance, 0)), active, []
+            return direct_light(si, sampler, self.lights, active), active, []
 
     return ShadowMapped
 
 
 def reference():
-    """A scene, and the radiance (3,) of each of its pixels: ρ E cosθ / π, out of all shadows.
-
-    The sun shines aslant on a wide ground; a ball shadows another part of it.
-    """
-    import mitsuba as mi
-
-    albedo, irradiance = 0.5, np.array([0.9, 0.6, 0.3])
-    t = mi.ScalarTransform4f
-    camera = t().look_at([0, 0, 4], [0, 0, 0], [0, 1, 0])
-    film = reference_film()
-    scene = {
-        "type": "scene",
-        "integrator": {"type": "shadow_map", "resolution": 64},
-        "sensor": {"type": "perspective", "fov": 20, "to_world": camera, "film": film},
-        "sun": {
-            "type": "directional",
-            "direction": [1, 0, -1],
-            "irradiance": {"type": "rgb", "value": irradiance.tolist()},
-        },
-        "ground": {
-            "type": "rectangle",
-            "to_world": t().scale(5),
-            "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": albedo}},
-        },
-        "ball": {"type": "sphere", "center": [-1, 0, 2], "radius": 0.3},
-    }
-    return scene, albedo / np.pi * irradiance * np.sqrt(0.5)
+    """See `beside_a_shadow`."""
+    return beside_a_shadow({"type": "shadow_map", "resolution": 64})

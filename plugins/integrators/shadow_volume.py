@@ -1,0 +1,98 @@
+"""Direct light of point, spot and directional lights, shadowed by stencil shadow volumes.
+
+    L = Σ_lights ρ(ω_l, ω_o) cosθ_l E_l V,   V = 1 where a ray enters as many volumes as it leaves
+
+Before each picture the shapes become volumes: walls from their silhouettes away from the light, and
+caps that close them [Crow 1977]. Each ray of the camera then counts their faces, as the stencil
+buffer of a graphics card does for each sample of a pixel [Heidmann 1991]: those before the point
+that it sees (`depth_pass`) or those behind it (`depth_fail`). Entering adds 1, leaving takes 1.
+
+`depth_fail` [Everitt & Kilgard 2002] gives the shadows that rays give. `depth_pass` does so where
+the eye is in no shadow, the near plane cuts none, and no light goes through surfaces. The other
+settings are those of [Ergun 2008, section 2.1], with their faults:
+
+`extrusion` ends the walls: what is farther behind an object than that is lit. `far_plane` = finite
+clips what is beyond the camera's: shadows break where a volume goes on. `casters` are the triangles
+that make the volumes: `all` takes open shapes, a light within them and triangles turned anyhow;
+`light_facing` and `facing_away` make half as many caps, and refuse what is not closed, a ground
+among them; so does `shared_edges`.
+
+Spheres, cylinders and disks become meshes of 128 steps around; instances, curves and signed
+distances are refused. A pixel takes as long as it has faces before or behind it: shadow rays are
+faster where there are many. There is no indirect light, and no derivative
+of the shadows; other lights than these three are refused, and cameras that are not perspective.
+"""
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.host.declared import declared, plain_number, word
+from brdfkit.host.direct_light import direct_light
+from brdfkit.host.reference_shadow import beside_a_shadow
+from brdfkit.host.variants import refuse_scalar
+from brdfkit.projective.camera import Camera
+from brdfkit.projective.light import Light
+from brdfkit.shadow_volumes.casters import CASTERS
+from brdfkit.shadow_volumes.light_volumes import FAR_PLANES, METHODS, LightVolumes
+from brdfkit.shadow_volumes.mesh import Mesh
+from brdfkit.shadow_volumes.silhouettes import SILHOUETTES
+from brdfkit.shadow_volumes.volume import BACK_CAPS
+
+PARAMETERS = {
+    "method": word(METHODS, "which faces count"),
+    "extrusion": plain_number(0.0, (0.0, 1e9), "length of the walls [unit]; 0: without an end"),
+    "far_plane": word(FAR_PLANES, "where faces are clipped"),
+    "casters": word(CASTERS, "which triangles make the volumes"),
+    "silhouettes": word(SILHOUETTES, "how their edges are found"),
+    "back_cap": word(BACK_CAPS, "how volumes end"),
+}
+
+
+def define(mi):
+    """The class of `mi.SamplingIntegrator` for the current variant."""
+
+    class ShadowVolumes(declared(mi.SamplingIntegrator, PARAMETERS)):
+        def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
+            refuse_scalar("shadow_volume")
+            sensor = scene.sensors()[sensor] if isinstance(sensor, int) else sensor
+            meshes = [Mesh.of_shape(shape) for shape in scene.shapes()]
+            self.lights = [
+                (emitter, self.shadow(meshes, sensor, emitter)) for emitter in scene.emitters()
+            ]
+            return super().render(scene, sensor, seed, spp, develop, evaluate)
+
+        def shadow(self, meshes, sensor, emitter):
+            """The `LightVolumes` of an `emitter`."""
+            require_pinhole(sensor)
+            return LightVolumes(
+                meshes,
+                Light.of_emitter(emitter),
+                Camera.of_sensor(sensor),
+                self.method,
+                self.far_plane,
+                max(sensor.film().size()),
+                casters=self.casters,
+                silhouettes=self.silhouettes,
+                length=self.extrusion,
+                back_cap=self.back_cap,
+            )
+
+        def sample(self, scene, sampler, ray, medium=None, active=True):
+            si = scene.ray_intersect(mi.Ray3f(ray), active)
+            return direct_light(si, sampler, self.lights, active), active, []
+
+    return ShadowVolumes
+
+
+def require_pinhole(sensor):
+    """Raise `BrdfkitError` for a camera with a lens: its rays do not come from one eye."""
+    import mitsuba as mi
+
+    if "aperture_radius" in mi.traverse(sensor):
+        raise BrdfkitError(
+            "shadow_volume counts along rays from one eye, and a thinlens camera has a whole lens; "
+            "use a perspective camera."
+        )
+
+
+def reference():
+    """See `beside_a_shadow`."""
+    return beside_a_shadow({"type": "shadow_volume"})

@@ -1,0 +1,69 @@
+"""All shadow volumes of one light, and whether it arrives at what a camera sees."""
+
+import math
+
+import drjit as dr
+
+from brdfkit.projective.homogeneous import transform
+from brdfkit.shadow_volumes.seen_faces import picture_matrix, seen_faces
+from brdfkit.shadow_volumes.stencil import Stencil
+from brdfkit.shadow_volumes.volume import Faces, shadow_volume
+
+METHODS = ("depth_fail", "depth_pass")
+FAR_PLANES = ("infinite", "finite")
+TILE = 4  # pixels along a side of a tile, about
+
+
+class LightVolumes:
+    """The shadow of meshes in one light, counted in a camera's picture.
+
+    meshes : the `Mesh`es that cast it.
+    light : a `Light`.
+    camera : the `Camera` that sees the points; the eye and the middle of the picture.
+    method : `depth_pass` counts walls before a point, `depth_fail` walls and caps behind it.
+    far_plane : `finite`: what is beyond that of the camera is clipped, and does not count.
+    pixels : along the longer side of the picture: makes tiles of a useful size.
+    volume : named arguments of `shadow_volume`.
+    """
+
+    def __init__(
+        self, meshes, light, camera, method="depth_fail", far_plane="infinite", pixels=256, **volume
+    ):
+        import mitsuba as mi
+
+        self.volumes = [shadow_volume(mesh, light, **volume) for mesh in meshes]
+        self.method, self.far_plane = method, far_plane
+        kinds = ("walls",) if method == "depth_pass" else ("walls", "front", "back")
+        faces = [getattr(volume, kind) for volume in self.volumes for kind in kinds]
+        halvings = max(round(math.log2(max(pixels / TILE, 1))), 0)
+        self.stencil = Stencil(seen_faces(Faces.joined(faces), camera), halvings)
+        self.to_picture = mi.Matrix4f(picture_matrix(camera))
+        self.light = mi.Vector4f(light.point)
+        self.near, self.far = mi.Float(1 / camera.near), mi.Float(1 / camera.far)
+        dr.make_opaque(self.to_picture, self.light, self.near, self.far)
+
+    def lit(self, p, n, active=True):
+        """1 where the light arrives at points `p` of surfaces with normals `n`, else 0."""
+        import mitsuba as mi
+
+        return dr.select(self.count(self.off_surface(p, n), active) == 0, mi.Float(1), 0)
+
+    def off_surface(self, p, n):
+        """Points `p`, moved to the light's side of their surfaces, as rays of shadow begin there:
+        so that no cap lies where it is looked for."""
+        import mitsuba as mi
+
+        to_light = self.light.xyz - self.light.w * mi.Vector3f(p)
+        step = (1 + dr.max(dr.abs(p))) * mi.math.RayEpsilon
+        return p + dr.mulsign(step, dr.dot(n, to_light)) * n
+
+    def count(self, p, active=True):
+        """How many volumes points `p` are in (`mi.Int32`), as far as the method counts right."""
+        import mitsuba as mi
+
+        x, y, depth, _ = transform(self.to_picture, *dr.detach(p))
+        ray, inverse_depth = (x / depth, y / depth), 1 / depth
+        if self.method == "depth_pass":
+            return self.stencil.count(*ray, inverse_depth, self.near, active)
+        farthest = self.far if self.far_plane == "finite" else mi.Float(-dr.inf)
+        return -self.stencil.count(*ray, farthest, inverse_depth, active)
