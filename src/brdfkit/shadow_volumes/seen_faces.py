@@ -34,7 +34,7 @@ class SeenFaces:
 
 
 def picture_matrix(camera):
-    """The matrix (4, 4) from the world to (X / s_x, Y / s_y, -Z) of a `Camera`: to x z, y z and z."""
+    """The matrix (4, 4) from the world to the (X / s_x, Y / s_y, -Z) of a `Camera`."""
     return np.diag([1 / camera.slope_x, 1 / camera.slope_y, -1, 1]) @ camera.view
 
 
