@@ -8,6 +8,7 @@ from scipy.spatial import ConvexHull
 from shadow_scenes import LIGHTS, light
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.hybrid_shadow import hybrid_shadow
 from brdfkit.projective.camera import Camera
 from brdfkit.projective.light import Light
 from brdfkit.shadow_volumes.casters import CASTERS
@@ -316,6 +317,44 @@ def test_the_projection_with_no_far_plane_keeps_what_is_at_infinity():
     points = np.random.default_rng(3).normal(size=(10, 3)) - [0, 0, 5]
     ends = extruded(points, Light(np.array([0, 0, 3, 1.0])), 0) @ camera.infinite_projection.T
     np.testing.assert_allclose(ends[:, 2] / ends[:, 3], 1, atol=1e-12)
+
+
+# Out of a depth map
+
+
+@pytest.mark.parametrize("shapes", [objects, street])
+@pytest.mark.parametrize("kind", LIGHTS)
+def test_volumes_of_a_finer_map_are_nearer_to_rays(shapes, kind):
+    scene = scene_of(shapes(), kind)
+    si, lit, sides = shaded(scene)
+
+    def share(resolution):
+        parts = scene.sensors()[0], scene.emitters()[0]
+        dark = np.array(hybrid_shadow(scene, *parts, resolution, jump=8).lit(si.p, si.n)) == 0
+        return (dark == lit)[sides].mean()
+
+    assert share(256) < share(64) / 3
+    assert share(256) < 0.02
+
+
+@pytest.mark.parametrize("kind", LIGHTS)
+def test_a_slanted_ground_is_not_torn(kind):
+    """Its depths change from texel to texel, but do not jump."""
+    ground = {"type": "rectangle", "to_world": mi.ScalarTransform4f().scale(9)}
+    scene = scene_of({"ground": ground}, kind)
+    si, lit, _ = shaded(scene)
+    volumes = hybrid_shadow(scene, scene.sensors()[0], scene.emitters()[0], resolution=32, jump=8)
+    assert lit.mean() > 0.8
+    assert np.all(np.array(volumes.lit(si.p, si.n))[lit] == 1)
+
+
+def test_without_walls_all_is_lit():
+    scene = scene_of(objects())
+    si, _, _ = shaded(scene)
+    parts = scene.sensors()[0], scene.emitters()[0]
+    torn = hybrid_shadow(scene, *parts, resolution=8, jump=0)
+    for volumes in (torn, volumes_of(scene, [])):
+        assert np.all(np.array(volumes.lit(si.p, si.n)) == 1)
 
 
 # What is refused

@@ -23,16 +23,15 @@ faster where there are many. There is no indirect light, and no derivative
 of the shadows; other lights than these three are refused, and cameras that are not perspective.
 """
 
-from brdfkit.errors import BrdfkitError
 from brdfkit.host.declared import declared, plain_number, word
 from brdfkit.host.direct_light import direct_light
 from brdfkit.host.reference_shadow import beside_a_shadow
 from brdfkit.host.variants import refuse_scalar
-from brdfkit.projective.camera import Camera
 from brdfkit.projective.light import Light
 from brdfkit.shadow_volumes.casters import CASTERS
 from brdfkit.shadow_volumes.light_volumes import FAR_PLANES, METHODS, LightVolumes
 from brdfkit.shadow_volumes.mesh import Mesh
+from brdfkit.shadow_volumes.pinhole import pinhole
 from brdfkit.shadow_volumes.silhouettes import SILHOUETTES
 from brdfkit.shadow_volumes.volume import BACK_CAPS
 
@@ -61,11 +60,10 @@ def define(mi):
 
         def shadow(self, meshes, sensor, emitter):
             """The `LightVolumes` of an `emitter`."""
-            require_pinhole(sensor)
             return LightVolumes(
                 meshes,
                 Light.of_emitter(emitter),
-                Camera.of_sensor(sensor),
+                pinhole(sensor),
                 self.method,
                 self.far_plane,
                 max(sensor.film().size()),
@@ -80,17 +78,6 @@ def define(mi):
             return direct_light(si, sampler, self.lights, active), active, []
 
     return ShadowVolumes
-
-
-def require_pinhole(sensor):
-    """Raise `BrdfkitError` for a camera with a lens: its rays do not come from one eye."""
-    import mitsuba as mi
-
-    if "aperture_radius" in mi.traverse(sensor):
-        raise BrdfkitError(
-            "shadow_volume counts along rays from one eye, and a thinlens camera has a whole lens; "
-            "use a perspective camera."
-        )
 
 
 def reference():

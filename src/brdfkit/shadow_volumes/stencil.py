@@ -40,6 +40,8 @@ class Stencil:
         1/z above `least` and up to `most`."""
         import mitsuba as mi
 
+        if not self.tests:
+            return dr.zeros(mi.Int32, dr.width(x))
         tile = self.tile(x, y)
         start = dr.gather(mi.UInt32, self.begins, tile, active)
         end = dr.gather(mi.UInt32, self.begins, tile + 1, active)

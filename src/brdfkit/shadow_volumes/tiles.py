@@ -21,6 +21,8 @@ def faces_by_tile(edges, halvings):
     face = dr.arange(mi.UInt32, len(edges))
     column, row = dr.zeros(mi.UInt32, len(edges)), dr.zeros(mi.UInt32, len(edges))
     for level in range(halvings + 1):
+        if not len(face):
+            break
         within = may_be_in(factors, face, column, row, dr.opaque(mi.Float, 1 / 2**level))
         kept = dr.compress(within)
         face, column, row = (dr.gather(mi.UInt32, part, kept) for part in (face, column, row))
@@ -30,7 +32,7 @@ def faces_by_tile(edges, halvings):
         face = dr.repeat(face, 4)
         column = 2 * dr.repeat(column, 4) + quarter % 2
         row = 2 * dr.repeat(row, 4) + quarter // 2
-    tile = np.array(row * 2**level + column)
+    tile = np.array(row) * 2**level + np.array(column)
     order = np.argsort(tile, kind="stable")
     begins = np.searchsorted(tile[order], np.arange(4**level + 1))
     return mi.UInt32(np.array(face)[order]), mi.UInt32(begins), 2**level
