@@ -46,9 +46,9 @@ def surface_of(depths, projection, jump):
     points = np.stack(projection.from_map(x, y, depths), axis=-1)
     beside = np.stack(projection.from_map(x + 2 / n, y, depths), axis=-1)
     width = np.linalg.norm(beside - points, axis=-1)
-    distance = distances(projection.light, points)
+    way = projection.light.way(*np.moveaxis(points, -1, 0))
     whole = corners(hit).all(axis=0)
-    whole &= np.ptp(corners(distance), axis=0) <= jump * corners(width).max(axis=0)
+    whole &= np.ptp(corners(way), axis=0) <= jump * corners(width).max(axis=0)
     a, b, c, d = corners(np.arange(n * n).reshape(n, n))[:, whole]
     triangles = np.concatenate([np.column_stack([a, b, d]), np.column_stack([a, d, c])])
     return Mesh("the depth map", points.reshape(-1, 3), triangles)
@@ -57,10 +57,3 @@ def surface_of(depths, projection, jump):
 def corners(values):
     """The values (4, n - 1, n - 1) at the corners of the cells between texels (n, n)."""
     return np.stack([values[:-1, :-1], values[:-1, 1:], values[1:, :-1], values[1:, 1:]])
-
-
-def distances(light, points):
-    """How far points (..., 3) are behind a `Light`, of one far away from any plane."""
-    if light.is_directional:
-        return -points @ light.point[:3]
-    return np.linalg.norm(points - light.point[:3], axis=-1)
