@@ -154,6 +154,28 @@ def test_a_light_in_a_room():
         assert wrong(scene, method=method) == 0
 
 
+def round_shapes():
+    """Shapes of Mitsuba's without triangles; the cylinder is a tube, open at both ends."""
+    t = mi.ScalarTransform4f
+    return {
+        "ground": {"type": "disk", "to_world": t().scale(4)},
+        "ball": {"type": "sphere", "center": [-0.8, 0, 1], "radius": 0.7},
+        "tube": {"type": "cylinder", "p0": [1, 1, 0.3], "p1": [1.3, 1, 1.5], "radius": 0.5},
+        "plate": {"type": "disk", "to_world": t().translate([0.5, -1.2, 0.7]).scale(0.6)},
+    }
+
+
+@pytest.mark.parametrize("kind", LIGHTS)
+def test_the_picture_is_that_of_direct_light(kind):
+    """Mitsuba draws the same samples, of round shapes where ours are of triangles."""
+    scene = scene_of(round_shapes(), kind)
+    ours = np.array(picture(scene))
+    rays = np.array(mi.load_dict({"type": "direct"}).render(scene, spp=1))
+    different = np.any(np.abs(ours - rays) > 1e-4 * rays.max(), axis=2).ravel()
+    assert not np.any(different & ~border(scene, shaded(scene)[1]))
+    assert different.mean() < 1e-3
+
+
 def crossings(points, mesh, place):
     """How many triangles lie between `points` (n, 3) and a `place`, each by its own equation."""
     a, b, c = mesh.points[mesh.triangles].transpose(1, 0, 2)
@@ -308,6 +330,20 @@ def test_both_ways_to_silhouettes_agree():
             )
             assert one == other
             assert one
+
+
+def test_what_a_ball_takes():
+    """E = 3 F / 2 edges, of which some √E are the silhouette, a closed way; a few kB of memory."""
+    scene = scene_of(objects())
+    mesh = next(mesh for mesh in meshes_of(scene) if len(mesh.triangles) > 12)
+    volumes = volumes_of(scene, [mesh], casters="light_facing")
+    edges, (volume,) = len(mesh.shared_edges[0]), volumes.volumes
+    assert edges == 3 * len(mesh.triangles) / 2
+    assert np.sqrt(edges) / 2 < len(volume.walls) < 3 * np.sqrt(edges)
+    ends = volume.walls.corners[:, :2, :3]
+    assert {tuple(p) for p in ends[:, 0]} == {tuple(p) for p in ends[:, 1]}
+    faces = len(volume.walls) + len(volume.front) + len(volume.back)
+    assert 80 * faces < volumes.stencil.memory < 400 * faces + 4 * 32**2
 
 
 @pytest.mark.quick

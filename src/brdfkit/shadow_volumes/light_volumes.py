@@ -12,6 +12,7 @@ from brdfkit.shadow_volumes.volume import Faces, shadow_volume
 METHODS = ("depth_fail", "depth_pass")
 FAR_PLANES = ("infinite", "finite")
 TILE = 4  # pixels along a side of a tile, about
+GRAZING = 1e-3  # the least cosine by which a ray is taken to leave a surface
 
 
 class LightVolumes:
@@ -40,7 +41,8 @@ class LightVolumes:
         self.to_picture = mi.Matrix4f(picture_matrix(camera))
         self.light = mi.Vector4f(light.point)
         self.near, self.far = mi.Float(1 / camera.near), mi.Float(1 / camera.far)
-        dr.make_opaque(self.to_picture, self.light, self.near, self.far)
+        self.eye = mi.Point3f(camera.position)
+        dr.make_opaque(self.to_picture, self.light, self.near, self.far, self.eye)
 
     def lit(self, p, n, active=True):
         """1 where the light arrives at points `p` of surfaces with normals `n`, else 0."""
@@ -49,13 +51,16 @@ class LightVolumes:
         return dr.select(self.count(self.off_surface(p, n), active) == 0, mi.Float(1), 0)
 
     def off_surface(self, p, n):
-        """Points `p`, moved to the light's side of their surfaces, as rays of shadow begin there:
-        so that no cap lies where it is looked for."""
+        """Points `p`, moved along the camera's rays until they are as far from their surfaces, on
+        the light's side, as rays of shadow begin: so that no cap lies where it is looked for."""
         import mitsuba as mi
 
         to_light = self.light.xyz - self.light.w * mi.Vector3f(p)
         step = (1 + dr.max(dr.abs(p))) * mi.math.RayEpsilon
-        return p + dr.mulsign(step, dr.dot(n, to_light)) * n
+        ray = dr.normalize(p - self.eye)
+        slope = dr.dot(n, ray)
+        slope = dr.mulsign(dr.maximum(dr.abs(slope), GRAZING), slope)
+        return p + ray * dr.mulsign(step, dr.dot(n, to_light)) / slope
 
     def count(self, p, active=True):
         """How many volumes points `p` are in (`mi.Int32`), as far as the method counts right."""

@@ -18,28 +18,32 @@ def tessellated(shape):
     """
     import mitsuba as mi
 
-    kind = shape.shape_type()
-    if kind == int(mi.ShapeType.Sphere):
-        along, poles, axis = UPWARDS, (0, UPWARDS), 0
-    elif kind == int(mi.ShapeType.Cylinder):
-        along, poles, axis = 1, (), 0
-    elif kind == int(mi.ShapeType.Disk):
-        along, poles, axis = 1, (0,), 1  # u is the radius, v the angle
+    kind = shape.class_name()
+    if kind == "Sphere":
+        theta = np.linspace(0, np.pi, UPWARDS + 1)
+        points, triangles = turned(np.sin(theta), np.cos(theta), poles=(0, UPWARDS))
+    elif kind == "Cylinder":
+        points, triangles = turned(np.ones(2), np.arange(2.0))
+    elif kind == "Disk":
+        points, triangles = turned(np.arange(2.0), np.zeros(2), poles=(0,))
     else:
         raise BrdfkitError(
             f"{shape.id()}: shadow volumes are made of triangles, and this shape "
-            f"({shape.class_name()}) has none; replace it by a mesh."
+            f"({kind}) has none; replace it by a mesh."
         )
-    row, column = np.divmod(np.arange((along + 1) * AROUND), AROUND)
-    uv = [column / AROUND, row / along]
-    u, v = (mi.Float(value) for value in (uv if axis == 0 else uv[::-1]))
-    points = np.array(shape.eval_parameterization(mi.Point2f(u, v)).p, float).T
-    return points, grid(along, poles)
+    to_world = np.array(mi.traverse(shape)["to_world"].matrix, float).reshape(4, 4)
+    return points @ to_world[:3, :3].T + to_world[:3, 3], triangles
 
 
-def grid(along, poles):
-    """The triangles of a strip that closes around; a row that is one of the `poles` is a point."""
-    row, column = np.divmod(np.arange(along * AROUND), AROUND)
+def turned(radius, height, poles=()):
+    """Points (n, 3) and triangles (m, 3) of a line, `radius` (k,) by `height` (k,), turned about z.
+
+    poles : the numbers of the line's points that lie on the axis.
+    """
+    phi = np.arange(AROUND) * 2 * np.pi / AROUND
+    points = np.stack([np.outer(radius, np.cos(phi)), np.outer(radius, np.sin(phi))], axis=-1)
+    points = np.dstack([points, np.repeat(height, AROUND).reshape(-1, AROUND)]).reshape(-1, 3)
+    row, column = np.divmod(np.arange((len(radius) - 1) * AROUND), AROUND)
 
     def number(row, column):
         return row * AROUND + np.where(np.isin(row, poles), 0, column % AROUND)
@@ -47,5 +51,5 @@ def grid(along, poles):
     a, b = number(row, column), number(row, column + 1)
     c, d = number(row + 1, column), number(row + 1, column + 1)
     triangles = np.concatenate([np.column_stack([a, c, d]), np.column_stack([a, d, b])])
-    ends = triangles, np.roll(triangles, 1, axis=1)
-    return triangles[np.all(ends[0] != ends[1], axis=1)]
+    flat = np.any(triangles == np.roll(triangles, 1, axis=1), axis=1)
+    return points, triangles[~flat]
