@@ -8,6 +8,10 @@ import numpy as np
 from brdfkit.errors import BrdfkitError
 
 
+class Empty(BrdfkitError):
+    """There is no volume, so nothing to be shadowed."""
+
+
 @dataclass(frozen=True)
 class Body:
     """A convex body of the corners (n, 3) within the planes (m, 4): a·x + d ≤ 0 inside."""
@@ -19,7 +23,7 @@ class Body:
     def around(cls, points):
         """The convex hull of points (n, 3).
 
-        Raises `BrdfkitError` where they enclose no volume.
+        Raises `Empty` where they enclose no volume.
         """
         from scipy.spatial import ConvexHull, QhullError
 
@@ -27,7 +31,7 @@ class Body:
         try:
             hull = ConvexHull(points)
         except (QhullError, ValueError) as error:
-            raise BrdfkitError("the part of the scene to be shadowed has no volume.") from error
+            raise Empty("the part of the scene to be shadowed has no volume.") from error
         return cls(points[hull.vertices], hull.equations)
 
     @cached_property
@@ -41,13 +45,13 @@ class Body:
         return inside + volumes @ sides.sum(axis=1) / (4 * volumes.sum())
 
     def __and__(self, other):
-        """What two bodies share; `BrdfkitError` where they share no volume."""
+        """What two bodies share; `Empty` where they share no volume."""
         from scipy.spatial import HalfspaceIntersection
 
         planes = np.vstack([self.planes, other.planes])
         inside = _innermost(planes)
         if inside is None:
-            raise BrdfkitError("no part of the scene is before the camera and in the light.")
+            raise Empty("no part of the scene is before the camera and in the light.")
         return Body.around(HalfspaceIntersection(planes, inside).intersections)
 
     def towards(self, light, length):

@@ -43,8 +43,8 @@ def view(light, corners, middle):
     before = rays @ axis
     if not before.min() > NEAREST / 2 * before.max():
         raise BrdfkitError(
-            "the light is among what it shadows: one map cannot look all around; use a spot light, "
-            "or move the light out of the scene's box."
+            "the light is among what it shadows: one map cannot look all around; use "
+            "partition='cube', or move the light out of the scene's box."
         )
     matrix = np.zeros((4, 4))
     matrix[:3, :3] = axes_about(-q / np.linalg.norm(q))

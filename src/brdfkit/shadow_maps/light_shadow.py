@@ -19,7 +19,7 @@ class LightShadow:
     scene : a `mi.Scene`.
     placement : the `Placement` of the camera and the light in it.
     projection, filter, partition : names of files in the folders of those names.
-    resolution : texels along a side of each map.
+    resolution : texels along a side of each map; `tiled` shares out those of one map.
     bias : a `Bias`.
     depth : what maps hold: "projected", the third coordinate of the projection's cube, in which
         planes stay planes, or "linear", the way of the light.
@@ -40,23 +40,31 @@ class LightShadow:
     ):
         names = {"projection": projection, "filter": filter, "partition": partition}
         chosen = techniques(names, settings)
-        if depth not in DEPTHS:
-            raise no_such("depth", depth, DEPTHS)
-        linear = LightDepth.through(placement) if depth == "linear" else None
-        self.parts = chosen["partition"](placement, chosen["projection"])
-        see = seen_by(filter)
+        project = _holding(depth, chosen["projection"], placement)
+        shared = chosen["partition"](scene, placement, project, resolution)
+        self.which = shared.which
+        reach, see = placement.reach, seen_by(filter)
         self.maps = [
-            ShadowMap(scene, projection, placement.reach, chosen["filter"], resolution, bias, see)
-            for projection in (replace(part.projection, depth=linear) for part in self.parts)
+            ShadowMap(scene, part.projection, reach, chosen["filter"], part.resolution, bias, see)
+            for part in shared.parts
         ]
 
     def lit(self, p, n, active=True):
         """The share of the light, in [0, 1], that arrives at points `p` with normals `n`."""
         import mitsuba as mi
 
-        found, left = mi.Float(1), mi.Bool(active)
-        for part, its_map in zip(self.parts, self.maps, strict=True):
-            here = left & part.contains(p)
-            found = dr.select(here, its_map.lit(p, n, here), found)
-            left &= ~here
-        return found
+        part = self.which(p)
+        inside = mi.Bool(active) & (part < len(self.maps))
+        # all look-ups have the same code, and so a kernel has it once, however many parts there are
+        lit = dr.switch(part, [each.lit for each in self.maps], p, n, inside)
+        return dr.select(inside, lit, 1)
+
+
+def _holding(depth, project, whole):
+    """`project`, its maps holding this depth; linear ones the same for all parts of the whole."""
+    if depth not in DEPTHS:
+        raise no_such("depth", depth, DEPTHS)
+    if depth == "projected":
+        return project
+    linear = LightDepth.through(whole)
+    return lambda placement: replace(project(placement), depth=linear)

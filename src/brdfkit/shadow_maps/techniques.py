@@ -18,7 +18,7 @@ from brdfkit.shadow_maps.depth_pass import depth_pass
 MADE_BY = {
     "projection": (projections, "projection"),
     "filter": (filters, "Lookup"),
-    "partition": (partitions, "parts"),
+    "partition": (partitions, "partition"),
 }
 FILES = {
     kind: {

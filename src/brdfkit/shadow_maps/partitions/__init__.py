@@ -1,5 +1,6 @@
 """One way to share a scene among several maps a file, by the file's name; found by being there.
 
-Each has `parts(placement, project)`, the list of `Part`s of a `Placement`, first come, first
-served; `project` makes the `Projection` of a placement.
+Each has `partition(scene, placement, project, resolution, ...)`, the `Partition` of a `mi.Scene`
+under a `Placement`: `project(placement)` makes the `Projection` of a map, `resolution` is how many
+texels it has along a side. More arguments are its `SETTINGS`.
 """

@@ -1,9 +1,9 @@
 """One map for all."""
 
-from brdfkit.shadow_maps.part import Part
+from brdfkit.shadow_maps.partition import Part, Partition
 
 
-def parts(placement, project):
+def partition(scene, placement, project, resolution):
     import mitsuba as mi
 
-    return [Part(project(placement), lambda p: mi.Bool(True))]
+    return Partition([Part(project(placement), resolution)], lambda p: mi.UInt32(0))
