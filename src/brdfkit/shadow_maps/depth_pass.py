@@ -25,8 +25,9 @@ def rays_of_light(scene, opaque, resolution):
 
     index = dr.arange(mi.UInt32, resolution**2)
     texel = dr.opaque(mi.Float, 2 / resolution)
-    x = (mi.Float(index % resolution) + 0.5) * texel - 1
-    y = (mi.Float(index // resolution) + 0.5) * texel - 1
+    side = dr.opaque(mi.UInt32, resolution)
+    x = (mi.Float(index % side) + 0.5) * texel - 1
+    y = (mi.Float(index // side) + 0.5) * texel - 1
     return ray_of_light(opaque, x, y, scene.bbox())
 
 

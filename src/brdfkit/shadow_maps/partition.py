@@ -1,4 +1,4 @@
-"""What shares a scene among several shadow maps: the parts, and which of them a point belongs to."""
+"""A scene shared among several shadow maps: its parts, and to which of them a point belongs."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -22,7 +22,7 @@ class SeenSurfaces:
 
 
 def seen_surfaces(scene, camera):
-    """The `SeenSurfaces` of a `Camera` in a `mi.Scene`; `BrdfkitError` where all of its rays miss."""
+    """What a `Camera` sees of a `mi.Scene`; `BrdfkitError` where all of its rays miss."""
     import mitsuba as mi
 
     places = (np.arange(SIDE) + 0.5) / SIDE * 2 - 1
@@ -41,7 +41,7 @@ def seen_surfaces(scene, camera):
 
 
 def lit(scene, light, seen):
-    """Whether the light (a `Light`) reaches the points of a `SeenSurfaces`: (n,) booleans, by rays."""
+    """Whether a `Light` reaches the points of `SeenSurfaces`: (n,) booleans, by rays."""
     import mitsuba as mi
 
     si = dr.zeros(mi.SurfaceInteraction3f, len(seen.points))

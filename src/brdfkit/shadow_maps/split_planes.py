@@ -1,4 +1,4 @@
-"""Planes across the view that part what a camera sees: where they are, and between which a point is.
+"""Planes across the view that part what a camera sees, and between which of them a point is.
 
 Of the depths from n to f, plane i of m is at
 

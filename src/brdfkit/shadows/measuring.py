@@ -68,17 +68,16 @@ def use_of_maps(shadow, seen, placement):
 
     height, width = seen.size
     camera = Projection.by(placement.camera.matrix, placement.light).opaque()
-    p, n, left = seen.si.p, seen.si.n, mi.Bool(seen.facing)
+    p, n = seen.si.p, seen.si.n
+    part, facing = shadow.which(p), mi.Bool(seen.facing)
     places, areas = [], []
-    for part, its_map in zip(shadow.parts, shadow.maps, strict=True):
-        here = left & part.contains(p)
+    for number, its_map in enumerate(shadow.maps):
         x, y, _ = its_map.projection.to_map(*p)
         texels = its_map.projection, its_map.resolution
         e = aliasing(texels, (camera, (width, height)), p, n)
-        chosen = np.array(here)
+        chosen = np.array(facing & (part == number))
         places.append((np.array([x, y]).T[chosen] + 1) / 2)
         areas.append(np.array(e)[chosen])
-        left &= ~here
     return share_used(places), aliasing_error(np.concatenate(areas))
 
 

@@ -2,7 +2,8 @@
 
 The planes are those of `split_planes`, which knows three spacings. Near slices are small, so their
 texels are: with m slices, and logarithmic planes, texels shrink to m (n/f)^(1 - 1/m) or so of those
-of one map [Zhang et al. 2006]. Each slice has a projection of its own, of any kind.
+of one map [Zhang et al. 2006]. Each slice has a projection of its own, of any kind but `uniform`,
+whose maps would be the same.
 
 n and f are of the `surfaces` that the camera sees (sample distribution shadow maps, [Lauritzen et
 al. 2011]), or of its own planes, drawn in to the box of the scene. That box often begins at the
@@ -13,6 +14,7 @@ shadows crawl (`stable_cascades` do not).
 """
 
 from dataclasses import replace
+from itertools import pairwise
 
 from brdfkit.host.declared import word
 from brdfkit.shadow_maps import split_planes
@@ -33,8 +35,5 @@ def partition(scene, placement, project, resolution, parts, spacing, ends):
         near, far = (1 - ROOM) * depths.min(), (1 + ROOM) * depths.max()
         camera = camera.between(max(near, camera.near), min(far, camera.far))
     planes = split_planes.split_planes(camera.near, camera.far, parts, spacing)
-    slices = [
-        replace(placement, camera=camera.between(*ends))
-        for ends in zip(planes[:-1], planes[1:], strict=True)
-    ]
+    slices = [replace(placement, camera=camera.between(*pair)) for pair in pairwise(planes)]
     return filled(slices, project, resolution, split_planes.by_depth(camera, planes))

@@ -4,12 +4,14 @@ The map of a slice encloses the ball around it, whose radius does not depend on 
 turned, looks along the light with axes that only the light determines, and moves by whole texels:
 so a border of a shadow is made of the same texels from picture to picture, and does not crawl. This
 costs resolution: the ball is wider than the slice, and nothing is fitted to what is there
-[Valient 2009].
+[Valient 2008].
 
 For directional lights. The maps are orthographic whatever the `projection`: one that bends texels
 could not keep them. Slices begin at the eye and end at the scene's diagonal, or from outside the
 scene at 2, 4, 8 ... times that: radii stay the same between these steps, where they change.
 """
+
+from itertools import pairwise
 
 import numpy as np
 
@@ -32,10 +34,7 @@ def partition(scene, placement, project, resolution, parts, spacing):
     far = farthest(placement)
     planes = split_planes.split_planes(NEAREST * far, far, parts, spacing)
     planes[0] = 0
-    maps = [
-        Part(snapped(placement, *ends, resolution), resolution)
-        for ends in zip(planes[:-1], planes[1:], strict=True)
-    ]
+    maps = [Part(snapped(placement, *ends, resolution), resolution) for ends in pairwise(planes)]
     return Partition(maps, split_planes.by_depth(placement.camera, planes))
 
 
@@ -63,4 +62,4 @@ def ball(camera, near, far):
     """The least ball about a slice: its centre's depth, on the axis of the view, and its radius."""
     t2 = camera.slope_x**2 + camera.slope_y**2
     centre = min(far, (near + far) * (1 + t2) / 2)
-    return centre, max(np.hypot(near - centre, near * t2**0.5), np.hypot(far - centre, far * t2**0.5))
+    return centre, max(np.hypot(depth - centre, depth * t2**0.5) for depth in (near, far))
