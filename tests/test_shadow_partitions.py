@@ -14,6 +14,7 @@ from shadow_scenes import LIGHTS, objects_on_a_ground, seen_from
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.projective.camera import Camera
+from brdfkit.shadow_maps.bias import Bias
 from brdfkit.shadow_maps.light_shadow import LightShadow
 from brdfkit.shadow_maps.partitions import adaptive, tiled
 from brdfkit.shadow_maps.partitions.stable_cascades import snapped
@@ -28,6 +29,7 @@ ONLY = {"cube": ("point", "spot"), "stable_cascades": ("directional",)}  # the l
 CASES = [(kind, name) for name in FILES["partition"] for kind in ONLY.get(name, LIGHTS)]
 UNFIT = [("cube", "directional"), ("stable_cascades", "point")]
 SIZE = 128
+BIAS = Bias(constant=5e-4, plane=True)  # 0.25 m in the street; its houses are 0.6 m apart
 
 
 @cache
@@ -50,7 +52,7 @@ def street():
 def wrong(scene, resolution, **technique):
     """The share of the picture where a technique's shadow is not that of rays."""
     scene, placement, si, facing, lit = viewed(scene)
-    shadow = LightShadow(scene, placement, resolution=resolution, **technique)
+    shadow = LightShadow(scene, placement, resolution=resolution, bias=BIAS, **technique)
     return ((np.array(shadow.lit(si.p, si.n)) != lit) & facing).sum() / facing.sum()
 
 
@@ -82,7 +84,7 @@ def test_every_point_seen_is_on_the_map_of_one_part(kind, partition, projection)
 
 
 def test_a_street_gains_by_parts_of_as_many_texels_in_all():
-    """Measured: 0.49 % wrong of one map of 1024², 0.18 % of four maps of 512², at 256² pixels."""
+    """Measured, at 256² pixels: 0.73 % is wrong by one map of 1024², 0.18 % by four of 512²."""
     whole = wrong(street, 512)
     assert wrong(street, 256, partition="parallel_split") < 0.7 * whole
     assert wrong(street, 128, partition="adaptive") < 0.7 * whole
