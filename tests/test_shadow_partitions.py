@@ -1,6 +1,6 @@
 """Shadow maps that share a scene: where its parts are, that they are all of it, and what they gain.
 
-What each must do is checked in the street, whose far end is 200 times as far as its near one.
+What parts gain is checked in the street, which is seen from 3 m on to 60 times as far.
 """
 
 from dataclasses import replace

@@ -1,8 +1,8 @@
 """A cube of maps around a light at a place, for one among what it shadows.
 
 Each face is a square spot light of 90°, along an axis of the world, and has a map of its own, of
-any projection. Faces in which the camera sees nothing have none. A third of a face's texels are in
-its corners, and the smallest: its middle is the coarsest part.
+any projection. Faces in which the camera sees nothing have none. Of a plain face, a texel in a
+corner has a fifth of the solid angle of one in the middle, cos³θ: the middle is the coarsest part.
 """
 
 from dataclasses import replace
