@@ -14,7 +14,6 @@ from shadow_scenes import LIGHTS, objects_on_a_ground, seen_from
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.projective.camera import Camera
-from brdfkit.shadow_maps.bias import Bias
 from brdfkit.shadow_maps.light_shadow import LightShadow
 from brdfkit.shadow_maps.partitions import adaptive, tiled
 from brdfkit.shadow_maps.partitions.stable_cascades import snapped
@@ -29,7 +28,6 @@ ONLY = {"cube": ("point", "spot"), "stable_cascades": ("directional",)}  # the l
 CASES = [(kind, name) for name in FILES["partition"] for kind in ONLY.get(name, LIGHTS)]
 UNFIT = [("cube", "directional"), ("stable_cascades", "point")]
 SIZE = 128
-BIAS = Bias(constant=5e-4, plane=True)  # 0.25 m in the street; its houses are 0.6 m apart
 
 
 @cache
@@ -52,7 +50,7 @@ def street():
 def wrong(scene, resolution, **technique):
     """The share of the picture where a technique's shadow is not that of rays."""
     scene, placement, si, facing, lit = viewed(scene)
-    shadow = LightShadow(scene, placement, resolution=resolution, bias=BIAS, **technique)
+    shadow = LightShadow(scene, placement, resolution=resolution, **technique)
     return ((np.array(shadow.lit(si.p, si.n)) != lit) & facing).sum() / facing.sum()
 
 

@@ -12,8 +12,8 @@ bad at. Their settings are parameters here, of which those of other techniques a
 
 A bias keeps lit surfaces out of their own shadow. By default each texel is compared with the depth
 of the surface's own plane in its middle (`plane_bias`), less `bias` of the light's way through the
-scene; of twelve biases, that kept most contacts of those without acne, over eight scenes with low
-suns and curved objects. `slope_bias` and `normal_offset` are what games use in its place.
+scene: of the biases that were tried, the one with the least wrong light over low suns, curved
+objects, a street and foliage. `slope_bias` and `normal_offset` are what games use in its place.
 
 Derivatives by the geometry go through `variance`, `exponential_variance` and `moment`, silhouettes
 included; those through filters that compare are 0. There is no indirect light, and other lights

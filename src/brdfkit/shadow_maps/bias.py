@@ -25,4 +25,4 @@ class Bias:
     plane: bool = False
 
 
-AUTOMATIC = Bias(constant=1e-3, plane=True)
+AUTOMATIC = Bias(constant=5e-4, plane=True)
