@@ -15,7 +15,8 @@ class Scores:
     psnr : float
         Q3, of the picture lit by this light alone, against the one with exact shadows [dB].
     wrong : float
-        The share of light that is wrong where the surface faces the light: mean |lit - exact|.
+        The share of light that is wrong where the surface faces the light: the mean difference
+        from exact shadows.
     acne : float
         The share of light that lit surfaces lack, away from shadows.
     texture_use : float
