@@ -15,6 +15,9 @@ BLOCKS = re.compile(r"```python\n(.*?)```", re.DOTALL)
 PROGRAMS = {page: "".join(BLOCKS.findall(page.read_text(encoding="utf-8"))) for page in PAGES}
 SMALLER = {  # what shows as well that a line runs, and at once
     r"spp=\d+, size=\d+": "spp=1, size=16",
+    r"size=\(\d+, \d+\)": "size=(16, 16)",
+    r"resolution=\d+": "resolution=64",
+    r"spp=\d+\)": "spp=1)",
     r'"(?:car_paint|satin_plastic)"': '"small.npz"',
     r'"brushed_aluminium"': '"brushed.npz"',
 }

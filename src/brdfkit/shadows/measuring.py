@@ -11,7 +11,7 @@ from brdfkit.shadow_maps.bias_errors import acne
 from brdfkit.shadow_maps.light_shadow import LightShadow
 from brdfkit.shadow_maps.projection import Projection
 from brdfkit.shadows.aliasing_error import aliasing_error
-from brdfkit.shadows.camera_path import path
+from brdfkit.shadows.camera_path import path, seen_by_all
 from brdfkit.shadows.scores import Scores
 from brdfkit.shadows.stability import flicker
 from brdfkit.shadows.texture_use import share_used
@@ -85,11 +85,12 @@ def unsteadiness(seen, placement, technique):
     """The flicker of the shadow on points that keep their places, while the camera moves."""
     import mitsuba as mi
 
-    watched = mi.UInt32(np.flatnonzero(seen.facing)[::EVERY])
-    p = dr.gather(mi.Point3f, seen.si.p, watched)
-    n = dr.gather(mi.Normal3f, seen.si.n, watched)
-    exact = seen.exact[np.array(watched)]
+    placements = path(placement)
+    watched = np.flatnonzero(seen.facing)[::EVERY]
+    watched = watched[seen_by_all(placements, np.array(seen.si.p).T[watched])]
+    index = mi.UInt32(watched)
+    p, n = dr.gather(mi.Point3f, seen.si.p, index), dr.gather(mi.Normal3f, seen.si.n, index)
     shares = [
-        np.array(LightShadow(seen.scene, moved, **technique).lit(p, n)) for moved in path(placement)
+        np.array(LightShadow(seen.scene, moved, **technique).lit(p, n)) for moved in placements
     ]
-    return flicker(shares, [exact] * len(shares))
+    return flicker(shares, [seen.exact[watched]] * len(shares))
