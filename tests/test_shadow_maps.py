@@ -1,10 +1,12 @@
 """Shadow maps of every light against shadow rays."""
 
+import mitsuba as mi
 import numpy as np
 import pytest
-from shadow_scenes import LIGHTS, objects_on_a_ground, placement_of, seen_from
+from shadow_scenes import LIGHTS, light, objects_on_a_ground, placement_of, seen_from
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.projective.camera import Camera
 from brdfkit.shadow_maps.light_shadow import DEPTHS, LightShadow
 from brdfkit.shadow_maps.techniques import FILES
 
@@ -73,3 +75,34 @@ def test_a_light_among_the_objects_is_one_sentence():
     placement.light.point[:3] = [2, 2, 1]
     with pytest.raises(BrdfkitError, match="one map cannot look all around"):
         LightShadow(scene, placement)
+
+
+TECHNIQUES = [(kind, name) for kind, files in FILES.items() for name in files]
+
+
+@pytest.mark.parametrize(("kind", "name"), TECHNIQUES)
+def test_the_integrator_takes_every_technique_as_it_is(kind, name):
+    """Its picture is that of exact shadows, but for borders."""
+    lamp = "point" if name == "cube" else "directional"
+    scene = objects_on_a_ground(lamp, size=24)
+    technique = {"type": "shadow_map", "resolution": 256, kind: name}
+    picture, exact = (
+        np.array(mi.render(scene, integrator=mi.load_dict(each), spp=4, seed=1))
+        for each in (technique, {"type": "direct", "hide_emitters": True})
+    )
+    assert abs(picture.mean() / exact.mean() - 1) < 0.05
+
+
+def test_a_scene_without_shapes_is_one_sentence():
+    scene = mi.load_dict(
+        {"type": "scene", "camera": {"type": "perspective"}, "light": light("point")}
+    )
+    with pytest.raises(BrdfkitError, match="no shapes"):
+        placement_of(scene)
+
+
+def test_the_middle_of_a_thin_lens_is_the_camera():
+    lens = {"type": "thinlens", "aperture_radius": 0.1, "focus_distance": 3.0, "fov": 40}
+    found = Camera.of_sensor(mi.load_dict(lens))
+    pinhole = Camera.of_sensor(mi.load_dict({"type": "perspective", "fov": 40}))
+    np.testing.assert_allclose(found.matrix, pinhole.matrix)

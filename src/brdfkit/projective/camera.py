@@ -38,7 +38,8 @@ class Camera:
                 f"the camera is a {sensor.class_name()}; shadows by projection need a "
                 "perspective one."
             )
-        if any(_number(parameters, f"principal_point_offset_{axis}") for axis in "xy"):
+        offsets = [f"principal_point_offset_{axis}" for axis in "xy"]  # a thin lens has none
+        if any(_number(parameters, name) for name in offsets if name in parameters):
             raise BrdfkitError("the camera's principal point is off the middle; move it there.")
         slope = math.tan(math.radians(_number(parameters, "x_fov")) / 2)
         width, height = sensor.film().size()

@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from brdfkit.errors import BrdfkitError
 from brdfkit.projective.body import Body, box
 from brdfkit.projective.camera import Camera
 from brdfkit.projective.light import Light
@@ -27,6 +28,8 @@ class Placement:
         """Of Mitsuba's objects."""
         bounds = scene.bbox()
         low, high = (np.array(end, float).ravel() for end in (bounds.min, bounds.max))
+        if not np.isfinite([low, high]).all():
+            raise BrdfkitError("the scene has no shapes that could cast or take a shadow.")
         camera = Camera.of_sensor(sensor).fitted(box(low, high).corners)
         nearest = nearest_seen(scene, sensor, camera)
         return cls(camera, Light.of_emitter(emitter), low, high, nearest)

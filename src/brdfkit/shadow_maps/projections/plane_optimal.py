@@ -21,7 +21,9 @@ from brdfkit.shadow_maps.projections import focused
 
 
 def four_numbers(value):
-    """`value`, four numbers or a text of them, as an array (4,); None for an empty text."""
+    """`value`, four numbers or a text of them, as an array (4,); None for None or no text."""
+    if value is None:
+        return None
     numbers = value.split() if isinstance(value, str) else value
     try:
         found = np.array(numbers, float)
