@@ -1,0 +1,218 @@
+"""Section 2.1: stencil shadow volumes, against shadow rays."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from brdfkit.jit.llvm import use_variant
+from brdfkit.jit.threads import in_turn
+from brdfkit.projective.camera import Camera
+from brdfkit.projective.light import Light
+from brdfkit.reproducing.claims import Claim, verdict
+from brdfkit.reproducing.drawing import figure
+from brdfkit.reproducing.ergun2008.views import View
+from brdfkit.reproducing.page import Picture, Section
+from brdfkit.shadow_maps.scenes import SCENES, VIEWS
+from brdfkit.shadow_volumes.casters import CASTERS
+from brdfkit.shadow_volumes.light_volumes import METHODS, LightVolumes
+from brdfkit.shadow_volumes.mesh import Mesh
+from brdfkit.shadow_volumes.silhouettes import SILHOUETTES
+
+SECONDS = 30
+SIZE = 128
+NAMES = "objects_on_a_ground", "street"
+RAYS = 32  # along a side of a pixel, to find the borders of shadows
+TEXT = f"""Volumes of `objects_on_a_ground` and `street`, in pictures of {SIZE} × {SIZE} pixels.
+Pixels that face the light are compared to shadow rays; one that differs is wrong unless the border
+of a shadow goes through it, by {RAYS} × {RAYS} more rays. `foliage` is left out: each of its 48,000 triangles is an object of
+its own, and has walls of its own."""
+
+
+@in_turn
+def run(sources, report):
+    """The volumes, and the claims on them."""
+    use_variant()
+    differ, counted, done = dict.fromkeys(METHODS, 0), 0, 0
+    places = [(name, view) for name in NAMES for view in VIEWS]
+    for name, view in places:
+        seen = ByVolumes(SCENES[name](view, 1, (SIZE, SIZE)))
+        for method in METHODS:
+            differ[method] += seen.wrong(method=method)
+        counted += int(seen.facing.sum())
+        report(done := done + 1, len(places) + 3)
+    inside = ByVolumes(within_a_shadow())
+    report(done + 1, len(places) + 3)
+    claims = [
+        exact_claim(differ, counted, len(places)),
+        inside_claim(differ, inside),
+        near_claim(),
+        far_claim(),
+        length_claim(),
+        silhouettes_claim(),
+    ]
+    caption = (
+        "The eye in a shadow: what is lit by depth-pass, depth-fail and rays. From within, "
+        "depth-pass takes all that is in one more volume for lit, and what is lit for dark."
+    )
+    return Section(
+        "Stencil shadow volumes", TEXT, claims, [], [Picture("stencil", draw(inside), caption)]
+    )
+
+
+class ByVolumes:
+    """A scene's dictionary, with its shadows by rays and by volumes."""
+
+    def __init__(self, description):
+        self.view = View.by(description)
+        scene = self.view.scene
+        self.camera = Camera.of_sensor(scene.sensors()[0])
+        self.meshes = [Mesh.of_shape(shape) for shape in scene.shapes()]
+        self.exact, self.facing = self.view.seen.exact, self.view.seen.facing
+
+    def lit(self, **how):
+        """Whether (pixels,) the light arrives, by `LightVolumes`."""
+        light = Light.of_emitter(self.view.seen.emitter)
+        volumes = LightVolumes(self.meshes, light, self.camera, pixels=SIZE, **how)
+        si = self.view.seen.si
+        return np.array(volumes.lit(si.p, si.n)) == 1
+
+    def wrong(self, **how):
+        """How many pixels differ from rays, and have no border of a shadow in them."""
+        differ = np.flatnonzero((self.lit(**how) != self.exact) & self.facing)
+        return int((~self.on_border(differ)).sum())
+
+    def on_border(self, pixels):
+        """Whether shadow rays of many places in each of the `pixels` (k,) differ."""
+        import mitsuba as mi
+
+        if not len(pixels):
+            return np.zeros(0, bool)
+        seen, sensor = self.view.seen, self.view.scene.sensors()[0]
+        within = np.stack(np.meshgrid(*[(np.arange(RAYS) + 0.5) / RAYS] * 2), -1).reshape(-1, 2)
+        corner = np.column_stack([pixels % SIZE, pixels // SIZE])
+        places = ((corner[:, None] + within) / SIZE).reshape(-1, 2)
+        ray, _ = sensor.sample_ray(0.0, 0.5, mi.Point2f(places.T), mi.Point2f(0.5))
+        si = self.view.scene.ray_intersect(ray)
+        exact = replace(seen, si=si).exact.reshape(len(pixels), -1)
+        return np.ptp(exact.astype(int), axis=1) > 0
+
+    def share(self, **how):
+        """The share of the pixels that are wrong."""
+        return self.wrong(**how) / self.facing.sum()
+
+
+def objects(**camera):
+    """The dictionary of the objects in view V1, its camera changed."""
+    found = SCENES["objects_on_a_ground"]("V1", 1, (SIZE, SIZE))
+    return found | {"camera": found["camera"] | camera}
+
+
+def within_a_shadow():
+    """The same seen by an eye in one of its shadows, a little above the ground."""
+    import mitsuba as mi
+
+    view = View.by(objects())
+    dark = np.flatnonzero(view.seen.facing & ~view.seen.exact)
+    p = np.array(view.seen.si.p).T[dark]
+    x, y, z = p[np.argmin(np.linalg.norm(p - view.placement.camera.position, axis=1))]
+    eye = mi.ScalarTransform4f().look_at([x, y, z + 0.15], [0, 0, 0.5], [0, 0, 1])
+    return objects(to_world=eye)
+
+
+def exact_claim(differ, counted, places):
+    return Claim(
+        "Stencil volumes are exact in every pixel, by depth-fail.",
+        "2.1, 4.2",
+        "taken for the truth",
+        f"{differ['depth_fail']} of {counted:,} pixels in {places} pictures differ from shadow rays",
+        verdict(differ["depth_fail"] == 0),
+    )
+
+
+def inside_claim(differ, inside):
+    shares = [inside.share(method=method) for method in ("depth_pass", "depth_fail")]
+    return Claim(
+        "Depth-pass is right but where the eye is in a volume; depth-fail is right there, too.",
+        "2.1.2, 2.1.9",
+        "the statement",
+        f"outside {differ['depth_pass']} pixels differ; inside {100 * shares[0]:.1f} % by "
+        f"depth-pass, {100 * shares[1]:.1f} % by depth-fail",
+        verdict(differ["depth_pass"] == 0 and shares[0] > 0.1 and shares[1] == 0),
+        "So where a camera only looks from above, depth-pass is enough, and not depth-fail, as is "
+        "printed in 2.1.10.",
+    )
+
+
+def near_claim():
+    cut = ByVolumes(objects(near_clip=9.0))
+    shares = [cut.share(method=method) for method in ("depth_pass", "depth_fail")]
+    return Claim(
+        "Depth-pass fails where the near plane cuts a volume.",
+        "2.1.7",
+        "a picture",
+        f"{100 * shares[0]:.1f} % of the pixels; depth-fail {100 * shares[1]:.1f} %",
+        verdict(shares[0] > 0 == shares[1]),
+    )
+
+
+def far_claim():
+    cut = ByVolumes(objects(far_clip=14.0))
+    shares = [cut.share(far_plane=plane) for plane in ("finite", "infinite")]
+    return Claim(
+        "Depth-fail fails where the far plane cuts a volume, and a plane at infinity mends it.",
+        "2.1.7, 2.1.8",
+        "a picture",
+        f"{100 * shares[0]:.1f} % of the pixels, and {100 * shares[1]:.1f} %",
+        verdict(shares[0] > 0 == shares[1]),
+    )
+
+
+def length_claim():
+    seen, lengths = ByVolumes(objects()), (0.5, 2.0, 50.0)
+    shares = [seen.share(length=length) for length in lengths]
+    ours = (f"{100 * s:.1f} % at {length:g}" for s, length in zip(shares, lengths, strict=True))
+    return Claim(
+        "Volumes that end too soon lose shadows; a long one is enough.",
+        "2.1.1",
+        "a picture",
+        ", ".join(ours),
+        verdict(shares[0] > shares[1] > shares[2] == 0),
+        "Pixels that are wrong, by the length of the walls; objects are up to 2.4 high.",
+    )
+
+
+def silhouettes_claim():
+    import mitsuba as mi
+
+    cube = Mesh.of_shape(mi.load_dict({"type": "cube"}))
+    found = {
+        name: [
+            len(way(cube, CASTERS["light_facing"](cube, Light(np.array([*direction, 0.0]))))[0])
+            for direction in ((0, 0, 1), (1, 1, 1))
+        ]
+        for name, way in SILHOUETTES.items()
+    }
+    one, other = found.values()
+    return Claim(
+        "Both ways find the silhouette of a cube lit along a face's normal, and along a diagonal.",
+        "2.1.5",
+        "4 and 6 edges",
+        f"{one[0]} and {one[1]} edges" + ("" if one == other else f"; {other[0]} and {other[1]}"),
+        verdict(one == other == [4, 6]),
+    )
+
+
+def draw(inside):
+    """What is lit by both methods, and by rays."""
+    drawn = figure(7.5, 2.7)
+    pictures = {
+        "depth-pass": inside.lit(method="depth_pass"),
+        "depth-fail": inside.lit(method="depth_fail"),
+        "rays": inside.exact,
+    }
+    for axes, (name, lit) in zip(drawn.subplots(1, 3), pictures.items(), strict=True):
+        picture = inside.view.seen.picture(lit * 0.9 + 0.1)
+        axes.imshow((picture / picture.max()).clip(0, 1) ** (1 / 2.2))
+        axes.set_title(name, size=10)
+        axes.set_axis_off()
+    return drawn
