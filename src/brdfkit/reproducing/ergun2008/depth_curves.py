@@ -25,9 +25,7 @@ def run(sources, report):
     """The curves, and the claims on them."""
     use_variant()
     curves = {view: curves_of(View.of(SCENE, view, 1).placement) for view in VIEWS}
-    uneven = {
-        name: [unevenness(*curves[view][name]) for view in VIEWS] for name in PROJECTIONS
-    }
+    uneven = {name: [unevenness(*curves[view][name]) for view in VIEWS] for name in PROJECTIONS}
     rows = [
         (PROJECTIONS[name], *(f"{value:.3f}" for value in values))
         for name, values in uneven.items()

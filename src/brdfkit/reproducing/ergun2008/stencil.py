@@ -24,8 +24,8 @@ NAMES = "objects_on_a_ground", "street"
 RAYS = 32  # along a side of a pixel, to find the borders of shadows
 TEXT = f"""Volumes of `objects_on_a_ground` and `street`, in pictures of {SIZE} × {SIZE} pixels.
 Pixels that face the light are compared to shadow rays; one that differs is wrong unless the border
-of a shadow goes through it, by {RAYS} × {RAYS} more rays. `foliage` is left out: each of its 48,000 triangles is an object of
-its own, and has walls of its own."""
+of a shadow goes through it, by {RAYS} × {RAYS} more rays. `foliage` is left out: each of its
+48,000 triangles has walls of its own."""
 
 
 @in_turn
@@ -124,7 +124,7 @@ def exact_claim(differ, counted, places):
         "Stencil volumes are exact in every pixel, by depth-fail.",
         "2.1, 4.2",
         "taken for the truth",
-        f"{differ['depth_fail']} of {counted:,} pixels in {places} pictures differ from shadow rays",
+        f"{differ['depth_fail']} of {counted:,} pixels in {places} pictures differ from rays",
         verdict(differ["depth_fail"] == 0),
     )
 

@@ -18,10 +18,10 @@ SECONDS = 12
 SCENES = ()  # by default all
 COLUMNS = "unused, Q1", "relative", "aliasing, Q2 [dB]", "relative [dB]"
 PARTED = 1.0  # dB by which projections differ
-TEXT = """The thesis takes Q1 as the mean squared error of a histogram, of an untold unit; here it is
-the share of the map that is *not* used, d / (1 + d), where d is that error over the square of the
-histogram's mean: from 0 to 1, and small is good, as there. Q2 is the PSNR of the texels' areas [pixels]
-as grey levels against black. Both depend on the resolutions, which the thesis does not tell."""
+TEXT = """The thesis takes Q1 as the mean squared error of a histogram, of an untold unit; here it
+is the share of the map that is *not* used, d / (1 + d), where d is that error over the square of
+the histogram's mean: from 0 to 1, and small is good, as there. Q2 is the PSNR of the texels' areas
+[pixels] as grey levels against black. Both depend on the resolutions, which the thesis does not tell."""
 
 
 @in_turn
@@ -54,8 +54,9 @@ def run(sources, report):
 
 
 PSM = (
-    "The author's PSM opens the light's view to the whole cube, symmetric about its middle; ours is "
-    "fitted on each side, and its near plane set to what is seen."
+    "Of the author's PSM the thesis says only that its light's view may be opened to the whole "
+    "cube, symmetric about its middle; ours is fitted on each side, and begins where something is "
+    "seen."
 )
 
 
@@ -109,7 +110,7 @@ def order_claim(says, where, table, column, sign):
         in_words(expected),
         "; ".join(words),
         verdict(all(order == expected for order in ours.values())),
-        "One scene of 8 cells, whose light, ground and camera are not told, makes the printed order.",
+        "The printed order is that of one scene, which is not described.",
     )
 
 
@@ -154,8 +155,8 @@ def focus_claim(table):
         "the statement; but Table 1 has 0.2650 and 0.2302",
         ours,
         verdict(all_of_them),
-        "A map of less, of which the same is seen, is used more. The printed table says the opposite "
-        "of its section.",
+        "A map of less, of which the same is seen, is used more. The printed table says the "
+        "opposite of its section.",
     )
 
 
