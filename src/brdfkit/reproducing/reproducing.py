@@ -47,7 +47,7 @@ def theses() -> dict[str, str]:
     """The theses that can be reproduced: name → title.
 
     >>> list(theses())
-    ['balint2019', 'ergun2015', 'kurt2007', 'lesar2018']
+    ['balint2019', 'ergun2008', 'ergun2015', 'kurt2007', 'lesar2018']
     """
     found = pkgutil.iter_modules([str(Path(__file__).parent)])
     return {f.name: _thesis(f.name).TITLE for f in found if f.ispkg}

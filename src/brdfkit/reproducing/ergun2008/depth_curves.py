@@ -81,12 +81,12 @@ def worse_claim(uneven):
 
 def draw(curves):
     """Mean depth over the way, of V1."""
-    drawn = figure(6, 3.4)
+    drawn = figure(7.5, 3.4)
     axes = drawn.subplots()
     for (name, (way, depth)), colour in zip(curves.items(), COLOURS, strict=False):
         way = (way - way.min()) / np.ptp(way)
         axes.plot(way, depth, ".", ms=2, color=colour, label=PROJECTIONS[name])
     tidy(axes, "view V1", "depth on the map")
     axes.set_xlabel("way of the light")
-    axes.legend(frameon=False, fontsize=8, markerscale=4)
+    drawn.legend(loc="outside right center", frameon=False, fontsize=8, markerscale=4)
     return drawn

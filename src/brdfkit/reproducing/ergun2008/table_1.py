@@ -21,7 +21,8 @@ PARTED = 1.0  # dB by which projections differ
 TEXT = """The thesis takes Q1 as the mean squared error of a histogram, of an untold unit; here it
 is the share of the map that is *not* used, d / (1 + d), where d is that error over the square of
 the histogram's mean: from 0 to 1, and small is good, as there. Q2 is the PSNR of the texels' areas
-[pixels] as grey levels against black. Both depend on the resolutions, which the thesis does not tell."""
+[pixels] as grey levels against black. Both depend on resolutions, which the thesis does not
+tell."""
 
 
 @in_turn
@@ -276,5 +277,5 @@ def draw(table):
         tidy(axes, "", COLUMNS[column])
         axes.set_xticks(np.arange(len(PROJECTIONS)) + 0.3, [short(n) for n in PROJECTIONS])
         axes.tick_params(axis="x", labelrotation=30)
-    axes.legend(frameon=False, fontsize=8)
+    drawn.legend(*axes.get_legend_handles_labels(), loc="outside upper center", ncols=4)
     return drawn

@@ -140,8 +140,8 @@ def bias_claim(table):
         "no figure",
         f"without any, VSM over depth map: {in_words(gains)}; its variance hides acne",
         UNSTATED,
-        "An order as printed, and gaps as large, come of a bias that is too small for the plain map. "
-        "That is a guess: the thesis has no figure of it.",
+        "Too small a bias for the plain map makes VSM as good as the thesis found it. Whether that "
+        "is why is a guess.",
     )
 
 

@@ -1,0 +1,58 @@
+"""Ergun (2008) reproduced: its parts at small sizes, its check values, and its misprints."""
+
+import numpy as np
+import pytest
+
+import brdfkit as bk
+from brdfkit.jit import llvm
+
+if llvm.loaded_version() < llvm.OLDEST:
+    pytest.skip("needs LLVM", allow_module_level=True)
+
+from brdfkit.reproducing.ergun2008 import printed, stencil, table_1, trapezoid, views
+
+
+def verdicts(*parts):
+    """What a claim says → its verdict."""
+    found = bk.reproduce("ergun2008", parts=list(parts))
+    return {claim.says: claim.verdict for claim in found.claims}
+
+
+def test_values_and_misprints():
+    """All formulas give the values that were computed apart; of those as printed, none does."""
+    values = verdicts("check_values")
+    assert len(values) == 9
+    assert set(values.values()) == {"confirmed"}
+    *formulas, means = verdicts("misprints").values()
+    assert formulas == ["not confirmed"] * 7
+    assert means == "confirmed"
+
+
+def test_tables_and_volumes_at_a_small_size(monkeypatch):
+    monkeypatch.setattr(table_1, "SCENES", ("objects_on_a_ground",))
+    monkeypatch.setattr(views, "SIZE", 64)
+    monkeypatch.setattr(views, "RESOLUTION", 128)
+    monkeypatch.setattr(stencil, "SIZE", 64)
+    monkeypatch.setattr(stencil, "NAMES", ("objects_on_a_ground",))
+    monkeypatch.setattr(stencil, "VIEWS", ("V1",))
+    found = verdicts("stencil", "table_1", "depth_curves")
+    assert found["Stencil volumes are exact in every pixel, by depth-fail."] == "confirmed"
+    assert found["POSM uses the map best."] == "confirmed"
+    assert found["Uniform, focused, PSM and LiSPSM have nearly the same curves."] == "not confirmed"
+    assert len(found) == 20
+
+
+@pytest.mark.quick
+def test_printed_tables_are_means_of_their_cells():
+    cells = printed.printed("texture_use")["plane_optimal"]
+    mean, relative = printed.mean_and_relative(cells)
+    assert mean == pytest.approx(0.05925)
+    assert relative == pytest.approx(0.02175)
+
+
+@pytest.mark.quick
+def test_the_printed_n_t():
+    """Acceptance check 3 by the eight steps."""
+    expected = [[4, -4 / 15, 0, -0.04], [0, 8 / 3, 0, -0.6], [0, 0, 1, 0], [0, -4 / 3, 0, 1.8]]
+    found = trapezoid.trapezoid_to_square()
+    np.testing.assert_allclose(found / found[2, 2], expected, atol=1e-12)
