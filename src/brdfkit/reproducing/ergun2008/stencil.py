@@ -52,8 +52,9 @@ def run(sources, report):
         silhouettes_claim(),
     ]
     caption = (
-        "The eye in a shadow: what is lit by depth-pass, depth-fail and rays. From within, "
-        "depth-pass takes all that is in one more volume for lit, and what is lit for dark."
+        "The eye in a shadow: what is lit by depth-pass, depth-fail and rays. Depth-pass misses "
+        "that the eye is in a volume: where its ray leaves that again all is dark, and what stands "
+        "in the same shadow is lit."
     )
     return Section(
         "Stencil shadow volumes", TEXT, claims, [], [Picture("stencil", draw(inside), caption)]

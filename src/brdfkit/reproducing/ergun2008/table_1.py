@@ -6,9 +6,11 @@ import numpy as np
 
 from brdfkit.jit.llvm import use_variant
 from brdfkit.jit.threads import in_turn
-from brdfkit.reproducing.claims import Claim, verdict
+from brdfkit.reproducing.claims import UNSTATED, Claim, verdict
 from brdfkit.reproducing.drawing import COLOURS, figure, tidy
+from brdfkit.reproducing.ergun2008 import views
 from brdfkit.reproducing.ergun2008.printed import mean_and_relative, printed
+from brdfkit.reproducing.ergun2008.simple_perspective import NEAR, simple_scores
 from brdfkit.reproducing.ergun2008.views import PROJECTIONS, measured
 from brdfkit.reproducing.page import Picture, Section, Table
 from brdfkit.shadow_maps.scenes import VIEWS
@@ -43,6 +45,7 @@ def run(sources, report):
         order_claim("Aliasing, least first.", "Table 1, 5", table, 2, 1),
         best_claim("POSM has the least aliasing.", table, 2, 1, "plane_optimal"),
         worst_claim("PSM has the most.", table, 2, 1, PSM),
+        simple_claim(table, found),
         even_claim(table),
         relative_claim(table),
         steadier_claim(table),
@@ -62,12 +65,12 @@ PSM = (
 
 
 def scores(view):
-    """(unused share, aliasing [dB]) of each projection."""
+    """(unused share, aliasing [dB]) of each projection, and of PSM in the simple way."""
     found = []
     for projection in PROJECTIONS:
         use, aliasing = use_of_maps(view.shadow(projection=projection), view.seen, view.placement)
         found.append((1 - use, aliasing))
-    return found
+    return [*found, simple_scores(view, views.RESOLUTION)]
 
 
 def figures(cells, projection, score):
@@ -197,6 +200,25 @@ def steadier_claim(table):
     )
 
 
+def simple_claim(table, found):
+    means = {scene: cells[..., -1, :].mean(axis=(0, 1)) for scene, cells in found.items()}
+    worst = [
+        scene
+        for scene, (unused, dB) in means.items()
+        if unused > table[scene][:, 0].max() and dB < table[scene][:, 2].min()
+    ]
+    ours = ", ".join(f"{scene} {q:.3f}, {dB:.1f} dB" for scene, (q, dB) in means.items())
+    return Claim(
+        "PSM in the simple way: its light's view opened to the whole cube, evenly about its axis.",
+        "2.2.2.2",
+        "which way its figures are of is not told",
+        f"{ours}; worst by both scores in {', '.join(worst) or 'no scene'}",
+        UNSTATED,
+        f"With the camera's near plane at {NEAR:g} of the nearest distance. So the printed rank "
+        "may be that of the fitting and the near plane, not of the idea.",
+    )
+
+
 def view_means(cells, score):
     """(view, projection) over lights."""
     return cells[..., score].mean(axis=1)
@@ -222,7 +244,8 @@ def lamp_claim(found):
 def dueling_claim(found):
     """V3 is worse than V2, which the thesis calls the worst case."""
     held = {
-        scene: int((view_means(q, 0)[2] > view_means(q, 0)[1]).sum()) for scene, q in found.items()
+        scene: int((view_means(q, 0)[2] > view_means(q, 0)[1])[: len(PROJECTIONS)].sum())
+        for scene, q in found.items()
     }
     return Claim(
         "V3, which is called intermediate, uses maps less than V2, the worst case by name.",
