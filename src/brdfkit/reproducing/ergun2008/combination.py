@@ -117,7 +117,7 @@ def size_claim(means):
         "no figure",
         ours,
         UNSTATED,
-        "It is, in each scene." if holds else "It is not, in each scene.",
+        "It is, in each scene." if holds else "Not in each scene.",
     )
 
 

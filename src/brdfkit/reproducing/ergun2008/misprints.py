@@ -14,7 +14,7 @@ from brdfkit.shadow_maps.projection import Projection
 
 SECONDS = 1
 TEXT = """Each formula is computed as printed and as it must be meant; claims are *not confirmed*
-where the printed one fails. brdfkit has the others."""
+where the printed one fails. brdfkit computes what is meant."""
 
 
 def run(sources, report):

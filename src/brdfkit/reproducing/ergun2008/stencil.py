@@ -187,7 +187,7 @@ def length_claim():
         "a picture",
         ", ".join(ours),
         verdict(shares[0] > shares[1] > shares[2] == 0),
-        "Pixels that are wrong, by the length of the walls; bricks are up to 2.4 high.",
+        "Pixels that are wrong, by the length of the walls; bricks are up to 2 high.",
     )
 
 
