@@ -9,7 +9,7 @@ from brdfkit.jit import llvm
 if llvm.loaded_version() < llvm.OLDEST:
     pytest.skip("needs LLVM", allow_module_level=True)
 
-from brdfkit.reproducing.ergun2008 import printed, stencil, table_1, trapezoid, views
+from brdfkit.reproducing.ergun2008 import by_volumes, printed, stencil, table_1, trapezoid, views
 
 
 def verdicts(*parts):
@@ -32,7 +32,7 @@ def test_tables_and_volumes_at_a_small_size(monkeypatch):
     monkeypatch.setattr(table_1, "SCENES", ("objects_on_a_ground",))
     monkeypatch.setattr(views, "SIZE", 64)
     monkeypatch.setattr(views, "RESOLUTION", 128)
-    monkeypatch.setattr(stencil, "SIZE", 64)
+    monkeypatch.setattr(by_volumes, "SIZE", 64)
     monkeypatch.setattr(stencil, "NAMES", ("objects_on_a_ground",))
     monkeypatch.setattr(stencil, "VIEWS", ("V1",))
     found = verdicts("stencil", "table_1", "depth_curves")

@@ -1,27 +1,23 @@
 """Section 2.1: stencil shadow volumes, against shadow rays."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from brdfkit.jit.llvm import use_variant
 from brdfkit.jit.threads import in_turn
-from brdfkit.projective.camera import Camera
 from brdfkit.projective.light import Light
 from brdfkit.reproducing.claims import Claim, verdict
 from brdfkit.reproducing.drawing import figure
-from brdfkit.reproducing.ergun2008.views import View
+from brdfkit.reproducing.ergun2008 import by_volumes
+from brdfkit.reproducing.ergun2008.by_volumes import RAYS, SIZE, ByVolumes, bricks, within_a_shadow
 from brdfkit.reproducing.page import Picture, Section
 from brdfkit.shadow_maps.scenes import SCENES, VIEWS
 from brdfkit.shadow_volumes.casters import CASTERS
-from brdfkit.shadow_volumes.light_volumes import METHODS, LightVolumes
+from brdfkit.shadow_volumes.light_volumes import METHODS
 from brdfkit.shadow_volumes.mesh import Mesh
 from brdfkit.shadow_volumes.silhouettes import SILHOUETTES
 
 SECONDS = 30
-SIZE = 128
 NAMES = "objects_on_a_ground", "street"
-RAYS = 32  # along a side of a pixel, to find the borders of shadows
 TEXT = f"""Volumes of `objects_on_a_ground` and `street`, in pictures of {SIZE} × {SIZE} pixels.
 Pixels that face the light are compared to shadow rays; one that differs is wrong unless the border
 of a shadow goes through it, by {RAYS} × {RAYS} more rays. `foliage` is left out: each of its
@@ -36,7 +32,7 @@ def run(sources, report):
     differ, counted, done = dict.fromkeys(METHODS, 0), 0, 0
     places = [(name, view) for name in NAMES for view in VIEWS]
     for name, view in places:
-        seen = ByVolumes(SCENES[name](view, 1, (SIZE, SIZE)))
+        seen = ByVolumes(SCENES[name](view, 1, (by_volumes.SIZE, by_volumes.SIZE)))
         for method in METHODS:
             differ[method] += seen.wrong(method=method)
         counted += int(seen.facing.sum())
@@ -59,74 +55,6 @@ def run(sources, report):
     return Section(
         "Stencil shadow volumes", TEXT, claims, [], [Picture("stencil", draw(inside), caption)]
     )
-
-
-class ByVolumes:
-    """A scene's dictionary, with its shadows by rays and by volumes."""
-
-    def __init__(self, description):
-        self.view = View.by(description)
-        scene = self.view.scene
-        self.camera = Camera.of_sensor(scene.sensors()[0])
-        self.meshes = [Mesh.of_shape(shape) for shape in scene.shapes()]
-        self.exact, self.facing = self.view.seen.exact, self.view.seen.facing
-
-    def lit(self, **how):
-        """Whether (pixels,) the light arrives, by `LightVolumes`."""
-        light = Light.of_emitter(self.view.seen.emitter)
-        volumes = LightVolumes(self.meshes, light, self.camera, pixels=SIZE, **how)
-        si = self.view.seen.si
-        return np.array(volumes.lit(si.p, si.n)) == 1
-
-    def wrong(self, **how):
-        """How many pixels differ from rays, and have no border of a shadow in them."""
-        differ = np.flatnonzero((self.lit(**how) != self.exact) & self.facing)
-        return int((~self.on_border(differ)).sum())
-
-    def on_border(self, pixels):
-        """Whether shadow rays of many places in each of the `pixels` (k,) differ."""
-        import mitsuba as mi
-
-        if not len(pixels):
-            return np.zeros(0, bool)
-        seen, sensor = self.view.seen, self.view.scene.sensors()[0]
-        within = np.stack(np.meshgrid(*[(np.arange(RAYS) + 0.5) / RAYS] * 2), -1).reshape(-1, 2)
-        corner = np.column_stack([pixels % SIZE, pixels // SIZE])
-        places = ((corner[:, None] + within) / SIZE).reshape(-1, 2)
-        ray, _ = sensor.sample_ray(0.0, 0.5, mi.Point2f(places.T), mi.Point2f(0.5))
-        si = self.view.scene.ray_intersect(ray)
-        exact = replace(seen, si=si).exact.reshape(len(pixels), -1)
-        return np.ptp(exact.astype(int), axis=1) > 0
-
-    def share(self, **how):
-        """The share of the pixels that are wrong."""
-        return self.wrong(**how) / self.facing.sum()
-
-
-def bricks(**camera):
-    """The dictionary of the objects in view V1 without the round ones, its camera changed."""
-    found = SCENES["objects_on_a_ground"]("V1", 1, (SIZE, SIZE))
-    found = {
-        name: thing
-        for name, thing in found.items()
-        if name == "type" or thing["type"] not in ("sphere", "cylinder", "disk")
-    }
-    return found | {"camera": found["camera"] | camera}
-
-
-def within_a_shadow():
-    """The same, seen by an eye in the middle of the longest shadow of all that V1 shows."""
-    import drjit as dr
-    import mitsuba as mi
-
-    view = View.by(bricks())
-    si, towards = view.seen.si, view.seen.to_light[0].d
-    hit = view.scene.ray_intersect(si.spawn_ray(towards))
-    length = dr.select(si.is_valid() & (si.p.z < 1e-3) & hit.is_valid(), hit.t, 0)
-    longest = int(np.argmax(np.array(length)))
-    middle = np.array(si.p + length / 2 * towards).T[longest].tolist()
-    eye = mi.ScalarTransform4f().look_at(middle, [0, 0, 0], [0, 0, 1])
-    return bricks(to_world=eye)
 
 
 def exact_claim(differ, counted, places):
