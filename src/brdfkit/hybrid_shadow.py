@@ -24,11 +24,19 @@ def hybrid_shadow(scene, sensor, emitter, resolution, jump):
     jump : see `surface_of`.
     """
     placement = Placement.of_scene(scene, sensor, emitter)
+    pixels = max(sensor.film().size())
+    return volumes_of_map(scene, placement, pinhole(sensor), resolution, jump, pixels)
+
+
+def volumes_of_map(scene, placement, camera, resolution, jump, pixels):
+    """The same from a `Placement`, counted in the picture of a `Camera`.
+
+    pixels : along the longer side of the picture; see `LightVolumes`.
+    """
     projection = focused.projection(placement)
     depths = np.array(depth_pass(scene, projection, resolution))
     mesh = surface_of(depths, projection, jump)
-    pixels = max(sensor.film().size())
-    return LightVolumes([mesh], placement.light, pinhole(sensor), "depth_pass", pixels=pixels)
+    return LightVolumes([mesh], placement.light, camera, "depth_pass", pixels=pixels)
 
 
 def surface_of(depths, projection, jump):

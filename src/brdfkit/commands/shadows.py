@@ -7,6 +7,7 @@ import click
 
 import brdfkit
 from brdfkit.commands._options import output_options
+from brdfkit.commands._stopping import status
 
 # by the names of their files: to import them takes a second
 FOLDER = Path(brdfkit.__file__).with_name("shadow_maps")
@@ -32,6 +33,13 @@ def technique(kind, default, help):
 @technique("filter", ("depth", "percentage_closer", "variance", "moment"), "How a map is read")
 @technique("partition", ("whole",), "How maps share the scene")
 @click.option(
+    "--other",
+    "others",
+    multiple=True,
+    metavar="NAME",
+    help="A technique without maps to look up: shadow_volume or hybrid_shadow; may be repeated.",
+)
+@click.option(
     "--map",
     "resolution",
     default=512,
@@ -48,8 +56,14 @@ def technique(kind, default, help):
     metavar="N",
     help="Side of the pictures [pixels].",
 )
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="A page, .html, with the table, to sort, and the pictures of all techniques.",
+)
 @output_options
-def shadows(scene, projections, filters, partitions, resolution, size, console):
+def shadows(scene, projections, filters, partitions, others, resolution, size, output, console):
     """Score shadow techniques on a scene.
 
     Every combination of the techniques is held to exact shadows, by rays, in all views (sensors)
@@ -57,20 +71,31 @@ def shadows(scene, projections, filters, partitions, resolution, size, console):
     """
     from brdfkit.shadows import compare
     from brdfkit.shadows.comparing import PROJECTIONS
+    from brdfkit.shadows.page import require_page
 
+    if output is not None:
+        require_page(output)
     with console.progress("compare shadows") as progress:
         found = compare(
             scene,
             projections or PROJECTIONS,
             filters,
             partitions,
+            others,
             resolution,
             (size, size),
             progress,
         )
+    if output is not None:
+        with console.progress("draw pictures") as progress:
+            found.write(output, progress)
+    written = [] if output is None else [output]
     if console.as_json:
         each = {label: [asdict(one) for one in all_of] for label, all_of in found.scores.items()}
-        console.json({"scores": each, "lights": found.lights})
-        return
-    console.table(found.columns, found.table())
-    console.out.print(found.meaning)
+        console.json({"scores": each, "lights": found.lights, "written": written})
+    else:
+        console.table(found.columns, found.table())
+        console.out.print(found.meaning)
+        console.list_written(written)
+    if found.interrupted:
+        click.get_current_context().exit(status())

@@ -8,15 +8,15 @@ import numpy as np
 from brdfkit.colours import to_srgb
 
 
-def jpeg(linear):
+def jpeg(linear, quality=92):
     """The address of a picture (height, width, 3) of linear sRGB, to look at."""
-    return _address(_bytes(to_srgb(linear)), "JPEG", quality=92, subsampling=0)
+    return _address(_bytes(to_srgb(linear)), "JPEG", quality=quality, subsampling=0)
 
 
 def halved(linear):
-    """A picture (height, width, 3) of half the size."""
+    """A picture (height, width, n) of half the size."""
     height, width = (n // 2 for n in linear.shape[:2])
-    return linear[: 2 * height, : 2 * width].reshape(height, 2, width, 2, 3).mean(axis=(1, 3))
+    return linear[: 2 * height, : 2 * width].reshape(height, 2, width, 2, -1).mean(axis=(1, 3))
 
 
 def png(colours):

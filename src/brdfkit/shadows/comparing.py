@@ -2,15 +2,21 @@
 
 import itertools
 from collections.abc import Callable, Iterable
+from functools import partial
 from typing import Any
 
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.jit.llvm import use_variant
 from brdfkit.rendering.scene_file import load_scene_file
+from brdfkit.shadow_maps.light_shadow import LightShadow
 from brdfkit.shadow_maps.placement import Placement
 from brdfkit.shadow_maps.techniques import FILES
 from brdfkit.shadows.comparison import ShadowComparison
+from brdfkit.shadows.map_pictures import MapPictures
 from brdfkit.shadows.measuring import score
+from brdfkit.shadows.others import OTHERS
+from brdfkit.shadows.pictures import Pictures, title_of
+from brdfkit.shadows.scores import Scores
 from brdfkit.shadows.seen import Seen
 
 PROJECTIONS = tuple(FILES["projection"])
@@ -22,11 +28,15 @@ def compare(
     projections: Iterable[str] = PROJECTIONS,
     filters: Iterable[str] = FILTERS,
     partitions: Iterable[str] = ("whole",),
+    others: Iterable[str] = (),
     resolution: int = 512,
     size: tuple[int, int] = (512, 512),
     progress: Callable[[int, int], object] | None = None,
 ) -> ShadowComparison:
-    """Compare techniques of shadow maps with exact shadows, in all views and lights of a scene.
+    """Compare shadow techniques with exact shadows, in all views and lights of a scene.
+
+    Ctrl-C ends with the views and lights that are finished; in the first of them, with the
+    techniques that are.
 
     Parameters
     ----------
@@ -35,6 +45,9 @@ def compare(
         directional ones, its cameras perspective ones; each camera is a view.
     projections, filters, partitions : iterable of str
         Names of techniques, of which every combination is scored; see the plugin `shadow_map`.
+    others : iterable of str, default none
+        Techniques that look up no map: ``"shadow_volume"`` and ``"hybrid_shadow"``; see the plugins
+        of these names.
     resolution : int, default 512
         Texels along a side of each map.
     size : (int, int), default (512, 512)
@@ -45,35 +58,68 @@ def compare(
     Returns
     -------
     ShadowComparison
-        The scores of each technique; prints as a table.
+        The scores of each technique; prints as a table, and `write` makes a page with pictures.
 
     Raises
     ------
     BrdfkitError
-        For a name that is no technique, and for a scene without a camera or with other lights.
+        For a name that is no technique, for a scene without a camera or with other lights, and for
+        shapes that have no shadow volume where one is asked for.
 
     Examples
     --------
     >>> bk.shadows.compare("street.xml", ["focused", "trapezoidal"])    # doctest: +SKIP
     """
     use_variant()
-    named = {"projection": projections, "filter": filters, "partition": partitions}
-    techniques = combinations({kind: tuple(names) for kind, names in named.items()})
+    kinds = {"projection": projections, "filter": filters, "partition": partitions}
+    kinds = {kind: tuple(names) for kind, names in kinds.items()}
+    techniques = functions(kinds, tuple(others), resolution)
     scene = scene if hasattr(scene, "sensors") else load_scene_file(scene)
     if not scene.emitters():
         raise BrdfkitError("the scene has no light; add a point, spot or directional one.")
-    places = list(itertools.product(scene.sensors(), scene.emitters()))
-    found: dict[str, list] = {label: [] for label in techniques}
-    for number, (sensor, emitter) in enumerate(places):
-        seen = Seen.by(scene, sensor, emitter, size[::-1])
-        placement = Placement.of_scene(scene, sensor, emitter)
-        for done, (label, technique) in enumerate(techniques.items(), number * len(techniques)):
-            if progress:
-                progress(done, len(places) * len(techniques))
-            scores, _ = score(seen, placement, {**technique, "resolution": resolution})
-            found[label].append(scores)
-    lights = len(scene.emitters())
-    return ShadowComparison({label: tuple(all_of) for label, all_of in found.items()}, lights)
+    places = list(itertools.product(enumerate(scene.sensors()), enumerate(scene.emitters())))
+    report, asked = progress or (lambda done, total: None), len(places) * len(techniques)
+    found: list[tuple[Pictures, dict]] = []
+    try:
+        for (view, sensor), (light, emitter) in places:
+            seen = Seen.by(scene, sensor, emitter, size[::-1])
+            placement = Placement.of_scene(scene, sensor, emitter)
+            pictures = Pictures.of(seen, title_of(view, sensor, light, emitter))
+            scores: dict[str, Scores] = {}
+            found.append((pictures, scores))
+            pictures.maps = pictures_of_maps(seen, placement, kinds, resolution)
+            for label, shadow_of in techniques.items():
+                report((len(found) - 1) * len(techniques) + len(scores), asked)
+                one, lit = score(seen, placement, shadow_of)
+                pictures.keep(label, lit)
+                scores[label] = one
+    except KeyboardInterrupt:
+        if not (found and found[0][1]):
+            raise
+    finished = [place for place in found if len(place[1]) == len(techniques)] or found[:1]
+    shown, each = zip(*finished, strict=True)
+    by_label = {label: tuple(scores[label] for scores in each) for label in each[0]}
+    return ShadowComparison(by_label, len(scene.emitters()), asked, shown)
+
+
+def functions(kinds, others, resolution):
+    """Label → function (seen, placement) of the shadow, of all techniques that are asked for.
+
+    Raises `BrdfkitError` for an unknown name.
+    """
+    for name in others:
+        if name not in OTHERS:
+            raise no_such("technique without maps", name, OTHERS)
+    maps = {
+        label: partial(of_maps, **technique, resolution=resolution)
+        for label, technique in combinations(kinds).items()
+    }
+    return maps | {name: partial(OTHERS[name], resolution=resolution) for name in others}
+
+
+def of_maps(seen, placement, **technique):
+    """The `LightShadow` of a technique, of what a camera sees."""
+    return LightShadow(seen.scene, placement, **technique)
 
 
 def combinations(names):
@@ -85,8 +131,17 @@ def combinations(names):
         for name in its:
             if name not in FILES[kind]:
                 raise no_such(kind, name, FILES[kind])
-    several = [kind for kind, its in names.items() if len(its) > 1] or ["projection"]
+    several = [kind for kind, its in names.items() if len(its) > 1] or list(names)[:1]
     chosen = [
         dict(zip(names, picked, strict=True)) for picked in itertools.product(*names.values())
     ]
     return {" + ".join(each[kind] for kind in several): each for each in chosen}
+
+
+def pictures_of_maps(seen, placement, kinds, resolution):
+    """Label → `MapPictures` of every projection in every partition; filters change nothing."""
+    chosen = combinations({kind: kinds[kind] for kind in ("projection", "partition")})
+    return {
+        label: MapPictures.of(seen, placement, **technique, resolution=resolution)
+        for label, technique in chosen.items()
+    }

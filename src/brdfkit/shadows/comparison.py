@@ -1,22 +1,17 @@
 """`ShadowComparison`, what `compare` returns: scores by technique; prints as a table."""
 
-from dataclasses import dataclass
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
 
 from brdfkit.documents import Cell, Document, Paragraph, Shown, Table
 from brdfkit.documents.parts import STRONG
+from brdfkit.shadows.columns import COLUMNS, to_texts
+from brdfkit.shadows.pictures import Pictures
 from brdfkit.shadows.scores import Scores, between_lights, mean
-
-# Name, heading, scale, decimals, and whether more is better
-COLUMNS = (
-    ("psnr", "PSNR [dB]", 1, 1, True),
-    ("wrong", "wrong [%]", 100, 2, False),
-    ("acne", "acne [%]", 100, 2, False),
-    ("texture_use", "use [%]", 100, 1, True),
-    ("aliasing", "aliasing [dB]", 1, 1, True),
-    ("flicker", "flicker [%]", 100, 3, False),
-    ("build", "build [ms]", 1e3, 0, False),
-    ("look_up", "look-up [ms]", 1e3, 0, False),
-)
 
 
 @dataclass(frozen=True, repr=False)
@@ -30,24 +25,31 @@ class ShadowComparison(Shown):
         next.
     lights : int
         How many lights there are.
+    asked : int
+        How many scores were asked for; more than there are after Ctrl-C.
+    pictures : tuple of Pictures
+        What the page shows of each view and light, in the order of the scores.
     """
 
     scores: dict[str, tuple[Scores, ...]]
     lights: int
+    asked: int
+    pictures: tuple[Pictures, ...] = field(compare=False)
 
     @property
     def means(self) -> dict[str, Scores]:
-        """Technique → the means over views and lights, the best PSNR first."""
+        """Technique → the means over views and lights, the best PSNR first, unknown ones last."""
         found = {label: mean(scores) for label, scores in self.scores.items()}
-        return dict(sorted(found.items(), key=lambda item: -item[1].psnr))
+        return dict(sorted(found.items(), key=lambda item: -np.nan_to_num(item[1].psnr, nan=-99)))
 
     @property
     def relative(self) -> dict[str, Scores]:
         """Technique → the mean differences between the two lights of each view: how much a light
-        that hardly moves changes. Empty where there are not two lights."""
-        if self.lights != 2:
+        that hardly moves changes; in the order of `means`. Empty where there are not two lights.
+        """
+        if self.lights != 2 or len(self.pictures) < 2:
             return {}
-        return {label: between_lights(scores) for label, scores in self.scores.items()}
+        return {label: between_lights(self.scores[label]) for label in self.means}
 
     @property
     def best(self) -> str:
@@ -59,29 +61,58 @@ class ShadowComparison(Shown):
         """The heads of the table."""
         return ("technique", *(f">{head}" for _, head, *_ in COLUMNS))
 
+    @property
+    def interrupted(self) -> bool:
+        """Whether Ctrl-C ended the comparison."""
+        return sum(map(len, self.scores.values())) < self.asked
+
     def table(self) -> list[tuple[str, ...]]:
         """The means as texts, a row for each technique."""
-        return [
-            (
-                label,
-                *(
-                    f"{getattr(row, name) * scale:.{digits}f}"
-                    for name, _, scale, digits, _ in COLUMNS
-                ),
-            )
-            for label, row in self.means.items()
-        ]
+        return to_texts(self.means)
 
     @property
     def meaning(self) -> str:
         """What the columns are, in a sentence or two."""
-        places = len(next(iter(self.scores.values())))
+        places = len(self.pictures)
         pairs = "the only pair" if places == 1 else f"{places} pairs"
         return (
-            f"Means over {pairs} of view and light, each against exact shadows. Use is the share "
-            "of texels that the view needs (Q1), aliasing how fine they are beside its pixels "
-            "(Q2), flicker the change of the error from picture to picture while the camera moves."
+            f"{self.cut_short}Means over {pairs} of view and light, each against exact shadows. "
+            "Use is the share of texels that the view needs (Q1), aliasing how fine they are "
+            "beside its pixels (Q2), flicker the change of the error from picture to picture while "
+            "the camera moves."
         )
+
+    @property
+    def cut_short(self) -> str:
+        """A sentence on how much is finished after Ctrl-C; else nothing."""
+        if not self.interrupted:
+            return ""
+        finished = sum(map(len, self.scores.values()))
+        return f"Interrupted: {finished} of {self.asked} scores are finished. "
+
+    def write(self, path: str | Path, progress: Callable[[int, int], object] | None = None) -> None:
+        """Write a page with the table, to sort, and all pictures: of each view in each light the
+        exact shadows, and of each technique the shadows, their errors and where its texels go.
+
+        Parameters
+        ----------
+        path : str or Path
+            The page, .html; it needs no other file.
+        progress : callable, optional
+            Called with (done, total); see `brdfkit.progress`.
+
+        Raises
+        ------
+        BrdfkitError
+            For another suffix, and where the file cannot be written.
+
+        Examples
+        --------
+        >>> bk.shadows.compare("street.xml").write("shadows.html")    # doctest: +SKIP
+        """
+        from brdfkit.shadows.page import write_page
+
+        write_page(self, path, progress)
 
     def document(self) -> Document:
         """The means, a row for each technique, the best of each column strong."""
@@ -89,7 +120,8 @@ class ShadowComparison(Shown):
         best = []
         for name, *_, more in COLUMNS:
             values = [getattr(scores, name) for scores in means]
-            best.append((max if more else min)(values))
+            known = [value for value in values if not math.isnan(value)]
+            best.append((max if more else min)(known, default=math.nan))
         rows = [
             (
                 Cell(label),

@@ -1,6 +1,7 @@
 """Scores of one technique: its maps are made, read for all pixels, and held to shadow rays."""
 
 import time
+from math import nan
 
 import drjit as dr
 import numpy as np
@@ -20,20 +21,20 @@ MARGIN = 4  # pixels about shadows in which a soft border is no acne
 EVERY = 7  # of the pixels one is watched while the camera moves
 
 
-def score(seen, placement, technique):
+def score(seen, placement, shadow_of):
     """The `Scores` of a technique, and the shares of light (pixels,) that it lets through.
 
     seen : what the camera sees, a `Seen`.
     placement : of its camera and light.
-    technique : keyword arguments of `LightShadow`.
+    shadow_of : the function (seen, placement) → what has `lit(p, n, active)`, as `LightShadow`.
     """
 
     def look(shadow):
         return shadow.lit(seen.si.p, seen.si.n, seen.si.is_valid())
 
-    shadow = LightShadow(seen.scene, placement, **technique)
+    shadow = shadow_of(seen, placement)
     lit, look_up = timed(lambda: look(shadow))
-    _, both = timed(lambda: look(LightShadow(seen.scene, placement, **technique)))
+    _, both = timed(lambda: look(shadow_of(seen, placement)))
     lit = np.array(lit)
     facing, exact = seen.facing, seen.exact
     pictures = (image.reshape(seen.size) for image in (lit, exact, facing))
@@ -44,7 +45,7 @@ def score(seen, placement, technique):
         acne=acne(*pictures, MARGIN),
         texture_use=use,
         aliasing=fineness,
-        flicker=unsteadiness(seen, placement, technique),
+        flicker=unsteadiness(seen, placement, shadow_of),
         build=max(both - look_up, 0.0),
         look_up=look_up,
     )
@@ -63,9 +64,12 @@ def timed(function):
 
 
 def use_of_maps(shadow, seen, placement):
-    """Q1, the share of the maps' texels that are used, and Q2, the aliasing error [dB]."""
+    """Q1, the share of the maps' texels that are used, and Q2, the aliasing error [dB]; nan for a
+    `shadow` without maps."""
     import mitsuba as mi
 
+    if not isinstance(shadow, LightShadow):
+        return nan, nan
     height, width = seen.size
     camera = Projection.by(placement.camera.matrix, placement.light).opaque()
     p, n = seen.si.p, seen.si.n
@@ -81,16 +85,16 @@ def use_of_maps(shadow, seen, placement):
     return share_used(places), aliasing_error(np.concatenate(areas))
 
 
-def unsteadiness(seen, placement, technique):
+def unsteadiness(seen, placement, shadow_of):
     """The flicker of the shadow on points that keep their places, while the camera moves."""
     import mitsuba as mi
 
     placements = path(placement)
     watched = np.flatnonzero(seen.facing)[::EVERY]
     watched = watched[seen_by_all(placements, np.array(seen.si.p).T[watched])]
+    if not watched.size:
+        return nan
     index = mi.UInt32(watched)
     p, n = dr.gather(mi.Point3f, seen.si.p, index), dr.gather(mi.Normal3f, seen.si.n, index)
-    shares = [
-        np.array(LightShadow(seen.scene, moved, **technique).lit(p, n)) for moved in placements
-    ]
+    shares = [np.array(shadow_of(seen, moved).lit(p, n)) for moved in placements]
     return flicker(shares, [seen.exact[watched]] * len(shares))

@@ -45,14 +45,27 @@ NAMES = tuple(field.name for field in fields(Scores))
 def mean(scores):
     """The `Scores` that are means of several; of dB as in the thesis, not of squared errors.
 
-    A picture without an error has infinite dB: it counts as 99.
+    A picture without an error has infinite dB: it counts as 99. What is nan does not count.
     """
-    table = np.array([[getattr(one, name) for name in NAMES] for one in scores])
-    return Scores(*np.minimum(table, 99.0).mean(axis=0).tolist())
+    return averaged(table_of(scores))
 
 
 def between_lights(scores):
     """The relative `Scores`: the mean difference of neighbours, (light 1, light 2) of each view."""
+    table = table_of(scores)
+    first, second = table[::2], table[1::2]
+    return averaged(np.abs(first[: len(second)] - second))
+
+
+def table_of(scores):
+    """The numbers (scores, names) of `Scores`, 99 at most."""
     table = np.array([[getattr(one, name) for name in NAMES] for one in scores])
-    table = np.minimum(table, 99.0)
-    return Scores(*np.abs(table[::2] - table[1::2]).mean(axis=0).tolist())
+    return np.minimum(table, 99.0)
+
+
+def averaged(table):
+    """The `Scores` that are the means of the columns of a `table`, without what is nan in it."""
+    known = ~np.isnan(table)
+    count = known.sum(axis=0)
+    sums = np.where(known, table, 0).sum(axis=0)
+    return Scores(*np.where(count, sums / np.maximum(count, 1), nan).tolist())

@@ -7,18 +7,22 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
+from brdfkit.shadow_volumes.mesh import Mesh
+
 
 @dataclass(frozen=True)
 class Seen:
     """The surfaces in the middle of all pixels, row by row.
 
     scene : the `mi.Scene`.
+    sensor : one of its cameras.
     emitter : one of its lights, with a place or a direction.
     si : the `mi.SurfaceInteraction3f` of each pixel.
     size : (height, width) of the picture.
     """
 
     scene: Any
+    sensor: Any
     emitter: Any
     si: Any
     size: tuple[int, int]
@@ -35,7 +39,12 @@ class Seen:
         ray, _ = sensor.sample_ray(0.0, 0.5, place, mi.Point2f(0.5))
         si = scene.ray_intersect(ray)
         dr.eval(si)
-        return cls(scene, emitter, si, (height, width))
+        return cls(scene, sensor, emitter, si, (height, width))
+
+    @cached_property
+    def meshes(self):
+        """All shapes as `Mesh`es, which bound shadow volumes."""
+        return [Mesh.of_shape(shape) for shape in self.scene.shapes()]
 
     @cached_property
     def to_light(self):

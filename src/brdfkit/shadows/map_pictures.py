@@ -1,0 +1,76 @@
+"""Where the texels of shadow maps go, and what the light sees: two pictures of a projection."""
+
+from dataclasses import dataclass
+from math import ceil, sqrt
+
+import numpy as np
+
+from brdfkit.shadow_maps.light_shadow import LightShadow
+
+CHECKS = 32  # squares of the checker along a side of a map
+SIDE = 256  # pixels of the light's view
+OUTSIDE = 255  # the part of a pixel that no map covers
+DARK = 0.45  # of every other square
+
+
+@dataclass(frozen=True)
+class MapPictures:
+    """The maps of a projection in a partition.
+
+    shade : brightness (height, width) of the scene, with a checker of squares of its maps' texels.
+    part : which map (height, width) a pixel is in; `OUTSIDE` for none.
+    depths : what the light sees (SIDE, SIDE), 0 near to 1 far; nan where it sees nothing. Several
+        maps stand in rows, the first at the upper left.
+    """
+
+    shade: np.ndarray
+    part: np.ndarray
+    depths: np.ndarray
+
+    @classmethod
+    def of(cls, seen, placement, **technique):
+        """Of what a camera sees, a `Seen`, by keyword arguments of `LightShadow`."""
+        shadow = LightShadow(seen.scene, placement, **technique)
+        shade, part = checker(shadow, seen)
+        return cls(shade, part, side_by_side([seen_by_light(each) for each in shadow.maps]))
+
+
+def checker(shadow, seen):
+    """The brightness of the scene under a checker, and which map each pixel is in."""
+    valid = np.array(seen.si.is_valid())
+    shade = valid * (0.3 + 0.7 * np.abs(np.array(seen.si.wi.z)))
+    chosen, part = np.array(shadow.which(seen.si.p)), np.full(len(valid), OUTSIDE)
+    for number, its_map in enumerate(shadow.maps):
+        x, y, _ = (np.array(component) for component in its_map.projection.to_map(*seen.si.p))
+        inside = valid & (chosen == number) & (np.abs(x) <= 1) & (np.abs(y) <= 1)
+        columns, rows = (np.floor((place[inside] + 1) / 2 * CHECKS) for place in (x, y))
+        shade[inside] *= np.where((columns + rows) % 2, DARK, 1)
+        part[inside] = number
+    return (
+        shade.astype(np.float16).reshape(seen.size),
+        part.astype(np.uint8).reshape(seen.size),
+    )
+
+
+def seen_by_light(its_map):
+    """The depths of a `ShadowMap`, y upwards, between its nearest and its farthest surface."""
+    depths = np.array(its_map.depths)[::-1]
+    known = depths[np.isfinite(depths)]
+    if not known.size:
+        return np.full_like(depths, np.nan)
+    near, far = np.percentile(known, [1, 99])
+    shares = np.clip((depths - near) / max(far - near, 1e-12), 0, 1)
+    return np.where(np.isfinite(depths), shares, np.nan)
+
+
+def side_by_side(squares):
+    """Squares of any size as one (SIDE, SIDE), in rows."""
+    columns = ceil(sqrt(len(squares)))
+    side = SIDE // columns
+    found = np.full((SIDE, SIDE), np.nan, np.float16)
+    for number, square in enumerate(squares):
+        row, column = divmod(number, columns)
+        nearest = (2 * np.arange(side) + 1) * len(square) // (2 * side)
+        place = slice(row * side, (row + 1) * side), slice(column * side, (column + 1) * side)
+        found[place] = square[np.ix_(nearest, nearest)]
+    return found

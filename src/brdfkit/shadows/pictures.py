@@ -1,0 +1,61 @@
+"""`Pictures`: what a comparison keeps of one view in one light, from which its page is drawn."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from brdfkit.shadows.map_pictures import MapPictures
+
+
+@dataclass
+class Pictures:
+    """One view in one light, without a shadow, with the exact one, and with those of techniques.
+
+    title : which view and which light.
+    unshadowed : radiance (height, width, 3) of the surfaces by this light alone.
+    exact : whether (height, width) the light arrives.
+    facing : whether (height, width) there is a surface that faces the light.
+    maps : projection and partition → its `MapPictures`.
+    shares : technique → share of the light (height, width) that arrives, in 255ths.
+    """
+
+    title: str
+    unshadowed: np.ndarray
+    exact: np.ndarray
+    facing: np.ndarray
+    maps: dict[str, MapPictures] = field(default_factory=dict)
+    shares: dict[str, np.ndarray] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, seen, title):
+        """Of a `Seen`."""
+        height, width = seen.size
+        return cls(
+            title,
+            seen.unshadowed.astype(np.float32).reshape(height, width, 3),
+            seen.exact.reshape(seen.size),
+            seen.facing.reshape(seen.size),
+        )
+
+    def keep(self, technique, lit):
+        """Keep the shares (pixels,) of the light that a technique lets through."""
+        shares = np.round(255 * np.clip(lit, 0, 1)).astype(np.uint8)
+        self.shares[technique] = shares.reshape(self.exact.shape)
+
+    def lit(self, technique):
+        """The share of the light (height, width) that arrives by a technique."""
+        return self.shares[technique] / np.float32(255)
+
+    def radiance(self, lit):
+        """The picture (height, width, 3) by the shares (height, width) of the light that arrive."""
+        return self.unshadowed * lit[..., None]
+
+
+def title_of(view, sensor, light, emitter):
+    """Which view and light, by numbers from 0, and by the names that the scene gives to them."""
+    return f"View {view + 1}{_named(sensor)}, light {light + 1}{_named(emitter)}"
+
+
+def _named(thing):
+    """The name of one of Mitsuba's objects in brackets; nothing where Mitsuba made it up."""
+    return "" if thing.id().startswith("_") or not thing.id() else f" ({thing.id()})"
