@@ -80,7 +80,7 @@ def shown():
         rendering.errors(),
         bk.gallery([[(NASTY, named), fit]], spp=2, size=32),
         summarise(bk.load_volume("slab", size=8)),
-        bk.shadows.ShadowComparison({NASTY: (bk.shadows.Scores(psnr=30.0),)}, 1),
+        bk.shadows.ShadowComparison({NASTY: (bk.shadows.Scores(psnr=30.0),)}, 1, 1, ()),
     ]
     return {type(thing).__name__: thing for thing in objects}
 

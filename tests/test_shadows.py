@@ -1,14 +1,22 @@
 """`bk.shadows.compare`: scores that are known, of techniques and of the thesis."""
 
+import io
 import json
+import re
+from base64 import b64decode
 
+import mitsuba as mi
 import numpy as np
 import pytest
-from shadow_scenes import objects_on_a_ground
+from PIL import Image
+from shadow_scenes import objects_on_a_ground, placement_of
 
 import brdfkit as bk
 from brdfkit.shadows.aliasing_error import aliasing_error
+from brdfkit.shadows.drawing import draw_errors
+from brdfkit.shadows.map_pictures import CHECKS, OUTSIDE, MapPictures
 from brdfkit.shadows.scores import Scores, between_lights, mean
+from brdfkit.shadows.seen import Seen
 from brdfkit.shadows.texture_use import share_used
 
 SCENE = """<scene version="3.0.0">
@@ -29,6 +37,14 @@ def test_means_and_relative_scores_are_those_of_the_thesis():
     cells = [Scores(aliasing=value) for view in zip(*lights, strict=True) for value in view]
     assert mean(cells).aliasing == pytest.approx(27.05375)
     assert between_lights(cells).aliasing == pytest.approx(2.0375)
+
+
+def test_what_is_unknown_is_left_out_of_means():
+    known = mean([Scores(psnr=10, acne=np.nan), Scores(psnr=np.inf, acne=0.5)])
+    assert (known.psnr, known.acne) == ((10 + 99) / 2, 0.5)
+    assert np.isnan(known.texture_use)
+    cut_short = [Scores(psnr=10), Scores(psnr=13), Scores(psnr=50)]
+    assert between_lights(cut_short).psnr == 3
 
 
 def test_the_share_of_a_map_that_is_used():
@@ -60,16 +76,103 @@ def test_more_texels_are_better_and_a_map_that_ignores_the_camera_does_not_flick
     assert coarse["uniform"].flicker == 0 < coarse["focused"].flicker
 
 
+def compare_both(**more):
+    """A map and both techniques without one, in one small picture."""
+    others = "hybrid_shadow", "shadow_volume"
+    how = {"filters": ["depth"], "others": others, "resolution": 32, "size": (48, 48)}
+    return bk.shadows.compare(objects_on_a_ground("directional"), ["focused"], **how, **more)
+
+
+@pytest.mark.usefixtures("llvm_variant")
+def test_volumes_stand_beside_maps_and_a_page_has_the_pictures_of_all(tmp_path):
+    found = compare_both()
+    means = found.means
+    assert found.best == "shadow_volume"
+    assert means["shadow_volume"].wrong < 0.001 < 0.01 < means["focused"].wrong
+    assert means["shadow_volume"].flicker < 1e-4 < means["hybrid_shadow"].flicker
+    assert [row[4] == "–" for row in found.table()] == [name != "focused" for name in means]
+    assert not found.relative
+    assert not found.interrupted
+
+    found.write(tmp_path / "page.html")
+    page = (tmp_path / "page.html").read_text(encoding="utf-8")
+    # exact and none; three techniques with their errors; a map with its depths; the scale's bar
+    assert len(re.findall('<img src="data:image/', page)) == 2 + 2 * 3 + 2 + 1
+    assert not re.search(r'(src|href)="(?!data:)', page)
+    assert "View 1 (camera), light 1 (light)" in page
+    with pytest.raises(bk.BrdfkitError, match=r"page\.txt: .* name it \.html"):
+        found.write(tmp_path / "page.txt")
+
+
+@pytest.mark.usefixtures("llvm_variant")
+def test_ctrl_c_keeps_the_techniques_that_are_finished():
+    def stop_at(last):
+        def progress(done, total):
+            if done == last:
+                raise KeyboardInterrupt
+
+        return progress
+
+    found = compare_both(progress=stop_at(2))
+    assert [*found.scores] == ["focused", "hybrid_shadow"]
+    assert found.interrupted
+    assert "Interrupted: 2 of 3 scores" in str(found)
+    with pytest.raises(KeyboardInterrupt):
+        compare_both(progress=stop_at(0))
+
+
+@pytest.mark.usefixtures("llvm_variant")
+def test_the_checker_shows_how_wide_texels_are_and_the_light_sees_what_is_near_bright():
+    """A ground of 8, all in the map, of which the camera sees 4 from above; a ball over it."""
+    t, size = mi.ScalarTransform4f, 128
+    above = t().look_at([0, 0, 20], [0, 0, 0], [0, 1, 0])
+    scene = mi.load_dict(
+        {
+            "type": "scene",
+            "light": {"type": "directional", "direction": [0, 0, -1]},
+            "camera": {
+                "type": "perspective",
+                "fov": 2 * np.degrees(np.arctan(2 / 20)),
+                "to_world": above,
+                "film": {"type": "hdrfilm", "width": size, "height": size},
+            },
+            "ground": {"type": "rectangle", "to_world": t().scale(4)},
+            "ball": {"type": "sphere", "center": [3, 3, 1], "radius": 0.5},
+        }
+    )
+    seen = Seen.by(scene, scene.sensors()[0], scene.emitters()[0], (size, size))
+    maps = MapPictures.of(seen, placement_of(scene), projection="uniform", resolution=64)
+    assert not np.any(maps.part == OUTSIDE)
+    for row in (maps.shade[10], maps.shade[:, 10]):
+        changes = np.count_nonzero(np.abs(np.diff(row.astype(float))) > 0.2)
+        assert abs(changes - CHECKS / 2) <= 1
+    assert 0.003 < np.mean(maps.depths < 0.5) < 0.02  # of 64 the ball has 0.8
+
+
+def test_errors_are_blue_where_light_is_lost_and_red_where_it_is_gained():
+    address = draw_errors(np.array([[-1.0, 0.0, 1.0]]))
+    data = b64decode(address.partition(",")[2])
+    lost, right, gained = np.array(Image.open(io.BytesIO(data)).convert("RGB"), int)[0]
+    assert lost[2] > lost[0] + 50
+    assert gained[0] > gained[2] + 50
+    assert np.ptp(right) < 5
+
+
 def test_the_command(tmp_path, capsys):
     from brdfkit.cli import main
 
     file = tmp_path / "scene.xml"
     file.write_text(SCENE)
-    words = ["shadows", str(file), "--projection", "focused", "--filter", "depth"]
+    page = tmp_path / "page.html"
+    words = ["shadows", str(file), "--projection", "focused", "--filter", "depth", "-o", str(page)]
     sizes = ["--map", "64", "--size", "32"]
     main([*words, *sizes, "--json"], standalone_mode=False)
     printed = json.loads(capsys.readouterr().out)
     assert printed["lights"] == 1
     assert printed["scores"]["focused"][0]["psnr"] > 10
+    assert printed["written"] == [str(page)]
+    assert "focused" in page.read_text(encoding="utf-8")
     with pytest.raises(bk.BrdfkitError, match="did you mean focused"):
         bk.shadows.compare(file, ["focussed"])
+    with pytest.raises(bk.BrdfkitError, match="did you mean shadow_volume"):
+        bk.shadows.compare(file, others=["shadow_volumes"])

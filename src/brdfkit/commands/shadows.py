@@ -6,6 +6,7 @@ from pathlib import Path
 import click
 
 import brdfkit
+from brdfkit.commands._errors import say
 from brdfkit.commands._options import output_options
 from brdfkit.commands._stopping import status
 
@@ -86,16 +87,18 @@ def shadows(scene, projections, filters, partitions, others, resolution, size, o
             (size, size),
             progress,
         )
-    if output is not None:
-        with console.progress("draw pictures") as progress:
-            found.write(output, progress)
+    if not console.as_json:
+        console.table(found.columns, found.table())
+        console.out.print(found.meaning)
     written = [] if output is None else [output]
+    for path in written:
+        with console.progress("draw pictures") as progress:
+            found.write(path, progress)
     if console.as_json:
         each = {label: [asdict(one) for one in all_of] for label, all_of in found.scores.items()}
         console.json({"scores": each, "lights": found.lights, "written": written})
     else:
-        console.table(found.columns, found.table())
-        console.out.print(found.meaning)
         console.list_written(written)
     if found.interrupted:
+        say(f"interrupted; {found.finished} of {found.asked} scores are finished.")
         click.get_current_context().exit(status())

@@ -8,9 +8,17 @@ import numpy as np
 from brdfkit.colours import to_srgb
 
 
-def jpeg(linear, quality=92):
+def jpeg(linear):
     """The address of a picture (height, width, 3) of linear sRGB, to look at."""
-    return _address(_bytes(to_srgb(linear)), "JPEG", quality=quality, subsampling=0)
+    return _address(_bytes(to_srgb(linear)), "JPEG", quality=92, subsampling=0)
+
+
+def webp(colours, **options):
+    """The address of colours (height, width, 3) in 0..1, half as long as JPEG's or PNG's.
+
+    options : of Pillow, as `quality`, or `lossless`.
+    """
+    return _address(_bytes(colours), "WEBP", **options)
 
 
 def halved(linear):

@@ -47,7 +47,7 @@ class ShadowComparison(Shown):
         """Technique → the mean differences between the two lights of each view: how much a light
         that hardly moves changes; in the order of `means`. Empty where there are not two lights.
         """
-        if self.lights != 2 or len(self.pictures) < 2:
+        if self.lights != 2 or min(map(len, self.scores.values())) < 2:
             return {}
         return {label: between_lights(self.scores[label]) for label in self.means}
 
@@ -64,7 +64,12 @@ class ShadowComparison(Shown):
     @property
     def interrupted(self) -> bool:
         """Whether Ctrl-C ended the comparison."""
-        return sum(map(len, self.scores.values())) < self.asked
+        return self.finished < self.asked
+
+    @property
+    def finished(self) -> int:
+        """How many scores there are."""
+        return sum(map(len, self.scores.values()))
 
     def table(self) -> list[tuple[str, ...]]:
         """The means as texts, a row for each technique."""
@@ -73,7 +78,7 @@ class ShadowComparison(Shown):
     @property
     def meaning(self) -> str:
         """What the columns are, in a sentence or two."""
-        places = len(self.pictures)
+        places = len(next(iter(self.scores.values())))
         pairs = "the only pair" if places == 1 else f"{places} pairs"
         return (
             f"{self.cut_short}Means over {pairs} of view and light, each against exact shadows. "
@@ -87,8 +92,7 @@ class ShadowComparison(Shown):
         """A sentence on how much is finished after Ctrl-C; else nothing."""
         if not self.interrupted:
             return ""
-        finished = sum(map(len, self.scores.values()))
-        return f"Interrupted: {finished} of {self.asked} scores are finished. "
+        return f"Interrupted: {self.finished} of {self.asked} scores are finished. "
 
     def write(self, path: str | Path, progress: Callable[[int, int], object] | None = None) -> None:
         """Write a page with the table, to sort, and all pictures: of each view in each light the

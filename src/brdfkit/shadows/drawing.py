@@ -2,13 +2,14 @@
 
 import numpy as np
 
-from brdfkit.reporting.images import colours, halved, jpeg, png
+from brdfkit.colours import to_srgb
+from brdfkit.reporting.images import colours, halved, webp
 from brdfkit.shadows.map_pictures import OUTSIDE
 
 WIDEST = 320  # pixels of a picture on the page
-QUALITY = 80  # of JPEG
+QUALITY = 60  # of WebP
 ERRORS = "RdBu_r"  # matplotlib's scale for light that is lost (blue) or gained (red)
-STEPS = 16  # of errors, from none to all of the light: pictures of few colours are small
+STEPS = 8  # of errors, from none to all of the light: pictures of few colours are small
 TINTS = "Set2"  # of maps, in turn
 NOTHING = (0.16, 0.2, 0.3)  # where the light sees no surface
 
@@ -23,23 +24,28 @@ def small(picture):
 
 def draw_radiance(picture, white):
     """The address of a picture (height, width, 3), in which `white` is the brightest value."""
-    return jpeg(small(picture / white), QUALITY)
+    return looked_at(small(picture / white))
 
 
 def draw_errors(errors):
     """The address of the shares (height, width) of the light that are gained, or lost below 0."""
     shares = np.round(small(errors[..., None])[..., 0] * STEPS) / STEPS
-    return png(colours(ERRORS, (shares + 1) / 2)[..., :3])
+    return webp(colours(ERRORS, (shares + 1) / 2)[..., :3], lossless=True)
 
 
 def draw_texels(maps):
     """The address of a scene under the checker of its `MapPictures`; grey where there is no map."""
     tints = np.ones((OUTSIDE + 1, 3))
     tints[:OUTSIDE] = colours(TINTS, np.arange(OUTSIDE) % 8 / 7.99)[:, :3] ** 2
-    return jpeg(small(maps.shade[..., None] * tints[maps.part]), QUALITY)
+    return looked_at(small(maps.shade[..., None] * tints[maps.part]))
 
 
 def draw_depths(depths):
     """The address of what the light sees (side, side), 0 near to 1 far, near ones bright."""
     bright = (1 - 0.9 * depths.astype(float))[..., None] ** 2
-    return jpeg(np.where(np.isnan(bright), NOTHING, bright), QUALITY)
+    return looked_at(np.where(np.isnan(bright), NOTHING, bright))
+
+
+def looked_at(linear):
+    """The address of a picture (height, width, 3) of linear sRGB, which may lose a little."""
+    return webp(to_srgb(linear), quality=QUALITY)
