@@ -67,7 +67,7 @@ def write_page(comparison, path, progress=None):
 def contents(place, order, comparison, number, flips):
     """What the page shows of a `Pictures`, the techniques in their `order`."""
     exact = place.radiance(place.exact)
-    white = np.percentile(exact[place.exact & place.facing], 99) if exact.any() else 1.0
+    white = np.percentile(exact[exact > 0], 99) if exact.any() else 1.0
     draw = partial(draw_radiance, white=white)
     techniques = []
     for label, its_flip in zip(order, flips, strict=True):
@@ -100,8 +100,11 @@ def said(scores, its_flip):
 
 
 def flips_of(place, order):
-    """FLIP of the small pictures by each technique; nan without the package flip-evaluator."""
+    """FLIP of the small pictures by each technique; nan without the package flip-evaluator, and
+    where nothing faces the light."""
     exact, mask = small(place.radiance(place.exact)), small(place.facing[..., None])[..., 0] > 0
+    if not mask.any():
+        return [np.nan] * len(order)
     try:
         return [flip(exact, small(place.radiance(place.lit(label))), mask) for label in order]
     except ImportError:
