@@ -14,10 +14,9 @@ to see them. There is no indirect light, and no derivative of the shadows; other
 three are refused, and cameras that are not perspective.
 """
 
-from brdfkit.host.declared import count, declared, plain_number
-from brdfkit.host.direct_light import direct_light
+from brdfkit.host.declared import count, plain_number
+from brdfkit.host.direct_light import shadowed
 from brdfkit.host.reference_shadow import beside_a_shadow
-from brdfkit.host.variants import refuse_scalar
 from brdfkit.hybrid_shadow import hybrid_shadow
 
 PARAMETERS = {
@@ -29,19 +28,12 @@ PARAMETERS = {
 def define(mi):
     """The class of `mi.SamplingIntegrator` for the current variant."""
 
-    class HybridShadows(declared(mi.SamplingIntegrator, PARAMETERS)):
-        def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
-            refuse_scalar("hybrid_shadow")
-            sensor = scene.sensors()[sensor] if isinstance(sensor, int) else sensor
-            self.lights = [
-                (emitter, hybrid_shadow(scene, sensor, emitter, self.resolution, self.jump))
+    class HybridShadows(shadowed(mi, PARAMETERS)):
+        def shadows(self, scene, sensor):
+            return [
+                hybrid_shadow(scene, sensor, emitter, self.resolution, self.jump)
                 for emitter in scene.emitters()
             ]
-            return super().render(scene, sensor, seed, spp, develop, evaluate)
-
-        def sample(self, scene, sampler, ray, medium=None, active=True):
-            si = scene.ray_intersect(mi.Ray3f(ray), active)
-            return direct_light(si, sampler, self.lights, active), active, []
 
     return HybridShadows
 

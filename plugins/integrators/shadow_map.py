@@ -20,10 +20,9 @@ included; those through filters that compare are 0. There is no indirect light, 
 than these three are refused.
 """
 
-from brdfkit.host.declared import count, declared, flag, plain_number, word
-from brdfkit.host.direct_light import direct_light
+from brdfkit.host.declared import count, flag, plain_number, word
+from brdfkit.host.direct_light import shadowed
 from brdfkit.host.reference_shadow import beside_a_shadow
-from brdfkit.host.variants import refuse_scalar
 from brdfkit.shadow_maps.bias import AUTOMATIC, Bias
 from brdfkit.shadow_maps.light_shadow import DEPTHS, LightShadow
 from brdfkit.shadow_maps.placement import Placement
@@ -46,14 +45,9 @@ PARAMETERS = {
 def define(mi):
     """The class of `mi.SamplingIntegrator` for the current variant."""
 
-    class ShadowMapped(declared(mi.SamplingIntegrator, PARAMETERS)):
-        def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
-            refuse_scalar("shadow_map")
-            sensor = scene.sensors()[sensor] if isinstance(sensor, int) else sensor
-            self.lights = [
-                (emitter, self.shadow(scene, sensor, emitter)) for emitter in scene.emitters()
-            ]
-            return super().render(scene, sensor, seed, spp, develop, evaluate)
+    class ShadowMapped(shadowed(mi, PARAMETERS)):
+        def shadows(self, scene, sensor):
+            return [self.shadow(scene, sensor, emitter) for emitter in scene.emitters()]
 
         def shadow(self, scene, sensor, emitter):
             """The `LightShadow` of an `emitter` of the scene."""
@@ -68,10 +62,6 @@ def define(mi):
                 **names,
                 **{name: getattr(self, name) for name in settings},
             )
-
-        def sample(self, scene, sampler, ray, medium=None, active=True):
-            si = scene.ray_intersect(mi.Ray3f(ray), active)
-            return direct_light(si, sampler, self.lights, active), active, []
 
     return ShadowMapped
 

@@ -19,14 +19,13 @@ among them; so does `shared_edges`.
 
 Spheres, cylinders and disks become meshes of 128 steps around; instances, curves and signed
 distances are refused. A pixel takes as long as it has faces before or behind it: shadow rays are
-faster where there are many. There is no indirect light, and no derivative
-of the shadows; other lights than these three are refused, and cameras that are not perspective.
+faster where there are many. There is no indirect light, and no derivative of the shadows; other
+lights than these three are refused, and cameras that are not perspective.
 """
 
-from brdfkit.host.declared import declared, plain_number, word
-from brdfkit.host.direct_light import direct_light
+from brdfkit.host.declared import plain_number, word
+from brdfkit.host.direct_light import shadowed
 from brdfkit.host.reference_shadow import beside_a_shadow
-from brdfkit.host.variants import refuse_scalar
 from brdfkit.projective.light import Light
 from brdfkit.shadow_volumes.casters import CASTERS
 from brdfkit.shadow_volumes.light_volumes import FAR_PLANES, METHODS, LightVolumes
@@ -48,15 +47,10 @@ PARAMETERS = {
 def define(mi):
     """The class of `mi.SamplingIntegrator` for the current variant."""
 
-    class ShadowVolumes(declared(mi.SamplingIntegrator, PARAMETERS)):
-        def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
-            refuse_scalar("shadow_volume")
-            sensor = scene.sensors()[sensor] if isinstance(sensor, int) else sensor
+    class ShadowVolumes(shadowed(mi, PARAMETERS)):
+        def shadows(self, scene, sensor):
             meshes = [Mesh.of_shape(shape) for shape in scene.shapes()]
-            self.lights = [
-                (emitter, self.shadow(meshes, sensor, emitter)) for emitter in scene.emitters()
-            ]
-            return super().render(scene, sensor, seed, spp, develop, evaluate)
+            return [self.shadow(meshes, sensor, emitter) for emitter in scene.emitters()]
 
         def shadow(self, meshes, sensor, emitter):
             """The `LightVolumes` of an `emitter`."""
@@ -72,10 +66,6 @@ def define(mi):
                 length=self.extrusion,
                 back_cap=self.back_cap,
             )
-
-        def sample(self, scene, sampler, ray, medium=None, active=True):
-            si = scene.ray_intersect(mi.Ray3f(ray), active)
-            return direct_light(si, sampler, self.lights, active), active, []
 
     return ShadowVolumes
 

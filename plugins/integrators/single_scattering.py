@@ -17,10 +17,10 @@ Ratio tracking along a ray finds both the share of light that comes through and 
 rest: each sample has what is seen behind the volume, and light that is scattered in it. Likewise it
 finds what comes through to an emitter, once towards a sample of the emitters, of several mostly the
 brightest of two, once in a direction that the phase function or the BSDF draws; the power heuristic
-weights the two. `majorants` are the
-bounds of σ by which it steps: `local`, those of coarse cells, several times faster for scans with
-much that is empty, or `global`, one for all. They are found anew when parameters change; an
-extinction above them is an error, and were one missed, a pixel that is no number.
+weights the two. `majorants` are the bounds of σ by which it steps: `local`, those of coarse cells,
+several times faster for scans with much that is empty, or `global`, one for all. They are found
+anew when parameters change; an extinction above them is an error, and were one missed, a pixel that
+is no number.
 
 `max_depth` is that of Mitsuba's `volpath`: 1 for what shines by itself, seen through the volume, 2
 for single scattering, more for multiple scattering. The means are equal, but for what `volpath`
@@ -190,7 +190,6 @@ def reference():
 
     An even cube in the sun, which is behind the camera.
     """
-
     sigma, albedo, g, irradiance = 2.0, 0.5, -0.3, np.array([0.9, 0.6, 0.3])
     colour = {"type": "rgb", "value": irradiance.tolist()}
     scene = {

@@ -2,6 +2,34 @@
 
 import drjit as dr
 
+from brdfkit.host.declared import declared
+from brdfkit.host.variants import refuse_scalar
+
+
+def shadowed(mi, parameters):
+    """The base class of integrators of direct light that find all shadows before each picture.
+
+    A class derived from it has `shadows(scene, sensor)`: of each emitter of the scene in turn what
+    `direct_light` takes.
+    """
+
+    class Shadowed(declared(mi.SamplingIntegrator, parameters)):
+        def __init__(self, props):
+            super().__init__(props)
+            self.name = props.plugin_name()
+
+        def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
+            refuse_scalar(self.name)
+            sensor = scene.sensors()[sensor] if isinstance(sensor, int) else sensor
+            self.lights = list(zip(scene.emitters(), self.shadows(scene, sensor), strict=True))
+            return super().render(scene, sensor, seed, spp, develop, evaluate)
+
+        def sample(self, scene, sampler, ray, medium=None, active=True):
+            si = scene.ray_intersect(mi.Ray3f(ray), active)
+            return direct_light(si, sampler, self.lights, active), active, []
+
+    return Shadowed
+
 
 def direct_light(si, sampler, lights, active):
     """The light that surfaces send to the camera: Σ ρ(ω_l, ω_o) cosθ_l E_l V.

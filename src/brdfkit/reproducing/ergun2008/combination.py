@@ -1,11 +1,8 @@
 """Section 5: the combination that the thesis recommends, what it costs and what it gives."""
 
-import numpy as np
-
 from brdfkit.jit.llvm import use_variant
 from brdfkit.jit.threads import in_turn
 from brdfkit.reproducing.claims import UNSTATED, Claim, verdict
-from brdfkit.reproducing.drawing import figure
 from brdfkit.reproducing.ergun2008.views import RESOLUTION, View, measured
 from brdfkit.reproducing.page import Picture, Section, Table
 from brdfkit.reproducing.timing import least_seconds
@@ -137,16 +134,5 @@ def best_claim(means):
 
 def draw():
     """The street, by three techniques."""
-    view = View.of("street", "V1", 1)
     chosen = "uniform + depth", "LiSPSM + VSM", "LiSPSM + VSM + PSSM"
-    lit = {"exact": view.seen.exact} | {
-        name: view.lit(view.shadow(**TECHNIQUES[name])) for name in chosen
-    }
-    drawn = figure(10, 2.8)
-    most = view.seen.picture(np.ones(len(view.seen.exact))).max()
-    for axes, (name, shares) in zip(drawn.subplots(1, len(lit)), lit.items(), strict=True):
-        picture = view.seen.picture(0.85 * shares + 0.15) / most
-        axes.imshow(picture.clip(0, 1) ** (1 / 2.2))
-        axes.set_title(name, size=10)
-        axes.set_axis_off()
-    return drawn
+    return View.of("street", "V1", 1).draw({name: TECHNIQUES[name] for name in chosen})

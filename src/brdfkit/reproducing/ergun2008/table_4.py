@@ -5,7 +5,6 @@ import numpy as np
 from brdfkit.jit.llvm import use_variant
 from brdfkit.jit.threads import in_turn
 from brdfkit.reproducing.claims import UNSTATED, Claim, verdict
-from brdfkit.reproducing.drawing import figure
 from brdfkit.reproducing.ergun2008.printed import mean_and_relative, printed
 from brdfkit.reproducing.ergun2008.views import View, measured
 from brdfkit.reproducing.page import Picture, Section, Table
@@ -176,15 +175,4 @@ def relative_claim(table):
 def draw():
     """The pictures of one view."""
     view = View.of("objects_on_a_ground", "V3", 1)
-    lit = {"exact": view.seen.exact} | {
-        name: view.lit(view.shadow(projection=PROJECTION, filter=file))
-        for name, file in FILTERS.items()
-    }
-    drawn = figure(10, 2.8)
-    most = view.seen.picture(np.ones(len(view.seen.exact))).max()
-    for axes, (name, shares) in zip(drawn.subplots(1, len(lit)), lit.items(), strict=True):
-        picture = view.seen.picture(0.85 * shares + 0.15) / most
-        axes.imshow(picture.clip(0, 1) ** (1 / 2.2))
-        axes.set_title(name, size=10)
-        axes.set_axis_off()
-    return drawn
+    return view.draw({n: {"projection": PROJECTION, "filter": f} for n, f in FILTERS.items()})

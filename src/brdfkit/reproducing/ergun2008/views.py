@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.picture_errors.psnr import psnr
+from brdfkit.reproducing.drawing import figure
 from brdfkit.shadow_maps.light_shadow import LightShadow
 from brdfkit.shadow_maps.placement import Placement
 from brdfkit.shadow_maps.scenes import LIGHTS, SCENES, VIEWS
@@ -65,6 +66,18 @@ class View:
         seen = self.seen
         true, found = seen.picture(seen.exact), seen.picture(lit)
         return min(psnr(true, found, seen.facing.reshape(seen.size)), MOST)
+
+    def draw(self, techniques):
+        """The picture with exact shadows, and beside it those by `techniques`, by their names."""
+        lit = {name: self.lit(self.shadow(**each)) for name, each in techniques.items()}
+        lit = {"exact": self.seen.exact} | lit
+        drawn, most = figure(10, 2.8), self.seen.unshadowed.max()
+        for axes, (name, shares) in zip(drawn.subplots(1, len(lit)), lit.items(), strict=True):
+            picture = self.seen.picture(0.85 * shares + 0.15) / most
+            axes.imshow(picture.clip(0, 1) ** (1 / 2.2))
+            axes.set_title(name, size=10)
+            axes.set_axis_off()
+        return drawn
 
 
 def measured(function, scenes, report):
