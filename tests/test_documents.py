@@ -12,6 +12,7 @@ from brdfkit.documents import Cell, Document, Folded, Paragraph, Picture, Shown,
 from brdfkit.documents.html import to_html
 from brdfkit.documents.parts import BAD
 from brdfkit.documents.text import to_text
+from brdfkit.fitting.certainty import Certainty
 from brdfkit.geometry.directions import from_angles
 from brdfkit.pictures.ball import WHITE, ball
 from brdfkit.pictures.lights import studio
@@ -54,6 +55,13 @@ class Reader(HTMLParser):
         return " ".join(" ".join(self.texts).split())
 
 
+def refinement():
+    """A `Refinement` of one number, as a search of two steps ends."""
+    certainty = Certainty((NASTY,), ((0.01,),), (30.0,), (), (), 432, 1)
+    said = ("no step gains more than the noise", ((16, 0.1), (64, 0.01)), (NASTY,), (NASTY,))
+    return bk.Refinement({NASTY: 0.2}, 0.1, 0.05, 64, 2, 80.0, 1.5, *said, certainty, {}, ())
+
+
 @pytest.fixture(scope="module")
 def shown():
     """One object of every class that derives from `Shown`, by the class's name."""
@@ -76,6 +84,7 @@ def shown():
         bk.bootstrap(fit, plaster, count=2),
         bk.profile(fit, plaster, "alpha_u", points=5),
         bk.Reproduction(NASTY, ()),
+        refinement(),
         rendering,
         rendering.errors(),
         bk.gallery([[(NASTY, named), fit]], spp=2, size=32),

@@ -34,6 +34,7 @@ METHODS = {
         ],
         bk.Model: ["changed"],
         bk.Gallery: ["write"],
+        bk.Refinement: ["put_into"],
         bk.Rendering: ["write"],
         bk.Sweep: ["to_csv", "to_html", "to_parquet"],
         bk.TransferFunction: ["from_colormap", "from_opacity", "load", "save"],

@@ -32,6 +32,8 @@ from .progress_bar import progress as progress
 from .ranking import Ranked as Ranked
 from .ranking import Ranking as Ranking
 from .ranking import rank as rank
+from .refining import Refinement as Refinement
+from .refining import refine as refine
 from .rendering import Gallery as Gallery
 from .rendering import Rendering as Rendering
 from .rendering import ToneMapping as ToneMapping

@@ -97,13 +97,22 @@ def certify(problem, u, weights, passes=None, rng=None):
         shares = whole / np.where(problem.importance > 0, problem.importance, 1)
         passes = passes and [[array[rows] for array in by_channel] for by_channel in passes]
     scores, hessian, scale = _sum(problem, u, weights, free, shares, passes)
+    most = (numbers - len(names)) / problem.channels
+    return conclude(names, free, at, scores, hessian, scale, numbers, most)
+
+
+def conclude(names, free, at, scores, hessian, scale, numbers, most):
+    """The `Certainty` of `names`, of which those that are `free` (n,) may move from where they are,
+    `at` (n,). By the free ones, in units of `scale`: `scores` (free, samples), what each sample
+    adds to the gradient of E², and the `hessian`. `numbers`: how many were measured; `most`: the
+    degrees of freedom that a variance can have."""
     # Directions in which E² does not rise
     values, vectors = np.linalg.eigh(hessian)
     open_ = np.abs(values) <= SINGULAR * max(values.max(), 1)
     inner = vectors[:, ~open_] / np.abs(values[~open_]) @ vectors[:, ~open_].T
     spread = inner @ scores
     covariance = spread @ spread.T * np.outer(scale, scale)
-    freedom = _count_freedom(spread, (numbers - len(names)) / problem.channels)
+    freedom = _count_freedom(spread, most)
     loose = (np.abs(vectors[:, open_]) > ABSENT).any(axis=1)
     own = [name for name, is_free in zip(names, free, strict=True) if is_free]
     return Certainty(

@@ -94,6 +94,7 @@ def textured_frame(mi, model):
             lines = [f"  {name} = {texture}" for name, texture in self.textures.items()]
             return "\n".join([f"{model.__name__}[", *lines, "]"])
 
+    TexturedFrame.model = model
     return TexturedFrame
 
 

@@ -1,0 +1,136 @@
+"""What the end of a search says of the numbers: a `Refinement`."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from brdfkit.fitting import Fit
+from brdfkit.fitting.certainty import Certainty, conclude
+from brdfkit.refining.gauss_newton import free_of_bounds
+from brdfkit.refining.refinement import Refinement
+from brdfkit.refining.unknowns import numbers_in
+from brdfkit.version import versions
+
+
+def conclude_search(views, found, seconds, interrupted=False):
+    """The `Refinement` of a `Search` on `Views`, after so many `seconds`."""
+    x, parts = found.here.x, views.values(found.here.x)
+    values = {
+        unknown.name: tuple(map(float, part)) if len(part) > 1 else float(part[0])
+        for unknown, part in zip(views.unknowns, parts, strict=True)
+    }
+    certainty = _certify(views, found)
+    bounds = _on_bounds(views, x)
+    left = float(np.sqrt(max(found.here.error, 0)))
+    message = _message(found, interrupted)
+    result = Refinement(
+        values=values,
+        loss=left,
+        noise=float(np.sqrt(found.here.noise(views))),
+        samples=2 * found.here.spp,
+        steps=found.steps,
+        cost=views.renders,
+        seconds=seconds,
+        message=message,
+        history=tuple((int(spp), float(error)) for spp, error in found.history),
+        at_bounds=bounds,
+        notes=(*certainty.undetermined, *certainty.trades, *_notes_on_pictures(views)),
+        certainty=certainty,
+        fits={},
+        pictures=tuple(views.as_pictures((found.here.a + found.here.b) / 2 + views.reached)),
+    )
+    return replace(result, fits=_fits(views, result))
+
+
+def _certify(views, found):
+    """The `Certainty` of the values, by blocks of pixels as samples."""
+    slopes = views.slopes(found.here.x)
+    if found.about is None:
+        return Certainty((), (), (), (), (), 0, len(slopes))
+    free = free_of_bounds(views, found) & ~views.is_on_bound(found.here.x)
+    hessian, scores = found.about.hessian[np.ix_(free, free)], found.about.scores[free]
+    scale = 1 / np.sqrt(np.maximum(np.diagonal(hessian), 1e-300))
+    seen = np.diagonal(hessian) > 0
+    scale = np.where(seen, scale, 1)
+    blocks = scores.shape[1]
+    correction = np.sqrt(blocks / max(1, blocks - len(slopes)))
+    at = np.concatenate(views.values(found.here.x))
+    return conclude(
+        views.names,
+        free,
+        at,
+        scores * scale[:, None] * correction,
+        hessian * np.outer(scale, scale),
+        scale * slopes[free],
+        int(np.count_nonzero(views.weights)),
+        max(1, blocks - len(slopes)),
+    )
+
+
+def _on_bounds(views, x):
+    """The names of the unknowns of which a number is on a bound."""
+    on = views.is_on_bound(x)
+    return tuple(
+        unknown.name
+        for unknown, part in zip(views.unknowns, views.parts(on), strict=True)
+        if part.any()
+    )
+
+
+def _message(found, interrupted):
+    if interrupted:
+        return "interrupted: the best so far"
+    if found.converged:
+        return "no step gains more than the noise"
+    return f"stopped after {found.steps} steps: more of them may gain"
+
+
+def _notes_on_pictures(views):
+    """What one should know of the pictures."""
+    clipped = [target.clipped for target in views.targets]
+    if max(clipped) == 0:
+        return ()
+    return (
+        f"{100 * np.mean(clipped):.2g} % of the pixels are clipped, at the largest number of their "
+        "picture; they do not count",
+    )
+
+
+def _fits(views, result):
+    """A `Fit` for each model whose parameters were searched."""
+    found = {}
+    for owner in dict.fromkeys(unknown.owner for unknown in views.unknowns if unknown.model):
+        own = [unknown for unknown in views.unknowns if unknown.owner == owner]
+        model = own[0].model
+        known = numbers_in(views.parameters, owner, model)
+        if known is None:
+            continue
+        names = {unknown.name: unknown.parameter for unknown in own}
+        values = known | {names[name]: result.values[name] for name in names}
+        found[owner] = Fit(
+            model=model(**values),
+            data="pictures of the scene",
+            loss_name="rendered",
+            loss=result.loss,
+            samples=len(views.reached),
+            evaluations=result.steps,
+            seconds=result.seconds,
+            message=result.message,
+            at_bounds=tuple(names[name] for name in result.at_bounds if name in names),
+            notes=tuple(note.replace(f"{owner}.", "") for note in result.notes),
+            certainty=_of_model(result.certainty, owner),
+            versions=dict(versions()),
+        )
+    return found
+
+
+def _of_model(certainty, owner):
+    """The part of a `Certainty` that speaks of the parameters of a BSDF, by their own names."""
+    rows = [row for row, name in enumerate(certainty.names) if name.startswith(f"{owner}.")]
+    matrix = certainty.matrix()[np.ix_(rows, rows)]
+    return replace(
+        certainty,
+        names=tuple(certainty.names[row].removeprefix(f"{owner}.") for row in rows),
+        covariance=tuple(map(tuple, matrix.tolist())),
+        freedom=tuple(certainty.freedom[row] for row in rows),
+    )

@@ -1,0 +1,114 @@
+"""The normal equations of Gauss and Newton by rendered pictures, without the bias of their noise.
+
+A square of noisy differences is too large by the noise's variance, and its least value lies where
+the noise is least. So two pictures I_A, I_B are rendered, of samples that are independent, beside a
+picture J to reach:
+
+    E² = Σ w (I_A - J)(I_B - J)
+    g = ½ Σ w (∂I_A (I_B - J) + ∂I_B (I_A - J))
+    H = ½ Σ w (∂I_A ∂I_Bᵀ + ∂I_B ∂I_Aᵀ)
+
+are right in the mean, however few the samples; w goes with the picture to reach alone.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from brdfkit.refining.views import DERIVATIVE_COST
+
+BLOCK = 4  # pixels; a camera's filter ties the noise of neighbours together
+SHARE = 3.0  # of the cost of a step's pictures, what its derivatives may cost
+SMALLEST = 1e-5  # eigenvalue of H, of unit diagonal, below which there is noise
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """Two halves `a`, `b` (pixels, channels) of rendered less reached pixels, at coordinates `x`,
+    by `spp` samples each; weighed, `terms` (pixels,) add up to E²."""
+
+    x: np.ndarray
+    a: np.ndarray
+    b: np.ndarray
+    spp: int
+    terms: np.ndarray
+
+    @classmethod
+    def at(cls, views, x, spp, seed):
+        """Of the `Views` at `x`, by half of `spp` samples each."""
+        half = max(1, spp // 2)
+        a, b = views.residuals(x, half, seed), views.residuals(x, half, seed + 1000)
+        return cls(x, a, b, half, (views.weights * a * b).sum(axis=1))
+
+    @property
+    def error(self):
+        """E², of the weights' mean; it may be below 0 where it is less than the noise."""
+        return self.terms.sum()
+
+    def less(self, other):
+        """(how much less E² is in `other`, of the same samples; its standard error)."""
+        change = self.terms - other.terms
+        return change.sum(), change.std() * np.sqrt(len(change))
+
+    def noise(self, views):
+        """What rendering adds to E² in a picture of both halves."""
+        return float((views.weights * (self.a - self.b) ** 2).sum() / 4)
+
+
+@dataclass(frozen=True)
+class Equations:
+    """E² to second order: `gradient` (n,), half of E²'s, `hessian` (n, n), and `scores`
+    (n, blocks), what blocks of pixels add to the gradient."""
+
+    gradient: np.ndarray
+    hessian: np.ndarray
+    scores: np.ndarray
+
+    @classmethod
+    def at(cls, views, here, seed):
+        """About `Residuals`."""
+        tangents = sum(1 if u.colour else len(u.start) for u in views.unknowns)
+        spp = max(1, round(here.spp * min(1, SHARE / (DERIVATIVE_COST * tangents))))
+        a, b = (views.derivatives(here.x, spp, seed + 1000 * half) for half in (0, 1))
+        weighed = views.weights * a
+        hessian = weighed.reshape(len(a), -1) @ b.reshape(len(a), -1).T.astype(float)
+        per_pixel = (weighed * here.b).sum(axis=2) + (views.weights * b * here.a).sum(axis=2)
+        scores = _by_block(per_pixel / 2, views.targets)
+        return cls(scores.sum(axis=1), (hessian + hessian.T) / 2, scores)
+
+    def gain(self, step):
+        """How much less E² should be after a step (n,)."""
+        return -float(2 * self.gradient @ step + step @ self.hessian @ step)
+
+    def scaled(self):
+        """(H, scale): H of unit diagonal, its negative eigenvalues, of noise, lifted."""
+        scale = 1 / np.sqrt(np.maximum(np.diagonal(self.hessian), 1e-30))
+        values, vectors = np.linalg.eigh(self.hessian * np.outer(scale, scale))
+        lifted = np.maximum(values, SMALLEST)
+        return (vectors * lifted) @ vectors.T, scale
+
+    def surprise(self, free):
+        """How far the gradient is from 0, in standard errors, a mean square over what is `free`."""
+        g, scores = self.gradient[free], self.scores[free]
+        centred = scores - scores.mean(axis=1, keepdims=True)
+        scale = 1 / np.sqrt(np.maximum((centred**2).sum(axis=1), 1e-300))
+        covariance = (centred * scale[:, None]) @ (centred * scale[:, None]).T
+        g = g * scale
+        return float(
+            g @ np.linalg.pinv(covariance, rcond=1e-6, hermitian=True) @ g / max(1, len(g))
+        )
+
+
+def _by_block(values, targets):
+    """Sums of `values` (n, pixels) over blocks of pixels (n, blocks), of all pictures."""
+    found, at = [], 0
+    for target in targets:
+        width, height = target.size
+        rows, columns = np.arange(height) // BLOCK, np.arange(width) // BLOCK
+        across = columns.max() + 1
+        index = (rows[:, None] * across + columns).ravel()
+        count = width * height
+        for_one = [np.bincount(index, weights=row[at : at + count]) for row in values]
+        found.append(np.array(for_one))
+        at += count
+    return np.concatenate(found, axis=1)

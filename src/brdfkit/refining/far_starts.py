@@ -1,0 +1,68 @@
+"""Where a search begins: at the best of many points, of which few samples tell enough.
+
+A wide lobe beside a narrow highlight is a valley of its own; no descent leaves it.
+"""
+
+import numpy as np
+
+from brdfkit.fitting.box_quadratic import minimise_in_box
+from brdfkit.fitting.starting_points import start_points
+from brdfkit.refining.equations import Residuals
+from brdfkit.refining.gauss_newton import search
+
+RAYS = 2**17  # of a picture: rays are cheap beside beginning it
+FEW_SAMPLES = 4, 64  # per pixel, the least and the most
+BEST = 3  # points that go on
+FEW = 4  # steps that they take
+PER_NUMBER = 8  # points for each number in which pictures are not linear
+
+
+def start(views, count, seed, report):
+    """The coordinates of the best of `count` points after some steps; the scene's own is one.
+
+    `report()` is called after each point. Without any that pictures are not linear in, the scene's
+    own point is best.
+    """
+    curved = ~views.linear & np.isfinite(views.most)
+    if count == 1 or not curved.any():
+        return views.start
+    points = [views.start] + [np.where(curved, 0, views.start) for _ in range(count - 1)]
+    spread = start_points(None, views.start[None, curved][0], count, seed)
+    spp = int(np.clip(RAYS / len(views.reached), *FEW_SAMPLES))
+    tried = []
+    for point, coordinates in zip(points, spread, strict=True):
+        point = point.copy()
+        point[curved] = coordinates
+        tried.append(_solve_linear(views, point, spp, seed))
+        report()
+    tried.sort(key=lambda residuals: residuals.error)
+    ends = []
+    for residuals in tried[:BEST]:
+        ends.append(search(views, residuals.x, FEW, 4 * spp, seed, 2 * spp).here)
+        report()
+    return min(ends, key=lambda residuals: residuals.error).x
+
+
+def _solve_linear(views, x, spp, seed):
+    """The `Residuals` at `x`, its linear numbers those of the least squares, for direct light."""
+    linear = np.nonzero(views.linear)[0]
+    if not len(linear):
+        return Residuals.at(views, x, spp, seed)
+    dark = np.where(views.linear, 0, x)
+    a, b = (views.steps_from(dark, linear, spp // 2, seed + 1000 * half) for half in (0, 1))
+    (a, reached_a), (b, reached_b) = a, b
+    weighed = views.weights * a
+    hessian = weighed.reshape(len(a), -1) @ b.reshape(len(b), -1).T.astype(float)
+    gradient = (weighed * reached_b + views.weights * b * reached_a).sum(axis=(1, 2)) / 2
+    hessian = (hessian + hessian.T) / 2
+    hessian += 1e-3 * np.diag(np.maximum(np.diagonal(hessian), 1e-30))
+    found = minimise_in_box(hessian[None], gradient[None], 0.0, views.most[None, linear])[0]
+    x = dark.copy()
+    x[linear] = found
+    return Residuals.at(views, x, spp, seed)
+
+
+def usual_count(views):
+    """How many points a search begins at."""
+    curved = int((~views.linear & np.isfinite(views.most)).sum())
+    return 1 + min(PER_NUMBER * curved, 32)

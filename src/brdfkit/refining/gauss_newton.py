@@ -1,0 +1,103 @@
+"""Gauss-Newton on rendered pictures: few steps, each with all derivatives, and no more samples than
+the noise demands. [Levenberg 1944]; [Marquardt 1963]."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from brdfkit.fitting.box_quadratic import minimise_in_box
+from brdfkit.fitting.stopped import Stopped
+from brdfkit.refining.equations import Equations, Residuals
+
+FIRST = 16  # samples per pixel of the first steps
+GROWTH = 4, 16  # the least and the most by which the samples grow at once
+WITHIN = 0.1  # of the variance of the numbers: a step that is shorter gains less than the noise
+QUIET = 0.25  # of the error that is left: noise of rendering that is less adds 12 % to the errors
+SURE = 2  # times its noise, a gain is no chance
+DAMPING = 1e-2, 1e-6, 1e4  # the first, the least and the most
+BETTER, WORSE = 0.1, 8  # factors of the damping
+
+
+@dataclass
+class Search:
+    """Where a search is: `here`, its `Residuals`; `about`, the `Equations` there; how many `steps`
+    it took; the `history` of (samples per pixel, E²); `converged`, whether no step would gain more
+    than the noise."""
+
+    here: Residuals
+    about: Equations | None = None
+    steps: int = 0
+    history: list = field(default_factory=list)
+    converged: bool = False
+
+
+def search(views, x, steps, samples, seed, first=FIRST, report=lambda: None):
+    """The `Search` from the coordinates `x` in at most so many `steps`, with at most so many
+    `samples` per pixel.
+
+    `report()` is called after each step. On Ctrl-C `Stopped` has the `Search` so far.
+    """
+    spp, damping = min(first, samples), DAMPING[0]
+    found = Search(Residuals.at(views, x, spp, seed))
+    found.history.append((spp, found.here.error))
+    try:
+        while found.steps < steps and damping < DAMPING[2]:
+            found.about = Equations.at(views, found.here, seed)
+            while damping < DAMPING[2]:
+                step = step_in_bounds(views, found, damping)
+                trial = Residuals.at(views, found.here.x + step, spp, seed)
+                won, noise = found.here.less(trial)
+                gain = found.about.gain(step)
+                quiet = _is_within_noise(views, found) or (won <= 0 and gain < SURE * noise)
+                if quiet or won > 0:
+                    break
+                damping *= WORSE
+            if won > 0:
+                found.here, found.steps = trial, found.steps + 1
+                found.history.append((spp, trial.error))
+                damping = max(damping * (BETTER if won > 0.75 * gain else 1), DAMPING[1])
+                report()
+            if quiet:
+                grown = _grow(views, found.here, spp, samples)
+                if grown == spp:
+                    found.converged = True
+                    break
+                spp, seed, damping = grown, seed + 1, min(damping, DAMPING[0])
+                found.here = Residuals.at(views, found.here.x, spp, seed)
+    except KeyboardInterrupt:
+        raise Stopped(found) from None
+    return found
+
+
+def step_in_bounds(views, found, damping):
+    """The best step within the bounds by the damped equations."""
+    hessian, scale = found.about.scaled()
+    damped = hessian + damping * np.eye(len(scale))
+    low, high = -found.here.x, views.most - found.here.x
+    step = minimise_in_box(
+        damped[None],
+        (found.about.gradient * scale)[None],
+        (low / scale)[None],
+        (high / scale)[None],
+    )[0]
+    return np.clip(step * scale, low, high)
+
+
+def free_of_bounds(views, found):
+    """Which numbers (n,) may move downhill: those that are on no bound, or leave it."""
+    x, g = found.here.x, found.about.gradient
+    return ~((x <= 0) & (g >= 0)) & ~((x >= views.most) & (g <= 0))
+
+
+def _is_within_noise(views, found):
+    free = free_of_bounds(views, found)
+    return not free.any() or found.about.surprise(free) < WITHIN
+
+
+def _grow(views, here, spp, samples):
+    """The samples per pixel that go on: as many as make rendering quieter than what is left."""
+    noise, left = here.noise(views), max(here.error, 0)
+    if noise <= QUIET * left:
+        return spp
+    wanted = spp * noise / (QUIET * left) if left else np.inf
+    return int(min(samples, spp * np.clip(wanted / spp, *GROWTH)))

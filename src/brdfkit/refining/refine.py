@@ -1,0 +1,149 @@
+"""`refine`: numbers of a scene, found from pictures through the path tracer."""
+
+import time
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from brdfkit.errors import BrdfkitError, Interrupted
+from brdfkit.fitting.stopped import Stopped
+from brdfkit.jit.llvm import use_variant
+from brdfkit.jit.threads import in_turn
+from brdfkit.refining.conclusions import conclude_search
+from brdfkit.refining.far_starts import BEST, start, usual_count
+from brdfkit.refining.gauss_newton import search
+from brdfkit.refining.refinement import Refinement
+from brdfkit.refining.subject import integrator_of, load_subject
+from brdfkit.refining.targets import read_targets
+from brdfkit.refining.unknowns import MOST, choose
+from brdfkit.refining.views import Views
+
+Pictures = NDArray | str | Path | Iterable[NDArray | str | Path]
+
+
+@in_turn
+def refine(
+    scene: Any,
+    pictures: Pictures,
+    parameters: Iterable[str] | Mapping[str, tuple[float, float] | None] | None = None,
+    *,
+    starts: int | None = None,
+    steps: int = 8,
+    samples: int = 1024,
+    linearise: bool = False,
+    seed: int = 0,
+    progress: Callable[[int, int], object] | None = None,
+) -> Refinement:
+    """Find numbers of a scene that make its pictures equal to those that are given.
+
+    The whole renderer is differentiated: light that bounces, meshes, lights and materials. Steps
+    are those of Gauss and Newton, with the derivatives of each picture by each number; two
+    independent renderings keep their noise from biasing the result, and their samples grow until
+    it is less than what is left of the pictures' own. Ctrl-C raises `Interrupted`, whose ``best``
+    is the best `Refinement` so far.
+
+    Parameters
+    ----------
+    scene : mitsuba.Scene, dict, path, Model or Fit
+        A scene of Mitsuba's, its dictionary or .xml file, with all that is known: camera, lights
+        and shapes. Or a material, to begin with, on the ball of `render`. Its integrator is one
+        with derivatives, as ``prb``, ``prbvolpath`` and those of brdfkit; ``path`` and ``volpath``
+        stand for the first two. A `mitsuba.Scene` is left with the values that were found.
+    pictures : ndarray or path, or several
+        A picture for each sensor of the scene: linear values (height, width, channels), or an
+        OpenEXR file.
+    parameters : names, or dict of names to (low, high), default all of brdfkit's models
+        What is searched: numbers and colours, by the names of `mitsuba.traverse`, with or without
+        ``.value`` at the end; at most 32 numbers. Bounds are by default those of the model's
+        parameter, and else 0 to infinity.
+    starts : int, optional
+        Points from which the search begins: the scene's own values, and others, spread over the
+        bounds of what pictures are not linear in. By default 8 for each of these numbers, at
+        most 32, and the scene's own; 1 trusts that.
+    steps : int, default 8
+        Steps that the search may take after its start, at least 1.
+    samples : int, default 1024
+        Samples per pixel, at most, at least 4.
+    linearise : bool, default False
+        Whether pictures of 8 bits are accepted, as seen by sRGB's curve.
+    seed : int, default 0
+        Of the samples and the starts; equal seeds give equal results.
+    progress : callable, optional
+        Called with (done, total); see `brdfkit.progress`.
+
+    Returns
+    -------
+    Refinement
+        The values with their standard errors; prints as a table. ``fit`` is the material's `Fit`.
+
+    Raises
+    ------
+    BrdfkitError
+        For a scene that does not load, an integrator without derivatives, pictures that do not fit
+        the cameras, have 8 bits or are not finite, parameters that are none, more than 32 numbers,
+        and numbers on which no picture depends.
+
+    Examples
+    --------
+    >>> found = refine("cornell.xml", "photograph.exr", ["ball.bsdf.alpha_u"])    # doctest: +SKIP
+    """
+    began = time.perf_counter()
+    variant = use_variant()
+    if not variant.endswith(("_rgb", "_mono")) or variant.startswith("scalar"):
+        raise BrdfkitError(
+            f"refine: the variant {variant} has no derivatives of pictures in linear colours; set "
+            "llvm_ad_rgb or cuda_ad_rgb."
+        )
+    for name, number, least in (
+        ("steps", steps, 1),
+        ("samples", samples, 4),
+        ("starts", starts, 1),
+    ):
+        if number is not None and (int(number) != number or number < least):
+            raise BrdfkitError(f"refine: {name} = {number!r} should be a whole number ≥ {least}.")
+    views = _views(scene, pictures, parameters, linearise)
+    count = usual_count(views) if starts is None else int(starts)
+    report = _counter(progress, (count + BEST if count > 1 else 0) + steps)
+    try:
+        x = start(views, count, seed, report)
+        found = search(views, x, steps, samples, seed + 100, report=report)
+    except Stopped as stop:
+        best = conclude_search(views, stop.best, time.perf_counter() - began, interrupted=True)
+        raise Interrupted(best, f"refine: the best so far leaves {best.loss:.3g}") from None
+    if found.about is not None and not np.diagonal(found.about.hessian).any():
+        raise BrdfkitError(
+            f"no picture changes with {', '.join(u.name for u in views.unknowns)}: either nothing "
+            "of it is seen, or the integrator does not differentiate it."
+        )
+    views.leave_at(found.here.x)
+    return conclude_search(views, found, time.perf_counter() - began)
+
+
+def _views(scene, pictures, parameters, linearise):
+    """The `Views` of what `refine` is given."""
+    import mitsuba as mi
+
+    targets = read_targets(pictures, linearise)
+    loaded = load_subject(scene, targets[0].size)
+    names = mi.traverse(loaded)
+    unknowns = choose(names, parameters)
+    numbers = sum(len(unknown.start) for unknown in unknowns)
+    if numbers > MOST:
+        raise BrdfkitError(f"refine: {numbers} numbers are more than {MOST}; name fewer.")
+    return Views(loaded, integrator_of(loaded), targets, names, unknowns)
+
+
+def _counter(progress, total):
+    """A function that reports one more of `total`."""
+    done = 0
+
+    def report():
+        nonlocal done
+        done += 1
+        if progress:
+            progress(min(done, total), total)
+
+    return report

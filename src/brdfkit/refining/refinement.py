@@ -1,0 +1,178 @@
+"""`Refinement`, what `refine` returns: numbers of a scene, and how they were found."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from brdfkit.documents import Cell, Document, Paragraph, Shown, Table
+from brdfkit.documents.parts import BAD, SOFT
+from brdfkit.errors import BrdfkitError
+from brdfkit.fitting import Fit
+from brdfkit.fitting.certainty import Certainty
+
+Value = float | tuple[float, ...]
+
+
+@dataclass(frozen=True, repr=False)
+class Refinement(Shown):
+    """Numbers of a scene that make its pictures those that are given; prints as a table.
+
+    Attributes
+    ----------
+    values : dict
+        What was found, by the names of `mitsuba.traverse` without a ``.value`` at the end; a
+        colour or a vector is a tuple.
+    loss : float
+        E, the RMS difference of pixels relative to their brightness, the noise of rendering taken
+        out; 0 where nothing else is left.
+    noise : float
+        The RMS noise of the last rendering, relative as the loss.
+    samples : int
+        Samples per pixel of the last rendering.
+    steps : int
+        Steps of Gauss and Newton, after the start.
+    cost : float
+        Samples per pixel of all renderings, derivatives counted by their time.
+    seconds : float
+        Wall-clock time.
+    message : str
+        Why the search stopped.
+    history : tuple of (int, float)
+        Samples per pixel and E² of each step; E² may be below 0, by noise.
+    at_bounds : tuple of str
+        Values that ended on a bound.
+    notes : tuple of str
+        What else one should know.
+    certainty : Certainty
+        What the pictures say of the values, as of a `Fit`.
+    fits : dict of str to Fit
+        A fit for each of brdfkit's models in the scene whose parameters were searched, by the name
+        of its BSDF in the scene.
+    pictures : tuple of ndarray
+        The last rendering of each sensor, (height, width, channels).
+
+    Notes
+    -----
+    Standard errors hold the noise of the pictures and of rendering, and what the scene cannot
+    explain, as far as it differs from one block of 4 × 4 pixels to the next. They suppose that the
+    scene is right but for what is searched: a camera or a light that is off, is not in them.
+    """
+
+    values: dict[str, Value]
+    loss: float
+    noise: float
+    samples: int
+    steps: int
+    cost: float = field(compare=False)
+    seconds: float = field(compare=False)
+    message: str
+    history: tuple[tuple[int, float], ...]
+    at_bounds: tuple[str, ...]
+    notes: tuple[str, ...]
+    certainty: Certainty
+    fits: dict[str, Fit]
+    pictures: tuple[NDArray[np.float64], ...] = field(compare=False)
+
+    @property
+    def fit(self) -> Fit:
+        """The fit of the only model that was searched.
+
+        Raises `BrdfkitError` where there are none or several: see ``fits``.
+        """
+        if len(self.fits) != 1:
+            known = ", ".join(self.fits) or "none"
+            raise BrdfkitError(f"there is not one fit; `fits` has {known}.")
+        return next(iter(self.fits.values()))
+
+    @property
+    def standard_errors(self) -> dict[str, Value]:
+        """The standard errors of `values`; NaN for what is on a bound or undetermined."""
+        return self._by_value(self.certainty.standard_errors())
+
+    @property
+    def intervals(self) -> dict[str, Any]:
+        """The 95 % confidence intervals (low, high) of `values`, by Student's t."""
+        half, found = self._by_value(self.certainty.half_widths()), {}
+        for name, value in self.values.items():
+            if isinstance(value, tuple):
+                pairs = zip(value, half[name], strict=True)
+                found[name] = tuple((v - h, v + h) for v, h in pairs)
+            else:
+                found[name] = (value - half[name], value + half[name])
+        return found
+
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """The covariance (n, n) of ``certainty.names``."""
+        return self.certainty.matrix()
+
+    @property
+    def correlation(self) -> NDArray[np.float64]:
+        """The correlation (n, n) of ``certainty.names``."""
+        return self.certainty.correlation()
+
+    def put_into(self, scene: Any) -> None:
+        """Give a scene of Mitsuba's the values.
+
+        Parameters
+        ----------
+        scene : mitsuba.Scene
+            A scene with parameters of these names.
+
+        Raises
+        ------
+        BrdfkitError
+            For a scene without one of them.
+
+        Examples
+        --------
+        >>> found.put_into(scene)    # doctest: +SKIP
+        """
+        from brdfkit.refining.unknowns import put_values
+
+        put_values(scene, self.values)
+
+    def _by_value(self, known):
+        nan = float("nan")
+        return {
+            name: tuple(known.get(f"{name}[{i}]", nan) for i in range(len(value)))
+            if isinstance(value, tuple)
+            else known.get(name, nan)
+            for name, value in self.values.items()
+        }
+
+    def document(self) -> Document:
+        """The values with their standard errors, notes, and how they were found."""
+        errors = self.standard_errors
+        rows = tuple(
+            (
+                name,
+                Cell(_numbers(value, errors[name]), colour=_colour(value)),
+                Cell("on its bound", kind=BAD) if name in self.at_bounds else "",
+            )
+            for name, value in self.values.items()
+        )
+        several = "s" * (self.steps != 1)
+        return Document(
+            f"Refined: what is left is {100 * self.loss:.2g} % of a pixel (RMS)",
+            (
+                Table(rows),
+                *(Paragraph(note) for note in self.notes),
+                Paragraph(
+                    f"{self.message}; {self.steps} step{several}, the last at {self.samples} "
+                    f"samples per pixel, {self.seconds:.1f} s",
+                    kind=SOFT,
+                ),
+            ),
+        )
+
+
+def _numbers(value, error):
+    pairs = zip(np.atleast_1d(value), np.atleast_1d(error), strict=True)
+    return "  ".join(f"{v:.5g}" if np.isnan(e) else f"{v:.5g} ± {e:.2g}" for v, e in pairs)
+
+
+def _colour(value):
+    return value if isinstance(value, tuple) and len(value) == 3 and min(value) >= 0 else ()

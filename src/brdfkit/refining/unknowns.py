@@ -1,0 +1,198 @@
+"""The numbers that are searched: which entries of a scene they are, and within which bounds."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError, no_such
+
+MOST = 32  # numbers; for each of them a picture of derivatives is rendered
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """An entry of a scene that is searched.
+
+    key : its name in `mitsuba.traverse`.
+    name : the same, without a `.value` at its end.
+    owner : the name of the BSDF whose parameter it is; empty of others.
+    parameter : the name of the parameter within its owner.
+    model : the class of brdfkit's model whose parameter it is, or None.
+    start : its numbers (n,) where the search begins.
+    colour : whether each number changes one channel of pictures alone.
+    linear : whether pictures of direct light are linear in it.
+    low, high : its bounds.
+    log : whether steps are relative.
+    """
+
+    key: str
+    name: str
+    owner: str
+    parameter: str
+    model: Any
+    start: np.ndarray
+    colour: bool
+    linear: bool
+    low: float
+    high: float
+    log: bool
+
+    @property
+    def names(self):
+        """A name for each number."""
+        if len(self.start) == 1:
+            return (self.name,)
+        return tuple(f"{self.name}[{i}]" for i in range(len(self.start)))
+
+    def table(self, u):
+        """Values at coordinates `u`, which go from 0 to 1 between finite bounds."""
+        if self.log:
+            return self.low * (self.high / self.low) ** u
+        return self.low + u * self.width
+
+    def coordinates(self, values):
+        """The coordinates of values; the inverse of `table`."""
+        if self.log:
+            return np.log(np.asarray(values) / self.low) / np.log(self.high / self.low)
+        return (np.asarray(values) - self.low) / self.width
+
+    def slopes(self, u):
+        """The derivatives of the values by their coordinates."""
+        if self.log:
+            return self.table(u) * np.log(self.high / self.low)
+        return np.full_like(u, self.width)
+
+    @property
+    def width(self):
+        """Of a coordinate, in units of the parameter."""
+        return self.high - self.low if np.isfinite(self.high) else 1.0
+
+    @property
+    def most(self):
+        """The largest coordinate."""
+        return 1.0 if np.isfinite(self.high) else np.inf
+
+
+def choose(parameters, asked):
+    """The `Unknown`s among the `parameters`, what `mitsuba.traverse` says of a scene.
+
+    `asked`: names, or a dictionary of names with bounds (low, high), None for the usual ones; None
+    for all numbers of brdfkit's models. Raises `BrdfkitError` for a name that is none, one that
+    holds no numbers, for bounds that are none, and where nothing is left to search.
+    """
+    if isinstance(asked, str):
+        asked = [asked]
+    bounds = dict(asked) if isinstance(asked, Mapping) else dict.fromkeys(asked or ())
+    known = {_short(key): key for key in keys(parameters)}
+    if asked is None:
+        bounds = {name: None for name, key in known.items() if _is_searched(parameters, key)}
+        if not bounds:
+            raise BrdfkitError(
+                "the scene has no number of a brdfkit model to search; name its parameters, "
+                "as mitsuba.traverse does."
+            )
+    for name in bounds:
+        if _short(name) not in known:
+            raise no_such("parameter", name, known)
+    if not bounds:
+        raise BrdfkitError("parameters is empty; name some, as mitsuba.traverse does.")
+    return [_unknown(parameters, known[_short(n)], limits) for n, limits in bounds.items()]
+
+
+def _is_searched(parameters, key):
+    """Whether an entry is a number or a colour of one of brdfkit's models."""
+    return _model_of(parameters, key)[0] is not None and _numbers(parameters[key]) is not None
+
+
+def _unknown(parameters, key, limits):
+    value, (model, owner, parameter) = parameters[key], _model_of(parameters, key)
+    start = _numbers(value)
+    if start is None:
+        raise BrdfkitError(f"{key}: what it holds ({type(value).__name__}) is not searched.")
+    low, high, log, linear = 0.0, np.inf, False, type(value).__name__.startswith("Color")
+    if model:
+        declared = model.parameters[parameter]
+        (low, high), log, linear = declared.bounds, declared.log, declared.linear
+    if limits is not None:
+        low, high = _checked(key, limits, low if model else -np.inf, high)
+    if (start < low).any() or (start > high).any():
+        start = np.clip(start, low, high)
+    colour = type(value).__name__.startswith("Color")
+    return Unknown(key, _short(key), owner, parameter, model, start, colour, linear, low, high, log)
+
+
+def _checked(key, limits, least, most):
+    try:
+        low, high = map(float, limits)
+    except (TypeError, ValueError):
+        raise BrdfkitError(f"{key}: its bounds {limits!r} should be (low, high).") from None
+    if not least <= low < high <= most:
+        raise BrdfkitError(
+            f"{key}: the bounds {low:g} and {high:g} should be a low and a higher value within "
+            f"{least:g}..{most:g}."
+        )
+    return low, high
+
+
+def _model_of(parameters, key):
+    """(model's class, name of the BSDF, name of the parameter) of an entry; None of others."""
+    *path, parameter = _short(key).split(".")
+    texture = parameters.properties[key][2]
+    parent = parameters.hierarchy.get(texture, (None, 0))[0]
+    model = getattr(parent, "model", None)
+    if model is None or parameter not in model.parameters:
+        return None, "", parameter
+    return model, ".".join(path), parameter
+
+
+def _numbers(value):
+    """The numbers (n,) of an entry's value; None where it holds none, or thousands."""
+    import drjit as dr
+
+    if isinstance(value, bool) or not (dr.is_array_v(value) and dr.is_float_v(value)):
+        return None
+    numbers = np.array(value, float).ravel()
+    vector = type(value).__name__.startswith(("Float", "Color", "Vector", "Point"))
+    return numbers if vector and len(numbers) <= 4 else None
+
+
+def keys(parameters):
+    """The names that `mitsuba.traverse` found."""
+    return list(parameters.keys())
+
+
+def _short(key):
+    return key.removesuffix(".value")
+
+
+def numbers_in(parameters, owner, model):
+    """The values of all parameters of a `model`, the BSDF `owner`, by name; None where one of them
+    is a texture."""
+    found = {}
+    for name, declared in model.parameters.items():
+        key = f"{owner}.{name}.value"
+        if key not in keys(parameters):
+            if declared.follows:
+                continue
+            return None
+        numbers = _numbers(parameters[key])
+        if numbers is None:
+            return None
+        found[name] = tuple(map(float, numbers)) if len(numbers) > 1 else float(numbers[0])
+    return found
+
+
+def put_values(scene, values):
+    """Put `values`, by the names of `Unknown`s, into a scene of Mitsuba's."""
+    import mitsuba as mi
+
+    parameters = mi.traverse(scene)
+    known = {_short(key): key for key in keys(parameters)}
+    for name, value in values.items():
+        if name not in known:
+            raise no_such("parameter", name, known)
+        kind = type(parameters[known[name]])
+        parameters[known[name]] = kind(*value) if isinstance(value, tuple) else kind(value)
+    parameters.update()

@@ -1,0 +1,195 @@
+"""The pictures of a scene at given parameters, and their derivatives, beside those to reach."""
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.jit.first_error import first_error
+
+DERIVATIVE_COST = 2.3  # of a picture of derivatives, in pictures
+ON_BOUND = 1e-6  # a coordinate so near to a bound is on it
+
+
+class Views:
+    """A scene of Mitsuba's, seen by its sensors, beside a picture to reach for each.
+
+    scene, integrator : Mitsuba's.
+    targets : a `Target` for each sensor.
+    parameters : what `mitsuba.traverse` says of the scene.
+    unknowns : `Unknown`s; their coordinates are the `x` (n,) of all methods.
+    """
+
+    def __init__(self, scene, integrator, targets, parameters, unknowns):
+        self.scene, self.integrator = scene, integrator
+        self.targets, self.parameters, self.unknowns = targets, parameters, unknowns
+        self.ends = np.cumsum([len(unknown.start) for unknown in unknowns])
+        _require_fit(scene, targets)
+        self.reached = self._joined([target.pixels for target in targets])
+        self.weights = self._joined([target.weights for target in targets])
+        self.weights /= np.count_nonzero(self.weights)
+        self.renders = 0.0  # samples per pixel, those of derivatives counted by their time
+
+    def values(self, x):
+        """The numbers of each unknown at the coordinates `x`."""
+        return [unknown.table(u) for unknown, u in zip(self.unknowns, self.parts(x), strict=True)]
+
+    def slopes(self, x):
+        """The derivatives (n,) of the values by their coordinates."""
+        parts = zip(self.unknowns, self.parts(x), strict=True)
+        return np.concatenate([unknown.slopes(u) for unknown, u in parts])
+
+    def is_on_bound(self, x):
+        """Whether (n,) coordinates are on a bound, but for rounding."""
+        return (x <= ON_BOUND) | (x >= self.most - ON_BOUND)
+
+    def parts(self, x):
+        """Numbers (n,) as those of each unknown."""
+        return np.split(np.asarray(x), self.ends[:-1])
+
+    @property
+    def start(self):
+        """The coordinates of the scene as it is given."""
+        return np.concatenate([unknown.coordinates(unknown.start) for unknown in self.unknowns])
+
+    @property
+    def most(self):
+        """The largest coordinates; the least ones are 0."""
+        return np.concatenate([np.full(len(u.start), u.most) for u in self.unknowns])
+
+    @property
+    def names(self):
+        """A name for each number."""
+        return tuple(name for unknown in self.unknowns for name in unknown.names)
+
+    @property
+    def linear(self):
+        """Whether (n,) pictures of direct light are linear in a number."""
+        return np.concatenate([np.full(len(u.start), u.linear) for u in self.unknowns])
+
+    def residuals(self, x, spp, seed):
+        """Rendered less reached pixels (pixels, channels), by `spp` samples of a `seed`."""
+        self._set(x)
+        return self._render(spp, seed) - self.reached
+
+    def derivatives(self, x, spp, seed):
+        """The derivatives (n, pixels, channels) of the pixels by the coordinates."""
+        found = np.zeros((len(x), *self.reached.shape), np.float32)
+        slopes = self.slopes(x)
+        for end, unknown in zip(self.ends, self.unknowns, strict=True):
+            rows = range(end - len(unknown.start), end)
+            if unknown.colour:
+                # a number of a colour changes its own channel only: one picture has them all
+                picture = self._forward(x, unknown, None, spp, seed)
+                for channel, row in enumerate(rows):
+                    here = channel if self.reached.shape[1] > 1 else 0
+                    found[row][:, here] = picture[:, here] * slopes[row]
+            else:
+                for number, row in enumerate(rows):
+                    found[row] = self._forward(x, unknown, number, spp, seed) * slopes[row]
+        return found
+
+    def steps_from(self, x, numbers, spp, seed):
+        """(what each of the `numbers` adds to the pixels, from 0 to 1; the residuals without them).
+
+        Those of a colour change their own channels, and are taken in one picture.
+        """
+        without = self.residuals(x, spp, seed)
+        found = np.zeros((len(numbers), *without.shape), np.float32)
+        rows = {number: row for row, number in enumerate(numbers)}
+        for end, unknown in zip(self.ends, self.unknowns, strict=True):
+            own = [n for n in range(end - len(unknown.start), end) if n in rows]
+            for group in [own] if unknown.colour else [[n] for n in own]:
+                if not group:
+                    continue
+                moved = np.array(x, float)
+                moved[group] = 1
+                change = self.residuals(moved, spp, seed) - without
+                for channel, number in enumerate(group):
+                    if unknown.colour and change.shape[1] > 1:
+                        found[rows[number]][:, channel] = change[:, channel]
+                    else:
+                        found[rows[number]] = change
+        return found, without
+
+    def as_pictures(self, pixels):
+        """Pixels (pixels, channels) as a picture (height, width, channels) for each sensor."""
+        found = []
+        for target in self.targets:
+            count = np.prod(target.size)
+            found.append(pixels[:count].reshape(target.pixels.shape))
+            pixels = pixels[count:]
+        return found
+
+    def leave_at(self, x):
+        """Leave the scene with the values at `x`."""
+        self._set(x)
+
+    def _set(self, x, moved=None, number=None):
+        """Put the values at `x` into the scene; with derivatives, where an unknown is `moved`: by
+        its `number`, or by all of a colour at once."""
+        for unknown, value in zip(self.unknowns, self.values(x), strict=True):
+            array = _opaque(type(self.parameters[unknown.key]), value)
+            if moved is not None:
+                # of all, 0 of those that rest: so all derivatives share one kernel
+                chosen = [
+                    float(unknown is moved and number in (None, i)) for i in range(len(value))
+                ]
+                dr.enable_grad(array)
+                dr.set_grad(array, _opaque(type(array), chosen))
+            self.parameters[unknown.key] = array
+        with first_error():
+            self.parameters.update()
+
+    def _render(self, spp, seed):
+        self.renders += spp
+        with first_error():
+            return self._joined(
+                [
+                    self.integrator.render(
+                        self.scene, sensor=sensor, seed=int(seed) + i, spp=int(spp)
+                    )
+                    for i, sensor in enumerate(self.scene.sensors())
+                ]
+            )
+
+    def _forward(self, x, unknown, number, spp, seed):
+        self.renders += DERIVATIVE_COST * spp
+        self._set(x, unknown, number)
+        with first_error():
+            found = [
+                self.integrator.render_forward(
+                    self.scene, self.parameters, sensor=sensor, seed=int(seed) + i, spp=int(spp)
+                )
+                for i, sensor in enumerate(self.scene.sensors())
+            ]
+            return self._joined(found)
+
+    def _joined(self, pictures):
+        """Pictures as one array (pixels, channels)."""
+        arrays = [np.array(picture, float) for picture in pictures]
+        channels = self.targets[0].pixels.shape[2]
+        return np.concatenate([a[..., :channels].reshape(-1, channels) for a in arrays])
+
+
+def _opaque(kind, values):
+    """An array of Dr.Jit's whose numbers are no part of kernels."""
+    import mitsuba as mi
+
+    numbers = [dr.opaque(mi.Float, float(v)) for v in values]
+    return numbers[0] if len(numbers) == 1 and kind is mi.Float else kind(*numbers)
+
+
+def _require_fit(scene, targets):
+    """Raise `BrdfkitError` unless there is a picture of the right size for each sensor."""
+    sensors = scene.sensors()
+    if len(sensors) != len(targets):
+        raise BrdfkitError(
+            f"there should be one picture for each sensor: {len(targets)} for {len(sensors)}."
+        )
+    for number, (sensor, target) in enumerate(zip(sensors, targets, strict=True)):
+        width, height = sensor.film().crop_size()
+        if (width, height) != target.size:
+            raise BrdfkitError(
+                f"picture {number} has {target.size[0]} × {target.size[1]} pixels, and its camera "
+                f"{width} × {height}: they should be of one size."
+            )

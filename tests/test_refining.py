@@ -1,0 +1,228 @@
+"""`refine`: numbers found through the path tracer, by derivatives that differences confirm."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import brdfkit as bk
+from brdfkit.refining import gauss_newton
+from brdfkit.refining.equations import Residuals
+from brdfkit.refining.subject import integrator_of, load_subject
+from brdfkit.refining.targets import read_targets
+from brdfkit.refining.unknowns import choose
+from brdfkit.refining.views import Views
+
+SIZE = 20
+TRUTH = {
+    "alpha_u": 0.35,
+    "f0": 0.6,
+    "diffuse_reflectance": (0.4, 0.2, 0.1),
+    "specular_reflectance": (0.3, 0.35, 0.25),
+}
+RADIANCE = 12.0
+
+
+@pytest.fixture(scope="module")
+def mi():
+    import mitsuba
+
+    bk.models()
+    mitsuba.set_variant("llvm_ad_rgb")
+    return mitsuba
+
+
+def corner(mi, values, integrator="path", size=SIZE):
+    """A ball before a coloured wall, which throws light back on it."""
+    at = mi.ScalarTransform4f
+    colours = {k: {"type": "rgb", "value": v} for k, v in values.items() if isinstance(v, tuple)}
+    return {
+        "type": "scene",
+        "integrator": {"type": integrator, "max_depth": 4},
+        "sensor": {
+            "type": "perspective",
+            "fov": 26,
+            "to_world": at().look_at([0, -4, 1.8], [0, 0, 0.7], [0, 0, 1]),
+            "film": {
+                "type": "hdrfilm",
+                "width": size,
+                "height": size,
+                "pixel_format": "rgb",
+                "rfilter": {"type": "box"},
+            },
+        },
+        "floor": {
+            "type": "rectangle",
+            "to_world": at().scale(3),
+            "bsdf": {"type": "diffuse", "reflectance": 0.6},
+        },
+        "wall": {
+            "type": "rectangle",
+            "to_world": at().look_at([0, 1.3, 1], [0, 0, 1], [0, 0, 1]).scale(3),
+            "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0.7, 0.3, 0.2]}},
+        },
+        "ball": {
+            "type": "sphere",
+            "center": [0, 0, 0.7],
+            "radius": 0.7,
+            "bsdf": {"type": "ggx", **values, **colours},
+        },
+        "lamp": {
+            "type": "rectangle",
+            "to_world": at().look_at([0.8, -1.2, 2.5], [0, 0, 0], [0, 1, 0]).scale(0.5),
+            "emitter": {"type": "area", "radiance": {"type": "rgb", "value": [RADIANCE] * 3}},
+        },
+    }
+
+
+@pytest.fixture(scope="module")
+def picture(mi):
+    """The scene at the truth, with noise of 1 %."""
+    clean = np.array(mi.render(mi.load_dict(corner(mi, TRUTH)), spp=2048, seed=5))
+    return clean * (1 + 0.01 * np.random.default_rng(1).standard_normal(clean.shape))
+
+
+def views(mi, picture, values, parameters=None):
+    scene = load_subject(corner(mi, values), (SIZE, SIZE))
+    names = mi.traverse(scene)
+    chosen = choose(names, parameters)
+    return Views(scene, integrator_of(scene), read_targets(picture), names, chosen)
+
+
+def test_derivatives_are_those_of_finite_differences(mi, picture):
+    found = views(mi, picture, TRUTH, ["ball.bsdf.alpha_u", "ball.bsdf.specular_reflectance"])
+    x, spp = found.start, 2048
+    by_number = found.derivatives(x, spp, 3)
+    for number, step in ((0, 0.01), (2, 0.05)):
+        there, here = (x + sign * step * np.eye(len(x))[number] for sign in (1, -1))
+        change = found.residuals(there, spp, 3) - found.residuals(here, spp, 3)
+        expected = change / (2 * step)
+        # along the pictures of differences, so that what noise there is averages out
+        along = (by_number[number] * expected).sum() / (expected**2).sum()
+        assert along == pytest.approx(1, abs=0.02)
+
+
+def test_differences_of_noisy_pictures_are_unbiased(mi, picture):
+    """E² of 4 samples is, in the mean, that of 4096: noise adds nothing."""
+    found = views(mi, picture, TRUTH)
+    exact = Residuals.at(found, found.start, 4096, 900).error
+    some = [Residuals.at(found, found.start, 4, seed) for seed in range(40)]
+    errors = np.array([one.error for one in some])
+    assert abs(errors.mean() - exact) < 4 * errors.std() / np.sqrt(len(errors))
+    assert np.mean([one.noise(found) for one in some]) > 20 * exact
+
+
+@pytest.fixture(scope="module")
+def found(mi, picture):
+    start = TRUTH | {"alpha_u": 0.05, "f0": 0.6, "diffuse_reflectance": (0.5, 0.5, 0.5)}
+    scene = mi.load_dict(corner(mi, start), optimize=False)
+    searched = ["alpha_u", "diffuse_reflectance", "specular_reflectance"]
+    names = [f"ball.bsdf.{name}" for name in searched]
+    done = []
+    result = bk.refine(scene, picture, names, samples=512, progress=lambda *at: done.append(at))
+    assert done
+    assert all(a <= b for a, b in done)
+    return result, scene
+
+
+def test_known_numbers_come_back_within_their_errors(found):
+    result, _ = found
+    for name, value in result.values.items():
+        error = np.asarray(result.standard_errors[name])
+        truth = np.asarray(TRUTH[name.removeprefix("ball.bsdf.")])
+        assert (np.abs(np.asarray(value) - truth) < 3.5 * error).all(), name
+        assert (error < 0.1 * truth).all(), name
+    assert result.steps <= 8
+    assert result.loss < 0.03
+
+
+def test_the_fit_is_the_material(mi, found):
+    result, scene = found
+    fit = result.fit
+    assert fit.values["f0"] == pytest.approx(0.6)
+    assert fit.standard_errors["alpha_u"] == result.standard_errors["ball.bsdf.alpha_u"]
+    assert np.isnan(fit.standard_errors["f0"])
+    assert pickle.loads(pickle.dumps(result)) == result
+    other = mi.load_dict(corner(mi, TRUTH), optimize=False)
+    result.put_into(other)
+    for one in (scene, other):
+        alpha = mi.traverse(one)["ball.bsdf.alpha_u.value"][0]
+        assert alpha == pytest.approx(fit.values["alpha_u"], rel=1e-5)
+
+
+def test_a_light_is_a_parameter(mi, picture):
+    dim = corner(mi, TRUTH)
+    dim["lamp"]["emitter"]["radiance"]["value"] = [3.0, 3.0, 3.0]
+    result = bk.refine(dim, picture, {"lamp.emitter.radiance": (0, 100)}, samples=256)
+    error = np.array(result.standard_errors["lamp.emitter.radiance"])
+    assert (np.abs(np.array(result.values["lamp.emitter.radiance"]) - RADIANCE) < 3.5 * error).all()
+    assert result.fits == {}
+    with pytest.raises(bk.BrdfkitError, match="not one fit"):
+        _ = result.fit
+
+
+def test_ctrl_c_keeps_the_best(mi, picture, monkeypatch):
+    calls = []
+    original = gauss_newton.Equations.at
+
+    def stop(*args):
+        calls.append(args)
+        if len(calls) > 1:
+            raise KeyboardInterrupt
+        return original(*args)
+
+    monkeypatch.setattr(gauss_newton.Equations, "at", stop)
+    start = corner(mi, TRUTH | {"diffuse_reflectance": (0.9, 0.9, 0.9)})
+    with pytest.raises(bk.Interrupted) as stopped:
+        bk.refine(start, picture, ["ball.bsdf.diffuse_reflectance"], starts=1)
+    best = stopped.value.best
+    assert "interrupted" in best.message
+    assert max(best.values["ball.bsdf.diffuse_reflectance"]) < 0.9
+
+
+BAD = {
+    "another size": (lambda p: p[:-1], {}, "20 × 19 pixels"),
+    "two for one camera": (lambda p: [p, p], {}, "one picture for each sensor: 2 for 1"),
+    "8 bits": (lambda p: np.uint8(np.clip(p, 0, 1) * 255), {}, "8 bits"),
+    "a JPEG": (lambda p: "photo.jpg", {}, "8 bits"),
+    "no file": (lambda p: "missing.exr", {}, "no such picture"),
+    "not finite": (lambda p: np.where(p > p.mean(), np.nan, p), {}, "not finite"),
+    "black": (lambda p: 0 * p, {}, "black"),
+    "no picture": (lambda p: [], {}, "no picture"),
+    "an unknown name": (lambda p: p, {"parameters": ["ball.bsdf.alpha"]}, "did you mean"),
+    "no names": (lambda p: p, {"parameters": []}, "empty"),
+    "a transform": (lambda p: p, {"parameters": ["ball.to_world"]}, "not searched"),
+    "wrong bounds": (lambda p: p, {"parameters": {"ball.bsdf.f0": (1, 0)}}, "bounds"),
+    "no samples": (lambda p: p, {"samples": 0}, "samples = 0"),
+    "no steps": (lambda p: p, {"steps": 0}, "steps = 0"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_input_is_one_sentence(mi, picture, case):
+    change, how, says = BAD[case]
+    with pytest.raises(bk.BrdfkitError, match=says) as error:
+        bk.refine(corner(mi, TRUTH), change(picture), **how)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("integrator", ["depth", "ptracer"])
+def test_integrators_without_derivatives_are_refused(mi, picture, integrator):
+    scene = corner(mi, TRUTH)
+    scene["integrator"] = {"type": integrator}
+    with pytest.raises(bk.BrdfkitError, match="no derivatives"):
+        bk.refine(scene, picture)
+
+
+def test_clipped_pixels_do_not_count(mi, picture):
+    bright = np.minimum(picture, np.quantile(picture, 0.9))
+    (target,) = read_targets(bright)
+    assert target.clipped == pytest.approx(0.1, abs=0.01)
+    assert (target.weights[bright == bright.max()] == 0).all()
+
+
+def test_numbers_that_nothing_shows_are_said(mi, picture):
+    scene = corner(mi, TRUTH)
+    scene["ball"]["center"] = [0, -50, 0]  # behind the camera
+    with pytest.raises(bk.BrdfkitError, match="no picture changes"):
+        bk.refine(scene, picture, ["ball.bsdf.alpha_u"], starts=1, samples=16)
