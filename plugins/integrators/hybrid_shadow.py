@@ -14,6 +14,8 @@ to see them. There is no indirect light, and no derivative of the shadows; other
 three are refused, and cameras that are not perspective.
 """
 
+from functools import partial
+
 from brdfkit.host.declared import count, plain_number
 from brdfkit.host.direct_light import shadowed
 from brdfkit.host.reference_shadow import beside_a_shadow
@@ -29,11 +31,9 @@ def define(mi):
     """The class of `mi.SamplingIntegrator` for the current variant."""
 
     class HybridShadows(shadowed(mi, PARAMETERS)):
-        def shadows(self, scene, sensor):
-            return [
-                hybrid_shadow(scene, sensor, emitter, self.resolution, self.jump)
-                for emitter in scene.emitters()
-            ]
+        def shadow_of(self, scene, sensor):
+            how = {"resolution": self.resolution, "jump": self.jump}
+            return partial(hybrid_shadow, scene, sensor, **how)
 
     return HybridShadows
 

@@ -20,6 +20,8 @@ included; those through filters that compare are 0. There is no indirect light, 
 than these three are refused.
 """
 
+from functools import partial
+
 from brdfkit.host.declared import count, flag, plain_number, word
 from brdfkit.host.direct_light import shadowed
 from brdfkit.host.reference_shadow import beside_a_shadow
@@ -46,8 +48,8 @@ def define(mi):
     """The class of `mi.SamplingIntegrator` for the current variant."""
 
     class ShadowMapped(shadowed(mi, PARAMETERS)):
-        def shadows(self, scene, sensor):
-            return [self.shadow(scene, sensor, emitter) for emitter in scene.emitters()]
+        def shadow_of(self, scene, sensor):
+            return partial(self.shadow, scene, sensor)
 
         def shadow(self, scene, sensor, emitter):
             """The `LightShadow` of an `emitter` of the scene."""

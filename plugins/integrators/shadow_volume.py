@@ -23,6 +23,8 @@ faster where there are many. There is no indirect light, and no derivative of th
 lights than these three are refused, and cameras that are not perspective.
 """
 
+from functools import partial
+
 from brdfkit.host.declared import plain_number, word
 from brdfkit.host.direct_light import shadowed
 from brdfkit.host.reference_shadow import beside_a_shadow
@@ -48,9 +50,9 @@ def define(mi):
     """The class of `mi.SamplingIntegrator` for the current variant."""
 
     class ShadowVolumes(shadowed(mi, PARAMETERS)):
-        def shadows(self, scene, sensor):
+        def shadow_of(self, scene, sensor):
             meshes = [Mesh.of_shape(shape) for shape in scene.shapes()]
-            return [self.shadow(meshes, sensor, emitter) for emitter in scene.emitters()]
+            return partial(self.shadow, meshes, sensor)
 
         def shadow(self, meshes, sensor, emitter):
             """The `LightVolumes` of an `emitter`."""

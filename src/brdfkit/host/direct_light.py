@@ -2,18 +2,22 @@
 
 import drjit as dr
 
+from brdfkit.errors import BrdfkitError
 from brdfkit.host.declared import declared
 from brdfkit.host.variants import refuse_scalar
+from brdfkit.projective.body import Empty
 
 
 def shadowed(mi, parameters):
     """The base class of integrators of direct light that find all shadows before each picture.
 
-    A class derived from it has `shadows(scene, sensor)`: of each emitter of the scene in turn what
-    `direct_light` takes.
+    A class derived from it has `shadow_of(scene, sensor)`: a function from an emitter of the scene
+    to what `direct_light` takes, which raises `Empty` where the light reaches nothing that is seen.
     """
 
     class Shadowed(declared(mi.SamplingIntegrator, parameters)):
+        lights = None  # outside of `render`
+
         def __init__(self, props):
             super().__init__(props)
             self.name = props.plugin_name()
@@ -21,14 +25,38 @@ def shadowed(mi, parameters):
         def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
             refuse_scalar(self.name)
             sensor = scene.sensors()[sensor] if isinstance(sensor, int) else sensor
-            self.lights = list(zip(scene.emitters(), self.shadows(scene, sensor), strict=True))
-            return super().render(scene, sensor, seed, spp, develop, evaluate)
+            shadow_of = self.shadow_of(scene, sensor)
+            self.lights = [(each, shadow_or_none(shadow_of, each)) for each in scene.emitters()]
+            try:
+                return super().render(scene, sensor, seed, spp, develop, evaluate)
+            finally:
+                self.lights = None
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
+            if self.lights is None:
+                raise BrdfkitError(
+                    f"{self.name} finds the shadows of a whole picture, and another integrator "
+                    "asks it for single rays; render with it alone."
+                )
             si = scene.ray_intersect(mi.Ray3f(ray), active)
-            return direct_light(si, sampler, self.lights, active), active, []
+            return direct_light(si, sampler, self.lights, active), active & si.is_valid(), []
 
     return Shadowed
+
+
+class NoShadow:
+    """Of a light that reaches nothing that is seen, to which any shadow is right."""
+
+    def lit(self, p, n, active=True):
+        return 1
+
+
+def shadow_or_none(shadow_of, emitter):
+    """The shadow of an emitter, `NoShadow` where that is `Empty`."""
+    try:
+        return shadow_of(emitter)
+    except Empty:
+        return NoShadow()
 
 
 def direct_light(si, sampler, lights, active):

@@ -9,7 +9,7 @@ from brdfkit.errors import BrdfkitError
 
 
 class Empty(BrdfkitError):
-    """There is no volume, so nothing to be shadowed."""
+    """Nothing that is seen is in the light, so there is nothing to be shadowed."""
 
 
 @dataclass(frozen=True)

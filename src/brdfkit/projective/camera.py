@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.projective.body import Empty
 from brdfkit.projective.homogeneous import project_all, transform
 
 FROM_MITSUBA = np.diag([-1.0, 1, -1, 1])  # Mitsuba's cameras look along z, x points left
@@ -108,12 +109,12 @@ class Camera:
     def fitted(self, points):
         """The same camera, its planes drawn in to `points` (n, 3), such as the corners of a scene.
 
-        Raises `BrdfkitError` where all of them are behind its near plane or beyond its far one.
+        Raises `Empty` where all of them are behind its near plane or beyond its far one.
         """
         depths = self.depths(points)
         near, far = max(self.near, depths.min()), min(self.far, depths.max())
         if far <= near:
-            raise BrdfkitError("the camera does not see the scene: turn it, or move its planes.")
+            raise Empty("the camera does not see the scene: turn it, or move its planes.")
         return self.between(near, far)
 
 

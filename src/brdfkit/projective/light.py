@@ -10,7 +10,7 @@ from brdfkit.projective.body import Body
 from brdfkit.projective.homogeneous import axes_about, unit
 
 NEAREST = 1e-3  # where the pyramid of a spot begins, over where it ends
-WIDEST = math.radians(80)  # half the angle of a pyramid that one map may hold
+WIDEST = math.radians(80)  # half the angle of a pyramid; wider ones bound nothing
 
 
 @dataclass(frozen=True)
@@ -29,21 +29,23 @@ class Light:
 
     @classmethod
     def of_emitter(cls, emitter):
-        """Of one of Mitsuba's emitters `point`, `spot` and `directional`."""
+        """Of one of Mitsuba's emitters `point`, `spot` and `directional`.
+
+        Raises `BrdfkitError` for others, and for one at no finite place or of no direction.
+        """
         import mitsuba as mi
 
-        flags = emitter.flags()
+        flags, kinds = emitter.flags(), mi.EmitterFlags
         parameters = mi.traverse(emitter)
         to_world = np.array(emitter.world_transform().matrix, float).reshape(4, 4)
-        axis = to_world[:3, 2] / np.linalg.norm(to_world[:3, 2])
-        if mi.has_flag(flags, mi.EmitterFlags.DeltaDirection) and "irradiance.value" in parameters:
-            return cls(np.append(-axis, 0))
-        if mi.has_flag(flags, mi.EmitterFlags.DeltaPosition):
+        if mi.has_flag(flags, kinds.DeltaDirection) and mi.has_flag(flags, kinds.Infinite):
+            return cls(np.append(-_unit(emitter, to_world[:3, 2]), 0))
+        if mi.has_flag(flags, kinds.DeltaPosition):
             place = parameters["position"] if "position" in parameters else to_world[:3, 3]
-            point = np.append(np.ravel(place), 1)
+            point = np.append(_finite(emitter, np.ravel(place)), 1)
             if "cutoff_angle" in parameters:
                 cutoff = np.radians(np.ravel(parameters["cutoff_angle"])[0])
-                return cls(point, axis, float(cutoff))
+                return cls(point, _unit(emitter, to_world[:3, 2]), float(cutoff))
             return cls(point)
         raise BrdfkitError(
             f"{emitter.class_name()} has no single place or direction, which shadow maps and "
@@ -54,10 +56,15 @@ class Light:
     def is_directional(self):
         return self.point[3] == 0
 
+    @property
+    def is_bounded(self):
+        """Whether a `pyramid` holds all of the light."""
+        return self.axis is not None and self.cutoff <= WIDEST
+
     def pyramid(self, reach):
         """The `Body` of the square pyramid about a spot's cone, from 1/1000 of `reach` to it."""
         across = axes_about(self.axis)[:2]
-        slope = math.tan(min(self.cutoff, WIDEST))
+        slope = math.tan(self.cutoff)
         ends = [
             d * (self.axis + slope * (i * across[0] + j * across[1]))
             for d in (NEAREST * reach, reach)
@@ -82,3 +89,18 @@ class Light:
         """The unit vectors (n, 3) from points (n, 3) to the light."""
         to_light = self.point[:3] - self.point[3] * np.asarray(points, float)
         return to_light / np.linalg.norm(to_light, axis=1, keepdims=True)
+
+
+def _unit(emitter, way):
+    """The unit vector (3,) along a direction of an emitter's."""
+    return _finite(emitter, way) / np.linalg.norm(way)
+
+
+def _finite(emitter, numbers):
+    """`numbers` (3,); `BrdfkitError` where they are no place or direction."""
+    if not np.isfinite(numbers).all():
+        raise BrdfkitError(
+            f"the place or direction of the light {emitter.id() or emitter.class_name()} is not "
+            "finite: check its position, direction or to_world."
+        )
+    return numbers

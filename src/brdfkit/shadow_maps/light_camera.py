@@ -44,7 +44,7 @@ def view(light, corners, middle):
     if not before.min() > NEAREST / 2 * before.max():
         raise BrdfkitError(
             "the light is among what it shadows: one map cannot look all around; use "
-            "partition='cube', or move the light out of the scene's box."
+            "partition='cube' or shadow volumes, or move the light out of the scene's box."
         )
     matrix = np.zeros((4, 4))
     matrix[:3, :3] = axes_about(-q / np.linalg.norm(q))

@@ -38,7 +38,7 @@ class Placement:
     def scene(self):
         """S, the box of the scene, as far as the light shines: a spot's pyramid bounds it."""
         whole = box(self.low, self.high)
-        return whole if self.light.axis is None else whole & self.light.pyramid(self.reach)
+        return whole & self.light.pyramid(self.reach) if self.light.is_bounded else whole
 
     @property
     def size(self):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import drjit as dr
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
+from brdfkit.projective.body import Empty
 from brdfkit.projective.homogeneous import project_all
 
 SIDE = 128  # rays across a picture and down it
@@ -22,7 +22,7 @@ class SeenSurfaces:
 
 
 def seen_surfaces(scene, camera):
-    """What a `Camera` sees of a `mi.Scene`; `BrdfkitError` where all of its rays miss."""
+    """What a `Camera` sees of a `mi.Scene`; `Empty` where all of its rays miss."""
     import mitsuba as mi
 
     places = (np.arange(SIDE) + 0.5) / SIDE * 2 - 1
@@ -35,7 +35,7 @@ def seen_surfaces(scene, camera):
     si = scene.ray_intersect(ray)
     hit = np.array(si.is_valid())
     if not hit.any():
-        raise BrdfkitError("the camera does not see any surface: turn it, or move it.")
+        raise Empty("the camera does not see any surface: turn it, or move it.")
     points, normals = (np.array(vectors).T[hit] for vectors in (si.p, si.n))
     return SeenSurfaces(points, normals, hit.reshape(SIDE, SIDE))
 

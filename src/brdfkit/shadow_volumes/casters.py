@@ -3,10 +3,10 @@
 Each way gives every triangle a whole number: 1 where it casts as it is turned, -1 where it casts
 turned over, so that it faces the light, and 0 where it casts nothing.
 
-all : every triangle. Right for any mesh, open or closed, however its triangles are turned, and for
-    a light within: a point is dark by as many triangles as lie between it and the light
-    [Bergeron 1986]. An edge between a triangle that faced the light and one that did not bounds
-    both, and its wall counts twice.
+all : every triangle but those in whose plane the light is. Right for any mesh, open or closed,
+    however its triangles are turned, and for a light within: a point is dark by as many triangles
+    as lie between it and the light [Bergeron 1986]. An edge between a triangle that faced the light
+    and one that did not bounds both, and its wall counts twice.
 light_facing : those that face the light [Ergun 2008, 2.1.6]: half as many, for closed meshes.
 facing_away : those that do not: the same shadow behind closed meshes; the insides of the shapes are
     lit. Its caps never touch a surface that is lit, so that nothing is darkened by its own cap.
@@ -18,7 +18,7 @@ from brdfkit.errors import BrdfkitError
 
 
 def every(mesh, light):
-    return np.where(faces_light(mesh, light), 1, -1)
+    return np.sign(towards(mesh, light)).astype(int)
 
 
 def light_facing(mesh, light):
@@ -35,10 +35,15 @@ CASTERS = {"all": every, "light_facing": light_facing, "facing_away": facing_awa
 
 
 def faces_light(mesh, light):
-    """Whether each triangle (m,) faces a `Light`: N · L > 0."""
+    """Whether each triangle (m,) faces a `Light`."""
+    return towards(mesh, light) > 0
+
+
+def towards(mesh, light):
+    """N · L of each triangle (m,): 0 where the light is in its plane."""
     corner = mesh.points[mesh.triangles[:, 0]]
     to_light = light.point[:3] - light.point[3] * corner
-    return np.einsum("ij,ij->i", mesh.normals, to_light) > 0
+    return np.einsum("ij,ij->i", mesh.normals, to_light)
 
 
 def require_solid(mesh, light):

@@ -56,8 +56,11 @@ class LightVolumes:
         import mitsuba as mi
 
         to_light = self.light.xyz - self.light.w * mi.Vector3f(p)
+        to_eye = self.eye - mi.Vector3f(p)
+        distance = dr.norm(to_eye)
         step = (1 + dr.max(dr.abs(p))) * mi.math.RayEpsilon
-        ray = dr.normalize(p - self.eye)
+        step = dr.maximum(step, mi.math.ShapeEpsilon * distance)  # depths round by less
+        ray = -to_eye / distance
         slope = dr.dot(n, ray)
         slope = dr.mulsign(dr.maximum(dr.abs(slope), GRAZING), slope)
         return p + ray * dr.mulsign(step, dr.dot(n, to_light)) / slope

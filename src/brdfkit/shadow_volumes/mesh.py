@@ -32,7 +32,13 @@ class Mesh:
         if not shape.is_mesh():
             return cls.of(shape.id(), *tessellated(shape))
         points = np.array(shape.vertex_positions_buffer(), float).reshape(-1, 3)
-        return cls.of(shape.id(), points, np.array(shape.faces_buffer(), int).reshape(-1, 3))
+        triangles = np.array(shape.faces_buffer(), int).reshape(-1, 3)
+        if not np.isfinite(points[triangles]).all():
+            raise BrdfkitError(
+                f"{shape.id()}: the mesh has a triangle whose corners are not all finite, which "
+                "has no shadow volume; mend or remove it."
+            )
+        return cls.of(shape.id(), points, triangles)
 
     @cached_property
     def normals(self):

@@ -5,12 +5,14 @@ from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.jit.llvm import use_variant
-from brdfkit.rendering.scene_file import load_scene_file
 from brdfkit.shadow_maps.light_shadow import LightShadow
 from brdfkit.shadow_maps.placement import Placement
 from brdfkit.shadow_maps.techniques import FILES
+from brdfkit.shadows.asked import to_names, to_scene, to_size, to_texels
 from brdfkit.shadows.comparison import ShadowComparison
 from brdfkit.shadows.map_pictures import MapPictures
 from brdfkit.shadows.measuring import score
@@ -63,8 +65,9 @@ def compare(
     Raises
     ------
     BrdfkitError
-        For a name that is no technique, for a scene without a camera or with other lights, and for
-        shapes that have no shadow volume where one is asked for.
+        For a name that is no technique, for a scene without a camera or with other lights, for one
+        in which nothing that is seen is in a light, and for shapes that have no shadow volume where
+        one is asked for.
 
     Examples
     --------
@@ -72,21 +75,23 @@ def compare(
     """
     use_variant()
     kinds = {"projection": projections, "filter": filters, "partition": partitions}
-    kinds = {kind: tuple(names) for kind, names in kinds.items()}
-    techniques = functions(kinds, tuple(others), resolution)
-    scene = scene if hasattr(scene, "sensors") else load_scene_file(scene)
-    if not scene.emitters():
-        raise BrdfkitError("the scene has no light; add a point, spot or directional one.")
+    kinds = {kind: to_names(f"{kind}s", names) for kind, names in kinds.items()}
+    resolution, size = to_texels(resolution), to_size(size)
+    techniques = functions(kinds, to_names("others", others), resolution)
+    scene = to_scene(scene)
     places = list(itertools.product(enumerate(scene.sensors()), enumerate(scene.emitters())))
     report, asked = progress or (lambda done, total: None), len(places) * len(techniques)
     found: list[tuple[Pictures, dict]] = []
     try:
         for (view, sensor), (light, emitter) in places:
             seen = Seen.by(scene, sensor, emitter, size[::-1])
-            placement = Placement.of_scene(scene, sensor, emitter)
             pictures = Pictures.of(seen, title_of(view, sensor, light, emitter))
             scores: dict[str, Scores] = {}
             found.append((pictures, scores))
+            if not pictures.is_lit:
+                score_nothing(pictures, scores, techniques)
+                continue
+            placement = Placement.of_scene(scene, sensor, emitter)
             pictures.maps = pictures_of_maps(seen, placement, kinds, resolution)
             for label, shadow_of in techniques.items():
                 report((len(found) - 1) * len(techniques) + len(scores), asked)
@@ -96,16 +101,27 @@ def compare(
     except KeyboardInterrupt:
         if not (found and found[0][1]):
             raise
+    if not any(pictures.is_lit for pictures, _ in found):
+        raise BrdfkitError(
+            "no camera sees a surface that a light shines on: turn a camera, or move a light."
+        )
     finished = [place for place in found if len(place[1]) == len(techniques)] or found[:1]
     shown, each = zip(*finished, strict=True)
     by_label = {label: tuple(scores[label] for scores in each) for label in each[0]}
     return ShadowComparison(by_label, len(scene.emitters()), asked, shown)
 
 
+def score_nothing(pictures, scores, techniques):
+    """Fill in a view in which nothing is in the light: no technique can be right or wrong."""
+    for label in techniques:
+        pictures.keep(label, np.ones(pictures.exact.size))
+        scores[label] = Scores()
+
+
 def functions(kinds, others, resolution):
     """Label → function (seen, placement) of the shadow, of all techniques that are asked for.
 
-    Raises `BrdfkitError` for an unknown name.
+    Raises `BrdfkitError` for an unknown name, and where there is none at all.
     """
     for name in others:
         if name not in OTHERS:
@@ -114,7 +130,12 @@ def functions(kinds, others, resolution):
         label: partial(of_maps, **technique, resolution=resolution)
         for label, technique in combinations(kinds).items()
     }
-    return maps | {name: partial(OTHERS[name], resolution=resolution) for name in others}
+    techniques = maps | {name: partial(OTHERS[name], resolution=resolution) for name in others}
+    if not techniques:
+        raise BrdfkitError(
+            "no technique is asked for: name a projection, a filter and a partition, or others."
+        )
+    return techniques
 
 
 def of_maps(seen, placement, **technique):

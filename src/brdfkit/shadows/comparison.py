@@ -45,9 +45,11 @@ class ShadowComparison(Shown):
     @property
     def relative(self) -> dict[str, Scores]:
         """Technique → the mean differences between the two lights of each view: how much a light
-        that hardly moves changes; in the order of `means`. Empty where there are not two lights.
+        that hardly moves changes; in the order of `means`. Empty where there are not two lights, or
+        no view in which both shine.
         """
-        if self.lights != 2 or min(map(len, self.scores.values())) < 2:
+        both = zip(self.pictures[::2], self.pictures[1::2], strict=False)
+        if self.lights != 2 or not any(one.is_lit and other.is_lit for one, other in both):
             return {}
         return {label: between_lights(self.scores[label]) for label in self.means}
 
@@ -82,10 +84,17 @@ class ShadowComparison(Shown):
         pairs = "the only pair" if places == 1 else f"{places} pairs"
         return (
             f"{self.cut_short}Means over {pairs} of view and light, each against exact shadows. "
+            f"{self.unlit}"
             "Use is the share of texels that the view needs (Q1), aliasing how fine they are "
             "beside its pixels (Q2), flicker the change of the error from picture to picture while "
             "the camera moves."
         )
+
+    @property
+    def unlit(self) -> str:
+        """A sentence on the pairs in which nothing is in the light; without any, nothing."""
+        count = sum(not each.is_lit for each in self.pictures)
+        return f"In {count} of them nothing is in the light: they do not count. " if count else ""
 
     @property
     def cut_short(self) -> str:

@@ -70,15 +70,17 @@ def use_of_maps(shadow, seen, placement):
 
     if not isinstance(shadow, LightShadow):
         return nan, nan
-    height, width = seen.size
     camera = Projection.by(placement.camera.matrix, placement.light).opaque()
+    film = seen.sensor.film()
+    # the camera's whole picture, of which a film may show a window, in pixels of this size
+    pixels = np.array(seen.size[::-1]) * np.array(film.size()) / np.array(film.crop_size())
     p, n = seen.si.p, seen.si.n
     part, facing = shadow.which(p), mi.Bool(seen.facing)
     places, areas = [], []
     for number, its_map in enumerate(shadow.maps):
         x, y, _ = its_map.projection.to_map(*p)
         texels = its_map.projection, its_map.resolution
-        e = aliasing(texels, (camera, (width, height)), p, n)
+        e = aliasing(texels, (camera, pixels.tolist()), p, n)
         chosen = np.array(facing & (part == number))
         places.append((np.array([x, y]).T[chosen] + 1) / 2)
         areas.append(np.array(e)[chosen])

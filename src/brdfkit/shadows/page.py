@@ -95,6 +95,8 @@ def contents(place, order, comparison, number, flips):
 
 def said(scores, its_flip):
     """The scores of a picture in words."""
+    if np.isnan(scores.wrong):
+        return "nothing is in the light"
     text = f"PSNR {scores.psnr:.1f} dB, wrong {100 * scores.wrong:.2f} %"
     return text if np.isnan(its_flip) else f"{text}, FLIP {its_flip:.4f}"
 

@@ -14,7 +14,7 @@ class Pictures:
     title : which view and which light.
     unshadowed : radiance (height, width, 3) of the surfaces by this light alone.
     exact : whether (height, width) the light arrives.
-    facing : whether (height, width) there is a surface that faces the light.
+    facing : whether (height, width) there is a surface that faces the light, where it shines.
     maps : projection and partition → its `MapPictures`.
     shares : technique → share of the light (height, width) that arrives, in 255ths.
     """
@@ -36,6 +36,11 @@ class Pictures:
             seen.exact.reshape(seen.size),
             seen.facing.reshape(seen.size),
         )
+
+    @property
+    def is_lit(self):
+        """Whether the light shines on anything that is seen."""
+        return bool(self.facing.any())
 
     def keep(self, technique, lit):
         """Keep the shares (pixels,) of the light that a technique lets through."""

@@ -45,7 +45,8 @@ NAMES = tuple(field.name for field in fields(Scores))
 def mean(scores):
     """The `Scores` that are means of several; of dB as in the thesis, not of squared errors.
 
-    A picture without an error has infinite dB: it counts as 99. What is nan does not count.
+    A picture without an error has infinite dB: it counts as 99. What is nan does not count, nor
+    dB against a picture that is black.
     """
     return averaged(table_of(scores))
 
@@ -58,9 +59,9 @@ def between_lights(scores):
 
 
 def table_of(scores):
-    """The numbers (scores, names) of `Scores`, 99 at most."""
+    """The numbers (scores, names) of `Scores`, 99 at most, nan for -∞."""
     table = np.array([[getattr(one, name) for name in NAMES] for one in scores])
-    return np.minimum(table, 99.0)
+    return np.where(np.isneginf(table), nan, np.minimum(table, 99.0))
 
 
 def averaged(table):

@@ -55,10 +55,14 @@ class Seen:
 
     @cached_property
     def facing(self):
-        """Whether (pixels,) there is a surface and it faces the light: elsewhere all is dark."""
-        ds, _ = self.to_light
+        """Whether (pixels,) there is a surface that faces the light, where it shines (a spot does
+        not everywhere): elsewhere all is dark."""
+        import mitsuba as mi
+
+        ds, light = self.to_light
         towards = dr.dot(self.si.n, ds.d) * dr.dot(self.si.n, self.si.to_world(self.si.wi))
-        return np.array(self.si.is_valid() & (towards > 0))
+        shines = dr.max(mi.unpolarized_spectrum(light)) > 0
+        return np.array(self.si.is_valid() & (towards > 0) & shines)
 
     @cached_property
     def exact(self):
