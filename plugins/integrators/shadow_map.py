@@ -1,6 +1,6 @@
 """Direct light of point, spot and directional lights, shadowed by shadow maps.
 
-    L = L_e + Σ_lights ρ(ω_l, ω_o) cosθ_l E_l V,   V from a map of what the light sees
+    L = Σ_lights ρ(ω_l, ω_o) cosθ_l E_l V,   V from a map of what the light sees
 
 Before each picture every light gets its maps: depths, ray-traced through a `projection`, for each
 part of a `partition` of the scene. V is what the `filter` reads there. So the picture has all
@@ -16,7 +16,8 @@ scene: of the biases that were tried, the one with the least wrong light over lo
 objects, a street and foliage. `slope_bias` and `normal_offset` are what games use in its place.
 
 Derivatives by the geometry go through `variance`, `exponential_variance` and `moment`, silhouettes
-included; those through filters that compare are 0. There is no indirect light, and other lights
+included; those through filters that compare are 0. Derivatives by a light's place or direction are
+those of the shading alone, as if its maps stood still. There is no indirect light, and other lights
 than these three are refused.
 """
 

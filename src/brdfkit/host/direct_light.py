@@ -5,6 +5,7 @@ import drjit as dr
 from brdfkit.errors import BrdfkitError
 from brdfkit.host.declared import declared
 from brdfkit.host.variants import refuse_scalar
+from brdfkit.jit.signals import give_back_interrupts
 from brdfkit.projective.body import Empty
 
 
@@ -16,7 +17,7 @@ def shadowed(mi, parameters):
     """
 
     class Shadowed(declared(mi.SamplingIntegrator, parameters)):
-        lights = None  # outside of `render`
+        lights = ()
 
         def __init__(self, props):
             super().__init__(props)
@@ -30,10 +31,10 @@ def shadowed(mi, parameters):
             try:
                 return super().render(scene, sensor, seed, spp, develop, evaluate)
             finally:
-                self.lights = None
+                give_back_interrupts()
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
-            if self.lights is None:
+            if [emitter for emitter, _ in self.lights] != scene.emitters():
                 raise BrdfkitError(
                     f"{self.name} finds the shadows of a whole picture, and another integrator "
                     "asks it for single rays; render with it alone."

@@ -1,4 +1,4 @@
-"""Holds Ctrl-C and SIGTERM back while native libraries are loaded."""
+"""Ctrl-C and SIGTERM about native code: held back while it is loaded, given back after it."""
 
 import signal
 import threading
@@ -29,3 +29,15 @@ def hold_signals():
             signal.signal(number, handler)
         for number in received[:1]:
             signal.raise_signal(number)
+
+
+def give_back_interrupts():
+    """Let Ctrl-C raise KeyboardInterrupt again, whatever native code has put into its place.
+
+    Mitsuba, while it renders, has a handler of its own. It takes that for the one to be restored
+    where the Python method `render` of an integrator calls that of its base class: afterwards
+    Ctrl-C does nothing, or ends the process, as the handler calls an integrator that is gone.
+    """
+    handler = signal.getsignal(signal.SIGINT)
+    if handler is not None and threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, handler)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.errors import BrdfkitError, no_such
+from brdfkit.jit.first_error import first_error
 from brdfkit.jit.llvm import use_variant
 from brdfkit.shadow_maps.light_shadow import LightShadow
 from brdfkit.shadow_maps.placement import Placement
@@ -92,10 +93,12 @@ def compare(
                 score_nothing(pictures, scores, techniques)
                 continue
             placement = Placement.of_scene(scene, sensor, emitter)
-            pictures.maps = pictures_of_maps(seen, placement, kinds, resolution)
+            with first_error():
+                pictures.maps = pictures_of_maps(seen, placement, kinds, resolution)
             for label, shadow_of in techniques.items():
                 report((len(found) - 1) * len(techniques) + len(scores), asked)
-                one, lit = score(seen, placement, shadow_of)
+                with first_error():  # Ctrl-C, for one
+                    one, lit = score(seen, placement, shadow_of)
                 pictures.keep(label, lit)
                 scores[label] = one
     except KeyboardInterrupt:

@@ -15,10 +15,8 @@ named by the checksum of the mesh and the settings, and is made once.
 
 import hashlib
 import json
-import signal
 import subprocess
 import sys
-import threading
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -27,6 +25,7 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import make_folder, write_safely
+from brdfkit.jit.signals import give_back_interrupts
 from brdfkit.visibility.hull import hull
 from brdfkit.visibility.pieces import solids
 
@@ -132,9 +131,7 @@ def _run_coacd(points, faces, settings, file):
 
 def _run(program):
     """The exit status of a program, which ends with this call, also by Ctrl-C."""
-    if threading.current_thread() is threading.main_thread():
-        # Python's own handler: that of Mitsuba, while it renders, waits for the picture
-        signal.signal(signal.SIGINT, signal.getsignal(signal.SIGINT))
+    give_back_interrupts()  # Mitsuba's handler, while it renders, waits for the picture
     process = subprocess.Popen(program, stderr=subprocess.DEVNULL)
     try:
         return process.wait()
