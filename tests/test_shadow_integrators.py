@@ -128,19 +128,29 @@ def test_a_lamp_on_a_surface_is_not_shadowed_by_that_surface():
     np.testing.assert_allclose(picture(of, "shadow_volume"), exact, atol=0.01 * exact.max())
 
 
+@pytest.fixture
+def variant():
+    """A function that sets a variant; afterwards the old one is back."""
+    before = mi.variant()
+    yield mi.set_variant
+    mi.set_variant(before)
+
+
 @pytest.mark.parametrize(
     "chosen", ["llvm_ad_mono", "llvm_ad_spectral", "llvm_ad_spectral_polarized"]
 )
-def test_a_sun_without_an_irradiance_is_a_sun_in_every_variant(chosen):
-    before = mi.variant()
-    mi.set_variant(chosen)
-    try:
-        of = scene([light("directional")])
-        exact = np.array(mi.load_dict(RAYS).render(of, spp=4))
-        for integrator in INTEGRATORS:
-            assert picture(of, integrator).mean() == pytest.approx(exact.mean(), rel=0.02)
-    finally:
-        mi.set_variant(before)
+def test_a_sun_without_an_irradiance_is_a_sun_in_every_variant(chosen, variant):
+    variant(chosen)
+    of = scene([light("directional")])
+    exact = np.array(mi.load_dict(RAYS).render(of, spp=4))
+    for integrator in INTEGRATORS:
+        assert picture(of, integrator).mean() == pytest.approx(exact.mean(), rel=0.02)
+
+
+def test_techniques_are_not_compared_pixel_by_pixel(variant):
+    variant("scalar_rgb")
+    with pytest.raises(BrdfkitError, match="compare does not run in scalar_rgb"):
+        bk.shadows.compare("scene.xml")
 
 
 NAN = float("nan")

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.errors import BrdfkitError, no_such
+from brdfkit.host.variants import refuse_scalar
 from brdfkit.jit.first_error import first_error
 from brdfkit.jit.llvm import use_variant
 from brdfkit.shadow_maps.light_shadow import LightShadow
@@ -75,6 +76,7 @@ def compare(
     >>> bk.shadows.compare("street.xml", ["focused", "trapezoidal"])    # doctest: +SKIP
     """
     use_variant()
+    refuse_scalar("compare")
     kinds = {"projection": projections, "filter": filters, "partition": partitions}
     kinds = {kind: to_names(f"{kind}s", names) for kind, names in kinds.items()}
     resolution, size = to_texels(resolution), to_size(size)
