@@ -4,20 +4,25 @@ import io
 import json
 import re
 from base64 import b64decode
+from functools import partial
+from types import SimpleNamespace
 
 import mitsuba as mi
 import numpy as np
 import pytest
 from PIL import Image
-from shadow_scenes import objects_on_a_ground, placement_of
+from shadow_scenes import LIGHTS, objects_on_a_ground, placement_of
 
 import brdfkit as bk
+from brdfkit.shadow_maps.scenes import SCENES
 from brdfkit.shadows.aliasing_error import aliasing_error
 from brdfkit.shadows.drawing import draw_errors
+from brdfkit.shadows.light_path import TURN, arrives, path
 from brdfkit.shadows.map_pictures import CHECKS, OUTSIDE, MapPictures
 from brdfkit.shadows.scores import Scores, between_lights, mean
 from brdfkit.shadows.seen import Seen
 from brdfkit.shadows.texture_use import share_used
+from brdfkit.shadows.watched import Watched
 
 SCENE = """<scene version="3.0.0">
     <integrator type="direct"/>
@@ -73,7 +78,80 @@ def test_more_texels_are_better_and_a_map_that_ignores_the_camera_does_not_flick
         assert fine[name].wrong < coarse[name].wrong / 3
         # a 16th of the length: e falls to 1/256, but for what it was cut at
         assert fine[name].aliasing > coarse[name].aliasing + 20
-    assert coarse["uniform"].flicker == 0 < coarse["focused"].flicker
+    assert coarse["uniform"].camera_flicker == 0 < coarse["focused"].camera_flicker
+    for name in projections:
+        assert 3 * fine[name].light_flicker < coarse[name].light_flicker
+
+
+def seen_by_camera(scene, size=96):
+    return Seen.by(scene, scene.sensors()[0], scene.emitters()[0], (size, size))
+
+
+def with_light_of(kind, light):
+    """The same scene by Mitsuba's light where a `Light` is."""
+    if kind == "directional":
+        return objects_on_a_ground((-light.point[:3]).tolist())
+    scene = objects_on_a_ground(kind)
+    parameters = mi.traverse(scene)
+    parameters["light.position"] = light.point[:3].tolist()
+    parameters.update()
+    return scene
+
+
+@pytest.mark.usefixtures("llvm_variant")
+@pytest.mark.parametrize("kind", ["directional", "point"])
+def test_a_moving_light_has_the_shadows_of_a_light_there_and_its_error_alone_flickers(kind):
+    scene = objects_on_a_ground(kind)
+    placement, seen = placement_of(scene), seen_by_camera(scene)
+    watched = Watched.by_moving_light(seen, placement)
+    for each, true in zip(watched.path, watched.true, strict=True):
+        there = seen_by_camera(with_light_of(kind, each.light)).exact[watched.pixels]
+        assert np.mean(true != there) < 0.002
+
+    first = watched.true[0]
+    still = watched.flicker(seen.exact, lambda *_: SimpleNamespace(lit=lambda p, n: first))
+    assert still == np.abs(np.diff(watched.true.astype(float), axis=0)).mean() > 0.001
+
+    def exact(seen, moved):
+        return SimpleNamespace(lit=partial(arrives, seen.scene, moved.light))
+
+    assert watched.flicker(seen.exact, exact) == 0
+
+
+@pytest.mark.usefixtures("llvm_variant")
+@pytest.mark.parametrize("kind", LIGHTS)
+def test_what_is_farthest_from_a_moving_light_sees_it_turn_by_one_step(kind):
+    placement = placement_of(objects_on_a_ground(kind))
+    here, there = (each.light.point for each in path(placement, steps=2))
+    reach = 1 if kind == "directional" else placement.reach
+    assert np.linalg.norm(there - here) / reach == pytest.approx(TURN, rel=0.01)
+
+
+@pytest.mark.usefixtures("llvm_variant")
+def test_a_scene_by_its_name_has_four_views_and_two_suns():
+    how = {"filters": ["depth"], "resolution": 32, "size": (24, 16)}
+    found = bk.shadows.compare("objects_on_a_ground", ["uniform"], **how)
+    titles = [place.title for place in found.pictures]
+    assert titles[0] == "View 1 (V1), light 1 (sun_1)"
+    assert titles[-1] == "View 4 (V4), light 2 (sun_2)"
+    assert found.asked == 8 == found.finished
+    for number, view, light in ((0, "V1", 1), (5, "V3", 2)):
+        alone = mi.load_dict(SCENES["objects_on_a_ground"](view, light, (24, 16)))
+        seen = Seen.by(alone, alone.sensors()[0], alone.emitters()[0], (16, 24))
+        assert np.array_equal(found.pictures[number].exact, seen.exact.reshape(16, 24))
+
+
+@pytest.mark.parametrize(
+    ("scene", "said"),
+    [
+        ("stret", "no scene or scene file 'stret'; did you mean street"),
+        ("stret.xml", "stret.xml: there is no such scene file"),
+        (3, "scene should be a name .* not of the type int"),
+    ],
+)
+def test_a_wrong_scene_is_one_sentence(scene, said):
+    with pytest.raises(bk.BrdfkitError, match=said):
+        bk.shadows.compare(scene)
 
 
 def compare_both(**more):
@@ -89,7 +167,7 @@ def test_volumes_stand_beside_maps_and_a_page_has_the_pictures_of_all(tmp_path):
     means = found.means
     assert found.best == "shadow_volume"
     assert means["shadow_volume"].wrong < 0.001 < 0.01 < means["focused"].wrong
-    assert means["shadow_volume"].flicker < 1e-4 < means["hybrid_shadow"].flicker
+    assert means["shadow_volume"].camera_flicker < 1e-4 < means["hybrid_shadow"].camera_flicker
     assert [row[4] == "–" for row in found.table()] == [name != "focused" for name in means]
     assert not found.relative
     assert not found.interrupted
@@ -174,5 +252,10 @@ def test_the_command(tmp_path, capsys):
     assert "focused" in page.read_text(encoding="utf-8")
     with pytest.raises(bk.BrdfkitError, match="did you mean focused"):
         bk.shadows.compare(file, ["focussed"])
+    words[1] = "foliag"
+    with pytest.raises(SystemExit) as ended:
+        main(words)
+    assert ended.value.code == 2
+    assert "did you mean foliage" in capsys.readouterr().err
     with pytest.raises(bk.BrdfkitError, match="did you mean shadow_volume"):
         bk.shadows.compare(file, others=["shadow_volumes"])

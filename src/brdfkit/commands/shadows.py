@@ -29,7 +29,7 @@ def technique(kind, default, help):
 
 
 @click.command()
-@click.argument("scene", metavar="SCENE.xml", type=click.Path(path_type=Path))
+@click.argument("scene")
 @technique("projection", (), "How a map sees the scene")
 @technique("filter", ("depth", "percentage_closer", "variance", "moment"), "How a map is read")
 @technique("partition", ("whole",), "How maps share the scene")
@@ -68,7 +68,9 @@ def shadows(scene, projections, filters, partitions, others, resolution, size, o
     """Score shadow techniques on a scene.
 
     Every combination of the techniques is held to exact shadows, by rays, in all views (sensors)
-    and lights of the scene, which are point, spot or directional ones.
+    and lights of the scene, which are point, spot or directional ones. SCENE is a scene file of
+    Mitsuba's (.xml) or the name of a scene with four views and two suns: street, foliage or
+    objects_on_a_ground.
     """
     from brdfkit.shadows import compare
     from brdfkit.shadows.comparing import PROJECTIONS

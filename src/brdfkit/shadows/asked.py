@@ -1,12 +1,10 @@
 """What `compare` is asked for, checked before the work."""
 
-from os import PathLike
-
 from brdfkit.arguments import to_whole_number
 from brdfkit.errors import BrdfkitError
 from brdfkit.projective.camera import Camera
 from brdfkit.projective.light import Light
-from brdfkit.rendering.scene_file import load_scene_file
+from brdfkit.shadows import given_scene
 
 MOST = 16384  # texels or pixels along a side
 
@@ -35,19 +33,13 @@ def to_size(size):
     return _to_side("the width in size", width), _to_side("the height in size", height)
 
 
-def to_scene(scene):
-    """The `mi.Scene` of a file, or the one that is given.
+def to_scene(scene, size):
+    """The `mi.Scene` of a name, of a file, or the one that is given; by name, of pictures of `size`.
 
-    Raises `BrdfkitError` for one without a camera or a light, or with others than shadows by
-    projection take.
+    Raises `BrdfkitError` for what is no scene, for one without a camera or a light, and for one
+    with others than shadows by projection take.
     """
-    if isinstance(scene, str | PathLike):
-        scene = load_scene_file(scene)
-    if not hasattr(scene, "sensors"):
-        raise BrdfkitError(
-            f"a scene is a file of Mitsuba's, .xml, or a mitsuba.Scene, and not a "
-            f"{type(scene).__name__}; load a dictionary by mitsuba.load_dict."
-        )
+    scene = given_scene.load(scene, size)
     if not scene.sensors():
         raise BrdfkitError("the scene has no camera; add a perspective one.")
     if not scene.emitters():

@@ -22,6 +22,7 @@ from brdfkit.shadows.others import OTHERS
 from brdfkit.shadows.pictures import Pictures, title_of
 from brdfkit.shadows.scores import Scores
 from brdfkit.shadows.seen import Seen
+from brdfkit.shadows.watched import Watched
 
 PROJECTIONS = tuple(FILES["projection"])
 FILTERS = "depth", "percentage_closer", "variance", "moment"
@@ -44,9 +45,11 @@ def compare(
 
     Parameters
     ----------
-    scene : path or mitsuba.Scene
+    scene : path, str or mitsuba.Scene
         A scene file of Mitsuba's (.xml), or a loaded scene. Its lights are point, spot or
-        directional ones, its cameras perspective ones; each camera is a view.
+        directional ones, its cameras perspective ones; each camera is a view. Or the name of a
+        scene that comes with brdfkit, of four views and two suns: ``"street"``, ``"foliage"`` or
+        ``"objects_on_a_ground"``.
     projections, filters, partitions : iterable of str
         Names of techniques, of which every combination is scored; see the plugin `shadow_map`.
     others : iterable of str, default none
@@ -67,13 +70,13 @@ def compare(
     Raises
     ------
     BrdfkitError
-        For a name that is no technique, for a scene without a camera or with other lights, for one
-        in which nothing that is seen is in a light, and for shapes that have no shadow volume where
-        one is asked for.
+        For a name that is no technique or no scene, for a scene without a camera or with other
+        lights, for one in which nothing that is seen is in a light, and for shapes that have no
+        shadow volume where one is asked for.
 
     Examples
     --------
-    >>> bk.shadows.compare("street.xml", ["focused", "trapezoidal"])    # doctest: +SKIP
+    >>> bk.shadows.compare("street", ["focused", "trapezoidal"])    # doctest: +SKIP
     """
     use_variant()
     refuse_scalar("compare")
@@ -81,7 +84,7 @@ def compare(
     kinds = {kind: to_names(f"{kind}s", names) for kind, names in kinds.items()}
     resolution, size = to_texels(resolution), to_size(size)
     techniques = functions(kinds, to_names("others", others), resolution)
-    scene = to_scene(scene)
+    scene = to_scene(scene, size)
     places = list(itertools.product(enumerate(scene.sensors()), enumerate(scene.emitters())))
     report, asked = progress or (lambda done, total: None), len(places) * len(techniques)
     found: list[tuple[Pictures, dict]] = []
@@ -97,10 +100,14 @@ def compare(
             placement = Placement.of_scene(scene, sensor, emitter)
             with first_error():
                 pictures.maps = pictures_of_maps(seen, placement, kinds, resolution)
+                watched = (
+                    Watched.by_moving_camera(seen, placement),
+                    Watched.by_moving_light(seen, placement),
+                )
             for label, shadow_of in techniques.items():
                 report((len(found) - 1) * len(techniques) + len(scores), asked)
                 with first_error():  # Ctrl-C, for one
-                    one, lit = score(seen, placement, shadow_of)
+                    one, lit = score(seen, placement, watched, shadow_of)
                 pictures.keep(label, lit)
                 scores[label] = one
     except KeyboardInterrupt:

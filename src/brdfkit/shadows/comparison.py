@@ -87,7 +87,7 @@ class ShadowComparison(Shown):
             f"{self.unlit}"
             "Use is the share of texels that the view needs (Q1), aliasing how fine they are "
             "beside its pixels (Q2), flicker the change of the error from picture to picture while "
-            "the camera moves."
+            "the camera moves, or the light."
         )
 
     @property
@@ -121,7 +121,7 @@ class ShadowComparison(Shown):
 
         Examples
         --------
-        >>> bk.shadows.compare("street.xml").write("shadows.html")    # doctest: +SKIP
+        >>> bk.shadows.compare("street").write("shadows.html")    # doctest: +SKIP
         """
         from brdfkit.shadows.page import write_page
 

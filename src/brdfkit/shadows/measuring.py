@@ -12,20 +12,18 @@ from brdfkit.shadow_maps.bias_errors import acne
 from brdfkit.shadow_maps.light_shadow import LightShadow
 from brdfkit.shadow_maps.projection import Projection
 from brdfkit.shadows.aliasing_error import aliasing_error
-from brdfkit.shadows.camera_path import path, seen_by_all
 from brdfkit.shadows.scores import Scores
-from brdfkit.shadows.stability import flicker
 from brdfkit.shadows.texture_use import share_used
 
 MARGIN = 4  # pixels about shadows in which a soft border is no acne
-EVERY = 7  # of the pixels one is watched while the camera moves
 
 
-def score(seen, placement, shadow_of):
+def score(seen, placement, watched, shadow_of):
     """The `Scores` of a technique, and the shares of light (pixels,) that it lets through.
 
     seen : what the camera sees, a `Seen`.
     placement : of its camera and light.
+    watched : points of it while the camera moves, and while the light does: two `Watched`.
     shadow_of : the function (seen, placement) → what has `lit(p, n, active)`, as `LightShadow`.
     """
 
@@ -39,13 +37,15 @@ def score(seen, placement, shadow_of):
     facing, exact = seen.facing, seen.exact
     pictures = (image.reshape(seen.size) for image in (lit, exact, facing))
     use, fineness = use_of_maps(shadow, seen, placement)
+    by_camera, by_light = (points.flicker(lit, shadow_of) for points in watched)
     scores = Scores(
         psnr=psnr(seen.picture(exact), seen.picture(lit), facing.reshape(seen.size)),
         wrong=float(np.abs(lit - exact)[facing].mean()),
         acne=acne(*pictures, MARGIN),
         texture_use=use,
         aliasing=fineness,
-        flicker=unsteadiness(seen, placement, shadow_of),
+        camera_flicker=by_camera,
+        light_flicker=by_light,
         build=max(both - look_up, 0.0),
         look_up=look_up,
     )
@@ -85,18 +85,3 @@ def use_of_maps(shadow, seen, placement):
         places.append((np.array([x, y]).T[chosen] + 1) / 2)
         areas.append(np.array(e)[chosen])
     return share_used(places), aliasing_error(np.concatenate(areas))
-
-
-def unsteadiness(seen, placement, shadow_of):
-    """The flicker of the shadow on points that keep their places, while the camera moves."""
-    import mitsuba as mi
-
-    placements = path(placement)
-    watched = np.flatnonzero(seen.facing)[::EVERY]
-    watched = watched[seen_by_all(placements, np.array(seen.si.p).T[watched])]
-    if not watched.size:
-        return nan
-    index = mi.UInt32(watched)
-    p, n = dr.gather(mi.Point3f, seen.si.p, index), dr.gather(mi.Normal3f, seen.si.n, index)
-    shares = [np.array(shadow_of(seen, moved).lit(p, n)) for moved in placements]
-    return flicker(shares, [seen.exact[watched]] * len(shares))

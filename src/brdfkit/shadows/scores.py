@@ -23,8 +23,9 @@ class Scores:
         Q1, the share of the maps' texels that the picture uses.
     aliasing : float
         Q2, how fine the texels are beside the pixels [dB].
-    flicker : float
-        The mean change of the error from picture to picture while the camera moves.
+    camera_flicker, light_flicker : float
+        The mean change of the error from picture to picture, while the camera moves and while the
+        light does.
     build, look_up : float
         Processor time to make the maps, and to read them for all pixels [s].
     """
@@ -34,7 +35,8 @@ class Scores:
     acne: float = nan
     texture_use: float = nan
     aliasing: float = nan
-    flicker: float = nan
+    camera_flicker: float = nan
+    light_flicker: float = nan
     build: float = nan
     look_up: float = nan
 

@@ -41,6 +41,13 @@ class Seen:
         dr.eval(si)
         return cls(scene, sensor, emitter, si, (height, width))
 
+    def points(self, pixels):
+        """The places and the normals of the surfaces in some `pixels`, by their numbers (n,)."""
+        import mitsuba as mi
+
+        index = mi.UInt32(pixels)
+        return dr.gather(mi.Point3f, self.si.p, index), dr.gather(mi.Normal3f, self.si.n, index)
+
     @cached_property
     def meshes(self):
         """All shapes as `Mesh`es, which bound shadow volumes."""

@@ -14,4 +14,19 @@ SCENES = {
     for module in modules_in(__name__, __path__)
 }
 
-__all__ = ["LIGHTS", "SCENES", "VIEWS"]
+
+def in_all_views(name, size=(512, 512)):
+    """The scene of a `name` with all its cameras, V1 to V4, and both suns, sun_1 and sun_2.
+
+    >>> sorted(in_all_views("street"))[:4]
+    ['V1', 'V2', 'V3', 'V4']
+    """
+    build = SCENES[name]
+    found = build(size=size)
+    del found["camera"], found["sun"]
+    cameras = {view: build(view, size=size)["camera"] for view in VIEWS}
+    suns = {f"sun_{light}": build(light=light)["sun"] for light in LIGHTS}
+    return found | cameras | suns
+
+
+__all__ = ["LIGHTS", "SCENES", "VIEWS", "in_all_views"]
