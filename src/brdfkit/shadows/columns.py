@@ -9,8 +9,8 @@ COLUMNS = (
     ("acne", "acne [%]", 100, 2, False),
     ("texture_use", "use [%]", 100, 1, True),
     ("aliasing", "aliasing [dB]", 1, 1, True),
-    ("camera_flicker", "flicker by camera [%]", 100, 3, False),
-    ("light_flicker", "by light [%]", 100, 3, False),
+    ("camera_flicker", "camera flicker [%]", 100, 3, False),
+    ("light_flicker", "light flicker [%]", 100, 3, False),
     ("build", "build [ms]", 1e3, 0, False),
     ("look_up", "look-up [ms]", 1e3, 0, False),
 )
