@@ -14,10 +14,10 @@ RESOLUTIONS = 128, 256, RESOLUTION, 1024
 # Name → the technique; those that average moments of depth first, then those that compare depths
 MOMENTS = {
     "variance": {"filter": "variance"},
-    "exponential_variance": {"filter": "exponential_variance"},
-    "exponential_variance (c⁻ = 0)": {"filter": "exponential_variance", "negative_exponent": 0.0},
     "moment": {"filter": "moment"},
     "moment (ε = 0; blur 4)": {"filter": "moment", "bleeding": 0.0, "blur": 4},
+    "exponential_variance": {"filter": "exponential_variance"},
+    "exponential_variance (c⁻ = 0)": {"filter": "exponential_variance", "negative_exponent": 0.0},
 }
 COMPARE = (
     "depth",
@@ -176,7 +176,10 @@ def advice(found):
             f"{within} of {len(plain)} within {BAR_IN_PERCENT}; off by {fence:.0f} % over the "
             f"fence, {plates:.0f} % between plates."
         )
-    verdict = f"{' or '.join(good)}: their slopes are within {BAR_IN_PERCENT} in all projections."
+    verdict = (
+        f"{' or '.join(good)}: over a box and a ring their slopes are within "
+        f"{BAR_IN_PERCENT} in all projections."
+    )
     return "\n".join([verdict, "", *lines])
 
 
