@@ -275,7 +275,7 @@ def test_a_bad_scene_is_one_sentence():
     lens = {**camera(), "type": "orthographic"}
     lens.pop("fov")
     for of, sentence in (
-        (bare, "and not a dict"),
+        (bare, "not of the type dict; load it"),
         (mi.load_dict(bare), "no camera"),
         (scene([]), "no light"),
         (scene([{"type": "constant"}]), "no single place or direction"),

@@ -34,7 +34,7 @@ def to_size(size):
 
 
 def to_scene(scene, size):
-    """The `mi.Scene` of a name, of a file, or the one that is given; by name, of pictures of `size`.
+    """The `mi.Scene` of a name, seen in pictures of `size`, of a file, or the one that is given.
 
     Raises `BrdfkitError` for what is no scene, for one without a camera or a light, and for one
     with others than shadows by projection take.

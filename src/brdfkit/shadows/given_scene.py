@@ -21,7 +21,8 @@ def load(given, size):
     if not isinstance(given, str | Path):
         raise BrdfkitError(
             f"scene should be a name ({', '.join(SCENES)}), the path of a scene file of Mitsuba's "
-            f"or a mitsuba.Scene, not of the type {type(given).__name__}."
+            f"or a mitsuba.Scene, not of the type {type(given).__name__}; load it by "
+            "mitsuba.load_dict."
         )
     if given in SCENES:
         return mi.load_dict(in_all_views(given, size), parallel=False)
