@@ -19,6 +19,7 @@ from brdfkit.shadow_volumes.seen_faces import seen_faces
 from brdfkit.shadow_volumes.silhouettes import SILHOUETTES
 from brdfkit.shadow_volumes.stencil import Stencil
 from brdfkit.shadow_volumes.volume import BACK_CAPS, Faces, shadow_volume
+from brdfkit.shadows.seen import Seen
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 SIZE = 96
@@ -145,6 +146,36 @@ def test_no_pixel_differs_from_shadow_rays(shapes, kind):
         # depth_pass has no caps: not for what is seen from the side without light
         asked = sides & within if method == "depth_pass" else np.array(si.is_valid()) & within
         assert not np.any((found != lit)[asked]), method
+
+
+def scaled(scene, factor):
+    """A scene of meshes with the light `point`, made larger or smaller."""
+    meshes = enumerate(meshes_of(scene))
+    shapes = {f"mesh {i}": triangles(factor * mesh.points, mesh.triangles) for i, mesh in meshes}
+    to_world = mi.ScalarTransform4f().look_at(
+        *(np.array([OUTSIDE, [0, 0, 0.5]]) * factor), [0, 0, 1]
+    )
+    near = {"to_world": to_world, "near_clip": 0.01 * factor, "far_clip": 1e4 * factor}
+    lamp = {"type": "point", "position": np.array(light("point")["position"]) * factor}
+    return scene_of({**shapes, "light": lamp}, **near)
+
+
+@pytest.mark.parametrize("factor", [1e-5, 1e5])
+def test_the_scale_of_the_world_changes_nothing(factor):
+    """Of rays only ours are right in small worlds: those that Mitsuba spawns begin beyond all."""
+    scene = scene_of(objects())
+    _, lit, sides = shaded(scene)
+    asked = sides & ~border(scene, lit)
+    scene = scaled(scene, factor)
+    sensor, emitter = scene.sensors()[0], scene.emitters()[0]
+    seen = Seen.by(scene, sensor, emitter, (SIZE, SIZE))
+    assert not np.any((seen.exact != lit)[asked])
+    for method in METHODS:
+        found = np.array(volumes_of(scene, method=method).lit(seen.si.p, seen.si.n)) == 1
+        assert not np.any((found != lit)[asked]), method
+    volumes = hybrid_shadow(scene, sensor, emitter, resolution=256, jump=8)
+    found = np.array(volumes.lit(seen.si.p, seen.si.n)) == 1
+    assert (found != lit)[asked].mean() < 1e-3
 
 
 def test_a_light_in_a_room():

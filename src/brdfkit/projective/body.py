@@ -7,6 +7,8 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 
+THINNEST = 1e-9  # the radius of a ball within, over the size, from which on there is a volume
+
 
 class Empty(BrdfkitError):
     """Nothing that is seen is in the light, so there is nothing to be shadowed."""
@@ -48,11 +50,15 @@ class Body:
         """What two bodies share; `Empty` where they share no volume."""
         from scipy.spatial import HalfspaceIntersection
 
+        # about their middle and by their size, since both solvers have tolerances of their own
+        middle, size = self.corners.mean(axis=0), np.ptp(self.corners, axis=0).max()
         planes = np.vstack([self.planes, other.planes])
+        planes[:, 3] = (planes[:, :3] @ middle + planes[:, 3]) / size
         inside = _innermost(planes)
         if inside is None:
             raise Empty("no part of the scene is before the camera and in the light.")
-        return Body.around(HalfspaceIntersection(planes, inside).intersections)
+        corners = HalfspaceIntersection(planes, inside).intersections
+        return Body.around(middle + size * corners)
 
     def towards(self, light, length):
         """The body with all that lies between it and a `Light`, at least a `length` far."""
@@ -73,7 +79,8 @@ def box(low, high):
 
 
 def _innermost(planes):
-    """The centre of the largest ball within the planes; None where there is none."""
+    """The centre of the largest ball within the planes, of a body of about the size 1; None where
+    there is none."""
     from scipy.optimize import linprog
 
     # maximise r with a·x + |a| r ≤ -d
@@ -81,5 +88,4 @@ def _innermost(planes):
     system = np.column_stack([planes[:, :3], norms])
     bounds = [(None, None)] * 3 + [(0, None)]
     found = linprog([0, 0, 0, -1], system, -planes[:, 3], bounds=bounds)
-    scale = np.abs(planes[:, 3]).max() + 1e-30
-    return found.x[:3] if found.success and found.x[3] > 1e-9 * scale else None
+    return found.x[:3] if found.success and found.x[3] > THINNEST else None

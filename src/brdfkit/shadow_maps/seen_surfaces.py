@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import drjit as dr
 import numpy as np
 
+from brdfkit.host.clearance import ray_off_surface
 from brdfkit.projective.body import Empty
 from brdfkit.projective.homogeneous import project_all
 
@@ -13,11 +14,12 @@ SIDE = 128  # rays across a picture and down it
 
 @dataclass(frozen=True)
 class SeenSurfaces:
-    """The surfaces seen: `points` (n, 3), their `normals` (n, 3), and which of the rays, row by
-    row, `hit` them, (SIDE, SIDE)."""
+    """The surfaces seen: `points` (n, 3), their `normals` (n, 3), their `distances` (n,) along the
+    rays, and which of the rays, row by row, `hit` them, (SIDE, SIDE)."""
 
     points: np.ndarray
     normals: np.ndarray
+    distances: np.ndarray
     hit: np.ndarray
 
 
@@ -37,17 +39,16 @@ def seen_surfaces(scene, camera):
     if not hit.any():
         raise Empty("the camera does not see any surface: turn it, or move it.")
     points, normals = (np.array(vectors).T[hit] for vectors in (si.p, si.n))
-    return SeenSurfaces(points, normals, hit.reshape(SIDE, SIDE))
+    return SeenSurfaces(points, normals, np.array(si.t)[hit], hit.reshape(SIDE, SIDE))
 
 
 def lit(scene, light, seen):
     """Whether a `Light` reaches the points of `SeenSurfaces`: (n,) booleans, by rays."""
     import mitsuba as mi
 
-    si = dr.zeros(mi.SurfaceInteraction3f, len(seen.points))
-    si.p, si.n = mi.Point3f(seen.points.T), mi.Normal3f(seen.normals.T)
     to_light = light.towards(seen.points)
-    ray = si.spawn_ray(mi.Vector3f(to_light.T))
+    p, n, d = mi.Point3f(seen.points.T), mi.Normal3f(seen.normals.T), mi.Vector3f(to_light.T)
+    ray = ray_off_surface(p, n, mi.Float(seen.distances), d)
     if not light.is_directional:
         distances = np.linalg.norm(light.point[:3] - seen.points, axis=1)
         ray.maxt = mi.Float(distances * (1 - 1e-4))

@@ -4,6 +4,7 @@ import math
 
 import drjit as dr
 
+from brdfkit.host.clearance import clearance
 from brdfkit.projective.homogeneous import transform
 from brdfkit.shadow_volumes.seen_faces import picture_matrix, seen_faces
 from brdfkit.shadow_volumes.stencil import Stencil
@@ -56,11 +57,9 @@ class LightVolumes:
         import mitsuba as mi
 
         to_light = self.light.xyz - self.light.w * mi.Vector3f(p)
-        to_eye = self.eye - mi.Vector3f(p)
-        distance = dr.norm(to_eye)
-        step = (1 + dr.max(dr.abs(p))) * mi.math.RayEpsilon
+        distance = dr.norm(p - self.eye)
+        step, ray = clearance(p, distance), (p - self.eye) / distance
         step = dr.maximum(step, mi.math.ShapeEpsilon * distance)  # depths round by less
-        ray = -to_eye / distance
         slope = dr.dot(n, ray)
         slope = dr.mulsign(dr.maximum(dr.abs(slope), GRAZING), slope)
         return p + ray * dr.mulsign(step, dr.dot(n, to_light)) / slope

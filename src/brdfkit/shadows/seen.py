@@ -7,6 +7,7 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
+from brdfkit.host.clearance import ray_off_surface
 from brdfkit.shadow_volumes.mesh import Mesh
 
 
@@ -74,9 +75,11 @@ class Seen:
     @cached_property
     def exact(self):
         """Whether (pixels,) a shadow ray reaches the light."""
+        import mitsuba as mi
+
         ds, _ = self.to_light
-        ray = self.si.spawn_ray(ds.d)
-        ray.maxt = ds.dist
+        ray = ray_off_surface(self.si.p, self.si.n, self.si.t, ds.d)
+        ray.maxt = ds.dist * (1 - mi.math.ShadowEpsilon)
         return np.array(~self.scene.ray_test(ray, self.si.is_valid()))
 
     @cached_property

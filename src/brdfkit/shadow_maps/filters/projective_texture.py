@@ -11,6 +11,7 @@ bias; shapes that were merged into one do not shadow each other.
 
 import drjit as dr
 
+from brdfkit.host.clearance import clearance
 from brdfkit.shadow_maps.depth_pass import depth_of, rays_of_light, square
 from brdfkit.shadow_maps.texels import Texels
 
@@ -42,7 +43,7 @@ def see(scene, projection, resolution):
 
     def step(i, last, t, shape):
         place = ray(t)
-        begin = t + mi.math.RayEpsilon * (1 + dr.max(dr.abs(place)))
+        begin = t + clearance(place, t)
         hit = scene.ray_intersect_preliminary(mi.Ray3f(ray(begin), ray.d))
         return i + 1, t, begin + hit.t, dr.reinterpret_array(mi.UInt32, hit.shape)
 

@@ -1,0 +1,28 @@
+"""How far off a surface rays begin, lest rounding make them meet it: over the scale of the world.
+
+Rays of Mitsuba begin at ε (1 + max |p_i|). In a world of 1e-5, one in metres of an object of 10 µm,
+the 1 leaps over all there is: a tenth and more of the shadows are wrong. Here
+
+    ε/2 max(t, |p_x|, |p_y|, |p_z|),   t the distance from which the point was seen
+
+since both the point and the distance were rounded on the way. Half of Mitsuba's ε is as far as in
+scenes of usual size; with twice or a quarter of it, single pixels of leaves or of a street differ
+between rays and shadow volumes.
+"""
+
+import drjit as dr
+
+
+def clearance(p, t):
+    """The length off a surface at `p`, a point that was seen from the distance `t`."""
+    import mitsuba as mi
+
+    return 0.5 * mi.math.RayEpsilon * dr.maximum(t, dr.max(dr.abs(p)))
+
+
+def ray_off_surface(p, n, t, direction):
+    """The `mi.Ray3f` from a surface at `p` with the normal `n`, on the side of its direction."""
+    import mitsuba as mi
+
+    off = dr.mulsign(clearance(p, t), dr.dot(n, direction))
+    return mi.Ray3f(p + off * mi.Vector3f(n), direction)
