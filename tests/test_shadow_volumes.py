@@ -15,7 +15,7 @@ from brdfkit.shadow_volumes.casters import CASTERS
 from brdfkit.shadow_volumes.extrusion import extruded
 from brdfkit.shadow_volumes.light_volumes import METHODS, LightVolumes
 from brdfkit.shadow_volumes.mesh import Mesh
-from brdfkit.shadow_volumes.seen_faces import seen_faces
+from brdfkit.shadow_volumes.seen_faces import picture_matrix, seen_faces
 from brdfkit.shadow_volumes.silhouettes import SILHOUETTES
 from brdfkit.shadow_volumes.stencil import Stencil
 from brdfkit.shadow_volumes.volume import BACK_CAPS, Faces, shadow_volume
@@ -256,14 +256,16 @@ def test_volumes_are_closed(casters, kind):
     closed = [mesh for mesh in meshes_of(scene) if len(mesh.triangles) > 2]
     volumes = [shadow_volume(mesh, lamp, casters) for mesh in closed]
     faces = Faces.joined([f for v in volumes for f in (v.walls, v.front, v.back)])
-    stencil = Stencil(seen_faces(faces, camera), halvings=4)
+    to_picture = picture_matrix(camera)
+    stencil = Stencil(seen_faces(faces, to_picture), halvings=4)
     random = np.random.default_rng(0).uniform(-1, 1, (20_000, 2))
     t, zero = np.linspace(-1, 1, 1001), np.zeros(1001)
     axes = np.concatenate([np.column_stack(way) for way in ((t, zero), (zero, t), (t, t), (t, -t))])
     places = mi.Point2f(np.concatenate([random, axes]).T)
     total = stencil.count(*places, mi.Float(-dr.inf), mi.Float(dr.inf))
     assert np.all(np.array(total) == 0)
-    walls = Stencil(seen_faces(Faces.joined([v.walls for v in volumes]), camera), halvings=4)
+    walls = Faces.joined([volume.walls for volume in volumes])
+    walls = Stencil(seen_faces(walls, to_picture), halvings=4)
     assert np.any(np.array(walls.count(*places, mi.Float(-dr.inf), mi.Float(dr.inf))) != 0)
 
 
@@ -272,7 +274,7 @@ def test_volumes_are_closed(casters, kind):
 
 def test_depth_pass_is_wrong_with_the_eye_in_a_shadow():
     """Depth-pass is equal to depth-fail outside, and not inside [Ergun 2008, 2.1.2; check 13]."""
-    for eye, fails in ((OUTSIDE, False), ([1, -0.8, 0.3], True)):
+    for eye, fails in ((OUTSIDE, False), (WITHIN, True)):
         scene = scene_of(objects(), eye=eye)
         assert wrong(scene, method="depth_fail") == 0
         share = wrong(scene, method="depth_pass")
@@ -283,6 +285,18 @@ def test_depth_pass_is_wrong_where_the_near_plane_cuts_a_volume():
     scene = scene_of(objects(), near_clip=8)
     assert wrong(scene, method="depth_fail") == 0
     assert wrong(scene, method="depth_pass") > 0.02
+
+
+WITHIN = [1, -0.8, 0.3]  # a shadow of the `objects`
+FROM_BEHIND = [-4, 6, -4.5]
+
+
+@pytest.mark.parametrize("kind", [*LIGHTS, FROM_BEHIND], ids=str)
+def test_caps_on_the_near_plane_mend_depth_pass(kind):
+    """Also of an eye in a shadow, of a sun behind the camera, and of leaves that the plane cuts."""
+    for shapes, eye, near in ((objects, OUTSIDE, 8), (objects, WITHIN, 0.01), (leaves, OUTSIDE, 7)):
+        scene = scene_of(shapes(), kind, eye=eye, near_clip=near)
+        assert wrong(scene, method="depth_pass", near_cap=True) == 0
 
 
 def test_a_volume_that_ends_too_early_loses_the_shadow():

@@ -8,8 +8,10 @@ buffer of a graphics card does for each sample of a pixel [Heidmann 1991]: those
 that it sees (`depth_pass`) or those behind it (`depth_fail`). Entering adds 1, leaving takes 1.
 
 `depth_fail` [Everitt & Kilgard 2002] gives the shadows that rays give. `depth_pass` does so where
-the eye is in no shadow, the near plane cuts none, and no light goes through surfaces. The other
-settings are those of [Ergun 2008, section 2.1], with their faults:
+the eye is in no shadow, the near plane cuts none, and no light goes through surfaces; `near_cap`
+mends the first two: it counts the casters between the near plane and the light, seen from there
+through the plane [Hornus et al. 2005]. The other settings are those of [Ergun 2008, section 2.1],
+with their faults:
 
 `extrusion` ends the walls: what is farther behind an object than that is lit. `far_plane` = finite
 clips what is beyond the camera's: shadows break where a volume goes on. `casters` are the triangles
@@ -25,7 +27,7 @@ lights than these three are refused, and cameras that are not perspective.
 
 from functools import partial
 
-from brdfkit.host.declared import plain_number, word
+from brdfkit.host.declared import flag, plain_number, word
 from brdfkit.host.direct_light import shadowed
 from brdfkit.host.reference_shadow import beside_a_shadow
 from brdfkit.projective.light import Light
@@ -38,6 +40,7 @@ from brdfkit.shadow_volumes.volume import BACK_CAPS
 
 PARAMETERS = {
     "method": word(METHODS, "which faces count"),
+    "near_cap": flag(False, "whether depth_pass begins with what shadows the near plane"),
     "extrusion": plain_number(0.0, (0.0, 1e9), "length of the walls [unit]; 0: without an end"),
     "far_plane": word(FAR_PLANES, "where faces are clipped"),
     "casters": word(CASTERS, "which triangles make the volumes"),
@@ -63,6 +66,7 @@ def define(mi):
                 self.method,
                 self.far_plane,
                 max(sensor.film().size()),
+                self.near_cap,
                 casters=self.casters,
                 silhouettes=self.silhouettes,
                 length=self.extrusion,

@@ -6,6 +6,7 @@ import drjit as dr
 
 from brdfkit.host.clearance import clearance
 from brdfkit.projective.homogeneous import transform
+from brdfkit.shadow_volumes.near_cap import BEFORE, seen_near_cap
 from brdfkit.shadow_volumes.seen_faces import picture_matrix, seen_faces
 from brdfkit.shadow_volumes.stencil import Stencil
 from brdfkit.shadow_volumes.volume import Faces, shadow_volume
@@ -25,11 +26,20 @@ class LightVolumes:
     method : `depth_pass` counts walls before a point, `depth_fail` walls and caps behind it.
     far_plane : `finite`: what is beyond that of the camera is clipped, and does not count.
     pixels : along the longer side of the picture: makes tiles of a useful size.
+    near_cap : whether `depth_pass` begins with the volumes that a place of the near plane is in.
     volume : named arguments of `shadow_volume`.
     """
 
     def __init__(
-        self, meshes, light, camera, method="depth_fail", far_plane="infinite", pixels=256, **volume
+        self,
+        meshes,
+        light,
+        camera,
+        method="depth_fail",
+        far_plane="infinite",
+        pixels=256,
+        near_cap=False,
+        **volume,
     ):
         import mitsuba as mi
 
@@ -37,9 +47,12 @@ class LightVolumes:
         self.method, self.far_plane = method, far_plane
         kinds = ("walls",) if method == "depth_pass" else ("walls", "front", "back")
         faces = [getattr(volume, kind) for volume in self.volumes for kind in kinds]
+        to_picture = picture_matrix(camera)
         halvings = max(round(math.log2(max(pixels / TILE, 1))), 0)
-        self.stencil = Stencil(seen_faces(Faces.joined(faces), camera), halvings)
-        self.to_picture = mi.Matrix4f(picture_matrix(camera))
+        self.stencil = Stencil(seen_faces(Faces.joined(faces), to_picture), halvings)
+        self.to_picture = mi.Matrix4f(to_picture)
+        capped = self.volumes if near_cap else []
+        self.cap = Stencil(seen_near_cap(capped, light, camera), halvings)
         self.light = mi.Vector4f(light.point)
         self.near, self.far = mi.Float(1 / camera.near), mi.Float(1 / camera.far)
         self.eye = mi.Point3f(camera.position)
@@ -71,6 +84,7 @@ class LightVolumes:
         x, y, depth, _ = transform(self.to_picture, *dr.detach(p))
         ray, inverse_depth = (x / depth, y / depth), 1 / depth
         if self.method == "depth_pass":
-            return self.stencil.count(*ray, inverse_depth, self.near, active)
+            within = self.cap.count(*ray, mi.Float(BEFORE), mi.Float(dr.inf), active)
+            return within + self.stencil.count(*ray, inverse_depth, self.near, active)
         farthest = self.far if self.far_plane == "finite" else mi.Float(-dr.inf)
         return -self.stencil.count(*ray, farthest, inverse_depth, active)

@@ -38,9 +38,12 @@ def picture_matrix(camera):
     return np.diag([1 / camera.slope_x, 1 / camera.slope_y, -1, 1]) @ camera.view
 
 
-def seen_faces(faces, camera):
-    """The `Faces` that a `Camera` sees from a side, as `SeenFaces`."""
-    corners = faces.corners @ picture_matrix(camera).T
+def seen_faces(faces, matrix):
+    """The `Faces` that are seen from a side, as `SeenFaces`.
+
+    matrix : (4, 4), from the world to homogeneous points (v, w); `picture_matrix` of a camera.
+    """
+    corners = faces.corners @ matrix.T
     v, w = corners[..., :3], corners[..., 3]
     crosses = np.cross(v, np.roll(v, -1, axis=1))
     volume = np.einsum("ij,ij->i", v[:, 0], crosses[:, 1])

@@ -43,6 +43,7 @@ def run(sources, report):
         exact_claim(differ, counted, len(places)),
         inside_claim(differ, inside),
         near_claim(),
+        cap_claim(inside),
         far_claim(),
         length_claim(),
         silhouettes_claim(),
@@ -90,6 +91,21 @@ def near_claim():
         "a picture",
         f"{100 * shares[0]:.1f} % of the pixels; depth-fail {100 * shares[1]:.1f} %",
         verdict(shares[0] > 0 == shares[1]),
+    )
+
+
+def cap_claim(inside):
+    seen = ByVolumes(bricks(near_clip=9.0)), inside
+    shares = [each.share(method="depth_pass", near_cap=True) for each in seen]
+    return Claim(
+        "A cap on the near plane mends depth-pass.",
+        "2.1.7",
+        "the statement",
+        f"{100 * shares[0]:.1f} % of the pixels where the plane cuts a volume, and "
+        f"{100 * shares[1]:.1f} % with the eye in one",
+        verdict(shares == [0, 0]),
+        "Without the cracks and holes that are expected of it: no face is clipped or projected; the "
+        "light sees the casters through the near plane.",
     )
 
 
