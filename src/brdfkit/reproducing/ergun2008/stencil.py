@@ -104,8 +104,8 @@ def cap_claim(inside):
         f"{100 * shares[0]:.1f} % of the pixels where the plane cuts a volume, and "
         f"{100 * shares[1]:.1f} % with the eye in one",
         verdict(shares == [0, 0]),
-        "Without the cracks and holes that are expected of it: no face is clipped or projected; the "
-        "light sees the casters through the near plane.",
+        "Without the cracks and holes that are expected of it: no face is clipped or projected; "
+        "the light sees the casters through the near plane.",
     )
 
 
