@@ -15,7 +15,7 @@ import numpy as np
 from brdfkit.host.declared import count, word
 from brdfkit.projective.homogeneous import transform
 
-SPACINGS = ("mean", "logarithmic", "uniform")
+SPACINGS = ("logarithmic", "mean", "uniform")
 SETTINGS = {
     "parts": count(4, (1, 8), "parts along the view"),
     "spacing": word(SPACINGS, "distances of the planes between parts"),
