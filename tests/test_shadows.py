@@ -19,6 +19,7 @@ from brdfkit.shadows.aliasing_error import aliasing_error
 from brdfkit.shadows.drawing import draw_errors
 from brdfkit.shadows.light_path import TURN, arrives, path
 from brdfkit.shadows.map_pictures import CHECKS, OUTSIDE, MapPictures
+from brdfkit.shadows.packed import Packed
 from brdfkit.shadows.scores import Scores, between_lights, mean
 from brdfkit.shadows.seen import Seen
 from brdfkit.shadows.texture_use import share_used
@@ -220,11 +221,12 @@ def test_the_checker_shows_how_wide_texels_are_and_the_light_sees_what_is_near_b
     )
     seen = Seen.by(scene, scene.sensors()[0], scene.emitters()[0], (size, size))
     maps = MapPictures.of(seen, placement_of(scene), projection="uniform", resolution=64)
-    assert not np.any(maps.part == OUTSIDE)
-    for row in (maps.shade[10], maps.shade[:, 10]):
+    assert not np.any(maps.part.array == OUTSIDE)
+    shade = maps.shade.array / 255
+    for row in (shade[10], shade[:, 10]):
         changes = np.count_nonzero(np.abs(np.diff(row.astype(float))) > 0.2)
         assert abs(changes - CHECKS / 2) <= 1
-    assert 0.003 < np.mean(maps.depths < 0.5) < 0.02  # of 64 the ball has 0.8
+    assert 0.003 < np.mean(maps.depths.array < 0.5) < 0.02  # of 64 the ball has 0.8
 
 
 def test_errors_are_blue_where_light_is_lost_and_red_where_it_is_gained():
@@ -259,3 +261,12 @@ def test_the_command(tmp_path, capsys):
     assert "did you mean foliage" in capsys.readouterr().err
     with pytest.raises(bk.BrdfkitError, match="did you mean shadow_volume"):
         bk.shadows.compare(file, others=["shadow_volumes"])
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("kind", [bool, np.uint8, np.float16])
+def test_packed_arrays_are_smaller_and_the_same(kind):
+    array = (np.add.outer(np.arange(60), np.arange(80)) // 20).astype(kind)
+    assert np.array_equal(Packed.of(array).array, array)
+    assert Packed.of(array).array.dtype == kind
+    assert len(Packed.of(array).data) < array.nbytes / 10

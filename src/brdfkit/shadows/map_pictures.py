@@ -6,6 +6,7 @@ from math import ceil, sqrt
 import numpy as np
 
 from brdfkit.shadow_maps.light_shadow import LightShadow
+from brdfkit.shadows.packed import Packed
 
 CHECKS = 32  # squares of the checker along a side of a map
 SIDE = 256  # pixels of the light's view
@@ -17,26 +18,28 @@ DARK = 0.45  # of every other square
 class MapPictures:
     """The maps of a projection in a partition.
 
-    shade : brightness (height, width) of the scene, with a checker of squares of its maps' texels.
+    shade : brightness (height, width) of the scene, in 255ths, with a checker of squares of its
+        maps' texels.
     part : which map (height, width) a pixel is in; `OUTSIDE` for none.
     depths : what the light sees (SIDE, SIDE), 0 near to 1 far; nan where it sees nothing. Several
         maps stand in rows, the first at the upper left.
     """
 
-    shade: np.ndarray
-    part: np.ndarray
-    depths: np.ndarray
+    shade: Packed
+    part: Packed
+    depths: Packed
 
     @classmethod
     def of(cls, seen, placement, **technique):
         """Of what a camera sees, a `Seen`, by keyword arguments of `LightShadow`."""
         shadow = LightShadow(seen.scene, placement, **technique)
         shade, part = checker(shadow, seen)
-        return cls(shade, part, side_by_side([seen_by_light(each) for each in shadow.maps]))
+        depths = side_by_side([seen_by_light(each) for each in shadow.maps])
+        return cls(*map(Packed.of, (shade, part, depths)))
 
 
 def checker(shadow, seen):
-    """The brightness of the scene under a checker, and which map each pixel is in."""
+    """The brightness of the scene, in 255ths, under a checker, and which map each pixel is in."""
     valid = np.array(seen.si.is_valid())
     shade = valid * (0.3 + 0.7 * np.abs(np.array(seen.si.wi.z)))
     chosen, part = np.array(shadow.which(seen.si.p)), np.full(len(valid), OUTSIDE)
@@ -47,7 +50,7 @@ def checker(shadow, seen):
         shade[inside] *= np.where((columns + rows) % 2, DARK, 1)
         part[inside] = number
     return (
-        shade.astype(np.float16).reshape(seen.size),
+        np.round(255 * shade).astype(np.uint8).reshape(seen.size),
         part.astype(np.uint8).reshape(seen.size),
     )
 

@@ -81,7 +81,7 @@ def contents(place, order, comparison, number, flips):
             }
         )
     maps = [
-        {"name": label, "texels": draw_texels(one), "depths": draw_depths(one.depths)}
+        {"name": label, "texels": draw_texels(one), "depths": draw_depths(one.depths.array)}
         for label, one in place.maps.items()
     ]
     return {

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from brdfkit.shadows.map_pictures import MapPictures
+from brdfkit.shadows.packed import Packed
 
 
 @dataclass
@@ -12,19 +13,18 @@ class Pictures:
     """One view in one light, without a shadow, with the exact one, and with those of techniques.
 
     title : which view and which light.
-    unshadowed : radiance (height, width, 3) of the surfaces by this light alone.
-    exact : whether (height, width) the light arrives.
-    facing : whether (height, width) there is a surface that faces the light, where it shines.
+    light : radiance (height, width, 3) of the surfaces by this light alone, unshadowed.
+    arrives, towards : what `exact` and `facing` are.
     maps : projection and partition → its `MapPictures`.
     shares : technique → share of the light (height, width) that arrives, in 255ths.
     """
 
     title: str
-    unshadowed: np.ndarray
-    exact: np.ndarray
-    facing: np.ndarray
+    light: Packed
+    arrives: Packed
+    towards: Packed
     maps: dict[str, MapPictures] = field(default_factory=dict)
-    shares: dict[str, np.ndarray] = field(default_factory=dict)
+    shares: dict[str, Packed] = field(default_factory=dict)
 
     @classmethod
     def of(cls, seen, title):
@@ -32,9 +32,9 @@ class Pictures:
         height, width = seen.size
         return cls(
             title,
-            seen.unshadowed.astype(np.float32).reshape(height, width, 3),
-            seen.exact.reshape(seen.size),
-            seen.facing.reshape(seen.size),
+            Packed.of(halves(seen.unshadowed).reshape(height, width, 3)),
+            Packed.of(seen.exact.reshape(seen.size)),
+            Packed.of(seen.facing.reshape(seen.size)),
         )
 
     @property
@@ -42,18 +42,38 @@ class Pictures:
         """Whether the light shines on anything that is seen."""
         return bool(self.facing.any())
 
+    @property
+    def unshadowed(self):
+        """The radiance (height, width, 3) of the surfaces by this light alone."""
+        return self.light.array.astype(np.float32)
+
+    @property
+    def exact(self):
+        """Whether (height, width) the light arrives."""
+        return self.arrives.array
+
+    @property
+    def facing(self):
+        """Whether (height, width) there is a surface that faces the light, where it shines."""
+        return self.towards.array
+
     def keep(self, technique, lit):
         """Keep the shares (pixels,) of the light that a technique lets through."""
         shares = np.round(255 * np.clip(lit, 0, 1)).astype(np.uint8)
-        self.shares[technique] = shares.reshape(self.exact.shape)
+        self.shares[technique] = Packed.of(shares.reshape(self.arrives.shape))
 
     def lit(self, technique):
         """The share of the light (height, width) that arrives by a technique."""
-        return self.shares[technique] / np.float32(255)
+        return self.shares[technique].array / np.float32(255)
 
     def radiance(self, lit):
         """The picture (height, width, 3) by the shares (height, width) of the light that arrive."""
         return self.unshadowed * lit[..., None]
+
+
+def halves(radiance):
+    """Half precision, whose largest number is 65504."""
+    return np.minimum(radiance, np.finfo(np.float16).max).astype(np.float16)
 
 
 def title_of(view, sensor, light, emitter):
