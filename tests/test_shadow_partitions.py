@@ -43,6 +43,11 @@ def objects(kind):
     return lambda: objects_on_a_ground(kind, SIZE)
 
 
+@cache
+def few_objects():
+    return objects_on_a_ground("directional", SIZE)
+
+
 def street():
     return mi.load_dict(SCENES["street"](size=(SIZE, SIZE)))
 
@@ -66,19 +71,44 @@ def test_planes_are_those_of_the_thesis():
         assert split_planes(1, 100, 4, spacing) == pytest.approx([1, *inner, 100], abs=1e-6)
 
 
+def every_point_has_a_texel(shadow, si):
+    """Whether each point has a part of the `LightShadow`, and is on its map."""
+    part, seen = (
+        np.array(shadow.which(si.p) + dr.zeros(mi.UInt32, SIZE**2)),
+        np.array(si.is_valid()),
+    )
+    found = (part[seen] < len(shadow.maps)).all()
+    for number, its_map in enumerate(shadow.maps):
+        places = np.array(mi.Point3f(*its_map.projection.to_map(*si.p)))[:2]
+        found &= (np.abs(places[:, seen & (part == number)]) <= 1 + 1e-4).all()
+    return found
+
+
 @pytest.mark.parametrize(("kind", "partition"), CASES)
 @pytest.mark.parametrize("projection", ["focused", "logarithmic_perspective"])
 def test_every_point_seen_is_on_the_map_of_one_part(kind, partition, projection):
     """And shadows are those of rays, but for borders as wide as texels."""
     scene, placement, si, facing, lit = viewed(objects(kind))
     shadow = LightShadow(scene, placement, projection, partition=partition, resolution=128)
-    part = np.array(shadow.which(si.p) + dr.zeros(mi.UInt32, SIZE**2))
-    seen = np.array(si.is_valid())
-    assert (part[seen] < len(shadow.maps)).all()
-    for number, its_map in enumerate(shadow.maps):
-        places = np.array(mi.Point3f(*its_map.projection.to_map(*si.p)))[:2]
-        assert (np.abs(places[:, seen & (part == number)]) <= 1 + 1e-4).all()
+    assert every_point_has_a_texel(shadow, si)
     assert ((np.array(shadow.lit(si.p, si.n)) != lit) & facing).sum() / facing.sum() < 0.012
+
+
+ANY = [name for name in FILES["partition"] if name not in (*ONLY, "whole")]
+
+
+@pytest.mark.parametrize("partition", ANY)
+@pytest.mark.parametrize("projection", FILES["projection"])
+def test_every_projection_may_be_parted(projection, partition):
+    """Each point seen has a texel, and shadows are nearer to those of rays on finer maps."""
+    scene, placement, si, facing, lit = viewed(few_objects)
+    wrong = []
+    for resolution in (32, 256):
+        parted = {"partition": partition, "resolution": resolution}
+        shadow = LightShadow(scene, placement, projection, **parted)
+        assert every_point_has_a_texel(shadow, si)
+        wrong.append(((np.array(shadow.lit(si.p, si.n)) != lit) & facing).sum() / facing.sum())
+    assert wrong[1] < max(0.4 * wrong[0], 0.002)
 
 
 def test_a_street_gains_by_parts_of_as_many_texels_in_all():
