@@ -3,11 +3,11 @@
 Rays of Mitsuba begin at ε (1 + max |p_i|). In a world of 1e-5, one in metres of an object of 10 µm,
 the 1 leaps over all there is: a tenth and more of the shadows are wrong. Here
 
-    ε/2 max(t, |p_x|, |p_y|, |p_z|),   t the distance from which the point was seen
+    max(ε/2 |p|, ε/40 t),   |p| the largest coordinate, t the distance from which p was seen
 
-since both the point and the distance were rounded on the way. Half of Mitsuba's ε is as far as in
-scenes of usual size; with twice or a quarter of it, single pixels of leaves or of a street differ
-between rays and shadow volumes.
+since both the point and the distance were rounded on the way, the distance once. Half of Mitsuba's
+ε is as far as in scenes of usual size; with twice or a quarter of it, single pixels of leaves or of
+a street differ between rays and shadow volumes. As much of t would be half a house from afar.
 """
 
 import drjit as dr
@@ -17,7 +17,7 @@ def clearance(p, t):
     """The length off a surface at `p`, a point that was seen from the distance `t`."""
     import mitsuba as mi
 
-    return 0.5 * mi.math.RayEpsilon * dr.maximum(t, dr.max(dr.abs(p)))
+    return mi.math.RayEpsilon * dr.maximum(0.025 * t, 0.5 * dr.max(dr.abs(p)))
 
 
 def ray_off_surface(p, n, t, direction):

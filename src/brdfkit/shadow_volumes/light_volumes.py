@@ -72,7 +72,6 @@ class LightVolumes:
         to_light = self.light.xyz - self.light.w * mi.Vector3f(p)
         distance = dr.norm(p - self.eye)
         step, ray = clearance(p, distance), (p - self.eye) / distance
-        step = dr.maximum(step, mi.math.ShapeEpsilon * distance)  # depths round by less
         slope = dr.dot(n, ray)
         slope = dr.mulsign(dr.maximum(dr.abs(slope), GRAZING), slope)
         return p + ray * dr.mulsign(step, dr.dot(n, to_light)) / slope
