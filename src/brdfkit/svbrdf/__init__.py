@@ -1,0 +1,1 @@
+"""Textures of a flat sample from photographs of it."""

@@ -1,0 +1,140 @@
+"""Maps fitted to observations: each texel for itself, then all together, as smooth as helps lights
+that were held out."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.ndimage import median_filter
+
+from brdfkit.svbrdf.numbers import CHANNELS
+from brdfkit.svbrdf.search import Equations, equations, search_each, search_together
+from brdfkit.svbrdf.starts import WIDTHS, rows
+
+TAUS = 1.0, 0.3, 0.1, 0.03  # typical differences of neighbours, of which one is chosen
+FEW_TO_HOLD_OUT = 8  # lights, below which none is held out
+USUAL = 0.1  # the τ of so few
+COARSE = 4  # texels along a side of the first maps
+PATCH = 48  # texels along a side of the part on which τ is chosen
+
+
+@dataclass(frozen=True)
+class FittedMaps:
+    """Rows `x` (n, count) and the `Equations` there; `tau`, by which neighbours may differ; the
+    `noise`, as a variance of relative radiances; and `errors`: of each τ that was tried, that of
+    the lights held out, relative."""
+
+    x: np.ndarray
+    about: Equations
+    tau: float
+    noise: float
+    strength: np.ndarray
+    errors: dict[float, float]
+
+
+def fit_maps(numbers, seen, smoothness=None, report=lambda: None):
+    """The `FittedMaps` of `Observations`; `smoothness`: τ, or None for one that is chosen."""
+    start, noise = coarse_to_fine(numbers, seen, report)
+    errors = {}
+    tau = smoothness
+    if tau is None:
+        tau = USUAL
+        if len(seen.radiance) >= FEW_TO_HOLD_OUT:
+            errors = held_out_errors(numbers, seen, noise, report)
+            tau = min(errors, key=errors.get)
+    strength = strengths(numbers, start, noise, tau)
+    x = finish(numbers, start, seen, strength, report)
+    return FittedMaps(x, equations(numbers, x, seen), tau, noise, strength, errors)
+
+
+def coarse_to_fine(numbers, seen, report):
+    """(rows, noise) of maps that are first a few texels large, then twice as fine and so on: a
+    texel alone may mistake a highlight for its colour, a part of the sample less so."""
+    side = 2 ** max(0, int(np.ceil(np.log2(max(seen.shape) / COARSE))))
+    pooled = seen.pooled(side)
+    tried = [
+        search_each(numbers, rows(numbers, pooled, width), pooled, report=report)
+        for width in WIDTHS
+    ]
+    errors = np.array([error for _, error in tried])
+    best = errors.argmin(axis=0)
+    x = np.array([x for x, _ in tried])[best, np.arange(len(best))]
+    noise = noise_of(numbers, errors.min(axis=0), pooled)
+    while side > 1:
+        side //= 2
+        coarse, pooled = pooled.shape, seen.pooled(side)
+        x = refined(x, coarse, pooled.shape)
+        x = finish(numbers, x, pooled, strengths(numbers, x, noise, USUAL), report)
+        noise = noise_of(numbers, equations(numbers, x, pooled, slopes=False).error, pooled)
+    return x, noise
+
+
+def refined(x, coarse, fine):
+    """Rows of maps of the shape `coarse` for those of `fine`, twice as many a side."""
+    grid = np.repeat(np.repeat(x.reshape(*coarse, -1), 2, axis=0), 2, axis=1)
+    return grid[: fine[0], : fine[1]].reshape(fine[0] * fine[1], -1)
+
+
+def finish(numbers, x, seen, strength, report):
+    """Rows of the least squares together; texels that their neighbours' numbers suit better begin
+    at these once more."""
+    x = search_together(numbers, x, seen, strength, report=report)
+    middle = median_filter(x.reshape(*seen.shape, -1), size=(3, 3, 1), mode="nearest")
+    middle = middle.reshape(x.shape)
+    error = equations(numbers, x, seen, slopes=False).error
+    better = equations(numbers, middle, seen, slopes=False).error < error
+    if better.any():
+        x = search_together(
+            numbers, np.where(better[:, None], middle, x), seen, strength, report=report
+        )
+    return x
+
+
+def noise_of(numbers, errors, seen):
+    """The variance of a relative radiance, from what the texels leave: the median is robust."""
+    counted = (seen.weights > 0).sum(axis=(0, 2))
+    free = np.maximum(counted - numbers.count, 0.2 * counted)
+    return max(float(np.median(errors / np.maximum(free, 1))), 1e-10)
+
+
+def strengths(numbers, x, noise, tau):
+    """σ² / τ² (count,) of each number: weights in units of their median."""
+    units = np.ones(numbers.count)
+    weights = x[:, : numbers.shapes.start]
+    scale = np.maximum(np.median(weights, axis=0), 0.1 * weights.mean(axis=0))
+    scale = scale.reshape(-1, CHANNELS).mean(axis=1)
+    units[: numbers.shapes.start] = np.repeat(np.maximum(scale, 1e-3), CHANNELS)
+    return noise / (tau * units) ** 2
+
+
+def held_out_errors(numbers, seen, noise, report):
+    """τ → the RMS relative error of lights that were held out, on a patch in the middle."""
+    part = patch(seen)
+    lights = np.arange(len(seen.radiance))
+    held = lights[1 :: max(2, len(lights) // 3)]
+    taught, asked = part.under(np.setdiff1d(lights, held)), part.under(held)
+    start, _ = coarse_to_fine(numbers, taught, report)
+    found = {}
+    for tau in TAUS:
+        x = finish(numbers, start, taught, strengths(numbers, start, noise, tau), report)
+        left = equations(numbers, x, asked, slopes=False).error
+        found[tau] = float(np.sqrt(left.sum() / max(1, (asked.weights > 0).sum())))
+    return found
+
+
+def patch(seen):
+    """`Observations` of a patch in the middle."""
+    height, width = seen.shape
+    rows_, columns = min(height, PATCH), min(width, PATCH)
+    top, left = (height - rows_) // 2, (width - columns) // 2
+    texel = np.arange(height * width).reshape(height, width)
+    inside = seen.at(texel[top : top + rows_, left : left + columns].ravel())
+    return replace(inside, shape=(rows_, columns))
+
+
+def standard_errors(numbers, fitted):
+    """Standard errors (n, count) of each number, neighbours given; and the correlations of numbers
+    that trade off: see `trades`."""
+    hessian = fitted.about.hessian + 4 * np.diag(fitted.strength)
+    inverse = np.linalg.pinv(hessian, hermitian=True)
+    variance = np.diagonal(inverse, axis1=1, axis2=2)
+    return np.sqrt(np.maximum(variance, 0) * fitted.noise)

@@ -1,0 +1,148 @@
+"""The numbers of a texel that are searched, and how they make its radiances.
+
+Of a texel: the weights of the model's lobes, in red, green and blue, the shape parameters, and x
+and y of the normal. With irradiances E_i from directions l_i, and the texel's frame about n:
+
+    L_i = E_i max(n · l_i, 0) Σ_l a_l f_l(v, l_i)
+"""
+
+from dataclasses import dataclass
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.jit.threads import in_turn
+from brdfkit.model import double_precision
+
+STEEPEST = 0.65  # the largest x or y of a normal
+CHANNELS = 3
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """The numbers of a `model` whose shape parameters `names` are searched, and others `fixed`.
+
+    Of each texel a row: weights (lobe by lobe, red, green and blue), logarithms of the shapes that
+    are declared so, and others as they are, and the normal's x and y.
+    """
+
+    model: type
+    names: tuple[str, ...]
+    fixed: dict[str, float]
+
+    @property
+    def lobes(self):
+        """The names of the weights."""
+        return self.model.weights()
+
+    @property
+    def shapes(self):
+        """Where the shapes are in a row."""
+        first = CHANNELS * len(self.lobes)
+        return slice(first, first + len(self.names))
+
+    @property
+    def normal(self):
+        """Where x and y of the normal are in a row."""
+        first = CHANNELS * len(self.lobes) + len(self.names)
+        return slice(first, first + 2)
+
+    @property
+    def count(self):
+        """How many numbers a texel has."""
+        return self.normal.stop
+
+    def limits(self):
+        """(low, high), each (count,)."""
+        low, high = np.zeros(self.count), np.full(self.count, np.inf)
+        bounds = np.array([self.model.parameters[n].bounds for n in self.names]).reshape(-1, 2)
+        log = np.array([self.model.parameters[n].log for n in self.names], bool)
+        with np.errstate(divide="ignore"):
+            bounds = np.where(log[:, None], np.log(bounds), bounds)
+        low[self.shapes], high[self.shapes] = bounds.T
+        low[self.normal], high[self.normal] = -STEEPEST, STEEPEST
+        return low, high
+
+    def values(self, x):
+        """The shapes by name, each (n,), of rows `x` (n, count)."""
+        found = {}
+        for name, column in zip(self.names, x[:, self.shapes].T, strict=True):
+            found[name] = np.exp(column) if self.model.parameters[name].log else column
+        return found
+
+    def coordinates(self, values):
+        """A row's shapes, of values by name."""
+        return [
+            np.log(values[n]) if self.model.parameters[n].log else values[n] for n in self.names
+        ]
+
+    @in_turn
+    def radiances(self, x, seen, slopes=True):
+        """Lobes (k, n, lobes): the radiances of each under a weight of 1 and irradiance of 1, and
+        their derivatives (k, n, lobes, shapes + 2) by shapes and normal, of rows `x` (n, count)
+        seen as `Observations`."""
+        lights, texels = seen.to_light.shape[:2]
+        arrays = [
+            double_precision.array(np.tile(column, lights))
+            for column in x[:, self.shapes.start : self.normal.stop].T
+        ]
+        to_light = double_precision.vector(seen.to_light.reshape(-1, 3))
+        to_camera = double_precision.vector(seen.to_camera.reshape(-1, 3))
+        shape = (lights, texels)
+        if slopes:
+            for one in arrays:
+                dr.enable_grad(one)
+        found = self._lobes(arrays, to_light, to_camera)
+        value = np.stack([np.array(dr.detach(f)).reshape(shape) for f in found], axis=-1)
+        if not slopes:
+            return value, None
+        by_number = np.zeros((*value.shape, len(arrays)))
+        for j, one in enumerate(arrays):
+            dr.clear_grad(found)
+            dr.set_grad(one, 1)
+            dr.enqueue(dr.ADMode.Forward, one)
+            dr.traverse(dr.ADMode.Forward, dr.ADFlag.ClearInterior)
+            for k, lobe in enumerate(found):
+                by_number[..., k, j] = np.array(dr.grad(lobe)).reshape(shape)
+        return value, by_number
+
+    def _lobes(self, arrays, to_light, to_camera):
+        """Each lobe times the cosine, at shapes and normals, `arrays` over lights and texels."""
+        *shapes, x, y = arrays
+        z = dr.sqrt(dr.maximum(1 - x * x - y * y, 1e-4))
+        normal = double_precision.Vector(x, y, z)
+        # the tangent is the x axis, laid onto the surface, as Mitsuba's normal maps have it
+        scale = dr.rsqrt(dr.maximum(1 - x * x, 1e-4))
+        tangent = double_precision.Vector((1 - x * x) * scale, -x * y * scale, -x * z * scale)
+        bitangent = _cross(normal, tangent)
+        wi = _local(to_camera, tangent, bitangent, normal)
+        wo = _local(to_light, tangent, bitangent, normal)
+        lit = (wi.z > 1e-3) & (wo.z > 1e-3)
+        up = double_precision.Vector(0 * x, 0 * x, 0 * x + 1)
+        wi, wo_ = _where(lit, wi, up), _where(lit, wo, up)
+        values = {}
+        for name, array in zip(self.names, shapes, strict=True):
+            values[name] = dr.exp(array) if self.model.parameters[name].log else array
+        values |= {name: double_precision.scalar(v) for name, v in self.fixed.items()}
+        lobes = [lobe for _, lobe in self.model.bind(values).terms()]
+        return [dr.select(lit, (lobe.eval(wi, wo_) + 0 * x) * wo_.z, 0) for lobe in lobes]
+
+
+def _cross(a, b):
+    return double_precision.Vector(
+        a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x
+    )
+
+
+def _dot(a, b):
+    return a.x * b.x + a.y * b.y + a.z * b.z
+
+
+def _local(w, tangent, bitangent, normal):
+    return double_precision.Vector(_dot(w, tangent), _dot(w, bitangent), _dot(w, normal))
+
+
+def _where(condition, a, b):
+    return double_precision.Vector(
+        *(dr.select(condition, getattr(a, k), getattr(b, k)) for k in "xyz")
+    )

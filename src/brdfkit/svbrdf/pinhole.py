@@ -1,0 +1,60 @@
+"""A pinhole camera: where in its picture a point is seen."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Pinhole:
+    """A camera at `origin`, looking at `target`, with `up` in its pictures (3,) [m]; `fov`: of
+    their width [degrees]."""
+
+    origin: np.ndarray
+    target: np.ndarray
+    up: np.ndarray
+    fov: float
+
+    @property
+    def axes(self):
+        """Unit vectors (right, up, forward) of the picture."""
+        forward = self.target - self.origin
+        forward = forward / np.linalg.norm(forward)
+        right = np.cross(forward, self.up)
+        right = right / np.linalg.norm(right)
+        return right, np.cross(right, forward), forward
+
+    def project(self, points, size):
+        """The places (n, 2) of `points` (n, 3) in a picture of `size` (width, height) [pixels]:
+        columns from its left, rows from its top edge; nan of points behind the camera."""
+        width, height = size
+        right, up, forward = self.axes
+        away = points - self.origin
+        depth = away @ forward
+        depth = np.where(depth > 0, depth, np.nan)
+        scale = width / 2 / np.tan(np.radians(self.fov) / 2)
+        column = width / 2 + scale * (away @ right) / depth
+        row = height / 2 - scale * (away @ up) / depth
+        return np.stack([column, row], axis=1)
+
+    def scene_dict(self, size) -> dict[str, Any]:
+        """The dictionary of Mitsuba's sensor of this camera."""
+        import mitsuba as mi
+
+        at = mi.ScalarTransform4f()
+        look = [list(map(float, v)) for v in (self.origin, self.target, self.up)]
+        return {
+            "type": "perspective",
+            "fov": float(self.fov),
+            "fov_axis": "x",
+            "to_world": at.look_at(*look),
+            "film": {
+                "type": "hdrfilm",
+                "width": int(size[0]),
+                "height": int(size[1]),
+                "pixel_format": "rgb",
+                "component_format": "float32",
+                "rfilter": {"type": "box"},
+            },
+        }
