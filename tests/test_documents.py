@@ -62,6 +62,14 @@ def refinement():
     return bk.Refinement({NASTY: 0.2}, 0.1, 0.05, 64, 2, 80.0, 1.5, *said, certainty, {}, ())
 
 
+def textures():
+    """An `Svbrdf` of four texels."""
+    values = {"alpha_u": np.full((2, 2), 0.2), "normal": np.tile([0.0, 0.0, 1.0], (2, 2, 1))}
+    errors = {name: np.full((2, 2), 0.01) for name in values}
+    said = ((0.1, 0.1), 0.1, {0.1: 0.02}, 0.01, {NASTY: 40.0}, (NASTY,), 1.5, None)
+    return bk.Svbrdf(NASTY, "ggx", values, {}, errors, *said)
+
+
 @pytest.fixture(scope="module")
 def shown():
     """One object of every class that derives from `Shown`, by the class's name."""
@@ -85,6 +93,7 @@ def shown():
         bk.profile(fit, plaster, "alpha_u", points=5),
         bk.Reproduction(NASTY, ()),
         refinement(),
+        textures(),
         rendering,
         rendering.errors(),
         bk.gallery([[(NASTY, named), fit]], spp=2, size=32),

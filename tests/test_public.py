@@ -36,6 +36,7 @@ METHODS = {
         bk.Gallery: ["write"],
         bk.Refinement: ["put_into"],
         bk.Rendering: ["write"],
+        bk.Svbrdf: ["relight", "write"],
         bk.Sweep: ["to_csv", "to_html", "to_parquet"],
         bk.TransferFunction: ["from_colormap", "from_opacity", "load", "save"],
         bk.Volume: ["scene_dict"],

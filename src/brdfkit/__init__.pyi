@@ -26,6 +26,10 @@ from .measured import Measured as Measured
 from .model import Model as Model
 from .model.labels import load_models as load_models
 from .model.labels import models as models
+from .photographs import Capture as Capture
+from .photographs import Pinhole as Pinhole
+from .photographs import Svbrdf as Svbrdf
+from .photographs import svbrdf as svbrdf
 from .picture_errors import ImageErrors as ImageErrors
 from .plotting import plot as plot
 from .progress_bar import progress as progress

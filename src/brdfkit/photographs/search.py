@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.fitting.box_quadratic import minimise_in_box
-from brdfkit.svbrdf.numbers import CHANNELS
+from brdfkit.photographs.numbers import CHANNELS
 
 STEPS = 12
 DAMPING = 1e-2
@@ -40,23 +40,25 @@ def equations(numbers, x, seen, slopes=True):
         value, by_number = numbers.radiances(x[rows], part, slopes)
         for c in range(CHANNELS):
             of_channel = [CHANNELS * lobe + c for lobe in range(lobes)]
-            weights = x[rows][:, of_channel]
+            weights = x[rows][:, of_channel].T
             light = part.irradiance[..., c]
-            residual = light * (value * weights).sum(axis=2) - part.radiance[..., c]
             root = np.sqrt(part.weights[..., c])
-            error[rows] += ((root * residual) ** 2).sum(axis=0)
+            shown = sum(w * lobe for w, lobe in zip(weights, value, strict=True))
+            residual = root * (light * shown - part.radiance[..., c])
+            error[rows] += (residual * residual).sum(axis=0)
             if not slopes:
                 continue
-            others = list(range(numbers.shapes.start, p))
-            jacobian = np.concatenate(
-                [value, (by_number * weights[None, :, :, None]).sum(axis=2)], axis=2
-            )
-            jacobian *= (root * light)[..., None]
-            own = of_channel + others
-            gradient[rows][:, own] += np.einsum("knp,kn->np", jacobian, root * residual)
-            by_texel = jacobian.transpose(1, 2, 0)
-            at = (slice(None), np.array(own)[:, None], np.array(own)[None, :])
-            hessian[rows][at] += by_texel @ by_texel.transpose(0, 2, 1)
+            own = of_channel + list(range(numbers.shapes.start, p))
+            moved = [sum(w * d for w, d in zip(weights, of, strict=True)) for of in by_number]
+            factor = root * light
+            columns = [factor * column for column in (*value, *moved)]
+            for a, column in zip(own, columns, strict=True):
+                gradient[rows, a] += (column * residual).sum(axis=0)
+                for b, other in zip(own, columns, strict=True):
+                    if b >= a:
+                        hessian[rows, a, b] += (column * other).sum(axis=0)
+    if slopes:
+        hessian += np.triu(hessian, 1).transpose(0, 2, 1)
     return Equations(error, gradient, hessian)
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from brdfkit.svbrdf.numbers import CHANNELS, STEEPEST
+from brdfkit.photographs.numbers import CHANNELS, STEEPEST
 
 WIDTHS = 0.08, 0.2, 0.45  # of the shape parameters that are searched, on their scale of 0 to 1
 MATT = 0.6  # the share of the observations, the darker ones, that count as free of highlights

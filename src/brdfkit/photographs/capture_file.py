@@ -7,8 +7,8 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.host.picture_file import read_pixels
-from brdfkit.svbrdf.capture import Capture
-from brdfkit.svbrdf.pinhole import Pinhole
+from brdfkit.photographs.capture import Capture
+from brdfkit.photographs.pinhole import Pinhole
 
 NAME = "capture.toml"
 LINEAR = ".exr", ".hdr", ".pfm", ".rgbe"
@@ -37,19 +37,19 @@ def load_capture(folder, linearise=False):
     lights = said.get("light")
     if not isinstance(lights, list) or not lights:
         raise BrdfkitError(f"{path}: it names no [[light]]; there should be one for each picture.")
-    pictures, positions, intensities, names = [], [], [], []
+    positions, intensities, names = [], [], []
     for number, light in enumerate(lights):
         where = f"light {number}"
         _require_known(path, light, ("picture", "position", "intensity"), where)
         name = light.get("picture")
         if not isinstance(name, str):
             raise BrdfkitError(f"{path}: {where} names no picture.")
-        pictures.append(_picture(folder / name, linearise))
         place = light.get("position")
         flash = place == AT_CAMERA
         positions.append(camera.origin if flash else _numbers(path, place, f"{where}: position", 3))
         intensities.append(_numbers(path, light.get("intensity", 1.0), f"{where}: intensity", 3))
         names.append(name)
+    pictures = [_picture(folder / name, linearise) for name in names]
     for name, picture in zip(names, pictures, strict=True):
         if picture.shape != pictures[0].shape:
             own, first = (f"{p.shape[1]} × {p.shape[0]}" for p in (picture, pictures[0]))

@@ -42,6 +42,9 @@ class Observations:
         to_camera = away / np.linalg.norm(away, axis=1, keepdims=True)
         to_camera = np.broadcast_to(to_camera, to_light.shape)
         scale = np.maximum(radiance, 0) + DARK * radiance.mean()
+        # pixels at the edge see what is beside the sample, too: there neighbours decide
+        margin = np.array(capture.size) / 2 - capture.pixel
+        lost |= (np.abs(points[:, :2]) > margin).any(axis=1)[:, None]
         weights = np.where(lost, 0, 1 / scale**2)
         return cls(radiance, weights, to_light, irradiance, to_camera, tuple(shape))
 

@@ -78,8 +78,8 @@ class Numbers:
 
     @in_turn
     def radiances(self, x, seen, slopes=True):
-        """Lobes (k, n, lobes): the radiances of each under a weight of 1 and irradiance of 1, and
-        their derivatives (k, n, lobes, shapes + 2) by shapes and normal, of rows `x` (n, count)
+        """By lobe, arrays (k, n): the radiances of each under a weight of 1 and irradiance of 1;
+        and their derivatives by shapes and normal, a list for each of these, of rows `x` (n, count)
         seen as `Observations`."""
         lights, texels = seen.to_light.shape[:2]
         arrays = [
@@ -93,18 +93,19 @@ class Numbers:
             for one in arrays:
                 dr.enable_grad(one)
         found = self._lobes(arrays, to_light, to_camera)
-        value = np.stack([np.array(dr.detach(f)).reshape(shape) for f in found], axis=-1)
-        if not slopes:
-            return value, None
-        by_number = np.zeros((*value.shape, len(arrays)))
-        for j, one in enumerate(arrays):
+        values, by_number = [dr.detach(lobe) for lobe in found], []
+        for one in arrays if slopes else ():
             dr.clear_grad(found)
             dr.set_grad(one, 1)
             dr.enqueue(dr.ADMode.Forward, one)
             dr.traverse(dr.ADMode.Forward, dr.ADFlag.ClearInterior)
-            for k, lobe in enumerate(found):
-                by_number[..., k, j] = np.array(dr.grad(lobe)).reshape(shape)
-        return value, by_number
+            by_number.append([dr.grad(lobe) for lobe in found])
+        dr.eval(values, by_number)  # all of them in one kernel
+
+        def plain(lobes):
+            return [np.array(lobe).reshape(shape) for lobe in lobes]
+
+        return plain(values), [plain(lobes) for lobes in by_number]
 
     def _lobes(self, arrays, to_light, to_camera):
         """Each lobe times the cosine, at shapes and normals, `arrays` over lights and texels."""

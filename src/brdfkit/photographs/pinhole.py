@@ -1,15 +1,25 @@
 """A pinhole camera: where in its picture a point is seen."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 
 @dataclass(frozen=True)
 class Pinhole:
-    """A camera at `origin`, looking at `target`, with `up` in its pictures (3,) [m]; `fov`: of
-    their width [degrees]."""
+    """A pinhole camera; no lens distorts its pictures.
+
+    Attributes
+    ----------
+    origin : ndarray, shape (3,)
+        Where it is [m].
+    target : ndarray, shape (3,)
+        Where it looks [m].
+    up : ndarray, shape (3,)
+        A direction that is up in its pictures.
+    fov : float
+        The angle across the width of its pictures, above 0, below 180 [degrees].
+    """
 
     origin: np.ndarray
     target: np.ndarray
@@ -38,7 +48,7 @@ class Pinhole:
         row = height / 2 - scale * (away @ up) / depth
         return np.stack([column, row], axis=1)
 
-    def scene_dict(self, size) -> dict[str, Any]:
+    def scene_dict(self, size):
         """The dictionary of Mitsuba's sensor of this camera."""
         import mitsuba as mi
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.ndimage import median_filter
 
-from brdfkit.svbrdf.numbers import CHANNELS
-from brdfkit.svbrdf.search import Equations, equations, search_each, search_together
-from brdfkit.svbrdf.starts import WIDTHS, rows
+from brdfkit.photographs.numbers import CHANNELS
+from brdfkit.photographs.search import Equations, equations, search_each, search_together
+from brdfkit.photographs.starts import WIDTHS, rows
 
 TAUS = 1.0, 0.3, 0.1, 0.03  # typical differences of neighbours, of which one is chosen
 FEW_TO_HOLD_OUT = 8  # lights, below which none is held out

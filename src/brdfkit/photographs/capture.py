@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.svbrdf.pinhole import Pinhole
+from brdfkit.photographs.pinhole import Pinhole
 
 CLIPPED = 1e-4  # the share of numbers that equal the largest: not by chance
 
@@ -88,13 +88,17 @@ class Capture:
 
     def usual_shape(self, most=512):
         """(height, width) of maps whose texels are about as large as a pixel in the middle."""
+        width, height = np.array(self.size) / self.pixel
+        shrink = min(1.0, most / max(width, height))
+        return max(4, round(height * shrink)), max(4, round(width * shrink))
+
+    @property
+    def pixel(self):
+        """Width and height (2,) of a pixel in the middle of the sample [m]."""
         step = 1e-4 * min(self.size)
         across = np.array([[0, 0, 0], [step, 0, 0], [0, step, 0]])
         middle, right, above = self.camera.project(across, self.picture_size)
-        pixels = [np.linalg.norm(there - middle) / step for there in (above, right)]
-        sides = (self.size[1] * pixels[0], self.size[0] * pixels[1])
-        shrink = min(1.0, most / max(sides))
-        return tuple(max(4, round(side * shrink)) for side in sides)
+        return step / np.linalg.norm([right - middle, above - middle], axis=1)
 
     @property
     def picture_size(self):

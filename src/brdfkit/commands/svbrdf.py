@@ -1,0 +1,85 @@
+"""`brdfkit svbrdf`: maps of a flat sample, from photographs under known lights."""
+
+from pathlib import Path
+
+import click
+
+from brdfkit.commands._options import output_options
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option(
+    "-m",
+    "--model",
+    default="ggx",
+    show_default=True,
+    metavar="NAME",
+    help="The model whose parameters have maps.",
+)
+@click.option(
+    "--resolution",
+    type=click.IntRange(4, 8192),
+    metavar="N",
+    help="Texels along the longer side. Default: as many as pixels, at most 512.",
+)
+@click.option("--anisotropic", is_flag=True, help="Widths along x and y, each with a map.")
+@click.option(
+    "--fixed",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="A parameter that is alike everywhere, as f0=0.04; may be repeated.",
+)
+@click.option(
+    "--smoothness",
+    type=click.FloatRange(min=0, min_open=True),
+    metavar="X",
+    help="How much neighbours may differ: less is smoother. Default: by lights held out.",
+)
+@click.option("--linearise", is_flag=True, help="Accept pictures of 8 bits, by sRGB's curve.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="The folder of the maps, a scene and a report. Default: FOLDER/maps.",
+)
+@output_options
+def svbrdf(folder, model, resolution, anisotropic, fixed, smoothness, linearise, output, console):
+    """Fit maps to the photographs in FOLDER.
+
+    FOLDER holds linear photographs of a flat sample, OpenEXR, each under one point light or flash,
+    and the file capture.toml, which says where the camera and the lights were.
+    """
+    from brdfkit.photographs import svbrdf as fit_maps
+
+    values = dict(map(_to_value, fixed))
+    with console.progress("fit maps") as progress:
+        found = fit_maps(
+            folder,
+            model,
+            resolution=resolution,
+            anisotropic=anisotropic,
+            fixed=values,
+            smoothness=smoothness,
+            linearise=linearise,
+            progress=progress,
+        )
+    if not console.as_json:
+        console.out.print(str(found), markup=False, highlight=False)
+    written = found.write(output or folder / "maps")
+    if console.as_json:
+        said = ("smoothness", "residual", "held_out", "predicted", "notes", "seconds")
+        console.json({**{name: getattr(found, name) for name in said}, "written": written})
+    else:
+        console.list_written(written)
+
+
+def _to_value(text):
+    """(name, value) of a text NAME=VALUE."""
+    name, _, value = text.partition("=")
+    try:
+        return name, float(value)
+    except ValueError:
+        raise click.BadParameter(
+            f"{text!r} should read NAME=VALUE.", param_hint="--fixed"
+        ) from None

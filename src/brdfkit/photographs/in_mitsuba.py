@@ -1,0 +1,102 @@
+"""The sample as Mitsuba has it: a rectangle, whose textures are the maps."""
+
+import numpy as np
+
+
+def sample_dict(svbrdf):
+    """The dictionary of the sample of an `Svbrdf`, in the plane z = 0."""
+    import mitsuba as mi
+
+    width, height = svbrdf.size
+    return {
+        "type": "rectangle",
+        "to_world": mi.ScalarTransform4f().scale([width / 2, height / 2, 1]),
+        "bsdf": bsdf_dict(svbrdf),
+    }
+
+
+def bsdf_dict(svbrdf):
+    """The dictionary of its BSDF."""
+    model, maps = svbrdf.model, svbrdf.maps
+    textures = {name: _texture(values) for name, values in maps.items() if name != "normal"}
+    return {
+        "type": "normalmap",
+        "normalmap": _texture((maps["normal"] + 1) / 2),
+        "bsdf": {"type": model, **svbrdf.fixed, **textures},
+    }
+
+
+def _texture(values):
+    import mitsuba as mi
+
+    # the first row of Mitsuba's bitmap is the lower edge of a rectangle
+    pixels = np.ascontiguousarray(np.atleast_3d(values)[::-1], np.float32)
+    return {
+        "type": "bitmap",
+        "bitmap": mi.Bitmap(pixels),
+        "raw": True,
+        "filter_type": "bilinear",
+        "wrap_mode": "clamp",
+    }
+
+
+def scene_xml(svbrdf, files):
+    """The text of a scene: the sample under the first light, seen by the photographs' camera.
+
+    `files`: the name of each map's file, which lies beside it, its first row the lower edge.
+    """
+    width, height = svbrdf.size
+    capture = svbrdf.capture
+    camera, size = capture.camera, capture.picture_size
+    textures = "\n".join(
+        f"        {_file_texture(name, files[name])}" for name in svbrdf.maps if name != "normal"
+    )
+    numbers = "\n".join(
+        f'        <float name="{name}" value="{value!r}"/>' for name, value in svbrdf.fixed.items()
+    )
+    return f"""<!-- Load after "import brdfkit", or render with: brdfkit render sample.xml -->
+<scene version="3.0.0">
+  <integrator type="direct"/>
+  <sensor type="perspective">
+    <float name="fov" value="{camera.fov!r}"/>
+    <string name="fov_axis" value="x"/>
+    <transform name="to_world">
+      <lookat origin="{_csv(camera.origin)}" target="{_csv(camera.target)}" up="{_csv(camera.up)}"/>
+    </transform>
+    <film type="hdrfilm">
+      <integer name="width" value="{size[0]}"/>
+      <integer name="height" value="{size[1]}"/>
+      <rfilter type="box"/>
+    </film>
+  </sensor>
+  <emitter type="point">
+    <point name="position" {_xyz(capture.positions[0])}/>
+    <rgb name="intensity" value="{_csv(capture.intensities[0])}"/>
+  </emitter>
+  <shape type="rectangle">
+    <transform name="to_world"><scale x="{width / 2!r}" y="{height / 2!r}" z="1"/></transform>
+    <bsdf type="normalmap">
+      {_file_texture("normalmap", files["normal"])}
+      <bsdf type="{svbrdf.model}">
+{textures}
+{numbers}
+      </bsdf>
+    </bsdf>
+  </shape>
+</scene>
+"""
+
+
+def _file_texture(name, file):
+    return (
+        f'<texture type="bitmap" name="{name}"><string name="filename" value="{file}"/>'
+        '<boolean name="raw" value="true"/><string name="wrap_mode" value="clamp"/></texture>'
+    )
+
+
+def _csv(numbers):
+    return ", ".join(repr(float(number)) for number in numbers)
+
+
+def _xyz(numbers):
+    return " ".join(f'{axis}="{float(n)!r}"' for axis, n in zip("xyz", numbers, strict=True))

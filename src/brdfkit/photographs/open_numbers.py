@@ -1,0 +1,44 @@
+"""What the lights leave open, in words."""
+
+import numpy as np
+
+from brdfkit.names import listed
+from brdfkit.photographs.numbers import CHANNELS
+
+OPEN = 1e-4  # an eigenvalue of the Hessian, of unit diagonal, below which a combination is open
+PART = 0.3  # of the largest entry: which numbers are in that combination
+SHARE = 0.05  # of the texels, from which it is said
+
+
+def describe_open(numbers, fitted, lights):
+    """Sentences on numbers that many texels do not determine for themselves."""
+    said = []
+    if lights == 1:
+        said.append("One light: roughness and strength trade off here, and the normal with both.")
+    hessian = fitted.about.hessian
+    hessian = hessian[np.diagonal(hessian, axis1=1, axis2=2).any(axis=1)]  # none at the edge
+    diagonal = np.maximum(np.diagonal(hessian, axis1=1, axis2=2), 1e-300)
+    scale = 1 / np.sqrt(diagonal)
+    values, vectors = np.linalg.eigh(hessian * scale[:, :, None] * scale[:, None, :])
+    is_open = values[:, 0] < OPEN
+    if is_open.mean() < SHARE:
+        return tuple(said)
+    weakest = np.abs(vectors[is_open, :, 0])
+    weakest /= weakest.max(axis=1, keepdims=True)
+    share = dict(zip(_names(numbers), (weakest > PART).mean(axis=0), strict=True))
+    several = {}
+    for name, value in share.items():
+        plain = name.partition("[")[0]
+        several[plain] = max(value, several.get(plain, 0))
+    worst = [name for name, value in several.items() if value > 0.25]
+    said.append(
+        f"In {100 * is_open.mean():.0f} % of the texels the photographs do not tell "
+        f"{listed(worst or list(several))} apart: there their neighbours decide. More lights near "
+        "the mirror's direction would."
+    )
+    return tuple(said)
+
+
+def _names(numbers):
+    weights = [f"{name}[{c}]" for name in numbers.lobes for c in range(CHANNELS)]
+    return [*weights, *numbers.names, "normal[x]", "normal[y]"]

@@ -1,0 +1,86 @@
+"""The report of an `Svbrdf`: its maps, how certain they are, and photographs beside predictions."""
+
+import numpy as np
+
+from brdfkit.photographs.observations import Observations
+from brdfkit.photographs.prediction import numbers_of, radiances
+from brdfkit.reporting import page
+from brdfkit.reporting.images import colours, halved, jpeg, png
+from brdfkit.version import __version__
+
+WIDEST = 512  # pixels of a picture on the page
+SCALE = "viridis"
+OFF = "RdBu_r"
+MOST_OFF = 0.2  # relative, the end of the scale of differences
+
+
+def write_report(svbrdf, path):
+    """Write the page of an `Svbrdf`."""
+    document = svbrdf.document()
+    table, *paragraphs = document.parts
+    page.write(
+        "svbrdf.html",
+        path,
+        title=document.title,
+        columns=table.columns,
+        rows=table.rows,
+        said=[paragraph.text for paragraph in paragraphs],
+        maps=[_shown_map(svbrdf, name) for name in svbrdf.maps],
+        photographs=_photographs(svbrdf),
+        version=__version__,
+    )
+
+
+def _shown_map(svbrdf, name):
+    values, errors = svbrdf.maps[name], svbrdf.uncertainty[name]
+    if name == "normal":
+        picture, said = png(small((values + 1) / 2)), "x, y and z as red, green and blue"
+    elif values.ndim == 3:
+        white = max(1e-6, float(np.quantile(values, 0.99)))
+        picture, said = jpeg(small(values / white)), f"white is {white:.3g}"
+    else:
+        low, high = np.quantile(values, (0.01, 0.99))
+        picture, said = _scaled(values, low, high), f"{low:.3g} (dark) to {high:.3g} (bright)"
+    high = float(np.quantile(errors, 0.99))
+    return {
+        "name": name,
+        "said": said,
+        "picture": picture,
+        "error": _scaled(errors, 0, high),
+        "error_said": f"standard error, 0 (dark) to {high:.2g} (bright)",
+    }
+
+
+def _photographs(svbrdf):
+    """The photographs beside what the maps predict, the worst predicted first."""
+    capture = svbrdf.capture
+    seen = Observations.of(capture, svbrdf.shape)
+    shown = radiances(*numbers_of(svbrdf), seen)
+    found = []
+    for k in np.argsort([svbrdf.predicted[name] for name in capture.names]):
+        photograph = seen.radiance[k].reshape(*svbrdf.shape, 3)
+        prediction = shown[k].reshape(photograph.shape)
+        white = max(1e-12, float(np.quantile(photograph, 0.99)))
+        off = (prediction - photograph).mean(axis=2) / (photograph.mean(axis=2) + 0.05 * white)
+        found.append(
+            {
+                "name": capture.names[k],
+                "said": f"PSNR {svbrdf.predicted[capture.names[k]]:.1f} dB",
+                "photograph": jpeg(small(photograph / white)),
+                "prediction": jpeg(small(prediction / white)),
+                "off": _scaled(off, -MOST_OFF, MOST_OFF, OFF),
+            }
+        )
+    return found
+
+
+def _scaled(values, low, high, scale=SCALE):
+    shares = (small(values[..., None])[..., 0] - low) / max(high - low, 1e-12)
+    return png(colours(scale, shares)[..., :3])
+
+
+def small(picture):
+    """A picture (height, width, n), halved until it is narrow enough."""
+    while max(picture.shape[:2]) > WIDEST:
+        picture = halved(picture)
+    return picture

@@ -1,0 +1,186 @@
+"""`Svbrdf`, what `svbrdf` returns: maps of a sample, and how certain they are."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from brdfkit.documents import Document, Paragraph, Shown, Table
+from brdfkit.documents.parts import SOFT
+from brdfkit.errors import BrdfkitError
+from brdfkit.photographs.capture import Capture
+from brdfkit.photographs.observations import light_on
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Svbrdf(Shown):
+    """Maps of a flat sample: a model's parameters and the normal, texel by texel.
+
+    Attributes
+    ----------
+    name : str
+        What the sample is called.
+    model : str
+        Label of the model.
+    maps : dict of str to ndarray
+        The map of each parameter, (height, width), or (height, width, 3) in linear sRGB of weights;
+        and ``"normal"``, unit vectors (height, width, 3). The first row is the sample's upper edge.
+    fixed : dict of str to float
+        Shape parameters that are alike everywhere.
+    uncertainty : dict of str to ndarray
+        The standard error (height, width) of each map, by the photographs' noise and what the model
+        leaves of them, neighbours given; of the normal in radians.
+    size : tuple of float
+        The sample's width and height [m].
+    smoothness : float
+        By how much neighbouring texels may differ: weights relative to their median, logarithms of
+        widths, and sines of the normal's angles.
+    held_out : dict of float to float
+        Smoothness that was tried → RMS relative error of lights that were held out.
+    residual : float
+        RMS relative difference of the maps from all photographs.
+    predicted : dict of str to float
+        Name of each photograph → PSNR [dB] of the maps under its light.
+    notes : tuple of str
+        What else one should know, as what the lights leave open.
+    seconds : float
+        Wall-clock time.
+    capture : Capture
+        The photographs.
+    """
+
+    name: str
+    model: str
+    maps: dict[str, NDArray[np.float64]]
+    fixed: dict[str, float]
+    uncertainty: dict[str, NDArray[np.float64]]
+    size: tuple[float, float]
+    smoothness: float
+    held_out: dict[float, float]
+    residual: float
+    predicted: dict[str, float]
+    notes: tuple[str, ...]
+    seconds: float
+    capture: Capture = field(repr=False)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(height, width) of the maps."""
+        height, width = self.maps["normal"].shape[:2]
+        return height, width
+
+    def relight(
+        self,
+        position: ArrayLike,
+        intensity: float | ArrayLike = 1.0,
+        viewer: ArrayLike | None = None,
+    ) -> NDArray[np.float64]:
+        """Radiance of every texel under another point light, direct light alone.
+
+        Parameters
+        ----------
+        position : array_like, shape (3,)
+            Where the light is [m]; the sample is in the plane z = 0, its middle at the origin.
+        intensity : float or array_like, shape (3,), default 1
+            Its radiant intensity [W/sr].
+        viewer : array_like, shape (3,), optional
+            From where the sample is seen [m]; by default the photographs' camera.
+
+        Returns
+        -------
+        ndarray, shape (height, width, 3)
+            Radiance [W/(m² sr)], from the sample's upper edge downwards.
+
+        Raises
+        ------
+        BrdfkitError
+            For a light or a viewer that is no point above the sample.
+
+        Examples
+        --------
+        >>> picture = maps.relight((0.1, 0.2, 0.5))    # doctest: +SKIP
+        """
+        points = self.capture.texels(self.shape)
+        eye = self.capture.camera.origin if viewer is None else _above("viewer", viewer)
+        place = _above("position", position)[None]
+        power = np.broadcast_to(np.asarray(intensity, float), (1, 3))
+        from brdfkit.photographs.prediction import predict
+
+        to_light, irradiance = light_on(points, place, power)
+        return predict(self, points, to_light, irradiance, eye)[0]
+
+    def scene_dict(self) -> dict[str, Any]:
+        """The dictionary for `mitsuba.load_dict`: the sample, a rectangle with its material."""
+        from brdfkit.photographs.in_mitsuba import sample_dict
+
+        return sample_dict(self)
+
+    def write(self, folder: str | Path) -> list[Path]:
+        """Write the maps, a scene of Mitsuba's and a report.
+
+        Parameters
+        ----------
+        folder : str or Path
+            Where to; it is made if it is not there.
+
+        Returns
+        -------
+        list of Path
+            The files: a map each as OpenEXR, with ``_error`` that of its standard error;
+            ``sample.xml``, a scene with the sample under the first light; ``report.html``.
+
+        Raises
+        ------
+        BrdfkitError
+            Where nothing can be written.
+
+        Examples
+        --------
+        >>> maps.write("paper")    # doctest: +SKIP
+        """
+        from brdfkit.photographs.writing import write_all
+
+        return write_all(self, folder)
+
+    def document(self) -> Document:
+        """A row for each map, notes, and how well it predicts."""
+        rows = tuple(
+            (name, *_summary(values), f"{np.median(self.uncertainty[name]):.2g}")
+            for name, values in self.maps.items()
+        )
+        height, width = self.shape
+        tried = ", ".join(f"{tau:g}: {100 * e:.2g} %" for tau, e in self.held_out.items())
+        chosen = f", by lights held out ({tried})" if tried else ""
+        dB = list(self.predicted.values())
+        return Document(
+            f"{self.name}: {self.model}, {width} × {height} texels from {len(dB)} photographs",
+            (
+                Table(rows, ("map", ">5 %", ">median", ">95 %", ">± median")),
+                *(Paragraph(note) for note in self.notes),
+                Paragraph(
+                    f"Photographs are predicted with {min(dB):.1f} to {max(dB):.1f} dB; "
+                    f"what is left is {100 * self.residual:.2g} % (RMS).",
+                ),
+                Paragraph(
+                    f"smoothness {self.smoothness:g}{chosen}; {self.seconds:.1f} s", kind=SOFT
+                ),
+            ),
+        )
+
+
+def _above(what, point):
+    """The array (3,) of a point above the sample."""
+    found = np.asarray(point, float)
+    if found.shape != (3,) or not np.isfinite(found).all() or found[2] <= 0:
+        raise BrdfkitError(f"{what} = {point!r} should be x, y and z > 0, above the sample [m].")
+    return found
+
+
+def _summary(values):
+    """5 %, median and 95 % of a map as texts; of normals the angle to z [degrees]."""
+    if values.shape[-1:] == (3,) and np.allclose(np.linalg.norm(values, axis=-1), 1, atol=1e-6):
+        angle = np.degrees(np.arccos(np.clip(values[..., 2], -1, 1)))
+        return tuple(f"{q:.2g}°" for q in np.quantile(angle, (0.05, 0.5, 0.95)))
+    return tuple(f"{q:.3g}" for q in np.quantile(values, (0.05, 0.5, 0.95)))

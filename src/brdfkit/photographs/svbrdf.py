@@ -1,0 +1,179 @@
+"""`svbrdf`: maps of a flat sample, from photographs under known lights."""
+
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from brdfkit.arguments import to_positive, to_whole_number
+from brdfkit.errors import BrdfkitError
+from brdfkit.jit.llvm import use_variant
+from brdfkit.jit.threads import in_turn
+from brdfkit.model import double_precision, labels
+from brdfkit.names import listed
+from brdfkit.photographs.capture import Capture
+from brdfkit.photographs.capture_file import load_capture
+from brdfkit.photographs.fitting_maps import fit_maps, standard_errors
+from brdfkit.photographs.numbers import Numbers
+from brdfkit.photographs.observations import Observations
+from brdfkit.photographs.open_numbers import describe_open
+from brdfkit.photographs.prediction import errors_of, maps_of, radiances
+from brdfkit.photographs.result import Svbrdf
+
+MOST = 512  # texels along a side, by default
+
+
+@in_turn
+def svbrdf(
+    capture: str | Path | Capture,
+    model: str = "ggx",
+    *,
+    resolution: int | None = None,
+    anisotropic: bool = False,
+    fixed: Mapping[str, float] | None = None,
+    smoothness: float | None = None,
+    linearise: bool = False,
+    progress: Callable[[int, int], object] | None = None,
+) -> Svbrdf:
+    """Fit maps of a model's parameters and of the normal to photographs of a flat sample.
+
+    First the photographs of large parts of the sample, then of ever smaller ones, at last of each
+    texel, by Gauss-Newton steps for all at once. Neighbouring texels are drawn to each other, as
+    strongly as lights that were held out are predicted best. Direct light alone is fitted: a flat
+    sample throws hardly any light on itself.
+
+    Parameters
+    ----------
+    capture : path or Capture
+        A folder with linear photographs and the file ``capture.toml``, which says where the camera
+        and the lights are; or what such a folder holds.
+    model : str, default "ggx"
+        Label of the model, with a shape parameter ``alpha_u`` or others.
+    resolution : int, optional
+        Texels along the longer side of the maps, at least 4. By default a texel is as large as a
+        pixel in the middle, and there are at most 512.
+    anisotropic : bool, default False
+        Whether ``alpha_v`` and its like have maps of their own; the sample's own x and y are the
+        directions.
+    fixed : dict of str to float, optional
+        Shape parameters that are alike everywhere, as ``{"f0": 0.04}``. By default ``f0`` is, at
+        the model's default: from few lights it cannot be told from the specular reflectance.
+    smoothness : float, optional
+        By how much neighbouring texels may differ, above 0: less is smoother. By default chosen by
+        lights that are held out; with fewer than 8 lights 0.1.
+    linearise : bool, default False
+        Whether photographs of 8 bits are accepted, as seen by sRGB's curve.
+    progress : callable, optional
+        Called with (done, total); see `brdfkit.progress`.
+
+    Returns
+    -------
+    Svbrdf
+        The maps with their uncertainty; prints as a table, and `write` makes files of it.
+
+    Raises
+    ------
+    BrdfkitError
+        For a folder, a file or photographs that are wrong, a model without weights of its lobes
+        that are not negative, and parameters that are none.
+
+    Examples
+    --------
+    >>> maps = svbrdf("photographs/paper")    # doctest: +SKIP
+    """
+    began = time.perf_counter()
+    use_variant()
+    if not double_precision.differentiable():
+        raise BrdfkitError("svbrdf: it needs LLVM, for derivatives; see the README.")
+    name, taken = _load(capture, linearise)
+    numbers = to_numbers(model, anisotropic, fixed or {})
+    if smoothness is not None:
+        smoothness = to_positive("smoothness", smoothness)
+    shape = _shape(taken, resolution)
+    seen = Observations.of(taken, shape)
+    fitted = fit_maps(numbers, seen, smoothness, _counter(progress))
+    errors = standard_errors(numbers, fitted)
+    counted = max(1, np.count_nonzero(seen.weights))
+    return Svbrdf(
+        name=name,
+        model=model,
+        maps=maps_of(numbers, fitted.x, shape),
+        fixed=numbers.fixed,
+        uncertainty=errors_of(numbers, errors, fitted.x, shape),
+        size=taken.size,
+        smoothness=float(fitted.tau),
+        held_out=fitted.errors,
+        residual=float(np.sqrt(fitted.about.error.sum() / counted)),
+        predicted=_predicted(numbers, fitted.x, seen, taken.names),
+        notes=(*describe_open(numbers, fitted, len(taken.names)), *_said(taken)),
+        seconds=time.perf_counter() - began,
+        capture=taken,
+    )
+
+
+def _load(given, linearise):
+    """(name, `Capture`) of a folder or of what such a folder holds."""
+    if isinstance(given, Capture):
+        return "sample", given
+    return Path(given).resolve().name, load_capture(given, linearise)
+
+
+def to_numbers(label, anisotropic, fixed):
+    """The `Numbers` of a model's label.
+
+    Raises `BrdfkitError` for parameters that are none, and for a model with signed weights.
+    """
+    model = labels.model(label)
+    if model.signed():
+        raise BrdfkitError(f"{label}: its weights may be below 0; choose another model, as ggx.")
+    shapes = model.shapes(anisotropic)
+    for name in fixed:
+        if name not in shapes:
+            model.parameter(name)
+            raise BrdfkitError(f"{label}: {name} is not searched; fixed can be {listed(shapes)}.")
+    held = {"f0": model().values["f0"]} if "f0" in shapes else {}
+    held |= {name: float(value) for name, value in fixed.items()}
+    model(**held)  # raises for values beyond the bounds
+    return Numbers(model, tuple(name for name in shapes if name not in held), held)
+
+
+def _shape(capture, resolution):
+    if resolution is None:
+        return capture.usual_shape(MOST)
+    longer = to_whole_number("resolution", resolution, 4)
+    width, height = capture.size
+    scale = longer / max(width, height)
+    return max(4, round(height * scale)), max(4, round(width * scale))
+
+
+def _predicted(numbers, x, seen, names):
+    """Name of each photograph → PSNR [dB] of the texels; its brightest hundredth is white."""
+    found = {}
+    shown = radiances(numbers, x, seen)
+    for name, a, b, weights in zip(names, shown, seen.radiance, seen.weights, strict=True):
+        off = (a - b)[weights > 0]
+        white = np.quantile(b, 0.99)
+        found[name] = float(10 * np.log10(white**2 / max((off**2).mean(), 1e-30)))
+    return found
+
+
+def _said(capture):
+    """What one should know of the photographs."""
+    share = capture.clipped.mean()
+    if not share:
+        return ()
+    return (f"{100 * share:.2g} % of the pixels are clipped; they do not count.",)
+
+
+def _counter(progress):
+    """A function that reports one more step; how many there will be is an estimate."""
+    done = 0
+
+    def report():
+        nonlocal done
+        done += 1
+        if progress:
+            progress(done, max(done + 1, 120))
+
+    return report

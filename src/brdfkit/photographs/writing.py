@@ -1,0 +1,38 @@
+"""The files of an `Svbrdf`: maps, a scene of Mitsuba's, and a report."""
+
+from pathlib import Path
+
+import numpy as np
+
+from brdfkit.files import make_folder, write_safely
+from brdfkit.jit.threads import two_threads
+from brdfkit.photographs.in_mitsuba import scene_xml
+from brdfkit.photographs.report import write_report
+
+
+def write_all(svbrdf, folder):
+    """Write all files of an `Svbrdf`; returns their paths."""
+    folder = Path(folder)
+    make_folder(folder)
+    files = {name: f"{name}.exr" for name in svbrdf.maps}
+    written = []
+    for name, values in svbrdf.maps.items():
+        # as Mitsuba's rectangles have them: normals as colours, the first row the lower edge
+        shown = (values + 1) / 2 if name == "normal" else values
+        written.append(_write(folder / files[name], shown[::-1]))
+        written.append(_write(folder / f"{name}_error.exr", svbrdf.uncertainty[name][::-1]))
+    scene = folder / "sample.xml"
+    with write_safely(scene) as beside:
+        Path(beside).write_text(scene_xml(svbrdf, files), encoding="utf-8")
+    report = folder / "report.html"
+    write_report(svbrdf, report)
+    return [*written, scene, report]
+
+
+def _write(path, values):
+    import mitsuba as mi
+
+    pixels = np.ascontiguousarray(np.atleast_3d(values), np.float32)
+    with write_safely(path) as beside, two_threads():
+        mi.Bitmap(pixels).write(str(beside))
+    return path

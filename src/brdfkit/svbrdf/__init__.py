@@ -1,1 +1,0 @@
-"""Textures of a flat sample from photographs of it."""

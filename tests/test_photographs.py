@@ -1,0 +1,245 @@
+"""`svbrdf`: maps from photographs that Mitsuba rendered of maps that are known."""
+
+import dataclasses
+import json
+
+import made_capture
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import brdfkit as bk
+from brdfkit.cli import main
+from brdfkit.photographs.in_mitsuba import bsdf_dict
+from brdfkit.photographs.numbers import Numbers
+from brdfkit.photographs.observations import Observations
+from brdfkit.photographs.prediction import numbers_of, radiances
+from brdfkit.photographs.search import equations
+
+TEXELS, LIGHTS = 32, 16
+
+
+@pytest.fixture(scope="module")
+def mi():
+    import mitsuba
+
+    bk.models()
+    mitsuba.set_variant("llvm_ad_rgb")
+    return mitsuba
+
+
+@pytest.fixture(scope="module")
+def made(mi):
+    return made_capture.photographs(TEXELS, LIGHTS)
+
+
+@pytest.fixture(scope="module")
+def found(made):
+    return bk.svbrdf(made[1], resolution=TEXELS)
+
+
+def inner(values):
+    """Without the edge, where pixels see the dark beside the sample."""
+    return values[3:-3, 3:-3]
+
+
+def test_the_formula_is_what_mitsuba_shows(mi):
+    """At the truth, seen in so many pixels that they blur little."""
+    truth, capture = made_capture.photographs(TEXELS, 3, noise=0, pixels=8 * TEXELS)
+    seen = Observations.of(capture, (TEXELS, TEXELS))
+    numbers, x = numbers_of(truth_as_found(truth, capture))
+    off = radiances(numbers, x, seen) - seen.radiance
+    off = (off * np.sqrt(seen.weights)).reshape(3, TEXELS, TEXELS, 3)[:, 1:-1, 1:-1]
+    assert np.sqrt((off**2).mean()) < 0.005
+
+
+def truth_as_found(truth, capture):
+    nothing = {name: np.zeros((TEXELS, TEXELS)) for name in truth.maps}
+    rest = (truth.size, 0.1, {}, 0.0, dict.fromkeys(capture.names, 0.0), (), 0.0, capture)
+    return bk.Svbrdf("truth", truth.model, truth.maps, truth.fixed, nothing, *rest)
+
+
+def test_the_maps_come_back(made, found):
+    truth, _ = made
+    for name, most in (
+        ("diffuse_reflectance", 0.02),
+        ("specular_reflectance", 0.04),
+        ("alpha_u", 0.02),
+        ("normal", 0.01),
+    ):
+        off = inner(found.maps[name]) - inner(truth.maps[name])
+        assert np.sqrt((off**2).mean()) < most, name
+
+
+def test_lights_that_were_held_out_are_predicted(mi, made, found):
+    """35 dB and more, by Mitsuba's picture of the maps beside that of the truth."""
+    truth, _ = made
+    positions, intensities = made_capture.lights(3, seed=9)
+    for light in zip(positions, intensities, strict=True):
+        a, b = (
+            made_capture.photograph(bsdf_dict(one), *light, round(1.4 * TEXELS))
+            for one in (found, truth)
+        )
+        inside = b.max(axis=2) > 0
+        error = ((a - b)[inside] ** 2).mean()
+        assert 10 * np.log10(np.quantile(b[inside], 0.99) ** 2 / error) > 35
+
+
+def test_relighting_is_what_mitsuba_shows(mi, found):
+    """Of a sample seen from above, whose texels are pixels."""
+    (position,), (intensity,) = made_capture.lights(1, seed=11)
+    picture = found.relight(position, intensity, viewer=(0, 0, 1e3))
+    t = mi.ScalarTransform4f()
+    sensor = {
+        "type": "orthographic",
+        "to_world": t.look_at([0, 0, 1], [0, 0, 0], [0, 1, 0]) @ t.scale(made_capture.SIDE / 2),
+        "film": {
+            "type": "hdrfilm",
+            "width": TEXELS,
+            "height": TEXELS,
+            "pixel_format": "rgb",
+            "rfilter": {"type": "box"},
+        },
+    }
+    light = {
+        "type": "point",
+        "position": position,
+        "intensity": {"type": "rgb", "value": intensity},
+    }
+    scene = {"type": "scene", "sensor": sensor, "sample": found.scene_dict(), "light": light}
+    expected = np.array(mi.render(mi.load_dict(scene | {"integrator": {"type": "direct"}}), spp=64))
+    off = inner(picture) / inner(expected) - 1
+    assert np.sqrt((off**2).mean()) < 0.02
+
+
+@pytest.mark.parametrize("model", ["ggx", "ward", "ashikhmin_shirley"])
+def test_derivatives_are_those_of_differences(made, model):
+    model = bk.models()[model]
+    names = tuple(model().shapes(False))
+    numbers, rng = Numbers(model, names, {}), np.random.default_rng(0)
+    seen = Observations.of(made[1], (TEXELS, TEXELS)).at(np.arange(100, 108))
+    low, high = (np.clip(limit, -0.3, 1) for limit in numbers.limits())
+    x = low + (0.3 + 0.4 * rng.random((8, numbers.count))) * (high - low)
+    about = equations(numbers, x, seen)
+    for j in range(numbers.count):
+        step = 1e-5 * np.eye(numbers.count)[j]
+        ends = [equations(numbers, x + sign * step, seen, slopes=False).error for sign in (1, -1)]
+        slope = (ends[0] - ends[1]) / 4e-5  # half of E²'s
+        np.testing.assert_allclose(about.gradient[:, j], slope, rtol=1e-4, atol=1e-6)
+
+
+def test_what_is_found_says_what_it_is(found):
+    assert "ggx" in str(found)
+    assert min(found.predicted.values()) > 35
+    assert found.smoothness in found.held_out
+    for name, values in found.maps.items():
+        assert values.shape[:2] == found.shape == found.uncertainty[name].shape
+        assert np.isfinite(found.uncertainty[name]).all()
+
+
+def test_widths_of_two_directions_come_back_as_one(made):
+    """The sample is isotropic, which two maps of width should find out."""
+    truth, capture = made
+    found = bk.svbrdf(capture, resolution=TEXELS, anisotropic=True, smoothness=0.1)
+    for name in ("alpha_u", "alpha_v"):
+        assert np.median(np.abs(inner(found.maps[name] / truth.maps["alpha_u"] - 1))) < 0.05
+
+
+def test_one_light_says_what_trades_off(made):
+    capture = made[1]
+    first = (capture.pictures[:1], capture.positions[:1], capture.intensities[:1])
+    alone = dataclasses.replace(
+        capture, pictures=first[0], positions=first[1], intensities=first[2], names=("one.exr",)
+    )
+    found = bk.svbrdf(alone, resolution=8)
+    assert "One light: roughness and strength trade off" in found.notes[0]
+
+
+def test_the_command_writes_maps_a_scene_and_a_report(mi, made, tmp_path):
+    made_capture.write_capture(made[1], tmp_path)
+    arguments = ["svbrdf", str(tmp_path), "--resolution", "12", "--smoothness", "0.1", "--json"]
+    result = CliRunner().invoke(main, arguments)
+    assert result.exit_code == 0, result.output
+    said = json.loads(result.stdout)
+    names = {path.rsplit("/", 1)[-1] for path in said["written"]}
+    assert {"normal.exr", "alpha_u_error.exr", "sample.xml", "report.html"} <= names
+    scene = mi.load_file(str(tmp_path / "maps" / "sample.xml"))
+    shown = np.array(mi.render(scene, spp=16))[..., :3]
+    photograph = made[1].pictures[0]
+    inside = photograph.min(axis=2) > 0.2 * photograph.mean()
+    off = shown[inside].mean(axis=0) / photograph[inside].mean(axis=0)
+    np.testing.assert_allclose(off, 1, atol=0.03)
+    assert "<img" in (tmp_path / "maps" / "report.html").read_text(encoding="utf-8")
+
+
+def change(capture, **fields):
+    return lambda: bk.svbrdf(dataclasses.replace(capture, **fields))
+
+
+def test_bad_captures_are_one_sentence(made):
+    c = made[1]
+    below, dark = c.positions.copy(), c.intensities.copy()
+    below[2, 2], dark[1] = -0.1, 0
+    cases = {
+        "light is at z = -0.1 m, behind": {"positions": below},
+        "each light needs one above 0": {"intensities": dark},
+        "not finite": {"pictures": np.where(c.pictures > c.pictures.mean(), np.nan, c.pictures)},
+        "should be \\(lights, height, width, 3\\)": {"pictures": c.pictures[..., 0]},
+        "should be \\(16, 3\\)": {"positions": c.positions[:5]},
+        "does not see all four corners": {"size": (1.0, 1.0)},
+        "camera: it is at z": {"camera": dataclasses.replace(c.camera, origin=-c.camera.origin)},
+    }
+    for sentence, fields in cases.items():
+        with pytest.raises(bk.BrdfkitError, match=sentence) as error:
+            change(c, **fields)()
+        assert "\n" not in str(error.value)
+
+
+def test_a_light_behind_the_sample_is_refused(found):
+    with pytest.raises(bk.BrdfkitError, match="above the sample"):
+        found.relight((0, 0, -1))
+
+
+@pytest.mark.parametrize(
+    ("how", "sentence"),
+    [
+        ({"model": "gxg"}, "did you mean ggx"),
+        ({"model": "koenderink"}, "below 0"),
+        ({"fixed": {"f1": 0.1}}, "f0"),
+        ({"fixed": {"f0": 2}}, "f0"),
+        ({"resolution": 1}, "resolution"),
+        ({"smoothness": 0}, "smoothness"),
+    ],
+)
+def test_bad_arguments_are_one_sentence(made, how, sentence):
+    with pytest.raises(bk.BrdfkitError, match=sentence):
+        bk.svbrdf(made[1], **how)
+
+
+FILES = {
+    "no capture.toml": (None, "there is no capture.toml"),
+    "no TOML": ("[sample", "no TOML"),
+    "no light": (
+        "[sample]\nwidth = 1\nheight = 1\n[camera]\norigin = [0, 0, 1]\nfov = 60",
+        "light",
+    ),
+    "a misspelt table": ("[smaple]\nwidth = 1", "'smaple'"),
+    "no width": ("[sample]\nheight = 1", "width = None"),
+    "no origin": ("[sample]\nwidth = 1\nheight = 1\n[camera]\nfov = 60", "origin"),
+    "8 bits": ('P\n[[light]]\npicture = "a.jpg"\nposition = "camera"', "8 bits"),
+    "a picture that is missing": ('P\n[[light]]\npicture = "b.exr"\nposition = [0, 0, 1]', "b.exr"),
+    "a place that is none": ('P\n[[light]]\npicture = "a.jpg"\nposition = [0, 1]', "position"),
+}
+PLACES = "[sample]\nwidth = 1\nheight = 1\n[camera]\norigin = [0, 0, 1]\nfov = 60"
+
+
+@pytest.mark.parametrize("case", FILES)
+def test_bad_folders_are_one_sentence_and_status_2(case, tmp_path):
+    text, sentence = FILES[case]
+    (tmp_path / "a.jpg").write_bytes(b"")
+    if text is not None:
+        (tmp_path / "capture.toml").write_text(text.replace("P\n", f"{PLACES}\n"))
+    result = CliRunner().invoke(main, ["svbrdf", str(tmp_path)])
+    assert result.exit_code == 2
+    assert sentence in " ".join(result.stderr.split())
+    assert not (tmp_path / "maps").exists()
