@@ -54,13 +54,16 @@ HOMOGENEOUS = {"lafortune": ("c_x", "c_y", "c_z")}
 
 
 def assert_same_parameters(found, truth):
-    """To 1e-4, the homogeneous ones up to a common factor above 0."""
+    """To 1e-4, the homogeneous ones up to a common factor above 0; of an exponent near 0 to 1e-5,
+    which is 1e-4 of the values where a cosine is 5e-5 and less elsewhere: its digits beyond that
+    are rounding, and differ from machine to machine."""
     ratios = HOMOGENEOUS.get(truth.type_name(), ())
     factor = np.linalg.norm([truth.values[name] for name in ratios])
     factor = factor / np.linalg.norm([found.values[name] for name in ratios]) if ratios else 1.0
     for name, value in truth.values.items():
         own = np.multiply(found.values[name], factor if name in ratios else 1.0)
-        np.testing.assert_allclose(own, value, rtol=1e-4, err_msg=name)
+        least = 1e-5 if name.startswith("exponent") else 0.0
+        np.testing.assert_allclose(own, value, rtol=1e-4, atol=least, err_msg=name)
 
 
 @pytest.mark.parametrize(
