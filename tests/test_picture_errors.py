@@ -75,6 +75,22 @@ def test_ciede2000_is_as_published():
     np.testing.assert_allclose(ciede2000(first, other), [[2.0425, 1.2644, 100, 0]], atol=1e-4)
 
 
+def test_differences_are_those_of_colour_science(rng):
+    """The package's, over dark, saturated, grey and bright colours, and those out of the gamut."""
+    colour = colour_science()
+    first = rng.random((4000, 3)) ** 3 * rng.choice([0.1, 1, 20], (4000, 1))
+    other = first * (1 + rng.choice([0.01, 0.3, 3], (4000, 1)) * rng.standard_normal((4000, 3)))
+    other[:500] = other[:500, :1]
+    first[250:1000] = first[250:1000, :1]
+    to_xyz = colour.RGB_COLOURSPACES["sRGB"].matrix_RGB_to_XYZ
+    lab = [colour.XYZ_to_Lab(rgb @ to_xyz.T) for rgb in (first, other)]
+    expected = colour.delta_E(*lab, method="CIE 2000")
+    np.testing.assert_allclose(ciede2000(first, other), expected, atol=1e-9)
+    shown = [WHITE * np.maximum(rgb, 0) @ to_xyz.T for rgb in (first, other)]
+    expected = colour.difference.delta_E_ITP(*map(colour.XYZ_to_ICtCp, shown))
+    np.testing.assert_allclose(delta_e_itp(first, other), expected, rtol=1e-5, atol=1e-4)
+
+
 def test_delta_e_itp_is_that_of_the_recommendations(rng):
     """ITU-R BT.2087 (primaries), BT.2100 (PQ, ICtCp) and BT.2124 (ΔE), written out."""
     to_2020 = [[0.6274, 0.3293, 0.0433], [0.0691, 0.9195, 0.0114], [0.0164, 0.0880, 0.8956]]

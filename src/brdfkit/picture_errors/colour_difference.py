@@ -2,10 +2,20 @@
 
 import numpy as np
 
-from brdfkit.colours import colour_science
-
+TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+WHITE_XYZ = np.array([0.3127 / 0.3290, 1, 0.3583 / 0.3290])  # D65's, by its x and y
 # Luminance of the value 1 [cd/m²]: the white of paper in HDR pictures, by Report ITU-R BT.2408
 WHITE = 203.0
+# XYZ to the primaries of BT.2020, those to LMS, and LMS after PQ's curve to ITP [ITU-R 2019]
+TO_2020 = np.array(
+    [
+        [1.7166512, -0.3556708, -0.2533663],
+        [-0.6666844, 1.6164812, 0.0157685],
+        [0.0176399, -0.0427706, 0.9421031],
+    ]
+)
+TO_LMS = np.array([[1688, 2146, 262], [683, 2951, 462], [99, 309, 3688]]) / 4096
+TO_ITP = np.array([[2048, 2048, 0], [3305, -6806.5, 3501.5], [17933, -17390, -543]]) / 4096
 
 
 def ciede2000(reference, picture):
@@ -14,11 +24,8 @@ def ciede2000(reference, picture):
     Values above white are not clipped, so that differences within highlights count. It is nan where
     a value is not finite.
     """
-    colour = colour_science()
-    to_xyz = colour.RGB_COLOURSPACES["sRGB"].matrix_RGB_to_XYZ
     with np.errstate(invalid="ignore"):
-        lab = [colour.XYZ_to_Lab(values @ to_xyz.T) for values in (reference, picture)]
-        return colour.delta_E(*lab, method="CIE 2000")
+        return _between(_lab(reference), _lab(picture))
 
 
 def delta_e_itp(reference, picture):
@@ -26,7 +33,52 @@ def delta_e_itp(reference, picture):
 
     It is made for high dynamic range, and so for absolute luminances: 1 is shown at 203 cd/m².
     """
-    colour = colour_science()
-    to_xyz = colour.RGB_COLOURSPACES["sRGB"].matrix_RGB_to_XYZ
-    shown = [WHITE * np.maximum(values, 0) @ to_xyz.T for values in (reference, picture)]
-    return colour.difference.delta_E_ITP(*map(colour.XYZ_to_ICtCp, shown))
+    with np.errstate(invalid="ignore"):
+        return 720 * np.linalg.norm(_itp(reference) - _itp(picture), axis=-1)
+
+
+def _lab(rgb):
+    """CIE L*, a* and b*, each (...), of linear sRGB (..., 3)."""
+    t = rgb @ TO_XYZ.T / WHITE_XYZ
+    f = np.where(t > (6 / 29) ** 3, np.cbrt(t), t * (29 / 6) ** 2 / 3 + 4 / 29)
+    x, y, z = np.moveaxis(f, -1, 0)
+    return 116 * y - 16, 500 * (x - y), 200 * (y - z)
+
+
+def _between(first, other):
+    """ΔE2000 of colours (L*, a*, b*), in the symbols of [Luo et al. 2001]."""
+    (L1, a1, b1), (L2, a2, b2) = first, other
+    G = 0.5 * (1 - _share((np.hypot(a1, b1) + np.hypot(a2, b2)) / 2))
+    a1, a2 = (1 + G) * a1, (1 + G) * a2
+    C1, C2 = np.hypot(a1, b1), np.hypot(a2, b2)
+    h1, h2 = (np.degrees(np.arctan2(b, a)) % 360 for a, b in ((a1, b1), (a2, b2)))
+    # Hues differ along the shorter arc; a grey has none, and counts as the other's
+    grey = C1 * C2 == 0
+    Δh = np.where(grey, 0, (h2 - h1 + 180) % 360 - 180)
+    ΔL, ΔC, ΔH = L2 - L1, C2 - C1, 2 * np.sqrt(C1 * C2) * np.sin(np.radians(Δh / 2))
+    L, C, h = (L1 + L2) / 2, (C1 + C2) / 2, np.where(grey, h1 + h2, h1 + Δh / 2)
+    T = (
+        1
+        - 0.17 * np.cos(np.radians(h - 30))
+        + 0.24 * np.cos(np.radians(2 * h))
+        + 0.32 * np.cos(np.radians(3 * h + 6))
+        - 0.20 * np.cos(np.radians(4 * h - 63))
+    )
+    S_L = 1 + 0.015 * (L - 50) ** 2 / np.sqrt(20 + (L - 50) ** 2)
+    S_C, S_H = 1 + 0.045 * C, 1 + 0.015 * C * T
+    Δθ = 30 * np.exp(-((((h % 360) - 275) / 25) ** 2))
+    R_T = -2 * _share(C) * np.sin(np.radians(2 * Δθ))
+    l, c, H = ΔL / S_L, ΔC / S_C, ΔH / S_H
+    return np.sqrt(l**2 + c**2 + H**2 + R_T * c * H)
+
+
+def _share(C):
+    """√(C⁷ / (C⁷ + 25⁷)): how near a chroma is to those that are seen less finely."""
+    return np.sqrt(C**7 / (C**7 + 25.0**7))
+
+
+def _itp(rgb):
+    """I, T and P (..., 3), by PQ's curve [ITU-R 2019], of linear sRGB (..., 3)."""
+    y = (WHITE * np.maximum(rgb, 0) @ (TO_LMS @ TO_2020 @ TO_XYZ).T / 10_000) ** (2610 / 16384)
+    pq = ((3424 / 4096 + 2413 / 128 * y) / (1 + 2392 / 128 * y)) ** (2523 / 32)
+    return pq @ TO_ITP.T
