@@ -13,7 +13,7 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.geometry.directions import from_half_difference, half_azimuth, to_half_difference
-from brdfkit.geometry.multilinear import bracket, corners, periodic_bracket
+from brdfkit.geometry.multilinear import bracket, corners, flat_index, periodic_bracket
 
 LARGEST = 1e30  # 1/sr that is rendered: sums and products of a few end in single precision at 3e38
 
@@ -130,9 +130,11 @@ class Table:
             phi_h = half_azimuth(wi, wo)
             axes.insert(0, periodic_bracket(phi_h / (2 * np.pi) * n_a - 0.5, n_a))
 
-        result = np.zeros((*theta_h.shape, self.values.shape[-1]))
-        for cells, share in corners(axes):
-            result += share[..., None] * self.filled_values[cells]
+        # np.take of flat cells is several times as fast as an index on each axis
+        values = self.filled_values.reshape(-1, self.values.shape[-1])
+        result = np.zeros((*theta_h.shape, values.shape[-1]))
+        for nodes, share in corners(axes):
+            result += share[..., None] * values.take(flat_index(nodes, self.shape), axis=0)
         above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
         return np.where(above[..., None], result, 0.0)
 
