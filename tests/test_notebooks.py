@@ -14,8 +14,6 @@ from urllib.error import URLError
 from urllib.request import urlopen
 
 import drjit as dr
-import jupytext
-import nbclient
 import pytest
 
 TOP = Path(__file__).parents[1]
@@ -31,6 +29,9 @@ SHARE_THE_CORES = f"import brdfkit.jit.threads as t; t.use_threads({dr.thread_co
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_runs(path, tmp_path):
+    import jupytext  # only here: both take seconds
+    import nbclient
+
     text = path.read_text(encoding="utf-8")
     for large, small in SMALLER.items():
         text = re.sub(large, small, text)

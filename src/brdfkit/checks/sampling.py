@@ -98,6 +98,7 @@ def coverage(subject):
 @check_of(MODELS)
 def weights(subject):
     """The weight of a sample = eval / pdf, its density = pdf, and eval_pdf = both."""
+    import drjit as dr
     import mitsuba as mi
 
     worst = 0.0
@@ -108,6 +109,7 @@ def weights(subject):
         value, pdf = subject.bsdf.eval_pdf(mi.BSDFContext(), si, drawn.wo)
         value_2 = subject.bsdf.eval(mi.BSDFContext(), si, drawn.wo)
         pdf_2 = subject.bsdf.pdf(mi.BSDFContext(), si, drawn.wo)
+        dr.eval(drawn, weight, value, pdf, value_2, pdf_2)  # in one kernel, compiled once
 
         # samples that were not rejected
         kept = np.array(drawn.pdf) > 0
