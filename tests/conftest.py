@@ -1,5 +1,6 @@
 """Shared by all tests: the variant, the models, and where third-party measurements lie."""
 
+import itertools
 import os
 import signal
 from pathlib import Path
@@ -41,6 +42,41 @@ def module_in_llvm():
     yield mi
     if before:
         mi.set_variant(before)
+
+
+_before = []  # the variant before the first of several tests that ask for `variant`
+
+
+@pytest.fixture
+def variant():
+    """A function that sets a variant, which stays for the next test that asks for this: a change
+    takes Mitsuba 0.05 s. Before any other test the old variant is back."""
+    import mitsuba as mi
+
+    if not _before:
+        _before.append(mi.variant() or "llvm_ad_rgb")
+    return mi.set_variant
+
+
+def pytest_collection_modifyitems(items):
+    """The tests of one function run variant by variant, not model by model."""
+    functions = itertools.groupby(items, lambda item: item.nodeid.partition("[")[0])
+    items[:] = [item for _, tests in functions for item in sorted(tests, key=_variant_of)]
+
+
+def _variant_of(item):
+    """The variant among a test's parameters, "" for a test that does not ask for `variant`."""
+    words = item.callspec.params.values() if hasattr(item, "callspec") else ()
+    named = (w for w in words if str(w).startswith(("llvm_", "scalar_")))
+    return next(named, "") if "variant" in item.fixturenames else ""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item):
+    if _before and "variant" not in item.fixturenames:
+        import mitsuba as mi
+
+        mi.set_variant(_before.pop())
 
 
 @pytest.fixture

@@ -247,7 +247,6 @@ def test_render_by_a_tone_mapping(cli):
     assert not Path("wrong.png").exists()
 
 
-@pytest.mark.quick
 def test_render_until_the_noise_is_low(cli):
     Path("room.xml").write_text(SCENE.format(alpha=0.3))
     for words in (["ward", "--size", "8"], ["room.xml"]):

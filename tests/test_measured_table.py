@@ -23,16 +23,6 @@ POLARIZED = ("llvm_ad_mono_polarized", "llvm_ad_spectral_polarized", "scalar_spe
 NODES = (450.0, 550.0, 650.0)  # nm
 
 
-@pytest.fixture
-def variant():
-    """A function that sets a variant; afterwards the old one is back."""
-    import mitsuba as mi
-
-    before = mi.variant()
-    yield mi.set_variant
-    mi.set_variant(before or "llvm_ad_rgb")
-
-
 @cache
 def brushed(channels=("R", "G", "B"), shape=(24, 40, 24, 36)):
     """An anisotropic material: Ward, tabulated."""
@@ -59,7 +49,7 @@ def in_rgl(channels=("R", "G", "B")):
 
 
 MATERIALS = {
-    "dusty_gold": lambda: bk.load("dusty_gold"),
+    "dusty_gold": cache(lambda: bk.load("dusty_gold")),
     "brushed": lambda: brushed()[0],
     "below_zero": below_zero,
     "in_rgl": in_rgl,

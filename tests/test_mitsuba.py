@@ -24,16 +24,6 @@ HIGHEST_Z = 4.5
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
-@pytest.fixture
-def variant():
-    """A function that sets a variant; afterwards the old one is back."""
-    import mitsuba as mi
-
-    before = mi.variant()
-    yield mi.set_variant
-    mi.set_variant(before or "llvm_ad_rgb")
-
-
 def coloured(model):
     """`model` with values near its defaults: coloured, anisotropic, none of them 0."""
     values = {}
@@ -194,7 +184,6 @@ def bumps():
     return {"type": "bitmap", "bitmap": mi.Bitmap(np.ascontiguousarray(pixels)), "raw": True}
 
 
-@pytest.mark.quick
 def test_nested(model, llvm_variant):
     """Each outer BSDF with a model inside says what its definition makes of the model's values."""
     mi = llvm_variant

@@ -1,6 +1,7 @@
 """Plugins of every kind: a file is there, so Mitsuba knows it, in every variant and however it is
 asked; a user's own as brdfkit's. And every plugin × what its kind must fulfil."""
 
+import functools
 import math
 import textwrap
 
@@ -15,18 +16,9 @@ from brdfkit.plugins import discovery
 from brdfkit.plugins.discovery import KINDS, MODELS, sources
 from brdfkit.plugins.pages import page
 
-VARIANTS = ("llvm_ad_rgb", "llvm_ad_mono", "llvm_ad_spectral_polarized", "scalar_rgb")
+quick = functools.partial(pytest.param, marks=pytest.mark.quick)
+VARIANTS = (quick("llvm_ad_rgb"), "llvm_ad_mono", "llvm_ad_spectral_polarized", "scalar_rgb")
 OTHERS = {name: kind for kind in KINDS if kind != MODELS for name in sources(kind)}
-
-
-@pytest.fixture
-def variant():
-    """A function that sets a variant; afterwards the old one is back."""
-    import mitsuba as mi
-
-    before = mi.variant()
-    yield mi.set_variant
-    mi.set_variant(before or "llvm_ad_rgb")
 
 
 # brdfkit's own
@@ -41,7 +33,6 @@ def test_every_plugin_has_a_page():
             assert found.sentence.endswith("."), name
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("name", OTHERS)
 @pytest.mark.parametrize("chosen", VARIANTS)
 def test_loads_in_every_variant(name, chosen, variant):
@@ -56,8 +47,7 @@ def test_loads_in_every_variant(name, chosen, variant):
     assert type(plugin).__name__ in str(plugin)
 
 
-@pytest.mark.quick
-@pytest.mark.parametrize("chosen", ["llvm_ad_rgb", "llvm_ad_mono", "llvm_ad_spectral"])
+@pytest.mark.parametrize("chosen", [quick("llvm_ad_rgb"), "llvm_ad_mono", "llvm_ad_spectral"])
 @pytest.mark.parametrize(
     ("name", "check"), [(name, c) for name, kind in OTHERS.items() for c in checks[kind]]
 )

@@ -119,8 +119,8 @@ def test_pictures_where_no_scan_is_at_hand(monkeypatch, tmp_path):
 
 def test_convergence_at_a_small_size(monkeypatch):
     """The slope, and equal curves."""
-    change(monkeypatch, {convergence: {"ITERATIONS": {32: 200, 36: 40, 40: 40}, "VOXELS": 12}})
-    change(monkeypatch, {convergence: {"SHOWN": (10, 30, 150)}})
+    change(monkeypatch, {convergence: {"ITERATIONS": {32: 100, 36: 20, 40: 20}, "VOXELS": 12}})
+    change(monkeypatch, {convergence: {"SHOWN": (10, 30, 80)}})
     assert verdicts("convergence")[:3] == ["confirmed", "confirmed", "not stated"]
 
 

@@ -45,16 +45,6 @@ def small_tables(monkeypatch):
     monkeypatch.setattr(encoding, "ANISOTROPIC", Resolution(3, 5, 16, 32, 12))
 
 
-@pytest.fixture
-def variant():
-    """A function that sets a variant; afterwards the old one is back."""
-    import mitsuba as mi
-
-    before = mi.variant()
-    yield mi.set_variant
-    mi.set_variant(before or "llvm_ad_rgb")
-
-
 class Rendered(Subject):
     """A file as Mitsuba's `measured` sees it, beside what it was written from."""
 
