@@ -19,7 +19,7 @@ from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "src" / "brdfkit"
-WIDTH, ROW = 12.4, 0.74  # inches
+ROW, GAP = 0.74, 0.2  # inches
 LABELS = 2.5  # inches for what a row is for
 PAPER, INK, LINE = "#f5f1e8", "#2b2b2b", "#8a5a2b"
 HEAD = """# The house, room by room
@@ -112,19 +112,20 @@ def direct(found):
 def draw():
     """The picture as a matplotlib `Figure`."""
     rows = layers()
-    figure = Figure(figsize=(WIDTH, ROW * len(rows) + 0.7), facecolor="white")
+    width_of = {room: _width(room) for rooms in rows for room in rooms}
+    long = [sum(width_of[room] + GAP for room in rooms) for rooms in rows]
+    whole = LABELS + max(long)
+    figure = Figure(figsize=(whole, ROW * len(rows) + 0.7), facecolor="white")
     axes = figure.add_axes((0, 0, 1, 1))
-    axes.set(xlim=(0, WIDTH), ylim=(0, ROW * len(rows) + 0.7))
+    axes.set(xlim=(0, whole), ylim=(0, ROW * len(rows) + 0.7))
     axes.set_axis_off()
     places = {}
     for number, rooms in enumerate(rows):
         y = ROW * (len(rows) - number) - 0.1
-        widths = [_width(room) for room in rooms]
-        gap = 0.2
-        x = (LABELS + WIDTH) / 2 - (sum(widths) + gap * (len(rooms) - 1)) / 2
-        for room, width in zip(rooms, widths, strict=True):
-            places[room] = (x + width / 2, y, width)
-            x += width + gap
+        x = (LABELS + whole - long[number]) / 2
+        for room in rooms:
+            places[room] = (x + width_of[room] / 2, y, width_of[room])
+            x += width_of[room] + GAP
         label = next((text for room, text in GROUPS.items() if room in rooms), "")
         axes.text(0.2, y, label, va="center", size=9, color="0.45", style="italic")
     for room, other in direct(imports()):
