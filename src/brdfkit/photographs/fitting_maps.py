@@ -41,7 +41,7 @@ def fit_maps(numbers, seen, smoothness=None, report=lambda: None):
         if len(seen.radiance) >= FEW_TO_HOLD_OUT:
             errors = held_out_errors(numbers, seen, noise, report)
             tau = min(errors, key=errors.get)
-    strength = strengths(numbers, start, noise, tau)
+    strength = strengths(numbers, start, seen, noise, tau)
     x = finish(numbers, start, seen, strength, report)
     return FittedMaps(x, equations(numbers, x, seen), tau, noise, strength, errors)
 
@@ -63,7 +63,7 @@ def coarse_to_fine(numbers, seen, report):
         side //= 2
         coarse, pooled = pooled.shape, seen.pooled(side)
         x = refined(x, coarse, pooled.shape)
-        x = finish(numbers, x, pooled, strengths(numbers, x, noise, USUAL), report)
+        x = finish(numbers, x, pooled, strengths(numbers, x, pooled, noise, USUAL), report)
         noise = noise_of(numbers, equations(numbers, x, pooled, slopes=False).error, pooled)
     return x, noise
 
@@ -96,13 +96,17 @@ def noise_of(numbers, errors, seen):
     return max(float(np.median(errors / np.maximum(free, 1))), 1e-10)
 
 
-def strengths(numbers, x, noise, tau):
-    """σ² / τ² (count,) of each number: weights in units of their median."""
+def strengths(numbers, x, seen, noise, tau):
+    """σ² / τ² (count,) of each number. The unit of a weight is that by which its lobe alone would
+    be as bright as what is seen: not the weight so far, as one that is near 0 would rest there."""
+    hessian = equations(numbers, x, seen).hessian
+    of_weights = slice(0, numbers.shapes.start)
+    brightness = np.diagonal(hessian, axis1=1, axis2=2)[:, of_weights]
+    counted = (seen.weights > 0).sum(axis=(0, 2))[:, None] / CHANNELS
+    alone = np.sqrt(counted / np.maximum(brightness, 1e-12 * counted + 1e-300))
     units = np.ones(numbers.count)
-    weights = x[:, : numbers.shapes.start]
-    scale = np.maximum(np.median(weights, axis=0), 0.1 * weights.mean(axis=0))
-    scale = scale.reshape(-1, CHANNELS).mean(axis=1)
-    units[: numbers.shapes.start] = np.repeat(np.maximum(scale, 1e-3), CHANNELS)
+    scale = np.median(alone[counted[:, 0] > 0], axis=0).reshape(-1, CHANNELS).mean(axis=1)
+    units[of_weights] = np.repeat(scale, CHANNELS)
     return noise / (tau * units) ** 2
 
 
@@ -115,7 +119,7 @@ def held_out_errors(numbers, seen, noise, report):
     start, _ = coarse_to_fine(numbers, taught, report)
     found = {}
     for tau in TAUS:
-        x = finish(numbers, start, taught, strengths(numbers, start, noise, tau), report)
+        x = finish(numbers, start, taught, strengths(numbers, start, taught, noise, tau), report)
         left = equations(numbers, x, asked, slopes=False).error
         found[tau] = float(np.sqrt(left.sum() / max(1, (asked.weights > 0).sum())))
     return found
