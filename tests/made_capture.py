@@ -67,9 +67,9 @@ def photograph(bsdf, position, intensity, pixels, spp=36):
     return np.array(mi.render(mi.load_dict(scene), spp=spp), float)
 
 
-def photographs(texels, count, noise=0.01, pixels=None):
+def photographs(texels, count, noise=0.01, pixels=None, truth=None):
     """(`Truth`, `Capture` with relative noise) of a made sample under so many lights."""
-    truth = Truth(texels)
+    truth = truth or Truth(texels)
     bsdf, places, pixels = bsdf_dict(truth), lights(count), pixels or round(1.4 * texels)
     clean = np.array([photograph(bsdf, *light, pixels) for light in zip(*places, strict=True)])
     noisy = clean * (1 + noise * np.random.default_rng(5).standard_normal(clean.shape))

@@ -107,9 +107,12 @@ class Capture:
 
     @property
     def clipped(self):
-        """Which numbers (lights, height, width, 3) are at the end of what the camera could hold."""
-        at_end = self.pictures == self.pictures.max()
-        return at_end if at_end.mean() > CLIPPED else np.zeros_like(at_end)
+        """Which numbers (lights, height, width, 3) are at the end of what the camera could hold.
+
+        Each colour has an end of its own, as a white balance moves them apart.
+        """
+        at_end = self.pictures == self.pictures.max(axis=(0, 1, 2))
+        return at_end & (at_end.mean(axis=(0, 1, 2)) > CLIPPED)
 
 
 def _require_seen(capture):
