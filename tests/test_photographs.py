@@ -190,6 +190,8 @@ def test_the_command_writes_maps_a_scene_and_a_report(mi, made, tmp_path):
     inside = photograph.min(axis=2) > 0.2 * photograph.mean()
     off = shown[inside].mean(axis=0) / photograph[inside].mean(axis=0)
     np.testing.assert_allclose(off, 1, atol=0.03)
+    upright = np.corrcoef(shown[inside].ravel(), photograph[inside].ravel())[0, 1]
+    assert upright > 0.97  # 0.55 upside down
     assert "<img" in (tmp_path / "maps" / "report.html").read_text(encoding="utf-8")
 
 

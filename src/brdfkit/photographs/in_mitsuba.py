@@ -43,7 +43,7 @@ def _texture(values):
 def scene_xml(svbrdf, files):
     """The text of a scene: the sample under the first light, seen by the photographs' camera.
 
-    `files`: the name of each map's file, which lies beside it, its first row the lower edge.
+    `files`: the name of each map's file, which lies beside it, its first row the upper edge.
     """
     width, height = svbrdf.size
     capture = svbrdf.capture
@@ -90,7 +90,9 @@ def scene_xml(svbrdf, files):
 def _file_texture(name, file):
     return (
         f'<texture type="bitmap" name="{name}"><string name="filename" value="{file}"/>'
-        '<boolean name="raw" value="true"/><string name="wrap_mode" value="clamp"/></texture>'
+        '<boolean name="raw" value="true"/><string name="wrap_mode" value="clamp"/>'
+        # Mitsuba's rectangles have a picture's first row at their lower edge
+        '<transform name="to_uv"><scale y="-1"/><translate y="1"/></transform></texture>'
     )
 
 

@@ -17,10 +17,10 @@ def write_all(svbrdf, folder):
     files = {name: f"{name}.exr" for name in svbrdf.maps}
     written = []
     for name, values in svbrdf.maps.items():
-        # as Mitsuba's rectangles have them: normals as colours, the first row the lower edge
+        # upright, as programs show and use them; normals as colours, green along the sample's y
         shown = (values + 1) / 2 if name == "normal" else values
-        written.append(_write(folder / files[name], shown[::-1]))
-        written.append(_write(folder / f"{name}_error.exr", svbrdf.uncertainty[name][::-1]))
+        written.append(_write(folder / files[name], shown))
+        written.append(_write(folder / f"{name}_error.exr", svbrdf.uncertainty[name]))
     scene = folder / "sample.xml"
     with write_safely(scene) as beside:
         Path(beside).write_text(scene_xml(svbrdf, files), encoding="utf-8")
