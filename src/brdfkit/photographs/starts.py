@@ -11,8 +11,8 @@ MATT = 0.6  # the share of the observations, the darker ones, that count as free
 def albedos(seen):
     """Albedos (n, 3) of a matt and flat surface, from the darker ones of `Observations`.
 
-    Normals by photometric stereo are no better a start: where all lights are near the camera, as
-    flashes are, they lean by 40° to where the search does not come back from.
+    Normals by photometric stereo [Woodham 1980] are no better a start: where all lights are near
+    the camera, as flashes are, they lean by 40° to where the search does not come back from.
     """
     cosine = np.maximum(seen.to_light[..., 2], 0.05)
     share = (seen.radiance / np.maximum(seen.irradiance, 1e-30)).mean(axis=2)
