@@ -67,7 +67,7 @@ class Equations:
     @classmethod
     def at(cls, views, here, seed):
         """About `Residuals`."""
-        tangents = sum(1 if u.colour else len(u.start) for u in views.unknowns)
+        tangents = len(list(views.tangents))
         spp = max(1, round(here.spp * min(1, SHARE / (DERIVATIVE_COST * tangents))))
         a, b = (views.derivatives(here.x, spp, seed + 1000 * half) for half in (0, 1))
         weighed = views.weights * a

@@ -23,7 +23,7 @@ def start(views, count, seed, report):
     `report()` is called after each point. Without any that pictures are not linear in, the scene's
     own point is best.
     """
-    curved = ~views.linear & np.isfinite(views.most)
+    curved = views.curved
     if count == 1 or not curved.any():
         return views.start
     points = [views.start] + [np.where(curved, 0, views.start) for _ in range(count - 1)]
@@ -38,7 +38,7 @@ def start(views, count, seed, report):
     tried.sort(key=lambda residuals: residuals.error)
     ends = []
     for residuals in tried[:BEST]:
-        ends.append(search(views, residuals.x, FEW, 4 * spp, seed, 2 * spp).here)
+        ends.append(search(views, residuals.x, FEW, 2 * spp, seed, 2 * spp).here)
         report()
     return min(ends, key=lambda residuals: residuals.error).x
 
@@ -49,14 +49,16 @@ def _solve_linear(views, x, spp, seed):
     if not len(linear):
         return Residuals.at(views, x, spp, seed)
     dark = np.where(views.linear, 0, x)
-    a, b = (views.steps_from(dark, linear, spp // 2, seed + 1000 * half) for half in (0, 1))
-    (a, reached_a), (b, reached_b) = a, b
+    (a, reached_a), (b, reached_b) = (
+        views.steps_from(dark, linear, spp // 2, seed + 1000 * half) for half in (0, 1)
+    )
     weighed = views.weights * a
     hessian = weighed.reshape(len(a), -1) @ b.reshape(len(b), -1).T.astype(float)
     gradient = (weighed * reached_b + views.weights * b * reached_a).sum(axis=(1, 2)) / 2
     hessian = (hessian + hessian.T) / 2
     hessian += 1e-3 * np.diag(np.maximum(np.diagonal(hessian), 1e-30))
-    found = minimise_in_box(hessian[None], gradient[None], 0.0, views.most[None, linear])[0]
+    box = views.least[None, linear], views.most[None, linear]
+    found = minimise_in_box(hessian[None], gradient[None], *box)[0]
     x = dark.copy()
     x[linear] = found
     return Residuals.at(views, x, spp, seed)
@@ -64,5 +66,4 @@ def _solve_linear(views, x, spp, seed):
 
 def usual_count(views):
     """How many points a search begins at."""
-    curved = int((~views.linear & np.isfinite(views.most)).sum())
-    return 1 + min(PER_NUMBER * curved, 32)
+    return 1 + min(PER_NUMBER * int(views.curved.sum()), 32)

@@ -41,39 +41,52 @@ def search(views, x, steps, samples, seed, first=FIRST, report=lambda: None):
     found = Search(Residuals.at(views, x, spp, seed))
     found.history.append((spp, found.here.error))
     try:
-        while found.steps < steps and damping < DAMPING[2]:
+        while damping < DAMPING[2]:
             found.about = Equations.at(views, found.here, seed)
-            while damping < DAMPING[2]:
-                step = step_in_bounds(views, found, damping)
-                trial = Residuals.at(views, found.here.x + step, spp, seed)
-                won, noise = found.here.less(trial)
-                gain = found.about.gain(step)
-                quiet = _is_within_noise(views, found) or (won <= 0 and gain < SURE * noise)
-                if quiet or won > 0:
+            at_rest = _is_within_noise(views, found)
+            if not at_rest:
+                if found.steps == steps:
                     break
-                damping *= WORSE
-            if won > 0:
-                found.here, found.steps = trial, found.steps + 1
-                found.history.append((spp, trial.error))
-                damping = max(damping * (BETTER if won > 0.75 * gain else 1), DAMPING[1])
+                found.here, damping, at_rest = _take_step(views, found, damping, seed)
+                found.steps += 1
+                found.history.append((spp, found.here.error))
                 report()
-            if quiet:
+            if at_rest:
                 grown = _grow(views, found.here, spp, samples)
-                if grown == spp:
+                if grown > spp:
+                    spp, seed, damping = grown, seed + 1, min(damping, DAMPING[0])
+                    found.here = Residuals.at(views, found.here.x, spp, seed)
+                elif _is_within_noise(views, found):
                     found.converged = True
                     break
-                spp, seed, damping = grown, seed + 1, min(damping, DAMPING[0])
-                found.here = Residuals.at(views, found.here.x, spp, seed)
     except KeyboardInterrupt:
         raise Stopped(found) from None
     return found
+
+
+def _take_step(views, found, damping, seed):
+    """(the `Residuals` after a step, the damping to go on with, whether noise hides what it gains).
+
+    Of a gain that noise hides the equations know more than two pictures, whose samples move with
+    the parameters: such a step is taken, too.
+    """
+    while True:
+        step = step_in_bounds(views, found, damping)
+        trial = Residuals.at(views, found.here.x + step, 2 * found.here.spp, seed)
+        won, noise = found.here.less(trial)
+        gain = found.about.gain(step)
+        hidden = gain < SURE * noise and won > -SURE * noise
+        if won > 0 or hidden or damping >= DAMPING[2]:
+            well = hidden or won > 0.75 * gain
+            return trial, max(damping * (BETTER if well else 1), DAMPING[1]), hidden
+        damping *= WORSE
 
 
 def step_in_bounds(views, found, damping):
     """The best step within the bounds by the damped equations."""
     hessian, scale = found.about.scaled()
     damped = hessian + damping * np.eye(len(scale))
-    low, high = -found.here.x, views.most - found.here.x
+    low, high = views.least - found.here.x, views.most - found.here.x
     step = minimise_in_box(
         damped[None],
         (found.about.gradient * scale)[None],
@@ -86,7 +99,7 @@ def step_in_bounds(views, found, damping):
 def free_of_bounds(views, found):
     """Which numbers (n,) may move downhill: those that are on no bound, or leave it."""
     x, g = found.here.x, found.about.gradient
-    return ~((x <= 0) & (g >= 0)) & ~((x >= views.most) & (g <= 0))
+    return ~((x <= views.least) & (g >= 0)) & ~((x >= views.most) & (g <= 0))
 
 
 def _is_within_noise(views, found):

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -113,11 +114,14 @@ def refine(
     except Stopped as stop:
         best = conclude_search(views, stop.best, time.perf_counter() - began, interrupted=True)
         raise Interrupted(best, f"refine: the best so far leaves {best.loss:.3g}") from None
-    if found.about is not None and not np.diagonal(found.about.hessian).any():
+    unseen = np.diagonal(found.about.hessian) == 0
+    if unseen.all():
         raise BrdfkitError(
             f"no picture changes with {', '.join(u.name for u in views.unknowns)}: either nothing "
             "of it is seen, or the integrator does not differentiate it."
         )
+    # where nothing is known, the search's own starts mean nothing
+    found.here = replace(found.here, x=np.where(unseen, views.start, found.here.x))
     views.leave_at(found.here.x)
     return conclude_search(views, found, time.perf_counter() - began)
 

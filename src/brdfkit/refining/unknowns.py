@@ -23,7 +23,7 @@ class Unknown:
     start : its numbers (n,) where the search begins.
     colour : whether each number changes one channel of pictures alone.
     linear : whether pictures of direct light are linear in it.
-    low, high : its bounds.
+    low, high : its bounds; coordinates are the values themselves unless both are finite.
     log : whether steps are relative.
     """
 
@@ -50,29 +50,30 @@ class Unknown:
         """Values at coordinates `u`, which go from 0 to 1 between finite bounds."""
         if self.log:
             return self.low * (self.high / self.low) ** u
-        return self.low + u * self.width
+        return self.low + u * (self.high - self.low) if self.bounded else np.array(u)
 
     def coordinates(self, values):
         """The coordinates of values; the inverse of `table`."""
+        values = np.asarray(values)
         if self.log:
-            return np.log(np.asarray(values) / self.low) / np.log(self.high / self.low)
-        return (np.asarray(values) - self.low) / self.width
+            return np.log(values / self.low) / np.log(self.high / self.low)
+        return (values - self.low) / (self.high - self.low) if self.bounded else values
 
     def slopes(self, u):
         """The derivatives of the values by their coordinates."""
         if self.log:
             return self.table(u) * np.log(self.high / self.low)
-        return np.full_like(u, self.width)
+        return np.full_like(u, self.high - self.low if self.bounded else 1.0)
 
     @property
-    def width(self):
-        """Of a coordinate, in units of the parameter."""
-        return self.high - self.low if np.isfinite(self.high) else 1.0
+    def bounded(self):
+        """Whether both bounds are finite."""
+        return bool(np.isfinite(self.high - self.low))
 
     @property
-    def most(self):
-        """The largest coordinate."""
-        return 1.0 if np.isfinite(self.high) else np.inf
+    def limits(self):
+        """The least and the largest coordinate."""
+        return (0.0, 1.0) if self.bounded else (self.low, self.high)
 
 
 def choose(parameters, asked):
@@ -85,41 +86,46 @@ def choose(parameters, asked):
     if isinstance(asked, str):
         asked = [asked]
     bounds = dict(asked) if isinstance(asked, Mapping) else dict.fromkeys(asked or ())
-    known = {_short(key): key for key in keys(parameters)}
+    known = searchable(parameters)
     if asked is None:
-        bounds = {name: None for name, key in known.items() if _is_searched(parameters, key)}
+        bounds = {name: None for name, key in known.items() if _model_of(parameters, key)[0]}
         if not bounds:
             raise BrdfkitError(
                 "the scene has no number of a brdfkit model to search; name its parameters, "
                 "as mitsuba.traverse does."
             )
     for name in bounds:
+        if name in keys(parameters) and _short(name) not in known:
+            kind = type(parameters[name]).__name__
+            raise BrdfkitError(f"{name}: what it holds ({kind}) is not searched; numbers are.")
         if _short(name) not in known:
-            raise no_such("parameter", name, known)
+            raise no_such("parameter", name, known, "the scene")
     if not bounds:
         raise BrdfkitError("parameters is empty; name some, as mitsuba.traverse does.")
     return [_unknown(parameters, known[_short(n)], limits) for n, limits in bounds.items()]
 
 
-def _is_searched(parameters, key):
-    """Whether an entry is a number or a colour of one of brdfkit's models."""
-    return _model_of(parameters, key)[0] is not None and _numbers(parameters[key]) is not None
+def searchable(parameters):
+    """The keys of all numbers, colours and vectors of a scene, by name."""
+    found = [key for key in keys(parameters) if _numbers(parameters[key]) is not None]
+    return {_short(key): key for key in found}
 
 
 def _unknown(parameters, key, limits):
+    """The `Unknown` of an entry, within the `limits`, None for the usual ones."""
     value, (model, owner, parameter) = parameters[key], _model_of(parameters, key)
-    start = _numbers(value)
-    if start is None:
-        raise BrdfkitError(f"{key}: what it holds ({type(value).__name__}) is not searched.")
-    low, high, log, linear = 0.0, np.inf, False, type(value).__name__.startswith("Color")
+    start, colour = _numbers(value), type(value).__name__.startswith("Color")
+    low, high, log, linear = 0.0, np.inf, False, colour
     if model:
         declared = model.parameters[parameter]
         (low, high), log, linear = declared.bounds, declared.log, declared.linear
     if limits is not None:
         low, high = _checked(key, limits, low if model else -np.inf, high)
-    if (start < low).any() or (start > high).any():
-        start = np.clip(start, low, high)
-    colour = type(value).__name__.startswith("Color")
+    elif (start < low).any():
+        raise BrdfkitError(
+            f"{key}: it begins below 0; give bounds, as {{{_short(key)!r}: (-1, 1)}}."
+        )
+    start = np.clip(start, low, high)
     return Unknown(key, _short(key), owner, parameter, model, start, colour, linear, low, high, log)
 
 
@@ -164,22 +170,23 @@ def keys(parameters):
 
 
 def _short(key):
-    return key.removesuffix(".value")
+    """A name without ".value" at its end, of which there may be two."""
+    while key.endswith(".value"):
+        key = key.removesuffix(".value")
+    return key
 
 
 def numbers_in(parameters, owner, model):
     """The values of all parameters of a `model`, the BSDF `owner`, by name; None where one of them
     is a texture."""
-    found = {}
+    known, found = searchable(parameters), {}
     for name, declared in model.parameters.items():
-        key = f"{owner}.{name}.value"
-        if key not in keys(parameters):
+        key = known.get(f"{owner}.{name}")
+        if key is None:
             if declared.follows:
                 continue
             return None
         numbers = _numbers(parameters[key])
-        if numbers is None:
-            return None
         found[name] = tuple(map(float, numbers)) if len(numbers) > 1 else float(numbers[0])
     return found
 
@@ -189,7 +196,7 @@ def put_values(scene, values):
     import mitsuba as mi
 
     parameters = mi.traverse(scene)
-    known = {_short(key): key for key in keys(parameters)}
+    known = searchable(parameters)
     for name, value in values.items():
         if name not in known:
             raise no_such("parameter", name, known)

@@ -7,6 +7,8 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.jit.first_error import first_error
 
 DERIVATIVE_COST = 2.3  # of a picture of derivatives, in pictures
+STEP = 0.05  # of differences, in coordinates, or of what has no bounds relative to it
+BACKWARD = "PRBVolpathIntegrator", "BasicVolumetricPrimitiveRadianceFieldIntegrator"
 ON_BOUND = 1e-6  # a coordinate so near to a bound is on it
 
 
@@ -40,7 +42,7 @@ class Views:
 
     def is_on_bound(self, x):
         """Whether (n,) coordinates are on a bound, but for rounding."""
-        return (x <= ON_BOUND) | (x >= self.most - ON_BOUND)
+        return (x <= self.least + ON_BOUND) | (x >= self.most - ON_BOUND)
 
     def parts(self, x):
         """Numbers (n,) as those of each unknown."""
@@ -52,9 +54,17 @@ class Views:
         return np.concatenate([unknown.coordinates(unknown.start) for unknown in self.unknowns])
 
     @property
+    def least(self):
+        """The least coordinates."""
+        return self._limits(0)
+
+    @property
     def most(self):
-        """The largest coordinates; the least ones are 0."""
-        return np.concatenate([np.full(len(u.start), u.most) for u in self.unknowns])
+        """The largest coordinates."""
+        return self._limits(1)
+
+    def _limits(self, end):
+        return np.concatenate([np.full(len(u.start), u.limits[end]) for u in self.unknowns])
 
     @property
     def names(self):
@@ -66,6 +76,12 @@ class Views:
         """Whether (n,) pictures of direct light are linear in a number."""
         return np.concatenate([np.full(len(u.start), u.linear) for u in self.unknowns])
 
+    @property
+    def curved(self):
+        """Whether (n,) a number lies between two bounds, and pictures are not linear in it."""
+        bounded = np.concatenate([np.full(len(u.start), u.bounded) for u in self.unknowns])
+        return bounded & ~self.linear
+
     def residuals(self, x, spp, seed):
         """Rendered less reached pixels (pixels, channels), by `spp` samples of a `seed`."""
         self._set(x)
@@ -73,20 +89,27 @@ class Views:
 
     def derivatives(self, x, spp, seed):
         """The derivatives (n, pixels, channels) of the pixels by the coordinates."""
+        derive = self._differences if self.integrator_is_backward else self._forward
         found = np.zeros((len(x), *self.reached.shape), np.float32)
-        slopes = self.slopes(x)
-        for end, unknown in zip(self.ends, self.unknowns, strict=True):
-            rows = range(end - len(unknown.start), end)
-            if unknown.colour:
+        for numbers in self.tangents:
+            picture = derive(x, numbers, spp, seed)
+            for channel, number in enumerate(numbers):
                 # a number of a colour changes its own channel only: one picture has them all
-                picture = self._forward(x, unknown, None, spp, seed)
-                for channel, row in enumerate(rows):
-                    here = channel if self.reached.shape[1] > 1 else 0
-                    found[row][:, here] = picture[:, here] * slopes[row]
-            else:
-                for number, row in enumerate(rows):
-                    found[row] = self._forward(x, unknown, number, spp, seed) * slopes[row]
+                own = [channel] if 1 < len(numbers) == found.shape[2] else slice(None)
+                found[number][:, own] = picture[:, own]
         return found
+
+    @property
+    def tangents(self):
+        """The numbers of which one picture has the derivatives: those of a colour, or one."""
+        for end, unknown in zip(self.ends, self.unknowns, strict=True):
+            rows = list(range(end - len(unknown.start), end))
+            yield from [rows] if unknown.colour else [[row] for row in rows]
+
+    @property
+    def integrator_is_backward(self):
+        """Whether the integrator has derivatives only backwards."""
+        return type(self.integrator).__name__ in BACKWARD
 
     def steps_from(self, x, numbers, spp, seed):
         """(what each of the `numbers` adds to the pixels, from 0 to 1; the residuals without them).
@@ -96,19 +119,15 @@ class Views:
         without = self.residuals(x, spp, seed)
         found = np.zeros((len(numbers), *without.shape), np.float32)
         rows = {number: row for row, number in enumerate(numbers)}
-        for end, unknown in zip(self.ends, self.unknowns, strict=True):
-            own = [n for n in range(end - len(unknown.start), end) if n in rows]
-            for group in [own] if unknown.colour else [[n] for n in own]:
-                if not group:
-                    continue
-                moved = np.array(x, float)
-                moved[group] = 1
-                change = self.residuals(moved, spp, seed) - without
-                for channel, number in enumerate(group):
-                    if unknown.colour and change.shape[1] > 1:
-                        found[rows[number]][:, channel] = change[:, channel]
-                    else:
-                        found[rows[number]] = change
+        for group in self.tangents:
+            if not rows.keys() >= set(group):
+                continue
+            moved = np.array(x, float)
+            moved[group] = 1
+            change = self.residuals(moved, spp, seed) - without
+            for channel, number in enumerate(group):
+                own = [channel] if 1 < len(group) == change.shape[1] else slice(None)
+                found[rows[number]][:, own] = change[:, own]
         return found, without
 
     def as_pictures(self, pixels):
@@ -124,18 +143,16 @@ class Views:
         """Leave the scene with the values at `x`."""
         self._set(x)
 
-    def _set(self, x, moved=None, number=None):
-        """Put the values at `x` into the scene; with derivatives, where an unknown is `moved`: by
-        its `number`, or by all of a colour at once."""
-        for unknown, value in zip(self.unknowns, self.values(x), strict=True):
+    def _set(self, x, tangent=None):
+        """Put the values at `x` into the scene; with derivatives along a `tangent` (n,) of the
+        values."""
+        tangents = [None] * len(self.unknowns) if tangent is None else self.parts(tangent)
+        for unknown, value, along in zip(self.unknowns, self.values(x), tangents, strict=True):
             array = _opaque(type(self.parameters[unknown.key]), value)
-            if moved is not None:
+            if along is not None:
                 # of all, 0 of those that rest: so all derivatives share one kernel
-                chosen = [
-                    float(unknown is moved and number in (None, i)) for i in range(len(value))
-                ]
                 dr.enable_grad(array)
-                dr.set_grad(array, _opaque(type(array), chosen))
+                dr.set_grad(array, _opaque(type(array), along))
             self.parameters[unknown.key] = array
         with first_error():
             self.parameters.update()
@@ -152,9 +169,12 @@ class Views:
                 ]
             )
 
-    def _forward(self, x, unknown, number, spp, seed):
+    def _forward(self, x, numbers, spp, seed):
+        """The derivative of the pixels where the `numbers` move together."""
         self.renders += DERIVATIVE_COST * spp
-        self._set(x, unknown, number)
+        tangent = np.zeros(len(x))
+        tangent[numbers] = self.slopes(x)[numbers]
+        self._set(x, tangent)
         with first_error():
             found = [
                 self.integrator.render_forward(
@@ -163,6 +183,17 @@ class Views:
                 for i, sensor in enumerate(self.scene.sensors())
             ]
             return self._joined(found)
+
+    def _differences(self, x, numbers, spp, seed):
+        """The same by differences of equal samples, for integrators without it."""
+        ends = np.array([x, x], float)
+        step = STEP * np.maximum(np.abs(x), STEP)
+        step[self.most - self.least == 1] = STEP
+        ends[:, numbers] += np.outer([-1, 1], step[numbers])
+        ends = np.clip(ends, self.least, self.most)
+        low, high = (self.residuals(end, spp, seed) for end in ends)
+        width = (ends[1] - ends[0])[numbers]
+        return (high - low) / (width if len(width) == high.shape[1] else width[0])
 
     def _joined(self, pictures):
         """Pictures as one array (pixels, channels)."""
