@@ -1,9 +1,10 @@
-"""`refine` on five materials in a corner that throws light back, from random starts, and beside the
-picture loss of `fit`: `python benchmarks/refining.py` prints the tables, in some ten minutes.
+"""`refine` held against known truths: `python benchmarks/refining.py [TABLE ...]` prints the tables
+`gradients`, `steps`, `bounces` and `starts`, the last in some twenty minutes.
 
-The truth is known, a picture of 24 × 24 pixels with noise of 1 % in proportion. A start is random
-within the bounds of all parameters; it comes back if every number is within 3 of its own standard
-errors of the truth.
+`starts`: five materials in a corner that throws light back, from random starts within the bounds of
+all that is searched; pictures of 24 × 24 pixels have noise of 1 % in proportion. A start comes back
+if every number is within 3 of its own standard errors of the truth. `bounces`: measured materials,
+which no model is quite, beside fits by the loss "picture".
 """
 
 import sys
@@ -14,6 +15,11 @@ import numpy as np
 import brdfkit as bk
 from brdfkit.jit.llvm import use_variant
 from brdfkit.model import labels
+from brdfkit.refining.equations import Equations, Residuals
+from brdfkit.refining.subject import integrator_of, load_subject
+from brdfkit.refining.targets import read_targets
+from brdfkit.refining.unknowns import choose
+from brdfkit.refining.views import Views
 
 STARTS, SIZE, NOISE = 20, 24, 0.01
 GOLD, GREY = (0.5, 0.35, 0.15), (0.3, 0.3, 0.3)
@@ -28,27 +34,30 @@ TRUTHS = {
     "cook_torrance": {"alpha": 0.3, "diffuse_reflectance": GOLD, "specular_reflectance": GOLD},
     "oren_nayar": {"sigma": 0.5, "diffuse_reflectance": GOLD},
 }
+FRONT, SIDE = ([0, -4, 1.8], [0.8, -1.2, 2.5]), ([-2.4, -3.2, 1.2], [-0.6, -1.6, 2.6])
 
 
-def corner(values, model, size=SIZE):
-    """A ball of a `model` before a red wall, under a lamp."""
+def bsdf(model, values):
+    """The dictionary of a `model` with values, numbers or colours."""
+    colours = {k: {"type": "rgb", "value": v} for k, v in values.items() if isinstance(v, tuple)}
+    return {"type": model, **values, **colours}
+
+
+def corner(material, size=SIZE, depth=4, view=FRONT):
+    """A ball of a `material` before a red wall, under a lamp; `view`: where camera and lamp are."""
     import mitsuba as mi
 
-    at = mi.ScalarTransform4f().look_at
-    colours = {k: {"type": "rgb", "value": v} for k, v in values.items() if isinstance(v, tuple)}
+    at, (camera, lamp) = mi.ScalarTransform4f().look_at, view
+    film = {"type": "hdrfilm", "width": size, "height": size, "pixel_format": "rgb"}
     red = {"type": "rgb", "value": [0.7, 0.3, 0.2]}
-    box = {"type": "box"}
-    film = {"type": "hdrfilm", "width": size, "height": size, "pixel_format": "rgb"} | {
-        "rfilter": box
-    }
     return {
         "type": "scene",
-        "integrator": {"type": "path", "max_depth": 4},
+        "integrator": {"type": "path", "max_depth": depth},
         "sensor": {
             "type": "perspective",
             "fov": 26,
-            "to_world": at([0, -4, 1.8], [0, 0, 0.7], [0, 0, 1]),
-            "film": film,
+            "to_world": at(camera, [0, 0, 0.7], [0, 0, 1]),
+            "film": {**film, "rfilter": {"type": "box"}},
         },
         "floor": {
             "type": "rectangle",
@@ -57,21 +66,106 @@ def corner(values, model, size=SIZE):
         },
         "wall": {
             "type": "rectangle",
-            "to_world": at([0, 1.3, 1], [0, 0, 1], [0, 0, 1]).scale(3),
+            "to_world": at([0, 0.8, 1], [0, 0, 1], [0, 0, 1]).scale(3),
             "bsdf": {"type": "diffuse", "reflectance": red},
         },
-        "ball": {
-            "type": "sphere",
-            "center": [0, 0, 0.7],
-            "radius": 0.7,
-            "bsdf": {"type": model, **values, **colours},
-        },
+        "ball": {"type": "sphere", "center": [0, 0, 0.7], "radius": 0.7, "bsdf": material},
         "lamp": {
             "type": "rectangle",
-            "to_world": at([0.8, -1.2, 2.5], [0, 0, 0], [0, 1, 0]).scale(0.5),
+            "to_world": at(lamp, [0, 0, 0], [0, 1, 0]).scale(0.5),
             "emitter": {"type": "area", "radiance": 12.0},
         },
     }
+
+
+def picture(scene, spp=4096):
+    """A scene's picture (height, width, 3)."""
+    import mitsuba as mi
+
+    return np.array(mi.render(mi.load_dict(scene), spp=spp, seed=99), float)
+
+
+def views_of(model, truth, reached, size=SIZE):
+    """`Views` of the corner at the truth, beside the picture that is `reached`."""
+    import mitsuba as mi
+
+    scene = load_subject(corner(bsdf(model, truth), size), (size, size))
+    names = mi.traverse(scene)
+    unknowns = choose(names, [f"ball.bsdf.{name}" for name in truth])
+    return Views(scene, integrator_of(scene), read_targets(reached), names, unknowns)
+
+
+def gradients():
+    """Derivatives beside differences of the same samples, along the pictures of differences."""
+    print("derivatives over differences of the same samples, by tangent")
+    spp, step = 8192, 0.01
+    for model, truth in TRUTHS.items():
+        views = views_of(model, truth, picture(corner(bsdf(model, truth)), 256))
+        x, shares = views.start, {}
+        found = views.derivatives(x, spp, 3)
+        for group in views.tangents:
+            moved = np.zeros(len(x))
+            moved[group] = step
+            ends = [views.residuals(x + sign * moved, spp, 3) for sign in (1, -1)]
+            expected = (ends[0] - ends[1]) / (2 * step)
+            share = (found[group].sum(axis=0) * expected).sum() / (expected**2).sum()
+            shares[views.names[group[0]].split(".")[-1]] = f"{share:.4f}"
+        print(f"{model:18} {shares}", flush=True)
+
+
+def steps():
+    """The time of a step, derivatives and the trial, in pictures of as many samples."""
+    print("the time of a step, over that of a picture of as many samples")
+    size, spp = 128, 128
+    for model, truth in TRUTHS.items():
+        views = views_of(model, truth, picture(corner(bsdf(model, truth), size), 64), size)
+        seconds = []
+        for _ in range(3):  # the first compiles
+            times = [time.perf_counter()]
+            views.residuals(views.start, spp, 7)
+            times.append(time.perf_counter())
+            here = Residuals.at(views, views.start, spp, 8)
+            times.append(time.perf_counter())
+            Equations.at(views, here, 8)
+            times.append(time.perf_counter())
+            seconds.append(np.diff(times))
+        one, trial, derivatives = np.min(seconds[1:], axis=0)
+        tangents = len(list(views.tangents))
+        print(
+            f"{model:18} {(trial + derivatives) / one:.2f}  ({tangents} derivatives "
+            f"{derivatives / one:.2f}, trial {trial / one:.2f}; a picture {one:.2f} s)",
+            flush=True,
+        )
+
+
+def shown(pixels, white):
+    """Pixels as a screen shows them, by sRGB's curve."""
+    x = np.clip(pixels / white, 0, 1)
+    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
+
+
+def bounces():
+    """PSNR [dB] of a ggx, found three ways: on the picture that `refine` saw, and from the side."""
+    print("PSNR [dB] as a screen shows it, of the picture that refine saw / under another light")
+    for name in ("satin_plastic", "car_paint", "blasted_gold"):
+        measured = bk.load(name)
+        by_picture = bk.fit("ggx", measured, "picture")
+        for said, depth in (("direct light", 2), ("light bounces", 6)):
+            truth = [picture(corner(measured.scene_dict(), 48, depth, v)) for v in (FRONT, SIDE)]
+            found = {'fit, "picture"': by_picture}
+            for how, assumed in (("refine, direct light", 2), ("refine", depth)):
+                begin = corner(bsdf("ggx", by_picture.values), 48, assumed)
+                found[how] = bk.refine(begin, truth[0], starts=1, samples=512).fit
+            row = []
+            for how, fit in found.items():
+                pair = []
+                for view, known in zip((FRONT, SIDE), truth, strict=True):
+                    own = picture(corner(bsdf("ggx", fit.values), 48, depth, view), 1024)
+                    white = np.quantile(known, 0.99)
+                    error = np.mean((shown(own, white) - shown(known, white)) ** 2)
+                    pair.append(-10 * np.log10(error))
+                row.append(f"{how}: {pair[0]:.1f} / {pair[1]:.1f}")
+            print(f"{name:15} {said:14} {'   '.join(row)}", flush=True)
 
 
 def random_start(model, truth, rng):
@@ -89,43 +183,40 @@ def random_start(model, truth, rng):
     return found
 
 
-def come_back(model, starts):
-    """A row of figures on refinements of a `model` from as many random `starts`."""
-    import mitsuba as mi
-
-    truth = TRUTHS[model]
-    clean = np.array(mi.render(mi.load_dict(corner(truth, model)), spp=4096, seed=99))
-    names = [f"ball.bsdf.{name}" for name in truth]
-    back, z, steps, seconds, spps = 0, [], [], [], []
-    for number in range(starts):
-        rng = np.random.default_rng([number, len(model)])
-        picture = clean * (1 + NOISE * rng.standard_normal(clean.shape))
-        scene = corner(random_start(model, truth, rng), model)
-        began = time.perf_counter()
-        result = bk.refine(scene, picture, names, seed=10_000 * number)
-        seconds.append(time.perf_counter() - began)
-        away = [
-            (np.asarray(result.values[name]) - truth[name.split(".")[-1]])
-            / np.asarray(result.standard_errors[name])
-            for name in names
-        ]
-        away = np.abs(np.hstack(away))
-        back += bool((away < 3).all())
-        z.append(away)
-        steps.append(result.steps)
-        spps.append(result.samples)
-        if not (away < 3).all():
-            print(f"  {model} {number}: {result.values}, {np.round(away, 1)}, {result.message}")
-    z = np.array(z)
-    rms = np.sqrt(np.nanmean(z**2))
-    print(
-        f"{model:18} {back:3} of {starts}   rms z {rms:.2f}   steps {np.mean(steps):.1f} "
-        f"({max(steps)})   samples {np.median(spps):.0f}   {np.mean(seconds):.1f} s",
-        flush=True,
-    )
+def starts():
+    """How many random starts come back to the truth; z: errors over standard errors."""
+    print("random starts that come back within 3 standard errors")
+    for model, truth in TRUTHS.items():
+        clean, names = picture(corner(bsdf(model, truth))), [f"ball.bsdf.{name}" for name in truth]
+        away, results = [], []
+        for number in range(STARTS):
+            rng = np.random.default_rng([number, len(model)])
+            noisy = clean * (1 + NOISE * rng.standard_normal(clean.shape))
+            scene = corner(bsdf(model, random_start(model, truth, rng)))
+            result = bk.refine(scene, noisy, names, seed=10_000 * number)
+            results.append(result)
+            away.append(
+                np.hstack(
+                    [
+                        (np.asarray(result.values[name]) - truth[name.split(".")[-1]])
+                        / np.asarray(result.standard_errors[name])
+                        for name in names
+                    ]
+                )
+            )
+            if not (np.abs(away[-1]) < 3).all():
+                print(f"  {number}: {result.values}, {np.round(away[-1], 1)}, {result.message}")
+        back = (np.abs(away) < 3).all(axis=1).sum()
+        counts = [result.steps for result in results]
+        print(
+            f"{model:18} {back} of {STARTS}   z {np.sqrt(np.nanmean(np.square(away))):.2f} (RMS)   "
+            f"{np.mean(counts):.1f} steps, at most {max(counts)}   "
+            f"{np.mean([result.seconds for result in results]):.1f} s",
+            flush=True,
+        )
 
 
 if __name__ == "__main__":
     use_variant()
-    for name in sys.argv[2:] or TRUTHS:
-        come_back(name, int(sys.argv[1]) if sys.argv[1:] else STARTS)
+    for table in sys.argv[1:] or ("gradients", "steps", "bounces", "starts"):
+        {"gradients": gradients, "steps": steps, "bounces": bounces, "starts": starts}[table]()

@@ -18,7 +18,7 @@ import numpy as np
 from brdfkit.refining.views import DERIVATIVE_COST
 
 BLOCK = 4  # pixels; a camera's filter ties the noise of neighbours together
-SHARE = 3.0  # of the cost of a step's pictures, what its derivatives may cost
+SHARE = 2.0  # of the cost of a step's pictures, what its derivatives may cost
 SMALLEST = 1e-5  # eigenvalue of H, of unit diagonal, below which there is noise
 
 

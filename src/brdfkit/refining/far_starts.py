@@ -8,10 +8,8 @@ import numpy as np
 from brdfkit.fitting.box_quadratic import minimise_in_box
 from brdfkit.fitting.starting_points import start_points
 from brdfkit.refining.equations import Residuals
-from brdfkit.refining.gauss_newton import search
+from brdfkit.refining.gauss_newton import few_samples, search
 
-RAYS = 2**17  # of a picture: rays are cheap beside beginning it
-FEW_SAMPLES = 4, 64  # per pixel, the least and the most
 BEST = 3  # points that go on
 FEW = 4  # steps that they take
 PER_NUMBER = 8  # points for each number in which pictures are not linear
@@ -28,17 +26,17 @@ def start(views, count, seed, report):
         return views.start
     points = [views.start] + [np.where(curved, 0, views.start) for _ in range(count - 1)]
     spread = start_points(None, views.start[None, curved][0], count, seed)
-    spp = int(np.clip(RAYS / len(views.reached), *FEW_SAMPLES))
+    spp = few_samples(views)
     tried = []
     for point, coordinates in zip(points, spread, strict=True):
         point = point.copy()
         point[curved] = coordinates
-        tried.append(_solve_linear(views, point, spp, seed))
+        tried.append(_solve_linear(views, point, spp // 2, seed))
         report()
     tried.sort(key=lambda residuals: residuals.error)
     ends = []
     for residuals in tried[:BEST]:
-        ends.append(search(views, residuals.x, FEW, 2 * spp, seed, 2 * spp).here)
+        ends.append(search(views, residuals.x, FEW, spp, seed).here)
         report()
     return min(ends, key=lambda residuals: residuals.error).x
 

@@ -9,7 +9,8 @@ from brdfkit.fitting.box_quadratic import minimise_in_box
 from brdfkit.fitting.stopped import Stopped
 from brdfkit.refining.equations import Equations, Residuals
 
-FIRST = 16  # samples per pixel of the first steps
+RAYS = 2**18  # of the first pictures: rays are cheap beside beginning one
+FEW_SAMPLES = 8, 128  # per pixel, the least and the most that they have
 GROWTH = 4, 16  # the least and the most by which the samples grow at once
 WITHIN = 0.1  # of the variance of the numbers: a step that is shorter gains less than the noise
 QUIET = 0.25  # of the error that is left: noise of rendering that is less adds 12 % to the errors
@@ -31,44 +32,51 @@ class Search:
     converged: bool = False
 
 
-def search(views, x, steps, samples, seed, first=FIRST, report=lambda: None):
+def few_samples(views):
+    """The samples per pixel of the first steps."""
+    return int(np.clip(RAYS / len(views.reached), *FEW_SAMPLES))
+
+
+def search(views, x, steps, samples, seed, report=lambda: None):
     """The `Search` from the coordinates `x` in at most so many `steps`, with at most so many
     `samples` per pixel.
 
     `report()` is called after each step. On Ctrl-C `Stopped` has the `Search` so far.
     """
-    spp, damping = min(first, samples), DAMPING[0]
+    spp, damping = min(few_samples(views), samples), DAMPING[0]
     found = Search(Residuals.at(views, x, spp, seed))
     found.history.append((spp, found.here.error))
     try:
         while damping < DAMPING[2]:
             found.about = Equations.at(views, found.here, seed)
+            grown = _grow(views, found.here, spp, samples)
             at_rest = _is_within_noise(views, found)
+            if at_rest and grown == spp:
+                found.converged = True
+                break
             if not at_rest:
                 if found.steps == steps:
                     break
-                found.here, damping, at_rest = _take_step(views, found, damping, seed)
-                found.steps += 1
+                step, damping = _find_step(views, found, damping, seed, grown == spp)
+                at_rest = step is None
+            if at_rest:
+                spp, seed, damping = grown, seed + 1, min(damping, DAMPING[0])
+                found.here = Residuals.at(views, found.here.x, spp, seed)
+            else:
+                found.here, found.steps = step, found.steps + 1
                 found.history.append((spp, found.here.error))
                 report()
-            if at_rest:
-                grown = _grow(views, found.here, spp, samples)
-                if grown > spp:
-                    spp, seed, damping = grown, seed + 1, min(damping, DAMPING[0])
-                    found.here = Residuals.at(views, found.here.x, spp, seed)
-                elif _is_within_noise(views, found):
-                    found.converged = True
-                    break
     except KeyboardInterrupt:
         raise Stopped(found) from None
     return found
 
 
-def _take_step(views, found, damping, seed):
-    """(the `Residuals` after a step, the damping to go on with, whether noise hides what it gains).
+def _find_step(views, found, damping, seed, last):
+    """(the `Residuals` after a step, the damping to go on with); None for the former where noise
+    hides whether any is a gain, and these are not the `last` samples.
 
-    Of a gain that noise hides the equations know more than two pictures, whose samples move with
-    the parameters: such a step is taken, too.
+    With these it is taken all the same: the equations know more of a small gain than two pictures,
+    whose samples move with the parameters.
     """
     while True:
         step = step_in_bounds(views, found, damping)
@@ -78,7 +86,8 @@ def _take_step(views, found, damping, seed):
         hidden = gain < SURE * noise and won > -SURE * noise
         if won > 0 or hidden or damping >= DAMPING[2]:
             well = hidden or won > 0.75 * gain
-            return trial, max(damping * (BETTER if well else 1), DAMPING[1]), hidden
+            damping = max(damping * (BETTER if well else 1), DAMPING[1])
+            return trial if won > 0 or last else None, damping
         damping *= WORSE
 
 

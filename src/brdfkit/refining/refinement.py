@@ -25,10 +25,11 @@ class Refinement(Shown):
         What was found, by the names of `mitsuba.traverse` without a ``.value`` at the end; a
         colour or a vector is a tuple.
     loss : float
-        E, the RMS difference of pixels relative to their brightness, the noise of rendering taken
-        out; 0 where nothing else is left.
+        E, the RMS difference of pixels as a screen shows them, by the slope of sRGB's curve, in
+        shares of white (the brightest hundredth), the noise of rendering taken out; 0 where nothing
+        else is left.
     noise : float
-        The RMS noise of the last rendering, relative as the loss.
+        The RMS noise of the last rendering, in units of the loss.
     samples : int
         Samples per pixel of the last rendering.
     steps : int
@@ -156,7 +157,7 @@ class Refinement(Shown):
         )
         several = "s" * (self.steps != 1)
         return Document(
-            f"Refined: what is left is {100 * self.loss:.2g} % of a pixel (RMS)",
+            f"Refined: what is left is {100 * self.loss:.2g} % of white (RMS)",
             (
                 Table(rows),
                 *(Paragraph(note) for note in self.notes),

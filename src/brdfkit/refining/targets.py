@@ -9,7 +9,8 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.host.picture_file import read_pixels
 
 LINEAR = ".exr", ".hdr", ".pfm", ".rgbe"
-DARK = 0.05  # of the mean brightness, added to a pixel's: its relative difference is no noise then
+DARK = 0.02  # of the mean brightness, added to a pixel's: no difference counts without end then
+WHITE = 0.99  # the share of numbers that are darker than white
 CLIPPED = 1e-3  # the share of numbers that equal the largest: not by chance
 
 
@@ -64,7 +65,7 @@ def _read(picture, name, linearise):
     if not pixels.max() > 0:
         raise BrdfkitError(f"{name}: it is black; nothing can be learned from it.")
     clipped = _clipped(pixels)
-    weights = np.where(clipped, 0, 1 / (_neighbourhood(pixels) + DARK * pixels.mean()) ** 2)
+    weights = np.where(clipped, 0, _weights(pixels))
     return Target(pixels, weights, float(clipped.mean()))
 
 
@@ -92,6 +93,19 @@ def _clipped(pixels):
     """Which numbers are at the end of what a camera could hold."""
     at_end = pixels == pixels.max()
     return at_end if at_end.mean() > CLIPPED and at_end.sum() > 8 else np.zeros_like(at_end)
+
+
+def _weights(pixels):
+    """What the square of a pixel's difference counts, by the slope of sRGB's curve at the pixel, as
+    a screen shows it; relative to the pixel where it is brighter than white.
+
+    The curve itself would bias what is rendered with noise; its slope at the picture does not.
+    """
+    white = np.quantile(pixels, WHITE) or pixels.max()
+    x = (_neighbourhood(pixels) + DARK * pixels.mean()) / white
+    shown = np.minimum(x, 1)
+    slope = np.where(shown <= 0.0031308, 12.92, 1.055 / 2.4 * shown ** (1 / 2.4 - 1))
+    return (slope / (white * np.maximum(x, 1))) ** 2
 
 
 def _neighbourhood(pixels):
