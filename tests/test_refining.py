@@ -7,11 +7,12 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.refining import gauss_newton
-from brdfkit.refining.equations import Residuals
+from brdfkit.refining.equations import Equations, Residuals
 from brdfkit.refining.subject import integrator_of, load_subject
 from brdfkit.refining.targets import read_targets
 from brdfkit.refining.unknowns import choose
 from brdfkit.refining.views import Views
+from brdfkit.rendering.scenes.ball import ball
 
 SIZE = 20
 TRUTH = {
@@ -32,10 +33,18 @@ def mi():
     return mitsuba
 
 
+def bsdf_of(model, values):
+    """The dictionary of a model's BSDF; tuples are colours."""
+    colours = {k: {"type": "rgb", "value": v} for k, v in values.items() if isinstance(v, tuple)}
+    return {"type": model, **values, **colours}
+
+
+TRUTH_BSDF = bsdf_of("ggx", TRUTH)
+
+
 def corner(mi, values, integrator="path", size=SIZE):
     """A ball before a coloured wall, which throws light back on it."""
     at = mi.ScalarTransform4f
-    colours = {k: {"type": "rgb", "value": v} for k, v in values.items() if isinstance(v, tuple)}
     return {
         "type": "scene",
         "integrator": {"type": integrator, "max_depth": 4},
@@ -65,7 +74,7 @@ def corner(mi, values, integrator="path", size=SIZE):
             "type": "sphere",
             "center": [0, 0, 0.7],
             "radius": 0.7,
-            "bsdf": {"type": "ggx", **values, **colours},
+            "bsdf": bsdf_of("ggx", values),
         },
         "lamp": {
             "type": "rectangle",
@@ -226,3 +235,107 @@ def test_numbers_that_nothing_shows_are_said(mi, picture):
     scene["ball"]["center"] = [0, -50, 0]  # behind the camera
     with pytest.raises(bk.BrdfkitError, match="no picture changes"):
         bk.refine(scene, picture, ["ball.bsdf.alpha_u"], starts=1, samples=16)
+
+
+# A ball in an empty scene, and what else may be searched
+
+
+def alone(mi, bsdf, integrator="path", **more):
+    """A ball under an even sky, seen by a camera."""
+    entries = corner(mi, TRUTH, integrator)
+    del entries["wall"], entries["floor"]
+    entries["ball"]["bsdf"] = bsdf
+    return {**entries, "sky": {"type": "constant", "radiance": 0.5}, **more}
+
+
+def noisy(mi, scene, spp=512):
+    """Its pictures, by all of its cameras, with noise of 1 %."""
+    loaded, rng = mi.load_dict(scene), np.random.default_rng(3)
+    clean = [
+        np.array(mi.render(loaded, sensor=i, spp=spp, seed=40 + i))
+        for i in range(len(loaded.sensors()))
+    ]
+    return [picture * (1 + 0.01 * rng.standard_normal(picture.shape)) for picture in clean]
+
+
+def require_back(result, truth):
+    """That the values are within 3.5 standard errors of the truth, and these below 20 %."""
+    for name, known in truth.items():
+        error = np.asarray(result.standard_errors[name])
+        assert (np.abs(np.asarray(result.values[name]) - known) < 3.5 * error).all(), name
+        assert (error < 0.2 * np.abs(known)).all(), name
+
+
+def test_signed_numbers_come_back(mi):
+    """Weights of Koenderink's basis, one of them below 0, from where it is 0."""
+    truth = {"ball.bsdf.a_0_0_0": 0.5, "ball.bsdf.a_1_1_1": -0.1}
+    bsdf = {"type": "koenderink", "order": 1, "a_0_0_0": 0.5, "a_1_1_1": -0.1}
+    (picture,) = noisy(mi, alone(mi, bsdf))
+    begin = alone(mi, bsdf | {"a_0_0_0": 0.8, "a_1_1_1": 0.0})
+    require_back(bk.refine(begin, picture, samples=256), truth)
+
+
+def test_media_are_searched_by_differences(mi):
+    """prbvolpath has no derivatives forwards."""
+    box = {"type": "cube", "bsdf": {"type": "null"}, "to_world": mi.ScalarTransform4f().scale(0.5)}
+    medium = {"type": "homogeneous", "sigma_t": 2.0, "albedo": 0.8}
+
+    def smoke(**changed):
+        scene = alone(mi, TRUTH_BSDF, "volpath")
+        return {**scene, "ball": {**box, "interior": {**medium, **changed}}}
+
+    (picture,) = noisy(mi, smoke(), 256)
+    name = "ball.interior_medium.sigma_t"
+    begin = mi.load_dict(smoke(sigma_t=1.0), optimize=False)
+    result = bk.refine(begin, picture, {f"{name}.value": (0.1, 10)}, starts=1, samples=64)
+    require_back(result, {name: 2.0})
+
+
+def test_two_cameras_and_what_none_of_them_sees(mi):
+    scene = alone(mi, TRUTH_BSDF)
+    to_side = mi.ScalarTransform4f().look_at([4, 0, 1], [0, 0, 0.7], [0, 0, 1])
+    scene["other"] = {**scene["sensor"], "to_world": to_side}
+    scene["hidden"] = {**scene["ball"], "center": [0, -50, 0], "bsdf": {"type": "ward"}}
+    pictures = noisy(mi, scene)
+    alpha, hidden = "ball.bsdf.alpha_u", "hidden.bsdf.alpha_u"
+    begin = {**scene, "ball": {**scene["ball"], "bsdf": {**TRUTH_BSDF, "alpha_u": 0.2}}}
+    result = bk.refine(begin, pictures, [alpha, f"{hidden}.value"], starts=2, samples=256)
+    require_back(result, {alpha: TRUTH["alpha_u"]})
+    assert result.values[hidden] == pytest.approx(0.2)  # where it began
+    assert np.isnan(result.standard_errors[hidden])
+    assert any(hidden in note for note in result.notes)
+    assert len(result.pictures) == 2
+
+
+def test_a_material_begins_on_the_ball_of_render(mi, tmp_path):
+    truth = {"diffuse_reflectance": (0.4, 0.2, 0.1)}
+    named = bsdf_of("lambert", truth)
+    clean = np.array(mi.render(mi.load_dict(ball(named, (16, 16))), spp=512, seed=8))
+    mi.Bitmap(clean.astype(np.float32)).write(str(tmp_path / "ball.exr"))
+    model = bk.models()["lambert"](diffuse_reflectance=0.7)
+    result = bk.refine(model, tmp_path / "ball.exr", samples=256)
+    error = np.array(result.fit.standard_errors["diffuse_reflectance"])
+    away = np.array(result.fit.values["diffuse_reflectance"]) - truth["diffuse_reflectance"]
+    assert (np.abs(away) < 3.5 * error).all()
+    assert result.fit.loss_name == "rendered"
+
+
+def test_steps_cost_less_than_four_pictures(mi, picture):
+    """By samples, of which a derivative's take as long as two or three of a picture's."""
+    found = views(mi, picture, TRUTH)
+    here = Residuals.at(found, found.start, 128, 0)
+    assert found.renders == pytest.approx(128)
+    Equations.at(found, here, 0)
+    Residuals.at(found, found.start, 128, 0)
+    assert found.renders < 4 * 128 + 128
+
+
+def test_names_are_told_and_values_below_0_need_bounds(mi, picture):
+    scene = mi.load_dict(corner(mi, TRUTH), optimize=False)
+    for name in ("ball.bsdf.f0", "ball.bsdf.f0.value"):
+        (one,) = choose(mi.traverse(scene), [name])
+        assert one.name == "ball.bsdf.f0"
+    low = corner(mi, TRUTH)
+    low["sensor"]["principal_point_offset_x"] = -0.1
+    with pytest.raises(bk.BrdfkitError, match="give its bounds"):
+        bk.refine(low, picture, ["sensor.principal_point_offset_x"])

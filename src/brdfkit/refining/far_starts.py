@@ -7,8 +7,9 @@ import numpy as np
 
 from brdfkit.fitting.box_quadratic import minimise_in_box
 from brdfkit.fitting.starting_points import start_points
+from brdfkit.fitting.stopped import Stopped
 from brdfkit.refining.equations import Residuals
-from brdfkit.refining.gauss_newton import few_samples, search
+from brdfkit.refining.gauss_newton import Search, few_samples, search
 
 BEST = 3  # points that go on
 FEW = 4  # steps that they take
@@ -19,26 +20,33 @@ def start(views, count, seed, report):
     """The coordinates of the best of `count` points after some steps; the scene's own is one.
 
     `report()` is called after each point. Without any that pictures are not linear in, the scene's
-    own point is best.
+    own point is best. On Ctrl-C `Stopped` has a `Search` at the best so far.
     """
     curved = views.curved
     if count == 1 or not curved.any():
         return views.start
-    points = [views.start] + [np.where(curved, 0, views.start) for _ in range(count - 1)]
     spread = start_points(None, views.start[None, curved][0], count, seed)
-    spp = few_samples(views)
-    tried = []
-    for point, coordinates in zip(points, spread, strict=True):
-        point = point.copy()
-        point[curved] = coordinates
-        tried.append(_solve_linear(views, point, spp // 2, seed))
-        report()
-    tried.sort(key=lambda residuals: residuals.error)
-    ends = []
-    for residuals in tried[:BEST]:
-        ends.append(search(views, residuals.x, FEW, spp, seed).here)
-        report()
-    return min(ends, key=lambda residuals: residuals.error).x
+    spp, tried, ends = few_samples(views), [], []
+    try:
+        for coordinates in spread:
+            point = views.start.copy()
+            point[curved] = coordinates
+            tried.append(_solve_linear(views, point, spp // 2, seed))
+            report()
+        tried.sort(key=lambda residuals: residuals.error)
+        for residuals in tried[:BEST]:
+            ends.append(search(views, residuals.x, FEW, spp, seed).here)
+            report()
+    except KeyboardInterrupt:
+        if not tried:
+            raise
+        raise Stopped(Search(_best(ends or tried))) from None
+    return _best(ends).x
+
+
+def _best(several):
+    """The `Residuals` of the least error."""
+    return min(several, key=lambda residuals: residuals.error)
 
 
 def _solve_linear(views, x, spp, seed):

@@ -56,7 +56,8 @@ def integrator_of(scene):
         raise BrdfkitError('the scene has no integrator; add {"type": "prb"}.')
     kind = integrator.class_name() if type(integrator).__module__ == "mitsuba" else ""
     if kind in DIFFERENTIABLE:
-        return mi.load_dict({"type": DIFFERENTIABLE[kind], **_depths(str(integrator), kind)})
+        how = {"hide_emitters": integrator.hide_emitters, **_depths(str(integrator), kind)}
+        return mi.load_dict({"type": DIFFERENTIABLE[kind], **how})
     if kind:
         raise BrdfkitError(
             f"the integrator {kind} has no derivatives; choose prb, prbvolpath, or one of "

@@ -122,9 +122,7 @@ def _unknown(parameters, key, limits):
     if limits is not None:
         low, high = _checked(key, limits, low if model else -np.inf, high)
     elif (start < low).any():
-        raise BrdfkitError(
-            f"{key}: it begins below 0; give bounds, as {{{_short(key)!r}: (-1, 1)}}."
-        )
+        raise BrdfkitError(f"{key}: it begins below 0; give its bounds, as {{name: (low, high)}}.")
     start = np.clip(start, low, high)
     return Unknown(key, _short(key), owner, parameter, model, start, colour, linear, low, high, log)
 
