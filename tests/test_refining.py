@@ -8,6 +8,7 @@ import pytest
 import brdfkit as bk
 from brdfkit.refining import gauss_newton
 from brdfkit.refining.equations import Equations, Residuals
+from brdfkit.refining.leverage import LEAST, sum_by_block, without_leverage
 from brdfkit.refining.subject import integrator_of, load_subject
 from brdfkit.refining.targets import read_targets
 from brdfkit.refining.unknowns import choose
@@ -299,7 +300,7 @@ def test_two_cameras_and_what_none_of_them_sees(mi):
     pictures = noisy(mi, scene)
     alpha, hidden = "ball.bsdf.alpha_u", "hidden.bsdf.alpha_u"
     begin = {**scene, "ball": {**scene["ball"], "bsdf": {**TRUTH_BSDF, "alpha_u": 0.2}}}
-    result = bk.refine(begin, pictures, [alpha, f"{hidden}.value"], starts=2, samples=256)
+    result = bk.refine(begin, pictures, [alpha, f"{hidden}.value"], starts=2, samples=128)
     require_back(result, {alpha: TRUTH["alpha_u"]})
     assert result.values[hidden] == pytest.approx(0.2)  # where it began
     assert np.isnan(result.standard_errors[hidden])
@@ -328,6 +329,25 @@ def test_steps_cost_less_than_four_pictures(mi, picture):
     Equations.at(found, here, 0)
     Residuals.at(found, found.start, 128, 0)
     assert found.renders < 4 * 128 + 128
+
+
+def test_scores_are_without_leverage():
+    """Beside the formula of linear regression, Jᵀ (1 - J (JᵀJ)⁻¹ Jᵀ)^(-1/2) r, block by block."""
+    rng = np.random.default_rng(4)
+    index = np.repeat(np.arange(6), 3)
+    jacobian, residuals = rng.standard_normal((2, 18, 3)), rng.standard_normal((18, 3))
+    jacobian[:, index == 2] *= 10  # a highlight
+    scores = sum_by_block((jacobian * residuals).sum(axis=2), (index, 6))
+    found = without_leverage(scores, jacobian, (index, 6))
+    flat = jacobian.reshape(2, -1)
+    inverse = np.linalg.inv(flat @ flat.T)
+    for block in range(6):
+        own = jacobian[:, index == block].reshape(2, -1)
+        values, vectors = np.linalg.eigh(np.eye(9) - own.T @ inverse @ own)
+        root = vectors / np.sqrt(np.maximum(values, LEAST)) @ vectors.T
+        expected = own @ root @ residuals[index == block].ravel()
+        np.testing.assert_allclose(found[:, block], expected, rtol=1e-2)
+    assert (np.abs(found[:, 2]) > 2 * np.abs(scores[:, 2])).any()
 
 
 def test_names_are_told_and_values_below_0_need_bounds(mi, picture):

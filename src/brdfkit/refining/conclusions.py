@@ -53,13 +53,12 @@ def _certify(views, found):
     seen = np.diagonal(hessian) > 0
     scale = np.where(seen, scale, 1)
     blocks = scores.shape[1]
-    correction = np.sqrt(blocks / max(1, blocks - len(slopes)))
     at = np.concatenate(views.values(found.here.x))
     return conclude(
         views.names,
         free,
         at,
-        scores * scale[:, None] * correction,
+        scores * scale[:, None],
         hessian * np.outer(scale, scale),
         scale * slopes[free],
         int(np.count_nonzero(views.weights)),

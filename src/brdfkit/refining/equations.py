@@ -15,9 +15,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.refining.leverage import sum_by_block, without_leverage
 from brdfkit.refining.views import DERIVATIVE_COST
 
-BLOCK = 4  # pixels; a camera's filter ties the noise of neighbours together
 SHARE = 2.0  # of the cost of a step's pictures, what its derivatives may cost
 SMALLEST = 1e-5  # eigenvalue of H, of unit diagonal, below which there is noise
 
@@ -58,7 +58,7 @@ class Residuals:
 @dataclass(frozen=True)
 class Equations:
     """E² to second order: `gradient` (n,), half of E²'s, `hessian` (n, n), and `scores`
-    (n, blocks), what blocks of pixels add to the gradient."""
+    (n, blocks), what blocks of pixels add to the gradient, without their leverage."""
 
     gradient: np.ndarray
     hessian: np.ndarray
@@ -73,8 +73,9 @@ class Equations:
         weighed = views.weights * a
         hessian = weighed.reshape(len(a), -1) @ b.reshape(len(a), -1).T.astype(float)
         per_pixel = (weighed * here.b).sum(axis=2) + (views.weights * b * here.a).sum(axis=2)
-        scores = _by_block(per_pixel / 2, views.targets)
-        return cls(scores.sum(axis=1), (hessian + hessian.T) / 2, scores)
+        scores = sum_by_block(per_pixel / 2, views.blocks)
+        lone = without_leverage(scores, (a + b) / 2 * np.sqrt(views.weights), views.blocks)
+        return cls(scores.sum(axis=1), (hessian + hessian.T) / 2, lone)
 
     def gain(self, step):
         """How much less E² should be after a step (n,)."""
@@ -97,18 +98,3 @@ class Equations:
         return float(
             g @ np.linalg.pinv(covariance, rcond=1e-6, hermitian=True) @ g / max(1, len(g))
         )
-
-
-def _by_block(values, targets):
-    """Sums of `values` (n, pixels) over blocks of pixels (n, blocks), of all pictures."""
-    found, at = [], 0
-    for target in targets:
-        width, height = target.size
-        rows, columns = np.arange(height) // BLOCK, np.arange(width) // BLOCK
-        across = columns.max() + 1
-        index = (rows[:, None] * across + columns).ravel()
-        count = width * height
-        for_one = [np.bincount(index, weights=row[at : at + count]) for row in values]
-        found.append(np.array(for_one))
-        at += count
-    return np.concatenate(found, axis=1)

@@ -57,8 +57,9 @@ class Refinement(Shown):
     Notes
     -----
     Standard errors hold the noise of the pictures and of rendering, and what the scene cannot
-    explain, as far as it differs from one block of 4 × 4 pixels to the next. They suppose that the
-    scene is right but for what is searched: a camera or a light that is off, is not in them.
+    explain, as far as it differs from one block of pixels to the next, which is as wide as the
+    camera's filter. They suppose that the scene is right but for what is searched: a camera or a
+    light that is off, is not in them.
     """
 
     values: dict[str, Value]

@@ -5,6 +5,7 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.jit.first_error import first_error
+from brdfkit.refining.leverage import number_blocks
 
 DERIVATIVE_COST = 2.3  # of a picture of derivatives, in pictures
 STEP = 0.05  # of differences, in coordinates, or of what has no bounds relative to it
@@ -29,6 +30,7 @@ class Views:
         self.reached = self._joined([target.pixels for target in targets])
         self.weights = self._joined([target.weights for target in targets])
         self.weights /= np.count_nonzero(self.weights)
+        self.blocks = number_blocks(scene)
         self.renders = 0.0  # samples per pixel, those of derivatives counted by their time
 
     def values(self, x):
