@@ -152,6 +152,9 @@ def test_the_fit_is_the_material(mi, found):
     assert fit.values["f0"] == pytest.approx(0.6)
     assert fit.standard_errors["alpha_u"] == result.standard_errors["ball.bsdf.alpha_u"]
     assert np.isnan(fit.standard_errors["f0"])
+    assert np.isnan(fit.aic)
+    with pytest.raises(bk.BrdfkitError, match="found by refine"):
+        bk.bootstrap(fit, "plaster")
     assert pickle.loads(pickle.dumps(result)) == result
     other = mi.load_dict(corner(mi, TRUTH), optimize=False)
     result.put_into(other)

@@ -25,6 +25,11 @@ class Refit:
     samples: Any
 
     def __post_init__(self):
+        if self.fit.loss_name == "rendered":
+            raise BrdfkitError(
+                f"{self.fit.name} was found by refine, from pictures of a scene and not from "
+                "samples; fit it to a measured material first."
+            )
         if self.fit.loss_name not in losses:
             raise BrdfkitError(
                 f"{self.fit.name} was fitted by a loss of your own, {self.fit.loss_name}, which a "

@@ -29,7 +29,7 @@ class Fit(Shown):
     data : str
         Name of the measured material.
     loss_name : str
-        Name of the loss, one of `brdfkit.losses`.
+        Name of the loss, one of `brdfkit.losses`, or "rendered" by `refine`.
     loss : float
         E of that loss, in its units.
     samples : int
@@ -63,7 +63,7 @@ class Fit(Shown):
     misfit of the model is larger than the noise: of a whole table, standard errors say how sharply
     the loss determines the parameters, not how near they are to a truth. Intervals are linear: of
     parameters that trade off, or a highlight of a dozen noisy samples, 85 to 90 % hold the truth.
-    Fits of pictures have no standard errors: their pixels show the same samples.
+    Fits by the loss "picture" have no standard errors: their pixels show the same samples.
     """
 
     model: Model
@@ -164,7 +164,7 @@ class Fit(Shown):
     @property
     def _samplewise(self) -> Certainty | None:
         """The certainty of a fit whose criteria mean something: by samples, not by pictures."""
-        return None if self.loss_name == "picture" else self.certainty
+        return None if self.loss_name in ("picture", "rendered") else self.certainty
 
     def eval(self, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
         """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3)."""

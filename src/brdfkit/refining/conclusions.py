@@ -34,7 +34,12 @@ def conclude_search(views, found, seconds, interrupted=False):
         message=message,
         history=tuple((int(spp), float(error)) for spp, error in found.history),
         at_bounds=bounds,
-        notes=(*certainty.undetermined, *certainty.trades, *_notes_on_pictures(views)),
+        notes=(
+            *certainty.undetermined,
+            *certainty.trades,
+            *_notes_on_pictures(views),
+            *_notes_on_noise(views, found.here),
+        ),
         certainty=certainty,
         fits={},
         pictures=tuple(views.as_pictures((found.here.a + found.here.b) / 2 + views.reached)),
@@ -93,6 +98,13 @@ def _notes_on_pictures(views):
         f"{100 * np.mean(clipped):.2g} % of the pixels are clipped, at the largest number of their "
         "picture; they do not count",
     )
+
+
+def _notes_on_noise(views, here):
+    """What one should know of the rendering's own noise."""
+    if here.noise(views) < max(here.error, 0):
+        return ()
+    return ("rendering is noisier than what is left; with more samples, errors would be smaller",)
 
 
 def _fits(views, result):
