@@ -193,12 +193,64 @@ def test_ctrl_c_keeps_the_best(mi, picture, monkeypatch):
     assert max(best.values["ball.bsdf.diffuse_reflectance"]) < 0.9
 
 
+def test_the_place_of_a_lamp_is_found_by_differences(mi, picture):
+    """Of which Mitsuba's path tracer has no derivatives, alone or beside others."""
+    scene = corner(mi, TRUTH)
+    scene["lamp"] = {"type": "point", "position": [0.8, -1.2, 2.5], "intensity": 10.0}
+    reached = np.array(mi.render(mi.load_dict(scene), spp=256, seed=5))
+    reached *= 1 + 0.01 * np.random.default_rng(1).standard_normal(reached.shape)
+    scene["lamp"] |= {"position": [0.5, -1.5, 2.2], "intensity": 8.0}
+    before = repr(scene)
+    result = bk.refine(scene, reached, ["lamp.position", "lamp.intensity"], samples=128)
+    error = np.array(result.standard_errors["lamp.position"])
+    assert (np.abs(np.array(result.values["lamp.position"]) - [0.8, -1.2, 2.5]) < 4 * error).all()
+    assert error.max() < 0.05
+    assert repr(scene) == before
+
+
+def test_a_far_start_does_not_fall_into_a_mirror(mi, picture):
+    """A first step across all roughnesses ended at the smallest, under a lamp too dim."""
+    values = TRUTH | {"alpha_u": 0.7, "specular_reflectance": (0.1,) * 3}
+    dim = corner(mi, values)
+    dim["lamp"]["emitter"]["radiance"]["value"] = [4.0] * 3
+    names = [f"ball.bsdf.{name}" for name in ("alpha_u", "specular_reflectance")]
+    names.append("lamp.emitter.radiance")
+    result = bk.refine(dim, picture, names, samples=64, starts=1)
+    assert result.values["ball.bsdf.alpha_u"] == pytest.approx(TRUTH["alpha_u"], abs=0.03)
+
+
+def test_a_camera_that_is_off_is_said(mi, picture):
+    off = corner(mi, TRUTH)
+    off["sensor"]["fov"] = 33
+    how = {"starts": 1, "samples": 16}
+    (note,) = bk.refine(off, picture, ["ball.bsdf.diffuse_reflectance"], **how).notes
+    assert "the camera, a light or a shape is off" in note
+    noisy = picture * (1 + 0.3 * np.random.default_rng(2).standard_normal(picture.shape))
+    result = bk.refine(corner(mi, TRUTH), noisy, ["ball.bsdf.diffuse_reflectance"], **how)
+    assert result.loss > 0.02
+    assert result.notes == ()
+
+
+def test_a_crop_of_few_pixels_has_no_standard_errors(mi, picture):
+    scene = corner(mi, TRUTH)
+    at = {"crop_width": 2, "crop_height": 1, "crop_offset_x": 8, "crop_offset_y": 9}
+    scene["sensor"]["film"] |= at
+    part = picture[9:10, 8:10]
+    result = bk.refine(scene, part, ["ball.bsdf.diffuse_reflectance"], samples=16)
+    assert "too few pixels for standard errors" in " ".join(result.notes)
+    assert np.isnan(result.standard_errors["ball.bsdf.diffuse_reflectance"]).all()
+    scene["sensor"]["film"] |= {"crop_width": 1, "crop_height": 1}
+    with pytest.raises(bk.BrdfkitError, match="8 numbers are more than the 3 values"):
+        bk.refine(scene, picture[9:10, 8:9])
+
+
 BAD = {
     "another size": (lambda p: p[:-1], {}, "20 × 19 pixels"),
     "two for one camera": (lambda p: [p, p], {}, "one picture for each sensor: 2 for 1"),
     "8 bits": (lambda p: np.uint8(np.clip(p, 0, 1) * 255), {}, "8 bits"),
     "a JPEG": (lambda p: "photo.jpg", {}, "8 bits"),
     "no file": (lambda p: "missing.exr", {}, "no such picture"),
+    "one channel": (lambda p: p[..., 0], {}, "1 channel, and a camera's film 3"),
     "not finite": (lambda p: np.where(p > p.mean(), np.nan, p), {}, "not finite"),
     "black": (lambda p: 0 * p, {}, "black"),
     "no picture": (lambda p: [], {}, "no picture"),

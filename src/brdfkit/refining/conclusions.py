@@ -11,6 +11,9 @@ from brdfkit.refining.refinement import Refinement
 from brdfkit.refining.unknowns import numbers_in
 from brdfkit.version import versions
 
+UNLIKE = 0.05  # of white, what may be left without a word
+ALIKE = 0.5  # the correlation of neighbours beyond which what is left is no noise
+
 
 def conclude_search(views, found, seconds, interrupted=False):
     """The `Refinement` of a `Search` on `Views`, after so many `seconds`."""
@@ -39,6 +42,7 @@ def conclude_search(views, found, seconds, interrupted=False):
             *certainty.trades,
             *_notes_on_pictures(views),
             *_notes_on_noise(views, found.here),
+            *_notes_on_rest(views, found),
         ),
         certainty=certainty,
         fits={},
@@ -50,7 +54,7 @@ def conclude_search(views, found, seconds, interrupted=False):
 def _certify(views, found):
     """The `Certainty` of the values, by blocks of pixels as samples."""
     slopes = views.slopes(found.here.x)
-    if found.about is None:
+    if found.about is None or _blocks_lack(found):
         return Certainty((), (), (), (), (), 0, len(slopes))
     free = free_of_bounds(views, found) & ~views.is_on_bound(found.here.x)
     hessian, scores = found.about.hessian[np.ix_(free, free)], found.about.scores[free]
@@ -105,6 +109,34 @@ def _notes_on_noise(views, here):
     if here.noise(views) < max(here.error, 0):
         return ()
     return ("rendering is noisier than what is left; with more samples, errors would be smaller",)
+
+
+def _blocks_lack(found):
+    """Whether the pictures have too few blocks of pixels to tell how the gradient varies."""
+    return found.about.scores.shape[1] <= len(found.about.scores)
+
+
+def _notes_on_rest(views, found):
+    """What one should know of what is left."""
+    if found.about is not None and _blocks_lack(found):
+        return ("the pictures have too few pixels for standard errors",)
+    if found.here.error > UNLIKE**2 and _share_of_neighbours(views, found.here) > ALIKE:
+        return (
+            "what is left is no noise, for neighbouring pixels differ alike: either the material "
+            "is none that the model can be, or the camera, a light or a shape is off",
+        )
+    return ()
+
+
+def _share_of_neighbours(views, here):
+    """The correlation of what is left with what is left one pixel to the right, from -1 to 1."""
+    root = np.sqrt(views.weights)
+    together = alone = 0.0
+    halves = (views.as_pictures(root * half) for half in (here.a, here.b))
+    for a, b in zip(*halves, strict=True):
+        together += (a[:, :-1] * b[:, 1:] + a[:, 1:] * b[:, :-1]).sum() / 2
+        alone += (a[:, :-1] * b[:, :-1] + a[:, 1:] * b[:, 1:]).sum() / 2
+    return together / alone if alone > 0 else 0.0
 
 
 def _fits(views, result):

@@ -14,6 +14,7 @@ FEW_SAMPLES = 8, 128  # per pixel, the least and the most that they have
 GROWTH = 4, 16  # the least and the most by which the samples grow at once
 WITHIN = 0.1  # of the variance of the numbers: a step that is shorter gains less than the noise
 QUIET = 0.25  # of the error that is left: noise of rendering that is less adds 12 % to the errors
+REACH = 0.25  # of the way between bounds: farther off no derivative speaks of what is not linear
 SURE = 2  # times its noise, a gain is no chance
 DAMPING = 1e-2, 1e-6, 1e4  # the first, the least and the most
 BETTER, WORSE = 0.1, 8  # factors of the damping
@@ -95,7 +96,9 @@ def step_in_bounds(views, found, damping):
     """The best step within the bounds by the damped equations."""
     hessian, scale = found.about.scaled()
     damped = hessian + damping * np.eye(len(scale))
-    low, high = views.least - found.here.x, views.most - found.here.x
+    reach = np.where(views.curved, REACH, np.inf)
+    low = np.maximum(views.least - found.here.x, -reach)
+    high = np.minimum(views.most - found.here.x, reach)
     step = minimise_in_box(
         damped[None],
         (found.about.gradient * scale)[None],

@@ -20,7 +20,7 @@ from brdfkit.refining.refinement import Refinement
 from brdfkit.refining.subject import integrator_of, load_subject
 from brdfkit.refining.targets import read_targets
 from brdfkit.refining.unknowns import MOST, choose
-from brdfkit.refining.views import Views
+from brdfkit.refining.views import Views, quiet_samplers
 
 Pictures = NDArray | str | Path | Iterable[NDArray | str | Path]
 
@@ -109,8 +109,9 @@ def refine(
     count = usual_count(views) if starts is None else int(starts)
     report = _counter(progress, (count + BEST if count > 1 else 0) + steps)
     try:
-        x = start(views, count, seed, report)
-        found = search(views, x, steps, samples, seed + 100, report=report)
+        with quiet_samplers():
+            x = start(views, count, seed, report)
+            found = search(views, x, steps, samples, seed + 100, report=report)
     except Stopped as stop:
         best = conclude_search(views, stop.best, time.perf_counter() - began, interrupted=True)
         raise Interrupted(best, f"refine: the best so far leaves {best.loss:.3g}") from None
@@ -137,6 +138,12 @@ def _views(scene, pictures, parameters, linearise):
     numbers = sum(len(unknown.start) for unknown in unknowns)
     if numbers > MOST:
         raise BrdfkitError(f"refine: {numbers} numbers are more than {MOST}; name fewer.")
+    values = sum(np.count_nonzero(target.weights) for target in targets)
+    if values < numbers:
+        raise BrdfkitError(
+            f"refine: {numbers} numbers are more than the {values} values of the pictures that "
+            "count; give larger pictures, or name fewer."
+        )
     return Views(loaded, integrator_of(loaded), targets, names, unknowns)
 
 

@@ -102,7 +102,8 @@ def choose(parameters, asked):
             raise no_such("parameter", name, known, "the scene")
     if not bounds:
         raise BrdfkitError("parameters is empty; name some, as mitsuba.traverse does.")
-    return [_unknown(parameters, known[_short(n)], limits) for n, limits in bounds.items()]
+    once = {known[_short(name)]: limits for name, limits in bounds.items()}
+    return [_unknown(parameters, key, limits) for key, limits in once.items()]
 
 
 def searchable(parameters):
@@ -115,7 +116,8 @@ def _unknown(parameters, key, limits):
     """The `Unknown` of an entry, within the `limits`, None for the usual ones."""
     value, (model, owner, parameter) = parameters[key], _model_of(parameters, key)
     start, colour = _numbers(value), type(value).__name__.startswith("Color")
-    low, high, log, linear = 0.0, np.inf, False, colour
+    low = -np.inf if type(value).__name__.startswith(("Point", "Vector")) else 0.0
+    high, log, linear = np.inf, False, colour
     if model:
         declared = model.parameters[parameter]
         (low, high), log, linear = declared.bounds, declared.log, declared.linear

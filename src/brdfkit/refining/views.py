@@ -1,5 +1,7 @@
 """The pictures of a scene at given parameters, and their derivatives, beside those to reach."""
 
+from contextlib import contextmanager
+
 import drjit as dr
 import numpy as np
 
@@ -10,6 +12,7 @@ from brdfkit.refining.leverage import number_blocks
 DERIVATIVE_COST = 2.3  # of a picture of derivatives, in pictures
 STEP = 0.05  # of differences, in coordinates, or of what has no bounds relative to it
 BACKWARD = "PRBVolpathIntegrator", "BasicVolumetricPrimitiveRadianceFieldIntegrator"
+UNATTACHED = "not attached to the AD graph"  # what Mitsuba says of a picture without derivatives
 ON_BOUND = 1e-6  # a coordinate so near to a bound is on it
 
 
@@ -91,10 +94,9 @@ class Views:
 
     def derivatives(self, x, spp, seed):
         """The derivatives (n, pixels, channels) of the pixels by the coordinates."""
-        derive = self._differences if self.integrator_is_backward else self._forward
         found = np.zeros((len(x), *self.reached.shape), np.float32)
         for numbers in self.tangents:
-            picture = derive(x, numbers, spp, seed)
+            picture = self._derivative(x, numbers, spp, seed)
             for channel, number in enumerate(numbers):
                 # a number of a colour changes its own channel only: one picture has them all
                 own = [channel] if 1 < len(numbers) == found.shape[2] else slice(None)
@@ -112,6 +114,14 @@ class Views:
     def integrator_is_backward(self):
         """Whether the integrator has derivatives only backwards."""
         return type(self.integrator).__name__ in BACKWARD
+
+    def _derivative(self, x, numbers, spp, seed):
+        """That of the pixels where the `numbers` move together: by differences where the integrator
+        knows none, as of the place of a lamp."""
+        picture = None if self.integrator_is_backward else self._forward(x, numbers, spp, seed)
+        if picture is None or not picture.any():
+            return self._differences(x, numbers, spp, seed)
+        return picture
 
     def steps_from(self, x, numbers, spp, seed):
         """(what each of the `numbers` adds to the pixels, from 0 to 1; the residuals without them).
@@ -172,19 +182,25 @@ class Views:
             )
 
     def _forward(self, x, numbers, spp, seed):
-        """The derivative of the pixels where the `numbers` move together."""
+        """The derivative of the pixels where the `numbers` move together; None where the integrator
+        finds nothing to differentiate."""
         self.renders += DERIVATIVE_COST * spp
         tangent = np.zeros(len(x))
         tangent[numbers] = self.slopes(x)[numbers]
         self._set(x, tangent)
-        with first_error():
-            found = [
-                self.integrator.render_forward(
-                    self.scene, self.parameters, sensor=sensor, seed=int(seed) + i, spp=int(spp)
-                )
-                for i, sensor in enumerate(self.scene.sensors())
-            ]
-            return self._joined(found)
+        try:
+            with first_error():
+                found = [
+                    self.integrator.render_forward(
+                        self.scene, self.parameters, sensor=sensor, seed=int(seed) + i, spp=int(spp)
+                    )
+                    for i, sensor in enumerate(self.scene.sensors())
+                ]
+                return self._joined(found)
+        except Exception as error:
+            if UNATTACHED not in str(error):
+                raise
+            return None
 
     def _differences(self, x, numbers, spp, seed):
         """The same by differences of equal samples, for integrators without it."""
@@ -201,7 +217,26 @@ class Views:
         """Pictures as one array (pixels, channels)."""
         arrays = [np.array(picture, float) for picture in pictures]
         channels = self.targets[0].pixels.shape[2]
+        films = {min(a.shape[2], 3) for a in arrays}
+        if films != {channels}:
+            raise BrdfkitError(
+                f"the pictures have {channels} channel{'s' * (channels > 1)}, and a camera's film "
+                f"{min(films - {channels})}: they should have as many."
+            )
         return np.concatenate([a[..., :channels].reshape(-1, channels) for a in arrays])
+
+
+@contextmanager
+def quiet_samplers():
+    """Without Mitsuba's warnings: samplers round the number of samples up, and say so each time."""
+    import mitsuba as mi
+
+    level = mi.log_level()
+    mi.set_log_level(mi.LogLevel.Error)
+    try:
+        yield
+    finally:
+        mi.set_log_level(level)
 
 
 def _opaque(kind, values):

@@ -1,0 +1,142 @@
+"""The page of `make_refining.py`, and its picture."""
+
+from pathlib import Path
+
+import numpy as np
+from leaderboard_page import made_with
+from make_models import paragraphs, table
+from PIL import Image, ImageDraw, ImageFont
+
+from brdfkit.colours import to_srgb
+
+PAGE = Path(__file__).with_name("refining.md")
+SIDE, LINE, GAP = 288, 30, 8
+CLEAR = 0.5  # difference that is clear [dB]
+INTRODUCTION = """`fit(loss="picture")` compares pictures of one shape under direct light, by the
+BRDF's table. [`refine`](api/index) renders the whole scene, light that bounces and all, and
+differentiates it: it takes a picture, not a table. Where does that help?
+
+Measured materials are rendered as they are, {size}×{size} pixels. A model is fitted to the table by
+the loss `picture`, and from there refined on that picture, with at most {samples} samples per
+pixel. Both are held against another picture, from a camera that no search saw: PSNR, and HDR-FLIP
+in brackets, 0 at best. *Noise* is the measured material beside itself, of another seed; `room` is
+the scene `cornell_box`, with paths of six edges, `ball` that of `brdfkit render`, under direct
+light. Made by `python docs/make_refining.py`: {versions}."""
+PICTURE = """![What was measured, fitted and refined, from both cameras](refining.jpg)
+
+*Blasted gold and `ggx` in the room: in the upper row the camera of the picture, in the lower one
+the camera that no search saw.*"""
+RACE = """A metal of known roughness and colour in the room, from the same start, noise of 1 %;
+seconds without compiling, and the largest relative error of the four numbers.
+
+{rows}
+
+Adam's noise does not end, for each of its steps has its own. `refine` says how certain its numbers
+are, too."""
+HOW = """Four things have to be known, and whatever is wrong in them goes into the material:
+
+1. **The camera.** Calibrate it, or search what is left: a few degrees of the field of view are the
+   number `x_fov` of the sensor. Without shape there is no material.
+2. **The light.** A lamp whose place and size are measured, or an environment map that was captured
+   with the camera. Its strength may be searched along with the material, if something of known
+   reflectance is in the picture: a grey card, or a painted wall.
+3. **Linear pixels.** OpenEXR from raw files, one exposure or several merged; no tone curve.
+   `linearise=True` takes what sRGB's curve was applied to, and clipped pixels do not count.
+4. **Where light comes from in between.** Walls and ground belong into the scene, with a colour:
+   they light what stands on them.
+
+```python
+found = bk.refine("scene.xml", "photograph.exr", ["ball.bsdf.alpha_u", "lamp.emitter.radiance"])
+print(found)                      # values ± standard errors, what trades off, what is left
+found.fit.write("material.xml")
+```
+
+If a note says that what is left is no noise, look at `found.pictures[0]` beside the photograph
+before you believe the numbers: standard errors suppose that the scene is right."""
+TRADES = """Some numbers do the same to a picture. `f0` and the specular weight do, unless light
+grazes; a lamp's strength and all reflectances do, unless one is known; a wide lobe and the diffuse
+weight nearly do. `refine` says so in its notes, and its standard errors are as large as that makes
+them. Then
+
+- keep one of them at a value that is known: `f0` = 0.04 for plastic, 0.9 for metals;
+- add a picture: a second camera or lamp, such that light grazes the surface;
+- or use what is determined, their product; the picture is right whatever the share of each."""
+
+
+def write(rows, shown, by_adam, by_refine, size, samples):
+    """Write the page and its picture; see `make_refining`."""
+    text = paragraphs(
+        "# Refining on pictures",
+        INTRODUCTION.format(size=size, samples=samples, versions=made_with()),
+        advice(rows),
+        PICTURE,
+        "## Beside the fit of the table",
+        comparison(rows),
+        "## Beside Adam",
+        RACE.format(rows=race(by_adam, by_refine)),
+        "## On a photograph of your own",
+        HOW,
+        "## What trades off",
+        TRADES,
+    )
+    PAGE.write_text(text, encoding="utf-8")
+    picture(shown).save(PAGE.with_suffix(".jpg"), quality=88, optimize=True)
+
+
+def advice(rows):
+    """How often it helped, by scene."""
+    said = []
+    for scene in dict.fromkeys(row["scene"] for row in rows):
+        gains = [r["refined"][0] - r["fit"][0] for r in rows if r["scene"] == scene]
+        better, worse = sum(g > CLEAR for g in gains), sum(g < -CLEAR for g in gains)
+        said.append(
+            f"- `{scene}`: better by {np.median(gains):.1f} dB (median; {min(gains):.1f} to "
+            f"{max(gains):.1f}); clearly better for {better} of {len(gains)}, clearly worse for "
+            f"{worse}."
+        )
+    return "\n".join(said)
+
+
+def comparison(rows):
+    """The table of all materials and models."""
+
+    def both(pair):
+        return f"{pair[0]:.1f} ({pair[1]:.3f})"
+
+    cells = [
+        (
+            row["scene"],
+            f"`{row['material']}`",
+            f"`{row['model']}`",
+            both(row["fit"]),
+            both(row["refined"]),
+            both(row["noise"]),
+            str(row["steps"]),
+            f"{row['seconds']:.0f} s",
+        )
+        for row in sorted(rows, key=lambda row: row["scene"], reverse=True)
+    ]
+    return table("scene, material, model, fitted, refined, noise, steps, time", cells)
+
+
+def race(by_adam, by_refine):
+    """The table of errors over time."""
+    cells = [(f"Adam, {s:.1f} s", f"{100 * error:.1f} %") for s, error in by_adam[1::2]]
+    seconds, error = by_refine
+    return table("by, error", [(f"`refine`, {seconds:.1f} s", f"{100 * error:.1f} %"), *cells])
+
+
+def picture(shown):
+    """Both cameras' pictures in two rows: the truth, fitted and refined."""
+    rows = len(next(iter(shown.values())))
+    wide, high = len(shown) * (SIDE + GAP) - GAP, LINE + rows * (SIDE + GAP) - GAP
+    sheet = Image.new("RGB", (wide, high), "white")
+    draw, font = ImageDraw.Draw(sheet), ImageFont.load_default(18)
+    for column, (name, pair) in enumerate(shown.items()):
+        left = column * (SIDE + GAP)
+        draw.text((left + 4, LINE // 2), name, "black", font, anchor="lm")
+        for row, pixels in enumerate(pair):
+            image = Image.fromarray((255 * to_srgb(pixels) + 0.5).astype(np.uint8))
+            place = left, LINE + row * (SIDE + GAP)
+            sheet.paste(image.resize((SIDE, SIDE), Image.Resampling.LANCZOS), place)
+    return sheet
