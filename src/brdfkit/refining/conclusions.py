@@ -15,11 +15,11 @@ UNLIKE = 0.05  # of white, what may be left without a word
 ALIKE = 0.5  # the correlation of neighbours beyond which what is left is no noise
 
 
-def conclude_search(views, found, seconds, interrupted=False):
-    """The `Refinement` of a `Search` on `Views`, after so many `seconds`."""
+def conclude_search(views, found, seconds, interrupted=False, notes=()):
+    """The `Refinement` of a `Search` on `Views`, after so many `seconds`, with `notes` before its own."""
     x, parts = found.here.x, views.values(found.here.x)
     values = {
-        unknown.name: tuple(map(float, part)) if len(part) > 1 else float(part[0])
+        unknown.name: _value(unknown, part)
         for unknown, part in zip(views.unknowns, parts, strict=True)
     }
     certainty = _certify(views, found)
@@ -38,6 +38,7 @@ def conclude_search(views, found, seconds, interrupted=False):
         history=tuple((int(spp), float(error)) for spp, error in found.history),
         at_bounds=bounds,
         notes=(
+            *notes,
             *certainty.undetermined,
             *certainty.trades,
             *_notes_on_pictures(views),
@@ -51,10 +52,18 @@ def conclude_search(views, found, seconds, interrupted=False):
     return replace(result, fits=_fits(views, result))
 
 
+def _value(unknown, part):
+    """What an unknown is in `Refinement.values`."""
+    if unknown.shape:
+        return np.array(part).reshape(unknown.shape)
+    return tuple(map(float, part)) if len(part) > 1 else float(part[0])
+
+
 def _certify(views, found):
     """The `Certainty` of the values, by blocks of pixels as samples."""
     slopes = views.slopes(found.here.x)
-    if found.about is None or _blocks_lack(found):
+    tensors = any(unknown.shape for unknown in views.unknowns)
+    if tensors or found.about is None or _blocks_lack(found):
         return Certainty((), (), (), (), (), 0, len(slopes))
     free = free_of_bounds(views, found) & ~views.is_on_bound(found.here.x)
     hessian, scores = found.about.hessian[np.ix_(free, free)], found.about.scores[free]
@@ -81,7 +90,7 @@ def _on_bounds(views, x):
     return tuple(
         unknown.name
         for unknown, part in zip(views.unknowns, views.parts(on), strict=True)
-        if part.any()
+        if part.any() and not unknown.shape  # of a tensor, some texels always are
     )
 
 

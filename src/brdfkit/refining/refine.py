@@ -14,6 +14,7 @@ from brdfkit.fitting.stopped import Stopped
 from brdfkit.jit.llvm import use_variant
 from brdfkit.jit.threads import in_turn
 from brdfkit.refining.conclusions import conclude_search
+from brdfkit.refining.descent import descend, usual_total
 from brdfkit.refining.far_starts import BEST, start, usual_count
 from brdfkit.refining.gauss_newton import search
 from brdfkit.refining.refinement import Refinement
@@ -32,7 +33,8 @@ def refine(
     parameters: Iterable[str] | Mapping[str, tuple[float, float] | None] | None = None,
     *,
     starts: int | None = None,
-    steps: int = 8,
+    steps: int | None = None,
+    smoothness: float | None = None,
     samples: int = 1024,
     linearise: bool = False,
     seed: int = 0,
@@ -58,14 +60,20 @@ def refine(
         OpenEXR file.
     parameters : names, or dict of names to (low, high), default all of brdfkit's models
         What is searched: numbers and colours, by the names of `mitsuba.traverse`, with or without
-        ``.value`` at the end; at most 32 numbers. Bounds are by default those of the model's
+        ``.value`` at the end; and ``.data``, the texels of
+        textures, environment maps and volumes, as many as there are. Bounds are by default those of the model's
         parameter, and else 0 to infinity.
     starts : int, optional
         Points from which the search begins: the scene's own values, and others, spread over the
         bounds of what pictures are not linear in. By default 8 for each of these numbers, at
         most 32, and the scene's own; 1 trusts that.
-    steps : int, default 8
-        Steps that the search may take after its start, at least 1.
+    steps : int, optional
+        Steps that the search may take after its start, at least 1; by default 8. With textures, in
+        each of three stages of growing samples, by default 30: short ones, by L-BFGS-B.
+    smoothness : float, optional
+        Of textures and volumes: the weight, at least 0, of the mean squared difference of
+        neighbouring texels in the loss, in units of their bounds, or of the mean at the start where
+        there is no upper bound. By default the best of four for pixels that are held out.
     samples : int, default 1024
         Samples per pixel, at most, at least 4.
     linearise : bool, default False
@@ -84,8 +92,8 @@ def refine(
     ------
     BrdfkitError
         For a scene that does not load, an integrator without derivatives, pictures that do not fit
-        the cameras, have 8 bits or are not finite, parameters that are none, more than 32 numbers,
-        and numbers on which no picture depends.
+        the cameras, have 8 bits or are not finite, parameters that are none, a smoothness
+        below 0, textures of integers, and numbers on which no picture depends.
 
     Examples
     --------
@@ -105,7 +113,12 @@ def refine(
     ):
         if number is not None and (int(number) != number or number < least):
             raise BrdfkitError(f"refine: {name} = {number!r} should be a whole number ≥ {least}.")
+    if smoothness is not None and not 0 <= smoothness < np.inf:
+        raise BrdfkitError(f"refine: smoothness = {smoothness!r} should be a number ≥ 0.")
     views = _views(scene, pictures, parameters, linearise)
+    if len(views.start) > MOST or any(unknown.shape for unknown in views.unknowns):
+        return _by_descent(views, smoothness, steps or 30, samples, seed + 100, progress, began)
+    steps = steps or 8
     count = usual_count(views) if starts is None else int(starts)
     report = _counter(progress, (count + BEST if count > 1 else 0) + steps)
     try:
@@ -127,6 +140,23 @@ def refine(
     return conclude_search(views, found, time.perf_counter() - began)
 
 
+def _by_descent(views, smoothness, steps, samples, seed, progress, began):
+    """The `Refinement` of many numbers, by derivatives backwards."""
+    report = _counter(progress, usual_total(smoothness, steps))
+    without = "descent, as for many numbers, gives no standard errors"
+    try:
+        found, chosen = descend(views, smoothness, steps, samples, seed, report)
+    except Stopped as stop:
+        best = conclude_search(
+            views, stop.best, time.perf_counter() - began, interrupted=True, notes=(without,)
+        )
+        raise Interrupted(best, f"refine: the best so far leaves {best.loss:.3g}") from None
+    views.leave_at(found.here.x)
+    how = "by held-out pixels" if smoothness is None else "as given"
+    notes = (f"smoothness {chosen:g}, {how}", without)
+    return conclude_search(views, found, time.perf_counter() - began, notes=notes)
+
+
 def _views(scene, pictures, parameters, linearise):
     """The `Views` of what `refine` is given."""
     import mitsuba as mi
@@ -136,10 +166,8 @@ def _views(scene, pictures, parameters, linearise):
     names = mi.traverse(loaded)
     unknowns = choose(names, parameters)
     numbers = sum(len(unknown.start) for unknown in unknowns)
-    if numbers > MOST:
-        raise BrdfkitError(f"refine: {numbers} numbers are more than {MOST}; name fewer.")
     values = sum(np.count_nonzero(target.weights) for target in targets)
-    if values < numbers:
+    if values < numbers <= MOST:
         raise BrdfkitError(
             f"refine: {numbers} numbers are more than the {values} values of the pictures that "
             "count; give larger pictures, or name fewer."

@@ -1,6 +1,6 @@
 """`Refinement`, what `refine` returns: numbers of a scene, and how they were found."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit
 from brdfkit.fitting.certainty import Certainty
 
-Value = float | tuple[float, ...]
+Value = float | tuple[float, ...] | NDArray[np.float64]
 
 
 @dataclass(frozen=True, repr=False)
@@ -23,7 +23,8 @@ class Refinement(Shown):
     ----------
     values : dict
         What was found, by the names of `mitsuba.traverse` without a ``.value`` at the end; a
-        colour or a vector is a tuple.
+        colour or a vector is a tuple, a texture or a volume an array, (height, width, channels) or
+        (depth, height, width, channels).
     loss : float
         E, the RMS difference of pixels as a screen shows them, by the slope of sRGB's curve, in
         shares of white (the brightest hundredth), the noise of rendering taken out; 0 where nothing
@@ -136,10 +137,27 @@ class Refinement(Shown):
 
         put_values(scene, self.values)
 
+    def __eq__(self, other: object) -> bool:
+        """Whether all but times and pictures is equal."""
+        if not isinstance(other, Refinement):
+            return NotImplemented
+        return self.values.keys() == other.values.keys() and all(
+            np.array_equal(getattr(self, f.name)[k], getattr(other, f.name)[k])
+            if f.name == "values"
+            else getattr(self, f.name) == getattr(other, f.name)
+            for f in fields(self)
+            if f.compare
+            for k in self.values
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
     def _by_value(self, known):
         nan = float("nan")
         return {
-            name: tuple(known.get(f"{name}[{i}]", nan) for i in range(len(value)))
+            name: np.full(value.shape, nan)
+            if isinstance(value, np.ndarray)
+            else tuple(known.get(f"{name}[{i}]", nan) for i in range(len(value)))
             if isinstance(value, tuple)
             else known.get(name, nan)
             for name, value in self.values.items()
@@ -172,6 +190,9 @@ class Refinement(Shown):
 
 
 def _numbers(value, error):
+    if isinstance(value, np.ndarray):
+        shape = " × ".join(map(str, value.shape))
+        return f"{shape}, {value.min():.3g} to {value.max():.3g}, mean {value.mean():.4g}"
     pairs = zip(np.atleast_1d(value), np.atleast_1d(error), strict=True)
     return "  ".join(f"{v:.5g}" if np.isnan(e) else f"{v:.5g} ± {e:.2g}" for v, e in pairs)
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.errors import BrdfkitError, no_such
+from brdfkit.refining.tensors import is_tensor, numbers_of, places, shape_of, tensor_of, wraps
 
 MOST = 32  # numbers; for each of them a picture of derivatives is rendered
 
@@ -25,6 +26,9 @@ class Unknown:
     linear : whether pictures of direct light are linear in it.
     low, high : its bounds; coordinates are the values themselves unless both are finite.
     log : whether steps are relative.
+    shape : of a tensor's numbers; empty of others.
+    places : which number each of its texels shows; None of others.
+    around : whether its columns go around.
     """
 
     key: str
@@ -38,6 +42,9 @@ class Unknown:
     low: float
     high: float
     log: bool
+    shape: tuple[int, ...] = ()
+    places: Any = None
+    around: bool = False
 
     @property
     def names(self):
@@ -65,6 +72,12 @@ class Unknown:
             return self.table(u) * np.log(self.high / self.low)
         return np.full_like(u, self.high - self.low if self.bounded else 1.0)
 
+    def gathered(self, slopes):
+        """Derivatives (n,) by the numbers, of those by the entry's, which may repeat some."""
+        if self.places is None:
+            return slopes
+        return np.bincount(self.places.ravel(), weights=slopes, minlength=len(self.start))
+
     @property
     def bounded(self):
         """Whether both bounds are finite."""
@@ -88,7 +101,8 @@ def choose(parameters, asked):
     bounds = dict(asked) if isinstance(asked, Mapping) else dict.fromkeys(asked or ())
     known = searchable(parameters)
     if asked is None:
-        bounds = {name: None for name, key in known.items() if _model_of(parameters, key)[0]}
+        numbers = {name: key for name, key in known.items() if not is_tensor(parameters[key])}
+        bounds = {name: None for name, key in numbers.items() if _model_of(parameters, key)[0]}
         if not bounds:
             raise BrdfkitError(
                 "the scene has no number of a brdfkit model to search; name its parameters, "
@@ -107,15 +121,20 @@ def choose(parameters, asked):
 
 
 def searchable(parameters):
-    """The keys of all numbers, colours and vectors of a scene, by name."""
-    found = [key for key in keys(parameters) if _numbers(parameters[key]) is not None]
-    return {_short(key): key for key in found}
+    """The keys of all numbers, colours, vectors and tensors of a scene, by name."""
+    return {
+        _short(key): key
+        for key in keys(parameters)
+        if _numbers(parameters[key]) is not None or is_tensor(parameters[key])
+    }
 
 
 def _unknown(parameters, key, limits):
     """The `Unknown` of an entry, within the `limits`, None for the usual ones."""
     value, (model, owner, parameter) = parameters[key], _model_of(parameters, key)
-    start, colour = _numbers(value), type(value).__name__.startswith("Color")
+    tensor, colour = is_tensor(value), type(value).__name__.startswith("Color")
+    at = places(parameters, key) if tensor else None
+    start = numbers_of(value, at) if tensor else _numbers(value)
     low = -np.inf if type(value).__name__.startswith(("Point", "Vector")) else 0.0
     high, log, linear = np.inf, False, colour
     if model:
@@ -126,7 +145,24 @@ def _unknown(parameters, key, limits):
     elif (start < low).any():
         raise BrdfkitError(f"{key}: it begins below 0; give its bounds, as {{name: (low, high)}}.")
     start = np.clip(start, low, high)
-    return Unknown(key, _short(key), owner, parameter, model, start, colour, linear, low, high, log)
+    around = tensor and wraps(parameters, key)
+    shape = shape_of(at, around) if tensor else ()
+    return Unknown(
+        key,
+        _short(key),
+        owner,
+        parameter,
+        model,
+        start,
+        colour,
+        linear,
+        low,
+        high,
+        log,
+        shape,
+        at,
+        around,
+    )
 
 
 def _checked(key, limits, least, most):
@@ -144,7 +180,7 @@ def _checked(key, limits, least, most):
 
 def _model_of(parameters, key):
     """(model's class, name of the BSDF, name of the parameter) of an entry; None of others."""
-    *path, parameter = _short(key).split(".")
+    *path, parameter = _short(key).removesuffix(".data").split(".")
     texture = parameters.properties[key][2]
     parent = parameters.hierarchy.get(texture, (None, 0))[0]
     model = getattr(parent, "model", None)
@@ -200,6 +236,17 @@ def put_values(scene, values):
     for name, value in values.items():
         if name not in known:
             raise no_such("parameter", name, known)
-        kind = type(parameters[known[name]])
-        parameters[known[name]] = kind(*value) if isinstance(value, tuple) else kind(value)
+        parameters[known[name]] = _entry(parameters, known[name], value)
     parameters.update()
+
+
+def _entry(parameters, key, value):
+    """A value as the entry `key` of a scene."""
+    kind = type(parameters[key])
+    if not isinstance(value, np.ndarray):
+        return kind(*value) if isinstance(value, tuple) else kind(value)
+    at = places(parameters, key)
+    shape = shape_of(at, wraps(parameters, key))
+    if shape != value.shape:
+        raise BrdfkitError(f"{key}: it has the shape {shape}, and its values {value.shape}.")
+    return tensor_of(value, at)

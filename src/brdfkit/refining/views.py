@@ -8,6 +8,7 @@ import numpy as np
 from brdfkit.errors import BrdfkitError
 from brdfkit.jit.first_error import first_error
 from brdfkit.refining.leverage import number_blocks
+from brdfkit.refining.tensors import tensor_of
 
 DERIVATIVE_COST = 2.3  # of a picture of derivatives, in pictures
 STEP = 0.05  # of differences, in coordinates, or of what has no bounds relative to it
@@ -155,12 +156,24 @@ class Views:
         """Leave the scene with the values at `x`."""
         self._set(x)
 
+    def set_leaves(self, x):
+        """Put the values at `x` into the scene, ready for derivatives backwards; the entries."""
+        leaves = []
+        for unknown, value in zip(self.unknowns, self.values(x), strict=True):
+            leaf = _entry(self.parameters, unknown, value)
+            dr.enable_grad(leaf)
+            self.parameters[unknown.key] = leaf
+            leaves.append(leaf)
+        with first_error():
+            self.parameters.update()
+        return leaves
+
     def _set(self, x, tangent=None):
         """Put the values at `x` into the scene; with derivatives along a `tangent` (n,) of the
         values."""
         tangents = [None] * len(self.unknowns) if tangent is None else self.parts(tangent)
         for unknown, value, along in zip(self.unknowns, self.values(x), tangents, strict=True):
-            array = _opaque(type(self.parameters[unknown.key]), value)
+            array = _entry(self.parameters, unknown, value)
             if along is not None:
                 # of all, 0 of those that rest: so all derivatives share one kernel
                 dr.enable_grad(array)
@@ -237,6 +250,13 @@ def quiet_samplers():
         yield
     finally:
         mi.set_log_level(level)
+
+
+def _entry(parameters, unknown, values):
+    """What a scene holds of an unknown's values."""
+    if unknown.shape:
+        return tensor_of(values, unknown.places)
+    return _opaque(type(parameters[unknown.key]), values)
 
 
 def _opaque(kind, values):

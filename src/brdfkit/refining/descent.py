@@ -1,0 +1,102 @@
+"""Descent along derivatives that go backwards, for thousands of numbers: L-BFGS-B on fixed samples,
+[Byrd 1995], with more and fresh samples in each stage."""
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+from brdfkit.fitting.stopped import Stopped
+from brdfkit.refining.backwards import error_and_slopes
+from brdfkit.refining.equations import Residuals
+from brdfkit.refining.gauss_newton import Search
+from brdfkit.refining.smoothness import roughness
+
+SAMPLES = 4, 16, 64  # per pixel and half, of one stage after another
+STRENGTHS = 0.3, 0.03, 0.003, 0.0003  # of smoothness, of which held-out pixels choose
+FEW = 12  # steps for each of these
+HELD_OUT = 0.1  # the share of pixels
+
+
+def usual_total(smoothness, steps):
+    """How many steps a descent may take, for its progress."""
+    return (FEW * len(STRENGTHS) if smoothness is None else 0) + steps * len(SAMPLES)
+
+
+def descend(views, smoothness, steps, samples, seed, report=lambda: None):
+    """(the `Search` from the scene's own values, the strength of smoothness).
+
+    `steps`: of L-BFGS-B, at most, in each stage. `report()` is called after each step. On Ctrl-C
+    `Stopped` has the `Search` so far.
+    """
+    x, found = views.start, Search(None)
+    stages = [spp for spp in SAMPLES if 2 * spp <= samples] or [max(1, samples // 2)]
+    try:
+        if smoothness is None:
+            x, smoothness = _choose_smoothness(views, x, stages[0], seed, found, report)
+        for stage, spp in enumerate(stages):
+            x = _stage(
+                views, x, spp, seed + 10 * stage, views.weights, smoothness, steps, found, report
+            )
+            found.here = Residuals.at(views, x, 2 * spp, seed + 10 * stage + 5)
+            found.history.append((2 * spp, found.here.error))
+    except KeyboardInterrupt as stop:
+        best = stop.best if isinstance(stop, Stopped) else x
+        found.here = Residuals.at(views, best, 2 * stages[0], seed + 5)
+        raise Stopped(found) from None
+    return found, smoothness
+
+
+def _choose_smoothness(views, x, spp, seed, found, report):
+    """(coordinates, the strength) that leave the least of the pixels that were held out.
+
+    From strong to weak, each from the end of the one before.
+    """
+    held = np.random.default_rng(seed).random(len(views.weights)) < HELD_OUT
+    seen, hidden = views.weights * ~held[:, None], views.weights * held[:, None]
+    best, least = None, np.inf
+    for strength in STRENGTHS:
+        x = _stage(views, x, spp, seed, seen, strength, FEW, found, report)
+        a, b = (views.residuals(x, 4 * spp, seed + 7 + 1000 * half) for half in (0, 1))
+        left = float((hidden * a * b).sum())
+        if left >= least:
+            break
+        best, least = (x, strength), left
+    return best
+
+
+def _stage(views, x, spp, seed, weights, smoothness, steps, found, report):
+    """The coordinates after at most so many `steps` from `x`, on the samples of a `seed`."""
+    from scipy.optimize import minimize
+
+    last = x
+
+    def loss(x):
+        error, slopes = error_and_slopes(views, x, spp, seed, weights)
+        rough, uphill = roughness(views.unknowns, views.parts(x))
+        return error + smoothness * rough, slopes + smoothness * uphill
+
+    def after(x):
+        nonlocal last
+        last = x.copy()
+        found.steps += 1
+        report()
+
+    value, slopes = loss(x)
+    if not slopes.any():
+        raise BrdfkitError(
+            f"no picture changes with {', '.join(u.name for u in views.unknowns)}: either nothing "
+            "of it is seen, or the integrator does not differentiate it."
+        )
+    scale = 1 / max(abs(slopes).max(), 1e-300)  # a first step of L-BFGS is as long as its gradient
+    try:
+        result = minimize(
+            lambda x: tuple(scale * 0.1 * part for part in loss(x)),
+            x,
+            jac=True,
+            method="L-BFGS-B",
+            bounds=list(zip(views.least, views.most, strict=True)),
+            callback=after,
+            options={"maxiter": steps, "ftol": 0, "gtol": 0},
+        )
+    except KeyboardInterrupt:
+        raise Stopped(last) from None
+    return result.x
