@@ -16,7 +16,10 @@ ALIKE = 0.5  # the correlation of neighbours beyond which what is left is no noi
 
 
 def conclude_search(views, found, seconds, interrupted=False, notes=()):
-    """The `Refinement` of a `Search` on `Views`, after so many `seconds`, with `notes` before its own."""
+    """The `Refinement` of a `Search` on `Views`, after so many `seconds`.
+
+    `notes` come before those of its own.
+    """
     x, parts = found.here.x, views.values(found.here.x)
     values = {
         unknown.name: _value(unknown, part)

@@ -12,7 +12,7 @@ from brdfkit.refining.smoothness import roughness
 
 SAMPLES = 4, 16, 64  # per pixel and half, of one stage after another
 STRENGTHS = 0.3, 0.03, 0.003, 0.0003  # of smoothness, of which held-out pixels choose
-FEW = 12  # steps for each of these
+FEW = 8  # steps for each of these
 HELD_OUT = 0.1  # the share of pixels
 
 
@@ -80,7 +80,7 @@ def _stage(views, x, spp, seed, weights, smoothness, steps, found, report):
         found.steps += 1
         report()
 
-    value, slopes = loss(x)
+    _, slopes = loss(x)
     if not slopes.any():
         raise BrdfkitError(
             f"no picture changes with {', '.join(u.name for u in views.unknowns)}: either nothing "

@@ -61,8 +61,8 @@ def refine(
     parameters : names, or dict of names to (low, high), default all of brdfkit's models
         What is searched: numbers and colours, by the names of `mitsuba.traverse`, with or without
         ``.value`` at the end; and ``.data``, the texels of
-        textures, environment maps and volumes, as many as there are. Bounds are by default those of the model's
-        parameter, and else 0 to infinity.
+        textures, environment maps and volumes, as many as there are. Bounds are by default those
+        of the model's parameter, and else 0 to infinity.
     starts : int, optional
         Points from which the search begins: the scene's own values, and others, spread over the
         bounds of what pictures are not linear in. By default 8 for each of these numbers, at

@@ -1,0 +1,137 @@
+"""`refine` of textures and environment maps: thousands of numbers, by derivatives backwards."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import brdfkit as bk
+from brdfkit.refining.backwards import error_and_slopes
+from brdfkit.refining.smoothness import roughness
+from brdfkit.refining.subject import integrator_of, load_subject
+from brdfkit.refining.targets import read_targets
+from brdfkit.refining.unknowns import choose
+from brdfkit.refining.views import Views
+
+SIZE = 16
+TEXTURE = "floor.bsdf.diffuse_reflectance.data"
+TRUTH = 0.3 + 0.4 * np.linspace(0, 1, 6)[None, :, None] * np.array([1, 0.5, 0.2])[None, None]
+TRUTH = np.repeat(TRUTH, 4, axis=0)
+LIGHT = 0.5 + np.random.default_rng(2).random((4, 8, 3))
+
+
+@pytest.fixture(scope="module")
+def mi():
+    import mitsuba
+
+    bk.models()
+    mitsuba.set_variant("llvm_ad_rgb")
+    return mitsuba
+
+
+def scene(mi, texture, light=LIGHT, kind=np.float32):
+    """A floor with a texture, seen from above."""
+    return {
+        "type": "scene",
+        "integrator": {"type": "path", "max_depth": 3},
+        "sensor": {
+            "type": "perspective",
+            "fov": 40,
+            "to_world": mi.ScalarTransform4f().look_at([0, -0.3, 3], [0, 0, 0], [0, 1, 0]),
+            "film": {
+                "type": "hdrfilm",
+                "width": SIZE,
+                "height": SIZE,
+                "pixel_format": "rgb",
+                "rfilter": {"type": "box"},
+            },
+        },
+        "floor": {
+            "type": "rectangle",
+            "bsdf": {
+                "type": "oren_nayar",
+                "diffuse_reflectance": {
+                    "type": "bitmap",
+                    "bitmap": mi.Bitmap(np.asarray(texture).astype(kind)),
+                    "raw": True,
+                },
+            },
+        },
+        "sky": {"type": "envmap", "bitmap": mi.Bitmap(np.float32(light))},
+    }
+
+
+@pytest.fixture(scope="module")
+def picture(mi):
+    clean = np.array(mi.render(mi.load_dict(scene(mi, TRUTH)), spp=512, seed=5))
+    return clean * (1 + 0.01 * np.random.default_rng(1).standard_normal(clean.shape))
+
+
+@pytest.mark.parametrize(("name", "number"), [(TEXTURE, 30), ("sky.data", 21), ("sky.data", 0)])
+def test_derivatives_are_those_of_finite_differences(mi, picture, name, number):
+    """Of single texels, with the same samples; one of the sky's is in its first column."""
+    loaded = load_subject(scene(mi, 0.8 * TRUTH, 1.2 * LIGHT), (SIZE, SIZE))
+    names = mi.traverse(loaded)
+    targets, chosen = read_targets(picture), choose(names, [name])
+    views = Views(loaded, integrator_of(loaded), targets, names, chosen)
+    x, spp, step = views.start, 128, 0.02
+    by_number = error_and_slopes(views, x, spp, 3, views.weights)[1][number]
+    there, here = (x + sign * step * np.eye(len(x))[number] for sign in (1, -1))
+    a, b = (error_and_slopes(views, at, spp, 3, views.weights)[0] for at in (there, here))
+    assert by_number == pytest.approx((a - b) / (2 * step), rel=0.03)
+
+
+def test_roughness_has_its_derivatives(mi):
+    names = mi.traverse(mi.load_dict(scene(mi, TRUTH), optimize=False))
+    unknowns = choose(names, [TEXTURE, "sky.data"])
+    parts = [unknown.coordinates(unknown.start) for unknown in unknowns]
+    slopes, step = roughness(unknowns, parts)[1], 1e-5
+    for which, number in ((0, 7), (1, 0)):
+        ends = []
+        for sign in (1, -1):
+            moved = [part.copy() for part in parts]
+            moved[which][number] += sign * step
+            ends.append(roughness(unknowns, moved)[0])
+        row = number + which * len(parts[0])
+        assert slopes[row] == pytest.approx((ends[0] - ends[1]) / (2 * step), rel=1e-4)
+
+
+def test_a_texture_comes_back(mi, picture):
+    grey, done = np.full(TRUTH.shape, 0.5), []
+    found = bk.refine(
+        scene(mi, grey),
+        picture,
+        [TEXTURE],
+        steps=12,
+        samples=32,
+        smoothness=0.003,
+        progress=lambda *at: done.append(at),
+    )
+    texture = found.values[TEXTURE]
+    assert texture.shape == TRUTH.shape
+    assert np.sqrt(np.mean((texture - TRUTH) ** 2)) < 0.04
+    assert done
+    assert found.fits == {}
+    assert np.isnan(found.standard_errors[TEXTURE]).all()
+    assert "4 × 6 × 3" in repr(found)
+    assert pickle.loads(pickle.dumps(found)) == found
+    other = mi.load_dict(scene(mi, grey), optimize=False)
+    found.put_into(other)
+    np.testing.assert_allclose(np.array(mi.traverse(other)[TEXTURE]), texture, rtol=1e-6)
+
+
+@pytest.mark.parametrize("smoothness", [-1, np.nan, np.inf])
+def test_smoothness_is_a_number(mi, picture, smoothness):
+    with pytest.raises(bk.BrdfkitError, match="smoothness = .* should be a number"):
+        bk.refine(scene(mi, TRUTH), picture, [TEXTURE], smoothness=smoothness)
+
+
+def test_textures_of_integers_are_refused(mi, picture):
+    with pytest.raises(bk.BrdfkitError, match="TensorXu8.*floats"):
+        bk.refine(scene(mi, 255 * TRUTH, kind=np.uint8), picture, [TEXTURE])
+
+
+def test_values_fit_the_scene(mi, picture):
+    found = bk.refine(scene(mi, TRUTH), picture, [TEXTURE], steps=1, samples=4, smoothness=0)
+    with pytest.raises(bk.BrdfkitError, match="shape"):
+        found.put_into(mi.load_dict(scene(mi, TRUTH[:2]), optimize=False))
