@@ -122,12 +122,12 @@ def test_a_texture_comes_back(mi, picture):
 
 @pytest.mark.parametrize("smoothness", [-1, np.nan, np.inf])
 def test_smoothness_is_a_number(mi, picture, smoothness):
-    with pytest.raises(bk.BrdfkitError, match="smoothness = .* should be a number"):
+    with pytest.raises(bk.BrdfkitError, match=r"smoothness = .* should be a number"):
         bk.refine(scene(mi, TRUTH), picture, [TEXTURE], smoothness=smoothness)
 
 
 def test_textures_of_integers_are_refused(mi, picture):
-    with pytest.raises(bk.BrdfkitError, match="TensorXu8.*floats"):
+    with pytest.raises(bk.BrdfkitError, match=r"TensorXu8.*floats"):
         bk.refine(scene(mi, 255 * TRUTH, kind=np.uint8), picture, [TEXTURE])
 
 

@@ -1,5 +1,5 @@
 """Descent along derivatives that go backwards, for thousands of numbers: L-BFGS-B on fixed samples,
-[Byrd 1995], with more and fresh samples in each stage."""
+[Byrd et al. 1995], with more and fresh samples in each stage."""
 
 import numpy as np
 
