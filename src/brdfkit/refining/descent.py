@@ -95,7 +95,7 @@ def _stage(views, x, spp, seed, weights, smoothness, steps, found, report):
             method="L-BFGS-B",
             bounds=list(zip(views.least, views.most, strict=True)),
             callback=after,
-            options={"maxiter": steps, "ftol": 0, "gtol": 0},
+            options={"maxiter": steps, "maxfun": 2 * steps, "maxls": 6, "ftol": 0, "gtol": 0},
         )
     except KeyboardInterrupt:
         raise Stopped(last) from None
