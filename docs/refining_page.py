@@ -48,7 +48,7 @@ HOW = """Four things have to be known, and whatever is wrong in them goes into t
 ```python
 found = bk.refine("scene.xml", "photograph.exr", ["ball.bsdf.alpha_u", "lamp.emitter.radiance"])
 print(found)                      # values ± standard errors, what trades off, what is left
-found.fit.write("material.xml")
+bk.render(found.fit)              # a fit as any other: compared, converted, written
 ```
 
 If a note says that what is left is no noise, look at `found.pictures[0]` beside the photograph
@@ -88,11 +88,13 @@ def advice(rows):
     said = []
     for scene in dict.fromkeys(row["scene"] for row in rows):
         gains = [r["refined"][0] - r["fit"][0] for r in rows if r["scene"] == scene]
+        pairs = [(r["refined"][1], r["fit"][1]) for r in rows if r["scene"] == scene]
+        nearer = sum(refined < fit for refined, fit in pairs)
         better, worse = sum(g > CLEAR for g in gains), sum(g < -CLEAR for g in gains)
         said.append(
             f"- `{scene}`: better by {np.median(gains):.1f} dB (median; {min(gains):.1f} to "
             f"{max(gains):.1f}); clearly better for {better} of {len(gains)}, clearly worse for "
-            f"{worse}."
+            f"{worse}. By FLIP nearer for {nearer}."
         )
     return "\n".join(said)
 

@@ -60,6 +60,8 @@ def search(views, x, steps, samples, seed, report=lambda: None):
                     break
                 step, damping = _find_step(views, found, damping, seed, grown == spp)
                 at_rest = step is None
+                if at_rest and grown == spp:
+                    break  # no step, however short, is a gain
             if at_rest:
                 spp, seed, damping = grown, seed + 1, min(damping, DAMPING[0])
                 found.here = Residuals.at(views, found.here.x, spp, seed)
@@ -88,7 +90,7 @@ def _find_step(views, found, damping, seed, last):
         if won > 0 or hidden or damping >= DAMPING[2]:
             well = hidden or won > 0.75 * gain
             damping = max(damping * (BETTER if well else 1), DAMPING[1])
-            return trial if won > 0 or last else None, damping
+            return trial if won > 0 or (last and hidden) else None, damping
         damping *= WORSE
 
 
