@@ -47,8 +47,8 @@ HOW = """Four things have to be known, and whatever is wrong in them goes into t
 
 ```python
 found = bk.refine("scene.xml", "photograph.exr", ["ball.bsdf.alpha_u", "lamp.emitter.radiance"])
-print(found)                      # values ± standard errors, what trades off, what is left
-bk.render(found.fit)              # a fit as any other: compared, converted, written
+print(found)  # values ± standard errors, what trades off, what is left
+bk.render(found.fit)  # a fit as any other: compared, converted, written
 ```
 
 If a note says that what is left is no noise, look at `found.pictures[0]` beside the photograph
