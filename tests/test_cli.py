@@ -473,6 +473,7 @@ TRAPS = [
     (["info", "missing.binary"], ["missing.binary", "no such file"]),
     (["info", "."], ["folder"]),
     (["info", "studoi"], ["no environment map 'studoi'", "did you mean studio?"]),
+    (["fit", "plaster", "ggx"], ["ggx is a model, not a file", "-m ggx"]),
     (["render", "spot.obj"], ["spot.obj is a mesh", "--scene spot.obj"]),
     ([*WARD, "--shadows"], ["--shadows is for --preview"]),
     (["render", "missing.xml"], ["missing.xml"]),

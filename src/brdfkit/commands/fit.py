@@ -79,6 +79,7 @@ def fit(
 
     if not rendered:
         _refuse_for_pictures("scene", "envmap", "spp", "until", "size")
+    _refuse_models(files)
     names = list(dict.fromkeys(map(labels.read_files, names or labels.models())))
     for name in names:
         if name != BEST:
@@ -119,6 +120,15 @@ def fit(
         say(error)
     if interrupted or failed:
         click.get_current_context().exit(status() if interrupted else 2)
+
+
+def _refuse_models(files):
+    """Raise `BrdfkitError` where a model stands among the files: it belongs to -m."""
+    from brdfkit.model import labels
+
+    for file in files:
+        if labels.is_label(file) and not Path(file).exists():
+            raise BrdfkitError(f"{file} is a model, not a file: write -m {file}, once for each.")
 
 
 def _refuse_for_pictures(*options):
