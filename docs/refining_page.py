@@ -33,6 +33,16 @@ seconds without compiling, and the largest relative error of the four numbers.
 
 Adam's noise does not end, for each of its steps has its own. `refine` says how certain its numbers
 are, too."""
+MANY = """Textures, environment maps and volumes are searched, too, by the name of their `.data`:
+thousands of numbers, by derivatives backwards and L-BFGS, again of two independent halves of the
+samples. Texels that no pixel shows follow their neighbours; how smooth, pixels decide that are held
+out, or `smoothness=`. There are no standard errors then. Of smoke of 12³ voxels, seen in five pictures of
+20 × 20 pixels, the densities were 0.20 off at the start, and 0.03 after 42 steps, in 6 s:
+
+```python
+found = bk.refine(scene, pictures, {"integrator.extinction.values.data": (0, 1)})
+density = found.values["integrator.extinction.values.data"]
+```"""
 HOW = """Four things have to be known, and whatever is wrong in them goes into the material:
 
 1. **The camera.** Calibrate it, or search what is left: a few degrees of the field of view are the
@@ -74,6 +84,8 @@ def write(rows, shown, by_adam, by_refine, size, samples):
         comparison(rows),
         "## Beside Adam",
         RACE.format(rows=race(by_adam, by_refine)),
+        "## Thousands of numbers",
+        MANY,
         "## On a photograph of your own",
         HOW,
         "## What trades off",
