@@ -37,7 +37,8 @@ MANY = """Textures, environment maps and volumes are searched, too, by the name 
 thousands of numbers, by derivatives backwards and L-BFGS, again of two independent halves of the
 samples. Texels that no pixel shows follow their neighbours; how smooth, pixels decide that are held
 out, or `smoothness=`. There are no standard errors then. Of smoke of 12³ voxels, seen in
-five pictures of 20 × 20 pixels, the densities were 0.20 off at the start, and 0.03 after 42 steps, in 6 s:
+five pictures of 20 × 20 pixels, the densities were 0.20 off at the start, and 0.03 after 42 steps,
+in 6 s:
 
 ```python
 found = bk.refine(scene, pictures, {"integrator.extinction.values.data": (0, 1)})
