@@ -74,7 +74,8 @@ def _recognise(source):
     if sniffed:
         raise source.error(f"could be {_list_names(sniffed)}; rename it to one of these suffixes")
     raise source.error(
-        f"is in no known format; read are {_list_names(formats())}, each also as .gz or .xz"
+        f"is in no known format of materials; read are {_list_names(formats())}, each also as .gz "
+        "or .xz"
     )
 
 
