@@ -256,6 +256,9 @@ def test_render_until_the_noise_is_low(cli):
     assert result.exit_code == 0
     assert re.search(r"The noise floor is .* dB; 60 dB take about [\d,]+ samples", result.stderr)
     assert re.search(r"\n lambert .*\n noise floor ", result.stdout, re.DOTALL)
+    alone = cli("render", "ward", "--size", "8", "--spp", "4", "--until", "60 dB")
+    assert "The noise floor is" in alone.stderr
+    assert "The noise floor is" not in alone.stdout
 
 
 def test_render_a_volume(cli):
@@ -272,11 +275,19 @@ def test_render_a_volume(cli):
     assert all(name in cli("render", "--help").stdout for name in (*RENDERERS, *presets()))
     assert_fine(cli("render", "sphere", "--tone-mapping", "filmic", "--azimuth", "0", *SMALL))
     assert Path("sphere.png").exists()
+    by_scan = cli("render", "sphere", "--transfer", "ct_bone", *SMALL)
+    assert by_scan.exit_code == 0
+    assert "ct_bone is for HU" in by_scan.stderr
     for words, said in (
         (["smoke", "--renderer", "isosurfac"], "did you mean isosurface?"),
         (["smoke", "--set", "level"], "'level' should read PARAMETER=VALUE."),
         (["smoke", "--density", "0"], "density = 0.0 should be a number above 0."),
         (["smoke", "ward"], "smoke is a volume, which is rendered alone"),
+        (["smok"], "did you mean smoke?"),
+        (
+            ["smoke", "--renderer", "isosurface", "--set", "level=30"],
+            "level = 30 is outside the values of smoke, 0 to 1",
+        ),
         (["smoke", "--scene", "knot"], "leave --scene and --preview out"),
         (["ward", "--transfer", "ct_bone"], "--transfer is for volumes only"),
     ):
@@ -284,6 +295,28 @@ def test_render_a_volume(cli):
         assert result.exit_code == 2
         assert said in result.stderr
         assert not Path("wrong.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("a.binary", "ggx"), "ggx is a model, not a file: write -m ggx."),
+        (("a.binary", "-m", "ggx", "ward"), "ward is a model, not a file: write -m ward."),
+        (("a.binary", "-m", "ggx,ward"), "repeat -m: -m ggx -m ward."),
+    ],
+)
+def test_models_among_files(cli, words, said):
+    """A model in the place of a file, and several in one -m, are refused before anything is fit."""
+    result = cli("fit", *words)
+    assert result.exit_code == 2
+    assert said in result.stderr
+
+
+def test_decimal_comma(cli):
+    """A comma in the place of a point is told of."""
+    result = cli("render", "ggx", "--set", "alpha_u=0,3", *SMALL)
+    assert result.exit_code == 2
+    assert "Decimals take a point: alpha_u=0.3." in result.stderr
 
 
 @pytest.mark.quick

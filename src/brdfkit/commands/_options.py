@@ -8,6 +8,7 @@ import click
 
 import brdfkit
 from brdfkit.catalogue import shipped
+from brdfkit.errors import BrdfkitError
 
 SPP = 64  # samples per pixel
 MESHES = "a mesh of yours, .obj or .ply"
@@ -44,6 +45,7 @@ def fit_options(default, others="FILE.py with one, or best"):
         def with_settings(*args, loss, robust, solver, albedo_at_most, max_angle, **kwargs):
             from brdfkit.fitting.solvers import AlbedoAtMost
 
+            _require_one_each(kwargs["names"])
             how = {"loss": loss, "robust": robust, "solver": solver, "max_angle": max_angle}
             how["constraints"] = () if albedo_at_most is None else AlbedoAtMost(albedo_at_most)
             return command(*args, how=how, **kwargs)
@@ -53,6 +55,16 @@ def fit_options(default, others="FILE.py with one, or best"):
         return with_settings
 
     return add
+
+
+def _require_one_each(names):
+    """Refuse several models in one -m, such as ggx,ward."""
+    from brdfkit.model import labels
+
+    for name in names:
+        parts = name.split(",")
+        if len(parts) > 1 and all(map(labels.is_label, parts)):
+            raise BrdfkitError(f"{name} are several models; repeat -m: -m {' -m '.join(parts)}.")
 
 
 def _fit_options(default, others):

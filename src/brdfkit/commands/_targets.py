@@ -40,7 +40,10 @@ def parse_settings(settings):
         except ValueError:
             parts = []
         if not equals or len(parts) not in (1, 3):
-            raise BrdfkitError(f"{setting!r} should read {parameter}=VALUE or {parameter}=R,G,B.")
+            should = f"{setting!r} should read {parameter}=VALUE or {parameter}=R,G,B."
+            if len(parts) == 2 and "." not in text:
+                should += f" Decimals take a point: {setting.replace(',', '.')}."
+            raise BrdfkitError(should)
         parsed[parameter] = parts[0] if len(parts) == 1 else parts
     return parsed
 

@@ -7,7 +7,7 @@ import click
 
 import brdfkit
 from brdfkit.commands._errors import say
-from brdfkit.errors import BrdfkitError
+from brdfkit.errors import BrdfkitError, nearest, no_such
 
 # by the names of their files: to import them takes a second
 PRESETS = (Path(brdfkit.__file__).parent / "volumes" / "presets").glob("*.json")
@@ -62,9 +62,24 @@ def the_volume(things, of_volume):
     if not found and of_volume:
         option = f"--{next(iter(of_volume))}"
         raise BrdfkitError(f"{option} is for volumes only, and {things[0]} is none: leave it out.")
+    for thing in things:
+        _refuse_nearly_made(thing)
     if found and len(things) > 1:
         raise BrdfkitError(f"{found[0]} is a volume, which is rendered alone: name nothing else.")
     return found[0] if found else None
+
+
+def _refuse_nearly_made(word):
+    """Refuse a word that is no file and more like the name of a made volume than of a material."""
+    from brdfkit.catalogue import shipped
+    from brdfkit.model import labels
+    from brdfkit.volumes import made
+
+    known = [*labels.models(), *shipped.materials(), *made.names()]
+    if word in known or labels.is_label(word) or Path(word).suffix or Path(word).exists():
+        return
+    if nearest(word, known) in made.names():
+        raise no_such("file, model, material or volume", word, known)
 
 
 def render_volume(name, of_volume, values, console, **how):
@@ -82,9 +97,22 @@ def render_volume(name, of_volume, values, console, **how):
         volume = load_volume(name, **loading)
     if may_be_labels(volume) and "labels" not in loading:
         say(f"{volume.name} may hold labels, not densities: if so, add --labels.")
+    _warn_of_units(volume, of_volume.get("transfer"))
     with console.progress("render") as progress:
         given = {key: value for key, value in how.items() if value is not None}
         return render_volume(volume, progress=progress, **given, **of_volume, **settings)
+
+
+def _warn_of_units(volume, transfer):
+    """Say where a transfer function is for HU, in which air is -1000, and no value is below 0."""
+    from brdfkit.volumes import TransferFunction
+
+    low, high = volume.range
+    if transfer and low >= 0 and TransferFunction.load(transfer).value_unit == "HU":
+        say(
+            f"{transfer} is for HU, in which air is -1000; {volume.name} has {low:.6g} to "
+            f"{high:.6g}: if these are no HU, leave --transfer out."
+        )
 
 
 def _setting(text):

@@ -1,5 +1,6 @@
 """`brdfkit render`: renders materials, a scene or a volume."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -193,7 +194,7 @@ def _print_picture(picture, path, console):
         console.out.print(picture.head)
         print_errors(picture.errors(), console)
     else:
-        console.out.print(str(picture))
+        console.out.print(str(replace(picture, until=None)))  # `_write` told of the noise floor
     console.list_written(written)
 
 

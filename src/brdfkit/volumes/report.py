@@ -55,7 +55,7 @@ def findings(summary):
     if not summary.labels and 0 < summary.different <= FEW:
         found.append(
             f"only {summary.different} different values, all whole: perhaps labels, which are not "
-            "to be interpolated; load it with labels=True"
+            "to be interpolated; load it with labels=True (--labels)"
         )
     ratio = max(summary.spacing) / min(summary.spacing)
     if ratio > UNEVEN:

@@ -121,6 +121,8 @@ def render_volume(
     if mi.variant().startswith("scalar"):
         raise BrdfkitError(f"Volumes do not render in {mi.variant()}; set llvm_ad_rgb.")
     function = _function(volume, transfer, renderer, to_positive("density", density))
+    if function is None and "level" in settings:
+        _require_surface(volume, to_number("level", settings["level"]))
     described = volume, function, renderer, size, view, light, settings
     how = {"progress": progress, "until": until, "limit": limit, "most": PASS}
     traced = _load_and_trace(described, spp=spp, seed=seed, **how)
@@ -155,6 +157,16 @@ def _function(volume, transfer, renderer, density):
     if transfer.value_unit == SHARES and low < high:  # the camera wants to know what shows
         transfer = transfer.scaled_to(low, high)
     return replace(transfer, extinction=density * transfer.extinction)
+
+
+def _require_surface(volume, level):
+    """Raise `BrdfkitError` where no surface of a volume has this value."""
+    low, high = volume.range
+    if not low <= level <= high:
+        raise BrdfkitError(
+            f"level = {level:g} is outside the values of {volume.name}, {low:.6g} to {high:.6g}: "
+            "there is no surface; give one between."
+        )
 
 
 def _to_background(background):
