@@ -128,7 +128,7 @@ def _refuse_models(files):
 
     for file in files:
         if labels.is_label(file) and not Path(file).exists():
-            raise BrdfkitError(f"{file} is a model, not a file: write -m {file}, once for each.")
+            raise BrdfkitError(f"{file} is a model, not a file: write -m {file}.")
 
 
 def _refuse_for_pictures(*options):
