@@ -13,7 +13,7 @@ PAGE = Path(__file__).with_name("refining.md")
 SIDE, LINE, GAP = 288, 30, 8
 CLEAR = 0.5  # difference that is clear [dB]
 INTRODUCTION = """`fit(loss="picture")` compares pictures of one shape under direct light, by the
-BRDF's table. [`refine`](api/index) renders the whole scene, light that bounces and all, and
+BRDF's table. `refine` renders the whole scene, light that bounces and all, and
 differentiates it: it takes a picture, not a table. Where does that help?
 
 Measured materials are rendered as they are, {size}×{size} pixels. A model is fitted to the table by

@@ -221,12 +221,12 @@ def test_the_checker_shows_how_wide_texels_are_and_the_light_sees_what_is_near_b
     )
     seen = Seen.by(scene, scene.sensors()[0], scene.emitters()[0], (size, size))
     maps = MapPictures.of(seen, placement_of(scene), projection="uniform", resolution=64)
-    assert not np.any(maps.part.array == OUTSIDE)
-    shade = maps.shade.array / 255
+    assert not np.any(maps.part == OUTSIDE)
+    shade = maps.shade
     for row in (shade[10], shade[:, 10]):
         changes = np.count_nonzero(np.abs(np.diff(row.astype(float))) > 0.2)
         assert abs(changes - CHECKS / 2) <= 1
-    assert 0.003 < np.mean(maps.depths.array < 0.5) < 0.02  # of 64 the ball has 0.8
+    assert 0.003 < np.mean(maps.depths < 0.5) < 0.02  # of 64 the ball has 0.8
 
 
 def test_errors_are_blue_where_light_is_lost_and_red_where_it_is_gained():

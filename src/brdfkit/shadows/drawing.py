@@ -37,7 +37,7 @@ def draw_texels(maps):
     """The address of a scene under the checker of its `MapPictures`; grey where there is no map."""
     tints = np.ones((OUTSIDE + 1, 3))
     tints[:OUTSIDE] = colours(TINTS, np.arange(OUTSIDE) % 8 / 7.99)[:, :3] ** 2
-    return looked_at(small(maps.shade.array[..., None] / 255 * tints[maps.part.array]))
+    return looked_at(small(maps.shade[..., None] * tints[maps.part]))
 
 
 def draw_depths(depths):

@@ -18,16 +18,12 @@ DARK = 0.45  # of every other square
 class MapPictures:
     """The maps of a projection in a partition.
 
-    shade : brightness (height, width) of the scene, in 255ths, with a checker of squares of its
-        maps' texels.
-    part : which map (height, width) a pixel is in; `OUTSIDE` for none.
-    depths : what the light sees (SIDE, SIDE), 0 near to 1 far; nan where it sees nothing. Several
-        maps stand in rows, the first at the upper left.
+    checker, parts, view : what `shade`, `part` and `depths` are.
     """
 
-    shade: Packed
-    part: Packed
-    depths: Packed
+    checker: Packed
+    parts: Packed
+    view: Packed
 
     @classmethod
     def of(cls, seen, placement, **technique):
@@ -36,6 +32,23 @@ class MapPictures:
         shade, part = checker(shadow, seen)
         depths = side_by_side([seen_by_light(each) for each in shadow.maps])
         return cls(*map(Packed.of, (shade, part, depths)))
+
+    @property
+    def shade(self):
+        """Brightness (height, width) of the scene, with a checker of squares of its maps' texels,
+        in [0, 1]."""
+        return self.checker.array / np.float32(255)
+
+    @property
+    def part(self):
+        """Which map (height, width) a pixel is in; `OUTSIDE` for none."""
+        return self.parts.array
+
+    @property
+    def depths(self):
+        """What the light sees (SIDE, SIDE), 0 near to 1 far; nan where it sees nothing. Several
+        maps stand in rows, the first at the upper left."""
+        return self.view.array
 
 
 def checker(shadow, seen):

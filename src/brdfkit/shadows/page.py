@@ -81,7 +81,7 @@ def contents(place, order, comparison, number, flips):
             }
         )
     maps = [
-        {"name": label, "texels": draw_texels(one), "depths": draw_depths(one.depths.array)}
+        {"name": label, "texels": draw_texels(one), "depths": draw_depths(one.depths)}
         for label, one in place.maps.items()
     ]
     return {
