@@ -257,6 +257,11 @@ FILES = {
 PLACES = "[sample]\nwidth = 1\nheight = 1\n[camera]\norigin = [0, 0, 1]\nfov = 60"
 
 
+def test_a_folder_that_is_missing_is_said(tmp_path):
+    with pytest.raises(bk.BrdfkitError, match="no such folder"):
+        bk.svbrdf(tmp_path / "nowhere")
+
+
 @pytest.mark.parametrize("case", FILES)
 def test_bad_folders_are_one_sentence_and_status_2(case, tmp_path):
     text, sentence = FILES[case]

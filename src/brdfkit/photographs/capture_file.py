@@ -23,6 +23,8 @@ def load_capture(folder, linearise=False):
     """
     folder = Path(folder)
     path = folder / NAME
+    if not folder.is_dir():
+        raise BrdfkitError(f"{folder}: there is no such folder; check the path.")
     if not path.is_file():
         raise BrdfkitError(f"{folder}: there is no {NAME} in it, which says where the lights are.")
     try:
