@@ -10,6 +10,7 @@ from click.testing import CliRunner
 
 import brdfkit as bk
 from brdfkit.cli import main
+from brdfkit.photographs import fitting_maps
 from brdfkit.photographs.in_mitsuba import bsdf_dict
 from brdfkit.photographs.numbers import Numbers
 from brdfkit.photographs.observations import Observations
@@ -144,6 +145,25 @@ def test_widths_of_two_directions_come_back_as_one(made):
     found = bk.svbrdf(capture, resolution=TEXELS, anisotropic=True, smoothness=0.1)
     for name in ("alpha_u", "alpha_v"):
         assert np.median(np.abs(inner(found.maps[name] / truth.maps["alpha_u"] - 1))) < 0.05
+
+
+def test_ctrl_c_keeps_the_coarser_maps(made, monkeypatch):
+    original, calls = fitting_maps.finish, []
+
+    def stop(*args):
+        calls.append(args)
+        if len(calls) > 2:
+            raise KeyboardInterrupt
+        return original(*args)
+
+    monkeypatch.setattr(fitting_maps, "finish", stop)
+    with pytest.raises(bk.Interrupted) as stopped:
+        bk.svbrdf(made[1], resolution=TEXELS, smoothness=0.1)
+    best = stopped.value.best
+    assert best.shape == (TEXELS, TEXELS)
+    assert best.residual < 0.2
+    assert "Interrupted" in best.notes[0]
+    assert np.ptp(best.maps["alpha_u"][:2, :2]) == 0  # texels twice as large
 
 
 def test_one_light_says_what_trades_off(made):

@@ -4,7 +4,10 @@ from pathlib import Path
 
 import click
 
+from brdfkit.commands._errors import say
 from brdfkit.commands._options import output_options
+from brdfkit.commands._stopping import status
+from brdfkit.errors import Interrupted
 
 
 @click.command()
@@ -53,17 +56,21 @@ def svbrdf(folder, model, resolution, anisotropic, fixed, smoothness, linearise,
     from brdfkit.photographs import svbrdf as fit_maps
 
     values = dict(map(_to_value, fixed))
+    interrupted = False
     with console.progress("fit maps") as progress:
-        found = fit_maps(
-            folder,
-            model,
-            resolution=resolution,
-            anisotropic=anisotropic,
-            fixed=values,
-            smoothness=smoothness,
-            linearise=linearise,
-            progress=progress,
-        )
+        try:
+            found = fit_maps(
+                folder,
+                model,
+                resolution=resolution,
+                anisotropic=anisotropic,
+                fixed=values,
+                smoothness=smoothness,
+                linearise=linearise,
+                progress=progress,
+            )
+        except Interrupted as stop:
+            found, interrupted = stop.best, True
     if not console.as_json:
         console.out.print(str(found), markup=False, highlight=False)
     written = found.write(output or folder / "maps")
@@ -72,6 +79,9 @@ def svbrdf(folder, model, resolution, anisotropic, fixed, smoothness, linearise,
         console.json({**{name: getattr(found, name) for name in said}, "written": written})
     else:
         console.list_written(written)
+    if interrupted:
+        say("interrupted; the maps are coarser than they were to be.")
+        click.get_current_context().exit(status())
 
 
 def _to_value(text):

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.ndimage import median_filter
 
+from brdfkit.fitting.stopped import Stopped
 from brdfkit.photographs.numbers import CHANNELS
 from brdfkit.photographs.search import Equations, equations, search_each, search_together
 from brdfkit.photographs.starts import WIDTHS, rows
@@ -32,23 +33,43 @@ class FittedMaps:
 
 
 def fit_maps(numbers, seen, smoothness=None, report=lambda: None):
-    """The `FittedMaps` of `Observations`; `smoothness`: τ, or None for one that is chosen."""
-    start, noise = coarse_to_fine(numbers, seen, report)
-    errors = {}
-    tau = smoothness
-    if tau is None:
-        tau = USUAL
-        if len(seen.radiance) >= FEW_TO_HOLD_OUT:
-            errors = held_out_errors(numbers, seen, noise, report)
-            tau = min(errors, key=errors.get)
-    strength = strengths(numbers, start, seen, noise, tau)
-    x = finish(numbers, start, seen, strength, report)
+    """The `FittedMaps` of `Observations`; `smoothness`: τ, or None for one that is chosen.
+
+    On Ctrl-C `Stopped` has those of the finest maps that are finished, if there are any.
+    """
+    finest = None
+    try:
+        for finest in coarse_to_fine(numbers, seen, report):
+            start, noise, _ = finest
+        errors = {}
+        tau = smoothness
+        if tau is None:
+            tau = USUAL
+            if len(seen.radiance) >= FEW_TO_HOLD_OUT:
+                errors = held_out_errors(numbers, seen, noise, report)
+                tau = min(errors, key=errors.get)
+        strength = strengths(numbers, start, seen, noise, tau)
+        x = finish(numbers, start, seen, strength, report)
+    except KeyboardInterrupt:
+        if finest is None:
+            raise
+        raise Stopped(_enlarged(numbers, seen, *finest)) from None
     return FittedMaps(x, equations(numbers, x, seen), tau, noise, strength, errors)
 
 
+def _enlarged(numbers, seen, x, noise, coarse):
+    """The `FittedMaps` of rows of maps of the shape `coarse`."""
+    height, width = seen.shape
+    side = -(-max(height, width) // max(coarse))
+    grid = x.reshape(*coarse, -1).repeat(side, axis=0).repeat(side, axis=1)
+    x = grid[:height, :width].reshape(height * width, -1)
+    strength = strengths(numbers, x, seen, noise, USUAL)
+    return FittedMaps(x, equations(numbers, x, seen), USUAL, noise, strength, {})
+
+
 def coarse_to_fine(numbers, seen, report):
-    """(rows, noise) of maps that are first a few texels large, then twice as fine and so on: a
-    texel alone may mistake a highlight for its colour, a part of the sample less so."""
+    """Yield (rows, noise, shape) of maps that are first a few texels large, then twice as fine and
+    so on: a texel alone may mistake a highlight for its colour, a part of the sample less so."""
     side = 2 ** max(0, int(np.ceil(np.log2(max(seen.shape) / COARSE))))
     pooled = seen.pooled(side)
     tried = [
@@ -59,13 +80,14 @@ def coarse_to_fine(numbers, seen, report):
     best = errors.argmin(axis=0)
     x = np.array([x for x, _ in tried])[best, np.arange(len(best))]
     noise = noise_of(numbers, errors.min(axis=0), pooled)
+    yield x, noise, pooled.shape
     while side > 1:
         side //= 2
         coarse, pooled = pooled.shape, seen.pooled(side)
         x = refined(x, coarse, pooled.shape)
         x = finish(numbers, x, pooled, strengths(numbers, x, pooled, noise, USUAL), report)
         noise = noise_of(numbers, equations(numbers, x, pooled, slopes=False).error, pooled)
-    return x, noise
+        yield x, noise, pooled.shape
 
 
 def refined(x, coarse, fine):
@@ -116,7 +138,7 @@ def held_out_errors(numbers, seen, noise, report):
     lights = np.arange(len(seen.radiance))
     held = lights[1 :: max(2, len(lights) // 3)]
     taught, asked = part.under(np.setdiff1d(lights, held)), part.under(held)
-    start, _ = coarse_to_fine(numbers, taught, report)
+    *_, (start, _, _) = coarse_to_fine(numbers, taught, report)
     found = {}
     for tau in TAUS:
         x = finish(numbers, start, taught, strengths(numbers, start, taught, noise, tau), report)

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from brdfkit.arguments import to_positive, to_whole_number
-from brdfkit.errors import BrdfkitError
+from brdfkit.errors import BrdfkitError, Interrupted
+from brdfkit.fitting.stopped import Stopped
 from brdfkit.jit.llvm import use_variant
 from brdfkit.jit.threads import in_turn
 from brdfkit.model import double_precision, labels
@@ -41,7 +42,8 @@ def svbrdf(
     First the photographs of large parts of the sample, then of ever smaller ones, at last of each
     texel, by Gauss-Newton steps for all at once. Neighbouring texels are drawn to each other, as
     strongly as lights that were held out are predicted best. Direct light alone is fitted: a flat
-    sample throws hardly any light on itself.
+    sample throws hardly any light on itself. Ctrl-C raises `Interrupted`, whose ``best`` has the
+    finest maps so far.
 
     Parameters
     ----------
@@ -92,24 +94,31 @@ def svbrdf(
         smoothness = to_positive("smoothness", smoothness)
     shape = _shape(taken, resolution)
     seen = Observations.of(taken, shape)
-    fitted = fit_maps(numbers, seen, smoothness, _counter(progress))
-    errors = standard_errors(numbers, fitted)
-    counted = max(1, np.count_nonzero(seen.weights))
-    return Svbrdf(
-        name=name,
-        model=model,
-        maps=maps_of(numbers, fitted.x, shape),
-        fixed=numbers.fixed,
-        uncertainty=errors_of(numbers, errors, fitted.x, shape),
-        size=taken.size,
-        smoothness=float(fitted.tau),
-        held_out=fitted.errors,
-        residual=float(np.sqrt(fitted.about.error.sum() / counted)),
-        predicted=_predicted(numbers, fitted.x, seen, taken.names),
-        notes=(*describe_open(numbers, fitted, len(taken.names)), *_said(taken)),
-        seconds=time.perf_counter() - began,
-        capture=taken,
-    )
+
+    def conclude(fitted, *notes):
+        errors = standard_errors(numbers, fitted)
+        counted = max(1, np.count_nonzero(seen.weights))
+        return Svbrdf(
+            name=name,
+            model=model,
+            maps=maps_of(numbers, fitted.x, shape),
+            fixed=numbers.fixed,
+            uncertainty=errors_of(numbers, errors, fitted.x, shape),
+            size=taken.size,
+            smoothness=float(fitted.tau),
+            held_out=fitted.errors,
+            residual=float(np.sqrt(fitted.about.error.sum() / counted)),
+            predicted=_predicted(numbers, fitted.x, seen, taken.names),
+            notes=(*notes, *describe_open(numbers, fitted, len(taken.names)), *_said(taken)),
+            seconds=time.perf_counter() - began,
+            capture=taken,
+        )
+
+    try:
+        return conclude(fit_maps(numbers, seen, smoothness, _counter(progress)))
+    except Stopped as stop:
+        best = conclude(stop.best, "Interrupted: the maps are coarser than they were to be.")
+        raise Interrupted(best, f"{name}: the maps so far leave {best.residual:.3g}") from None
 
 
 def _load(given, linearise):
