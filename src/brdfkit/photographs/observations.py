@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 ARRAYS = "radiance", "weights", "to_light", "irradiance", "to_camera"
+POOLED = 8  # texels along a side: more tell a large texel nothing new
 DARK = 0.05  # of the mean radiance, added to a radiance: its relative difference is no noise then
 
 
@@ -58,13 +59,16 @@ class Observations:
         return replace(found, shape=(1, found.radiance.shape[1]))
 
     def pooled(self, side):
-        """Texels `side` times as large: what is observed of all within one is observed of it."""
+        """Texels `side` times as large: what is observed of those within one, or of `POOLED` ×
+        `POOLED` evenly among them, is observed of it."""
         height, width = self.shape
         rows, columns = -(-height // side), -(-width // side)
         texel = np.arange(height * width).reshape(height, width)
         spare = (0, rows * side - height), (0, columns * side - width)
         blocks = np.pad(texel, spare, mode="edge").reshape(rows, side, columns, side)
-        blocks = blocks.transpose(1, 3, 0, 2).reshape(side * side, rows * columns)
+        step = max(1, side // POOLED)
+        blocks = blocks[:, step // 2 :: step, :, step // 2 :: step]
+        blocks = blocks.transpose(1, 3, 0, 2).reshape(-1, rows * columns)
 
         def pool(values):
             return values[:, blocks].reshape(-1, rows * columns, 3)
