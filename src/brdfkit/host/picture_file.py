@@ -1,8 +1,29 @@
 """Reads pictures by Mitsuba, whatever their format: their pixels in linear sRGB."""
 
+from pathlib import Path
+
 import numpy as np
 
+from brdfkit.errors import BrdfkitError
 from brdfkit.host.load_by_mitsuba import load_by_mitsuba
+
+LINEAR = ".exr", ".hdr", ".pfm", ".rgbe"  # files without a curve for screens
+
+
+def read_photograph(path, linearise):
+    """The linear pixels (height, width, 3) of a photograph.
+
+    Raises `BrdfkitError` where there is none, for a file that Mitsuba cannot read, and for one of 8
+    bits, unless it is to `linearise` by sRGB's curve.
+    """
+    if Path(path).suffix.lower() not in LINEAR and not linearise:
+        raise BrdfkitError(
+            f"{path}: such files have 8 bits, behind a curve for screens; give an OpenEXR file, or "
+            "say linearise=True (--linearise), for sRGB's curve."
+        )
+    if not Path(path).is_file():
+        raise BrdfkitError(f"{path}: there is no such picture; check the path.")
+    return read_pixels(path, str(path))
 
 
 def read_pixels(path, name):

@@ -6,12 +6,11 @@ from pathlib import Path
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.host.picture_file import read_pixels
+from brdfkit.host.picture_file import read_photograph
 from brdfkit.photographs.capture import Capture
 from brdfkit.photographs.pinhole import Pinhole
 
 NAME = "capture.toml"
-LINEAR = ".exr", ".hdr", ".pfm", ".rgbe"
 AT_CAMERA = "camera"  # the place of a flash light
 
 
@@ -51,7 +50,7 @@ def load_capture(folder, linearise=False):
         positions.append(camera.origin if flash else _numbers(path, place, f"{where}: position", 3))
         intensities.append(_numbers(path, light.get("intensity", 1.0), f"{where}: intensity", 3))
         names.append(name)
-    pictures = [_picture(folder / name, linearise) for name in names]
+    pictures = [read_photograph(folder / name, linearise) for name in names]
     for name, picture in zip(names, pictures, strict=True):
         if picture.shape != pictures[0].shape:
             own, first = (f"{p.shape[1]} × {p.shape[0]}" for p in (picture, pictures[0]))
@@ -77,17 +76,6 @@ def _camera(path, said):
     if not np.isfinite(camera.axes).all():
         raise BrdfkitError(f"{path}: [camera] looks along up, or at where it is.")
     return camera
-
-
-def _picture(path, linearise):
-    if not path.is_file():
-        raise BrdfkitError(f"{path}: there is no such picture; check its name in {NAME}.")
-    if path.suffix.lower() not in LINEAR and not linearise:
-        raise BrdfkitError(
-            f"{path}: such files have 8 bits, behind a curve for screens; develop the photographs "
-            "as OpenEXR, or say linearise (--linearise), for sRGB's curve."
-        )
-    return read_pixels(path, str(path)).astype(float)
 
 
 def _number(path, said, table, name):

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
+from brdfkit.colours import from_srgb
 from brdfkit.errors import BrdfkitError
-from brdfkit.host.picture_file import read_pixels
+from brdfkit.host.picture_file import read_photograph
 
-LINEAR = ".exr", ".hdr", ".pfm", ".rgbe"
 DARK = 0.02  # of the mean brightness, added to a pixel's: no difference counts without end then
 WHITE = 0.99  # the share of numbers that are darker than white
 CLIPPED = 1e-3  # the share of numbers that equal the largest: not by chance
@@ -44,7 +44,7 @@ def read_targets(pictures, linearise=False):
 
 def _read(picture, name, linearise):
     if isinstance(picture, str | Path):
-        picture, name = _read_file(picture, linearise), str(picture)
+        picture, name = read_photograph(picture, linearise), str(picture)
     pixels = np.asarray(picture)
     if pixels.dtype == np.uint8:
         if not linearise:
@@ -52,7 +52,7 @@ def _read(picture, name, linearise):
                 f"{name}: its numbers have 8 bits, behind a curve for screens; give linear pixels, "
                 "as of an OpenEXR file, or say linearise=True, for sRGB's curve."
             )
-        pixels = _from_srgb(pixels / 255.0)
+        pixels = from_srgb(pixels / 255.0)
     if pixels.ndim == 2:
         pixels = pixels[..., None]
     if pixels.ndim != 3 or pixels.shape[2] not in (1, 3, 4) or not pixels.size:
@@ -67,22 +67,6 @@ def _read(picture, name, linearise):
     clipped = _clipped(pixels)
     weights = np.where(clipped, 0, _weights(pixels))
     return Target(pixels, weights, float(clipped.mean()))
-
-
-def _read_file(path, linearise):
-    if Path(path).suffix.lower() not in LINEAR and not linearise:
-        raise BrdfkitError(
-            f"{path}: such files have 8 bits, behind a curve for screens; give an OpenEXR file, or "
-            "say linearise=True, for sRGB's curve."
-        )
-    if not Path(path).is_file():
-        raise BrdfkitError(f"{path}: there is no such picture; check the path.")
-    return read_pixels(path, str(path))
-
-
-def _from_srgb(x):
-    """Linear values of sRGB's [IEC 1999]."""
-    return np.where(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4)
 
 
 def _count_bad(pixels):
