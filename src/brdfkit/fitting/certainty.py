@@ -79,6 +79,18 @@ class Certainty:
         return self.matrix() / np.outer(root, root)
 
 
+def intervals(values, half):
+    """The intervals (low, high) of `values` by name, numbers or tuples, of these `half` widths."""
+    found = {}
+    for name, value in values.items():
+        if isinstance(value, tuple):
+            pairs = zip(value, half[name], strict=True)
+            found[name] = tuple((v - h, v + h) for v, h in pairs)
+        else:
+            found[name] = (value - half[name], value + half[name])
+    return found
+
+
 def certify(problem, u, weights, passes=None, rng=None):
     """The `Certainty` of a solution of a `Problem`: `u` (1, shapes), `weights` (1, channels,
     lobes). `passes`: of a robust fit, by channel the factors ω of the samples and the derivatives

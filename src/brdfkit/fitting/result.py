@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from brdfkit.documents import Document, Folded, Paragraph, Shown
 from brdfkit.documents.parts import SOFT
 from brdfkit.errors import BrdfkitError
-from brdfkit.fitting.certainty import Certainty
+from brdfkit.fitting.certainty import Certainty, intervals
 from brdfkit.model import Model
 from brdfkit.model.value_table import value_table
 from brdfkit.plugins.pages import page
@@ -110,14 +110,7 @@ class Fit(Shown):
     def intervals(self) -> dict[str, tuple[float, float] | tuple[tuple[float, float], ...]]:
         """The 95 % confidence intervals (low, high) of `values`, by Student's t."""
         half = self._per_value(self.certainty.half_widths() if self.certainty else {})
-        found: dict[str, Any] = {}
-        for name, value in self.values.items():
-            if isinstance(value, tuple):
-                pairs = zip(value, half[name], strict=True)
-                found[name] = tuple((v - h, v + h) for v, h in pairs)
-            else:
-                found[name] = (value - half[name], value + half[name])
-        return found
+        return intervals(self.values, half)
 
     @property
     def covariance(self) -> NDArray[np.float64]:

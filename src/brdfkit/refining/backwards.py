@@ -30,7 +30,7 @@ def _backwards(views, x, number, onto, spp, seed):
     """The derivatives (n,) of Σ `onto` · I by the values, I the picture of sensor `number`."""
     import mitsuba as mi
 
-    leaves = views.set_leaves(x)
+    leaves = views.put_leaves(x)
     sensor = views.scene.sensors()[number]
     height, width = onto.shape[:2]
     given = np.zeros((height, width, _channels(sensor)), np.float32)

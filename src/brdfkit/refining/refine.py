@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from brdfkit.arguments import to_whole_number
 from brdfkit.errors import BrdfkitError, Interrupted
 from brdfkit.fitting.stopped import Stopped
 from brdfkit.jit.llvm import use_variant
@@ -106,20 +107,17 @@ def refine(
             f"refine: the variant {variant} has no derivatives of pictures in linear colours; set "
             "llvm_ad_rgb or cuda_ad_rgb."
         )
-    for name, number, least in (
-        ("steps", steps, 1),
-        ("samples", samples, 4),
-        ("starts", starts, 1),
-    ):
-        if number is not None and (int(number) != number or number < least):
-            raise BrdfkitError(f"refine: {name} = {number!r} should be a whole number ≥ {least}.")
+    samples = to_whole_number("refine: samples", samples, 4)
+    for name, number in (("steps", steps), ("starts", starts)):
+        if number is not None:
+            to_whole_number(f"refine: {name}", number, 1)
     if smoothness is not None and not 0 <= smoothness < np.inf:
         raise BrdfkitError(f"refine: smoothness = {smoothness!r} should be a number ≥ 0.")
     views = _views(scene, pictures, parameters, linearise)
     if len(views.start) > MOST or any(unknown.shape for unknown in views.unknowns):
         return _by_descent(views, smoothness, steps or 30, samples, seed + 100, progress, began)
     steps = steps or 8
-    count = usual_count(views) if starts is None else int(starts)
+    count = usual_count(views) if starts is None else starts
     report = _counter(progress, (count + BEST if count > 1 else 0) + steps)
     try:
         with quiet_samplers():
@@ -136,7 +134,7 @@ def refine(
         )
     # where nothing is known, the search's own starts mean nothing
     found.here = replace(found.here, x=np.where(unseen, views.start, found.here.x))
-    views.leave_at(found.here.x)
+    views.put(found.here.x)
     return conclude_search(views, found, time.perf_counter() - began)
 
 
@@ -151,7 +149,7 @@ def _by_descent(views, smoothness, steps, samples, seed, progress, began):
             views, stop.best, time.perf_counter() - began, interrupted=True, notes=(without,)
         )
         raise Interrupted(best, f"refine: the best so far leaves {best.loss:.3g}") from None
-    views.leave_at(found.here.x)
+    views.put(found.here.x)
     how = "by held-out pixels" if smoothness is None else "as given"
     notes = (f"smoothness {chosen:g}, {how}", without)
     return conclude_search(views, found, time.perf_counter() - began, notes=notes)

@@ -10,7 +10,7 @@ from brdfkit.documents import Cell, Document, Paragraph, Shown, Table
 from brdfkit.documents.parts import BAD, SOFT
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit
-from brdfkit.fitting.certainty import Certainty
+from brdfkit.fitting.certainty import Certainty, intervals
 
 Value = float | tuple[float, ...] | NDArray[np.float64]
 
@@ -97,14 +97,7 @@ class Refinement(Shown):
     @property
     def intervals(self) -> dict[str, Any]:
         """The 95 % confidence intervals (low, high) of `values`, by Student's t."""
-        half, found = self._by_value(self.certainty.half_widths()), {}
-        for name, value in self.values.items():
-            if isinstance(value, tuple):
-                pairs = zip(value, half[name], strict=True)
-                found[name] = tuple((v - h, v + h) for v, h in pairs)
-            else:
-                found[name] = (value - half[name], value + half[name])
-        return found
+        return intervals(self.values, self._by_value(self.certainty.half_widths()))
 
     @property
     def covariance(self) -> NDArray[np.float64]:
@@ -141,13 +134,11 @@ class Refinement(Shown):
         """Whether all but times and pictures is equal."""
         if not isinstance(other, Refinement):
             return NotImplemented
-        return self.values.keys() == other.values.keys() and all(
-            np.array_equal(getattr(self, f.name)[k], getattr(other, f.name)[k])
-            if f.name == "values"
-            else getattr(self, f.name) == getattr(other, f.name)
-            for f in fields(self)
-            if f.compare
-            for k in self.values
+        plain = [f.name for f in fields(self) if f.compare and f.name != "values"]
+        return (
+            all(getattr(self, name) == getattr(other, name) for name in plain)
+            and self.values.keys() == other.values.keys()
+            and all(np.array_equal(v, other.values[name]) for name, v in self.values.items())
         )
 
     __hash__ = None  # type: ignore[assignment]

@@ -90,18 +90,14 @@ class Views:
 
     def residuals(self, x, spp, seed):
         """Rendered less reached pixels (pixels, channels), by `spp` samples of a `seed`."""
-        self._set(x)
+        self.put(x)
         return self._render(spp, seed) - self.reached
 
     def derivatives(self, x, spp, seed):
         """The derivatives (n, pixels, channels) of the pixels by the coordinates."""
         found = np.zeros((len(x), *self.reached.shape), np.float32)
         for numbers in self.tangents:
-            picture = self._derivative(x, numbers, spp, seed)
-            for channel, number in enumerate(numbers):
-                # a number of a colour changes its own channel only: one picture has them all
-                own = [channel] if 1 < len(numbers) == found.shape[2] else slice(None)
-                found[number][:, own] = picture[:, own]
+            _share(self._derivative(x, numbers, spp, seed), found, numbers)
         return found
 
     @property
@@ -138,9 +134,7 @@ class Views:
             moved = np.array(x, float)
             moved[group] = 1
             change = self.residuals(moved, spp, seed) - without
-            for channel, number in enumerate(group):
-                own = [channel] if 1 < len(group) == change.shape[1] else slice(None)
-                found[rows[number]][:, own] = change[:, own]
+            _share(change, found, [rows[number] for number in group])
         return found, without
 
     def as_pictures(self, pixels):
@@ -152,33 +146,34 @@ class Views:
             pixels = pixels[count:]
         return found
 
-    def leave_at(self, x):
-        """Leave the scene with the values at `x`."""
-        self._set(x)
+    def put(self, x):
+        """Put the values at `x` into the scene, and leave them there."""
+        self._put(self._entries(x))
 
-    def set_leaves(self, x):
-        """Put the values at `x` into the scene, ready for derivatives backwards; the entries."""
-        leaves = []
-        for unknown, value in zip(self.unknowns, self.values(x), strict=True):
-            leaf = _entry(self.parameters, unknown, value)
-            dr.enable_grad(leaf)
-            self.parameters[unknown.key] = leaf
-            leaves.append(leaf)
-        with first_error():
-            self.parameters.update()
+    def put_leaves(self, x):
+        """The same, ready for derivatives backwards; the entries of the unknowns."""
+        leaves = self._entries(x)
+        dr.enable_grad(leaves)
+        self._put(leaves)
         return leaves
 
-    def _set(self, x, tangent=None):
-        """Put the values at `x` into the scene; with derivatives along a `tangent` (n,) of the
-        values."""
-        tangents = [None] * len(self.unknowns) if tangent is None else self.parts(tangent)
-        for unknown, value, along in zip(self.unknowns, self.values(x), tangents, strict=True):
-            array = _entry(self.parameters, unknown, value)
-            if along is not None:
-                # of all, 0 of those that rest: so all derivatives share one kernel
-                dr.enable_grad(array)
-                dr.set_grad(array, _opaque(type(array), along))
-            self.parameters[unknown.key] = array
+    def _put_moving(self, x, tangent):
+        """The same, with derivatives along a `tangent` (n,) of the values: of all unknowns, 0 of
+        those that rest, so that all derivatives share one kernel."""
+        entries = self._entries(x)
+        dr.enable_grad(entries)
+        for entry, along in zip(entries, self.parts(tangent), strict=True):
+            dr.set_grad(entry, _opaque(type(entry), along))
+        self._put(entries)
+
+    def _entries(self, x):
+        """What the scene holds of each unknown at the coordinates `x`."""
+        values = zip(self.unknowns, self.values(x), strict=True)
+        return [_entry(self.parameters, unknown, value) for unknown, value in values]
+
+    def _put(self, entries):
+        for unknown, entry in zip(self.unknowns, entries, strict=True):
+            self.parameters[unknown.key] = entry
         with first_error():
             self.parameters.update()
 
@@ -200,7 +195,7 @@ class Views:
         self.renders += DERIVATIVE_COST * spp
         tangent = np.zeros(len(x))
         tangent[numbers] = self.slopes(x)[numbers]
-        self._set(x, tangent)
+        self._put_moving(x, tangent)
         try:
             with first_error():
                 found = [
@@ -250,6 +245,14 @@ def quiet_samplers():
         yield
     finally:
         mi.set_log_level(level)
+
+
+def _share(picture, found, rows):
+    """Put a picture (pixels, channels) into the `rows` of `found` (n, pixels, channels): whole, or
+    to each number of a colour its own channel, for it changes no other."""
+    for channel, row in enumerate(rows):
+        own = [channel] if 1 < len(rows) == picture.shape[1] else slice(None)
+        found[row][:, own] = picture[:, own]
 
 
 def _entry(parameters, unknown, values):
