@@ -119,7 +119,12 @@ def noise_of(numbers, errors, seen):
 
 
 def strengths(numbers, x, seen, noise, tau):
-    """σ² / τ² (count,) of each number. The unit of a weight is that by which its lobe alone would
+    """σ² / τ² (count,) of each number, in its unit."""
+    return noise / (tau * units_of(numbers, x, seen)) ** 2
+
+
+def units_of(numbers, x, seen):
+    """The units (count,) of differences. That of a weight is the one by which its lobe alone would
     be as bright as what is seen: not the weight so far, as one that is near 0 would rest there."""
     hessian = equations(numbers, x, seen).hessian
     of_weights = slice(0, numbers.shapes.start)
@@ -129,7 +134,7 @@ def strengths(numbers, x, seen, noise, tau):
     units = np.ones(numbers.count)
     scale = np.median(alone[counted[:, 0] > 0], axis=0).reshape(-1, CHANNELS).mean(axis=1)
     units[of_weights] = np.repeat(scale, CHANNELS)
-    return noise / (tau * units) ** 2
+    return units
 
 
 def held_out_errors(numbers, seen, noise, report):
@@ -139,9 +144,9 @@ def held_out_errors(numbers, seen, noise, report):
     held = lights[1 :: max(2, len(lights) // 3)]
     taught, asked = part.under(np.setdiff1d(lights, held)), part.under(held)
     *_, (start, _, _) = coarse_to_fine(numbers, taught, report)
-    found = {}
+    units, found = units_of(numbers, start, taught), {}
     for tau in TAUS:
-        x = finish(numbers, start, taught, strengths(numbers, start, taught, noise, tau), report)
+        x = finish(numbers, start, taught, noise / (tau * units) ** 2, report)
         left = equations(numbers, x, asked, slopes=False).error
         found[tau] = float(np.sqrt(left.sum() / max(1, (asked.weights > 0).sum())))
     return found

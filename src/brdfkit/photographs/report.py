@@ -5,7 +5,7 @@ import numpy as np
 from brdfkit.photographs.observations import Observations
 from brdfkit.photographs.prediction import numbers_of, radiances
 from brdfkit.reporting import page
-from brdfkit.reporting.images import colours, halved, jpeg, png
+from brdfkit.reporting.images import colours, jpeg, narrowed, png
 from brdfkit.version import __version__
 
 WIDEST = 512  # pixels of a picture on the page
@@ -34,10 +34,10 @@ def write_report(svbrdf, path):
 def _shown_map(svbrdf, name):
     values, errors = svbrdf.maps[name], svbrdf.uncertainty[name]
     if name == "normal":
-        picture, said = png(small((values + 1) / 2)), "x, y and z as red, green and blue"
+        picture, said = png(narrowed((values + 1) / 2, WIDEST)), "x, y and z as red, green and blue"
     elif values.ndim == 3:
         white = max(1e-6, float(np.quantile(values, 0.99)))
-        picture, said = jpeg(small(values / white)), f"white is {white:.3g}"
+        picture, said = jpeg(narrowed(values / white, WIDEST)), f"white is {white:.3g}"
     else:
         low, high = np.quantile(values, (0.01, 0.99))
         picture, said = _scaled(values, low, high), f"{low:.3g} (dark) to {high:.3g} (bright)"
@@ -66,8 +66,8 @@ def _photographs(svbrdf):
             {
                 "name": capture.names[k],
                 "said": f"PSNR {svbrdf.predicted[capture.names[k]]:.1f} dB",
-                "photograph": jpeg(small(photograph / white)),
-                "prediction": jpeg(small(prediction / white)),
+                "photograph": jpeg(narrowed(photograph / white, WIDEST)),
+                "prediction": jpeg(narrowed(prediction / white, WIDEST)),
                 "off": _scaled(off, -MOST_OFF, MOST_OFF, OFF),
             }
         )
@@ -75,12 +75,5 @@ def _photographs(svbrdf):
 
 
 def _scaled(values, low, high, scale=SCALE):
-    shares = (small(values[..., None])[..., 0] - low) / max(high - low, 1e-12)
+    shares = (narrowed(values[..., None], WIDEST)[..., 0] - low) / max(high - low, 1e-12)
     return png(colours(scale, shares)[..., :3])
-
-
-def small(picture):
-    """A picture (height, width, n), halved until it is narrow enough."""
-    while max(picture.shape[:2]) > WIDEST:
-        picture = halved(picture)
-    return picture

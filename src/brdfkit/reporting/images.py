@@ -27,6 +27,13 @@ def halved(linear):
     return linear[: 2 * height, : 2 * width].reshape(height, 2, width, 2, -1).mean(axis=(1, 3))
 
 
+def narrowed(picture, widest):
+    """A picture (height, width, n), halved until no side is longer than `widest` pixels."""
+    while max(picture.shape[:2]) > widest:
+        picture = halved(picture)
+    return picture
+
+
 def png(colours):
     """The address of colours (height, width, 3 or 4) in 0..1, pixel by pixel."""
     return _address(_bytes(colours), "PNG", optimize=True)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from brdfkit.colours import to_srgb
-from brdfkit.reporting.images import colours, halved, webp
+from brdfkit.reporting.images import colours, narrowed, webp
 from brdfkit.shadows.map_pictures import OUTSIDE
 
 WIDEST = 320  # pixels of a picture on the page
@@ -16,10 +16,7 @@ NOTHING = (0.16, 0.2, 0.3)  # where the light sees no surface
 
 def small(picture):
     """A picture (height, width, n), halved until it is narrow enough."""
-    picture = np.asarray(picture, float)
-    while max(picture.shape[:2]) > WIDEST:
-        picture = halved(picture)
-    return picture
+    return narrowed(np.asarray(picture, float), WIDEST)
 
 
 def draw_radiance(picture, white):
