@@ -4,6 +4,8 @@ import numpy as np
 from scipy.ndimage import gaussian_filter
 
 import brdfkit as bk
+from brdfkit.jit.threads import two_threads
+from brdfkit.photographs.capture import corners_of
 from brdfkit.photographs.in_mitsuba import bsdf_dict
 
 SIDE = 0.1  # m
@@ -45,14 +47,14 @@ def lights(count, seed=4):
     return way[:, None] * directions, np.tile([1.0, 0.9, 0.8], (count, 1))
 
 
-def photograph(bsdf, position, intensity, pixels, spp=36):
-    """What the camera sees of the sample with a BSDF, under a light."""
+def photograph(bsdf, position, intensity, pixels, spp=36, camera=CAMERA):
+    """What a camera sees of the sample with a BSDF, under a light."""
     import mitsuba as mi
 
     scene = {
         "type": "scene",
         "integrator": {"type": "direct"},
-        "sensor": CAMERA.scene_dict((pixels, pixels)),
+        "sensor": camera.scene_dict((pixels, pixels)) | {"sampler": {"type": "multijitter"}},
         "sample": {
             "type": "rectangle",
             "to_world": mi.ScalarTransform4f().scale(SIDE / 2),
@@ -67,34 +69,51 @@ def photograph(bsdf, position, intensity, pixels, spp=36):
     return np.array(mi.render(mi.load_dict(scene), spp=spp), float)
 
 
-def photographs(texels, count, noise=0.01, pixels=None, truth=None):
+def photographs(texels, count, noise=0.01, pixels=None, truth=None, lights_at=None, cameras=None):
     """(`Truth`, `Capture` with relative noise) of a made sample under so many lights."""
     truth = truth or Truth(texels)
-    bsdf, places, pixels = bsdf_dict(truth), lights(count), pixels or round(1.4 * texels)
-    clean = np.array([photograph(bsdf, *light, pixels) for light in zip(*places, strict=True)])
+    bsdf, places, pixels = (
+        bsdf_dict(truth),
+        lights_at or lights(count),
+        pixels or round(1.4 * texels),
+    )
+    clean = np.array(
+        [
+            photograph(bsdf, *light, pixels, camera=camera)
+            for *light, camera in zip(*places, cameras or [CAMERA] * count, strict=True)
+        ]
+    )
     noisy = clean * (1 + noise * np.random.default_rng(5).standard_normal(clean.shape))
     names = tuple(f"{k:02}.exr" for k in range(count))
-    return truth, bk.Capture(noisy, *places, CAMERA, (SIDE, SIDE), names)
+    return truth, bk.Capture(noisy, *places, cameras or CAMERA, (SIDE, SIDE), names)
 
 
-def write_capture(capture, folder):
-    """The folder of a capture: photographs, and capture.toml."""
+def write_capture(capture, folder, by_corners=False):
+    """The folder of a capture: photographs, and capture.toml.
+
+    `by_corners`: where the cameras were is said by the corners of the sample, lights are flashes.
+    """
     import mitsuba as mi
 
-    from brdfkit.jit.threads import two_threads
-
-    camera = capture.camera
+    camera = capture.cameras[0]
     lines = [
         f"[sample]\nwidth = {capture.size[0]}\nheight = {capture.size[1]}\n",
         f"[camera]\norigin = {camera.origin.tolist()}\nfov = {camera.fov}\n",
     ]
-    for name, picture, place, power in zip(
-        capture.names, capture.pictures, capture.positions, capture.intensities, strict=True
+    for name, picture, place, power, camera in zip(
+        capture.names,
+        capture.pictures,
+        capture.positions,
+        capture.intensities,
+        capture.cameras,
+        strict=True,
     ):
         with two_threads():
             mi.Bitmap(np.float32(picture)).write(str(folder / name))
-        lines.append(
-            f'[[light]]\npicture = "{name}"\nposition = {place.tolist()}\n'
-            f"intensity = {power.tolist()}\n"
-        )
+        lines.append(f'[[light]]\npicture = "{name}"\nintensity = {power.tolist()}')
+        if by_corners:
+            corners = camera.project(corners_of(capture.size), capture.picture_size).tolist()
+            lines.append(f'position = "camera"\ncamera = {{ corners = {corners} }}\n')
+        else:
+            lines.append(f"position = {place.tolist()}\n")
     (folder / "capture.toml").write_text("\n".join(lines))

@@ -10,7 +10,10 @@ from click.testing import CliRunner
 
 import brdfkit as bk
 from brdfkit.cli import main
+from brdfkit.jit.threads import two_threads
 from brdfkit.photographs import fitting_maps
+from brdfkit.photographs.camera_from_corners import camera_from_corners
+from brdfkit.photographs.capture import corners_of
 from brdfkit.photographs.in_mitsuba import bsdf_dict
 from brdfkit.photographs.numbers import Numbers
 from brdfkit.photographs.observations import Observations
@@ -231,7 +234,7 @@ def test_bad_captures_are_one_sentence(made):
         "should be \\(lights, height, width, 3\\)": {"pictures": c.pictures[..., 0]},
         "should be \\(16, 3\\)": {"positions": c.positions[:5]},
         "does not see all four corners": {"size": (1.0, 1.0)},
-        "camera: it is at z": {"camera": dataclasses.replace(c.camera, origin=-c.camera.origin)},
+        "its camera is at z": {"camera": dataclasses.replace(c.camera, origin=-c.camera.origin)},
     }
     for sentence, fields in cases.items():
         with pytest.raises(bk.BrdfkitError, match=sentence) as error:
@@ -260,6 +263,11 @@ def test_bad_arguments_are_one_sentence(made, how, sentence):
         bk.svbrdf(made[1], **how)
 
 
+NO_PLACE = "[sample]\nwidth = 1\nheight = 1\n[camera]\nfov = 60"
+PLACES = f"{NO_PLACE}\norigin = [0, 0, 1]"
+LIGHT = '[[light]]\npicture = "a.exr"\nposition = "camera"'
+CROSSED = "{ corners = [[2, 2], [6, 6], [6, 2], [2, 6]] }"
+BOTH = CROSSED.replace("{", "{ origin = [0, 0, 1],")
 FILES = {
     "no capture.toml": (None, "there is no capture.toml"),
     "no TOML": ("[sample", "no TOML"),
@@ -269,12 +277,52 @@ FILES = {
     ),
     "a misspelt table": ("[smaple]\nwidth = 1", "'smaple'"),
     "no width": ("[sample]\nheight = 1", "width = None"),
-    "no origin": ("[sample]\nwidth = 1\nheight = 1\n[camera]\nfov = 60", "origin"),
+    "no origin": (f"{NO_PLACE}\n{LIGHT}", "origin"),
+    "an origin and corners": (f"{NO_PLACE}\n{LIGHT}\ncamera = {BOTH}", "one of them is enough"),
+    "corners that are crossed": (f"{NO_PLACE}\n{LIGHT}\ncamera = {CROSSED}", "upper left"),
+    "three corners": (f"{NO_PLACE}\n{LIGHT}\ncamera = {{ corners = [[1, 2]] }}", "4 × 2"),
+    "corners that are one": (f"{NO_PLACE}\n{LIGHT}\ncamera = {{ corners = 1 }}", "upper left"),
+    "a camera that is no table": (f"{NO_PLACE}\n{LIGHT}\ncamera = 1", "should be a table"),
+    "a misspelt entry": (f"{NO_PLACE}\n{LIGHT}\npower = 1", "[[light]] 1 has 'power'"),
     "8 bits": ('P\n[[light]]\npicture = "a.jpg"\nposition = "camera"', "8 bits"),
     "a picture that is missing": ('P\n[[light]]\npicture = "b.exr"\nposition = [0, 0, 1]', "b.exr"),
     "a place that is none": ('P\n[[light]]\npicture = "a.jpg"\nposition = [0, 1]', "position"),
 }
-PLACES = "[sample]\nwidth = 1\nheight = 1\n[camera]\norigin = [0, 0, 1]\nfov = 60"
+
+
+def test_a_camera_comes_back_from_corners():
+    """From all around the sample, turned at will."""
+    rng, size = np.random.default_rng(0), (0.1, 0.08)
+    for _ in range(50):
+        theta, phi = np.radians(rng.uniform(0, 70)), rng.uniform(0, 2 * np.pi)
+        across = np.sin(theta)
+        origin = rng.uniform(0.2, 1) * np.array(
+            [across * np.cos(phi), across * np.sin(phi), np.cos(theta)]
+        )
+        target, up = rng.standard_normal((2, 3)) * [[0.02, 0.02, 0], [1, 1, 1]]
+        camera = bk.Pinhole(origin, target, up, 40.0)
+        places = camera.project(corners_of(size), (640, 480))
+        found = camera_from_corners(places, corners_of(size), (640, 480), 40.0)
+        np.testing.assert_allclose(found.origin, origin, atol=1e-9)
+        np.testing.assert_allclose(found.axes, camera.axes, atol=1e-9)
+
+
+def test_a_camera_that_moves_with_its_flash(mi, tmp_path):
+    """As phones take them; the places are said by the corners of the sample in the pictures."""
+    truth = made_capture.Truth(TEXELS)
+    rng = np.random.default_rng(1)
+    positions, intensities = made_capture.lights(12, seed=5)
+    cameras = [bk.Pinhole(place, np.zeros(3), rng.standard_normal(3), 22.0) for place in positions]
+    _, capture = made_capture.photographs(
+        TEXELS, 12, truth=truth, lights_at=(positions, intensities), cameras=cameras
+    )
+    made_capture.write_capture(capture, tmp_path, by_corners=True)
+    found = bk.svbrdf(tmp_path, resolution=TEXELS)
+    np.testing.assert_allclose(found.capture.positions, positions, atol=1e-6)
+    off = inner(found.maps["diffuse_reflectance"] - truth.maps["diffuse_reflectance"])
+    assert np.sqrt((off**2).mean()) < 0.02
+    off = inner(found.maps["normal"] - truth.maps["normal"])
+    assert np.sqrt((off**2).mean()) < 0.02
 
 
 def test_a_folder_that_is_missing_is_said(tmp_path):
@@ -283,9 +331,11 @@ def test_a_folder_that_is_missing_is_said(tmp_path):
 
 
 @pytest.mark.parametrize("case", FILES)
-def test_bad_folders_are_one_sentence_and_status_2(case, tmp_path):
+def test_bad_folders_are_one_sentence_and_status_2(mi, case, tmp_path):
     text, sentence = FILES[case]
     (tmp_path / "a.jpg").write_bytes(b"")
+    with two_threads():
+        mi.Bitmap(np.zeros((8, 8, 3), np.float32)).write(str(tmp_path / "a.exr"))
     if text is not None:
         (tmp_path / "capture.toml").write_text(text.replace("P\n", f"{PLACES}\n"))
     result = CliRunner().invoke(main, ["svbrdf", str(tmp_path)])

@@ -13,7 +13,7 @@ CLIPPED = 1e-4  # the share of numbers that equal the largest: not by chance
 
 @dataclass(frozen=True)
 class Capture:
-    """Photographs of a flat sample, each under one point light; the camera rests.
+    """Photographs of a flat sample, each under one point light, by a camera that rests or moves.
 
     The sample lies in the plane z = 0, its middle at the origin, x to the right, y up; it is seen
     from above (z > 0).
@@ -26,12 +26,15 @@ class Capture:
         Where the lights are [m].
     intensities : ndarray, shape (lights, 3)
         Radiant intensity of the lights [W/sr], in the units of the pictures.
-    camera : Pinhole
-        The camera.
+    camera : Pinhole, or tuple of Pinhole
+        The camera that rests, or where it was for each picture.
     size : tuple of float
         The sample's width and height [m].
     names : tuple of str
         What the pictures are called.
+    lost : ndarray of bool, shape (lights, height, width, 3), optional
+        Numbers of the pictures that do not count, as where a shadow falls on the sample. By default
+        those at the end of what the camera could hold: see `clipped`.
 
     Raises
     ------
@@ -43,9 +46,10 @@ class Capture:
     pictures: NDArray[np.float64]
     positions: NDArray[np.float64]
     intensities: NDArray[np.float64]
-    camera: Pinhole
+    camera: Pinhole | tuple[Pinhole, ...]
     size: tuple[float, float]
     names: tuple[str, ...]
+    lost: NDArray[np.bool_] | None = None
 
     def __post_init__(self) -> None:
         count = len(self.pictures)
@@ -70,12 +74,30 @@ class Capture:
                 )
         if not (self.intensities > 0).any(axis=1).all():
             raise BrdfkitError("intensities: each light needs one above 0.")
-        if not self.camera.origin[2] > 0:
+        if len(self.cameras) != count:
             raise BrdfkitError(
-                f"camera: it is at z = {self.camera.origin[2]:g} m, behind the sample; z should be "
-                "above 0."
+                f"camera: there are {len(self.cameras)} for {count} pictures; give one for all, or "
+                "one for each."
             )
-        _require_seen(self)
+        if self.lost is not None and np.shape(self.lost) != self.pictures.shape:
+            raise BrdfkitError(
+                f"lost: its shape {np.shape(self.lost)} should be that of the pictures, "
+                f"{self.pictures.shape}."
+            )
+        for name, camera in zip(self.names, self.cameras, strict=True):
+            if not camera.origin[2] > 0:
+                raise BrdfkitError(
+                    f"{name}: its camera is at z = {camera.origin[2]:g} m, behind the sample; z "
+                    "should be above 0."
+                )
+            _require_seen(self, name, camera)
+
+    @property
+    def cameras(self):
+        """The camera of each picture, a tuple."""
+        if isinstance(self.camera, Pinhole):
+            return (self.camera,) * len(self.pictures)
+        return tuple(self.camera)
 
     def texels(self, shape):
         """Points (n, 3) [m] in the middle of the texels of a map of `shape` (height, width), row by
@@ -88,16 +110,16 @@ class Capture:
 
     def usual_shape(self, most=512):
         """(height, width) of maps whose texels are about as large as a pixel in the middle."""
-        width, height = np.array(self.size) / self.pixel
+        pixel = np.mean([self.pixel(camera) for camera in self.cameras], axis=0)
+        width, height = np.array(self.size) / pixel
         shrink = min(1.0, most / max(width, height))
         return max(4, round(height * shrink)), max(4, round(width * shrink))
 
-    @property
-    def pixel(self):
-        """Width and height (2,) of a pixel in the middle of the sample [m]."""
+    def pixel(self, camera):
+        """Width and height (2,) of a pixel of a `camera` in the middle of the sample [m]."""
         step = 1e-4 * min(self.size)
         across = np.array([[0, 0, 0], [step, 0, 0], [0, step, 0]])
-        middle, right, above = self.camera.project(across, self.picture_size)
+        middle, right, above = camera.project(across, self.picture_size)
         return step / np.linalg.norm([right - middle, above - middle], axis=1)
 
     @property
@@ -114,16 +136,25 @@ class Capture:
         at_end = self.pictures == self.pictures.max(axis=(0, 1, 2))
         return at_end & (at_end.mean(axis=(0, 1, 2)) > CLIPPED)
 
+    @property
+    def left_out(self):
+        """Which numbers (lights, height, width, 3) do not count: those `lost`, or clipped."""
+        return self.clipped if self.lost is None else self.lost
 
-def _require_seen(capture):
-    """Raise `BrdfkitError` unless the sample's corners are in the pictures."""
-    w, h = capture.size
-    corners = np.array([[x, y, 0] for x in (-w / 2, w / 2) for y in (-h / 2, h / 2)])
+
+def _require_seen(capture, name, camera):
+    """Raise `BrdfkitError` unless the sample's corners are in the picture of a camera."""
     width, height = capture.picture_size
-    places = capture.camera.project(corners, (width, height))
+    places = camera.project(corners_of(capture.size), (width, height))
     inside = (places >= -1) & (places <= np.array([width, height]) + 1)
     if not inside.all():
         raise BrdfkitError(
-            "camera: it does not see all four corners of the sample; check its place, its target, "
-            "its fov, and the sample's width and height in metres."
+            f"{name}: its camera does not see all four corners of the sample; check its place, its "
+            "target, its fov, and the sample's width and height in metres."
         )
+
+
+def corners_of(size):
+    """The corners (4, 3) of a sample of `size` [m], clockwise from the upper left."""
+    w, h = np.array(size) / 2
+    return np.array([[-w, h, 0], [w, h, 0], [w, -h, 0], [-w, -h, 0]])

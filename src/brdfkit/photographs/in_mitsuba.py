@@ -41,13 +41,13 @@ def _texture(values):
 
 
 def scene_xml(svbrdf, files):
-    """The text of a scene: the sample under the first light, seen by the photographs' camera.
+    """The text of a scene: the sample under the first light, seen by the first photograph's camera.
 
     `files`: the name of each map's file, which lies beside it, its first row the upper edge.
     """
     width, height = svbrdf.size
     capture = svbrdf.capture
-    camera, size = capture.camera, capture.picture_size
+    camera, size = capture.cameras[0], capture.picture_size
     textures = "\n".join(
         f"        {_file_texture(name, files[name])}" for name in svbrdf.maps if name != "normal"
     )

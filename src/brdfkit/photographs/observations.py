@@ -32,20 +32,15 @@ class Observations:
     def of(cls, capture, shape):
         """Of a `Capture`, for maps of this shape."""
         points = capture.texels(shape)
-        places = capture.camera.project(points, capture.picture_size)
-        radiance = np.array([bilinear(picture, places) for picture in capture.pictures])
-        clipped = capture.clipped
-        lost = np.zeros_like(radiance, bool)
-        if clipped.any():
-            lost = np.array([bilinear(one.astype(float), places) for one in clipped]) > 0
+        radiance = gathered(capture, capture.pictures, shape)
+        lost = gathered(capture, capture.left_out, shape) > 0
         to_light, irradiance = light_on(points, capture.positions, capture.intensities)
-        away = capture.camera.origin - points
-        to_camera = away / np.linalg.norm(away, axis=1, keepdims=True)
-        to_camera = np.broadcast_to(to_camera, to_light.shape)
+        to_camera = np.array([directions(camera.origin, points) for camera in capture.cameras])
         scale = np.maximum(radiance, 0) + DARK * radiance.mean()
         # pixels at the edge see what is beside the sample, too: there neighbours decide
-        margin = np.array(capture.size) / 2 - capture.pixel
-        lost |= (np.abs(points[:, :2]) > margin).any(axis=1)[:, None]
+        for light, camera in enumerate(capture.cameras):
+            margin = np.array(capture.size) / 2 - capture.pixel(camera)
+            lost[light] |= (np.abs(points[:, :2]) > margin).any(axis=1)[:, None]
         weights = np.where(lost, 0, 1 / scale**2)
         return cls(radiance, weights, to_light, irradiance, to_camera, tuple(shape))
 
@@ -78,6 +73,23 @@ class Observations:
     def _each(self, change, shape):
         arrays = {name: change(getattr(self, name)) for name in ARRAYS}
         return Observations(**arrays, shape=shape)
+
+
+def gathered(capture, pictures, shape):
+    """Values (k, n, c) at the texels of a map of `shape`, of pictures (k, height, width, c)."""
+    points = capture.texels(shape)
+    return np.array(
+        [
+            bilinear(picture, camera.project(points, capture.picture_size))
+            for picture, camera in zip(pictures, capture.cameras, strict=True)
+        ]
+    )
+
+
+def directions(place, points):
+    """Unit vectors (n, 3) from `points` to a `place`."""
+    away = place - points
+    return away / np.linalg.norm(away, axis=1, keepdims=True)
 
 
 def light_on(points, positions, intensities):

@@ -4,14 +4,13 @@ import numpy as np
 
 from brdfkit.model import labels
 from brdfkit.photographs.numbers import CHANNELS, Numbers
-from brdfkit.photographs.observations import Observations
+from brdfkit.photographs.observations import Observations, directions
 
 
 def predict(svbrdf, points, to_light, irradiance, eye):
     """Radiances (k, height, width, 3) of an `Svbrdf`'s texels at `points` (n, 3) [m], by unit
     vectors to lights and irradiances (k, n, 3), seen from `eye` (3,)."""
-    away = eye - points
-    to_camera = away / np.linalg.norm(away, axis=1, keepdims=True)
+    to_camera = directions(eye, points)
     nothing = np.zeros_like(to_light)
     seen = Observations(
         nothing, nothing, to_light, irradiance, np.broadcast_to(to_camera, to_light.shape), (1, 1)

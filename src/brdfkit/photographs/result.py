@@ -86,7 +86,7 @@ class Svbrdf(Shown):
         intensity : float or array_like, shape (3,), default 1
             Its radiant intensity [W/sr].
         viewer : array_like, shape (3,), optional
-            From where the sample is seen [m]; by default the photographs' camera.
+            From where the sample is seen [m]; by default by the first photograph's camera.
 
         Returns
         -------
@@ -103,7 +103,7 @@ class Svbrdf(Shown):
         >>> picture = maps.relight((0.1, 0.2, 0.5))    # doctest: +SKIP
         """
         points = self.capture.texels(self.shape)
-        eye = self.capture.camera.origin if viewer is None else _above("viewer", viewer)
+        eye = self.capture.cameras[0].origin if viewer is None else _above("viewer", viewer)
         place = _above("position", position)[None]
         power = np.broadcast_to(np.asarray(intensity, float), (1, 3))
         from brdfkit.photographs.prediction import predict

@@ -1,0 +1,37 @@
+"""Values of a file capture.toml: each error names the file and the entry."""
+
+import numpy as np
+
+from brdfkit.errors import BrdfkitError
+
+
+def to_number(path, table, name, where):
+    """The number `name` of a table."""
+    value = table.get(name)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
+        raise BrdfkitError(f"{path}: {where} {name} = {value!r} should be a number.")
+    return float(value)
+
+
+def to_numbers(path, value, what, shape):
+    """An array of a `shape`, of lists of numbers, or of one number for all."""
+    shape = tuple(np.atleast_1d(shape))
+    try:
+        found = np.asarray(value, float)
+    except (TypeError, ValueError):
+        found = np.array(np.nan)
+    if found.shape not in ((), shape) or not np.isfinite(found).all():
+        count = " × ".join(map(str, shape))
+        raise BrdfkitError(f"{path}: {what} = {value!r} should be {count} numbers.")
+    return np.broadcast_to(found, shape).copy()
+
+
+def require_known(path, table, known, where):
+    """Raise `BrdfkitError` unless this is a table, whose entries are `known`."""
+    if not isinstance(table, dict):
+        raise BrdfkitError(f"{path}: {where} should be a table, of {', '.join(known)}.")
+    for name in table:
+        if name not in known:
+            raise BrdfkitError(
+                f"{path}: {where} has {name!r}, which is not known; known are {', '.join(known)}."
+            )
