@@ -4,10 +4,10 @@ that were held out."""
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.ndimage import median_filter
 
 from brdfkit.fitting.stopped import Stopped
 from brdfkit.photographs.numbers import CHANNELS
+from brdfkit.photographs.restarts import propagated, restarted
 from brdfkit.photographs.search import Equations, equations, search_each, search_together
 from brdfkit.photographs.starts import WIDTHS, rows
 
@@ -49,7 +49,7 @@ def fit_maps(numbers, seen, smoothness=None, report=lambda: None):
                 errors = held_out_errors(numbers, seen, noise, report)
                 tau = min(errors, key=errors.get)
         strength = strengths(numbers, start, seen, noise, tau)
-        x = finish(numbers, start, seen, strength, report)
+        x = finish(numbers, start, seen, strength, noise, report)
     except KeyboardInterrupt:
         if finest is None:
             raise
@@ -85,7 +85,8 @@ def coarse_to_fine(numbers, seen, report):
         side //= 2
         coarse, pooled = pooled.shape, seen.pooled(side)
         x = refined(x, coarse, pooled.shape)
-        x = finish(numbers, x, pooled, strengths(numbers, x, pooled, noise, USUAL), report)
+        strength = strengths(numbers, x, pooled, noise, USUAL)
+        x = finish(numbers, x, pooled, strength, noise, report)
         noise = noise_of(numbers, equations(numbers, x, pooled, slopes=False).error, pooled)
         yield x, noise, pooled.shape
 
@@ -96,18 +97,14 @@ def refined(x, coarse, fine):
     return grid[: fine[0], : fine[1]].reshape(fine[0] * fine[1], -1)
 
 
-def finish(numbers, x, seen, strength, report):
-    """Rows of the least squares together; texels that their neighbours' numbers suit better begin
-    at these once more."""
+def finish(numbers, x, seen, strength, noise, report):
+    """Rows of the least squares together; texels that are not explained, or that their neighbours'
+    numbers suit better, begin at others once more."""
     x = search_together(numbers, x, seen, strength, report=report)
-    middle = median_filter(x.reshape(*seen.shape, -1), size=(3, 3, 1), mode="nearest")
-    middle = middle.reshape(x.shape)
-    error = equations(numbers, x, seen, slopes=False).error
-    better = equations(numbers, middle, seen, slopes=False).error < error
-    if better.any():
-        x = search_together(
-            numbers, np.where(better[:, None], middle, x), seen, strength, report=report
-        )
+    other = restarted(numbers, x, seen, noise, report)
+    other = propagated(numbers, propagated(numbers, other, seen, report), seen, report)
+    if (other != x).any():
+        x = search_together(numbers, other, seen, strength, report=report)
     return x
 
 
@@ -146,7 +143,7 @@ def held_out_errors(numbers, seen, noise, report):
     *_, (start, _, _) = coarse_to_fine(numbers, taught, report)
     units, found = units_of(numbers, start, taught), {}
     for tau in TAUS:
-        x = finish(numbers, start, taught, noise / (tau * units) ** 2, report)
+        x = finish(numbers, start, taught, noise / (tau * units) ** 2, noise, report)
         left = equations(numbers, x, asked, slopes=False).error
         found[tau] = float(np.sqrt(left.sum() / max(1, (asked.weights > 0).sum())))
     return found
