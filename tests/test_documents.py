@@ -66,8 +66,8 @@ def textures():
     """An `Svbrdf` of four texels."""
     values = {"alpha_u": np.full((2, 2), 0.2), "normal": np.tile([0.0, 0.0, 1.0], (2, 2, 1))}
     errors = {name: np.full((2, 2), 0.01) for name in values}
-    said = ((0.1, 0.1), 0.1, {0.1: 0.02}, 0.01, {NASTY: 40.0}, (NASTY,), 1.5, None)
-    return bk.Svbrdf(NASTY, "ggx", values, {}, errors, *said)
+    said = ((0.1, 0.1), 0.1, {0.1: 0.02}, 0.01, {NASTY: 40.0}, (NASTY,), 1.5, None, None)
+    return bk.Svbrdf(NASTY, "ggx", values, {}, errors, np.ones((2, 2)), *said)
 
 
 @pytest.fixture(scope="module")

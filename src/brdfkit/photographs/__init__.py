@@ -1,11 +1,17 @@
 """Textures of a flat sample from photographs of it under known lights.
 
-`capture.py` is what was photographed, `capture_file.py` reads its folder, `pinhole.py` is the
-camera; `observations.py` says what of it each texel shows. `numbers.py` are the numbers of a texel
-and how they make its radiances; `search.py` steps downhill, from `starts.py`; `fitting_maps.py`
-goes from coarse to fine. `svbrdf.py` runs these one after the other, `open_numbers.py` says what is
-left open, and `result.py` is `Svbrdf`: `prediction.py` shows it under any light, `in_mitsuba.py` in
-a scene, `writing.py` makes files and a `report.py` of it.
+`capture.py` is what was photographed, by a `pinhole.py`; `capture_file.py` reads its folder, with
+`cameras_of_file.py`, `camera_from_corners.py` and `toml_values.py`; `shrinking.py` makes pictures
+smaller, and `observations.py` says what of them each texel shows.
+
+`numbers.py` are the numbers of a texel and how they make its radiances, `maps.py` those of all of
+them; `search.py` steps downhill, from `starts.py` and `restarts.py`; `fitting_maps.py` goes from
+coarse to fine. `through_renderer.py` refines the maps by Mitsuba's pictures of them, and
+`simulated_errors.py` says how certain they are. `svbrdf.py` runs these one after the other;
+`open_numbers.py` and `misfit.py` say what is left open and what is not explained.
+
+`result.py` is `Svbrdf`: `prediction.py` shows it under any light, `in_mitsuba.py` in a scene,
+`writing.py` makes files and a `report.py` of it.
 """
 
 from brdfkit.photographs.capture import Capture as Capture

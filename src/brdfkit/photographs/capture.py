@@ -1,6 +1,7 @@
 """`Capture`: photographs of a flat sample under known lights."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -122,12 +123,25 @@ class Capture:
         middle, right, above = camera.project(across, self.picture_size)
         return step / np.linalg.norm([right - middle, above - middle], axis=1)
 
+    def is_inside(self, camera, points):
+        """Whether points (..., 2) [m] are a pixel of a `camera`, or more, within the sample."""
+        margin = np.array(self.size) / 2 - self.pixel(camera)
+        return (np.abs(points) < margin).all(axis=-1)
+
+    @cached_property
+    def counted(self):
+        """Which numbers (lights, height, width, 3) show the sample alone, and are not left out."""
+        inside = [
+            self.is_inside(camera, camera.on_sample(self.picture_size)) for camera in self.cameras
+        ]
+        return np.array(inside)[..., None] & ~self.left_out
+
     @property
     def picture_size(self):
         """(width, height) of the pictures [pixels]."""
         return self.pictures.shape[2], self.pictures.shape[1]
 
-    @property
+    @cached_property
     def clipped(self):
         """Which numbers (lights, height, width, 3) are at the end of what the camera could hold.
 

@@ -6,7 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from brdfkit.fitting.stopped import Stopped
+from brdfkit.photographs.misfit import MISFIT, misfits
 from brdfkit.photographs.numbers import CHANNELS
+from brdfkit.photographs.open_numbers import is_open
 from brdfkit.photographs.restarts import propagated, restarted
 from brdfkit.photographs.search import Equations, equations, search_each, search_together
 from brdfkit.photographs.starts import WIDTHS, rows
@@ -15,6 +17,7 @@ TAUS = 1.0, 0.3, 0.1, 0.03  # typical differences of neighbours, of which one is
 FEW_TO_HOLD_OUT = 8  # lights, below which none is held out
 USUAL = 0.1  # the τ of so few
 COARSE = 4  # texels along a side of the first maps
+SWEEPS = 2  # of numbers handed on to neighbours
 PATCH = 48  # texels along a side of the part on which τ is chosen
 
 
@@ -102,7 +105,8 @@ def finish(numbers, x, seen, strength, noise, report):
     numbers suit better, begin at others once more."""
     x = search_together(numbers, x, seen, strength, report=report)
     other = restarted(numbers, x, seen, noise, report)
-    other = propagated(numbers, propagated(numbers, other, seen, report), seen, report)
+    for _ in range(SWEEPS):
+        other = propagated(numbers, other, seen, report)
     if (other != x).any():
         x = search_together(numbers, other, seen, strength, report=report)
     return x
@@ -159,10 +163,25 @@ def patch(seen):
     return replace(inside, shape=(rows_, columns))
 
 
-def standard_errors(numbers, fitted):
-    """Standard errors (n, count) of each number, neighbours given; and the correlations of numbers
-    that trade off: see `trades`."""
-    hessian = fitted.about.hessian + 4 * np.diag(fitted.strength)
-    inverse = np.linalg.pinv(hessian, hermitian=True)
-    variance = np.diagonal(inverse, axis1=1, axis2=2)
-    return np.sqrt(np.maximum(variance, 0) * fitted.noise)
+def standard_errors(numbers, fitted, seen):
+    """Standard errors (n, count) of each number by the equations, neighbours given.
+
+    Those of a texel that is not explained are by what it leaves. Where photographs leave numbers
+    open, they do so in the neighbours, too: there each has its limits or its unit in their place.
+    """
+    noise, own = fitted.noise, fitted.about.hessian
+    unit = np.diag(noise / ranges(numbers, fitted.x, seen) ** 2)
+    together = own + 4 * np.diag(fitted.strength) + unit
+    matrix = np.where(is_open(own)[:, None, None], own + unit, together)
+    variance = np.diagonal(np.linalg.inv(matrix), axis1=1, axis2=2)
+    misfit = misfits(fitted.about.error, noise, seen)
+    noise = noise * np.where(misfit > MISFIT, misfit, 1) ** 2
+    return np.sqrt(np.maximum(variance, 0) * noise[:, None])
+
+
+def ranges(numbers, x, seen):
+    """How far (count,) each number may be from where it is, at most, about."""
+    found, (low, high) = units_of(numbers, x, seen), numbers.limits()
+    limited = np.isfinite(high - low)
+    found[limited] = (high - low)[limited] / 2
+    return found

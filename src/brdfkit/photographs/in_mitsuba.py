@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from brdfkit.model import labels
+
 
 def sample_dict(svbrdf):
     """The dictionary of the sample of an `Svbrdf`, in the plane z = 0."""
@@ -17,13 +19,19 @@ def sample_dict(svbrdf):
 
 def bsdf_dict(svbrdf):
     """The dictionary of its BSDF."""
-    model, maps = svbrdf.model, svbrdf.maps
+    maps = svbrdf.maps
     textures = {name: _texture(values) for name, values in maps.items() if name != "normal"}
     return {
         "type": "normalmap",
         "normalmap": _texture((maps["normal"] + 1) / 2),
-        "bsdf": {"type": model, **svbrdf.fixed, **textures},
+        "bsdf": {**_type(svbrdf.model), **svbrdf.fixed, **textures},
     }
+
+
+def _type(label):
+    """The plugin's type and options of a model's label."""
+    model = labels.model(label)
+    return {"type": model.type_name(), **model.chosen()}
 
 
 def _texture(values):
@@ -51,13 +59,15 @@ def scene_xml(svbrdf, files):
     textures = "\n".join(
         f"        {_file_texture(name, files[name])}" for name in svbrdf.maps if name != "normal"
     )
+    kind = _type(svbrdf.model)
+    values = {**{name: v for name, v in kind.items() if name != "type"}, **svbrdf.fixed}
     numbers = "\n".join(
-        f'        <float name="{name}" value="{value!r}"/>' for name, value in svbrdf.fixed.items()
+        f'        <{_tag(value)} name="{name}" value="{value}"/>' for name, value in values.items()
     )
     return f"""<!-- Load after "import brdfkit", or render with: brdfkit render sample.xml -->
 <scene version="3.0.0">
   <integrator type="direct"/>
-  <sensor type="perspective">
+  <sensor type="perspective" id="camera">
     <float name="fov" value="{camera.fov!r}"/>
     <string name="fov_axis" value="x"/>
     <transform name="to_world">
@@ -68,16 +78,17 @@ def scene_xml(svbrdf, files):
       <integer name="height" value="{size[1]}"/>
       <rfilter type="box"/>
     </film>
+    <sampler type="multijitter"><integer name="sample_count" value="16"/></sampler>
   </sensor>
-  <emitter type="point">
+  <emitter type="point" id="lamp">
     <point name="position" {_xyz(capture.positions[0])}/>
     <rgb name="intensity" value="{_csv(capture.intensities[0])}"/>
   </emitter>
-  <shape type="rectangle">
+  <shape type="rectangle" id="sample">
     <transform name="to_world"><scale x="{width / 2!r}" y="{height / 2!r}" z="1"/></transform>
     <bsdf type="normalmap">
       {_file_texture("normalmap", files["normal"])}
-      <bsdf type="{svbrdf.model}">
+      <bsdf type="{kind["type"]}">
 {textures}
 {numbers}
       </bsdf>
@@ -94,6 +105,11 @@ def _file_texture(name, file):
         # Mitsuba's rectangles have a picture's first row at their lower edge
         '<transform name="to_uv"><scale y="-1"/><translate y="1"/></transform></texture>'
     )
+
+
+def _tag(value):
+    """The element of Mitsuba's XML for a value."""
+    return {int: "integer", float: "float", str: "string"}[type(value)]
 
 
 def _csv(numbers):

@@ -39,8 +39,7 @@ class Observations:
         scale = np.maximum(radiance, 0) + DARK * radiance.mean()
         # pixels at the edge see what is beside the sample, too: there neighbours decide
         for light, camera in enumerate(capture.cameras):
-            margin = np.array(capture.size) / 2 - capture.pixel(camera)
-            lost[light] |= (np.abs(points[:, :2]) > margin).any(axis=1)[:, None]
+            lost[light] |= ~capture.is_inside(camera, points[:, :2])[:, None]
         weights = np.where(lost, 0, 1 / scale**2)
         return cls(radiance, weights, to_light, irradiance, to_camera, tuple(shape))
 

@@ -17,13 +17,11 @@ def describe_open(numbers, fitted, lights):
         said.append("One light: roughness and strength trade off here, and the normal with both.")
     hessian = fitted.about.hessian
     hessian = hessian[np.diagonal(hessian, axis1=1, axis2=2).any(axis=1)]  # none at the edge
-    diagonal = np.maximum(np.diagonal(hessian, axis1=1, axis2=2), 1e-300)
-    scale = 1 / np.sqrt(diagonal)
-    values, vectors = np.linalg.eigh(hessian * scale[:, :, None] * scale[:, None, :])
-    is_open = values[:, 0] < OPEN
-    if is_open.mean() < SHARE:
+    values, vectors = np.linalg.eigh(_scaled(hessian))
+    left_open = values[:, 0] < OPEN
+    if left_open.mean() < SHARE:
         return tuple(said)
-    weakest = np.abs(vectors[is_open, :, 0])
+    weakest = np.abs(vectors[left_open, :, 0])
     weakest /= weakest.max(axis=1, keepdims=True)
     share = dict(zip(_names(numbers), (weakest > PART).mean(axis=0), strict=True))
     several = {}
@@ -32,11 +30,22 @@ def describe_open(numbers, fitted, lights):
         several[plain] = max(value, several.get(plain, 0))
     worst = [name for name, value in several.items() if value > 0.25]
     said.append(
-        f"In {100 * is_open.mean():.0f} % of the texels the photographs do not tell "
+        f"In {100 * left_open.mean():.0f} % of the texels the photographs do not tell "
         f"{listed(worst or list(several))} apart: there their neighbours decide. More lights near "
         "the mirror's direction would."
     )
     return tuple(said)
+
+
+def is_open(hessian):
+    """Which texels (n,) leave a combination of numbers open, by Hessians (n, count, count)."""
+    return np.linalg.eigvalsh(_scaled(hessian))[:, 0] < OPEN
+
+
+def _scaled(hessian):
+    """Hessians of unit diagonal."""
+    scale = 1 / np.sqrt(np.maximum(np.diagonal(hessian, axis1=1, axis2=2), 1e-300))
+    return hessian * scale[:, :, None] * scale[:, None, :]
 
 
 def _names(numbers):

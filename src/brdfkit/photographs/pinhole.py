@@ -48,6 +48,19 @@ class Pinhole:
         row = height / 2 - scale * (away @ up) / depth
         return np.stack([column, row], axis=1)
 
+    def on_sample(self, size):
+        """Where the middle of each pixel of a picture of `size` (width, height) [pixels] is in the
+        plane z = 0, x and y (height, width, 2) [m]; inf where it looks beside."""
+        width, height = size
+        right, up, forward = self.axes
+        scale = 2 / width * np.tan(np.radians(self.fov) / 2)
+        column, row = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
+        across, down = scale * (column - width / 2), scale * (row - height / 2)
+        ray = forward + across[..., None] * right - down[..., None] * up
+        steps = np.where(ray[..., 2] < 0, -self.origin[2] / np.minimum(ray[..., 2], -1e-12), np.inf)
+        with np.errstate(invalid="ignore"):
+            return np.nan_to_num((self.origin + steps[..., None] * ray)[..., :2], nan=np.inf)
+
     def scene_dict(self, size):
         """The dictionary of Mitsuba's sensor of this camera."""
         import mitsuba as mi

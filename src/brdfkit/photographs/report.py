@@ -1,9 +1,10 @@
-"""The report of an `Svbrdf`: its maps, how certain they are, and photographs beside predictions."""
+"""The report of an `Svbrdf`: its maps, how certain they are, and photographs beside pictures of
+them."""
 
 import numpy as np
 
-from brdfkit.photographs.observations import Observations
-from brdfkit.photographs.prediction import numbers_of, radiances
+from brdfkit.photographs.misfit import MISFIT
+from brdfkit.photographs.observations import gathered
 from brdfkit.reporting import page
 from brdfkit.reporting.images import colours, jpeg, narrowed, png
 from brdfkit.version import __version__
@@ -26,6 +27,8 @@ def write_report(svbrdf, path):
         rows=table.rows,
         said=[paragraph.text for paragraph in paragraphs],
         maps=[_shown_map(svbrdf, name) for name in svbrdf.maps],
+        misfit=_scaled(svbrdf.misfit, 0, 2 * MISFIT),
+        most=2 * MISFIT,
         photographs=_photographs(svbrdf),
         version=__version__,
     )
@@ -35,30 +38,34 @@ def _shown_map(svbrdf, name):
     values, errors = svbrdf.maps[name], svbrdf.uncertainty[name]
     if name == "normal":
         picture, said = png(narrowed((values + 1) / 2, WIDEST)), "x, y and z as red, green and blue"
+        errors = np.degrees(errors)
     elif values.ndim == 3:
         white = max(1e-6, float(np.quantile(values, 0.99)))
         picture, said = jpeg(narrowed(values / white, WIDEST)), f"white is {white:.3g}"
     else:
         low, high = np.quantile(values, (0.01, 0.99))
         picture, said = _scaled(values, low, high), f"{low:.3g} (dark) to {high:.3g} (bright)"
+    unit = "°" if name == "normal" else ""
     high = float(np.quantile(errors, 0.9))  # at the edge they are much larger
     return {
         "name": name,
         "said": said,
         "picture": picture,
         "error": _scaled(errors, 0, high),
-        "error_said": f"standard error, 0 (dark) to {high:.2g} (bright)",
+        "error_said": f"standard error, 0 (dark) to {high:.2g}{unit} (bright)",
     }
 
 
 def _photographs(svbrdf):
     """The photographs beside what the maps predict, the worst predicted first."""
     capture = svbrdf.capture
-    seen = Observations.of(capture, svbrdf.shape)
-    shown = radiances(*numbers_of(svbrdf), seen)
+    seen, shown = (
+        gathered(capture, pictures, svbrdf.shape)
+        for pictures in (capture.pictures, svbrdf.rendered)
+    )
     found = []
     for k in np.argsort([svbrdf.predicted[name] for name in capture.names]):
-        photograph = seen.radiance[k].reshape(*svbrdf.shape, 3)
+        photograph = seen[k].reshape(*svbrdf.shape, 3)
         prediction = shown[k].reshape(photograph.shape)
         white = max(1e-12, float(np.quantile(photograph, 0.99)))
         off = (prediction - photograph).mean(axis=2) / (photograph.mean(axis=2) + 0.05 * white)

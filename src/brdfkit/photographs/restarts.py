@@ -3,24 +3,19 @@
 import numpy as np
 from scipy.ndimage import median_filter
 
+from brdfkit.photographs.misfit import misfits
 from brdfkit.photographs.search import equations, search_each
 from brdfkit.photographs.starts import WIDTHS, rows
 
-MISFIT = 1.5  # times the noise, from which a texel is not explained
+DOUBTFUL = 2  # times the noise, from which a texel begins again
 STEPS = 10
 WAYS = [(way * a, way * b) for way in (1, 3) for a, b in ((0, 1), (1, 0), (0, -1), (-1, 0))]
-
-
-def misfits(errors, noise, seen):
-    """What texels leave, (n,), in units of the noise, from their errors (n,)."""
-    counted = (seen.weights > 0).sum(axis=(0, 2))
-    return np.sqrt(errors / np.maximum(counted * noise, 1e-300))
 
 
 def restarted(numbers, x, seen, noise, report):
     """Rows (n, count), those of texels that are not explained searched anew, each for itself."""
     errors = equations(numbers, x, seen, slopes=False).error
-    wrong = np.flatnonzero(misfits(errors, noise, seen) > MISFIT)
+    wrong = np.flatnonzero(misfits(errors, noise, seen) > DOUBTFUL)
     if not len(wrong):
         return x
     part, x = seen.at(wrong), x.copy()

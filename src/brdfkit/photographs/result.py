@@ -31,7 +31,10 @@ class Svbrdf(Shown):
         Shape parameters that are alike everywhere.
     uncertainty : dict of str to ndarray
         The standard error (height, width) of each map, by the photographs' noise and what the model
-        leaves of them, neighbours given; of the normal in radians.
+        leaves of them; of the normal in radians.
+    misfit : ndarray, shape (height, width)
+        What each texel leaves of the photographs, in units of the noise: about 1 where the maps
+        explain them.
     size : tuple of float
         The sample's width and height [m].
     smoothness : float
@@ -42,13 +45,15 @@ class Svbrdf(Shown):
     residual : float
         RMS relative difference of the maps from all photographs.
     predicted : dict of str to float
-        Name of each photograph → PSNR [dB] of the maps under its light.
+        Name of each photograph → PSNR [dB] of Mitsuba's picture of the maps under its light.
     notes : tuple of str
         What else one should know, as what the lights leave open.
     seconds : float
         Wall-clock time.
     capture : Capture
-        The photographs.
+        The photographs, smaller where the maps do not need all of their pixels.
+    rendered : ndarray, shape (lights, height, width, 3)
+        Mitsuba's pictures of the maps, as the photographs.
     """
 
     name: str
@@ -56,6 +61,7 @@ class Svbrdf(Shown):
     maps: dict[str, NDArray[np.float64]]
     fixed: dict[str, float]
     uncertainty: dict[str, NDArray[np.float64]]
+    misfit: NDArray[np.float64]
     size: tuple[float, float]
     smoothness: float
     held_out: dict[float, float]
@@ -64,6 +70,7 @@ class Svbrdf(Shown):
     notes: tuple[str, ...]
     seconds: float
     capture: Capture = field(repr=False)
+    rendered: NDArray[np.float32] = field(repr=False)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -147,7 +154,7 @@ class Svbrdf(Shown):
     def document(self) -> Document:
         """A row for each map, notes, and how well it predicts."""
         rows = tuple(
-            (name, *_summary(values), f"{np.median(self.uncertainty[name]):.2g}")
+            (name, *_summary(name, values), _median(name, self.uncertainty[name]))
             for name, values in self.maps.items()
         )
         height, width = self.shape
@@ -160,8 +167,8 @@ class Svbrdf(Shown):
                 Table(rows, ("map", ">5 %", ">median", ">95 %", ">± median")),
                 *(Paragraph(note) for note in self.notes),
                 Paragraph(
-                    f"Photographs are predicted with {min(dB):.1f} to {max(dB):.1f} dB; "
-                    f"what is left is {100 * self.residual:.2g} % (RMS).",
+                    "Mitsuba's pictures of the maps are the photographs but for "
+                    f"{100 * self.residual:.2g} % (RMS); PSNR {min(dB):.1f} to {max(dB):.1f} dB.",
                 ),
                 Paragraph(
                     f"smoothness {self.smoothness:g}{chosen}; {self.seconds:.1f} s", kind=SOFT
@@ -178,9 +185,15 @@ def _above(what, point):
     return found
 
 
-def _summary(values):
+def _summary(name, values):
     """5 %, median and 95 % of a map as texts; of normals the angle to z [degrees]."""
-    if values.shape[-1:] == (3,) and np.allclose(np.linalg.norm(values, axis=-1), 1, atol=1e-6):
+    if name == "normal":
         angle = np.degrees(np.arccos(np.clip(values[..., 2], -1, 1)))
         return tuple(f"{q:.2g}°" for q in np.quantile(angle, (0.05, 0.5, 0.95)))
     return tuple(f"{q:.3g}" for q in np.quantile(values, (0.05, 0.5, 0.95)))
+
+
+def _median(name, errors):
+    """The median of standard errors as a text; of normals [degrees]."""
+    median = float(np.median(errors))
+    return f"{np.degrees(median):.2g}°" if name == "normal" else f"{median:.2g}"

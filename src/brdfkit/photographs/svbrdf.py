@@ -16,11 +16,21 @@ from brdfkit.names import listed
 from brdfkit.photographs.capture import Capture
 from brdfkit.photographs.capture_file import load_capture
 from brdfkit.photographs.fitting_maps import fit_maps, standard_errors
-from brdfkit.photographs.numbers import Numbers
-from brdfkit.photographs.observations import Observations
+from brdfkit.photographs.maps import Maps, errors_of
+from brdfkit.photographs.misfit import describe_misfit
+from brdfkit.photographs.numbers import CHANNELS, Numbers
+from brdfkit.photographs.observations import Observations, gathered
 from brdfkit.photographs.open_numbers import describe_open
-from brdfkit.photographs.prediction import errors_of, maps_of, radiances
 from brdfkit.photographs.result import Svbrdf
+from brdfkit.photographs.shrinking import shrunk
+from brdfkit.photographs.simulated_errors import simulated_errors
+from brdfkit.photographs.through_renderer import (
+    decibels,
+    left_of,
+    misfits_of,
+    refine_through_renderer,
+    rendered,
+)
 
 MOST = 512  # texels along a side, by default
 
@@ -41,9 +51,10 @@ def svbrdf(
 
     First the photographs of large parts of the sample, then of ever smaller ones, at last of each
     texel, by Gauss-Newton steps for all at once. Neighbouring texels are drawn to each other, as
-    strongly as lights that were held out are predicted best. Direct light alone is fitted: a flat
-    sample throws hardly any light on itself. Ctrl-C raises `Interrupted`, whose ``best`` has the
-    finest maps so far.
+    strongly as lights that were held out are predicted best. Then Mitsuba renders the photographs
+    of the maps, and what the real ones show beyond is fitted, until only noise is left. Direct
+    light alone is fitted: a flat sample throws hardly any light on itself. Ctrl-C raises
+    `Interrupted`, whose ``best`` has the finest maps so far.
 
     Parameters
     ----------
@@ -93,32 +104,56 @@ def svbrdf(
     if smoothness is not None:
         smoothness = to_positive("smoothness", smoothness)
     shape = _shape(taken, resolution)
+    taken = shrunk(taken, shape)
     seen = Observations.of(taken, shape)
+    report = _counter(progress)
 
-    def conclude(fitted, *notes):
-        errors = standard_errors(numbers, fitted)
-        counted = max(1, np.count_nonzero(seen.weights))
+    def conclude(best, errors, *notes):
+        fitted = best.fitted
+        maps = Maps.of(numbers, fitted.x, shape, taken.size).maps
+        beyond = gathered(taken, taken.pictures - best.pictures, shape)
+        misfit = misfits_of(beyond, fitted.noise, seen)
+        diffuse = maps.get("diffuse_reflectance", np.array(1.0))
+        left = left_of(taken, best.pictures)
+        told_apart = CHANNELS * len(taken.names) > numbers.count
+        noise = fitted.noise**0.5 if told_apart else 0.0
         return Svbrdf(
             name=name,
             model=model,
-            maps=maps_of(numbers, fitted.x, shape),
+            maps=maps,
             fixed=numbers.fixed,
             uncertainty=errors_of(numbers, errors, fitted.x, shape),
+            misfit=misfit.reshape(shape),
             size=taken.size,
             smoothness=float(fitted.tau),
             held_out=fitted.errors,
-            residual=float(np.sqrt(fitted.about.error.sum() / counted)),
-            predicted=_predicted(numbers, fitted.x, seen, taken.names),
-            notes=(*notes, *describe_open(numbers, fitted, len(taken.names)), *_said(taken)),
+            residual=best.left,
+            predicted=decibels(taken, best.pictures),
+            notes=(
+                *notes,
+                *describe_open(numbers, fitted, len(taken.names)),
+                *describe_misfit(misfit, noise, left, float(np.median(diffuse))),
+                *_said(taken),
+            ),
             seconds=time.perf_counter() - began,
             capture=taken,
+            rendered=best.pictures,
         )
 
+    fitted = None
     try:
-        return conclude(fit_maps(numbers, seen, smoothness, _counter(progress)))
-    except Stopped as stop:
-        best = conclude(stop.best, "Interrupted: the maps are coarser than they were to be.")
-        raise Interrupted(best, f"{name}: the maps so far leave {best.residual:.3g}") from None
+        fitted = fit_maps(numbers, seen, smoothness, report)
+        best, rounds = refine_through_renderer(numbers, fitted, seen, taken, report)
+        fitted = best.fitted
+        return conclude(best, simulated_errors(numbers, best, rounds, seen, taken, report))
+    except KeyboardInterrupt as stop:
+        so_far = stop.best if isinstance(stop, Stopped) else fitted
+        if so_far is None:
+            raise
+        best = rendered(numbers, so_far, seen, taken)
+        errors = standard_errors(numbers, so_far, seen)
+        found = conclude(best, errors, "Interrupted: the maps are coarser than they were to be.")
+        raise Interrupted(found, f"{name}: the maps so far leave {found.residual:.3g}") from None
 
 
 def _load(given, linearise):
@@ -154,17 +189,6 @@ def _shape(capture, resolution):
     width, height = capture.size
     scale = longer / max(width, height)
     return max(4, round(height * scale)), max(4, round(width * scale))
-
-
-def _predicted(numbers, x, seen, names):
-    """Name of each photograph → PSNR [dB] of the texels; its brightest hundredth is white."""
-    found = {}
-    shown = radiances(numbers, x, seen)
-    for name, a, b, weights in zip(names, shown, seen.radiance, seen.weights, strict=True):
-        off = (a - b)[weights > 0]
-        white = np.quantile(b, 0.99)
-        found[name] = float(10 * np.log10(white**2 / max((off**2).mean(), 1e-30)))
-    return found
 
 
 def _said(capture):

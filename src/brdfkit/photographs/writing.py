@@ -21,6 +21,7 @@ def write_all(svbrdf, folder):
         shown = (values + 1) / 2 if name == "normal" else values
         written.append(_write(folder / files[name], shown))
         written.append(_write(folder / f"{name}_error.exr", svbrdf.uncertainty[name]))
+    written.append(_write(folder / "misfit.exr", svbrdf.misfit))
     scene = folder / "sample.xml"
     with write_safely(scene) as beside:
         Path(beside).write_text(scene_xml(svbrdf, files), encoding="utf-8")
