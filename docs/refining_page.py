@@ -62,6 +62,14 @@ print(found)  # values ± standard errors, what trades off, what is left
 bk.render(found.fit)  # a fit as any other: compared, converted, written
 ```
 
+Pixels that the scene cannot explain, as of a hand or of what stands behind, are left out by a mask:
+booleans or weights (height, width), or a picture that is white where pixels count.
+
+```python
+found = bk.refine(scene, "photograph.exr", mask="ball.png")
+found = bk.refine(scene, rgba, mask=rgba[..., 3])  # the alpha channel of a cut-out
+```
+
 If a note says that what is left is no noise, look at `found.pictures[0]` beside the photograph
 before you believe the numbers: standard errors suppose that the scene is right."""
 TRADES = """Some numbers do the same to a picture. `f0` and the specular weight do, unless light

@@ -9,6 +9,7 @@ import brdfkit as bk
 from brdfkit.jit.threads import two_threads
 from brdfkit.refining import gauss_newton
 from brdfkit.refining.equations import Equations, Residuals
+from brdfkit.refining.gauss_newton import Search, step_in_bounds
 from brdfkit.refining.leverage import LEAST, sum_by_block, without_leverage
 from brdfkit.refining.subject import integrator_of, load_subject
 from brdfkit.refining.targets import read_targets
@@ -260,6 +261,25 @@ BAD = {
     "a transform": (lambda p: p, {"parameters": ["ball.to_world"]}, "not searched"),
     "wrong bounds": (lambda p: p, {"parameters": {"ball.bsdf.f0": (1, 0)}}, "bounds"),
     "no samples": (lambda p: p, {"samples": 0}, "samples = 0"),
+    "a mask of another size": (
+        lambda p: p,
+        {"mask": np.ones((3, 4))},
+        r"mask has the shape \(3, 4",
+    ),
+    "a coloured mask": (
+        lambda p: p,
+        {"mask": np.ones((SIZE, SIZE, 3))},
+        r"should be \(height, wid",
+    ),
+    "a mask below 0": (lambda p: p, {"mask": -np.ones((SIZE, SIZE))}, "finite numbers ≥ 0"),
+    "a mask of 0": (lambda p: p, {"mask": np.zeros((SIZE, SIZE), bool)}, "no pixel would count"),
+    "two masks": (lambda p: p, {"mask": [None, None]}, "one mask for each picture: 2 for 1"),
+    "no such mask": (lambda p: p, {"mask": "mask.png"}, "no such mask"),
+    "a mask of clipped pixels": (
+        lambda p: np.where(np.arange(SIZE) < 5, 9.0, p.T).T,
+        {"mask": np.repeat(np.arange(SIZE)[:, None] < 5, SIZE, axis=1)},
+        "more than the 0 values",
+    ),
     "no steps": (lambda p: p, {"steps": 0}, "steps = 0"),
 }
 
@@ -285,6 +305,84 @@ def test_clipped_pixels_do_not_count(mi, picture):
     (target,) = read_targets(bright)
     assert target.clipped == pytest.approx(0.1, abs=0.01)
     assert (target.weights[bright == bright.max()] == 0).all()
+
+
+WHITE_OUT = {"diffuse_reflectance": (0.0,) * 3, "specular_reflectance": (1e30,) * 3}
+
+
+def test_pictures_that_are_not_finite_are_no_steps(mi, picture):
+    """A weight that nothing shows went to 1e13, and its light to infinity and NaN."""
+    found = views(mi, picture, TRUTH | {"specular_reflectance": (0.0,) * 3})
+    x = found.start
+    here, there = (
+        Residuals.at(found, found.start, 4, 0),
+        Residuals.at(found, np.where(found.linear, 1e30, x), 4, 0),
+    )
+    assert there.error == np.inf
+    assert here.less(there)[0] == -np.inf
+    numbers = len(x)
+    hidden = Equations(np.full(numbers, -1e-9), 1e-25 * np.eye(numbers), np.zeros((numbers, 1)))
+    step = step_in_bounds(found, Search(here, hidden), 1e-2)
+    assert abs(step[found.linear]).max() == pytest.approx(10)
+    with pytest.raises(bk.BrdfkitError, match="not finite where the search begins"):
+        bk.refine(corner(mi, TRUTH | WHITE_OUT), picture, starts=1, samples=4)
+
+
+def test_what_weights_of_0_hide_is_said(mi, picture):
+    black = TRUTH | {"specular_reflectance": (0.0,) * 3, "f0": 0.0}
+    with pytest.raises(bk.BrdfkitError, match=r"ball.bsdf.specular_reflectance = 0 hides it"):
+        bk.refine(corner(mi, black), picture, ["ball.bsdf.alpha_u"], starts=1, samples=16)
+    names = ["ball.bsdf.alpha_u", "ball.bsdf.diffuse_reflectance"]
+    result = bk.refine(corner(mi, black), picture, names, starts=1, samples=16)
+    assert result.values["ball.bsdf.alpha_u"] == pytest.approx(TRUTH["alpha_u"])  # where it began
+    assert any("specular_reflectance = 0 hides what" in note for note in result.notes)
+
+
+def test_all_numbers_may_end_on_bounds(mi, picture):
+    name = "ball.bsdf.diffuse_reflectance"
+    result = bk.refine(corner(mi, TRUTH), picture, {name: (0.6, 0.9)}, samples=16, starts=1)
+    assert result.values[name] == pytest.approx((0.6,) * 3)
+    assert result.at_bounds == (name,)
+    assert np.isnan(result.standard_errors[name]).all()
+
+
+def test_what_is_masked_counts_nowhere(mi, picture):
+    """Around the ball, the photograph is black, or bright, or no numbers at all."""
+    rows, columns = np.mgrid[:SIZE, :SIZE] + 0.5
+    ball_alone = np.hypot(columns - SIZE / 2, rows - SIZE / 2) < 0.3 * SIZE
+    start = TRUTH | {"diffuse_reflectance": (0.5, 0.5, 0.5)}
+    name = "ball.bsdf.diffuse_reflectance"
+    masked = ball_alone[..., None]
+    bad = [np.where(masked, picture, rest) for rest in (0, 99 * picture, np.nan)]
+    how = {"mask": ball_alone, "starts": 1, "samples": 256}
+    one, *others = (bk.refine(corner(mi, start), p, [name], **how) for p in bad)
+    assert all(other == one for other in others)
+    error = np.array(one.standard_errors[name])
+    assert (np.abs(np.array(one.values[name]) - TRUTH["diffuse_reflectance"]) < 3.5 * error).all()
+    assert one.fit.samples == ball_alone.sum()
+    assert "off" not in " ".join(one.notes)
+    without = bk.refine(corner(mi, start), bad[0], [name], starts=1, samples=16)
+    assert "off" in " ".join(without.notes)
+
+
+def test_masks_are_weights_of_any_unit(mi, picture, tmp_path):
+    half = np.arange(SIZE * SIZE).reshape(SIZE, SIZE) % SIZE < SIZE // 2
+    file = tmp_path / "mask.png"
+    with two_threads():
+        mi.Bitmap(np.repeat(half[..., None] * np.uint8(255), 3, axis=2)).write(str(file))
+    scene = load_subject(corner(mi, TRUTH), (SIZE, SIZE))
+    names = mi.traverse(scene)
+
+    def seen_by(mask):
+        targets = read_targets(picture, mask=mask)
+        return Views(scene, integrator_of(scene), targets, names, choose(names, None))
+
+    by_half, everywhere = seen_by(half), seen_by(None)
+    for same in (3.0 * half, [half], file):
+        np.testing.assert_allclose(seen_by(same).weights, by_half.weights)
+    np.testing.assert_array_equal(seen_by(half | True).weights, everywhere.weights)
+    assert by_half.blocks[1] == everywhere.blocks[1] / 2
+    assert len(Residuals.at(by_half, by_half.start, 4, 0).terms) == half.sum()
 
 
 def test_numbers_that_nothing_shows_are_said(mi, picture):

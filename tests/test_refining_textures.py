@@ -120,6 +120,17 @@ def test_a_texture_comes_back(mi, picture):
     np.testing.assert_allclose(np.array(mi.traverse(other)[TEXTURE]), texture, rtol=1e-6)
 
 
+def test_held_out_pixels_are_no_masked_ones(mi, picture):
+    """Nor the smoothness that they choose."""
+    mask = np.arange(SIZE)[:, None] < np.full(SIZE, 12)
+    grey = np.full(TRUTH.shape, 0.5)
+    one, other = (
+        bk.refine(scene(mi, grey), p, [TEXTURE], steps=1, samples=4, mask=mask)
+        for p in (picture, np.where(mask[..., None], picture, np.nan))
+    )
+    assert one == other
+
+
 @pytest.mark.parametrize("smoothness", [-1, np.nan, np.inf])
 def test_smoothness_is_a_number(mi, picture, smoothness):
     with pytest.raises(bk.BrdfkitError, match=r"smoothness = .* should be a number"):

@@ -8,7 +8,7 @@ from brdfkit.fitting import Fit
 from brdfkit.fitting.certainty import Certainty, conclude
 from brdfkit.refining.gauss_newton import free_of_bounds
 from brdfkit.refining.refinement import Refinement
-from brdfkit.refining.unknowns import numbers_in
+from brdfkit.refining.unknowns import hiding, numbers_in
 from brdfkit.version import versions
 
 UNLIKE = 0.05  # of white, what may be left without a word
@@ -16,10 +16,12 @@ ALIKE = 0.5  # the correlation of neighbours beyond which what is left is no noi
 
 
 def conclude_search(views, found, seconds, interrupted=False, notes=()):
-    """The `Refinement` of a `Search` on `Views`, after so many `seconds`.
+    """The `Refinement` of a `Search` on `Views`, after so many `seconds`; the scene is left at its
+    end.
 
     `notes` come before those of its own.
     """
+    views.put(found.here.x)
     x, parts = found.here.x, views.values(found.here.x)
     values = {
         unknown.name: _value(unknown, part)
@@ -44,6 +46,7 @@ def conclude_search(views, found, seconds, interrupted=False, notes=()):
             *notes,
             *certainty.undetermined,
             *certainty.trades,
+            *_notes_on_weights(views, certainty),
             *_notes_on_pictures(views),
             *_notes_on_noise(views, found.here),
             *_notes_on_rest(views, found),
@@ -65,14 +68,17 @@ def _value(unknown, part):
 def _certify(views, found):
     """The `Certainty` of the values, by blocks of pixels as samples."""
     slopes = views.slopes(found.here.x)
+    nothing = Certainty((), (), (), (), (), 0, len(slopes))
     tensors = any(unknown.shape for unknown in views.unknowns)
     if tensors or found.about is None or _blocks_lack(found):
-        return Certainty((), (), (), (), (), 0, len(slopes))
+        return nothing
     free = free_of_bounds(views, found) & ~views.is_on_bound(found.here.x)
+    if not free.any():
+        return nothing
     hessian, scores = found.about.hessian[np.ix_(free, free)], found.about.scores[free]
-    scale = 1 / np.sqrt(np.maximum(np.diagonal(hessian), 1e-300))
-    seen = np.diagonal(hessian) > 0
-    scale = np.where(seen, scale, 1)
+    unseen = found.about.unseen(views, found.here.x)[free]
+    hessian[unseen] = hessian[:, unseen] = scores[unseen] = 0
+    scale = 1 / np.sqrt(np.where(unseen, 1, np.diagonal(hessian)))
     blocks = scores.shape[1]
     at = np.concatenate(views.values(found.here.x))
     return conclude(
@@ -116,6 +122,17 @@ def _notes_on_pictures(views):
     )
 
 
+def _notes_on_weights(views, certainty):
+    """What weights that ended at 0 hide of the numbers that are not determined."""
+    known = certainty.names
+    hidden = [u for u in views.unknowns if not u.shape and not any(n in known for n in u.names)]
+    zero = dict.fromkeys(name for u in hidden for name in hiding(views.parameters, u))
+    return tuple(
+        f"{name} = 0 hides what it multiplies; begin above 0, or with more starts, to see it"
+        for name in zero
+    )
+
+
 def _notes_on_noise(views, here):
     """What one should know of the rendering's own noise."""
     if here.noise(views) < max(here.error, 0):
@@ -144,10 +161,12 @@ def _share_of_neighbours(views, here):
     """The correlation of what is left with what is left one pixel to the right, from -1 to 1."""
     root = np.sqrt(views.weights)
     together = alone = 0.0
-    halves = (views.as_pictures(root * half) for half in (here.a, here.b))
-    for a, b in zip(*halves, strict=True):
-        together += (a[:, :-1] * b[:, 1:] + a[:, 1:] * b[:, :-1]).sum() / 2
-        alone += (a[:, :-1] * b[:, :-1] + a[:, 1:] * b[:, 1:]).sum() / 2
+    parts = (views.as_pictures(part) for part in (root, root * here.a, root * here.b))
+    for weights, a, b in zip(*parts, strict=True):
+        both = (weights[:, :-1] > 0) & (weights[:, 1:] > 0)  # a pair counts if both of it do
+        left, right = (a[:, :-1], b[:, :-1]), (a[:, 1:], b[:, 1:])
+        together += (both * (left[0] * right[1] + right[0] * left[1])).sum() / 2
+        alone += (both * (left[0] * left[1] + right[0] * right[1])).sum() / 2
     return together / alone if alone > 0 else 0.0
 
 
@@ -167,7 +186,7 @@ def _fits(views, result):
             data="pictures of the scene",
             loss_name="rendered",
             loss=result.loss,
-            samples=len(views.reached),
+            samples=int(views.seen.sum()),
             evaluations=result.steps,
             seconds=result.seconds,
             message=result.message,

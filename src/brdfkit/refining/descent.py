@@ -3,12 +3,12 @@
 
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.stopped import Stopped
 from brdfkit.refining.backwards import error_and_slopes
 from brdfkit.refining.equations import Residuals
 from brdfkit.refining.gauss_newton import Search
 from brdfkit.refining.smoothness import roughness
+from brdfkit.refining.views import nothing_seen
 
 SAMPLES = 4, 16, 64  # per pixel and half, of one stage after another
 STRENGTHS = 0.3, 0.03, 0.003, 0.0003  # of smoothness, of which held-out pixels choose
@@ -82,10 +82,7 @@ def _stage(views, x, spp, seed, weights, smoothness, steps, found, report):
 
     _, slopes = loss(x)
     if not slopes.any():
-        raise BrdfkitError(
-            f"no picture changes with {', '.join(u.name for u in views.unknowns)}: either nothing "
-            "of it is seen, or the integrator does not differentiate it."
-        )
+        raise nothing_seen(views)
     scale = 1 / max(abs(slopes).max(), 1e-300)  # a first step of L-BFGS is as long as its gradient
     try:
         result = minimize(

@@ -15,17 +15,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.errors import BrdfkitError
 from brdfkit.refining.leverage import sum_by_block, without_leverage
 from brdfkit.refining.views import DERIVATIVE_COST
 
 SHARE = 2.0  # of the cost of a step's pictures, what its derivatives may cost
+ROUNDING = 1e-6  # of white, of pictures in single precision
 SMALLEST = 1e-5  # eigenvalue of H, of unit diagonal, below which there is noise
 
 
 @dataclass(frozen=True)
 class Residuals:
     """Two halves `a`, `b` (pixels, channels) of rendered less reached pixels, at coordinates `x`,
-    by `spp` samples each; weighed, `terms` (pixels,) add up to E²."""
+    by `spp` samples each; weighed, the `terms` of the pixels that count add up to E²."""
 
     x: np.ndarray
     a: np.ndarray
@@ -38,15 +40,19 @@ class Residuals:
         """Of the `Views` at `x`, by half of `spp` samples each."""
         half = max(1, spp // 2)
         a, b = views.residuals(x, half, seed), views.residuals(x, half, seed + 1000)
-        return cls(x, a, b, half, (views.weights * a * b).sum(axis=1))
+        return cls(x, a, b, half, (views.weights * a * b).sum(axis=1)[views.seen])
 
     @property
     def error(self):
-        """E², of the weights' mean; it may be below 0 where it is less than the noise."""
-        return self.terms.sum()
+        """E², of the weights' mean; it may be below 0 where it is less than the noise. Infinite
+        where a picture is not finite, as of light that multiplies from one bounce to the next."""
+        total = self.terms.sum()
+        return total if np.isfinite(total) else np.inf
 
     def less(self, other):
         """(how much less E² is in `other`, of the same samples; its standard error)."""
+        if other.error == np.inf:
+            return -np.inf, 0.0
         change = self.terms - other.terms
         return change.sum(), change.std() * np.sqrt(len(change))
 
@@ -70,12 +76,19 @@ class Equations:
         tangents = len(list(views.tangents))
         spp = max(1, round(here.spp * min(1, SHARE / (DERIVATIVE_COST * tangents))))
         a, b = (views.derivatives(here.x, spp, seed + 1000 * half) for half in (0, 1))
+        _require_finite(views, a + b)
         weighed = views.weights * a
         hessian = weighed.reshape(len(a), -1) @ b.reshape(len(a), -1).T.astype(float)
         per_pixel = (weighed * here.b).sum(axis=2) + (views.weights * b * here.a).sum(axis=2)
         scores = sum_by_block(per_pixel / 2, views.blocks)
         lone = without_leverage(scores, (a + b) / 2 * np.sqrt(views.weights), views.blocks)
         return cls(scores.sum(axis=1), (hessian + hessian.T) / 2, lone)
+
+    def unseen(self, views, x):
+        """Whether (n,) the pictures about `x` change with a number by no more than rounding."""
+        bounded = np.isfinite(views.most - views.least)
+        extent = np.where(bounded, 1, np.maximum(abs(x), 1))
+        return np.sqrt(np.maximum(np.diagonal(self.hessian), 0)) * extent <= ROUNDING
 
     def gain(self, step):
         """How much less E² should be after a step (n,)."""
@@ -97,4 +110,14 @@ class Equations:
         g = g * scale
         return float(
             g @ np.linalg.pinv(covariance, rcond=1e-6, hermitian=True) @ g / max(1, len(g))
+        )
+
+
+def _require_finite(views, derivatives):
+    """Raise `BrdfkitError` for `derivatives` (n, pixels, channels) that are not finite."""
+    bad = ~np.isfinite(derivatives).all(axis=(1, 2))
+    if bad.any():
+        raise BrdfkitError(
+            f"the pictures' derivatives by {views.names[int(np.argmax(bad))]} are not finite; "
+            "begin elsewhere, or give it narrower bounds."
         )

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.box_quadratic import minimise_in_box
 from brdfkit.fitting.stopped import Stopped
 from brdfkit.refining.equations import Equations, Residuals
@@ -15,6 +16,7 @@ GROWTH = 4, 16  # the least and the most by which the samples grow at once
 WITHIN = 0.1  # of the variance of the numbers: a step that is shorter gains less than the noise
 QUIET = 0.25  # of the error that is left: noise of rendering that is less adds 12 % to the errors
 REACH = 0.25  # of the way between bounds: farther off no derivative speaks of what is not linear
+STRETCH = 10  # times a model's weight, or 1, how far it goes at once: hidden ones knew no end
 SURE = 2  # times its noise, a gain is no chance
 DAMPING = 1e-2, 1e-6, 1e4  # the first, the least and the most
 BETTER, WORSE = 0.1, 8  # factors of the damping
@@ -46,6 +48,8 @@ def search(views, x, steps, samples, seed, report=lambda: None):
     """
     spp, damping = min(few_samples(views), samples), DAMPING[0]
     found = Search(Residuals.at(views, x, spp, seed))
+    if found.here.error == np.inf:
+        raise BrdfkitError("the scene's pictures are not finite where the search begins.")
     found.history.append((spp, found.here.error))
     try:
         while damping < DAMPING[2]:
@@ -99,6 +103,8 @@ def step_in_bounds(views, found, damping):
     hessian, scale = found.about.scaled()
     damped = hessian + damping * np.eye(len(scale))
     reach = np.where(views.curved, REACH, np.inf)
+    far = STRETCH * np.maximum(abs(found.here.x), 1)
+    reach = np.where(views.endless, far, reach)
     low = np.maximum(views.least - found.here.x, -reach)
     high = np.minimum(views.most - found.here.x, reach)
     step = minimise_in_box(

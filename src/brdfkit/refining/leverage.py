@@ -10,10 +10,11 @@ SLIGHT = 0.02  # a leverage, of a trace, that changes nothing
 LEAST = 0.05  # of one less a leverage: more cannot be told from a part that decides alone
 
 
-def number_blocks(scene):
+def number_blocks(scene, seen):
     """(the number of the block (pixels,) of each pixel of all sensors; how many there are).
 
-    Blocks are as wide as the camera's filter, which ties the noise of neighbours together.
+    Blocks are as wide as the camera's filter, which ties the noise of neighbours together. Those
+    without a pixel that is `seen` are none; their pixels, which add 0, go to the first.
     """
     found, count = [], 0
     for sensor in scene.sensors():
@@ -23,7 +24,9 @@ def number_blocks(scene):
         across = columns[-1] + 1
         found.append((count + rows[:, None] * across + columns).ravel())
         count += (rows[-1] + 1) * across
-    return np.concatenate(found), int(count)
+    found = np.where(seen, np.concatenate(found), -1)
+    blocks = np.unique(found[seen])
+    return np.maximum(np.searchsorted(blocks, found), 0), len(blocks)
 
 
 def sum_by_block(values, blocks):

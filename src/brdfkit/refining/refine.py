@@ -22,7 +22,7 @@ from brdfkit.refining.refinement import Refinement
 from brdfkit.refining.subject import integrator_of, load_subject
 from brdfkit.refining.targets import read_targets
 from brdfkit.refining.unknowns import MOST, choose
-from brdfkit.refining.views import Views, quiet_samplers
+from brdfkit.refining.views import Views, nothing_seen, quiet_samplers
 
 Pictures = NDArray | str | Path | Iterable[NDArray | str | Path]
 
@@ -37,6 +37,7 @@ def refine(
     steps: int | None = None,
     smoothness: float | None = None,
     samples: int = 1024,
+    mask: Pictures | None = None,
     linearise: bool = False,
     seed: int = 0,
     progress: Callable[[int, int], object] | None = None,
@@ -77,6 +78,10 @@ def refine(
         there is no upper bound. By default the best of four for pixels that are held out.
     samples : int, default 1024
         Samples per pixel, at most, at least 4.
+    mask : ndarray or path, or several, optional
+        The pixels that count, of each picture: booleans, or weights ≥ 0 (height, width), or a
+        picture's file, white where they do; None for a picture all of which does. Pixels at 0 may
+        hold anything. An alpha channel serves as ``mask=picture[..., 3]``; by itself it is ignored.
     linearise : bool, default False
         Whether pictures of 8 bits are accepted, as seen by sRGB's curve.
     seed : int, default 0
@@ -93,8 +98,9 @@ def refine(
     ------
     BrdfkitError
         For a scene that does not load, an integrator without derivatives, pictures that do not fit
-        the cameras, have 8 bits or are not finite, parameters that are none, a smoothness
-        below 0, textures of integers, and numbers on which no picture depends.
+        the cameras, have 8 bits or are not finite, masks that do not fit the pictures,
+        parameters that are none, a smoothness below 0, textures of integers, and numbers on which
+        no picture depends.
 
     Examples
     --------
@@ -113,7 +119,7 @@ def refine(
             to_whole_number(f"refine: {name}", number, 1)
     if smoothness is not None and not 0 <= smoothness < np.inf:
         raise BrdfkitError(f"refine: smoothness = {smoothness!r} should be a number ≥ 0.")
-    views = _views(scene, pictures, parameters, linearise)
+    views = _views(scene, read_targets(pictures, linearise, mask), parameters)
     if len(views.start) > MOST or any(unknown.shape for unknown in views.unknowns):
         return _by_descent(views, smoothness, steps or 30, samples, seed + 100, progress, began)
     steps = steps or 8
@@ -126,15 +132,11 @@ def refine(
     except Stopped as stop:
         best = conclude_search(views, stop.best, time.perf_counter() - began, interrupted=True)
         raise Interrupted(best, f"refine: the best so far leaves {best.loss:.3g}") from None
-    unseen = np.diagonal(found.about.hessian) == 0
+    unseen = found.about.unseen(views, found.here.x)
     if unseen.all():
-        raise BrdfkitError(
-            f"no picture changes with {', '.join(u.name for u in views.unknowns)}: either nothing "
-            "of it is seen, or the integrator does not differentiate it."
-        )
+        raise nothing_seen(views)
     # where nothing is known, the search's own starts mean nothing
     found.here = replace(found.here, x=np.where(unseen, views.start, found.here.x))
-    views.put(found.here.x)
     return conclude_search(views, found, time.perf_counter() - began)
 
 
@@ -149,23 +151,21 @@ def _by_descent(views, smoothness, steps, samples, seed, progress, began):
             views, stop.best, time.perf_counter() - began, interrupted=True, notes=(without,)
         )
         raise Interrupted(best, f"refine: the best so far leaves {best.loss:.3g}") from None
-    views.put(found.here.x)
     how = "by held-out pixels" if smoothness is None else "as given"
     notes = (f"smoothness {chosen:g}, {how}", without)
     return conclude_search(views, found, time.perf_counter() - began, notes=notes)
 
 
-def _views(scene, pictures, parameters, linearise):
+def _views(scene, targets, parameters):
     """The `Views` of what `refine` is given."""
     import mitsuba as mi
 
-    targets = read_targets(pictures, linearise)
     loaded = load_subject(scene, targets[0].size)
     names = mi.traverse(loaded)
     unknowns = choose(names, parameters)
     numbers = sum(len(unknown.start) for unknown in unknowns)
     values = sum(np.count_nonzero(target.weights) for target in targets)
-    if values < numbers <= MOST:
+    if not values or values < numbers <= MOST:
         raise BrdfkitError(
             f"refine: {numbers} numbers are more than the {values} values of the pictures that "
             "count; give larger pictures, or name fewer."

@@ -9,6 +9,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.jit.first_error import first_error
 from brdfkit.refining.leverage import number_blocks
 from brdfkit.refining.tensors import tensor_of
+from brdfkit.refining.unknowns import hiding
 
 DERIVATIVE_COST = 2.3  # of a picture of derivatives, in pictures
 STEP = 0.05  # of differences, in coordinates, or of what has no bounds relative to it
@@ -24,6 +25,7 @@ class Views:
     targets : a `Target` for each sensor.
     parameters : what `mitsuba.traverse` says of the scene.
     unknowns : `Unknown`s; their coordinates are the `x` (n,) of all methods.
+    seen : which pixels (pixels,) count.
     """
 
     def __init__(self, scene, integrator, targets, parameters, unknowns):
@@ -33,8 +35,9 @@ class Views:
         _require_fit(scene, targets)
         self.reached = self._joined([target.pixels for target in targets])
         self.weights = self._joined([target.weights for target in targets])
-        self.weights /= np.count_nonzero(self.weights)
-        self.blocks = number_blocks(scene)
+        self.weights /= sum(target.count for target in targets)
+        self.seen = (self.weights > 0).any(axis=1)
+        self.blocks = number_blocks(scene, self.seen)
         self.renders = 0.0  # samples per pixel, those of derivatives counted by their time
 
     def values(self, x):
@@ -81,6 +84,12 @@ class Views:
     def linear(self):
         """Whether (n,) pictures of direct light are linear in a number."""
         return np.concatenate([np.full(len(u.start), u.linear) for u in self.unknowns])
+
+    @property
+    def endless(self):
+        """Whether (n,) a number is a weight of a model, of which there is no largest."""
+        known = [bool(u.model) and u.linear and not u.bounded for u in self.unknowns]
+        return np.repeat(known, [len(u.start) for u in self.unknowns])
 
     @property
     def curved(self):
@@ -245,6 +254,21 @@ def quiet_samplers():
         yield
     finally:
         mi.set_log_level(level)
+
+
+def nothing_seen(views):
+    """The `BrdfkitError` for numbers on which no picture depends."""
+    names = ", ".join(unknown.name for unknown in views.unknowns)
+    zero = {name for unknown in views.unknowns for name in hiding(views.parameters, unknown)}
+    if zero:
+        return BrdfkitError(
+            f"no picture changes with {names}: {', '.join(sorted(zero))} = 0 hides it; begin above "
+            "0, or search it, too."
+        )
+    return BrdfkitError(
+        f"no picture changes with {names}: either nothing of it is seen, or the integrator does "
+        "not differentiate it."
+    )
 
 
 def _share(picture, found, rows):
