@@ -60,6 +60,7 @@ HOW = """Four things have to be known, and whatever is wrong in them goes into t
 found = bk.refine("scene.xml", "photograph.exr", ["ball.bsdf.alpha_u", "lamp.emitter.radiance"])
 print(found)  # values ± standard errors, what trades off, what is left
 bk.render(found.fit)  # a fit as any other: compared, converted, written
+mi.render(found.put_into("scene.xml"))  # the whole scene, with all that was found
 ```
 
 Pixels that the scene cannot explain, as of a hand or of what stands behind, are left out by a mask:

@@ -158,9 +158,8 @@ def test_the_fit_is_the_material(mi, found):
     with pytest.raises(bk.BrdfkitError, match="found by refine"):
         bk.bootstrap(fit, "plaster")
     assert pickle.loads(pickle.dumps(result)) == result
-    other = mi.load_dict(corner(mi, TRUTH), optimize=False)
-    result.put_into(other)
-    for one in (scene, other):
+    others = mi.load_dict(corner(mi, TRUTH), optimize=False), corner(mi, TRUTH)
+    for one in (scene, *map(result.put_into, others)):
         alpha = mi.traverse(one)["ball.bsdf.alpha_u.value"][0]
         assert alpha == pytest.approx(fit.values["alpha_u"], rel=1e-5)
 
@@ -321,7 +320,10 @@ def test_pictures_that_are_not_finite_are_no_steps(mi, picture):
     assert there.error == np.inf
     assert here.less(there)[0] == -np.inf
     numbers = len(x)
-    hidden = Equations(np.full(numbers, -1e-9), 1e-25 * np.eye(numbers), np.zeros((numbers, 1)))
+    power = np.full(numbers, 1e-25)
+    hidden = Equations(
+        np.full(numbers, -1e-9), 1e-25 * np.eye(numbers), np.zeros((numbers, 1)), power
+    )
     step = step_in_bounds(found, Search(here, hidden), 1e-2)
     assert abs(step[found.linear]).max() == pytest.approx(10)
     with pytest.raises(bk.BrdfkitError, match="not finite where the search begins"):
@@ -344,6 +346,51 @@ def test_all_numbers_may_end_on_bounds(mi, picture):
     assert result.values[name] == pytest.approx((0.6,) * 3)
     assert result.at_bounds == (name,)
     assert np.isnan(result.standard_errors[name]).all()
+
+
+def test_two_lobes_that_trade_off_come_apart(mi):
+    """After 8 steps they were up to 84 % and 5 standard errors off."""
+    truth = {
+        "models": "ggx+ggx",
+        "diffuse_reflectance": (0.3, 0.15, 0.08),
+        "ggx_1_specular_reflectance": (0.3, 0.3, 0.25),
+        "ggx_1_alpha_u": 0.45,
+        "ggx_1_f0": 0.6,
+        "ggx_2_specular_reflectance": (0.1, 0.1, 0.1),
+        "ggx_2_alpha_u": 0.1,
+        "ggx_2_f0": 0.6,
+    }
+
+    def scene(values):
+        entries = corner(mi, TRUTH, size=32)
+        entries["ball"]["bsdf"] = bsdf_of("mixture", values)
+        return entries
+
+    (picture,) = noisy(mi, scene(truth), 1024)
+    begin = truth | {"ggx_1_alpha_u": 0.3, "ggx_2_specular_reflectance": (0.2,) * 3}
+    searched = [name for name in truth if name.endswith(("alpha_u", "reflectance"))]
+    names = [f"ball.bsdf.{name}" for name in searched]
+    result = bk.refine(scene(begin), picture, names, samples=256, starts=1, seed=4)
+    assert "no step gains more" in result.message
+    for name in searched:
+        error = np.asarray(result.standard_errors[f"ball.bsdf.{name}"])
+        away = np.asarray(result.values[f"ball.bsdf.{name}"]) - truth[name]
+        assert (np.abs(away) < 3.5 * error).all(), name
+        assert (np.abs(away) < 0.25 * np.asarray(truth[name])).all(), name
+
+
+def test_a_search_that_is_stuck_tries_other_samples_and_says_so(mi, picture, monkeypatch):
+    seeds = []
+
+    def stuck(views, found, damping, seed, last):
+        seeds.append(seed)
+        return None, damping
+
+    monkeypatch.setattr(gauss_newton, "_find_step", stuck)
+    start = corner(mi, TRUTH | {"diffuse_reflectance": (0.9, 0.9, 0.9)})
+    result = bk.refine(start, picture, ["ball.bsdf.diffuse_reflectance"], starts=1, samples=16)
+    assert "no step, however short" in result.message
+    assert len(set(seeds)) == gauss_newton.FRESH + 1
 
 
 def test_what_is_masked_counts_nowhere(mi, picture):

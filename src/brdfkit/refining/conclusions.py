@@ -78,7 +78,7 @@ def _certify(views, found):
     hessian, scores = found.about.hessian[np.ix_(free, free)], found.about.scores[free]
     unseen = found.about.unseen(views, found.here.x)[free]
     hessian[unseen] = hessian[:, unseen] = scores[unseen] = 0
-    scale = 1 / np.sqrt(np.where(unseen, 1, np.diagonal(hessian)))
+    scale = 1 / np.sqrt(np.where(np.diagonal(hessian) > 0, np.diagonal(hessian), 1))
     blocks = scores.shape[1]
     at = np.concatenate(views.values(found.here.x))
     return conclude(
@@ -108,6 +108,8 @@ def _message(found, interrupted):
         return "interrupted: the best so far"
     if found.converged:
         return "no step gains more than the noise"
+    if found.stuck:
+        return "no step, however short, is a gain: other starts or more samples may find better"
     return f"stopped after {found.steps} steps: more of them may gain"
 
 

@@ -21,6 +21,7 @@ from brdfkit.refining.views import DERIVATIVE_COST
 
 SHARE = 2.0  # of the cost of a step's pictures, what its derivatives may cost
 ROUNDING = 1e-6  # of white, of pictures in single precision
+QUIETEST = 0.1  # of the power of derivatives, what may be left of it without their noise
 SMALLEST = 1e-5  # eigenvalue of H, of unit diagonal, below which there is noise
 
 
@@ -64,11 +65,13 @@ class Residuals:
 @dataclass(frozen=True)
 class Equations:
     """E² to second order: `gradient` (n,), half of E²'s, `hessian` (n, n), and `scores`
-    (n, blocks), what blocks of pixels add to the gradient, without their leverage."""
+    (n, blocks), what blocks of pixels add to the gradient, without their leverage; `power` (n,),
+    the hessian's diagonal with the noise of the derivatives, which is never below 0."""
 
     gradient: np.ndarray
     hessian: np.ndarray
     scores: np.ndarray
+    power: np.ndarray
 
     @classmethod
     def at(cls, views, here, seed):
@@ -82,21 +85,24 @@ class Equations:
         per_pixel = (weighed * here.b).sum(axis=2) + (views.weights * b * here.a).sum(axis=2)
         scores = sum_by_block(per_pixel / 2, views.blocks)
         lone = without_leverage(scores, (a + b) / 2 * np.sqrt(views.weights), views.blocks)
-        return cls(scores.sum(axis=1), (hessian + hessian.T) / 2, lone)
+        power = ((weighed * a).sum(axis=(1, 2)) + (views.weights * b * b).sum(axis=(1, 2))) / 2
+        return cls(scores.sum(axis=1), (hessian + hessian.T) / 2, lone, power)
 
     def unseen(self, views, x):
         """Whether (n,) the pictures about `x` change with a number by no more than rounding."""
         bounded = np.isfinite(views.most - views.least)
         extent = np.where(bounded, 1, np.maximum(abs(x), 1))
-        return np.sqrt(np.maximum(np.diagonal(self.hessian), 0)) * extent <= ROUNDING
+        return np.sqrt(self.power) * extent <= ROUNDING
 
     def gain(self, step):
         """How much less E² should be after a step (n,)."""
         return -float(2 * self.gradient @ step + step @ self.hessian @ step)
 
     def scaled(self):
-        """(H, scale): H of unit diagonal, its negative eigenvalues, of noise, lifted."""
-        scale = 1 / np.sqrt(np.maximum(np.diagonal(self.hessian), 1e-30))
+        """(H, scale): H of unit diagonal, or less where derivatives are noise, its negative
+        eigenvalues, of noise, too, lifted."""
+        least = np.maximum(QUIETEST * self.power, 1e-30)
+        scale = 1 / np.sqrt(np.maximum(np.diagonal(self.hessian), least))
         values, vectors = np.linalg.eigh(self.hessian * np.outer(scale, scale))
         lifted = np.maximum(values, SMALLEST)
         return (vectors * lifted) @ vectors.T, scale

@@ -17,6 +17,7 @@ WITHIN = 0.1  # of the variance of the numbers: a step that is shorter gains les
 QUIET = 0.25  # of the error that is left: noise of rendering that is less adds 12 % to the errors
 REACH = 0.25  # of the way between bounds: farther off no derivative speaks of what is not linear
 STRETCH = 10  # times a model's weight, or 1, how far it goes at once: hidden ones knew no end
+FRESH = 3  # times that other samples are tried where none of a step's is a gain
 SURE = 2  # times its noise, a gain is no chance
 DAMPING = 1e-2, 1e-6, 1e4  # the first, the least and the most
 BETTER, WORSE = 0.1, 8  # factors of the damping
@@ -26,13 +27,14 @@ BETTER, WORSE = 0.1, 8  # factors of the damping
 class Search:
     """Where a search is: `here`, its `Residuals`; `about`, the `Equations` there; how many `steps`
     it took; the `history` of (samples per pixel, E²); `converged`, whether no step would gain more
-    than the noise."""
+    than the noise; `stuck`, whether one should, but none, however short, is a gain."""
 
     here: Residuals
     about: Equations | None = None
     steps: int = 0
     history: list = field(default_factory=list)
     converged: bool = False
+    stuck: bool = False
 
 
 def few_samples(views):
@@ -46,13 +48,13 @@ def search(views, x, steps, samples, seed, report=lambda: None):
 
     `report()` is called after each step. On Ctrl-C `Stopped` has the `Search` so far.
     """
-    spp, damping = min(few_samples(views), samples), DAMPING[0]
+    spp, damping, tries = min(few_samples(views), samples), DAMPING[0], 0
     found = Search(Residuals.at(views, x, spp, seed))
     if found.here.error == np.inf:
         raise BrdfkitError("the scene's pictures are not finite where the search begins.")
     found.history.append((spp, found.here.error))
     try:
-        while damping < DAMPING[2]:
+        while True:
             found.about = Equations.at(views, found.here, seed)
             grown = _grow(views, found.here, spp, samples)
             at_rest = _is_within_noise(views, found)
@@ -63,9 +65,12 @@ def search(views, x, steps, samples, seed, report=lambda: None):
                 if found.steps == steps:
                     break
                 step, damping = _find_step(views, found, damping, seed, grown == spp)
-                at_rest = step is None
+                at_rest = step is None or damping >= DAMPING[2]
                 if at_rest and grown == spp:
-                    break  # no step, however short, is a gain
+                    tries += 1  # of fresh samples: these had no step, however short, that gains
+                    found.stuck = tries > FRESH
+                    if found.stuck:
+                        break
             if at_rest:
                 spp, seed, damping = grown, seed + 1, min(damping, DAMPING[0])
                 found.here = Residuals.at(views, found.here.x, spp, seed)

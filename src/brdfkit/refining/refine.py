@@ -24,6 +24,8 @@ from brdfkit.refining.targets import read_targets
 from brdfkit.refining.unknowns import MOST, choose
 from brdfkit.refining.views import Views, nothing_seen, quiet_samplers
 
+STEPS = 30  # that a search may take; nearly all of them end by themselves before
+
 Pictures = NDArray | str | Path | Iterable[NDArray | str | Path]
 
 
@@ -56,7 +58,8 @@ def refine(
         A scene of Mitsuba's, its dictionary or .xml file, with all that is known: camera, lights
         and shapes. Or a material, to begin with, on the ball of `render`. Its integrator is one
         with derivatives, as ``prb``, ``prbvolpath`` and those of brdfkit; ``path`` and ``volpath``
-        stand for the first two. A `mitsuba.Scene` is left with the values that were found.
+        stand for the first two. A `mitsuba.Scene` is left with the values that were found; of
+        anything else `Refinement.put_into` makes one.
     pictures : ndarray or path, or several
         A picture for each sensor of the scene: linear values (height, width, channels), or an
         OpenEXR file.
@@ -70,8 +73,8 @@ def refine(
         bounds of what pictures are not linear in. By default 8 for each of these numbers, at
         most 32, and the scene's own; 1 trusts that.
     steps : int, optional
-        Steps that the search may take after its start, at least 1; by default 8. With textures, in
-        each of three stages of growing samples, by default 30: short ones, by L-BFGS-B.
+        Steps that the search may take after its start, at least 1; by default 30, of which numbers
+        that trade off, as those of two lobes, need most. With textures, in each of three stages of growing samples, by default 30: short ones, by L-BFGS-B.
     smoothness : float, optional
         Of textures and volumes: the weight, at least 0, of the mean squared difference of
         neighbouring texels in the loss, in units of their bounds, or of the mean at the start where
@@ -120,9 +123,9 @@ def refine(
     if smoothness is not None and not 0 <= smoothness < np.inf:
         raise BrdfkitError(f"refine: smoothness = {smoothness!r} should be a number ≥ 0.")
     views = _views(scene, read_targets(pictures, linearise, mask), parameters)
+    steps = steps or STEPS
     if len(views.start) > MOST or any(unknown.shape for unknown in views.unknowns):
-        return _by_descent(views, smoothness, steps or 30, samples, seed + 100, progress, began)
-    steps = steps or 8
+        return _by_descent(views, smoothness, steps, samples, seed + 100, progress, began)
     count = usual_count(views) if starts is None else starts
     report = _counter(progress, (count + BEST if count > 1 else 0) + steps)
     try:

@@ -109,26 +109,37 @@ class Refinement(Shown):
         """The correlation (n, n) of ``certainty.names``."""
         return self.certainty.correlation()
 
-    def put_into(self, scene: Any) -> None:
-        """Give a scene of Mitsuba's the values.
+    def put_into(self, scene: Any) -> Any:
+        """Give a scene the values, to render it or to go on with it.
 
         Parameters
         ----------
-        scene : mitsuba.Scene
-            A scene with parameters of these names.
+        scene : mitsuba.Scene, dict or path
+            What `refine` was given, or another scene with parameters of these names. A
+            `mitsuba.Scene` has those of `refine` if it was loaded with ``optimize=False``, lest
+            Mitsuba merge equal materials; dictionaries and files are loaded so here.
+
+        Returns
+        -------
+        mitsuba.Scene
+            The scene, with the values.
 
         Raises
         ------
         BrdfkitError
-            For a scene without one of them.
+            For a scene that does not load, or is without one of them.
 
         Examples
         --------
-        >>> found.put_into(scene)    # doctest: +SKIP
+        >>> mitsuba.render(found.put_into("scene.xml"), spp=256)    # doctest: +SKIP
         """
+        from brdfkit.refining.subject import load_subject
         from brdfkit.refining.unknowns import put_values
 
+        height, width = self.pictures[0].shape[:2]
+        scene = load_subject(scene, (width, height))
         put_values(scene, self.values)
+        return scene
 
     def __eq__(self, other: object) -> bool:
         """Whether all but times and pictures is equal."""
