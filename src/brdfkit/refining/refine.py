@@ -74,7 +74,8 @@ def refine(
         most 32, and the scene's own; 1 trusts that.
     steps : int, optional
         Steps that the search may take after its start, at least 1; by default 30, of which numbers
-        that trade off, as those of two lobes, need most. With textures, in each of three stages of growing samples, by default 30: short ones, by L-BFGS-B.
+        that trade off, as those of two lobes, need most. With textures, in each of three stages of
+        growing samples: short ones, by L-BFGS-B.
     smoothness : float, optional
         Of textures and volumes: the weight, at least 0, of the mean squared difference of
         neighbouring texels in the loss, in units of their bounds, or of the mean at the start where
