@@ -11,9 +11,9 @@ from brdfkit.refining.smoothness import roughness
 from brdfkit.refining.views import nothing_seen
 
 SAMPLES = 4, 16, 64  # per pixel and half, of one stage after another
-STRENGTHS = 0.3, 0.03, 0.003, 0.0003  # of smoothness, of which held-out pixels choose
+STRENGTHS = 0.3, 0.03, 0.003, 0.0003, 0.00003  # of smoothness, of which held-out pixels choose
 FEW = 8  # steps for each of these
-HELD_OUT = 0.1  # the share of pixels
+HELD_OUT = 10  # of so many pixels, one
 
 
 def usual_total(smoothness, steps):
@@ -48,19 +48,32 @@ def descend(views, smoothness, steps, samples, seed, report=lambda: None):
 def _choose_smoothness(views, x, spp, seed, found, report):
     """(coordinates, the strength) that leave the least of the pixels that were held out.
 
-    From strong to weak, each from the end of the one before.
+    From strong to weak, each from the end of the one before; all are tried, for what is blurred may
+    leave as much until a light is sharp.
     """
-    held = np.random.default_rng(seed).random(len(views.weights)) < HELD_OUT
+    held = _hold_out(views, seed)
     seen, hidden = views.weights * ~held[:, None], views.weights * held[:, None]
     best, least = None, np.inf
     for strength in STRENGTHS:
         x = _stage(views, x, spp, seed, seen, strength, FEW, found, report)
         a, b = (views.residuals(x, 4 * spp, seed + 7 + 1000 * half) for half in (0, 1))
         left = float((hidden * a * b).sum())
-        if left >= least:
-            break
-        best, least = (x, strength), left
+        if left < least:
+            best, least = (x, strength), left
     return best
+
+
+def _hold_out(views, seed):
+    """Which pixels (pixels,) are held out: one of ten that are next to each other in brightness, so
+    that the few of a highlight are not all of one kind."""
+    bright = (views.weights * views.reached**2).sum(axis=1)
+    order = np.nonzero(views.seen)[0]
+    order = order[np.argsort(-bright[order], kind="stable")]
+    first = np.arange(0, len(order), HELD_OUT)
+    chosen = first + np.random.default_rng(seed).integers(0, HELD_OUT, len(first))
+    held = np.zeros(len(bright), bool)
+    held[order[chosen[chosen < len(order)]]] = True
+    return held
 
 
 def _stage(views, x, spp, seed, weights, smoothness, steps, found, report):

@@ -79,7 +79,7 @@ def refine(
     smoothness : float, optional
         Of textures and volumes: the weight, at least 0, of the mean squared difference of
         neighbouring texels in the loss, in units of their bounds, or of the mean at the start where
-        there is no upper bound. By default the best of four for pixels that are held out.
+        there is no upper bound. By default the best of five for pixels that are held out.
     samples : int, default 1024
         Samples per pixel, at most, at least 4.
     mask : ndarray or path, or several, optional
@@ -89,7 +89,8 @@ def refine(
     linearise : bool, default False
         Whether pictures of 8 bits are accepted, as seen by sRGB's curve.
     seed : int, default 0
-        Of the samples and the starts; equal seeds give equal results.
+        Of the samples and the starts; equal seeds give equal results, of textures but for rounding,
+        since derivatives backwards are added up in any order.
     progress : callable, optional
         Called with (done, total); see `brdfkit.progress`.
 
