@@ -45,9 +45,9 @@ found = bk.refine(scene, pictures, {"integrator.extinction.values.data": (0, 1)}
 density = found.values["integrator.extinction.values.data"]
 ```
 
-An environment map is found from one picture of a mirror ball: of 8 × 16 texels, half within 5 %, and
-the light of two lamps of one texel each, 25 times as bright as the rest, within 30 %. A blurred ball
-shows less: with `alpha_u` = 0.05, half of the texels are within 10 to 20 %."""
+An environment map is found from one picture of a mirror ball: of 8 × 16 texels, half are within
+5 % and two lamps of one texel each, up to 27 times as bright as the rest, within 30 %. A blurred
+ball shows less: with `alpha_u` = 0.05, half of the texels are within 10 to 20 %."""
 HOW = """Four things have to be known, and whatever is wrong in them goes into the material:
 
 1. **The camera.** Calibrate it, or search what is left: a few degrees of the field of view are the
