@@ -15,6 +15,8 @@ from brdfkit.checks.registry import checks
 from brdfkit.checks.sampling import spread
 from brdfkit.colours import colour_science
 from brdfkit.geometry.directions import from_angles
+from brdfkit.host.arrays import Rows
+from brdfkit.host.half_vector_table import _draw_cell
 from brdfkit.model import labels
 from brdfkit.samples import Table
 
@@ -32,6 +34,17 @@ def brushed(channels=("R", "G", "B"), shape=(24, 40, 24, 36)):
     above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
     values[above] = model.eval(wi[above], wo[above])
     return bk.Measured.from_table(values, channels=channels, name="brushed"), model
+
+
+def test_the_end_of_a_table_is_no_empty_cell():
+    """A random number that rounding made 1 gave a direction that was no number."""
+    bk.models()
+    import mitsuba as mi
+
+    mi.set_variant("llvm_ad_rgb")
+    cell, place = _draw_cell(Rows(np.array([0.25, 1, 1])), mi.UInt32(0), 3, mi.Float(1))
+    assert cell[0] == 1
+    assert place[0] == pytest.approx(1)
 
 
 @cache

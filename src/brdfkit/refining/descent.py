@@ -109,4 +109,5 @@ def _stage(views, x, spp, seed, weights, smoothness, steps, found, report):
         )
     except KeyboardInterrupt:
         raise Stopped(last) from None
+    found.converged = result.status != 1  # of L-BFGS-B: it ended before its steps did
     return result.x

@@ -111,7 +111,10 @@ def choose(parameters, asked):
     for name in bounds:
         if name in keys(parameters) and _short(name) not in known:
             kind = type(parameters[name]).__name__
-            raise BrdfkitError(f"{name}: what it holds ({kind}) is not searched; numbers are.")
+            raise BrdfkitError(
+                f"{name}: what it holds ({kind}) is not searched; numbers, colours, vectors and "
+                "textures that Mitsuba differentiates are."
+            )
         if _short(name) not in known:
             raise no_such("parameter", name, known, "the scene")
     if not bounds:
