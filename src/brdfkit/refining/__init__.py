@@ -6,7 +6,7 @@ derivatives, `equations.py` makes of them E² to second order, and `leverage.py`
 On it `gauss_newton.py` steps, from the best of the `far_starts.py`. Of thousands of numbers
 (`tensors.py`) `backwards.py` has the derivatives; `descent.py` goes along them, with some
 `smoothness.py`. `refine.py` runs these one after the other; `refinement.py` is what it returns,
-`conclusions.py` makes it.
+`conclusions.py` makes it, and `hidden.py` says what no picture shows.
 """
 
 from brdfkit.refining.refine import refine as refine

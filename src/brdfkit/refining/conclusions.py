@@ -7,8 +7,9 @@ import numpy as np
 from brdfkit.fitting import Fit
 from brdfkit.fitting.certainty import Certainty, conclude
 from brdfkit.refining.gauss_newton import free_of_bounds
+from brdfkit.refining.hidden import notes_on_weights
 from brdfkit.refining.refinement import Refinement
-from brdfkit.refining.unknowns import hiding, numbers_in
+from brdfkit.refining.unknowns import numbers_in
 from brdfkit.version import versions
 
 UNLIKE = 0.05  # of white, what may be left without a word
@@ -46,7 +47,7 @@ def conclude_search(views, found, seconds, interrupted=False, notes=()):
             *notes,
             *certainty.undetermined,
             *certainty.trades,
-            *_notes_on_weights(views, certainty),
+            *notes_on_weights(views, certainty),
             *_notes_on_pictures(views),
             *_notes_on_noise(views, found.here),
             *_notes_on_rest(views, found),
@@ -121,17 +122,6 @@ def _notes_on_pictures(views):
     return (
         f"{100 * np.mean(clipped):.2g} % of the pixels are clipped, at the largest number of their "
         "picture; they do not count",
-    )
-
-
-def _notes_on_weights(views, certainty):
-    """What weights that ended at 0 hide of the numbers that are not determined."""
-    known = certainty.names
-    hidden = [u for u in views.unknowns if not u.shape and not any(n in known for n in u.names)]
-    zero = dict.fromkeys(name for u in hidden for name in hiding(views.parameters, u))
-    return tuple(
-        f"{name} = 0 hides what it multiplies; begin above 0, or with more starts, to see it"
-        for name in zero
     )
 
 

@@ -7,8 +7,8 @@ from brdfkit.fitting.stopped import Stopped
 from brdfkit.refining.backwards import error_and_slopes
 from brdfkit.refining.equations import Residuals
 from brdfkit.refining.gauss_newton import Search
+from brdfkit.refining.hidden import nothing_seen
 from brdfkit.refining.smoothness import roughness
-from brdfkit.refining.views import nothing_seen
 
 SAMPLES = 4, 16, 64  # per pixel and half, of one stage after another
 STRENGTHS = 0.3, 0.03, 0.003, 0.0003, 0.00003  # of smoothness, of which held-out pixels choose

@@ -18,11 +18,12 @@ from brdfkit.refining.conclusions import conclude_search
 from brdfkit.refining.descent import descend, usual_total
 from brdfkit.refining.far_starts import BEST, start, usual_count
 from brdfkit.refining.gauss_newton import search
+from brdfkit.refining.hidden import nothing_seen
 from brdfkit.refining.refinement import Refinement
 from brdfkit.refining.subject import integrator_of, load_subject
 from brdfkit.refining.targets import read_targets
 from brdfkit.refining.unknowns import MOST, choose
-from brdfkit.refining.views import Views, nothing_seen, quiet_samplers
+from brdfkit.refining.views import Views, quiet_samplers
 
 STEPS = 30  # that a search may take; nearly all of them end by themselves before
 

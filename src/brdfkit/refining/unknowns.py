@@ -230,16 +230,6 @@ def numbers_in(parameters, owner, model):
     return found
 
 
-def hiding(parameters, unknown):
-    """The names of the weights of an unknown's model that are 0, which may hide what they multiply;
-    none of a weight itself, and of no model's number."""
-    if not unknown.model or unknown.linear:
-        return []
-    known = numbers_in(parameters, unknown.owner, unknown.model) or {}
-    weights = [name for name in unknown.model.weights() if name in known]
-    return [f"{unknown.owner}.{name}" for name in weights if not np.any(known[name])]
-
-
 def put_values(scene, values):
     """Put `values`, by the names of `Unknown`s, into a scene of Mitsuba's."""
     import mitsuba as mi

@@ -9,7 +9,6 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.jit.first_error import first_error
 from brdfkit.refining.leverage import number_blocks
 from brdfkit.refining.tensors import tensor_of
-from brdfkit.refining.unknowns import hiding
 
 DERIVATIVE_COST = 2.3  # of a picture of derivatives, in pictures
 STEP = 0.05  # of differences, in coordinates, or of what has no bounds relative to it
@@ -254,21 +253,6 @@ def quiet_samplers():
         yield
     finally:
         mi.set_log_level(level)
-
-
-def nothing_seen(views):
-    """The `BrdfkitError` for numbers on which no picture depends."""
-    names = ", ".join(unknown.name for unknown in views.unknowns)
-    zero = {name for unknown in views.unknowns for name in hiding(views.parameters, unknown)}
-    if zero:
-        return BrdfkitError(
-            f"no picture changes with {names}: {', '.join(sorted(zero))} = 0 hides it; begin above "
-            "0, or search it, too."
-        )
-    return BrdfkitError(
-        f"no picture changes with {names}: either nothing of it is seen, or the integrator does "
-        "not differentiate it."
-    )
 
 
 def _share(picture, found, rows):
