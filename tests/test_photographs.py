@@ -15,13 +15,14 @@ from brdfkit.jit.threads import two_threads
 from brdfkit.photographs import fitting_maps
 from brdfkit.photographs.camera_from_corners import camera_from_corners
 from brdfkit.photographs.capture import corners_of
-from brdfkit.photographs.in_mitsuba import bsdf_dict
+from brdfkit.photographs.in_mitsuba import bsdf_dict, scene_xml
 from brdfkit.photographs.maps import Maps, numbers_of
-from brdfkit.photographs.numbers import Numbers
 from brdfkit.photographs.observations import Observations
 from brdfkit.photographs.prediction import radiances
 from brdfkit.photographs.search import equations
+from brdfkit.photographs.shapes import ANGLE
 from brdfkit.photographs.shrinking import shrunk
+from brdfkit.photographs.svbrdf import to_numbers
 from brdfkit.rendering.scene_file import load_scene_file
 
 TEXELS, LIGHTS = 32, 16
@@ -124,11 +125,11 @@ def test_relighting_is_what_mitsuba_shows(mi, found):
     assert np.sqrt((off**2).mean()) < 0.02
 
 
+@pytest.mark.parametrize("anisotropic", [False, True])
 @pytest.mark.parametrize("model", ["ggx", "ward", "ashikhmin_shirley"])
-def test_derivatives_are_those_of_differences(made, model):
-    model = bk.models()[model]
-    names = tuple(model().shapes(False))
-    numbers, rng = Numbers(model, names, {}), np.random.default_rng(0)
+def test_derivatives_are_those_of_differences(made, model, anisotropic):
+    numbers, rng = to_numbers(model, anisotropic, {}), np.random.default_rng(0)
+    assert len(numbers.form.columns) == len(numbers.names) + anisotropic
     seen = Observations.of(made[1], (TEXELS, TEXELS)).at(np.arange(100, 108))
     low, high = (np.clip(limit, -0.3, 1) for limit in numbers.limits())
     x = low + (0.3 + 0.4 * rng.random((8, numbers.count))) * (high - low)
@@ -155,6 +156,35 @@ def test_widths_of_two_directions_come_back_as_one(made):
     found = bk.svbrdf(capture, resolution=TEXELS, anisotropic=True, smoothness=0.1)
     for name in ("alpha_u", "alpha_v"):
         assert np.median(np.abs(inner(found.maps[name] / truth.maps["alpha_u"] - 1))) < 0.05
+
+
+def test_the_direction_of_a_brushed_metal_comes_back(mi, tmp_path):
+    """As one that is turned on a lathe: all directions, with a seam."""
+    truth = made_capture.Truth(TEXELS)
+    row, column = np.mgrid[:TEXELS, :TEXELS] / TEXELS
+    truth.maps |= {
+        "alpha_u": 0.4 + 0.1 * row,
+        "alpha_v": 0.15 + 0.05 * column,
+        ANGLE: np.arctan2(0.2 - row, column - 0.6) % np.pi - np.pi / 2,
+    }
+    _, capture = made_capture.photographs(TEXELS, LIGHTS, truth=truth)
+    found = bk.svbrdf(capture, anisotropic=True, resolution=TEXELS)
+    for name in ("alpha_u", "alpha_v"):
+        assert np.median(np.abs(inner(found.maps[name] / truth.maps[name] - 1))) < 0.03
+    off = inner(found.maps[ANGLE] - truth.maps[ANGLE] + np.pi / 2) % np.pi - np.pi / 2
+    assert np.median(np.abs(off)) < np.radians(1)
+    assert (np.abs(off) < 2 * inner(found.uncertainty[ANGLE])).mean() > 0.85
+    found.write(tmp_path)
+    scene = load_scene_file(tmp_path / "sample.xml")
+    shown = np.array(mi.render(scene, spp=16))[..., :3]
+    counted = found.capture.counted[0]
+    assert np.abs(shown[counted] / found.rendered[0][counted] - 1).mean() < 0.005
+
+
+def test_models_with_options_and_sums_can_be_shown(mi, made):
+    found = bk.svbrdf(made[1], "ggx+ward", resolution=8, smoothness=0.1)
+    assert mi.load_dict(found.scene_dict()).bsdf() is not None
+    assert 'name="models" value="ggx+ward"' in scene_xml(found, {n: n for n in found.maps})
 
 
 def test_ctrl_c_keeps_the_coarser_maps(made, monkeypatch):

@@ -132,6 +132,25 @@ def bsdf(meaning):
     return Setting(None, None, meaning, read, differentiable=True)
 
 
+def texture(default, meaning):
+    """A texture of numbers; one number makes a constant one."""
+
+    def read(value):
+        import mitsuba as mi
+
+        if isinstance(value, mi.Texture):
+            return value
+        if (
+            isinstance(value, bool)
+            or not isinstance(value, int | float)
+            or not math.isfinite(value)
+        ):
+            raise ValueError("a texture or a number")
+        return mi.load_dict({"type": "uniform", "value": float(value)}, parallel=False)
+
+    return Setting(default, None, meaning, read, differentiable=True)
+
+
 def phase(meaning):
     """A phase function, by which light goes evenly anywhere where the scene gives none."""
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from brdfkit.model import labels
+from brdfkit.photographs.shapes import ANGLE
 
 
 def sample_dict(svbrdf):
@@ -20,12 +21,18 @@ def sample_dict(svbrdf):
 def bsdf_dict(svbrdf):
     """The dictionary of its BSDF."""
     maps = svbrdf.maps
-    textures = {name: _texture(values) for name, values in maps.items() if name != "normal"}
-    return {
-        "type": "normalmap",
-        "normalmap": _texture((maps["normal"] + 1) / 2),
-        "bsdf": {**_type(svbrdf.model), **svbrdf.fixed, **textures},
-    }
+    textures = {name: _texture(maps[name]) for name in _parameters(maps)}
+    material = {**_type(svbrdf.model), **svbrdf.fixed, **textures}
+    if ANGLE in maps:
+        angle = _texture(maps[ANGLE]) | {"filter_type": "nearest"}  # it has a seam
+        material = {"type": "tangent_rotation", "angle": angle, "bsdf": material}
+    normals = _texture((maps["normal"] + 1) / 2)
+    return {"type": "normalmap", "normalmap": normals, "bsdf": material}
+
+
+def _parameters(maps):
+    """The names of the maps that are parameters of the model."""
+    return [name for name in maps if name not in ("normal", ANGLE)]
 
 
 def _type(label):
@@ -57,8 +64,13 @@ def scene_xml(svbrdf, files):
     capture = svbrdf.capture
     camera, size = capture.cameras[0], capture.picture_size
     textures = "\n".join(
-        f"        {_file_texture(name, files[name])}" for name in svbrdf.maps if name != "normal"
+        f"        {_file_texture(name, files[name])}" for name in _parameters(svbrdf.maps)
     )
+    turning, inner, end = "", "", ""
+    if ANGLE in svbrdf.maps:
+        angle = _file_texture("angle", files[ANGLE], "nearest")
+        turning, end = f'<bsdf type="tangent_rotation">\n        {angle}\n        ', "</bsdf>"
+        inner = 'name="bsdf" '
     kind = _type(svbrdf.model)
     values = {**{name: v for name, v in kind.items() if name != "type"}, **svbrdf.fixed}
     numbers = "\n".join(
@@ -88,20 +100,21 @@ def scene_xml(svbrdf, files):
     <transform name="to_world"><scale x="{width / 2!r}" y="{height / 2!r}" z="1"/></transform>
     <bsdf type="normalmap">
       {_file_texture("normalmap", files["normal"])}
-      <bsdf type="{kind["type"]}">
+      {turning}<bsdf {inner}type="{kind["type"]}">
 {textures}
 {numbers}
-      </bsdf>
+      </bsdf>{end}
     </bsdf>
   </shape>
 </scene>
 """
 
 
-def _file_texture(name, file):
+def _file_texture(name, file, between="bilinear"):
     return (
         f'<texture type="bitmap" name="{name}"><string name="filename" value="{file}"/>'
         '<boolean name="raw" value="true"/><string name="wrap_mode" value="clamp"/>'
+        f'<string name="filter_type" value="{between}"/>'
         # Mitsuba's rectangles have a picture's first row at their lower edge
         '<transform name="to_uv"><scale y="-1"/><translate y="1"/></transform></texture>'
     )

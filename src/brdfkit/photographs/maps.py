@@ -6,6 +6,7 @@ import numpy as np
 
 from brdfkit.model import labels
 from brdfkit.photographs.numbers import CHANNELS, Numbers
+from brdfkit.photographs.shapes import ANGLE
 
 
 @dataclass(frozen=True)
@@ -28,12 +29,20 @@ def numbers_of(svbrdf):
     """The `Numbers` of `Maps`, or of an `Svbrdf`, and its rows (n, count)."""
     model, maps = labels.model(svbrdf.model), svbrdf.maps
     weights = model.weights()
-    names = tuple(name for name in maps if name not in (*weights, "normal"))
-    numbers = Numbers(model, names, svbrdf.fixed)
+    names = tuple(name for name in maps if name not in (*weights, "normal", ANGLE))
+    numbers = Numbers(model, names, svbrdf.fixed, pair_of(model, names) if ANGLE in maps else None)
     columns = [maps[name].reshape(-1, CHANNELS) for name in weights]
-    shapes = numbers.coordinates({name: maps[name].reshape(-1, 1) for name in names})
+    shapes = [n.reshape(-1, 1) for n in numbers.form.numbers(maps)]
     normals = maps["normal"].reshape(-1, 3)[:, :2]
     return numbers, np.concatenate([*columns, *shapes, normals], axis=1)
+
+
+def pair_of(model, names):
+    """The shape parameters (u, v) among the `names` that are widths along two directions."""
+    return next(
+        ((p.follows, name) for name, p in model.parameters.items() if p.follows and name in names),
+        None,
+    )
 
 
 def maps_of(numbers, x, shape):
@@ -42,7 +51,8 @@ def maps_of(numbers, x, shape):
     found = {}
     for lobe, name in enumerate(numbers.lobes):
         found[name] = x[:, CHANNELS * lobe : CHANNELS * (lobe + 1)].reshape(height, width, CHANNELS)
-    found |= {name: values.reshape(shape) for name, values in numbers.values(x).items()}
+    shapes = numbers.form.values(x[:, numbers.shapes].T)
+    found |= {name: values.reshape(shape) for name, values in shapes.items()}
     slant = x[:, numbers.normal]
     z = np.sqrt(np.maximum(1 - (slant**2).sum(axis=1), 1e-4))
     normals = np.concatenate([slant, z[:, None]], axis=1)
@@ -56,9 +66,6 @@ def errors_of(numbers, errors, x, shape):
     for lobe, name in enumerate(numbers.lobes):
         own = errors[:, CHANNELS * lobe : CHANNELS * (lobe + 1)]
         found[name] = np.sqrt((own**2).mean(axis=1))
-    for (name, values), error in zip(
-        numbers.values(x).items(), errors[:, numbers.shapes].T, strict=True
-    ):
-        found[name] = values * error if numbers.model.parameters[name].log else error
+    found |= numbers.form.errors(x[:, numbers.shapes].T, errors[:, numbers.shapes].T)
     found["normal"] = np.sqrt((errors[:, numbers.normal] ** 2).sum(axis=1))
     return {name: error.reshape(shape) for name, error in found.items()}

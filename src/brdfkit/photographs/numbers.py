@@ -13,6 +13,7 @@ import numpy as np
 
 from brdfkit.jit.threads import in_turn
 from brdfkit.model import double_precision
+from brdfkit.photographs.shapes import ANGLE, Shapes
 
 STEEPEST = 0.65  # the largest x or y of a normal
 CHANNELS = 3
@@ -22,13 +23,14 @@ CHANNELS = 3
 class Numbers:
     """The numbers of a `model` whose shape parameters `names` are searched, and others `fixed`.
 
-    Of each texel a row: weights (lobe by lobe, red, green and blue), logarithms of the shapes that
-    are declared so, and others as they are, and the normal's x and y.
+    Of each texel a row: weights (lobe by lobe, red, green and blue), the numbers of the `form`, the
+    shape parameters, and the normal's x and y. `pair`: those that turn about the normal, if any.
     """
 
     model: type
     names: tuple[str, ...]
     fixed: dict[str, float]
+    pair: tuple[str, str] | None = None
 
     @property
     def lobes(self):
@@ -36,16 +38,20 @@ class Numbers:
         return self.model.weights()
 
     @property
+    def form(self):
+        """The `Shapes`."""
+        return Shapes(self.model, self.names, self.pair)
+
+    @property
     def shapes(self):
         """Where the shapes are in a row."""
         first = CHANNELS * len(self.lobes)
-        return slice(first, first + len(self.names))
+        return slice(first, first + len(self.form.columns))
 
     @property
     def normal(self):
         """Where x and y of the normal are in a row."""
-        first = CHANNELS * len(self.lobes) + len(self.names)
-        return slice(first, first + 2)
+        return slice(self.shapes.stop, self.shapes.stop + 2)
 
     @property
     def count(self):
@@ -55,26 +61,9 @@ class Numbers:
     def limits(self):
         """(low, high), each (count,)."""
         low, high = np.zeros(self.count), np.full(self.count, np.inf)
-        bounds = np.array([self.model.parameters[n].bounds for n in self.names]).reshape(-1, 2)
-        log = np.array([self.model.parameters[n].log for n in self.names], bool)
-        with np.errstate(divide="ignore"):
-            bounds = np.where(log[:, None], np.log(bounds), bounds)
-        low[self.shapes], high[self.shapes] = bounds.T
+        low[self.shapes], high[self.shapes] = self.form.limits()
         low[self.normal], high[self.normal] = -STEEPEST, STEEPEST
         return low, high
-
-    def values(self, x):
-        """The shapes by name, each (n,), of rows `x` (n, count)."""
-        found = {}
-        for name, column in zip(self.names, x[:, self.shapes].T, strict=True):
-            found[name] = np.exp(column) if self.model.parameters[name].log else column
-        return found
-
-    def coordinates(self, values):
-        """A row's shapes, of values by name."""
-        return [
-            np.log(values[n]) if self.model.parameters[n].log else values[n] for n in self.names
-        ]
 
     @in_turn
     def radiances(self, x, seen, slopes=True):
@@ -115,15 +104,16 @@ class Numbers:
         # the tangent is the x axis, laid onto the surface, as Mitsuba's normal maps have it
         scale = dr.rsqrt(dr.maximum(1 - x * x, 1e-4))
         tangent = double_precision.Vector((1 - x * x) * scale, -x * y * scale, -x * z * scale)
+        values = self.form.values(shapes, dr)
+        if self.pair:
+            sine, cosine = dr.sincos(values.pop(ANGLE))
+            tangent = _turned(tangent, _cross(normal, tangent), cosine, sine)
         bitangent = _cross(normal, tangent)
         wi = _local(to_camera, tangent, bitangent, normal)
         wo = _local(to_light, tangent, bitangent, normal)
         lit = (wi.z > 1e-3) & (wo.z > 1e-3)
         up = double_precision.Vector(0 * x, 0 * x, 0 * x + 1)
         wi, wo_ = _where(lit, wi, up), _where(lit, wo, up)
-        values = {}
-        for name, array in zip(self.names, shapes, strict=True):
-            values[name] = dr.exp(array) if self.model.parameters[name].log else array
         values |= {name: double_precision.scalar(v) for name, v in self.fixed.items()}
         lobes = [lobe for _, lobe in self.model.bind(values).terms()]
         return [dr.select(lit, (lobe.eval(wi, wo_) + 0 * x) * wo_.z, 0) for lobe in lobes]
@@ -133,6 +123,10 @@ def _cross(a, b):
     return double_precision.Vector(
         a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x
     )
+
+
+def _turned(u, v, cosine, sine):
+    return double_precision.Vector(*(cosine * getattr(u, k) + sine * getattr(v, k) for k in "xyz"))
 
 
 def _dot(a, b):

@@ -50,4 +50,4 @@ def _scaled(hessian):
 
 def _names(numbers):
     weights = [f"{name}[{c}]" for name in numbers.lobes for c in range(CHANNELS)]
-    return [*weights, *numbers.names, "normal[x]", "normal[y]"]
+    return [*weights, *numbers.form.columns, "normal[x]", "normal[y]"]

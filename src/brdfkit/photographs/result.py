@@ -26,7 +26,9 @@ class Svbrdf(Shown):
         Label of the model.
     maps : dict of str to ndarray
         The map of each parameter, (height, width), or (height, width, 3) in linear sRGB of weights;
-        and ``"normal"``, unit vectors (height, width, 3). The first row is the sample's upper edge.
+        ``"normal"``, unit vectors (height, width, 3); and, where a material may be anisotropic,
+        ``"anisotropy_angle"``, the direction of ``alpha_u`` [radians]. The first row is the
+        sample's upper edge.
     fixed : dict of str to float
         Shape parameters that are alike everywhere.
     uncertainty : dict of str to ndarray

@@ -32,4 +32,6 @@ def rows(numbers, seen, width):
     x[:, CHANNELS : numbers.shapes.start] = 0.1
     at = numbers.shapes
     x[:, at] = low[at] + width**0.5 * (high[at] - low[at])
+    if numbers.pair:  # alike in all directions
+        x[:, at.stop - 2 : at.stop] = 0
     return x

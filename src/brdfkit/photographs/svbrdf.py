@@ -16,7 +16,7 @@ from brdfkit.names import listed
 from brdfkit.photographs.capture import Capture
 from brdfkit.photographs.capture_file import load_capture
 from brdfkit.photographs.fitting_maps import fit_maps, standard_errors
-from brdfkit.photographs.maps import Maps, errors_of
+from brdfkit.photographs.maps import Maps, errors_of, pair_of
 from brdfkit.photographs.misfit import describe_misfit
 from brdfkit.photographs.numbers import CHANNELS, Numbers
 from brdfkit.photographs.observations import Observations, gathered
@@ -67,8 +67,8 @@ def svbrdf(
         Texels along the longer side of the maps, at least 4. By default a texel is as large as a
         pixel in the middle, and there are at most 512.
     anisotropic : bool, default False
-        Whether ``alpha_v`` and its like have maps of their own; the sample's own x and y are the
-        directions.
+        Whether ``alpha_v`` and its like have maps of their own, and ``anisotropy_angle`` one: the
+        direction of ``alpha_u`` [radians, counterclockwise from the sample's x].
     fixed : dict of str to float, optional
         Shape parameters that are alike everywhere, as ``{"f0": 0.04}``. By default ``f0`` is, at
         the model's default: from few lights it cannot be told from the specular reflectance.
@@ -179,7 +179,8 @@ def to_numbers(label, anisotropic, fixed):
     held = {"f0": model().values["f0"]} if "f0" in shapes else {}
     held |= {name: float(value) for name, value in fixed.items()}
     model(**held)  # raises for values beyond the bounds
-    return Numbers(model, tuple(name for name in shapes if name not in held), held)
+    names = tuple(name for name in shapes if name not in held)
+    return Numbers(model, names, held, pair_of(model, names))
 
 
 def _shape(capture, resolution):
