@@ -26,7 +26,9 @@ from brdfkit.errors import Interrupted
     metavar="N",
     help="Texels along the longer side. Default: as many as pixels, at most 512.",
 )
-@click.option("--anisotropic", is_flag=True, help="Widths along x and y, each with a map.")
+@click.option(
+    "--anisotropic", is_flag=True, help="Widths along two directions, and which these are."
+)
 @click.option(
     "--fixed",
     multiple=True,
@@ -51,7 +53,8 @@ def svbrdf(folder, model, resolution, anisotropic, fixed, smoothness, linearise,
     """Fit maps to the photographs in FOLDER.
 
     FOLDER holds linear photographs of a flat sample, OpenEXR, each under one point light or flash,
-    and the file capture.toml, which says where the camera and the lights were.
+    and the file capture.toml, which says where the camera and the lights were; the camera may move,
+    as a phone does with its flash. See docs/how_to/photographs.md.
     """
     from brdfkit.photographs import svbrdf as fit_maps
 
@@ -91,5 +94,5 @@ def _to_value(text):
         return name, float(value)
     except ValueError:
         raise click.BadParameter(
-            f"{text!r} should read NAME=VALUE.", param_hint="--fixed"
+            f"{text!r} should read NAME=VALUE; repeat --fixed for more.", param_hint="--fixed"
         ) from None

@@ -18,8 +18,8 @@ def read_photograph(path, linearise):
     """
     if Path(path).suffix.lower() not in LINEAR and not linearise:
         raise BrdfkitError(
-            f"{path}: such files have 8 bits, behind a curve for screens; give an OpenEXR file, or "
-            "say linearise=True (--linearise), for sRGB's curve."
+            f"{path}: such files hold 8 bits, or 16, behind a curve for screens; give an OpenEXR "
+            "file, or say linearise=True (--linearise), for sRGB's curve."
         )
     if not Path(path).is_file():
         raise BrdfkitError(f"{path}: there is no such picture; check the path.")

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from brdfkit.errors import BrdfkitError
 from brdfkit.photographs.pinhole import Pinhole
 
+SMALLEST = 8  # pixels along the longer side of the sample
 CLIPPED = 1e-4  # the share of numbers that equal the largest: not by chance
 
 
@@ -110,9 +111,9 @@ class Capture:
         return np.stack([x, y, np.zeros_like(x)], axis=-1).reshape(-1, 3)
 
     def usual_shape(self, most=512):
-        """(height, width) of maps whose texels are about as large as a pixel in the middle."""
-        pixel = np.mean([self.pixel(camera) for camera in self.cameras], axis=0)
-        width, height = np.array(self.size) / pixel
+        """(height, width) of maps of square texels, about as large as a pixel in the middle."""
+        sides = np.array([self.pixel(camera) for camera in self.cameras])
+        width, height = np.array(self.size) / np.sqrt(sides.prod(axis=1)).mean()
         shrink = min(1.0, most / max(width, height))
         return max(4, round(height * shrink)), max(4, round(width * shrink))
 
@@ -161,6 +162,11 @@ def _require_seen(capture, name, camera):
     width, height = capture.picture_size
     places = camera.project(corners_of(capture.size), (width, height))
     inside = (places >= -1) & (places <= np.array([width, height]) + 1)
+    if inside.all() and np.ptp(places, axis=0).max() < SMALLEST:
+        raise BrdfkitError(
+            f"{name}: the sample is smaller than {SMALLEST} pixels; check that its size and the "
+            "place of the camera are both in metres."
+        )
     if not inside.all():
         raise BrdfkitError(
             f"{name}: its camera does not see all four corners of the sample; check its place, its "

@@ -30,7 +30,8 @@ class Svbrdf(Shown):
         ``"anisotropy_angle"``, the direction of ``alpha_u`` [radians]. The first row is the
         sample's upper edge.
     fixed : dict of str to float
-        Shape parameters that are alike everywhere.
+        Shape parameters that are alike everywhere. Where ``f0`` is, the reflectance at normal
+        incidence is ``specular_reflectance`` times it.
     uncertainty : dict of str to ndarray
         The standard error (height, width) of each map, by the photographs' noise and what the model
         leaves of them; of the normal in radians.
@@ -167,7 +168,7 @@ class Svbrdf(Shown):
             f"{self.name}: {self.model}, {width} × {height} texels from {len(dB)} photographs",
             (
                 Table(rows, ("map", ">5 %", ">median", ">95 %", ">± median")),
-                *(Paragraph(note) for note in self.notes),
+                *(Paragraph(note) for note in (*_fixed(self.fixed), *self.notes)),
                 Paragraph(
                     "Mitsuba's pictures of the maps are the photographs but for "
                     f"{100 * self.residual:.2g} % (RMS); PSNR {min(dB):.1f} to {max(dB):.1f} dB.",
@@ -177,6 +178,15 @@ class Svbrdf(Shown):
                 ),
             ),
         )
+
+
+def _fixed(values):
+    """What to know of the parameters that are alike everywhere."""
+    if not values:
+        return ()
+    said = "Everywhere " + ", ".join(f"{name} = {value:g}" for name, value in values.items())
+    at_normal = "; at normal incidence the specular reflectance counts times f0"
+    return (f"{said}{at_normal if 'f0' in values else ''}.",)
 
 
 def _above(what, point):

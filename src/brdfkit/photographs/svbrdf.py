@@ -64,8 +64,8 @@ def svbrdf(
     model : str, default "ggx"
         Label of the model, with a shape parameter ``alpha_u`` or others.
     resolution : int, optional
-        Texels along the longer side of the maps, at least 4. By default a texel is as large as a
-        pixel in the middle, and there are at most 512.
+        Texels along the longer side of the maps, at least 4. By default a texel is a square as
+        large as a pixel in the middle, and there are at most 512.
     anisotropic : bool, default False
         Whether ``alpha_v`` and its like have maps of their own, and ``anisotropy_angle`` one: the
         direction of ``alpha_u`` [radians, counterclockwise from the sample's x].
