@@ -17,6 +17,8 @@ TAUS = 1.0, 0.3, 0.1, 0.03  # typical differences of neighbours, of which one is
 FEW_TO_HOLD_OUT = 8  # lights, below which none is held out
 USUAL = 0.1  # the τ of so few
 COARSE = 4  # texels along a side of the first maps
+SEARCHES = 5  # for the noise, at most
+SETTLED = 0.7  # of the noise before
 SWEEPS = 2  # of numbers handed on to neighbours
 PATCH = 48  # texels along a side of the part on which τ is chosen
 
@@ -88,10 +90,25 @@ def coarse_to_fine(numbers, seen, report):
         side //= 2
         coarse, pooled = pooled.shape, seen.pooled(side)
         x = refined(x, coarse, pooled.shape)
+        x, noise = settled(numbers, x, pooled, noise, report)
         strength = strengths(numbers, x, pooled, noise, USUAL)
         x = finish(numbers, x, pooled, strength, noise, report)
         noise = noise_of(numbers, equations(numbers, x, pooled, slopes=False).error, pooled)
         yield x, noise, pooled.shape
+
+
+def settled(numbers, x, seen, noise, report):
+    """(rows, noise): what coarser maps leave is no noise of finer ones, which it would smooth."""
+    for _ in range(SEARCHES):
+        strength = strengths(numbers, x, seen, noise, USUAL)
+        x = search_together(numbers, x, seen, strength, report=report)
+        before, noise = (
+            noise,
+            noise_of(numbers, equations(numbers, x, seen, slopes=False).error, seen),
+        )
+        if noise > SETTLED * before:
+            break
+    return x, noise
 
 
 def refined(x, coarse, fine):
