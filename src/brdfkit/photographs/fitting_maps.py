@@ -23,6 +23,12 @@ SWEEPS = 2  # of numbers handed on to neighbours
 PATCH = 48  # texels along a side of the part on which τ is chosen
 
 
+def usual_total(lights, smoothness):
+    """How many steps a search for maps takes, about, for its progress."""
+    held_out = smoothness is None and lights >= FEW_TO_HOLD_OUT
+    return 250 + 300 * held_out
+
+
 @dataclass(frozen=True)
 class FittedMaps:
     """Rows `x` (n, count) and the `Equations` there; `tau`, by which neighbours may differ; the

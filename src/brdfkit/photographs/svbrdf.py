@@ -15,7 +15,7 @@ from brdfkit.model import double_precision, labels
 from brdfkit.names import listed
 from brdfkit.photographs.capture import Capture
 from brdfkit.photographs.capture_file import load_capture
-from brdfkit.photographs.fitting_maps import fit_maps, standard_errors
+from brdfkit.photographs.fitting_maps import fit_maps, standard_errors, usual_total
 from brdfkit.photographs.maps import Maps, errors_of, pair_of
 from brdfkit.photographs.misfit import describe_misfit
 from brdfkit.photographs.numbers import CHANNELS, Numbers
@@ -106,7 +106,7 @@ def svbrdf(
     shape = _shape(taken, resolution)
     taken = shrunk(taken, shape)
     seen = Observations.of(taken, shape)
-    report = _counter(progress)
+    report = _counter(progress, usual_total(len(taken.names), smoothness))
 
     def conclude(best, errors, *notes):
         fitted = best.fitted
@@ -200,7 +200,7 @@ def _said(capture):
     return (f"{100 * share:.2g} % of the pixels are clipped; they do not count.",)
 
 
-def _counter(progress):
+def _counter(progress, usual):
     """A function that reports one more step; how many there will be is an estimate."""
     done = 0
 
@@ -208,6 +208,6 @@ def _counter(progress):
         nonlocal done
         done += 1
         if progress:
-            progress(done, max(done + 1, 120))
+            progress(done, max(done + 1, usual))
 
     return report
