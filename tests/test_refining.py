@@ -4,10 +4,23 @@ import pickle
 
 import numpy as np
 import pytest
+from refined_scenes import (
+    RADIANCE,
+    SIZE,
+    TRUTH,
+    TRUTH_BSDF,
+    alone,
+    bsdf_of,
+    corner,
+    noisy,
+    require_back,
+    views,
+)
 
 import brdfkit as bk
 from brdfkit.jit.threads import two_threads
 from brdfkit.refining import gauss_newton
+from brdfkit.refining.derivatives import derivatives
 from brdfkit.refining.equations import Equations, Residuals
 from brdfkit.refining.gauss_newton import Search, step_in_bounds
 from brdfkit.refining.leverage import LEAST, sum_by_block, without_leverage
@@ -16,15 +29,6 @@ from brdfkit.refining.targets import read_targets
 from brdfkit.refining.unknowns import choose
 from brdfkit.refining.views import Views
 from brdfkit.rendering.scenes.ball import ball
-
-SIZE = 20
-TRUTH = {
-    "alpha_u": 0.35,
-    "f0": 0.6,
-    "diffuse_reflectance": (0.4, 0.2, 0.1),
-    "specular_reflectance": (0.3, 0.35, 0.25),
-}
-RADIANCE = 12.0
 
 
 @pytest.fixture(scope="module")
@@ -36,57 +40,6 @@ def mi():
     return mitsuba
 
 
-def bsdf_of(model, values):
-    """The dictionary of a model's BSDF; tuples are colours."""
-    colours = {k: {"type": "rgb", "value": v} for k, v in values.items() if isinstance(v, tuple)}
-    return {"type": model, **values, **colours}
-
-
-TRUTH_BSDF = bsdf_of("ggx", TRUTH)
-
-
-def corner(mi, values, integrator="path", size=SIZE):
-    """A ball before a coloured wall, which throws light back on it."""
-    at = mi.ScalarTransform4f
-    return {
-        "type": "scene",
-        "integrator": {"type": integrator, "max_depth": 4},
-        "sensor": {
-            "type": "perspective",
-            "fov": 26,
-            "to_world": at().look_at([0, -4, 1.8], [0, 0, 0.7], [0, 0, 1]),
-            "film": {
-                "type": "hdrfilm",
-                "width": size,
-                "height": size,
-                "pixel_format": "rgb",
-                "rfilter": {"type": "box"},
-            },
-        },
-        "floor": {
-            "type": "rectangle",
-            "to_world": at().scale(3),
-            "bsdf": {"type": "diffuse", "reflectance": 0.6},
-        },
-        "wall": {
-            "type": "rectangle",
-            "to_world": at().look_at([0, 1.3, 1], [0, 0, 1], [0, 0, 1]).scale(3),
-            "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0.7, 0.3, 0.2]}},
-        },
-        "ball": {
-            "type": "sphere",
-            "center": [0, 0, 0.7],
-            "radius": 0.7,
-            "bsdf": bsdf_of("ggx", values),
-        },
-        "lamp": {
-            "type": "rectangle",
-            "to_world": at().look_at([0.8, -1.2, 2.5], [0, 0, 0], [0, 1, 0]).scale(0.5),
-            "emitter": {"type": "area", "radiance": {"type": "rgb", "value": [RADIANCE] * 3}},
-        },
-    }
-
-
 @pytest.fixture(scope="module")
 def picture(mi):
     """The scene at the truth, with noise of 1 %."""
@@ -94,17 +47,12 @@ def picture(mi):
     return clean * (1 + 0.01 * np.random.default_rng(1).standard_normal(clean.shape))
 
 
-def views(mi, picture, values, parameters=None):
-    scene = load_subject(corner(mi, values), (SIZE, SIZE))
-    names = mi.traverse(scene)
-    chosen = choose(names, parameters)
-    return Views(scene, integrator_of(scene), read_targets(picture), names, chosen)
-
-
 def test_derivatives_are_those_of_finite_differences(mi, picture):
-    found = views(mi, picture, TRUTH, ["ball.bsdf.alpha_u", "ball.bsdf.specular_reflectance"])
+    found = views(
+        mi, picture, corner(mi, TRUTH), ["ball.bsdf.alpha_u", "ball.bsdf.specular_reflectance"]
+    )
     x, spp = found.start, 2048
-    by_number = found.derivatives(x, spp, 3)
+    by_number = derivatives(found, x, spp, 3)
     for number, step in ((0, 0.01), (2, 0.05)):
         there, here = (x + sign * step * np.eye(len(x))[number] for sign in (1, -1))
         change = found.residuals(there, spp, 3) - found.residuals(here, spp, 3)
@@ -116,7 +64,7 @@ def test_derivatives_are_those_of_finite_differences(mi, picture):
 
 def test_differences_of_noisy_pictures_are_unbiased(mi, picture):
     """E² of 4 samples is, in the mean, that of 4096: noise adds nothing."""
-    found = views(mi, picture, TRUTH)
+    found = views(mi, picture, corner(mi, TRUTH))
     exact = Residuals.at(found, found.start, 4096, 900).error
     some = [Residuals.at(found, found.start, 4, seed) for seed in range(40)]
     errors = np.array([one.error for one in some])
@@ -311,7 +259,7 @@ WHITE_OUT = {"diffuse_reflectance": (0.0,) * 3, "specular_reflectance": (1e30,) 
 
 def test_pictures_that_are_not_finite_are_no_steps(mi, picture):
     """A weight that nothing shows went to 1e13, and its light to infinity and NaN."""
-    found = views(mi, picture, TRUTH | {"specular_reflectance": (0.0,) * 3})
+    found = views(mi, picture, corner(mi, TRUTH | {"specular_reflectance": (0.0,) * 3}))
     x = found.start
     here, there = (
         Residuals.at(found, found.start, 4, 0),
@@ -439,35 +387,6 @@ def test_numbers_that_nothing_shows_are_said(mi, picture):
         bk.refine(scene, picture, ["ball.bsdf.alpha_u"], starts=1, samples=16)
 
 
-# A ball in an empty scene, and what else may be searched
-
-
-def alone(mi, bsdf, integrator="path", **more):
-    """A ball under an even sky, seen by a camera."""
-    entries = corner(mi, TRUTH, integrator)
-    del entries["wall"], entries["floor"]
-    entries["ball"]["bsdf"] = bsdf
-    return {**entries, "sky": {"type": "constant", "radiance": 0.5}, **more}
-
-
-def noisy(mi, scene, spp=512):
-    """Its pictures, by all of its cameras, with noise of 1 %."""
-    loaded, rng = mi.load_dict(scene), np.random.default_rng(3)
-    clean = [
-        np.array(mi.render(loaded, sensor=i, spp=spp, seed=40 + i))
-        for i in range(len(loaded.sensors()))
-    ]
-    return [picture * (1 + 0.01 * rng.standard_normal(picture.shape)) for picture in clean]
-
-
-def require_back(result, truth):
-    """That the values are within 3.5 standard errors of the truth, and these below 20 %."""
-    for name, known in truth.items():
-        error = np.asarray(result.standard_errors[name])
-        assert (np.abs(np.asarray(result.values[name]) - known) < 3.5 * error).all(), name
-        assert (error < 0.2 * np.abs(known)).all(), name
-
-
 def test_signed_numbers_come_back(mi):
     """Weights of Koenderink's basis, one of them below 0, from where it is 0."""
     truth = {"ball.bsdf.a_0_0_0": 0.5, "ball.bsdf.a_1_1_1": -0.1}
@@ -525,7 +444,7 @@ def test_a_material_begins_on_the_ball_of_render(mi, tmp_path):
 
 def test_steps_cost_less_than_four_pictures(mi, picture):
     """By samples, of which a derivative's take as long as two or three of a picture's."""
-    found = views(mi, picture, TRUTH)
+    found = views(mi, picture, corner(mi, TRUTH))
     here = Residuals.at(found, found.start, 128, 0)
     assert found.renders == pytest.approx(128)
     Equations.at(found, here, 0)

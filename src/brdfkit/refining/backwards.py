@@ -12,7 +12,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.jit.first_error import first_error
-from brdfkit.refining.views import DERIVATIVE_COST
+from brdfkit.refining.derivatives import DERIVATIVE_COST, differentiated
 
 
 def error_and_slopes(views, x, spp, seed, weights):
@@ -30,12 +30,11 @@ def _backwards(views, x, number, onto, spp, seed):
     """The derivatives (n,) of Σ `onto` · I by the values, I the picture of sensor `number`."""
     import mitsuba as mi
 
-    leaves = views.put_leaves(x)
     sensor = views.scene.sensors()[number]
     height, width = onto.shape[:2]
     given = np.zeros((height, width, _channels(sensor)), np.float32)
     given[..., : onto.shape[2]] = onto
-    with first_error():
+    with first_error(), differentiated(views, x) as leaves:
         views.integrator.render_backward(
             views.scene,
             views.parameters,

@@ -6,10 +6,10 @@ import numpy as np
 
 from brdfkit.fitting import Fit
 from brdfkit.fitting.certainty import Certainty, conclude
+from brdfkit.refining.entries import numbers_in
 from brdfkit.refining.gauss_newton import free_of_bounds
 from brdfkit.refining.hidden import notes_on_weights
 from brdfkit.refining.refinement import Refinement
-from brdfkit.refining.unknowns import numbers_in
 from brdfkit.version import versions
 
 UNLIKE = 0.05  # of white, what may be left without a word

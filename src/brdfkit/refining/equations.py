@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.refining.derivatives import DERIVATIVE_COST, derivatives, tangents
 from brdfkit.refining.leverage import sum_by_block, without_leverage
-from brdfkit.refining.views import DERIVATIVE_COST
 
 SHARE = 2.0  # of the cost of a step's pictures, what its derivatives may cost
 ROUNDING = 1e-6  # of white, of pictures in single precision
@@ -76,9 +76,9 @@ class Equations:
     @classmethod
     def at(cls, views, here, seed):
         """About `Residuals`."""
-        tangents = len(list(views.tangents))
-        spp = max(1, round(here.spp * min(1, SHARE / (DERIVATIVE_COST * tangents))))
-        a, b = (views.derivatives(here.x, spp, seed + 1000 * half) for half in (0, 1))
+        pictures = len(list(tangents(views)))
+        spp = max(1, round(here.spp * min(1, SHARE / (DERIVATIVE_COST * pictures))))
+        a, b = (derivatives(views, here.x, spp, seed + 1000 * half) for half in (0, 1))
         _require_finite(views, a + b)
         weighed = views.weights * a
         hessian = weighed.reshape(len(a), -1) @ b.reshape(len(a), -1).T.astype(float)
@@ -119,9 +119,9 @@ class Equations:
         )
 
 
-def _require_finite(views, derivatives):
-    """Raise `BrdfkitError` for `derivatives` (n, pixels, channels) that are not finite."""
-    bad = ~np.isfinite(derivatives).all(axis=(1, 2))
+def _require_finite(views, found):
+    """Raise `BrdfkitError` for derivatives (n, pixels, channels) that are not finite."""
+    bad = ~np.isfinite(found).all(axis=(1, 2))
     if bad.any():
         raise BrdfkitError(
             f"the pictures' derivatives by {views.names[int(np.argmax(bad))]} are not finite; "

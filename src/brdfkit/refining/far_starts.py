@@ -8,6 +8,7 @@ import numpy as np
 from brdfkit.fitting.box_quadratic import minimise_in_box
 from brdfkit.fitting.starting_points import start_points
 from brdfkit.fitting.stopped import Stopped
+from brdfkit.refining.derivatives import share, tangents
 from brdfkit.refining.equations import Residuals
 from brdfkit.refining.gauss_newton import Search, few_samples, search
 
@@ -56,7 +57,7 @@ def _solve_linear(views, x, spp, seed):
         return Residuals.at(views, x, spp, seed)
     dark = np.where(views.linear, 0, x)
     (a, reached_a), (b, reached_b) = (
-        views.steps_from(dark, linear, spp // 2, seed + 1000 * half) for half in (0, 1)
+        _steps_from(views, dark, linear, spp // 2, seed + 1000 * half) for half in (0, 1)
     )
     weighed = views.weights * a
     hessian = weighed.reshape(len(a), -1) @ b.reshape(len(b), -1).T.astype(float)
@@ -68,6 +69,24 @@ def _solve_linear(views, x, spp, seed):
     x = dark.copy()
     x[linear] = found
     return Residuals.at(views, x, spp, seed)
+
+
+def _steps_from(views, x, numbers, spp, seed):
+    """(what each of the `numbers` adds to the pixels, from 0 to 1; the residuals without them).
+
+    Those of a colour change their own channels, and are taken in one picture.
+    """
+    without = views.residuals(x, spp, seed)
+    found = np.zeros((len(numbers), *without.shape), np.float32)
+    rows = {number: row for row, number in enumerate(numbers)}
+    for group in tangents(views):
+        if not rows.keys() >= set(group):
+            continue
+        moved = np.array(x, float)
+        moved[group] = 1
+        change = views.residuals(moved, spp, seed) - without
+        share(change, found, [rows[number] for number in group])
+    return found, without
 
 
 def usual_count(views):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.refining.unknowns import numbers_in
+from brdfkit.refining.entries import numbers_in
 
 
 def nothing_seen(views):

@@ -133,8 +133,8 @@ class Refinement(Shown):
         --------
         >>> mitsuba.render(found.put_into("scene.xml"), spp=256)    # doctest: +SKIP
         """
+        from brdfkit.refining.entries import put_values
         from brdfkit.refining.subject import load_subject
-        from brdfkit.refining.unknowns import put_values
 
         height, width = self.pictures[0].shape[:2]
         scene = load_subject(scene, (width, height))

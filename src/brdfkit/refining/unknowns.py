@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 
 from brdfkit.errors import BrdfkitError, no_such
-from brdfkit.refining.tensors import is_tensor, numbers_of, places, shape_of, tensor_of, wraps
+from brdfkit.refining.entries import keys, model_of, numbers, searchable, short
+from brdfkit.refining.mitsuba_numbers import differentiated_wrongly, usual_bounds
+from brdfkit.refining.tensors import is_tensor, numbers_of, places, shape_of, wraps
 
 MOST = 32  # numbers; for each of them a picture of derivatives is rendered
 
@@ -29,6 +31,7 @@ class Unknown:
     shape : of a tensor's numbers; empty of others.
     places : which number each of its texels shows; None of others.
     around : whether its columns go around.
+    wrongly : whether Mitsuba's derivatives of pictures by it are wrong.
     """
 
     key: str
@@ -45,6 +48,7 @@ class Unknown:
     shape: tuple[int, ...] = ()
     places: Any = None
     around: bool = False
+    wrongly: bool = False
 
     @property
     def names(self):
@@ -101,50 +105,43 @@ def choose(parameters, asked):
     bounds = dict(asked) if isinstance(asked, Mapping) else dict.fromkeys(asked or ())
     known = searchable(parameters)
     if asked is None:
-        numbers = {name: key for name, key in known.items() if not is_tensor(parameters[key])}
-        bounds = {name: None for name, key in numbers.items() if _model_of(parameters, key)[0]}
+        single = {name: key for name, key in known.items() if not is_tensor(parameters[key])}
+        bounds = {name: None for name, key in single.items() if model_of(parameters, key)[0]}
         if not bounds:
             raise BrdfkitError(
                 "the scene has no number of a brdfkit model to search; name its parameters, "
                 "as mitsuba.traverse does."
             )
     for name in bounds:
-        if name in keys(parameters) and _short(name) not in known:
+        if name in keys(parameters) and short(name) not in known:
             kind = type(parameters[name]).__name__
             raise BrdfkitError(
                 f"{name}: what it holds ({kind}) is not searched; numbers, colours, vectors and "
                 "textures that Mitsuba differentiates are."
             )
-        if _short(name) not in known:
+        if short(name) not in known:
             raise no_such("parameter", name, known, "the scene")
     if not bounds:
         raise BrdfkitError("parameters is empty; name some, as mitsuba.traverse does.")
-    once = {known[_short(name)]: limits for name, limits in bounds.items()}
+    once = {known[short(name)]: limits for name, limits in bounds.items()}
     return [_unknown(parameters, key, limits) for key, limits in once.items()]
-
-
-def searchable(parameters):
-    """The keys of all numbers, colours, vectors and tensors of a scene, by name."""
-    return {
-        _short(key): key
-        for key in keys(parameters)
-        if _numbers(parameters[key]) is not None or is_tensor(parameters[key])
-    }
 
 
 def _unknown(parameters, key, limits):
     """The `Unknown` of an entry, within the `limits`, None for the usual ones."""
-    value, (model, owner, parameter) = parameters[key], _model_of(parameters, key)
+    value, (model, owner, parameter) = parameters[key], model_of(parameters, key)
     tensor, colour = is_tensor(value), type(value).__name__.startswith("Color")
     at = places(parameters, key) if tensor else None
-    start = numbers_of(value, at) if tensor else _numbers(value)
+    start = numbers_of(value, at) if tensor else numbers(value)
     low = -np.inf if type(value).__name__.startswith(("Point", "Vector")) else 0.0
     high, log, linear = np.inf, False, colour
     if model:
         declared = model.parameters[parameter]
         (low, high), log, linear = declared.bounds, declared.log, declared.linear
+    else:
+        low, high = usual_bounds(parameters, key, (low, high))
     if limits is not None:
-        low, high = _checked(key, limits, low if model else -np.inf, high)
+        low, high = _checked(key, limits, *((low, high) if model else (-np.inf, np.inf)))
     elif (start < low).any():
         raise BrdfkitError(f"{key}: it begins below 0; give its bounds, as {{name: (low, high)}}.")
     start = np.clip(start, low, high)
@@ -152,7 +149,7 @@ def _unknown(parameters, key, limits):
     shape = shape_of(at, around) if tensor else ()
     return Unknown(
         key,
-        _short(key),
+        short(key),
         owner,
         parameter,
         model,
@@ -165,6 +162,7 @@ def _unknown(parameters, key, limits):
         shape,
         at,
         around,
+        differentiated_wrongly(parameters, key),
     )
 
 
@@ -179,77 +177,3 @@ def _checked(key, limits, least, most):
             f"{least:g}..{most:g}."
         )
     return low, high
-
-
-def _model_of(parameters, key):
-    """(model's class, name of the BSDF, name of the parameter) of an entry; None of others."""
-    *path, parameter = _short(key).removesuffix(".data").split(".")
-    texture = parameters.properties[key][2]
-    parent = parameters.hierarchy.get(texture, (None, 0))[0]
-    model = getattr(parent, "model", None)
-    if model is None or parameter not in model.parameters:
-        return None, "", parameter
-    return model, ".".join(path), parameter
-
-
-def _numbers(value):
-    """The numbers (n,) of an entry's value; None where it holds none, or thousands."""
-    import drjit as dr
-
-    if isinstance(value, bool) or not (dr.is_array_v(value) and dr.is_float_v(value)):
-        return None
-    numbers = np.array(value, float).ravel()
-    vector = type(value).__name__.startswith(("Float", "Color", "Vector", "Point"))
-    return numbers if vector and len(numbers) <= 4 else None
-
-
-def keys(parameters):
-    """The names that `mitsuba.traverse` found."""
-    return list(parameters.keys())
-
-
-def _short(key):
-    """A name without ".value" at its end, of which there may be two."""
-    while key.endswith(".value"):
-        key = key.removesuffix(".value")
-    return key
-
-
-def numbers_in(parameters, owner, model):
-    """The values of all parameters of a `model`, the BSDF `owner`, by name; None where one of them
-    is a texture."""
-    known, found = searchable(parameters), {}
-    for name, declared in model.parameters.items():
-        key = known.get(f"{owner}.{name}")
-        if key is None:
-            if declared.follows:
-                continue
-            return None
-        numbers = _numbers(parameters[key])
-        found[name] = tuple(map(float, numbers)) if len(numbers) > 1 else float(numbers[0])
-    return found
-
-
-def put_values(scene, values):
-    """Put `values`, by the names of `Unknown`s, into a scene of Mitsuba's."""
-    import mitsuba as mi
-
-    parameters = mi.traverse(scene)
-    known = searchable(parameters)
-    for name, value in values.items():
-        if name not in known:
-            raise no_such("parameter", name, known)
-        parameters[known[name]] = _entry(parameters, known[name], value)
-    parameters.update()
-
-
-def _entry(parameters, key, value):
-    """A value as the entry `key` of a scene."""
-    kind = type(parameters[key])
-    if not isinstance(value, np.ndarray):
-        return kind(*value) if isinstance(value, tuple) else kind(value)
-    at = places(parameters, key)
-    shape = shape_of(at, wraps(parameters, key))
-    if shape != value.shape:
-        raise BrdfkitError(f"{key}: it has the shape {shape}, and its values {value.shape}.")
-    return tensor_of(value, at)
