@@ -16,6 +16,7 @@ from refined_scenes import (
     require_back,
     views,
 )
+from scipy.ndimage import gaussian_filter
 
 import brdfkit as bk
 from brdfkit.jit.threads import two_threads
@@ -24,6 +25,7 @@ from brdfkit.refining.derivatives import derivatives
 from brdfkit.refining.equations import Equations, Residuals
 from brdfkit.refining.gauss_newton import Search, step_in_bounds
 from brdfkit.refining.leverage import LEAST, sum_by_block, without_leverage
+from brdfkit.refining.rest import Rest
 from brdfkit.refining.subject import integrator_of, load_subject
 from brdfkit.refining.targets import read_targets
 from brdfkit.refining.unknowns import choose
@@ -480,3 +482,85 @@ def test_names_are_told_and_values_below_0_need_bounds(mi, picture):
     low["sensor"]["principal_point_offset_x"] = -0.1
     with pytest.raises(bk.BrdfkitError, match="give its bounds"):
         bk.refine(low, picture, ["sensor.principal_point_offset_x"])
+
+
+def test_what_is_left_is_noise_or_not(mi):
+    """Neighbours of noise have nothing in common, with whatever filter, mask and few bright
+    pixels; those of a highlight that is too wide have."""
+    rng = np.random.default_rng(6)
+    for radius in (0.5, 2.0):
+        scene = corner(mi, TRUTH, size=40)
+        scene["sensor"]["film"]["rfilter"] = {"type": "box" if radius < 1 else "gaussian"}
+        found = views(mi, rng.random((40, 40, 3)), scene, ["ball.bsdf.alpha_u"])
+        noise = rng.standard_normal((40, 40, 3))
+        if radius > 1:
+            noise = gaussian_filter(noise, (0.5, 0.5, 0))
+        noise[3, 5] = 50  # a firefly, which would decide alone
+        rendered = [0.3 * rng.standard_normal(noise.shape) for _ in range(2)]
+        rows, columns = np.mgrid[:40, :40]
+        wide = np.exp(-((rows - 20) ** 2 + (columns - 20) ** 2) / 50)[..., None]
+
+        def judged(left, found=found, rendered=rendered):
+            halves = [(left + part).reshape(-1, 3) for part in rendered]
+            return Rest.of(found, Residuals(found.start, *halves, 4, np.ones(1)))
+
+        assert judged(noise).is_noise
+        assert abs(judged(noise).sure) < 3
+        other = judged(noise + 3 * wide)
+        assert not other.is_noise
+        assert other.area > 3
+        assert judged(0 * noise).is_noise
+
+
+def test_standard_errors_grow_where_the_scene_is_wrong(mi):
+    """The roughness alone was 16 standard errors off where colours were wrong, without a word."""
+
+    def scene(values):
+        return corner(mi, values, size=32)
+
+    (picture,) = noisy(mi, scene(TRUTH))
+    wrong = TRUTH | {"specular_reflectance": (0.2, 0.2, 0.2), "alpha_u": 0.5}
+    name = "ball.bsdf.alpha_u"
+    result = bk.refine(scene(wrong), picture, [name], starts=1, samples=128)
+    (note,) = [note for note in result.notes if "is no noise" in note]
+    assert "χ² per degree of freedom" in note
+    assert "× as large" in note
+    off = abs(result.values[name] - TRUTH["alpha_u"])
+    assert off > 0.05
+    assert off < 4 * result.standard_errors[name]
+    right = bk.refine(scene(TRUTH | {"alpha_u": 0.5}), picture, [name], starts=1, samples=128)
+    assert "is no noise" not in " ".join(right.notes)
+    assert right.standard_errors[name] < 0.2 * result.standard_errors[name]
+
+
+def test_a_search_that_is_not_at_its_end_says_so_first(mi, picture):
+    start = corner(mi, TRUTH | {"alpha_u": 0.7, "specular_reflectance": (0.1,) * 3})
+    names = [f"ball.bsdf.{name}" for name in ("alpha_u", "specular_reflectance")]
+    how = {"starts": 1, "samples": 128}
+    early, late = (bk.refine(start, picture, names, steps=n, **how) for n in (1, 30))
+    assert not early.converged
+    assert late.converged
+    assert "Not converged" in str(early).splitlines()[1]
+    assert "Not converged" not in str(late)
+    for name in names:
+        away = np.abs(np.subtract(early.values[name], TRUTH[name.removeprefix("ball.bsdf.")]))
+        assert (away < 4 * np.array(early.standard_errors[name])).all()
+
+
+def test_a_look_shows_what_was_given_beside_what_was_found(mi, picture):
+    mask = np.arange(SIZE)[:, None] < np.full(SIZE, 12)
+    unknown = np.where(mask[..., None], picture, np.nan)
+    name = "ball.bsdf.diffuse_reflectance"
+    how = {"mask": mask, "starts": 1, "samples": 16}
+    result = bk.refine(corner(mi, TRUTH), 20 * unknown, {"lamp.emitter.radiance": (0, 900)}, **how)
+    look = result.look()
+    given, found = look.pictures.values()
+    assert np.quantile(given[mask], 0.99) == pytest.approx(1)
+    assert not given[~mask].any()
+    assert not found[~mask].any()
+    assert look.psnr()["found"] > 20
+    assert result._repr_html_().count("<img") == 1
+    with pytest.raises(bk.BrdfkitError, match="sensor = 1 should be 0 to 0"):
+        result.look(1)
+    grey = bk.refine(corner(mi, TRUTH), picture, [name], starts=1, samples=4, steps=1)
+    assert pickle.loads(pickle.dumps(grey)).look().pictures.keys() == {"given", "found"}

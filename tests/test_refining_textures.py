@@ -9,7 +9,7 @@ import brdfkit as bk
 from brdfkit.refining import descent
 from brdfkit.refining.backwards import error_and_slopes
 from brdfkit.refining.descent import _hold_out
-from brdfkit.refining.smoothness import roughness
+from brdfkit.refining.roughness import roughness
 from brdfkit.refining.subject import integrator_of, load_subject
 from brdfkit.refining.targets import read_targets
 from brdfkit.refining.unknowns import choose
@@ -106,7 +106,7 @@ def test_a_texture_comes_back(mi, picture):
         [TEXTURE],
         steps=12,
         samples=32,
-        smoothness=0.003,
+        smoothing=0.003,
         progress=lambda *at: done.append(at),
     )
     texture = found.values[TEXTURE]
@@ -123,7 +123,7 @@ def test_a_texture_comes_back(mi, picture):
 
 
 def test_of_ten_pixels_alike_one_is_held_out(mi, picture):
-    """All pixels of a highlight were on one side: then the strongest smoothness was chosen."""
+    """All pixels of a highlight were on one side: then the strongest smoothing was chosen."""
     mask = np.arange(SIZE)[:, None] < np.full(SIZE, 12)
     loaded = load_subject(scene(mi, TRUTH), (SIZE, SIZE))
     names = mi.traverse(loaded)
@@ -139,7 +139,7 @@ def test_of_ten_pixels_alike_one_is_held_out(mi, picture):
 
 
 def test_masked_texels_follow_their_neighbours(mi, picture, monkeypatch):
-    """Whatever the masked pixels hold, smoothness by held-out pixels included."""
+    """Whatever the masked pixels hold, smoothing by held-out pixels included."""
     monkeypatch.setattr(descent, "FEW", 1)
     mask = np.arange(SIZE)[:, None] < np.full(SIZE, 12)
     grey = np.full(TRUTH.shape, 0.5)
@@ -154,7 +154,7 @@ def test_masked_texels_follow_their_neighbours(mi, picture, monkeypatch):
 
 
 def test_an_environment_comes_back_from_a_mirror_ball(mi):
-    """Its small, bright lights, too, which the first choice of smoothness blurred away."""
+    """Its small, bright lights, too, which the first choice of smoothing blurred away."""
     light = np.full((8, 16, 3), 0.3)
     light[2, 4], light[3, 10] = (8, 7, 5), (3, 4, 6)
 
@@ -173,10 +173,10 @@ def test_an_environment_comes_back_from_a_mirror_ball(mi):
     assert np.median(np.abs(sky - light) / light) < 0.15
 
 
-@pytest.mark.parametrize("smoothness", [-1, np.nan, np.inf])
-def test_smoothness_is_a_number(mi, picture, smoothness):
-    with pytest.raises(bk.BrdfkitError, match=r"smoothness = .* should be a number"):
-        bk.refine(scene(mi, TRUTH), picture, [TEXTURE], smoothness=smoothness)
+@pytest.mark.parametrize("smoothing", [-1, np.nan, np.inf])
+def test_smoothing_is_a_number(mi, picture, smoothing):
+    with pytest.raises(bk.BrdfkitError, match=r"smoothing = .* should be a number"):
+        bk.refine(scene(mi, TRUTH), picture, [TEXTURE], smoothing=smoothing)
 
 
 def test_textures_of_integers_are_refused(mi, picture):
@@ -185,6 +185,6 @@ def test_textures_of_integers_are_refused(mi, picture):
 
 
 def test_values_fit_the_scene(mi, picture):
-    found = bk.refine(scene(mi, TRUTH), picture, [TEXTURE], steps=1, samples=4, smoothness=0)
+    found = bk.refine(scene(mi, TRUTH), picture, [TEXTURE], steps=1, samples=4, smoothing=0)
     with pytest.raises(bk.BrdfkitError, match="shape"):
         found.put_into(mi.load_dict(scene(mi, TRUTH[:2]), optimize=False))

@@ -7,13 +7,11 @@ import numpy as np
 from brdfkit.fitting import Fit
 from brdfkit.fitting.certainty import Certainty, conclude
 from brdfkit.refining.entries import numbers_in
-from brdfkit.refining.gauss_newton import free_of_bounds
+from brdfkit.refining.gauss_newton import free_of_bounds, step_in_bounds
 from brdfkit.refining.hidden import notes_on_weights
 from brdfkit.refining.refinement import Refinement
+from brdfkit.refining.rest import Rest
 from brdfkit.version import versions
-
-UNLIKE = 0.05  # of white, what may be left without a word
-ALIKE = 0.5  # the correlation of neighbours beyond which what is left is no noise
 
 
 def conclude_search(views, found, seconds, interrupted=False, notes=()):
@@ -28,7 +26,8 @@ def conclude_search(views, found, seconds, interrupted=False, notes=()):
         unknown.name: _value(unknown, part)
         for unknown, part in zip(views.unknowns, parts, strict=True)
     }
-    certainty = _certify(views, found)
+    rest = Rest.of(views, found.here)
+    certainty = _certify(views, found, rest)
     bounds = _on_bounds(views, x)
     left = float(np.sqrt(max(found.here.error, 0)))
     message = _message(found, interrupted)
@@ -41,6 +40,7 @@ def conclude_search(views, found, seconds, interrupted=False, notes=()):
         cost=views.renders,
         seconds=seconds,
         message=message,
+        converged=found.converged and not interrupted,
         history=tuple((int(spp), float(error)) for spp, error in found.history),
         at_bounds=bounds,
         notes=(
@@ -50,10 +50,11 @@ def conclude_search(views, found, seconds, interrupted=False, notes=()):
             *notes_on_weights(views, certainty),
             *_notes_on_pictures(views),
             *_notes_on_noise(views, found.here),
-            *_notes_on_rest(views, found),
+            *_notes_on_rest(views, found, rest),
         ),
         certainty=certainty,
         fits={},
+        reached=tuple(np.where(t.seen[..., None], t.pixels, np.nan) for t in views.targets),
         pictures=tuple(views.as_pictures((found.here.a + found.here.b) / 2 + views.reached)),
     )
     return replace(result, fits=_fits(views, result))
@@ -66,8 +67,9 @@ def _value(unknown, part):
     return tuple(map(float, part)) if len(part) > 1 else float(part[0])
 
 
-def _certify(views, found):
-    """The `Certainty` of the values, by blocks of pixels as samples."""
+def _certify(views, found, rest):
+    """The `Certainty` of the values, by blocks of pixels as samples; with the `Rest` that is no
+    noise, and with the way that was still to go."""
     slopes = views.slopes(found.here.x)
     nothing = Certainty((), (), (), (), (), 0, len(slopes))
     tensors = any(unknown.shape for unknown in views.unknowns)
@@ -82,7 +84,7 @@ def _certify(views, found):
     scale = 1 / np.sqrt(np.where(np.diagonal(hessian) > 0, np.diagonal(hessian), 1))
     blocks = scores.shape[1]
     at = np.concatenate(views.values(found.here.x))
-    return conclude(
+    certainty = conclude(
         views.names,
         free,
         at,
@@ -92,6 +94,12 @@ def _certify(views, found):
         int(np.count_nonzero(views.weights)),
         max(1, blocks - len(slopes)),
     )
+    matrix = certainty.matrix() * (1 if rest.is_noise else rest.area)
+    if not found.converged:
+        away = dict(zip(views.names, slopes * step_in_bounds(views, found, 0), strict=True))
+        ahead = np.array([away[name] for name in certainty.names])
+        matrix = matrix + np.outer(ahead, ahead)
+    return replace(certainty, covariance=tuple(map(tuple, matrix.tolist())))
 
 
 def _on_bounds(views, x):
@@ -137,29 +145,20 @@ def _blocks_lack(found):
     return found.about.scores.shape[1] <= len(found.about.scores)
 
 
-def _notes_on_rest(views, found):
+def _notes_on_rest(views, found, rest):
     """What one should know of what is left."""
     if found.about is not None and _blocks_lack(found):
         return ("the pictures have too few pixels for standard errors",)
-    if found.here.error > UNLIKE**2 and _share_of_neighbours(views, found.here) > ALIKE:
-        return (
-            "what is left is no noise, for neighbouring pixels differ alike: either the material "
-            "is none that the model can be, or the camera, a light or a shape is off",
-        )
-    return ()
-
-
-def _share_of_neighbours(views, here):
-    """The correlation of what is left with what is left one pixel to the right, from -1 to 1."""
-    root = np.sqrt(views.weights)
-    together = alone = 0.0
-    parts = (views.as_pictures(part) for part in (root, root * here.a, root * here.b))
-    for weights, a, b in zip(*parts, strict=True):
-        both = (weights[:, :-1] > 0) & (weights[:, 1:] > 0)  # a pair counts if both of it do
-        left, right = (a[:, :-1], b[:, :-1]), (a[:, 1:], b[:, 1:])
-        together += (both * (left[0] * right[1] + right[0] * left[1])).sum() / 2
-        alone += (both * (left[0] * left[1] + right[0] * right[1])).sum() / 2
-    return together / alone if alone > 0 else 0.0
+    if rest.is_noise:
+        return ()
+    larger = "" if found.about is None else f"; standard errors are {rest.area**0.5:.2g} × as large"
+    return (
+        f"what is left is no noise (χ² per degree of freedom at least {rest.chi2:.2g}, "
+        f"{rest.sure:.0f} standard errors above chance), for neighbouring pixels differ alike: "
+        f"{'' if found.converged else 'the search is not at its end, or '}"
+        "the material is none that the model can be, or the camera, a light or a shape is off"
+        f"{larger}",
+    )
 
 
 def _fits(views, result):

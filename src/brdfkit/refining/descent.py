@@ -8,21 +8,21 @@ from brdfkit.refining.backwards import error_and_slopes
 from brdfkit.refining.equations import Residuals
 from brdfkit.refining.gauss_newton import Search
 from brdfkit.refining.hidden import nothing_seen
-from brdfkit.refining.smoothness import roughness
+from brdfkit.refining.roughness import roughness
 
 SAMPLES = 4, 16, 64  # per pixel and half, of one stage after another
-STRENGTHS = 0.3, 0.03, 0.003, 0.0003, 0.00003  # of smoothness, of which held-out pixels choose
+STRENGTHS = 0.3, 0.03, 0.003, 0.0003, 0.00003  # of smoothing, of which held-out pixels choose
 FEW = 8  # steps for each of these
 HELD_OUT = 10  # of so many pixels, one
 
 
-def usual_total(smoothness, steps):
+def usual_total(smoothing, steps):
     """How many steps a descent may take, for its progress."""
-    return (FEW * len(STRENGTHS) if smoothness is None else 0) + steps * len(SAMPLES)
+    return (FEW * len(STRENGTHS) if smoothing is None else 0) + steps * len(SAMPLES)
 
 
-def descend(views, smoothness, steps, samples, seed, report=lambda: None):
-    """(the `Search` from the scene's own values, the strength of smoothness).
+def descend(views, smoothing, steps, samples, seed, report=lambda: None):
+    """(the `Search` from the scene's own values, the strength of smoothing).
 
     `steps`: of L-BFGS-B, at most, in each stage. `report()` is called after each step. On Ctrl-C
     `Stopped` has the `Search` so far.
@@ -30,11 +30,11 @@ def descend(views, smoothness, steps, samples, seed, report=lambda: None):
     x, found = views.start, Search(None)
     stages = [spp for spp in SAMPLES if 2 * spp <= samples] or [max(1, samples // 2)]
     try:
-        if smoothness is None:
-            x, smoothness = _choose_smoothness(views, x, stages[0], seed, found, report)
+        if smoothing is None:
+            x, smoothing = _choose_smoothing(views, x, stages[0], seed, found, report)
         for stage, spp in enumerate(stages):
             x = _stage(
-                views, x, spp, seed + 10 * stage, views.weights, smoothness, steps, found, report
+                views, x, spp, seed + 10 * stage, views.weights, smoothing, steps, found, report
             )
             found.here = Residuals.at(views, x, 2 * spp, seed + 10 * stage + 5)
             found.history.append((2 * spp, found.here.error))
@@ -42,10 +42,10 @@ def descend(views, smoothness, steps, samples, seed, report=lambda: None):
         best = stop.best if isinstance(stop, Stopped) else x
         found.here = Residuals.at(views, best, 2 * stages[0], seed + 5)
         raise Stopped(found) from None
-    return found, smoothness
+    return found, smoothing
 
 
-def _choose_smoothness(views, x, spp, seed, found, report):
+def _choose_smoothing(views, x, spp, seed, found, report):
     """(coordinates, the strength) that leave the least of the pixels that were held out.
 
     From strong to weak, each from the end of the one before; all are tried, for what is blurred may
@@ -76,7 +76,7 @@ def _hold_out(views, seed):
     return held
 
 
-def _stage(views, x, spp, seed, weights, smoothness, steps, found, report):
+def _stage(views, x, spp, seed, weights, smoothing, steps, found, report):
     """The coordinates after at most so many `steps` from `x`, on the samples of a `seed`."""
     from scipy.optimize import minimize
 
@@ -85,7 +85,7 @@ def _stage(views, x, spp, seed, weights, smoothness, steps, found, report):
     def loss(x):
         error, slopes = error_and_slopes(views, x, spp, seed, weights)
         rough, uphill = roughness(views.unknowns, views.parts(x))
-        return error + smoothness * rough, slopes + smoothness * uphill
+        return error + smoothing * rough, slopes + smoothing * uphill
 
     def after(x):
         nonlocal last

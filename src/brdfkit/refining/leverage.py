@@ -19,7 +19,7 @@ def number_blocks(scene, seen):
     found, count = [], 0
     for sensor in scene.sensors():
         width, height = sensor.film().crop_size()
-        side = max(1, round(2 * sensor.film().rfilter().radius()))
+        side = block_side(sensor)
         rows, columns = np.arange(height) // side, np.arange(width) // side
         across = columns[-1] + 1
         found.append((count + rows[:, None] * across + columns).ravel())
@@ -27,6 +27,11 @@ def number_blocks(scene, seen):
     found = np.where(seen, np.concatenate(found), -1)
     blocks = np.unique(found[seen])
     return np.maximum(np.searchsorted(blocks, found), 0), len(blocks)
+
+
+def block_side(sensor):
+    """How many pixels wide the filter of a camera is, at least 1."""
+    return max(1, round(2 * sensor.film().rfilter().radius()))
 
 
 def sum_by_block(values, blocks):

@@ -1,5 +1,7 @@
 """`refine`: numbers of a scene, found from pictures through the path tracer."""
 
+from __future__ import annotations  # `help` then says Pictures, and not what they are made of
+
 import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
@@ -38,7 +40,7 @@ def refine(
     *,
     starts: int | None = None,
     steps: int | None = None,
-    smoothness: float | None = None,
+    smoothing: float | None = None,
     samples: int = 1024,
     mask: Pictures | None = None,
     linearise: bool = False,
@@ -68,7 +70,8 @@ def refine(
         What is searched: numbers and colours, by the names of `mitsuba.traverse`, with or without
         ``.value`` at the end; and ``.data``, the texels of
         textures, environment maps and volumes, as many as there are. Bounds are by default those
-        of the model's parameter, and else 0 to infinity.
+        of the model's parameter, 0 to 1 for shares and roughnesses of Mitsuba's BSDFs, and else 0
+        to infinity.
     starts : int, optional
         Points from which the search begins: the scene's own values, and others, spread over the
         bounds of what pictures are not linear in. By default 8 for each of these numbers, at
@@ -77,12 +80,13 @@ def refine(
         Steps that the search may take after its start, at least 1; by default 30, of which numbers
         that trade off, as those of two lobes, need most. With textures, in each of three stages of
         growing samples: short ones, by L-BFGS-B.
-    smoothness : float, optional
+    smoothing : float, optional
         Of textures and volumes: the weight, at least 0, of the mean squared difference of
         neighbouring texels in the loss, in units of their bounds, or of the mean at the start where
-        there is no upper bound. By default the best of five for pixels that are held out.
+        there is no upper bound; more is smoother. By default the best of five for pixels that are held out.
     samples : int, default 1024
-        Samples per pixel, at most, at least 4.
+        Samples per pixel, at most, at least 4. The last steps take most of the time, which grows
+        with these and the pixels: 128 or 256 are a good beginning.
     mask : ndarray or path, or several, optional
         The pixels that count, of each picture: booleans, or weights ≥ 0 (height, width), or a
         picture's file, white where they do; None for a picture all of which does. Pixels at 0 may
@@ -105,7 +109,7 @@ def refine(
     BrdfkitError
         For a scene that does not load, an integrator without derivatives, pictures that do not fit
         the cameras, have 8 bits or are not finite, masks that do not fit the pictures,
-        parameters that are none, a smoothness below 0, textures of integers, and numbers on which
+        parameters that are none, a smoothing below 0, textures of integers, and numbers on which
         no picture depends.
 
     Examples
@@ -123,12 +127,12 @@ def refine(
     for name, number in (("steps", steps), ("starts", starts)):
         if number is not None:
             to_whole_number(f"refine: {name}", number, 1)
-    if smoothness is not None and not 0 <= smoothness < np.inf:
-        raise BrdfkitError(f"refine: smoothness = {smoothness!r} should be a number ≥ 0.")
+    if smoothing is not None and not 0 <= smoothing < np.inf:
+        raise BrdfkitError(f"refine: smoothing = {smoothing!r} should be a number ≥ 0.")
     views = _views(scene, read_targets(pictures, linearise, mask), parameters)
     steps = steps or STEPS
     if len(views.start) > MOST or any(unknown.shape for unknown in views.unknowns):
-        return _by_descent(views, smoothness, steps, samples, seed + 100, progress, began)
+        return _by_descent(views, smoothing, steps, samples, seed + 100, progress, began)
     count = usual_count(views) if starts is None else starts
     report = _counter(progress, (count + BEST if count > 1 else 0) + steps)
     try:
@@ -146,19 +150,19 @@ def refine(
     return conclude_search(views, found, time.perf_counter() - began)
 
 
-def _by_descent(views, smoothness, steps, samples, seed, progress, began):
+def _by_descent(views, smoothing, steps, samples, seed, progress, began):
     """The `Refinement` of many numbers, by derivatives backwards."""
-    report = _counter(progress, usual_total(smoothness, steps))
+    report = _counter(progress, usual_total(smoothing, steps))
     without = "descent, as for many numbers, gives no standard errors"
     try:
-        found, chosen = descend(views, smoothness, steps, samples, seed, report)
+        found, chosen = descend(views, smoothing, steps, samples, seed, report)
     except Stopped as stop:
         best = conclude_search(
             views, stop.best, time.perf_counter() - began, interrupted=True, notes=(without,)
         )
         raise Interrupted(best, f"refine: the best so far leaves {best.loss:.3g}") from None
-    how = "by held-out pixels" if smoothness is None else "as given"
-    notes = (f"smoothness {chosen:g}, {how}", without)
+    how = "by held-out pixels" if smoothing is None else "as given"
+    notes = (f"smoothing {chosen:g}, {how}", without)
     return conclude_search(views, found, time.perf_counter() - began, notes=notes)
 
 

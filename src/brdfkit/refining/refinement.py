@@ -6,11 +6,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.documents import Cell, Document, Paragraph, Shown, Table
+from brdfkit.documents import Cell, Document, Paragraph, Picture, Shown, Table
 from brdfkit.documents.parts import BAD, SOFT
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit
 from brdfkit.fitting.certainty import Certainty, intervals
+from brdfkit.refining.targets import WHITE
+from brdfkit.rendering.montage import TILE
+from brdfkit.rendering.result import WIDEST, Rendering
 
 Value = float | tuple[float, ...] | NDArray[np.float64]
 
@@ -41,6 +44,9 @@ class Refinement(Shown):
         Wall-clock time.
     message : str
         Why the search stopped.
+    converged : bool
+        Whether no step would gain more than the noise. Otherwise the values are on their way: it
+        says so above the table, and the step that came next is in the standard errors.
     history : tuple of (int, float)
         Samples per pixel and E² of each step; E² may be below 0, by noise.
     at_bounds : tuple of str
@@ -54,13 +60,17 @@ class Refinement(Shown):
         of its BSDF in the scene.
     pictures : tuple of ndarray
         The last rendering of each sensor, (height, width, channels).
+    reached : tuple of ndarray
+        What `refine` was given for each of them, linear; NaN where it is masked.
 
     Notes
     -----
     Standard errors hold the noise of the pictures and of rendering, and what the scene cannot
     explain, as far as it differs from one block of pixels to the next, which is as wide as the
-    camera's filter. They suppose that the scene is right but for what is searched: a camera or a
-    light that is off, is not in them.
+    camera's filter. Where blocks beside each other differ alike, what is left is no noise: a note
+    says by how many standard errors, with the least χ² per degree of freedom, and as many blocks
+    as are alike count as one, which makes the standard errors larger by the root of their number.
+    A camera or a light that is off moves the values by more than that, if it looks like them.
     """
 
     values: dict[str, Value]
@@ -71,12 +81,14 @@ class Refinement(Shown):
     cost: float = field(compare=False)
     seconds: float = field(compare=False)
     message: str
+    converged: bool
     history: tuple[tuple[int, float], ...]
     at_bounds: tuple[str, ...]
     notes: tuple[str, ...]
     certainty: Certainty
     fits: dict[str, Fit]
     pictures: tuple[NDArray[np.float64], ...] = field(compare=False)
+    reached: tuple[NDArray[np.float64], ...] = field(compare=False)
 
     @property
     def fit(self) -> Fit:
@@ -108,6 +120,44 @@ class Refinement(Shown):
     def correlation(self) -> NDArray[np.float64]:
         """The correlation (n, n) of ``certainty.names``."""
         return self.certainty.correlation()
+
+    def look(self, sensor: int = 0) -> Rendering:
+        """The picture that was given beside the one that was found, and how they differ.
+
+        Parameters
+        ----------
+        sensor : int, default 0
+            The number of the picture.
+
+        Returns
+        -------
+        Rendering
+            Both in shares of white, the brightest hundredth of what was given, black where it is
+            masked; a notebook shows them over their difference in colour (CIEDE2000), ``write``
+            writes that as PNG or EXR, and ``errors`` compares them. A notebook shows a `Refinement`
+            with all of them.
+
+        Raises
+        ------
+        BrdfkitError
+            For a number that no picture has.
+
+        Examples
+        --------
+        >>> found.look().write("look.png")    # doctest: +SKIP
+        """
+        if not 0 <= sensor < len(self.pictures):
+            raise BrdfkitError(
+                f"look: sensor = {sensor!r} should be 0 to {len(self.pictures) - 1}."
+            )
+        reached, found = self.reached[sensor], self.pictures[sensor]
+        seen = np.asarray(np.isfinite(reached).all(axis=2))
+        white = np.quantile(reached[seen], WHITE) or reached[seen].max()
+        shown = {
+            name: np.where(seen[..., None], picture / white, 0) * np.ones(3, np.float32)
+            for name, picture in (("given", reached), ("found", found))
+        }
+        return Rendering(shown, self.samples, self.seconds, mask=seen)
 
     def put_into(self, scene: Any) -> Any:
         """Give a scene the values, to render it or to go on with it.
@@ -165,6 +215,12 @@ class Refinement(Shown):
             for name, value in self.values.items()
         }
 
+    def _picture(self, sensor):
+        """That of `look`, drawn when it is shown."""
+        width = min(WIDEST, 2 * max(self.pictures[sensor].shape[1], TILE))
+        says = f"given and found pictures {sensor}, and their difference"
+        return Picture(lambda: self.look(sensor).drawn(), says, width)
+
     def document(self) -> Document:
         """The values with their standard errors, notes, and how they were found."""
         errors = self.standard_errors
@@ -177,10 +233,13 @@ class Refinement(Shown):
             for name, value in self.values.items()
         )
         several = "s" * (self.steps != 1)
+        early = f"Not converged, and the values are not final: {self.message}."
         return Document(
             f"Refined: what is left is {100 * self.loss:.2g} % of white (RMS)",
             (
+                *(Paragraph(early, kind=BAD) for _ in range(not self.converged)),
                 Table(rows),
+                *(self._picture(sensor) for sensor in range(len(self.pictures))),
                 *(Paragraph(note) for note in self.notes),
                 Paragraph(
                     f"{self.message}; {self.steps} step{several}, the last at {self.samples} "

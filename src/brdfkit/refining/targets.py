@@ -19,12 +19,13 @@ CLIPPED = 1e-3  # the share of numbers that equal the largest: not by chance
 class Target:
     """A picture to reach: `pixels` (height, width, channels); their `weights` (the same shape), 0
     where they are masked or clipped; the sum of the mask over the numbers that are not, their
-    `count`; and the share that is `clipped`."""
+    `count`; the share that is `clipped`; `seen`, which pixels (height, width) are not masked."""
 
     pixels: np.ndarray
     weights: np.ndarray
     count: float
     clipped: float
+    seen: np.ndarray
 
     @property
     def size(self):
@@ -82,7 +83,7 @@ def _read(picture, name, linearise, mask):
     clipped = _clipped(pixels, counts > 0)
     counts = np.where(clipped, 0, counts)
     share = clipped.sum() / (pixels.shape[2] * np.count_nonzero(mask))
-    return Target(pixels, counts * _weights(pixels, mask > 0), counts.sum(), float(share))
+    return Target(pixels, counts * _weights(pixels, mask > 0), counts.sum(), float(share), mask > 0)
 
 
 def _count_bad(pixels):

@@ -1,4 +1,4 @@
-"""The pictures of a scene at given parameters, and their derivatives, beside those to reach."""
+"""The pictures of a scene at given parameters, beside those to reach."""
 
 from contextlib import contextmanager
 

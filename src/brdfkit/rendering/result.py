@@ -221,14 +221,15 @@ class Rendering(Shown):
         shown = min(len(self.pictures), COLUMNS) * width
         short = (Paragraph(self.shortfall, BAD),) if self.shortfall else ()
         picture = Picture(
-            self._draw,
+            self.drawn,
             f"{'previews' if self.shadows else 'path-traced pictures'} of {names}",
             min(shown, WIDEST),
         )
         return Document(self.head, (picture, Table(tuple(self.captions.items())), *short))
 
-    def _draw(self):
-        """The montage as a JPEG, small enough for a notebook."""
+    def drawn(self) -> bytes:
+        """The pictures side by side, with captions, over their differences: a JPEG, small enough
+        for a notebook."""
         stream, page = io.BytesIO(), montage(self)
         page.thumbnail((WIDEST, 4 * WIDEST))
         page.save(stream, "JPEG", quality=88)
