@@ -19,7 +19,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.refining.derivatives import DERIVATIVE_COST, derivatives, tangents
 from brdfkit.refining.leverage import sum_by_block, without_leverage
 
-SHARE = 1.0  # of the cost of a step's pictures, what its derivatives may cost
+SHARE = 2.0  # of the cost of a step's pictures, what its derivatives may cost
 ROUNDING = 1e-6  # of white, of pictures in single precision
 QUIETEST = 0.1  # of the power of derivatives, what may be left of it without their noise
 SMALLEST = 1e-5  # eigenvalue of H, of unit diagonal, below which there is noise

@@ -83,7 +83,8 @@ def refine(
     smoothing : float, optional
         Of textures and volumes: the weight, at least 0, of the mean squared difference of
         neighbouring texels in the loss, in units of their bounds, or of the mean at the start where
-        there is no upper bound; more is smoother. By default the best of five for pixels that are held out.
+        there is no upper bound; more is smoother. By default the best of five for pixels that are
+        held out.
     samples : int, default 1024
         Samples per pixel, at most, at least 4. The last steps take most of the time, which grows
         with these and the pixels: 128 or 256 are a good beginning.
