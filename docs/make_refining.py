@@ -35,6 +35,7 @@ SCENES = {
     "ball": (ball, 2, ((-6.0, -5.0, 2.2), (0, 0, 0.96), 19.8)),
 }
 SHOWN = "blasted_gold", "ggx", "room"
+SIDES, COUNTS = (32, 64, 128, 256), (128, 256, 1024)  # of pictures, and samples, that are timed
 RATE, BATCHES, BATCH, PER_STEP = 0.05, 8, 25, 16  # of Adam: 8 times 25 steps of 16 samples
 
 
@@ -116,6 +117,24 @@ def race():
     return adam(start, picture, names, off), results[-1]
 
 
+def timings():
+    """(side, samples, seconds, relative standard error of the roughness) of `refine`, for the
+    metal of the race, in pictures of several sizes."""
+    truth, start = known(0.3, (0.5, 0.35, 0.2)), known(0.6, (0.5, 0.5, 0.5))
+    rows = []
+    for side in SIDES:
+        picture = pictures(load("room", truth, side))[0]
+        picture *= 1 + 0.01 * np.random.default_rng(0).standard_normal(picture.shape)
+        entries = one_camera(load("room", start, side))
+        alpha, colour = (f"{owner(entries)}.{name}" for name in ("alpha_u", COLOUR[0]))
+        for samples in (64, *COUNTS):  # the first compiles
+            found = bk.refine(entries, picture, [alpha, colour], samples=samples)
+            relative = found.standard_errors[alpha] / found.values[alpha]
+            rows.append((side, samples, found.seconds, relative))
+            print(rows[-1], file=sys.stderr, flush=True)
+    return [row for row in rows if row[1] in COUNTS]
+
+
 COLOUR = "specular_reflectance", (0.5, 0.35, 0.2)
 
 
@@ -168,7 +187,7 @@ def main():
     mi.set_log_level(mi.LogLevel.Error)  # samplers say that they round up
     by_adam, by_refine = race()
     print(by_adam, by_refine, file=sys.stderr)
-    page.write(*compare(), by_adam, by_refine, SIZE, SAMPLES)
+    page.write(*compare(), by_adam, by_refine, timings(), SIZE, SAMPLES)
     return 0
 
 

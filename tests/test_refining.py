@@ -506,8 +506,8 @@ def test_what_is_left_is_noise_or_not(mi, kind):
     assert all(one.is_noise for one in many)
     assert 0.6 < np.std([one.sure for one in many]) < 1.5
     rows, columns = np.mgrid[:40, :40]
-    wide = np.exp(-((rows - 20) ** 2 + (columns - 20) ** 2) / 50)[..., None]
-    other = judged(noise() + 9 * wide)
+    wide = np.exp(-((rows - 20) ** 2 + (columns - 20) ** 2) / 200)[..., None]
+    other = judged(noise() + 5 * wide)
     assert not other.is_noise
     assert other.area > 3
     assert judged(np.zeros((40, 40, 3))).is_noise
