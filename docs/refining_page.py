@@ -13,7 +13,8 @@ PAGE = Path(__file__).with_name("refining.md")
 SIDE, LINE, GAP = 288, 30, 8
 CLEAR = 0.5  # difference that is clear [dB]
 INTRODUCTION = """`refine` finds numbers of a scene from pictures of it: materials, lamps,
-a camera's angle. It renders the whole scene, light that bounces and all, differentiates it, and says how certain the
+a camera's angle. It renders the whole scene, light that bounces and all, differentiates it, and
+says how certain the
 numbers are. [Recover a material from a photograph](how_to/material_from_a_photograph.md) goes
 through it step by step.
 
@@ -63,7 +64,8 @@ MANY = """Textures, environment maps and volumes are searched, too, by the name 
 thousands of numbers, by derivatives backwards and L-BFGS, again of two independent halves of the
 samples. Texels that no pixel shows follow their neighbours; how smooth, pixels decide that are held
 out, or `smoothing=`, more of which is smoother. There are no standard errors then.
-Of smoke of 12³ voxels, seen in five pictures of 20 × 20 pixels, the densities were 0.20 off at the start, and 0.03 after 42 steps,
+Of smoke of 12³ voxels, seen in five pictures of 20 × 20 pixels, the densities were 0.20 off at the
+start, and 0.03 after 42 steps,
 in 6 s:
 
 ```python
@@ -87,11 +89,13 @@ HOW = """Four things have to be known, and whatever is wrong in them goes into t
    they light what stands on them.
 
 A search that *did not converge* says so above its numbers, and a note says where
-*what is left is no noise*: neighbouring pixels differ alike, by more than five standard errors of chance. Look at
+*what is left is no noise*: neighbouring pixels differ alike, by more than five standard errors of
+chance. Look at
 `found.look()` before you believe the numbers then. Standard errors are made larger where that
 is so: the roughness alone, searched under colours that are wrong, was 16 standard errors off, and
 is 1.4 off now; with a lamp 5 % too bright, reflectances were 10 off, and are 1 off.
-A camera that is off changes edges, which no material does; a light that is off may look like another material,
+A camera that is off changes edges, which no material does; a light that is off may look like
+another material,
 and no standard error knows."""
 TIMES = """Nearly all of the time goes into paths: pixels × samples × pictures, and two to three
 times as much for the derivatives. Samples grow by themselves from few to `samples`, until rendering
@@ -104,7 +108,8 @@ standard error of the roughness:
 So begin with the photograph scaled to 64 or 128 pixels (`mitsuba.Bitmap.resample`, or means of
 blocks: whatever keeps it linear) and `samples=128`, see whether the scene is right, and take
 more of both for the last digit. In small pictures the far starts take most of the time:
-`starts=1`, where the scene's own values are near, halved it at 64 × 48 pixels. Each further number is a picture more in
+`starts=1`, where the scene's own values are near, halved it at 64 × 48 pixels. Each further number
+is a picture more in
 each step, a colour counts as one, and two pictures take twice as long. `progress=` shows how far
 it is."""
 TRADES = """Some numbers do the same to a picture. `f0` and the specular weight do, unless light
