@@ -140,11 +140,12 @@ def _unknown(parameters, key, limits):
         (low, high), log, linear = declared.bounds, declared.log, declared.linear
     else:
         low, high = usual_bounds(parameters, key, (low, high))
+        log = low > 0  # of a roughness
     if limits is not None:
         low, high = _checked(key, limits, *((low, high) if model else (-np.inf, np.inf)))
     elif (start < low).any():
         raise BrdfkitError(f"{key}: it begins below 0; give its bounds, as {{name: (low, high)}}.")
-    start = np.clip(start, low, high)
+    start, log = np.clip(start, low, high), log and low > 0
     around = tensor and wraps(parameters, key)
     shape = shape_of(at, around) if tensor else ()
     return Unknown(
