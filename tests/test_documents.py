@@ -58,8 +58,11 @@ class Reader(HTMLParser):
 def refinement():
     """A `Refinement` of one number, as a search of two steps ends."""
     certainty = Certainty((NASTY,), ((0.01,),), (30.0,), (), (), 432, 1)
-    said = ("no step gains more than the noise", ((16, 0.1), (64, 0.01)), (NASTY,), (NASTY,))
-    return bk.Refinement({NASTY: 0.2}, 0.1, 0.05, 64, 2, 80.0, 1.5, *said, certainty, {}, ())
+    said = ("no step gains more than the noise", True, ((16, 0.1), (64, 0.01)), (NASTY,), (NASTY,))
+    pictures = (np.full((2, 2, 3), 0.5),)
+    spent = (64, 2, 80.0, 1.5)
+    rest = (certainty, {}, pictures, pictures)
+    return bk.Refinement({NASTY: 0.2}, 0.1, 0.05, *spent, *said, *rest)
 
 
 def textures():
