@@ -5,8 +5,8 @@ from scipy.ndimage import gaussian_filter
 
 import brdfkit as bk
 from brdfkit.jit.threads import two_threads
-from brdfkit.photographs.capture import corners_of
 from brdfkit.photographs.in_mitsuba import bsdf_dict
+from brdfkit.photographs.pinhole import corners_of
 
 SIDE = 0.1  # m
 CAMERA = bk.Pinhole(np.array([0.02, -0.05, 0.35]), np.zeros(3), np.array([0.0, 1.0, 0.0]), 22.0)

@@ -13,16 +13,16 @@ import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.jit.threads import two_threads
 from brdfkit.photographs import fitting_maps
+from brdfkit.photographs.asked import to_numbers
 from brdfkit.photographs.camera_from_corners import camera_from_corners
-from brdfkit.photographs.capture import corners_of
 from brdfkit.photographs.in_mitsuba import bsdf_dict, scene_xml
 from brdfkit.photographs.maps import Maps, numbers_of
 from brdfkit.photographs.observations import Observations
+from brdfkit.photographs.pinhole import corners_of
 from brdfkit.photographs.prediction import radiances
 from brdfkit.photographs.search import equations
 from brdfkit.photographs.shapes import ANGLE
 from brdfkit.photographs.shrinking import shrunk
-from brdfkit.photographs.svbrdf import to_numbers
 from brdfkit.rendering.scene_file import load_scene_file
 
 TEXELS, LIGHTS = 32, 16

@@ -1,11 +1,8 @@
 """The cameras that a file capture.toml names: one for all pictures, or one for each."""
 
-import numpy as np
-
 from brdfkit.errors import BrdfkitError
 from brdfkit.photographs.camera_from_corners import camera_from_corners
-from brdfkit.photographs.capture import corners_of
-from brdfkit.photographs.pinhole import Pinhole
+from brdfkit.photographs.pinhole import Pinhole, corners_of
 from brdfkit.photographs.toml_values import require_known, to_number, to_numbers
 
 KNOWN = "origin", "target", "up", "fov", "corners"
@@ -42,11 +39,10 @@ def _camera(path, table, where, size, picture_size):
         to_numbers(path, table.get(name, usual), f"{where} {name}", 3)
         for name, usual in (("origin", None), ("target", [0, 0, 0]), ("up", [0, 1, 0]))
     ]
-    camera = Pinhole(*vectors, fov)
-    with np.errstate(invalid="ignore"):
-        if not np.isfinite(camera.axes).all():
-            raise BrdfkitError(f"{path}: {where} looks along up, or at where it is.")
-    return camera
+    try:
+        return Pinhole(*vectors, fov)
+    except BrdfkitError as error:
+        raise BrdfkitError(f"{path}: {where}: {error}") from None
 
 
 def _by_corners(path, table, where, size, picture_size, fov):

@@ -6,14 +6,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.errors import BrdfkitError
+from brdfkit.photographs.capture_checks import require_right
 from brdfkit.photographs.pinhole import Pinhole
 
-SMALLEST = 8  # pixels along the longer side of the sample
 CLIPPED = 1e-4  # the share of numbers that equal the largest: not by chance
+LOWEST = 0.05  # cosine of a light's angle: below it the sample's own shadows fall where bumps are
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Capture:
     """Photographs of a flat sample, each under one point light, by a camera that rests or moves.
 
@@ -41,8 +41,8 @@ class Capture:
     Raises
     ------
     BrdfkitError
-        For shapes that do not fit each other, values that are not finite, a light or a camera that
-        is not above the sample, and a camera that does not see all of it.
+        For shapes that do not fit each other, values that are not finite, pictures that are black,
+        a light or a camera that is not above the sample, and a camera that does not see all of it.
     """
 
     pictures: NDArray[np.float64]
@@ -54,45 +54,7 @@ class Capture:
     lost: NDArray[np.bool_] | None = None
 
     def __post_init__(self) -> None:
-        count = len(self.pictures)
-        if self.pictures.ndim != 4 or self.pictures.shape[3] != 3 or not count:
-            raise BrdfkitError(
-                f"pictures: their shape {self.pictures.shape} should be (lights, height, width, 3)."
-            )
-        for name in ("positions", "intensities"):
-            shape = np.shape(getattr(self, name))
-            if shape != (count, 3):
-                raise BrdfkitError(
-                    f"{name}: their shape {shape} should be ({count}, 3), for {count} pictures."
-                )
-        for name, picture, position in zip(self.names, self.pictures, self.positions, strict=True):
-            if not np.isfinite(picture).all():
-                bad = int((~np.isfinite(picture)).any(axis=2).sum())
-                raise BrdfkitError(f"{name}: {bad:,} of its pixels are not finite.")
-            if not position[2] > 0:
-                raise BrdfkitError(
-                    f"{name}: its light is at z = {position[2]:g} m, behind the sample; z should "
-                    "be above 0."
-                )
-        if not (self.intensities > 0).any(axis=1).all():
-            raise BrdfkitError("intensities: each light needs one above 0.")
-        if len(self.cameras) != count:
-            raise BrdfkitError(
-                f"camera: there are {len(self.cameras)} for {count} pictures; give one for all, or "
-                "one for each."
-            )
-        if self.lost is not None and np.shape(self.lost) != self.pictures.shape:
-            raise BrdfkitError(
-                f"lost: its shape {np.shape(self.lost)} should be that of the pictures, "
-                f"{self.pictures.shape}."
-            )
-        for name, camera in zip(self.names, self.cameras, strict=True):
-            if not camera.origin[2] > 0:
-                raise BrdfkitError(
-                    f"{name}: its camera is at z = {camera.origin[2]:g} m, behind the sample; z "
-                    "should be above 0."
-                )
-            _require_seen(self, name, camera)
+        require_right(self)
 
     @property
     def cameras(self):
@@ -124,18 +86,24 @@ class Capture:
         middle, right, above = camera.project(across, self.picture_size)
         return step / np.linalg.norm([right - middle, above - middle], axis=1)
 
-    def is_inside(self, camera, points):
-        """Whether points (..., 2) [m] are a pixel of a `camera`, or more, within the sample."""
-        margin = np.array(self.size) / 2 - self.pixel(camera)
-        return (np.abs(points) < margin).all(axis=-1)
+    def is_shown(self, k, points):
+        """Whether picture k shows points (..., 2) [m] well: a pixel or more within the sample,
+        under a light that does not graze it."""
+        margin = np.array(self.size) / 2 - self.pixel(self.cameras[k])
+        inside = (np.abs(points) < margin).all(axis=-1)
+        points = np.where(inside[..., None], points, 0)
+        across = np.linalg.norm(self.positions[k, :2] - points, axis=-1)
+        height = self.positions[k, 2]
+        return inside & (height > LOWEST * np.hypot(across, height))
 
     @cached_property
     def counted(self):
         """Which numbers (lights, height, width, 3) show the sample alone, and are not left out."""
-        inside = [
-            self.is_inside(camera, camera.on_sample(self.picture_size)) for camera in self.cameras
+        shown = [
+            self.is_shown(k, camera.on_sample(self.picture_size))
+            for k, camera in enumerate(self.cameras)
         ]
-        return np.array(inside)[..., None] & ~self.left_out
+        return np.array(shown)[..., None] & ~self.left_out
 
     @property
     def picture_size(self):
@@ -148,33 +116,12 @@ class Capture:
 
         Each colour has an end of its own, as a white balance moves them apart.
         """
-        at_end = self.pictures == self.pictures.max(axis=(0, 1, 2))
-        return at_end & (at_end.mean(axis=(0, 1, 2)) > CLIPPED)
+        end = self.pictures.max(axis=(0, 1, 2))
+        at_end = (self.pictures == end) & (end > 0)  # without light of a colour all are at 0
+        several = at_end.sum(axis=(0, 1, 2)) > 1
+        return at_end & several & (at_end.mean(axis=(0, 1, 2)) > CLIPPED)
 
     @property
     def left_out(self):
         """Which numbers (lights, height, width, 3) do not count: those `lost`, or clipped."""
         return self.clipped if self.lost is None else self.lost
-
-
-def _require_seen(capture, name, camera):
-    """Raise `BrdfkitError` unless the sample's corners are in the picture of a camera."""
-    width, height = capture.picture_size
-    places = camera.project(corners_of(capture.size), (width, height))
-    inside = (places >= -1) & (places <= np.array([width, height]) + 1)
-    if inside.all() and np.ptp(places, axis=0).max() < SMALLEST:
-        raise BrdfkitError(
-            f"{name}: the sample is smaller than {SMALLEST} pixels; check that its size and the "
-            "place of the camera are both in metres."
-        )
-    if not inside.all():
-        raise BrdfkitError(
-            f"{name}: its camera does not see all four corners of the sample; check its place, its "
-            "target, its fov, and the sample's width and height in metres."
-        )
-
-
-def corners_of(size):
-    """The corners (4, 3) of a sample of `size` [m], clockwise from the upper left."""
-    w, h = np.array(size) / 2
-    return np.array([[-w, h, 0], [w, h, 0], [w, -h, 0], [-w, -h, 0]])

@@ -71,7 +71,9 @@ def fit_maps(numbers, seen, smoothness=None, report=lambda: None):
 def _enlarged(numbers, seen, x, noise, coarse):
     """The `FittedMaps` of rows of maps of the shape `coarse`."""
     height, width = seen.shape
-    side = -(-max(height, width) // max(coarse))
+    side = 1  # a power of 2, as in `coarse_to_fine`
+    while side * coarse[0] < height or side * coarse[1] < width:
+        side *= 2
     grid = x.reshape(*coarse, -1).repeat(side, axis=0).repeat(side, axis=1)
     x = grid[:height, :width].reshape(height * width, -1)
     strength = strengths(numbers, x, seen, noise, USUAL)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from brdfkit.jit.llvm import use_variant
 from brdfkit.model import labels
 from brdfkit.photographs.shapes import ANGLE
 
@@ -10,6 +11,7 @@ def sample_dict(svbrdf):
     """The dictionary of the sample of an `Svbrdf`, in the plane z = 0."""
     import mitsuba as mi
 
+    use_variant()
     width, height = svbrdf.size
     return {
         "type": "rectangle",
@@ -71,6 +73,7 @@ def scene_xml(svbrdf, files):
         angle = _file_texture("angle", files[ANGLE], "nearest")
         turning, end = f'<bsdf type="tangent_rotation">\n        {angle}\n        ', "</bsdf>"
         inner = 'name="bsdf" '
+    clips = "\n".join(f'    <float name="{n}" value="{v!r}"/>' for n, v in camera.clips().items())
     kind = _type(svbrdf.model)
     values = {**{name: v for name, v in kind.items() if name != "type"}, **svbrdf.fixed}
     numbers = "\n".join(
@@ -82,6 +85,7 @@ def scene_xml(svbrdf, files):
   <sensor type="perspective" id="camera">
     <float name="fov" value="{camera.fov!r}"/>
     <string name="fov_axis" value="x"/>
+{clips}
     <transform name="to_world">
       <lookat origin="{_csv(camera.origin)}" target="{_csv(camera.target)}" up="{_csv(camera.up)}"/>
     </transform>

@@ -38,8 +38,8 @@ class Observations:
         to_camera = np.array([directions(camera.origin, points) for camera in capture.cameras])
         scale = np.maximum(radiance, 0) + DARK * radiance.mean()
         # pixels at the edge see what is beside the sample, too: there neighbours decide
-        for light, camera in enumerate(capture.cameras):
-            lost[light] |= ~capture.is_inside(camera, points[:, :2])[:, None]
+        for light in range(len(lost)):
+            lost[light] |= ~capture.is_shown(light, points[:, :2])[:, None]
         weights = np.where(lost, 0, 1 / scale**2)
         return cls(radiance, weights, to_light, irradiance, to_camera, tuple(shape))
 

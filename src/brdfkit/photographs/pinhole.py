@@ -4,8 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.errors import BrdfkitError
+from brdfkit.photographs.to_arrays import to_array
 
-@dataclass(frozen=True)
+NEAREST, FARTHEST = 1e-2, 1e4  # what Mitsuba shows, in heights of the camera above the sample
+
+
+@dataclass(frozen=True, eq=False)
 class Pinhole:
     """A pinhole camera; no lens distorts its pictures.
 
@@ -19,12 +24,27 @@ class Pinhole:
         A direction that is up in its pictures.
     fov : float
         The angle across the width of its pictures, above 0, below 180 [degrees].
+
+    Raises
+    ------
+    BrdfkitError
+        For what are no three numbers, another fov, and a camera that looks along up.
     """
 
     origin: np.ndarray
     target: np.ndarray
     up: np.ndarray
     fov: float
+
+    def __post_init__(self) -> None:
+        for name in ("origin", "target", "up"):
+            object.__setattr__(self, name, to_array(name, getattr(self, name), (3,)))
+        object.__setattr__(self, "fov", float(to_array("fov", self.fov, ())))
+        if not 0 < self.fov < 180:
+            raise BrdfkitError(f"fov = {self.fov:g} should be between 0 and 180 degrees.")
+        with np.errstate(invalid="ignore"):
+            if not np.isfinite(self.axes).all():
+                raise BrdfkitError("camera: it looks along up, or at where it is.")
 
     @property
     def axes(self):
@@ -61,6 +81,11 @@ class Pinhole:
         with np.errstate(invalid="ignore"):
             return np.nan_to_num((self.origin + steps[..., None] * ray)[..., :2], nan=np.inf)
 
+    def clips(self):
+        """The depths [m] between which Mitsuba's sensor sees; by default not within 1 cm."""
+        height = abs(float(self.origin[2])) or 1.0
+        return {"near_clip": NEAREST * height, "far_clip": FARTHEST * height}
+
     def scene_dict(self, size):
         """The dictionary of Mitsuba's sensor of this camera."""
         import mitsuba as mi
@@ -71,6 +96,7 @@ class Pinhole:
             "type": "perspective",
             "fov": float(self.fov),
             "fov_axis": "x",
+            **self.clips(),
             "to_world": at.look_at(*look),
             "film": {
                 "type": "hdrfilm",
@@ -81,3 +107,9 @@ class Pinhole:
                 "rfilter": {"type": "box"},
             },
         }
+
+
+def corners_of(size):
+    """The corners (4, 3) of a sample of `size` [m], clockwise from the upper left."""
+    w, h = np.array(size) / 2
+    return np.array([[-w, h, 0], [w, h, 0], [w, -h, 0], [-w, -h, 0]])

@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.documents import Document, Paragraph, Shown, Table
 from brdfkit.documents.parts import SOFT
-from brdfkit.errors import BrdfkitError
 from brdfkit.photographs.capture import Capture
 from brdfkit.photographs.observations import light_on
+from brdfkit.photographs.to_arrays import to_intensity, to_place
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -106,16 +106,17 @@ class Svbrdf(Shown):
         Raises
         ------
         BrdfkitError
-            For a light or a viewer that is no point above the sample.
+            For a light or a viewer that is no point above the sample, and an intensity that is not
+            one number or three.
 
         Examples
         --------
         >>> picture = maps.relight((0.1, 0.2, 0.5))    # doctest: +SKIP
         """
         points = self.capture.texels(self.shape)
-        eye = self.capture.cameras[0].origin if viewer is None else _above("viewer", viewer)
-        place = _above("position", position)[None]
-        power = np.broadcast_to(np.asarray(intensity, float), (1, 3))
+        eye = self.capture.cameras[0].origin if viewer is None else to_place("viewer", viewer)
+        place = to_place("position", position)[None]
+        power = to_intensity(intensity)
         from brdfkit.photographs.prediction import predict
 
         to_light, irradiance = light_on(points, place, power)
@@ -187,14 +188,6 @@ def _fixed(values):
     said = "Everywhere " + ", ".join(f"{name} = {value:g}" for name, value in values.items())
     at_normal = "; at normal incidence the specular reflectance counts times f0"
     return (f"{said}{at_normal if 'f0' in values else ''}.",)
-
-
-def _above(what, point):
-    """The array (3,) of a point above the sample."""
-    found = np.asarray(point, float)
-    if found.shape != (3,) or not np.isfinite(found).all() or found[2] <= 0:
-        raise BrdfkitError(f"{what} = {point!r} should be x, y and z > 0, above the sample [m].")
-    return found
 
 
 def _summary(name, values):

@@ -6,19 +6,22 @@ from pathlib import Path
 
 import numpy as np
 
-from brdfkit.arguments import to_positive, to_whole_number
-from brdfkit.errors import BrdfkitError, Interrupted
+from brdfkit.errors import Interrupted
 from brdfkit.fitting.stopped import Stopped
-from brdfkit.jit.llvm import use_variant
 from brdfkit.jit.threads import in_turn
-from brdfkit.model import double_precision, labels
-from brdfkit.names import listed
+from brdfkit.photographs.asked import (
+    require_variant,
+    to_capture,
+    to_numbers,
+    to_shape,
+    to_smoothness,
+)
 from brdfkit.photographs.capture import Capture
-from brdfkit.photographs.capture_file import load_capture
+from brdfkit.photographs.capture_checks import require_shown
 from brdfkit.photographs.fitting_maps import fit_maps, standard_errors, usual_total
-from brdfkit.photographs.maps import Maps, errors_of, pair_of
+from brdfkit.photographs.maps import Maps, errors_of
 from brdfkit.photographs.misfit import describe_misfit
-from brdfkit.photographs.numbers import CHANNELS, Numbers
+from brdfkit.photographs.numbers import CHANNELS
 from brdfkit.photographs.observations import Observations, gathered
 from brdfkit.photographs.open_numbers import describe_open
 from brdfkit.photographs.result import Svbrdf
@@ -31,8 +34,6 @@ from brdfkit.photographs.through_renderer import (
     refine_through_renderer,
     rendered,
 )
-
-MOST = 512  # texels along a side, by default
 
 
 @in_turn
@@ -73,8 +74,8 @@ def svbrdf(
         Shape parameters that are alike everywhere, as ``{"f0": 0.04}``. By default ``f0`` is, at
         the model's default: from few lights it cannot be told from the specular reflectance.
     smoothness : float, optional
-        By how much neighbouring texels may differ, above 0: less is smoother. By default chosen by
-        lights that are held out; with fewer than 8 lights 0.1.
+        By how much neighbouring texels may differ, from 0.003 on: less is smoother. By default
+        chosen by lights that are held out; with fewer than 8 lights 0.1.
     linearise : bool, default False
         Whether photographs of 8 bits are accepted, as seen by sRGB's curve.
     progress : callable, optional
@@ -88,24 +89,22 @@ def svbrdf(
     Raises
     ------
     BrdfkitError
-        For a folder, a file or photographs that are wrong, a model without weights of its lobes
-        that are not negative, and parameters that are none.
+        For a folder, a file or photographs that are wrong, a model with weights of its lobes that
+        may be negative, parameters that are none, and a variant of Mitsuba's without RGB.
 
     Examples
     --------
     >>> maps = svbrdf("photographs/paper")    # doctest: +SKIP
     """
     began = time.perf_counter()
-    use_variant()
-    if not double_precision.differentiable():
-        raise BrdfkitError("svbrdf: it needs LLVM, for derivatives; see the README.")
-    name, taken = _load(capture, linearise)
-    numbers = to_numbers(model, anisotropic, fixed or {})
-    if smoothness is not None:
-        smoothness = to_positive("smoothness", smoothness)
-    shape = _shape(taken, resolution)
+    require_variant()
+    name, taken = to_capture(capture, linearise)
+    numbers = to_numbers(model, anisotropic, fixed)
+    smoothness = to_smoothness(smoothness)
+    shape = to_shape(taken, resolution)
     taken = shrunk(taken, shape)
     seen = Observations.of(taken, shape)
+    require_shown(taken, seen)
     report = _counter(progress, usual_total(len(taken.names), smoothness))
 
     def conclude(best, errors, *notes):
@@ -154,42 +153,6 @@ def svbrdf(
         errors = standard_errors(numbers, so_far, seen)
         found = conclude(best, errors, "Interrupted: the maps are coarser than they were to be.")
         raise Interrupted(found, f"{name}: the maps so far leave {found.residual:.3g}") from None
-
-
-def _load(given, linearise):
-    """(name, `Capture`) of a folder or of what such a folder holds."""
-    if isinstance(given, Capture):
-        return "sample", given
-    return Path(given).resolve().name, load_capture(given, linearise)
-
-
-def to_numbers(label, anisotropic, fixed):
-    """The `Numbers` of a model's label.
-
-    Raises `BrdfkitError` for parameters that are none, and for a model with signed weights.
-    """
-    model = labels.model(label)
-    if model.signed():
-        raise BrdfkitError(f"{label}: its weights may be below 0; choose another model, as ggx.")
-    shapes = model.shapes(anisotropic)
-    for name in fixed:
-        if name not in shapes:
-            model.parameter(name)
-            raise BrdfkitError(f"{label}: {name} is not searched; fixed can be {listed(shapes)}.")
-    held = {"f0": model().values["f0"]} if "f0" in shapes else {}
-    held |= {name: float(value) for name, value in fixed.items()}
-    model(**held)  # raises for values beyond the bounds
-    names = tuple(name for name in shapes if name not in held)
-    return Numbers(model, names, held, pair_of(model, names))
-
-
-def _shape(capture, resolution):
-    if resolution is None:
-        return capture.usual_shape(MOST)
-    longer = to_whole_number("resolution", resolution, 4)
-    width, height = capture.size
-    scale = longer / max(width, height)
-    return max(4, round(height * scale)), max(4, round(width * scale))
 
 
 def _said(capture):

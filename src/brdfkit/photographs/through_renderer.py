@@ -132,5 +132,5 @@ def decibels(capture, pictures):
     for name, photograph, picture, counts in parts:
         white = np.quantile(photograph[counts], 0.99)
         error = ((picture - photograph)[counts] ** 2).mean()
-        found[name] = float(10 * np.log10(white**2 / max(error, 1e-30)))
+        found[name] = float(10 * np.log10(max(white, 1e-150) ** 2 / max(error, 1e-300)))
     return found

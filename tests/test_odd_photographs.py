@@ -1,0 +1,184 @@
+"""`svbrdf` of odd photographs: each is fitted, or refused in a sentence."""
+
+import dataclasses
+import pickle
+import subprocess
+import sys
+
+import made_capture
+import numpy as np
+import pytest
+
+import brdfkit as bk
+from brdfkit.photographs import fitting_maps
+from brdfkit.photographs.asked import to_numbers
+from brdfkit.photographs.in_mitsuba import scene_xml
+
+pytestmark = pytest.mark.filterwarnings("error")
+TEXELS = 16
+
+
+@pytest.fixture(scope="module")
+def mi():
+    import mitsuba
+
+    bk.models()
+    mitsuba.set_variant("llvm_ad_rgb")
+    return mitsuba
+
+
+@pytest.fixture(scope="module")
+def capture(mi):
+    return made_capture.photographs(TEXELS, 8, pixels=32)[1]
+
+
+def fit(capture, **how):
+    return bk.svbrdf(capture, **{"resolution": TEXELS, "smoothness": 0.1} | how)
+
+
+@pytest.fixture(scope="module")
+def found(capture):
+    return fit(capture)
+
+
+def test_no_number_is_clipped_because_it_is_the_largest_of_few(capture, found):
+    assert not capture.clipped.any()
+    assert not found.notes
+
+
+def test_lists_are_as_good_as_arrays(capture, found):
+    camera = capture.camera
+    vectors = (getattr(camera, name).tolist() for name in ("origin", "target", "up"))
+    again = fit(
+        bk.Capture(
+            capture.pictures.tolist(),
+            capture.positions.tolist(),
+            capture.intensities.tolist(),
+            bk.Pinhole(*vectors, 22),
+            list(capture.size),
+            list(capture.names),
+            lost=np.zeros(capture.pictures.shape, int),  # not ~0
+        )
+    )
+    for name, values in found.maps.items():
+        np.testing.assert_allclose(again.maps[name], values, rtol=0, atol=1e-10)
+    assert capture != dataclasses.replace(capture, positions=capture.positions + 1)
+
+
+def part(values, k, value):
+    changed = np.array(values)
+    changed[k] = value
+    return changed
+
+
+ODD = {
+    "is black": lambda c: {"pictures": part(c.pictures, 3, 0)},
+    "03.exr: nothing of the sample counts": lambda c: {"pictures": part(c.pictures, 3, 9)},
+    "00.exr: nothing of the sample counts": lambda c: {"lost": c.pictures > -1},
+    "light that grazes": lambda c: {"positions": part(c.positions, 3, [0.3, 0.3, 1e-3])},
+    "positions: they should be finite": lambda c: {"positions": part(c.positions, 0, np.nan)},
+    "none below": lambda c: {"intensities": part(c.intensities, 0, [1, -1, 1])},
+    "intensities: they should be finite": lambda c: {"intensities": part(c.intensities, 0, np.inf)},
+    "above 0 \\[m\\]": lambda c: {"size": (0.1, -0.1)},
+    "size: their shape": lambda c: {"size": (0.1,)},
+    "size: they should be numbers": lambda c: {"size": "ab"},
+    "all different": lambda c: {"names": ("a",) * len(c.names)},
+    "names: there should be 8": lambda c: {"names": ("a",)},
+    "should be a Pinhole": lambda c: {"camera": None},
+    "looks along up": lambda c: {"camera": bk.Pinhole([0, 0, 1], [0, 0, 0], [0, 0, 1], 20)},
+    "fov = 190 should be between": lambda c: {"camera": dataclasses.replace(c.camera, fov=190)},
+    "smaller than 8 pixels": lambda c: {"camera": dataclasses.replace(c.camera, fov=120)},
+}
+
+
+@pytest.mark.parametrize("sentence", ODD)
+def test_odd_captures_are_one_sentence(capture, sentence):
+    with pytest.raises(bk.BrdfkitError, match=sentence) as error:
+        fit(dataclasses.replace(capture, **ODD[sentence](capture)))
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("how", "sentence"),
+    [
+        ({"fixed": {"f0": "a"}}, "f0 = 'a' should be a number"),
+        ({"fixed": ["f0"]}, "fixed = .* should be a dictionary"),
+        ({"smoothness": 1e-6}, "at least 0.003"),
+        ({"capture": None}, "neither a folder nor a Capture"),
+    ],
+)
+def test_odd_arguments_are_one_sentence(capture, how, sentence):
+    with pytest.raises(bk.BrdfkitError, match=sentence):
+        fit(**{"capture": capture} | how)
+
+
+@pytest.mark.parametrize(
+    "how",
+    [
+        {"position": "abc"},
+        {"position": (0, 0, 1), "intensity": (1, 2)},
+        {"position": (0, 0, 1), "intensity": np.nan},
+        {"position": (0, 0, 1), "viewer": (0, 0, -1)},
+    ],
+)
+def test_odd_lights_of_maps_are_one_sentence(found, how):
+    with pytest.raises(bk.BrdfkitError):
+        found.relight(**how)
+
+
+@pytest.mark.parametrize("variant", ["llvm_ad_mono", "llvm_ad_spectral"])
+def test_variants_without_colours_are_refused(mi, capture, variant):
+    mi.set_variant(variant)
+    try:
+        with pytest.raises(bk.BrdfkitError, match="set llvm_ad_rgb"):
+            fit(capture)
+    finally:
+        mi.set_variant("llvm_ad_rgb")
+
+
+def test_a_sample_of_a_millimetre(mi, capture, found):
+    """Mitsuba's cameras see nothing within 1 cm, unless they are told."""
+    s = 0.01
+    origin = s * capture.camera.origin
+    small = dataclasses.replace(
+        capture,
+        positions=s * capture.positions,
+        intensities=s**2 * capture.intensities,
+        camera=dataclasses.replace(capture.camera, origin=origin),
+        size=(s * 0.1, s * 0.1),
+    )
+    again = fit(small)
+    for name, values in found.maps.items():
+        np.testing.assert_allclose(again.maps[name], values, atol=0.002)
+    assert "near_clip" in scene_xml(again, {name: name for name in again.maps})
+
+
+def test_fresnel_reflectances_of_sums_are_alike_everywhere():
+    assert to_numbers("ggx+ggx", False, {}).fixed == {"ggx_1_f0": 0.5, "ggx_2_f0": 0.5}
+
+
+@pytest.mark.parametrize("finished", [0, 1, 2])
+def test_ctrl_c_of_maps_that_are_not_square(capture, monkeypatch, finished):
+    """33 texels were made of 3, each 11 large, not 16, and the lower ones were missing."""
+    original, calls = fitting_maps.finish, []
+
+    def stop(*args):
+        calls.append(args)
+        if len(calls) > finished:
+            raise KeyboardInterrupt
+        return original(*args)
+
+    monkeypatch.setattr(fitting_maps, "finish", stop)
+    with pytest.raises(bk.Interrupted) as stopped:
+        fit(dataclasses.replace(capture, size=(0.1, 0.09)), resolution=33)
+    assert stopped.value.best.shape == (30, 33)
+
+
+def test_maps_that_were_pickled_can_be_shown_in_another_process(found, tmp_path):
+    """Where no variant of Mitsuba's is set yet."""
+    (tmp_path / "maps").write_bytes(pickle.dumps(found))
+    code = "import pickle, sys; print(*pickle.loads(open(sys.argv[1], 'rb').read()).scene_dict())"
+    said = subprocess.run(
+        [sys.executable, "-c", code, tmp_path / "maps"], capture_output=True, text=True
+    )
+    assert "bsdf" in said.stdout, said.stderr
