@@ -4,6 +4,7 @@ import dataclasses
 import pickle
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import made_capture
 import numpy as np
@@ -13,6 +14,7 @@ import brdfkit as bk
 from brdfkit.photographs import fitting_maps
 from brdfkit.photographs.asked import to_numbers
 from brdfkit.photographs.in_mitsuba import scene_xml
+from brdfkit.photographs.open_numbers import describe_open
 
 pytestmark = pytest.mark.filterwarnings("error")
 TEXELS = 16
@@ -182,3 +184,36 @@ def test_maps_that_were_pickled_can_be_shown_in_another_process(found, tmp_path)
         [sys.executable, "-c", code, tmp_path / "maps"], capture_output=True, text=True
     )
     assert "bsdf" in said.stdout, said.stderr
+
+
+def test_light_of_one_colour(capture, found):
+    """What it shows is as it was; of the other colours nothing is said but that."""
+    red = np.array([1.0, 0, 0])
+    pictures, intensities = capture.pictures * red, capture.intensities * red
+    alone = fit(dataclasses.replace(capture, pictures=pictures, intensities=intensities))
+    assert alone.notes == ("Nothing is seen in green and blue: there the maps say nothing.",)
+    off = alone.maps["diffuse_reflectance"] - found.maps["diffuse_reflectance"]
+    assert np.sqrt((off[3:-3, 3:-3, 0] ** 2).mean()) < 0.01
+    assert np.median(alone.uncertainty["alpha_u"]) < 3 * np.median(found.uncertainty["alpha_u"])
+
+
+def test_texels_finer_than_pixels_are_said(capture):
+    notes = fit(capture, resolution=2 * TEXELS + 1).notes
+    assert any("A pixel is 1.4 texels long" in note for note in notes)
+
+
+def test_one_number_that_is_open_is_not_apart():
+    numbers = to_numbers("oren_nayar", False, {})
+    hessian = np.tile(np.eye(numbers.count), (4, 1, 1))
+    hessian[:2, numbers.shapes] = 0
+    fitted = SimpleNamespace(about=SimpleNamespace(hessian=hessian))
+    (said,) = describe_open(numbers, fitted, 8)
+    assert "do not tell sigma: there" in said
+
+
+def test_what_is_clipped_is_said_of_photographs_that_are_made_smaller(mi):
+    _, capture = made_capture.photographs(TEXELS, 4, pixels=200)
+    pictures = np.minimum(capture.pictures, np.quantile(capture.pictures, 0.998))
+    found = fit(dataclasses.replace(capture, pictures=pictures), resolution=8)
+    assert found.capture.picture_size[0] < 100
+    assert any("% of the pixels are clipped" in note for note in found.notes)

@@ -8,7 +8,8 @@ import numpy as np
 from brdfkit.fitting.stopped import Stopped
 from brdfkit.photographs.misfit import MISFIT, misfits
 from brdfkit.photographs.numbers import CHANNELS
-from brdfkit.photographs.open_numbers import is_open
+from brdfkit.photographs.observations import shown_colours
+from brdfkit.photographs.open_numbers import are_seen, is_open
 from brdfkit.photographs.restarts import propagated, restarted
 from brdfkit.photographs.search import Equations, equations, search_each, search_together
 from brdfkit.photographs.starts import WIDTHS, rows
@@ -157,8 +158,8 @@ def units_of(numbers, x, seen):
     brightness = np.diagonal(hessian, axis1=1, axis2=2)[:, of_weights]
     counted = (seen.weights > 0).sum(axis=(0, 2))[:, None] / CHANNELS
     alone = np.sqrt(counted / np.maximum(brightness, 1e-12 * counted + 1e-300))
-    units = np.ones(numbers.count)
-    scale = np.median(alone[counted[:, 0] > 0], axis=0).reshape(-1, CHANNELS).mean(axis=1)
+    units, lit = np.ones(numbers.count), shown_colours(seen)
+    scale = np.median(alone[counted[:, 0] > 0], axis=0).reshape(-1, CHANNELS)[:, lit].mean(axis=1)
     units[of_weights] = np.repeat(scale, CHANNELS)
     return units
 
@@ -196,7 +197,7 @@ def standard_errors(numbers, fitted, seen):
     """
     noise, own = fitted.noise, fitted.about.hessian
     unit = np.diag(noise / ranges(numbers, fitted.x, seen) ** 2)
-    together = own + 4 * np.diag(fitted.strength) + unit
+    together = own + 4 * np.diag(fitted.strength * are_seen(own)) + unit
     matrix = np.where(is_open(own)[:, None, None], own + unit, together)
     variance = np.diagonal(np.linalg.inv(matrix), axis1=1, axis2=2)
     misfit = misfits(fitted.about.error, noise, seen)

@@ -85,6 +85,11 @@ def gathered(capture, pictures, shape):
     )
 
 
+def shown_colours(seen):
+    """Which of red, green and blue (3,) `Observations` show anywhere: lights may be red alone."""
+    return (seen.weights * seen.irradiance > 0).any(axis=(0, 1))
+
+
 def directions(place, points):
     """Unit vectors (n, 3) from `points` to a `place`."""
     away = place - points

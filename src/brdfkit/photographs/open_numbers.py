@@ -17,28 +17,38 @@ def describe_open(numbers, fitted, lights):
         said.append("One light: roughness and strength trade off here, and the normal with both.")
     hessian = fitted.about.hessian
     hessian = hessian[np.diagonal(hessian, axis1=1, axis2=2).any(axis=1)]  # none at the edge
+    kept = np.flatnonzero(are_seen(hessian))
+    hessian = hessian[:, kept[:, None], kept]
     values, vectors = np.linalg.eigh(_scaled(hessian))
     left_open = values[:, 0] < OPEN
     if left_open.mean() < SHARE:
         return tuple(said)
     weakest = np.abs(vectors[left_open, :, 0])
     weakest /= weakest.max(axis=1, keepdims=True)
-    share = dict(zip(_names(numbers), (weakest > PART).mean(axis=0), strict=True))
+    names = [_names(numbers)[k] for k in kept]
+    share = dict(zip(names, (weakest > PART).mean(axis=0), strict=True))
     several = {}
     for name, value in share.items():
         plain = name.partition("[")[0]
         several[plain] = max(value, several.get(plain, 0))
-    worst = [name for name, value in several.items() if value > 0.25]
+    worst = [name for name, value in several.items() if value > 0.25] or list(several)
+    apart = f"{listed(worst)} apart" if len(worst) > 1 else worst[0]
     said.append(
-        f"In {100 * left_open.mean():.0f} % of the texels the photographs do not tell "
-        f"{listed(worst or list(several))} apart: there their neighbours decide. More lights near "
-        "the mirror's direction would."
+        f"In {100 * left_open.mean():.0f} % of the texels the photographs do not tell {apart}: "
+        "there their neighbours decide. More lights near the mirror's direction would."
     )
     return tuple(said)
 
 
+def are_seen(hessian):
+    """Which numbers (count,) the photographs show anywhere: not those of colours without light."""
+    return np.diagonal(hessian, axis1=1, axis2=2).any(axis=0)
+
+
 def is_open(hessian):
     """Which texels (n,) leave a combination of numbers open, by Hessians (n, count, count)."""
+    kept = np.flatnonzero(are_seen(hessian))
+    hessian = hessian[:, kept[:, None], kept]
     return np.linalg.eigvalsh(_scaled(hessian))[:, 0] < OPEN
 
 

@@ -21,8 +21,9 @@ from brdfkit.photographs.capture_checks import require_shown
 from brdfkit.photographs.fitting_maps import fit_maps, standard_errors, usual_total
 from brdfkit.photographs.maps import Maps, errors_of
 from brdfkit.photographs.misfit import describe_misfit
+from brdfkit.photographs.notes import describe_capture
 from brdfkit.photographs.numbers import CHANNELS
-from brdfkit.photographs.observations import Observations, gathered
+from brdfkit.photographs.observations import Observations, gathered, shown_colours
 from brdfkit.photographs.open_numbers import describe_open
 from brdfkit.photographs.result import Svbrdf
 from brdfkit.photographs.shrinking import shrunk
@@ -34,6 +35,8 @@ from brdfkit.photographs.through_renderer import (
     refine_through_renderer,
     rendered,
 )
+
+INTERRUPTED = "Interrupted: the maps or their standard errors are coarser than they were to be."
 
 
 @in_turn
@@ -102,6 +105,7 @@ def svbrdf(
     numbers = to_numbers(model, anisotropic, fixed)
     smoothness = to_smoothness(smoothness)
     shape = to_shape(taken, resolution)
+    clipped = taken.clipped.mean() if taken.lost is None else 0.0
     taken = shrunk(taken, shape)
     seen = Observations.of(taken, shape)
     require_shown(taken, seen)
@@ -112,7 +116,7 @@ def svbrdf(
         maps = Maps.of(numbers, fitted.x, shape, taken.size).maps
         beyond = gathered(taken, taken.pictures - best.pictures, shape)
         misfit = misfits_of(beyond, fitted.noise, seen)
-        diffuse = maps.get("diffuse_reflectance", np.array(1.0))
+        diffuse = maps.get("diffuse_reflectance", np.ones(CHANNELS))[..., shown_colours(seen)]
         left = left_of(taken, best.pictures)
         told_apart = CHANNELS * len(taken.names) > numbers.count
         noise = fitted.noise**0.5 if told_apart else 0.0
@@ -132,7 +136,7 @@ def svbrdf(
                 *notes,
                 *describe_open(numbers, fitted, len(taken.names)),
                 *describe_misfit(misfit, noise, left, float(np.median(diffuse))),
-                *_said(taken),
+                *describe_capture(taken, clipped, seen),
             ),
             seconds=time.perf_counter() - began,
             capture=taken,
@@ -151,16 +155,8 @@ def svbrdf(
             raise
         best = rendered(numbers, so_far, seen, taken)
         errors = standard_errors(numbers, so_far, seen)
-        found = conclude(best, errors, "Interrupted: the maps are coarser than they were to be.")
+        found = conclude(best, errors, INTERRUPTED)
         raise Interrupted(found, f"{name}: the maps so far leave {found.residual:.3g}") from None
-
-
-def _said(capture):
-    """What one should know of the photographs."""
-    share = capture.clipped.mean()
-    if not share:
-        return ()
-    return (f"{100 * share:.2g} % of the pixels are clipped; they do not count.",)
 
 
 def _counter(progress, usual):
