@@ -217,3 +217,12 @@ def test_what_is_clipped_is_said_of_photographs_that_are_made_smaller(mi):
     found = fit(dataclasses.replace(capture, pictures=pictures), resolution=8)
     assert found.capture.picture_size[0] < 100
     assert any("% of the pixels are clipped" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("turned", [(1, 1), (1, -1), (-1, -1)])
+def test_normals_of_what_is_no_flat_sample_are_said(mi, turned):
+    """Pictures that are mirrored, or turned, look like those of a bowl."""
+    _, capture = made_capture.photographs(32, 12)
+    pictures = capture.pictures[:, :: turned[0], :: turned[1]]
+    notes = fit(dataclasses.replace(capture, pictures=pictures), resolution=32).notes
+    assert any("the sample is not flat" in note for note in notes) == (turned != (1, 1))

@@ -9,8 +9,8 @@ it; `to_arrays.py` reads lists of numbers, `capture_file.py` a folder, with `cam
 them; `search.py` steps downhill, from `starts.py` and `restarts.py`; `fitting_maps.py` goes from
 coarse to fine. `through_renderer.py` refines the maps by Mitsuba's pictures of them, and
 `simulated_errors.py` says how certain they are. `svbrdf.py` runs these one after the other, as
-`asked.py` says; `open_numbers.py`, `misfit.py` and `notes.py` say what is left open, what is not
-explained, and what else one should know.
+`asked.py` says; `open_numbers.py`, `misfit.py`, `flatness.py` and `notes.py` say what is left
+open, what is not explained, and what else one should know.
 
 `result.py` is `Svbrdf`: `prediction.py` shows it under any light, `in_mitsuba.py` in a scene,
 `writing.py` makes files and a `report.py` of it.

@@ -31,7 +31,8 @@ def describe_misfit(misfit, noise, left, diffuse):
         said.append(
             f"What is left of the photographs, {100 * noise:.2g} % in the usual texel and "
             f"{100 * total:.3g} % in all, is more than noise: check the camera, the sample's size, "
-            "the places of the lights, and which way is up; or the model or the resolution does not suit."
+            "the places of the lights, and which way is up; or the model or the resolution does "
+            "not suit."
         )
     usual = np.median(list(left.values()))
     odd = [name for name, value in left.items() if value > max(OUTLIER * usual, NOISY)]

@@ -19,6 +19,7 @@ from brdfkit.photographs.asked import (
 from brdfkit.photographs.capture import Capture
 from brdfkit.photographs.capture_checks import require_shown
 from brdfkit.photographs.fitting_maps import fit_maps, standard_errors, usual_total
+from brdfkit.photographs.flatness import describe_normals
 from brdfkit.photographs.maps import Maps, errors_of
 from brdfkit.photographs.misfit import describe_misfit
 from brdfkit.photographs.notes import describe_capture
@@ -136,6 +137,7 @@ def svbrdf(
                 *notes,
                 *describe_open(numbers, fitted, len(taken.names)),
                 *describe_misfit(misfit, noise, left, float(np.median(diffuse))),
+                *(describe_normals(maps["normal"]) if told_apart else ()),
                 *describe_capture(taken, clipped, seen),
             ),
             seconds=time.perf_counter() - began,
