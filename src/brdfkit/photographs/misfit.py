@@ -5,7 +5,7 @@ import numpy as np
 from brdfkit.names import listed
 
 MISFIT = 3  # times the noise, from which a texel is not explained
-SHARE = 0.01  # of the texels, from which it is said
+SHARE = 0.03  # of the texels, from which it is said
 NOISY = 0.04  # a relative noise that cameras hardly have
 MOST = 0.5  # of the photographs, left by all texels: some are beside the sample
 OUTLIER = 2.5  # times what is left of the photographs in the median
