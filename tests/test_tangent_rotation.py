@@ -103,3 +103,27 @@ def test_derivatives_by_the_angle_are_those_of_differences(mi):
 def test_bad_parameters_are_one_sentence(mi, entries, said):
     with pytest.raises(RuntimeError, match=said):
         mi.load_dict({"type": "tangent_rotation", **entries})
+
+
+@pytest.mark.parametrize("nested", [WARD, {"type": "plastic"}], ids=["ward", "plastic"])
+def test_pictures_of_the_scalar_variant(mi, nested):
+    """As a process that crashed: bool of Python's, and Dr.Jit's replace_grad, are traps there."""
+    mi.set_variant("scalar_rgb")
+    try:
+
+        def picture(bsdf):
+            at = mi.ScalarTransform4f().look_at([1, -2, 2], [0, 0, 0], [0, 0, 1])
+            film = {"type": "hdrfilm", "width": 6, "height": 6, "rfilter": {"type": "box"}}
+            scene = {
+                "type": "scene",
+                "integrator": {"type": "path", "max_depth": 3},
+                "sensor": {"type": "perspective", "to_world": at, "film": film},
+                "sample": {"type": "rectangle", "bsdf": bsdf},
+                "light": {"type": "constant"},
+            }
+            return np.array(mi.render(mi.load_dict(scene), spp=4))
+
+        found = picture({"type": "tangent_rotation", "angle": 0.0, "bsdf": nested})
+        np.testing.assert_allclose(found, picture(nested), rtol=1e-4)
+    finally:
+        mi.set_variant("llvm_ad_rgb")

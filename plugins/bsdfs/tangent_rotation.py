@@ -36,8 +36,10 @@ def define(mi):
             inside, cosine, sine = self.turned(si, active)
             found, weight = self.bsdf.sample(ctx, inside, sample1, sample2, active)
             found.wo = dr.detach(turn(found.wo, cosine, sine))
+            if not dr.is_diff_v(mi.Float):  # Dr.Jit's replace_grad crashes with Python's numbers
+                return found, weight
             # the direction has no derivatives: where it stays, the material turns beneath it
-            smooth = active & (found.pdf > 0) & ~mi.has_flag(found.sampled_type, mi.BSDFFlags.Delta)
+            smooth = active & (found.pdf > 0) & mi.has_flag(found.sampled_type, mi.BSDFFlags.Smooth)
             value = self.bsdf.eval(ctx, inside, turn(found.wo, cosine, -sine), smooth)
             pdf = dr.select(smooth, dr.detach(found.pdf), 1)
             return found, dr.select(smooth, dr.replace_grad(weight, value / pdf), weight)
