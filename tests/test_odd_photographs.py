@@ -226,3 +226,17 @@ def test_normals_of_what_is_no_flat_sample_are_said(mi, turned):
     pictures = capture.pictures[:, :: turned[0], :: turned[1]]
     notes = fit(dataclasses.replace(capture, pictures=pictures), resolution=32).notes
     assert any("the sample is not flat" in note for note in notes) == (turned != (1, 1))
+
+
+def test_a_full_disk_is_one_sentence(mi, found, monkeypatch, tmp_path):
+    class Full:
+        def __init__(self, pixels):
+            pass
+
+        def write(self, path):
+            raise RuntimeError("[FileStream] no space left")
+
+    monkeypatch.setattr(mi, "Bitmap", Full)
+    with pytest.raises(bk.BrdfkitError, match="cannot be written"):
+        found.write(tmp_path)
+    assert not list(tmp_path.iterdir())

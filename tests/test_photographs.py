@@ -380,11 +380,15 @@ FILES = {
     "an origin and corners": (f"{NO_PLACE}\n{LIGHT}\ncamera = {BOTH}", "one of them is enough"),
     "corners that are crossed": (f"{NO_PLACE}\n{LIGHT}\ncamera = {CROSSED}", "upper left"),
     "three corners": (f"{NO_PLACE}\n{LIGHT}\ncamera = {{ corners = [[1, 2]] }}", "4 × 2"),
-    "corners that are one": (f"{NO_PLACE}\n{LIGHT}\ncamera = {{ corners = 1 }}", "upper left"),
+    "corners that are one": (f"{NO_PLACE}\n{LIGHT}\ncamera = {{ corners = 1 }}", "4 × 2"),
     "a camera that is no table": (f"{NO_PLACE}\n{LIGHT}\ncamera = 1", "should be a table"),
     "a misspelt entry": (f"{NO_PLACE}\n{LIGHT}\npower = 1", "[[light]] 1 has 'power'"),
     "8 bits": ('P\n[[light]]\npicture = "a.jpg"\nposition = "camera"', "8 bits"),
     "a picture that is missing": ('P\n[[light]]\npicture = "b.exr"\nposition = [0, 0, 1]', "b.exr"),
+    "a place of one number": ('P\n[[light]]\npicture = "a.exr"\nposition = 1', "3 numbers"),
+    "a picture that is named twice": (f"P\n{LIGHT}\n{LIGHT}", "a.exr is named twice"),
+    "a camera that looks along up": (f"P\nup = [0, 1e-9, 1]\n{LIGHT}", "looks along up"),
+    "a file of Notepad's": (f"\ufeffP\n{LIGHT}\npower = 1", "[[light]] 1 has 'power'"),
     "a place that is none": ('P\n[[light]]\npicture = "a.jpg"\nposition = [0, 1]', "position"),
 }
 

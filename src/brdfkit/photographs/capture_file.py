@@ -49,7 +49,7 @@ def _tables(folder, path):
     if not path.is_file():
         raise BrdfkitError(f"{folder}: there is no {NAME} in it, which says where the lights are.")
     try:
-        said = tomllib.loads(path.read_text(encoding="utf-8"))
+        said = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise BrdfkitError(f"{path}: it is no TOML ({error}).") from error
     require_known(path, said, ("sample", "camera", "light"), "the file")
@@ -66,6 +66,8 @@ def _lights(path, said):
         require_known(path, light, known, f"[[light]] {number}")
         if not isinstance(light.get("picture"), str):
             raise BrdfkitError(f"{path}: [[light]] {number} names no picture.")
+        if light["picture"] in (other["picture"] for other in lights[: number - 1]):
+            raise BrdfkitError(f"{path}: {light['picture']} is named twice; each has one light.")
     return lights
 
 
@@ -77,6 +79,7 @@ def _places(path, lights):
         flash = place == AT_CAMERA
         positions.append(None if flash else to_numbers(path, place, f"{name}: position", 3))
         power = light.get("intensity", 1.0)
+        power = power if isinstance(power, list) else [power] * 3
         intensities.append(to_numbers(path, power, f"{name}: intensity", 3))
     return positions, intensities
 

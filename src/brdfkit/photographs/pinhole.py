@@ -9,6 +9,8 @@ from brdfkit.photographs.to_arrays import to_array
 
 NEAREST, FARTHEST = 1e-2, 1e4  # what Mitsuba shows, in heights of the camera above the sample
 
+PARALLEL = 1e-5  # the sine of an angle in which Mitsuba sees none
+
 
 @dataclass(frozen=True, eq=False)
 class Pinhole:
@@ -42,9 +44,10 @@ class Pinhole:
         object.__setattr__(self, "fov", float(to_array("fov", self.fov, ())))
         if not 0 < self.fov < 180:
             raise BrdfkitError(f"fov = {self.fov:g} should be between 0 and 180 degrees.")
-        with np.errstate(invalid="ignore"):
-            if not np.isfinite(self.axes).all():
-                raise BrdfkitError("camera: it looks along up, or at where it is.")
+        away = self.target - self.origin
+        along = np.linalg.norm(away) * np.linalg.norm(self.up)
+        if not np.linalg.norm(np.cross(away, self.up)) > PARALLEL * along:
+            raise BrdfkitError("camera: it looks along up, or at where it is.")
 
     @property
     def axes(self):

@@ -14,16 +14,16 @@ def to_number(path, table, name, where):
 
 
 def to_numbers(path, value, what, shape):
-    """An array of a `shape`, of lists of numbers, or of one number for all."""
+    """An array of a `shape`, of lists of numbers."""
     shape = tuple(np.atleast_1d(shape))
     try:
-        found = np.asarray(value, float)
-    except (TypeError, ValueError):
-        found = np.array(np.nan)
-    if found.shape not in ((), shape) or not np.isfinite(found).all():
+        found = np.array(value)
+    except ValueError:
+        found = np.array("lists of different lengths")
+    if found.shape != shape or found.dtype.kind not in "if" or not np.isfinite(found).all():
         count = " × ".join(map(str, shape))
         raise BrdfkitError(f"{path}: {what} = {value!r} should be {count} numbers.")
-    return np.broadcast_to(found, shape).copy()
+    return found.astype(float)
 
 
 def require_known(path, table, known, where):

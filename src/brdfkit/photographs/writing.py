@@ -35,5 +35,8 @@ def _write(path, values):
 
     pixels = np.ascontiguousarray(np.atleast_3d(values), np.float32)
     with write_safely(path) as beside, two_threads():
-        mi.Bitmap(pixels).write(str(beside))
+        try:
+            mi.Bitmap(pixels).write(str(beside))
+        except RuntimeError as error:  # a full disk, for instance
+            raise OSError(str(error).splitlines()[0]) from error
     return path
