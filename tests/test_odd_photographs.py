@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.photographs import fitting_maps
+from brdfkit.photographs import coarse_to_fine
 from brdfkit.photographs.asked import to_numbers
 from brdfkit.photographs.in_mitsuba import scene_xml
 from brdfkit.photographs.open_numbers import describe_open
@@ -162,7 +162,7 @@ def test_fresnel_reflectances_of_sums_are_alike_everywhere():
 @pytest.mark.parametrize("finished", [0, 1, 2])
 def test_ctrl_c_of_maps_that_are_not_square(capture, monkeypatch, finished):
     """33 texels were made of 3, each 11 large, not 16, and the lower ones were missing."""
-    original, calls = fitting_maps.finish, []
+    original, calls = coarse_to_fine.finish, []
 
     def stop(*args):
         calls.append(args)
@@ -170,7 +170,7 @@ def test_ctrl_c_of_maps_that_are_not_square(capture, monkeypatch, finished):
             raise KeyboardInterrupt
         return original(*args)
 
-    monkeypatch.setattr(fitting_maps, "finish", stop)
+    monkeypatch.setattr(coarse_to_fine, "finish", stop)
     with pytest.raises(bk.Interrupted) as stopped:
         fit(dataclasses.replace(capture, size=(0.1, 0.09)), resolution=33)
     assert stopped.value.best.shape == (30, 33)

@@ -12,7 +12,7 @@ from scipy.ndimage import minimum_filter
 import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.jit.threads import two_threads
-from brdfkit.photographs import fitting_maps
+from brdfkit.photographs import coarse_to_fine
 from brdfkit.photographs.asked import to_numbers
 from brdfkit.photographs.camera_from_corners import camera_from_corners
 from brdfkit.photographs.in_mitsuba import bsdf_dict, scene_xml
@@ -188,7 +188,7 @@ def test_models_with_options_and_sums_can_be_shown(mi, made):
 
 
 def test_ctrl_c_keeps_the_coarser_maps(made, monkeypatch):
-    original, calls = fitting_maps.finish, []
+    original, calls = coarse_to_fine.finish, []
 
     def stop(*args):
         calls.append(args)
@@ -196,7 +196,7 @@ def test_ctrl_c_keeps_the_coarser_maps(made, monkeypatch):
             raise KeyboardInterrupt
         return original(*args)
 
-    monkeypatch.setattr(fitting_maps, "finish", stop)
+    monkeypatch.setattr(coarse_to_fine, "finish", stop)
     with pytest.raises(bk.Interrupted) as stopped:
         bk.svbrdf(made[1], resolution=TEXELS, smoothness=0.1)
     best = stopped.value.best

@@ -6,8 +6,9 @@ it; `to_arrays.py` reads lists of numbers, `capture_file.py` a folder, with `cam
 `observations.py` says what of them each texel shows.
 
 `numbers.py` are the numbers of a texel and how they make its radiances, `maps.py` those of all of
-them; `search.py` steps downhill, from `starts.py` and `restarts.py`; `fitting_maps.py` goes from
-coarse to fine. `through_renderer.py` refines the maps by Mitsuba's pictures of them, and
+them; `search.py` steps downhill, from `starts.py` and `restarts.py`; `coarse_to_fine.py` does so
+for ever smaller texels, drawn to each other by `strengths.py`, and `fitting_maps.py` as
+`held_out.py` finds best. `through_renderer.py` refines the maps by Mitsuba's pictures of them, and
 `simulated_errors.py` says how certain they are. `svbrdf.py` runs these one after the other, as
 `asked.py` says; `open_numbers.py`, `misfit.py`, `flatness.py` and `notes.py` say what is left
 open, what is not explained, and what else one should know.

@@ -14,13 +14,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from brdfkit.fitting.stopped import Stopped
-from brdfkit.photographs.fitting_maps import FittedMaps, strengths
+from brdfkit.photographs.fitting_maps import FittedMaps
 from brdfkit.photographs.in_mitsuba import sample_dict
 from brdfkit.photographs.maps import Maps
 from brdfkit.photographs.misfit import misfits
 from brdfkit.photographs.observations import DARK, gathered
 from brdfkit.photographs.prediction import radiances
 from brdfkit.photographs.search import equations, search_together
+from brdfkit.photographs.strengths import strengths
 
 SAMPLES = 16  # per pixel, evenly spread
 EVENLY = {"sampler": {"type": "multijitter", "sample_count": SAMPLES}}
@@ -88,8 +89,7 @@ def rendered(numbers, fitted, seen, capture, report=lambda: None):
 
 def relative(capture, off):
     """What differs from the photographs, (n,), relative to them, of the numbers that count."""
-    scale = np.maximum(capture.pictures, 0) + DARK * capture.pictures.mean()
-    return (off / scale)[capture.counted]
+    return (off / _scale(capture))[capture.counted]
 
 
 def pictures_of(maps, capture, report=lambda: None):
@@ -119,8 +119,7 @@ def pictures_of(maps, capture, report=lambda: None):
 
 def left_of(capture, pictures):
     """Name of each photograph → the RMS relative difference of its picture."""
-    scale = np.maximum(capture.pictures, 0) + DARK * capture.pictures.mean()
-    off = ((pictures - capture.pictures) / scale) ** 2
+    off = ((pictures - capture.pictures) / _scale(capture)) ** 2
     parts = zip(capture.names, off, capture.counted, strict=True)
     return {name: float(np.sqrt(one[counts].mean())) for name, one, counts in parts}
 
@@ -134,3 +133,8 @@ def decibels(capture, pictures):
         error = ((picture - photograph)[counts] ** 2).mean()
         found[name] = float(10 * np.log10(max(white, 1e-150) ** 2 / max(error, 1e-300)))
     return found
+
+
+def _scale(capture):
+    """What differences are relative to (lights, height, width, 3)."""
+    return np.maximum(capture.pictures, 0) + DARK * capture.pictures.mean()
