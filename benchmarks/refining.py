@@ -15,6 +15,7 @@ import numpy as np
 import brdfkit as bk
 from brdfkit.jit.llvm import use_variant
 from brdfkit.model import labels
+from brdfkit.refining.derivatives import derivatives, tangents
 from brdfkit.refining.equations import Equations, Residuals
 from brdfkit.refining.subject import integrator_of, load_subject
 from brdfkit.refining.targets import read_targets
@@ -102,8 +103,8 @@ def gradients():
     for model, truth in TRUTHS.items():
         views = views_of(model, truth, picture(corner(bsdf(model, truth)), 256))
         x, shares = views.start, {}
-        found = views.derivatives(x, spp, 3)
-        for group in views.tangents:
+        found = derivatives(views, x, spp, 3)
+        for group in tangents(views):
             moved = np.zeros(len(x))
             moved[group] = step
             ends = [views.residuals(x + sign * moved, spp, 3) for sign in (1, -1)]
@@ -129,11 +130,11 @@ def steps():
             Equations.at(views, here, 8)
             times.append(time.perf_counter())
             seconds.append(np.diff(times))
-        one, trial, derivatives = np.min(seconds[1:], axis=0)
-        tangents = len(list(views.tangents))
+        one, trial, slopes = np.min(seconds[1:], axis=0)
+        searched = len(list(tangents(views)))
         print(
-            f"{model:18} {(trial + derivatives) / one:.2f}  ({tangents} derivatives "
-            f"{derivatives / one:.2f}, trial {trial / one:.2f}; a picture {one:.2f} s)",
+            f"{model:18} {(trial + slopes) / one:.2f}  ({searched} derivatives "
+            f"{slopes / one:.2f}, trial {trial / one:.2f}; a picture {one:.2f} s)",
             flush=True,
         )
 
