@@ -44,6 +44,12 @@ def module_in_llvm():
         mi.set_variant(before)
 
 
+@pytest.fixture(scope="module")
+def mi(module_in_llvm):
+    """The same, by Mitsuba's usual name."""
+    return module_in_llvm
+
+
 _before = []  # the variant before the first of several tests that ask for `variant`
 
 

@@ -21,15 +21,6 @@ TEXELS = 16
 
 
 @pytest.fixture(scope="module")
-def mi():
-    import mitsuba
-
-    bk.models()
-    mitsuba.set_variant("llvm_ad_rgb")
-    return mitsuba
-
-
-@pytest.fixture(scope="module")
 def capture(mi):
     return made_capture.photographs(TEXELS, 8, pixels=32)[1]
 

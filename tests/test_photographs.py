@@ -29,15 +29,6 @@ TEXELS, LIGHTS = 32, 16
 
 
 @pytest.fixture(scope="module")
-def mi():
-    import mitsuba
-
-    bk.models()
-    mitsuba.set_variant("llvm_ad_rgb")
-    return mitsuba
-
-
-@pytest.fixture(scope="module")
 def made(mi):
     return made_capture.photographs(TEXELS, LIGHTS)
 
@@ -379,6 +370,10 @@ FILES = {
     "no origin": (f"{NO_PLACE}\n{LIGHT}", "origin"),
     "an origin and corners": (f"{NO_PLACE}\n{LIGHT}\ncamera = {BOTH}", "one of them is enough"),
     "corners that are crossed": (f"{NO_PLACE}\n{LIGHT}\ncamera = {CROSSED}", "upper left"),
+    "corners without an angle": (
+        f"{NO_PLACE.replace('60', '0')}\n{LIGHT}\ncamera = {CROSSED}",
+        "fov = 0 should be between 0 and 180",
+    ),
     "three corners": (f"{NO_PLACE}\n{LIGHT}\ncamera = {{ corners = [[1, 2]] }}", "4 × 2"),
     "corners that are one": (f"{NO_PLACE}\n{LIGHT}\ncamera = {{ corners = 1 }}", "4 × 2"),
     "a camera that is no table": (f"{NO_PLACE}\n{LIGHT}\ncamera = 1", "should be a table"),

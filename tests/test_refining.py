@@ -34,15 +34,6 @@ from brdfkit.rendering.scenes.ball import ball
 
 
 @pytest.fixture(scope="module")
-def mi():
-    import mitsuba
-
-    bk.models()
-    mitsuba.set_variant("llvm_ad_rgb")
-    return mitsuba
-
-
-@pytest.fixture(scope="module")
 def picture(mi):
     """The scene at the truth, with noise of 1 %."""
     clean = np.array(mi.render(mi.load_dict(corner(mi, TRUTH)), spp=2048, seed=5))

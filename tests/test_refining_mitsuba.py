@@ -28,15 +28,6 @@ METAL = {
 }
 
 
-@pytest.fixture(scope="module")
-def mi():
-    import mitsuba
-
-    bk.models()
-    mitsuba.set_variant("llvm_ad_rgb")
-    return mitsuba
-
-
 def with_bsdf(mi, bsdf, **more):
     scene = corner(mi, TRUTH, size=12)
     scene["ball"]["bsdf"] = bsdf

@@ -22,15 +22,6 @@ TRUTH = np.repeat(TRUTH, 4, axis=0)
 LIGHT = 0.5 + np.random.default_rng(2).random((4, 8, 3))
 
 
-@pytest.fixture(scope="module")
-def mi():
-    import mitsuba
-
-    bk.models()
-    mitsuba.set_variant("llvm_ad_rgb")
-    return mitsuba
-
-
 def scene(mi, texture, light=LIGHT, kind=np.float32):
     """A floor with a texture, seen from above."""
     return {

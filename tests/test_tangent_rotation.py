@@ -4,20 +4,9 @@ import drjit as dr
 import numpy as np
 import pytest
 
-import brdfkit as bk
-
 WARD = {"type": "ward", "alpha_u": 0.4, "alpha_v": 0.1, "specular_reflectance": 0.5}
 ROUGH = {"type": "roughconductor", "alpha_u": 0.4, "alpha_v": 0.15}
 ANGLE = 0.7
-
-
-@pytest.fixture(scope="module")
-def mi():
-    import mitsuba
-
-    bk.models()
-    mitsuba.set_variant("llvm_ad_rgb")
-    return mitsuba
 
 
 def directions(count, seed):

@@ -37,7 +37,7 @@ from brdfkit.errors import Interrupted
 )
 @click.option(
     "--smoothness",
-    type=click.FloatRange(min=0.003),
+    type=float,  # its bound is that of the library
     metavar="X",
     help="How much neighbours may differ: less is smoother. Default: by lights held out.",
 )

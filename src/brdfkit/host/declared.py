@@ -140,11 +140,7 @@ def texture(default, meaning):
 
         if isinstance(value, mi.Texture):
             return value
-        if (
-            isinstance(value, bool)
-            or not isinstance(value, int | float)
-            or not math.isfinite(value)
-        ):
+        if not (_is_number(value) and math.isfinite(value)):
             raise ValueError("a texture or a number")
         return mi.load_dict({"type": "uniform", "value": float(value)}, parallel=False)
 
@@ -178,7 +174,7 @@ def volume(default, meaning, coloured=True, least=0.0):
             return value
         if coloured and is_colour(value):
             return volume_of_colour(value)
-        if isinstance(value, bool) or not isinstance(value, int | float):
+        if not _is_number(value):
             constant = "a number or a colour" if coloured else "or a number"
             raise ValueError(f"a volume, such as a gridvolume, {constant}")
         _require_within(value, (least, math.inf))
@@ -229,11 +225,15 @@ def declared(base, parameters):
     return Declared
 
 
+def _is_number(value):
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
 def _require_within(value, bounds):
     low, high = bounds
-    number = float(value) if isinstance(value, int | float) else math.nan
+    number = float(value) if _is_number(value) else math.nan
     # "not <=" refuses NaN as well
-    if isinstance(value, bool) or not low <= number <= high or math.isinf(number):
+    if not low <= number <= high or math.isinf(number):
         limits = f"at least {low:g}" if math.isinf(high) else f"between {low:g} and {high:g}"
         raise ValueError(f"a number {limits}")
 

@@ -9,7 +9,7 @@ from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.photographs.pinhole import Pinhole
+from brdfkit.photographs.pinhole import Pinhole, require_fov
 
 MOST_OFF = 0.01  # of the picture's width, by which corners may be beside where they should be
 
@@ -20,6 +20,7 @@ def camera_from_corners(places, corners, picture_size, fov):
 
     Raises `BrdfkitError` where there is none.
     """
+    require_fov(fov)
     width, _ = picture_size
     start = _by_homography(_slopes(places, picture_size, fov), corners)
 

@@ -10,7 +10,7 @@ PLACE = "origin", "corners"  # what says where a camera was, one or the other
 
 
 def cameras_of_file(path, said, size, picture_size):
-    """A `Pinhole` for all lights, or a tuple of one for each, of the tables of a file.
+    """The `Pinhole` of each light, a tuple, of the tables of a file.
 
     `said`: the file's tables; `size` of the sample [m]; `picture_size` (width, height) [pixels].
     A light's own table `camera` adds to the file's, or replaces its place.
@@ -18,7 +18,7 @@ def cameras_of_file(path, said, size, picture_size):
     common, lights = said.get("camera", {}), said["light"]
     require_known(path, common, KNOWN, "[camera]")
     if not any("camera" in light for light in lights):
-        return _camera(path, common, "[camera]", size, picture_size)
+        return (_camera(path, common, "[camera]", size, picture_size),) * len(lights)
     cameras = []
     for light in lights:
         own, where = light.get("camera", {}), f"{light['picture']}: camera"
@@ -31,8 +31,6 @@ def cameras_of_file(path, said, size, picture_size):
 
 def _camera(path, table, where, size, picture_size):
     fov = to_number(path, table, "fov", where)
-    if not 0 < fov < 180:
-        raise BrdfkitError(f"{path}: {where} fov = {fov:g} should be between 0 and 180 degrees.")
     if "corners" in table:
         return _by_corners(path, table, where, size, picture_size, fov)
     vectors = [

@@ -33,13 +33,12 @@ def load_capture(folder, linearise=False):
     positions, intensities = _places(path, lights)
     names = tuple(light["picture"] for light in lights)
     pictures = _pictures(folder, names, linearise)
-    camera = cameras_of_file(path, said, size, pictures.shape[2:0:-1])
-    cameras = camera if isinstance(camera, tuple) else (camera,) * len(lights)
+    cameras = cameras_of_file(path, said, size, pictures.shape[2:0:-1])
     positions = [
         own.origin if place is None else place
         for own, place in zip(cameras, positions, strict=True)
     ]
-    return Capture(pictures, np.array(positions), np.array(intensities), camera, size, names)
+    return Capture(pictures, np.array(positions), np.array(intensities), cameras, size, names)
 
 
 def _tables(folder, path):

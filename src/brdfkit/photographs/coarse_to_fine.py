@@ -44,10 +44,8 @@ def settled(numbers, x, seen, noise, report):
     for _ in range(SEARCHES):
         strength = strengths(numbers, x, seen, noise, USUAL)
         x = search_together(numbers, x, seen, strength, report=report)
-        before, noise = (
-            noise,
-            noise_of(numbers, equations(numbers, x, seen, slopes=False).error, seen),
-        )
+        before = noise
+        noise = noise_of(numbers, equations(numbers, x, seen, slopes=False).error, seen)
         if noise > SETTLED * before:
             break
     return x, noise

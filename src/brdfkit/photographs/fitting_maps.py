@@ -80,7 +80,7 @@ def standard_errors(numbers, fitted, seen):
     open, they do so in the neighbours, too: there each has its limits or its unit in their place.
     """
     noise, own = fitted.noise, fitted.about.hessian
-    unit = np.diag(noise / ranges(numbers, fitted.x, seen) ** 2)
+    unit = np.diag(noise / ranges(numbers, own, seen) ** 2)
     together = own + 4 * np.diag(fitted.strength * are_seen(own)) + unit
     matrix = np.where(is_open(own)[:, None, None], own + unit, together)
     variance = np.diagonal(np.linalg.inv(matrix), axis1=1, axis2=2)
@@ -89,9 +89,9 @@ def standard_errors(numbers, fitted, seen):
     return np.sqrt(np.maximum(variance, 0) * noise[:, None])
 
 
-def ranges(numbers, x, seen):
+def ranges(numbers, hessian, seen):
     """How far (count,) each number may be from where it is, at most, about."""
-    found, (low, high) = units_of(numbers, x, seen), numbers.limits()
+    found, (low, high) = units_of(numbers, hessian, seen), numbers.limits()
     limited = np.isfinite(high - low)
     found[limited] = (high - low)[limited] / 2
     return found

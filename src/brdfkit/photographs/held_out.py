@@ -19,7 +19,7 @@ def held_out_errors(numbers, seen, noise, report):
     held = lights[1 :: max(2, len(lights) // 3)]
     taught, asked = part.under(np.setdiff1d(lights, held)), part.under(held)
     *_, (start, _, _) = coarse_to_fine(numbers, taught, report)
-    units, found = units_of(numbers, start, taught), {}
+    units, found = units_of(numbers, equations(numbers, start, taught).hessian, taught), {}
     for tau in TAUS:
         x = finish(numbers, start, taught, noise / (tau * units) ** 2, noise, report)
         left = equations(numbers, x, asked, slopes=False).error

@@ -17,9 +17,8 @@ def describe_open(numbers, fitted, lights):
         said.append("One light: roughness and strength trade off here, and the normal with both.")
     hessian = fitted.about.hessian
     hessian = hessian[np.diagonal(hessian, axis1=1, axis2=2).any(axis=1)]  # none at the edge
-    kept = np.flatnonzero(are_seen(hessian))
-    hessian = hessian[:, kept[:, None], kept]
-    values, vectors = np.linalg.eigh(_scaled(hessian))
+    kept, scaled = _of_seen(hessian)
+    values, vectors = np.linalg.eigh(scaled)
     left_open = values[:, 0] < OPEN
     if left_open.mean() < SHARE:
         return tuple(said)
@@ -47,15 +46,15 @@ def are_seen(hessian):
 
 def is_open(hessian):
     """Which texels (n,) leave a combination of numbers open, by Hessians (n, count, count)."""
+    return np.linalg.eigvalsh(_of_seen(hessian)[1])[:, 0] < OPEN
+
+
+def _of_seen(hessian):
+    """(the numbers that `are_seen`, Hessians of these, of unit diagonal)."""
     kept = np.flatnonzero(are_seen(hessian))
     hessian = hessian[:, kept[:, None], kept]
-    return np.linalg.eigvalsh(_scaled(hessian))[:, 0] < OPEN
-
-
-def _scaled(hessian):
-    """Hessians of unit diagonal."""
     scale = 1 / np.sqrt(np.maximum(np.diagonal(hessian, axis1=1, axis2=2), 1e-300))
-    return hessian * scale[:, :, None] * scale[:, None, :]
+    return kept, hessian * scale[:, :, None] * scale[:, None, :]
 
 
 def _names(numbers):

@@ -8,7 +8,6 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.photographs.to_arrays import to_array
 
 NEAREST, FARTHEST = 1e-2, 1e4  # what Mitsuba shows, in heights of the camera above the sample
-
 PARALLEL = 1e-5  # the sine of an angle in which Mitsuba sees none
 
 
@@ -42,8 +41,7 @@ class Pinhole:
         for name in ("origin", "target", "up"):
             object.__setattr__(self, name, to_array(name, getattr(self, name), (3,)))
         object.__setattr__(self, "fov", float(to_array("fov", self.fov, ())))
-        if not 0 < self.fov < 180:
-            raise BrdfkitError(f"fov = {self.fov:g} should be between 0 and 180 degrees.")
+        require_fov(self.fov)
         away = self.target - self.origin
         along = np.linalg.norm(away) * np.linalg.norm(self.up)
         if not np.linalg.norm(np.cross(away, self.up)) > PARALLEL * along:
@@ -110,6 +108,12 @@ class Pinhole:
                 "rfilter": {"type": "box"},
             },
         }
+
+
+def require_fov(fov):
+    """Raise `BrdfkitError` for what is no angle of a camera."""
+    if not 0 < fov < 180:
+        raise BrdfkitError(f"fov = {fov:g} should be between 0 and 180 degrees.")
 
 
 def corners_of(size):

@@ -13,7 +13,7 @@ from scipy.ndimage import uniform_filter
 
 from brdfkit.photographs.fitting_maps import standard_errors
 from brdfkit.photographs.observations import gathered
-from brdfkit.photographs.search import search_together
+from brdfkit.photographs.search import equations, search_together
 from brdfkit.photographs.through_renderer import STEPS, one_round, rendered
 
 AROUND = 9  # texels along a side, over which a simulated error is the mean
@@ -31,7 +31,7 @@ def simulated_errors(numbers, there, rounds, seen, capture, report=lambda: None)
     other = replace(capture, pictures=pictures, lost=capture.left_out)
     target = replace(seen, radiance=gathered(other, pictures, seen.shape))
     x = search_together(numbers, fitted.x.copy(), target, fitted.strength, STEPS, report)
-    again = replace(fitted, x=x)
+    again = replace(fitted, x=x, about=equations(numbers, x, target))
     for done in range(rounds):
         start = rendered(numbers, again, seen, other, report)
         again = one_round(numbers, start, done == 0, seen, other, report)

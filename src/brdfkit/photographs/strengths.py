@@ -15,14 +15,16 @@ def noise_of(numbers, errors, seen):
 
 
 def strengths(numbers, x, seen, noise, tau):
-    """σ² / τ² (count,) of each number, in its unit."""
-    return noise / (tau * units_of(numbers, x, seen)) ** 2
+    """σ² / τ² (count,) of each number, in its unit about the rows `x`."""
+    return noise / (tau * units_of(numbers, equations(numbers, x, seen).hessian, seen)) ** 2
 
 
-def units_of(numbers, x, seen):
-    """The units (count,) of differences. That of a weight is the one by which its lobe alone would
-    be as bright as what is seen: not the weight so far, as one that is near 0 would rest there."""
-    hessian = equations(numbers, x, seen).hessian
+def units_of(numbers, hessian, seen):
+    """The units (count,) of differences, by the texels' Hessians.
+
+    That of a weight is the one by which its lobe alone would be as bright as what is seen: not the
+    weight so far, as one that is near 0 would rest there.
+    """
     of_weights = slice(0, numbers.shapes.start)
     brightness = np.diagonal(hessian, axis1=1, axis2=2)[:, of_weights]
     counted = (seen.weights > 0).sum(axis=(0, 2))[:, None] / CHANNELS

@@ -21,7 +21,7 @@ from brdfkit.photographs.misfit import misfits
 from brdfkit.photographs.observations import DARK, gathered
 from brdfkit.photographs.prediction import radiances
 from brdfkit.photographs.search import equations, search_together
-from brdfkit.photographs.strengths import strengths
+from brdfkit.photographs.strengths import units_of
 
 SAMPLES = 16  # per pixel, evenly spread
 EVENLY = {"sampler": {"type": "multijitter", "sample_count": SAMPLES}}
@@ -68,7 +68,8 @@ def one_round(numbers, there, first, seen, capture, report):
         misfit = np.maximum(misfits_of(beyond, fitted.noise, seen), 1)
         beyond *= (1 - 1 / misfit**2)[:, None]  # [Wiener 1949]
     target = replace(seen, radiance=radiances(numbers, fitted.x, seen) + beyond)
-    strength = strengths(numbers, fitted.x, target, fitted.noise, fitted.tau)
+    units = units_of(numbers, fitted.about.hessian, seen)  # radiances do not change it
+    strength = fitted.noise / (fitted.tau * units) ** 2
     x = search_together(numbers, fitted.x.copy(), target, strength, STEPS, report)
     about = equations(numbers, x, target)
     return replace(fitted, x=x, about=about, strength=strength)
@@ -83,13 +84,14 @@ def rendered(numbers, fitted, seen, capture, report=lambda: None):
     """The `Rendered` of `FittedMaps`."""
     maps = Maps.of(numbers, fitted.x, seen.shape, capture.size)
     pictures = pictures_of(maps, capture, report)
-    off = relative(capture, capture.pictures - pictures)
+    off = differences(capture, pictures)[capture.counted]
     return Rendered(fitted, pictures, float(np.sqrt((off**2).mean())))
 
 
-def relative(capture, off):
-    """What differs from the photographs, (n,), relative to them, of the numbers that count."""
-    return (off / _scale(capture))[capture.counted]
+def differences(capture, pictures):
+    """How pictures differ from the photographs (lights, height, width, 3), relative to these."""
+    scale = np.maximum(capture.pictures, 0) + DARK * capture.pictures.mean()
+    return (pictures - capture.pictures) / scale
 
 
 def pictures_of(maps, capture, report=lambda: None):
@@ -119,9 +121,8 @@ def pictures_of(maps, capture, report=lambda: None):
 
 def left_of(capture, pictures):
     """Name of each photograph → the RMS relative difference of its picture."""
-    off = ((pictures - capture.pictures) / _scale(capture)) ** 2
-    parts = zip(capture.names, off, capture.counted, strict=True)
-    return {name: float(np.sqrt(one[counts].mean())) for name, one, counts in parts}
+    parts = zip(capture.names, differences(capture, pictures), capture.counted, strict=True)
+    return {name: float(np.sqrt((off[counts] ** 2).mean())) for name, off, counts in parts}
 
 
 def decibels(capture, pictures):
@@ -133,8 +134,3 @@ def decibels(capture, pictures):
         error = ((picture - photograph)[counts] ** 2).mean()
         found[name] = float(10 * np.log10(max(white, 1e-150) ** 2 / max(error, 1e-300)))
     return found
-
-
-def _scale(capture):
-    """What differences are relative to (lights, height, width, 3)."""
-    return np.maximum(capture.pictures, 0) + DARK * capture.pictures.mean()

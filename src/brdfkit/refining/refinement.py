@@ -11,7 +11,7 @@ from brdfkit.documents.parts import BAD, SOFT
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit
 from brdfkit.fitting.certainty import Certainty, intervals
-from brdfkit.refining.targets import WHITE
+from brdfkit.refining.targets import white_of
 from brdfkit.rendering.montage import TILE
 from brdfkit.rendering.result import WIDEST, Rendering
 
@@ -152,7 +152,7 @@ class Refinement(Shown):
             )
         reached, found = self.reached[sensor], self.pictures[sensor]
         seen = np.asarray(np.isfinite(reached).all(axis=2))
-        white = np.quantile(reached[seen], WHITE) or reached[seen].max()
+        white = white_of(reached[seen])
         shown = {
             name: np.where(seen[..., None], picture / white, 0) * np.ones(3, np.float32)
             for name, picture in (("given", reached), ("found", found))

@@ -104,11 +104,16 @@ def _weights(pixels, seen):
 
     The curve itself would bias what is rendered with noise; its slope at the picture does not.
     """
-    white = np.quantile(pixels[seen], WHITE) or pixels.max()
+    white = white_of(pixels[seen])
     x = (_neighbourhood(pixels, seen) + DARK * pixels[seen].mean()) / white
     shown = np.minimum(x, 1)
     slope = np.where(shown <= 0.0031308, 12.92, 1.055 / 2.4 * shown ** (1 / 2.4 - 1))
     return (slope / (white * np.maximum(x, 1))) ** 2
+
+
+def white_of(pixels):
+    """What is white among the `pixels` that are seen: the largest, where nearly all are black."""
+    return np.quantile(pixels, WHITE) or pixels.max()
 
 
 def _neighbourhood(pixels, seen):

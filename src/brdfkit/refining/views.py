@@ -68,7 +68,11 @@ class Views:
         return self._limits(1)
 
     def _limits(self, end):
-        return np.concatenate([np.full(len(u.start), u.limits[end]) for u in self.unknowns])
+        return self._of_each(unknown.limits[end] for unknown in self.unknowns)
+
+    def _of_each(self, values):
+        """Those of the unknowns, as of each of their numbers (n,)."""
+        return np.repeat(list(values), [len(unknown.start) for unknown in self.unknowns])
 
     @property
     def names(self):
@@ -78,24 +82,22 @@ class Views:
     @property
     def linear(self):
         """Whether (n,) pictures of direct light are linear in a number."""
-        return np.concatenate([np.full(len(u.start), u.linear) for u in self.unknowns])
+        return self._of_each(unknown.linear for unknown in self.unknowns)
 
     @property
     def wrongly(self):
         """Whether (n,) Mitsuba's derivatives by a number are wrong."""
-        return np.repeat([u.wrongly for u in self.unknowns], [len(u.start) for u in self.unknowns])
+        return self._of_each(unknown.wrongly for unknown in self.unknowns)
 
     @property
     def endless(self):
         """Whether (n,) a number is a weight of a model, of which there is no largest."""
-        known = [bool(u.model) and u.linear and not u.bounded for u in self.unknowns]
-        return np.repeat(known, [len(u.start) for u in self.unknowns])
+        return self._of_each(bool(u.model) and u.linear and not u.bounded for u in self.unknowns)
 
     @property
     def curved(self):
         """Whether (n,) a number lies between two bounds, and pictures are not linear in it."""
-        bounded = np.concatenate([np.full(len(u.start), u.bounded) for u in self.unknowns])
-        return bounded & ~self.linear
+        return self._of_each(unknown.bounded and not unknown.linear for unknown in self.unknowns)
 
     def residuals(self, x, spp, seed):
         """Rendered less reached pixels (pixels, channels), by `spp` samples of a `seed`."""
