@@ -5,10 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.geometry.directions import from_angles, to_angles
+from brdfkit.measured.albedos import albedo_at
 
 DEGREES = np.arange(0, 90, 5)  # angles of incidence
-# Half vectors of the quadrature: polar angles, spaced as in a table, and azimuths
-N_THETA, N_PHI = 180, 72
 AZIMUTHS = 8  # azimuths of incidence of an anisotropic material
 LEAST_AREA = 0.75  # share of the disc of directions that samples must cover for their albedo
 
@@ -31,42 +30,15 @@ class Albedo:
 
 
 def albedo(data, measured_to):
-    """The `Albedo` of a `Measured`, ∫ f cos θo dωo, whose largest measured θi is `measured_to`.
-
-    The integral is over half vectors, dωo = 4 (wi·h) dωh, spaced as in a table. Few are enough
-    there, whereas `brdfkit.albedo`, which takes any BRDF, refines for seconds. The sum is divided
-    by that of f = 1/π, so that a Lambertian surface gets exactly its reflectance.
-    """
+    """The `Albedo` of a `Measured`, ∫ f cos θo dωo, whose largest measured θi is `measured_to`."""
     azimuths = np.arange(AZIMUTHS) / AZIMUTHS * 2 * np.pi if data.anisotropic else (0.0,)
     values = np.array(
         [
-            [_albedo_at(data, from_angles(theta, phi)) for phi in azimuths]
+            [albedo_at(data, from_angles(theta, phi)) for phi in azimuths]
             for theta in np.radians(DEGREES)
         ]
     )
     return Albedo(data.channels, DEGREES, values.mean(axis=1), measured_to, values.max(axis=1))
-
-
-def _albedo_at(data, wi):
-    """The albedo (channels,) of light from `wi`, (3,)."""
-    wo, weight = _quadrature(wi)
-    values = data.eval(np.broadcast_to(wi, wo.shape), wo)
-    return weight @ values * np.pi / weight.sum()
-
-
-def _quadrature(wi):
-    """Directions (n, 3) above the surface and their weights cos θo dωo, up to a factor."""
-    # half vectors; dense around the normal
-    x = (np.arange(N_THETA) + 0.5) / N_THETA
-    theta, phi = x**2 * np.pi / 2, (np.arange(N_PHI) + 0.5) / N_PHI * 2 * np.pi
-    h = from_angles(*np.meshgrid(theta, phi, indexing="ij")).reshape(-1, 3)
-    d_omega = np.repeat(x * np.sin(theta), N_PHI)
-
-    # the directions that they reflect `wi` to
-    cosine = h @ wi
-    wo = 2 * cosine[:, None] * h - wi
-    above = (cosine > 0) & (wo[:, 2] > 0)
-    return wo[above], (cosine * d_omega * wo[:, 2])[above]
 
 
 def albedo_of_samples(data):

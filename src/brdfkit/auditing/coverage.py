@@ -83,7 +83,6 @@ def _table_pairs(data, low, high):
     dωi dωo = 4 cos θd dωh dωd [Rusinkiewicz 1998].
     """
     table = data.table
-    theta_h, theta_d, _ = np.meshgrid(*table.centres[-3:], indexing="ij", sparse=True)
-    size = table.theta_h_widths * np.sin(theta_h) * np.sin(theta_d) * np.cos(theta_d)
+    size = table.extents[..., 1:]  # solid angle
     weight = np.broadcast_to(size, table.shape).reshape(-1) * (low > 0)
     return low, high, weight, data.samples.valid

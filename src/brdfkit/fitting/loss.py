@@ -1,11 +1,13 @@
 """`Loss`: the error E that a fit minimises.
 
-    E² = Σ_n w_n Σ_c d(M_nc, R_nc, cosθ_i, cosθ_o)² / N
+    E² = ∫ mean_c d(M_c, R_c, cosθ_i, cosθ_o)² dμ / ∫ dμ ≈ Σ_n w_n mean_c d_nc² / Σ_n w_n
 
-R is the measured BRDF and M the model's, at sample n in channel c. d is their difference, that of
-the values times a product of cosines, or of a function of it, which decides how much dark values
-count beside bright ones. w is the sample's weight, and N normalises. Samples with an angle beyond
-80° are left out, where measurements are least reliable [Ngan et al. 2005].
+R is the measured BRDF and M the model's, in channel c. d is their difference, that of the values
+times a product of cosines, or of a function of it, which decides how much dark values count beside
+bright ones. μ is a measure of pairs of directions, which decides how much a highlight counts beside
+all else; w_n is how much of it sample n stands for (`samples/measures.py`), so that E belongs to the
+material and not to the file. Samples with an angle beyond 80° are left out, where measurements are
+least reliable [Ngan et al. 2005].
 """
 
 from collections.abc import Callable
@@ -17,10 +19,11 @@ import drjit as dr
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.errors import BrdfkitError
+from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.fitting.derivative import differentiate
 from brdfkit.jit.threads import in_turn
 from brdfkit.model import double_precision
+from brdfkit.samples.measures import MEASURES, weigh
 
 
 @dataclass(frozen=True)
@@ -37,8 +40,14 @@ class Loss:
         The difference of a model's value from the measured one, both f [sr⁻¹]: called with the
         arrays (model, measured, cos_i, cos_o) of Dr.Jit's, the last two cosines of the angles to
         the normal, and written with Dr.Jit's functions, as ``dr.log``.
+    measure : {"balanced", "angles", "solid_angle", "samples"}, default "balanced"
+        The measure of pairs of directions over which E² is a mean: ``"angles"`` counts evenly over
+        the half and difference angles θ_h, θ_d, φ_d, where highlights are large;
+        ``"solid_angle"`` over the directions ω_i and ω_o, where they are small; ``"balanced"`` is
+        the geometric mean of the two. By ``"samples"`` each sample counts as one, whatever it
+        stands for.
     weights : callable, optional
-        The weights (n,) of samples by NumPy's cosines cos_i (n,); by default all weigh the same.
+        Factors (n,) of the samples by NumPy's cosines cos_i (n,); by default 1.
     channel_mean : bool, default True
         Whether E² is a mean over the channels, or else their sum.
 
@@ -53,8 +62,13 @@ class Loss:
     name: str
     meaning: str
     difference: Callable[..., Any]
+    measure: str = "balanced"
     weights: Callable[[NDArray[np.float64]], NDArray[np.float64]] = np.ones_like
     channel_mean: bool = True
+
+    def __post_init__(self) -> None:
+        if self.measure not in MEASURES:
+            raise no_such("measure of directions", self.measure, MEASURES)
 
     @cached_property
     def linear(self) -> bool:
@@ -70,6 +84,7 @@ class Loss:
     def importance(self, samples: Any) -> NDArray[np.float64]:
         """w (n,) of `Samples`, with how much each sample counts, so that Σ_n is a mean."""
         weights = self._weigh(samples.wi[:, 2]) * samples.weight
+        weights = weights * weigh(samples.extents, self.measure)
         total = weights.sum() * (samples.values.shape[1] if self.channel_mean else 1)
         return weights / total if total else weights
 

@@ -33,6 +33,10 @@ def _difference_of(g, cosines):
     return difference
 
 
+def _difference_times_cosine(model, measured, cos_i, cos_o):
+    return cos_i * (model - measured)
+
+
 def _relative(model, measured, cos_i, cos_o):
     return (model - measured) / (dr.maximum(measured, 0) + OFFSET)
 
@@ -73,10 +77,9 @@ losses = Losses(
     for loss in (
         Loss(
             name="cosine",
-            meaning="cosine-weighted L2, w = sin θ_i, channels summed [Kurt 2007, eq. 5.13]",
-            difference=lambda model, measured, cos_i, cos_o: cos_i * (model - measured),
-            weights=_sine,
-            channel_mean=False,
+            meaning="RMS difference of f cos θ_i by solid angle: the light that is reflected",
+            difference=_difference_times_cosine,
+            measure="solid_angle",
         ),
         Loss(
             name="log",
@@ -84,6 +87,7 @@ losses = Losses(
             difference=_difference_of(
                 lambda x: dr.log(x + OFFSET), lambda cos_i, cos_o: cos_i * cos_o
             ),
+            measure="angles",
         ),
         Loss(
             name="cbrt",
@@ -96,16 +100,28 @@ losses = Losses(
             name="plain",
             meaning="RMS difference of f: what is bright counts",
             difference=lambda model, measured, cos_i, cos_o: model - measured,
+            measure="solid_angle",
         ),
         Loss(
             name="lafortune",
             meaning="RMS difference of f cos θ_i cos θ_o [Lafortune et al. 1997]",
             difference=lambda model, measured, cos_i, cos_o: cos_i * cos_o * (model - measured),
+            measure="solid_angle",
         ),
         Loss(
             name="relative",
             meaning="RMS difference of f as a share of the measured f + 0.001: dark counts",
             difference=_relative,
+            measure="angles",
+        ),
+        Loss(
+            name="kurt",
+            meaning="the sum of [Kurt 2007, eq. 5.13]: f cos θ_i, w = sin θ_i, each sample one, "
+            "channels summed",
+            difference=_difference_times_cosine,
+            measure="samples",
+            weights=_sine,
+            channel_mean=False,
         ),
         Picture(),
     )

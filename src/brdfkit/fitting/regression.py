@@ -8,6 +8,7 @@ import numpy as np
 from brdfkit.fitting.certainty import ON_BOUND, Certainty, certify, explain_end
 from brdfkit.fitting.folding import fold
 from brdfkit.fitting.levenberg_marquardt import ROUNDING
+from brdfkit.fitting.light import ALL, HELD, NEARER, LightProblem
 from brdfkit.fitting.parameter_space import Space
 from brdfkit.fitting.part import mix_bands
 from brdfkit.fitting.picture_problem import PictureProblem
@@ -19,6 +20,10 @@ from brdfkit.fitting.starting_points import start_points, usual_starts
 from brdfkit.fitting.stopped import Stopped
 from brdfkit.jit.threads import in_turn
 from brdfkit.model.evaluation import mix_lobes
+
+
+# Starts of a search that keeps the light, beside the end of the one that does not
+FEW_STARTS = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +63,7 @@ def regress(
     fixed=None,
     anisotropic=False,
     pixels=None,
+    light=None,
     seed=0,
     first=None,
     report=None,
@@ -68,7 +74,8 @@ def regress(
     `robust`: a name in `fitting.robust.WEIGHTS`; `solver`: a `Solver`, by default
     `default_solver`; `constraints`: of `solvers`, or a user's functions of the model;
     `starts`: how many points the search begins at, the model's defaults and points spread over the
-    bounds, by default `usual_starts`; `bounds`: (low, high), and `fixed`: a value, by shape
+    bounds, by default `usual_starts`; `light`: the `Light` of the data, which a fit without `robust`
+    and `constraints` keeps; `bounds`: (low, high), and `fixed`: a value, by shape
     parameter; `anisotropic`: search the second parameter of an anisotropic model, such as
     ``alpha_v``, too; `seed`: for the start points, and for the parts of many samples by which they
     are compared; `first`: the shape parameters of the first of these points, by default the
@@ -115,6 +122,11 @@ def regress(
         except Stopped as stop:
             u, weights, stopped = stop.best.point.u, stop.best.point.weights, True
         error = whole.sums(u, weights, curvature=False).error[0]
+    elif light is not None and not (limits or stopped or pixels):
+        kept = _keep_light(whole, u, weights, light, points[:FEW_STARTS], rng)
+        if kept is not None:
+            u, weights, notes = kept[0], kept[1], (*notes, kept[2])
+            error = whole.sums(u, weights, curvature=False).error[0]
     certainty = certify(whole, u, weights, passes, rng)
     if pixels is not None:
         certainty = certainty.without_errors(samples.values.size)
@@ -132,6 +144,38 @@ def regress(
     if stopped:
         raise Stopped(found)
     return found
+
+
+def _keep_light(whole, u, weights, light, points, rng):
+    """Where a search has ended with other light than the data's, the end (u, weights) of another
+    one with a term for it, and a note; None where the light is right, or the model cannot.
+
+    `points` (count, shapes): where it begins, beside the first end.
+    """
+
+    def look(u, weights):
+        model = whole.model(**whole.space.values(u[0]))
+        return light.pixels.look(lambda wi, wo: mix_lobes(model, weights[0].T, wi, wo))
+
+    free = look(u, weights)
+    departure = light.departure(free)
+    if departure <= math.log(HELD) and free.max() <= ALL:
+        return None
+    counted = light.known | (free.max(axis=1) > ALL)
+    first = whole.sums(u, weights, curvature=False).error[0]
+    first = max(first, ROUNDING * whole.black.sum())
+    problems = [LightProblem(part, light, counted, first) for part in with_parts(whole, rng)]
+    ends, *_ = search(problems, np.concatenate([u, points]), lambda done, total: None)
+    held = look(ends.u[:1], ends.weights[:1])
+    if light.departure(held) > NEARER * departure:
+        return None
+    row = int(np.argmax(np.abs(np.log(light.factors(free)))))
+    note = (
+        f"by the loss alone it would reflect {free[row].mean():.2f} of the light at "
+        f"{light.theta_i[row]:g}°, where the measurement reflects {light.values[row].mean():.2f}; "
+        f"with a term for its light it reflects {held[row].mean():.2f}"
+    )
+    return ends.u[:1], ends.weights[:1], note
 
 
 def default_solver(constraints):

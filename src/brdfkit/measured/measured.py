@@ -13,6 +13,7 @@ from brdfkit import documents
 from brdfkit.colours import RGB
 from brdfkit.documents import Document, Shown
 from brdfkit.jit.threads import cached_in_turn, in_turn
+from brdfkit.measured.albedos import MeasuredAlbedo, measured_albedo
 from brdfkit.measured.from_angles import FromAngles
 from brdfkit.measured.interpolation import Interpolant
 from brdfkit.measured.mixing import mix
@@ -167,6 +168,11 @@ class Measured(Shown, FromAngles):
         >>> print(load("copper.astm").audit())    # doctest: +SKIP
         """
         return brdfkit.audit(self)
+
+    @cached_in_turn
+    def albedo(self) -> MeasuredAlbedo:
+        """The light that the material reflects at 5°, 45° and 75°, where the samples tell it."""
+        return measured_albedo(self)
 
     def document(self) -> Document:
         """What the measurement tells of itself: its size, its look, and the notes of its file."""

@@ -182,6 +182,11 @@ class MeasuredData:
         return self.samples.values
 
     @cached_property
+    def extents_by_angle(self) -> dict[float, NDArray[np.float64]]:
+        """The extents of the samples below an angle, kept; see `selection.py`."""
+        return {}
+
+    @cached_property
     def checksum(self) -> str:
         """The SHA-256 of the directions and values: equal data have it, whatever their file."""
         return checksum(self)

@@ -8,6 +8,7 @@ import numpy as np
 from brdfkit.errors import BrdfkitError
 from brdfkit.measured.spectrum_to_rgb import has_wavelengths
 from brdfkit.samples import Samples
+from brdfkit.samples.measures import estimate_extents
 
 
 def select_samples(data, max_angle, weights=None, errors=False, spectral=False):
@@ -34,10 +35,20 @@ def select_samples(data, max_angle, weights=None, errors=False, spectral=False):
         samples = Samples.of_cells(data.table, max_angle, weights, own)
     else:
         factors = 1 if weights is None else weights
-        samples = replace(data.samples, weight=data.samples.weight * factors, errors=own)
-        samples = samples.at(samples.within(max_angle))
+        samples = replace(
+            data.samples,
+            weight=data.samples.weight * factors,
+            errors=own,
+        )
+        rows = samples.within(max_angle)
+        samples = samples.at(rows)
+        if hasattr(data._lookup, "stored_extents"):
+            extents = _keep(data, max_angle, lambda: data._lookup.stored_extents(max_angle, rows)[rows])
+            samples = replace(samples, extents=extents)
     if weights is not None:
         samples = samples.at(samples.weight > 0)
+    if samples.extents is None and len(samples.wi):
+        samples = replace(samples, extents=_estimate(data, samples, max_angle))
     if not len(samples.wi):
         what, more = "a larger max_angle", ""
         if weights is not None:
@@ -54,6 +65,23 @@ def require_max_angle(max_angle):
         raise BrdfkitError(
             f"max_angle = {max_angle!r} should be an angle above 0° and at most 90°."
         )
+
+
+def _estimate(data, samples, max_angle):
+    """The extents (n, 2) of scattered `samples` of `data`."""
+
+    def estimate():
+        return estimate_extents(samples.wi, samples.wo, data.anisotropic, max_angle)
+
+    chosen = (samples.weight != 1).any()  # by a user's weights: others may be left out next time
+    return estimate() if chosen else _keep(data, max_angle, estimate)
+
+
+def _keep(data, max_angle, make):
+    """What `make` returns for the samples below an angle, made once for a `Measured`."""
+    if max_angle not in data.extents_by_angle:
+        data.extents_by_angle[max_angle] = make()
+    return data.extents_by_angle[max_angle]
 
 
 def _check_weights(given, data):

@@ -14,11 +14,11 @@ class Samples:
 
     `wi`, `wo`: unit vectors (n, 3); `values`: (n, channels) in sr⁻¹, as measured, negative ones
     included; `valid`: (n,), False where the reader or the format says that nothing was measured;
-    `weight`: (n,), the weight of each sample in a loss: 1 for a scattered sample, the cell's width
-    in theta_h for a table's cell. So a table counts evenly over Rusinkiewicz's angles, however
-    finely it divides the highlight. `cells`: of a table's cells, the numbers (n,) of the half
-    vector and of its pair with theta_d, each in order; else None. `errors`: the standard errors of
-    the values (n, channels), where they are known and count.
+    `weight`: (n,), a factor of each sample in every loss, such as a user's weight; `extents`: (n, 2),
+    how much of both measures of `measures.py` each sample stands for, or None where nobody asked.
+    `cells`: of a table's cells, the numbers (n,) of the half vector and of its pair with theta_d,
+    each in order; else None. `errors`: the standard errors of the values (n, channels), where they
+    are known and count.
     """
 
     wi: np.ndarray
@@ -26,6 +26,7 @@ class Samples:
     values: np.ndarray
     valid: np.ndarray
     weight: np.ndarray
+    extents: np.ndarray | None = None
     cells: tuple[np.ndarray, np.ndarray] | None = None
     errors: np.ndarray | None = None
 
@@ -61,8 +62,7 @@ class Samples:
         """One sample per cell of a `Table`, at the cell's centre."""
         wi, wo = (w.reshape(-1, 3) for w in table.directions())
         values = table.values.reshape(len(wi), -1)
-        weight = np.broadcast_to(table.theta_h_widths, table.shape).reshape(-1)
-        return cls(wi, wo, values, _find_usable(wi, wo, values), weight)
+        return cls(wi, wo, values, _find_usable(wi, wo, values), np.ones(len(wi)))
 
     @classmethod
     def of_cells(cls, table, max_angle, factors=None, errors=None):
@@ -79,11 +79,10 @@ class Samples:
         n_h, n_d, n_p = table.shape[-3:]
         pairs = cells // n_p
         half_vectors = pairs // n_d
-        weight = table.theta_h_widths.ravel()[half_vectors % n_h]
-        if factors is not None:
-            weight = weight * factors[cells]
+        weight = np.ones(len(cells)) if factors is None else factors[cells]
+        extents = as_columns(table.extents.reshape(-1, 2), pairs % (n_h * n_d))
         own = None if errors is None else errors[cells]
-        samples = cls(wi, wo, values, known, weight, (half_vectors, pairs), own)
+        samples = cls(wi, wo, values, known, weight, extents, (half_vectors, pairs), own)
         return samples if known.all() else samples.at(known)
 
     def within(self, max_angle):
@@ -95,8 +94,10 @@ class Samples:
         """The `Samples` of these `rows` (a mask or indices)."""
         vectors = (as_columns(a, rows) for a in (self.wi, self.wo, self.values))
         cells = self.cells and tuple(numbers[rows] for numbers in self.cells)
-        errors = None if self.errors is None else self.errors[rows]
-        return Samples(*vectors, self.valid[rows], self.weight[rows], cells, errors)
+        extents, errors = (
+            None if of is None else of[rows] for of in (self.extents, self.errors)
+        )
+        return Samples(*vectors, self.valid[rows], self.weight[rows], extents, cells, errors)
 
 
 def require_some(valid, name, values, channels):

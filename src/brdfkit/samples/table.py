@@ -56,15 +56,37 @@ class Table:
         return (np.arange(n_a) + 0.5) / n_a * 2 * np.pi, *centres
 
     @property
-    def theta_h_widths(self):
-        """Widths of the theta_h cells (n_theta_h, 1, 1), mean 1; broadcasts to `shape`."""
-        n_h = self.shape[-3]
-        return ((2 * np.arange(n_h) + 1) / n_h)[:, None, None]
+    def extents(self):
+        """How much of both measures of `measures.py` a cell (n_theta_h, n_theta_d) stands for, for
+        any of its azimuths: (n_theta_h, n_theta_d, 2)."""
+        n_h, n_d, n_p = self.shape[-3:]
+        azimuths = n_p * (self.shape[0] if self.anisotropic else 1)
+        theta_h, theta_d = (
+            np.pi / 2 * edges
+            for edges in ((np.arange(n_h + 1) / n_h) ** 2, np.arange(n_d + 1) / n_d)
+        )
+        angles = np.outer(np.diff(theta_h), np.diff(theta_d))
+        # ∫ sinθ_h dθ_h, and ∫ sinθ_d cosθ_d dθ_d
+        solid = np.outer(-np.diff(np.cos(theta_h)), np.diff(np.sin(theta_d) ** 2) / 2)
+        return np.stack([angles, solid], axis=-1) * 2 * np.pi / azimuths
 
     def directions(self):
         """(wi, wo) at the centre of every cell, each (*shape, 3); z < 0 below the surface."""
         *phi_h, theta_h, theta_d, phi_d = np.meshgrid(*self.centres, indexing="ij")
         return from_half_difference(theta_h, theta_d, phi_d, *phi_h)
+
+    def cells_of(self, wi, wo):
+        """The indices, an array (n,) for each axis, of the cells of direction pairs (n, 3)."""
+        theta_h, theta_d, phi_d = to_half_difference(wi, wo)
+        places = [
+            np.sqrt(theta_h / (np.pi / 2)),
+            theta_d / (np.pi / 2),
+            phi_d / self.phi_d_period % 1,
+        ]
+        if self.anisotropic:
+            places.insert(0, half_azimuth(wi, wo) / (2 * np.pi))
+        pairs = zip(places, self.shape, strict=True)
+        return tuple(np.minimum((place * n).astype(int), n - 1) for place, n in pairs)
 
     @cached_property
     def filled_values(self):

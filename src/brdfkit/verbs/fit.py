@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from brdfkit.errors import Interrupted, no_such
 from brdfkit.fitting import Fit, Loss, Picture, as_loss, regress
+from brdfkit.fitting.light import Light
 from brdfkit.fitting.measurement_noise import regress_noisy
 from brdfkit.fitting.solvers import AlbedoAtMost, Solver, WeightsAtMost
 from brdfkit.fitting.solvers.settings import to_plain
@@ -167,13 +168,15 @@ def fit(
             versions=dict(versions()),
         )
 
+    measured = data if spectral else data.rgb
+    light = Light.of(measured.albedo, data.anisotropic)
     solve = regress if samples.errors is None else regress_noisy
     if isinstance(loss, Picture):
         require_plain(robust=robust, weights=weights, spectral=spectral)
         pixels = draw_pixels(loss.lights, data.rgb.eval, max_angle, checked["seed"])
         solve = partial(regress, pixels=pixels)
     try:
-        return to_fit(solve(model, samples, loss, robust=robust, **how, report=progress))
+        return to_fit(solve(model, samples, loss, robust=robust, light=light, **how, report=progress))
     except Stopped as stop:
         best = to_fit(stop.best)
         raise Interrupted(

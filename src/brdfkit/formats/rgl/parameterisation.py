@@ -168,6 +168,48 @@ class AdaptiveTable:
         flags = {"isotropic": grid.isotropic, "divided": self.divided}
         return {"type": "measured_adaptive", **tensors, **flags, "parts": grid.parts}
 
+    def stored_extents(self, max_angle, usable):
+        """How much of both measures of directions (n, 2), with both angles below `max_angle`
+        [degrees], the stored points stand for, in the order of `stored_samples`; see
+        `samples/measures.py`. `usable`: a mask (n,) of the points that count.
+
+        A cell of the grid over u is split among those of its four corners that are usable. At its middle m, dω_h = dm and
+        dω_d = dω_i, so that dθ_h dθ_d dφ_d = dθ_m dφ_m · sinθ_i dθ_i / sinθ_d.
+        """
+        grid, n = self.parameterisation, self.values.shape[2]
+        a, b = grid.vndf.shape[:2]
+        middles = (even_grid(n - 1) * (n - 2) + 0.5) / (n - 1)
+        wi, wo, m, _ = grid.reflect(np.broadcast_to(middles, (a * b, *middles.shape)))
+        slices = [(np.arange(a * b).repeat(len(middles)), 1.0)]
+        pdf = grid.normals.pdf(m, slices) * (n - 1) ** 2
+        # dθ_m dφ_m = 2π² x dx dy
+        area = np.divide(2 * np.pi**2 * m[:, 0], pdf, out=np.zeros_like(pdf), where=pdf > 0)
+        area[wo[:, 2] <= np.cos(np.radians(max_angle))] = 0
+        # Each incidence stands for a band of θ_i, and for its share of the azimuths
+        edges = np.concatenate([[0.0], (grid.theta_i[1:] + grid.theta_i[:-1]) / 2])
+        edges = np.append(edges, 2 * grid.theta_i[-1] - edges[-1]).clip(0, np.radians(max_angle))
+        shares = np.ones(a) if a < 3 else np.pad(np.ones(a - 2), 1, constant_values=0.5)
+        bands = np.outer(shares / shares.sum(), -np.diff(np.cos(edges))).ravel()
+        area *= bands.repeat(len(middles))
+        cos_d = np.linalg.norm(wi + wo, axis=1) / 2
+        sin_d = np.sqrt(np.maximum(1 - cos_d**2, 0))
+        # No cell is nearer to the retro-reflection, where sinθ_d = 0, than its own size
+        least = np.tile(np.diff(edges), a).repeat(len(middles)) / 4
+        theta_m, _ = from_square(m)
+        cells = np.stack([area / np.maximum(sin_d, least), area * np.sin(theta_m) * cos_d], axis=1)
+        usable = usable.reshape(a * b, n, n, 1)
+        places = [
+            (slice(None), y, x)
+            for y in (slice(None, -1), slice(1, None))
+            for x in (slice(None, -1), slice(1, None))
+        ]
+        counts = sum(usable[place].astype(int) for place in places)
+        cells = cells.reshape(a * b, n - 1, n - 1, 2) / np.maximum(counts, 1)
+        corners = np.zeros((a * b, n, n, 2))
+        for place in places:
+            corners[place] += cells
+        return (corners * usable).reshape(-1, 2)
+
     def stored_samples(self):
         """wi, wo (n, 3) and the BRDF (n, channels) at the stored points; NaN below the surface, at
         the horizon and where D is 0."""

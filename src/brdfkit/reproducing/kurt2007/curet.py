@@ -1,5 +1,6 @@
 """The 52 isotropic samples of CUReT: their fits, and the thesis's error of any of them."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -18,7 +19,8 @@ NUMBERS = tuple(n for n in range(1, 62) if n not in ANISOTROPIC)
 # The thesis's widths are at most 0.5; its polynomials are fitted by bisquare without a cosine, and
 # Koenderink's basis by plain least squares
 BOUNDS = {name: {"alpha_u": (0.001, 0.5)} for name in ("ward", "ward_duer")}
-BISQUARE, OLS, WLS = ("plain", "bisquare"), ("plain", None), ("cosine", None)
+PLAIN = replace(losses["plain"], name="plain sum", measure="samples")
+BISQUARE, OLS, WLS = (PLAIN, "bisquare"), (PLAIN, None), ("kurt", None)
 METHODS = {"bisquare": BISQUARE, "least squares": OLS, "weighted by eq. 5.13": WLS}
 
 
@@ -30,7 +32,7 @@ class Sample:
         self.samples = select_samples(self.data, 80)
         self.wi, self.wo = self.samples.wi, self.samples.wo
         self.values, self.cosines = self.samples.values[:, 0], self.wi[:, 2]
-        self.weights = losses["cosine"].weights(self.cosines)
+        self.weights = losses["kurt"].weights(self.cosines)
         self.fits = {}
 
     def fit(self, label, how=WLS):

@@ -16,4 +16,4 @@ def error(model, samples):
 def error_of(values, samples):
     """E of values (n, channels) of a BRDF."""
     squares = ((values - samples.values) * samples.wi[:, 2:]) ** 2
-    return float(np.sqrt(losses["cosine"].importance(samples) @ squares.sum(axis=1)))
+    return float(np.sqrt(losses["kurt"].importance(samples) @ squares.sum(axis=1)))

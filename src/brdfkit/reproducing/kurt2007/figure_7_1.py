@@ -7,7 +7,7 @@ from brdfkit.measured.selection import select_samples
 from brdfkit.model.evaluation import weight_matrix
 from brdfkit.reproducing.claims import NOT_RUN, Claim, verdict
 from brdfkit.reproducing.drawing import figure
-from brdfkit.reproducing.kurt2007.curet import samples
+from brdfkit.reproducing.kurt2007.curet import PLAIN, samples
 from brdfkit.reproducing.page import Picture, Section, Table
 from brdfkit.verbs.fit import fit
 
@@ -88,7 +88,7 @@ def _components(wi, wo, angle):
 def _draw(data):
     from matplotlib.ticker import MaxNLocator
 
-    found = fit(f"pca_polynomial:degree={DEGREE}", data, "plain", robust="bisquare")
+    found = fit(f"pca_polynomial:degree={DEGREE}", data, PLAIN, robust="bisquare")
     shown, angle = select_samples(data, 80), found.values["angle_1_2"]
     z, f = _components(shown.wi, shown.wo, angle), shown.values[:, 1]
     betas = weight_matrix(found.model)[:, 1]

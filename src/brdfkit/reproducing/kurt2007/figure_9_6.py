@@ -6,6 +6,7 @@ from brdfkit.geometry.directions import from_angles
 from brdfkit.measured import Measured
 from brdfkit.model import labels
 from brdfkit.reproducing.claims import Claim, verdict
+from brdfkit.reproducing.kurt2007.curet import PLAIN
 from brdfkit.reproducing.kurt2007.printed import SEVEN
 from brdfkit.reproducing.page import Section
 from brdfkit.samples.neural import decode_network
@@ -24,7 +25,7 @@ def run(sources, report):
     with np.load(sources.path("nbrdf_derived/merl_nbrdf.npz")) as networks:
         table = decode_network(networks[MATERIAL], CELLS)
     data = Measured.from_table(table.values, name=MATERIAL)
-    found = fit("pca_polynomial:degree=5", data, "plain", robust="bisquare")
+    found = fit("pca_polynomial:degree=5", data, PLAIN, robust="bisquare")
     report(1, 2)
     others = ("phong", *SEVEN.values(), "torrance_sparrow", "koenderink:order=8")
     worst = max(_difference(labels.model(name)()) for name in others)

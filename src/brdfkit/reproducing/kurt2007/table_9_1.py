@@ -6,7 +6,7 @@ from brdfkit.loading import load
 from brdfkit.measured import Measured
 from brdfkit.measured.selection import select_samples
 from brdfkit.reproducing.claims import UNSTATED, Claim, verdict
-from brdfkit.reproducing.kurt2007.curet import BISQUARE, OLS, WLS, sample, scale
+from brdfkit.reproducing.kurt2007.curet import BISQUARE, OLS, PLAIN, WLS, sample, scale
 from brdfkit.reproducing.kurt2007.eq_5_13 import error
 from brdfkit.reproducing.kurt2007.printed import printed
 from brdfkit.reproducing.page import Section, Table
@@ -42,7 +42,7 @@ def run(sources, report):
 
 def _error(label, data):
     """E of a bisquare fit."""
-    found = fit(label, data, "plain", robust="bisquare", max_angle=WIDEST)
+    found = fit(label, data, PLAIN, robust="bisquare", max_angle=WIDEST)
     return error(found.model, select_samples(data, WIDEST))
 
 
