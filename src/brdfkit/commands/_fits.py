@@ -1,11 +1,8 @@
 """What `brdfkit fit` prints: the fits, a table of their errors, or both as JSON."""
 
-# Where fits gain light, if they do [degrees]
-INCIDENCES = 0, 85
-
 
 def print_fits(material, fits, failed, comparison, pictures, written, ranking, console):
-    """Print `fits` to a `material`, a remark on each that gains light, their errors under several
+    """Print `fits` to a `material`, their errors under several
     losses and those of their `pictures`, `ImageErrors` or None; as JSON with what `failed` and with
     the `ranking`, too."""
     from brdfkit.commands._ranking import record
@@ -21,8 +18,6 @@ def print_fits(material, fits, failed, comparison, pictures, written, ranking, c
         return
     for found in fits:
         console.out.print(str(found))
-        if gained := _gained_light(found):
-            console.out.print(f"  {gained}")
         console.out.print()
     shown = told(*(f.loss_name for f in fits))
     columns, rows = ["model", *(f">{name}" for name in shown), ">time [s]"], []
@@ -33,20 +28,6 @@ def print_fits(material, fits, failed, comparison, pictures, written, ranking, c
     if pictures:
         print_errors(pictures, console)
     console.list_written(written)
-
-
-def _gained_light(found):
-    """A remark on a fit that reflects more light than arrives; or nothing."""
-    import numpy as np
-
-    from brdfkit.geometry.directions import from_angles
-    from brdfkit.verbs.evaluate import albedo
-
-    for angle in INCIDENCES:
-        most = albedo(found, from_angles(np.radians(angle), 0.0)).max()
-        if most > 1.001:
-            return f"reflects {most:.2f} of the light at {angle}°; --albedo-at-most 1 prevents it"
-    return ""
 
 
 def _record(found, comparison, psnr):
@@ -64,6 +45,9 @@ def _record(found, comparison, psnr):
         "error": found.loss,
         "errors": comparison.errors[found.name],
         "psnr": psnr.get(found.name),
+        "albedo": found.albedo and vars(found.albedo),
+        "effective_samples": found.effective_samples,
+        "unrepresented": found.unrepresented,
         "at_bounds": found.at_bounds,
         "notes": found.notes,
         "evaluations": found.evaluations,

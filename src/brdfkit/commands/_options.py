@@ -80,11 +80,11 @@ def _fit_options(default, others):
         ),
         click.option(
             "--loss",
-            default="log",
+            default="cbrt",
             metavar="LOSS",
             show_default=True,
-            help="What the fit minimises: cosine, log, cbrt, plain, lafortune, relative or "
-            "picture; print(brdfkit.losses) in Python says what each is.",
+            help="What the fit minimises: cosine, log, cbrt, plain, lafortune, relative, kurt "
+            "or picture; print(brdfkit.losses) in Python says what each is.",
         ),
         click.option(
             "--robust",

@@ -4,7 +4,7 @@ A loss compares values, and a model that cannot meet them all may end with far t
 little: where grazing angles are missing, a highlight falls between the samples, or a material
 reflects light back. Such a fit is searched once more, with a term for its light,
 
-    E² / E₀² + SHARE · mean over θ_i and channels of ((a - a*) / ā*)²,
+    E² / E₀² + share · mean over θ_i and channels of ((a - a*) / ā*)²,
 
 a being the model's albedo and a* the data's, ā* its mean over the channels, and E₀ the error of the
 first search. A fit whose light is right is left as it is.
@@ -28,12 +28,14 @@ from brdfkit.pictures import Pixels
 HELD, NEARER = 1.2, 0.6
 # The factor beyond which the light of a fit is said to be wrong
 WRONG = 1.25
+# Beyond this angle [degrees] a model that is too dark is left so: few rise as materials do
+STEEP = 60
 # No surface reflects more; beyond rounding of the quadrature
 ALL = 1.001
-# How much the light counts beside the error, when both are as large as they were
-SHARE = 10.0
+# How much the light counts beside the error: more where less does not do
+SHARES = 10.0, 40.0, 160.0
 # Half the rings of the quadrature, and the points on each
-POINTS = 24
+POINTS = 32
 # Azimuths of incidence of an anisotropic material
 AZIMUTHS = 4
 UP = 0.0, 0.0, 1.0
@@ -82,50 +84,112 @@ class Light:
         pixels = Pixels(*flat, values, np.ones(len(theta_i)), pairs)
         return cls(theta_i, values, albedo.known, pixels)
 
-    def factors(self, albedos):
-        """The light of `albedos` (n, channels) over the measured one (n,), 1 where that is unknown."""
-        mean, own = self.values.mean(axis=1), np.maximum(albedos.mean(axis=1), 1e-9)
-        return np.where(self.known & (mean > 0), own / np.where(mean > 0, mean, 1), 1.0)
+    def look(self, brdf):
+        """The albedos (n, channels) of a BRDF (wi, wo) → (n, channels)."""
+        return self.pixels.look(brdf)
+
+    def is_right(self, albedos):
+        """Whether `albedos` (n, channels) are near the measured ones, and no light is gained."""
+        return self.departure(albedos) <= np.log(HELD) and albedos.max() <= ALL
 
     def departure(self, albedos):
         """How far `albedos` (n, channels) are from the measured ones, as the logarithm of the
-        largest factor, either way; light that is gained adds its own."""
-        gain = max(float(np.log(albedos.max() / ALL)), 0.0) if albedos.max() > 0 else 0.0
-        return float(np.abs(np.log(self.factors(albedos))).max()) + gain
+        largest factor; light that is gained adds its own. A model that is too dark at grazing
+        angles is not far."""
+        apart = np.log(self.factors(albedos))
+        steep = np.array(self.theta_i) > STEEP
+        apart = np.where(steep, np.maximum(apart, 0), np.abs(apart))
+        most = albedos.max()
+        return float(apart.max()) + (float(np.log(most / ALL)) if most > ALL else 0.0)
+
+    def factors(self, albedos):
+        """The light of `albedos` (n, channels) over the measured one (n,); 1 where none is known."""
+        measured, own = (np.maximum(a.mean(axis=1), 1e-9) for a in (self.values, albedos))
+        return np.where(self.known, own / measured, 1.0)
+
+    def beside(self, albedos):
+        """The `Albedo` of a fit with these `albedos` (n, channels)."""
+        measured = [
+            tuple(row.tolist()) if known else None
+            for row, known in zip(self.values, self.known, strict=True)
+        ]
+        return Albedo(self.theta_i, tuple(map(tuple, albedos.tolist())), tuple(measured))
+
+
+@dataclass(frozen=True)
+class Albedo:
+    """The light that a fit reflects, and its data.
+
+    Attributes
+    ----------
+    theta_i : tuple of float
+        Angles of incidence [degrees].
+    fit : tuple of tuple of float
+        The directional albedo of the fit at each angle, by channel.
+    measured : tuple of tuple of float or None
+        That of the data; None where the samples do not tell it.
+    """
+
+    theta_i: tuple[float, ...]
+    fit: tuple[tuple[float, ...], ...]
+    measured: tuple[tuple[float, ...] | None, ...]
+
+    def warnings(self) -> list[str]:
+        """What is wrong with the light of the fit, in sentences."""
+        found = []
+        rows = list(zip(self.theta_i, self.fit, self.measured, strict=True))
+        angle, most = max(((angle, max(fit)) for angle, fit, _ in rows), key=lambda pair: pair[1])
+        if most > ALL:
+            found.append(
+                f"it reflects {most:.3g} of the light at {angle:g}°, more than arrives; a "
+                "constraint prevents it: AlbedoAtMost(1), or --albedo-at-most 1"
+            )
+        means = [(angle, _mean(fit), _mean(own)) for angle, fit, own in rows if own]
+        off = [row for row in means if _factor(*row[1:]) > WRONG]
+        if off:
+            angle, fit, own = max(off, key=lambda row: _factor(*row[1:]))
+            found.append(
+                f"it reflects {fit:.2g} of the light at {angle:g}°, where the measurement reflects "
+                f"{own:.2g}"
+            )
+        return found
+
+
+def _mean(numbers):
+    return sum(numbers) / len(numbers)
+
+
+def _factor(fit, measured):
+    """The factor, above 1, between two albedos."""
+    fit, measured = max(fit, 1e-9), max(measured, 1e-9)
+    return max(fit / measured, measured / fit)
 
 
 class LightProblem(Problem):
-    """E² of a model class on `Samples`, over that of a first search, and its difference in `Light`.
+    """E² of a model class on `Samples`, over that of a first search, and its difference in light.
 
-    `counted`: at which angles of the `light` (n,); `error`: E² of the first search.
+    `counted`: at which angles of the `light` (n,); `error`: E² of the first search; `share`: how
+    much the light counts.
     """
 
-    def __init__(self, problem, light, counted, error):
+    def __init__(self, problem, light, counted, error, share):
         super().__init__(problem.model, problem.samples, problem.loss, problem.space)
-        self.light, self.counted, self.first_error = light, counted, error
-        known = counted
-        mean = np.maximum(light.values.mean(axis=1, keepdims=True), 1e-6)
-        pixels = light.pixels
-        rows = np.repeat(known, pixels.pairs)
-        pixels = Pixels(
-            pixels.wi[rows],
-            pixels.wo[rows],
-            pixels.shares[rows],
-            pixels.values[known],
-            pixels.weights[known],
-            pixels.pairs,
-        )
-        share = SHARE / (known.sum() * self.channels) / mean[known, 0] ** 2
+        self.given = light, counted, error, share
+        mean = np.maximum(light.values[counted].mean(axis=1), 1e-6)
+        pixels, rows = light.pixels, np.repeat(counted, light.pixels.pairs)
+        pairs = pixels.wi[rows], pixels.wo[rows], pixels.shares[rows]
+        pixels = Pixels(*pairs, pixels.values[counted], pixels.weights[counted], pixels.pairs)
+        of_light = share / (len(mean) * self.channels) / mean**2
         of_samples = self.importance / error
         self._of_samples = Blocks(self.samples, of_samples, self.loss)
-        self._of_light = PixelBlocks(pixels, share, DIFFERENCE)
-        self.importance = np.concatenate([of_samples, share])
+        self._of_light = PixelBlocks(pixels, of_light, DIFFERENCE)
+        self.importance = np.concatenate([of_samples, of_light])
         self.blocks = self._all_blocks
 
     def on(self, samples):
         """The same problem on other `Samples`."""
         part = Problem(self.model, samples, self.loss, self.space)
-        return LightProblem(part, self.light, self.counted, self.first_error)
+        return LightProblem(part, *self.given)
 
     def _all_blocks(self, count):
         yield from self._of_samples(count)

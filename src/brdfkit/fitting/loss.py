@@ -5,9 +5,9 @@
 R is the measured BRDF and M the model's, in channel c. d is their difference, that of the values
 times a product of cosines, or of a function of it, which decides how much dark values count beside
 bright ones. μ is a measure of pairs of directions, which decides how much a highlight counts beside
-all else; w_n is how much of it sample n stands for (`samples/measures.py`), so that E belongs to the
-material and not to the file. Samples with an angle beyond 80° are left out, where measurements are
-least reliable [Ngan et al. 2005].
+all else; w_n is how much of it sample n stands for (`samples/measures.py`), so that E belongs to
+the material and not to the file. Samples with an angle beyond 80° are left out, where measurements
+are least reliable [Ngan et al. 2005].
 """
 
 from collections.abc import Callable

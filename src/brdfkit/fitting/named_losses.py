@@ -15,6 +15,8 @@ from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.fitting.loss import Loss, loss_of, require_working
 from brdfkit.fitting.picture import Picture
 
+# The loss of a fit that names none
+DEFAULT = "cbrt"
 # Added inside the logarithm, which is nearly linear for smaller values, and to the measured value
 # below a relative difference: about the noise of a measured table [sr⁻¹]
 OFFSET = 1e-3

@@ -8,7 +8,7 @@ import numpy as np
 from brdfkit.fitting.certainty import ON_BOUND, Certainty, certify, explain_end
 from brdfkit.fitting.folding import fold
 from brdfkit.fitting.levenberg_marquardt import ROUNDING
-from brdfkit.fitting.light import ALL, HELD, NEARER, LightProblem
+from brdfkit.fitting.light import ALL, NEARER, SHARES, LightProblem
 from brdfkit.fitting.parameter_space import Space
 from brdfkit.fitting.part import mix_bands
 from brdfkit.fitting.picture_problem import PictureProblem
@@ -20,7 +20,6 @@ from brdfkit.fitting.starting_points import start_points, usual_starts
 from brdfkit.fitting.stopped import Stopped
 from brdfkit.jit.threads import in_turn
 from brdfkit.model.evaluation import mix_lobes
-
 
 # Starts of a search that keeps the light, beside the end of the one that does not
 FEW_STARTS = 8
@@ -74,8 +73,8 @@ def regress(
     `robust`: a name in `fitting.robust.WEIGHTS`; `solver`: a `Solver`, by default
     `default_solver`; `constraints`: of `solvers`, or a user's functions of the model;
     `starts`: how many points the search begins at, the model's defaults and points spread over the
-    bounds, by default `usual_starts`; `light`: the `Light` of the data, which a fit without `robust`
-    and `constraints` keeps; `bounds`: (low, high), and `fixed`: a value, by shape
+    bounds, by default `usual_starts`; `light`: the `Light` of the data, which a fit without
+    `robust` and `constraints` keeps; `bounds`: (low, high), and `fixed`: a value, by shape
     parameter; `anisotropic`: search the second parameter of an anisotropic model, such as
     ``alpha_v``, too; `seed`: for the start points, and for the parts of many samples by which they
     are compared; `first`: the shape parameters of the first of these points, by default the
@@ -155,27 +154,35 @@ def _keep_light(whole, u, weights, light, points, rng):
 
     def look(u, weights):
         model = whole.model(**whole.space.values(u[0]))
-        return light.pixels.look(lambda wi, wo: mix_lobes(model, weights[0].T, wi, wo))
+        return light.look(lambda wi, wo: mix_lobes(model, weights[0].T, wi, wo))
 
     free = look(u, weights)
-    departure = light.departure(free)
-    if departure <= math.log(HELD) and free.max() <= ALL:
+    if light.is_right(free):
         return None
     counted = light.known | (free.max(axis=1) > ALL)
-    first = whole.sums(u, weights, curvature=False).error[0]
-    first = max(first, ROUNDING * whole.black.sum())
-    problems = [LightProblem(part, light, counted, first) for part in with_parts(whole, rng)]
-    ends, *_ = search(problems, np.concatenate([u, points]), lambda done, total: None)
-    held = look(ends.u[:1], ends.weights[:1])
-    if light.departure(held) > NEARER * departure:
-        return None
-    row = int(np.argmax(np.abs(np.log(light.factors(free)))))
-    note = (
+    first = max(whole.sums(u, weights, curvature=False).error[0], ROUNDING * whole.black.sum())
+    parts, points, kept = with_parts(whole, rng), np.concatenate([u, points]), None
+    for share in SHARES:
+        problems = [LightProblem(part, light, counted, first, share) for part in parts]
+        ends, *_ = search(problems, points, lambda done, total: None)
+        held = look(ends.u[:1], ends.weights[:1])
+        if light.departure(held) <= NEARER * light.departure(free):
+            kept = ends.u[:1], ends.weights[:1], _explain_light(light, free, held)
+        if light.is_right(held):
+            break
+        points = ends.u[:1]
+    return kept
+
+
+def _explain_light(light, free, held):
+    """The note on a fit that keeps the `light`; `free`, `held`: albedos without and with it."""
+    row = int(np.argmax(np.maximum(abs(np.log(light.factors(free))), np.log(free.max(axis=1)))))
+    measured = f", where the measurement reflects {light.values[row].mean():.2f}"
+    return (
         f"by the loss alone it would reflect {free[row].mean():.2f} of the light at "
-        f"{light.theta_i[row]:g}°, where the measurement reflects {light.values[row].mean():.2f}; "
-        f"with a term for its light it reflects {held[row].mean():.2f}"
+        f"{light.theta_i[row]:g}°{measured * bool(light.known[row])}; with a term for its light it "
+        f"reflects {held[row].mean():.2f}"
     )
-    return ends.u[:1], ends.weights[:1], note
 
 
 def default_solver(constraints):

@@ -10,6 +10,7 @@ from brdfkit.documents import Document, Folded, Paragraph, Shown
 from brdfkit.documents.parts import SOFT
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.certainty import Certainty, intervals
+from brdfkit.fitting.light import Albedo
 from brdfkit.model import Model
 from brdfkit.model.value_table import value_table
 from brdfkit.plugins.pages import page
@@ -51,6 +52,14 @@ class Fit(Shown):
         ``"diffuse_reflectance[0]"``), their ``covariance``, the degrees of ``freedom`` of each
         variance, and in words what is ``undetermined`` and what ``trades``
         off; None in fits saved by earlier versions.
+    albedo : Albedo, optional
+        The light that the fit reflects at 5°, 45°, 75° and 85°, and its data where they tell it:
+        ``theta_i`` [degrees], and ``fit`` and ``measured`` at each, by channel.
+    effective_samples : float
+        As many samples of equal weight would tell the mean as well: (Σ w)² / Σ w²; 0 in fits to
+        pictures, and in those saved by earlier versions.
+    unrepresented : float
+        The share of the loss's measure of directions below `max_angle` that no sample stands for.
     checksum : str
         `Measured.checksum` of the material, by which it is known again; empty as `certainty`.
     versions : dict of str to str
@@ -78,6 +87,9 @@ class Fit(Shown):
     notes: tuple[str, ...] = ()
     settings: dict[str, Any] = field(default_factory=dict, hash=False)
     certainty: Certainty | None = None
+    albedo: Albedo | None = None
+    effective_samples: float = 0.0
+    unrepresented: float = 0.0
     checksum: str = ""
     versions: dict[str, str] = field(default_factory=dict, compare=False)
 

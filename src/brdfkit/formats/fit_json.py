@@ -6,6 +6,7 @@ from typing import get_origin
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.certainty import Certainty
+from brdfkit.fitting.light import Albedo
 from brdfkit.fitting.result import Fit
 from brdfkit.model import labels
 from brdfkit.version import __version__
@@ -13,9 +14,9 @@ from brdfkit.version import __version__
 NAME = "brdfkit fit"
 SUFFIXES = (".json",)
 KEY = "brdfkit"
-FIELDS = [f for f in fields(Fit) if f.name not in ("model", "certainty")]
+FIELDS = [f for f in fields(Fit) if f.name not in ("model", "certainty", "albedo")]
 # What fits of earlier versions lack
-LATER = ("checksum", "versions")
+LATER = ("checksum", "versions", "effective_samples", "unrepresented")
 
 
 def sniff(head):
@@ -34,6 +35,7 @@ def read(source):
         if bounds := found["settings"].get("bounds"):
             found["settings"] |= {"bounds": {n: tuple(pair) for n, pair in bounds.items()}}
         found["certainty"] = _to_certainty(given.get("certainty"))
+        found["albedo"] = _to_albedo(given.get("albedo"))
     except (ValueError, KeyError, TypeError, RecursionError):
         if source.data.lstrip().startswith(b'{"kind"'):
             raise source.error("is a distance field; load it by brdfkit.distance_fields") from None
@@ -61,7 +63,9 @@ def write(fit, stream):
         KEY: __version__,
         "model": fit.model.label(),
         "parameters": fit.model.arguments,
-        "fit": values | {"certainty": _from_certainty(fit.certainty)},
+        "fit": values
+        | {"certainty": _from_certainty(fit.certainty)}
+        | {"albedo": fit.albedo and vars(fit.albedo)},
     }
     stream.write(json.dumps(record, indent=2).encode() + b"\n")
 
@@ -91,6 +95,17 @@ def _to_certainty(record):
     said = (_to_type(tuple, record[name]) for name in ("undetermined", "trades"))
     counts = (_to_type(int, record[name]) for name in ("numbers", "parameters"))
     return Certainty(names, rows, freedom, *said, *counts)
+
+
+def _to_albedo(record):
+    """The `Albedo` of its attributes; fits of earlier versions have none."""
+    if record is None:
+        return None
+    angles, fit, measured = (_to_type(tuple, record[f.name]) for f in fields(Albedo))
+    rows = [None if row is None else tuple(map(float, row)) for row in (*fit, *measured)]
+    if not len(angles) == len(fit) == len(measured):
+        raise ValueError
+    return Albedo(tuple(map(float, angles)), tuple(rows[: len(fit)]), tuple(rows[len(fit) :]))
 
 
 def _to_type(kind, value):

@@ -1,4 +1,4 @@
-"""The albedo of a measurement: what it reflects of light from an angle, where the samples tell it."""
+"""The albedo of a measurement: what it reflects of the light that comes from an angle."""
 
 from dataclasses import dataclass
 
@@ -74,7 +74,7 @@ def measured_albedo(data):
 
 
 def _known_share(is_near, wi):
-    """The share of the light of a matt surface that leaves from `wi` towards measured directions."""
+    """The share of a matt surface's light from `wi` that leaves towards measured directions."""
     wo, weight = hemisphere(wi)
     return weight @ is_near(np.broadcast_to(wi, wo.shape), wo) / weight.sum()
 

@@ -43,7 +43,9 @@ def select_samples(data, max_angle, weights=None, errors=False, spectral=False):
         rows = samples.within(max_angle)
         samples = samples.at(rows)
         if hasattr(data._lookup, "stored_extents"):
-            extents = _keep(data, max_angle, lambda: data._lookup.stored_extents(max_angle, rows)[rows])
+            extents = _keep(
+                data, max_angle, lambda: data._lookup.stored_extents(max_angle, rows)[rows]
+            )
             samples = replace(samples, extents=extents)
     if weights is not None:
         samples = samples.at(samples.weight > 0)

@@ -25,7 +25,7 @@ SUMS = "ggx+ggx", "abc+ggx", "abc+student_t"
 def rank(
     data: MaterialLike,
     models: str | Path | type[Model] | Iterable[str | Path | type[Model]] | None = None,
-    loss: str | Loss | Callable[..., Any] = "log",
+    loss: str | Loss | Callable[..., Any] = "cbrt",
     *,
     folds: int = 5,
     anisotropic: bool | None = None,
@@ -48,7 +48,7 @@ def rank(
         The measured material, or the name or path of one.
     models : str, Path, class or several, optional
         The models, as for `fit`. By default all, and the two-lobe sums that fit best most often.
-    loss : str, Loss or callable, default "log"
+    loss : str, Loss or callable, default "cbrt"
         By which error, as for `fit`.
     folds : int, default 5
         How many, at least 2.

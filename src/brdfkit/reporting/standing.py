@@ -8,6 +8,7 @@ import numpy as np
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import losses
 from brdfkit.fitting.loss import squares
+from brdfkit.fitting.named_losses import DEFAULT
 from brdfkit.geometry.directions import to_angles
 from brdfkit.measured.selection import select_samples
 from brdfkit.ranking.held_out import number_blocks
@@ -39,10 +40,10 @@ class Standing:
 
 
 def ranked_by(fits):
-    """The loss by which fits are ranked: that of all of them, or "log" where it is none of samples
-    or not the same."""
+    """The loss by which fits are ranked: that of all of them, or the default where it is none of
+    samples or not the same."""
     names = {fit.loss_name for fit in fits}
-    return names.pop() if len(names) == 1 and names <= {*losses.by_sample} else "log"
+    return names.pop() if len(names) == 1 and names <= {*losses.by_sample} else DEFAULT
 
 
 def standings(material, fits, loss):

@@ -20,7 +20,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.geometry.directions import from_half_difference, half_azimuth
+from brdfkit.geometry.directions import from_half_difference
 from brdfkit.samples.cells import least_cosine
 from brdfkit.samples.coordinates import anisotropic_coordinates, isotropic_coordinates
 

@@ -14,8 +14,9 @@ class Samples:
 
     `wi`, `wo`: unit vectors (n, 3); `values`: (n, channels) in sr⁻¹, as measured, negative ones
     included; `valid`: (n,), False where the reader or the format says that nothing was measured;
-    `weight`: (n,), a factor of each sample in every loss, such as a user's weight; `extents`: (n, 2),
-    how much of both measures of `measures.py` each sample stands for, or None where nobody asked.
+    `weight`: (n,), a factor of each sample in every loss, such as a user's weight; `extents`:
+    (n, 2), how much of both measures of `measures.py` each sample stands for, or None where that is
+    not known.
     `cells`: of a table's cells, the numbers (n,) of the half vector and of its pair with theta_d,
     each in order; else None. `errors`: the standard errors of the values (n, channels), where they
     are known and count.
@@ -94,9 +95,7 @@ class Samples:
         """The `Samples` of these `rows` (a mask or indices)."""
         vectors = (as_columns(a, rows) for a in (self.wi, self.wo, self.values))
         cells = self.cells and tuple(numbers[rows] for numbers in self.cells)
-        extents, errors = (
-            None if of is None else of[rows] for of in (self.extents, self.errors)
-        )
+        extents, errors = (None if of is None else of[rows] for of in (self.extents, self.errors))
         return Samples(*vectors, self.valid[rows], self.weight[rows], extents, cells, errors)
 
 

@@ -11,6 +11,7 @@ from brdfkit.documents.parts import STRONG
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import losses
 from brdfkit.fitting.loss import squares
+from brdfkit.fitting.named_losses import DEFAULT
 from brdfkit.materials import MaterialLike, materials, measured_material
 from brdfkit.measured.selection import select_samples
 from brdfkit.names import make_unique
@@ -28,8 +29,8 @@ class Comparison(Shown):
     material : str
         Name of the measured material.
     errors : dict
-        Name → loss → E, in the units of `brdfkit.losses`, the best by the log loss first; nan where
-        a loss weighs no sample.
+        Name → loss → E, in the units of `brdfkit.losses`, the best by the cbrt loss first; nan
+        where a loss weighs no sample.
     """
 
     material: str
@@ -37,7 +38,7 @@ class Comparison(Shown):
 
     @property
     def best(self) -> str:
-        """Name of the BRDF with the least log loss."""
+        """Name of the BRDF with the least cbrt loss."""
         return next(iter(self.errors))
 
     def document(self) -> Document:
@@ -93,7 +94,7 @@ def compare(
     Returns
     -------
     Comparison
-        The errors, in the order of the log loss, the best first; prints as a table.
+        The errors, in the order of the cbrt loss, the best first; prints as a table.
 
     Raises
     ------
@@ -113,7 +114,7 @@ def compare(
         errors[make_unique(thing.name, errors)] = {
             name: _error(loss, values, samples) for name, loss in losses.by_sample.items()
         }
-    return Comparison(data.name, dict(sorted(errors.items(), key=lambda item: item[1]["log"])))
+    return Comparison(data.name, dict(sorted(errors.items(), key=lambda item: item[1][DEFAULT])))
 
 
 def _evaluate(thing, data, samples, spectral):

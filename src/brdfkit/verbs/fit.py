@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from brdfkit.errors import Interrupted, no_such
@@ -23,6 +24,7 @@ from brdfkit.measured.spectrum_to_rgb import wavelengths
 from brdfkit.model import Model, labels
 from brdfkit.model.evaluation import with_weights
 from brdfkit.pictures import draw_pixels
+from brdfkit.samples.measures import weigh, whole
 from brdfkit.verbs.fit_notes import list_notes
 from brdfkit.verbs.fit_settings import require_plain, to_settings
 from brdfkit.version import versions
@@ -34,7 +36,7 @@ Constraint = AlbedoAtMost | WeightsAtMost | Callable[[Model], ArrayLike]
 def fit(
     name: str | Path | type[Model],
     data: MaterialLike,
-    loss: str | Loss | Picture | Callable[..., Any] = "log",
+    loss: str | Loss | Picture | Callable[..., Any] = "cbrt",
     *,
     robust: str | None = None,
     weights: ArrayLike | None = None,
@@ -65,7 +67,7 @@ def fit(
         defines one; or a class derived from `Model`.
     data : Measured, str or Path
         The measured material, or the name or path of one.
-    loss : str, Loss, Picture or callable, default "log"
+    loss : str, Loss, Picture or callable, default "cbrt"
         What is made small: a name in `brdfkit.losses`, a `Loss`, a `Picture`, or your own
         difference of a model's value from the measured one, a function (model, measured, cos_i,
         cos_o) of Dr.Jit's arrays.
@@ -138,9 +140,13 @@ def fit(
     loss = as_loss(loss)
     samples = select_samples(data, max_angle, weights, use_standard_error, spectral)
 
+    light = Light.of((data if spectral else data.rgb).albedo, data.anisotropic)
+
     def to_fit(found):
         known = wavelengths(data) if spectral else ()
         fitted = with_weights(model, found.shapes, found.weights, known)
+        albedo = light.beside(light.look(fitted.eval))
+        warnings = albedo.warnings()
         return Fit(
             model=fitted,
             data=data.name,
@@ -149,13 +155,16 @@ def fit(
             samples=len(samples.wi),
             evaluations=found.evaluations,
             seconds=time.perf_counter() - began,
-            message=found.message,
+            message=found.message + (", but its light is wrong" if warnings else ""),
             at_bounds=found.at_bounds,
             certainty=found.certainty,
             notes=(
                 *found.notes,
+                *warnings,
                 *list_notes(data, samples, loss, found, fitted, weights is not None),
             ),
+            albedo=albedo,
+            **tell_weights(loss, samples, max_angle),
             settings={
                 **given,
                 **how,
@@ -168,15 +177,15 @@ def fit(
             versions=dict(versions()),
         )
 
-    measured = data if spectral else data.rgb
-    light = Light.of(measured.albedo, data.anisotropic)
     solve = regress if samples.errors is None else regress_noisy
     if isinstance(loss, Picture):
         require_plain(robust=robust, weights=weights, spectral=spectral)
         pixels = draw_pixels(loss.lights, data.rgb.eval, max_angle, checked["seed"])
         solve = partial(regress, pixels=pixels)
     try:
-        return to_fit(solve(model, samples, loss, robust=robust, light=light, **how, report=progress))
+        return to_fit(
+            solve(model, samples, loss, robust=robust, light=light, **how, report=progress)
+        )
     except Stopped as stop:
         best = to_fit(stop.best)
         raise Interrupted(
@@ -190,6 +199,21 @@ SETTINGS = {
     for name, parameter in inspect.signature(fit).parameters.items()
     if name not in ("name", "data", "weights", "progress")
 }
+
+
+def tell_weights(loss: Loss | Picture, samples: Any, max_angle: float) -> dict[str, float]:
+    """`Fit.effective_samples` and `Fit.unrepresented` of the `Samples` of a fit."""
+    if isinstance(loss, Picture):
+        return {}
+    weights = loss.importance(samples)
+    own = weigh(samples.extents, loss.measure)
+    covered = 1.0
+    if np.ndim(own):
+        covered = float(np.sum(own) / weigh(whole(float(max_angle))[None], loss.measure)[0])
+    return {
+        "effective_samples": float(weights.sum() ** 2 / (weights @ weights)),
+        "unrepresented": max(1 - covered, 0.0),
+    }
 
 
 def check_settings(given: Mapping[str, Any], where: str = "") -> dict[str, Any]:

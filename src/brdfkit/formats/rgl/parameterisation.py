@@ -173,8 +173,9 @@ class AdaptiveTable:
         [degrees], the stored points stand for, in the order of `stored_samples`; see
         `samples/measures.py`. `usable`: a mask (n,) of the points that count.
 
-        A cell of the grid over u is split among those of its four corners that are usable. At its middle m, dω_h = dm and
-        dω_d = dω_i, so that dθ_h dθ_d dφ_d = dθ_m dφ_m · sinθ_i dθ_i / sinθ_d.
+        A cell of the grid over u is split among those of its four corners that are usable. At its
+        middle m, dω_h = dm and dω_d = dω_i, so that dθ_h dθ_d dφ_d = dθ_m dφ_m · sinθ_i dθ_i /
+        sinθ_d.
         """
         grid, n = self.parameterisation, self.values.shape[2]
         a, b = grid.vndf.shape[:2]
