@@ -103,7 +103,7 @@ class Light:
         return float(apart.max()) + (float(np.log(most / ALL)) if most > ALL else 0.0)
 
     def factors(self, albedos):
-        """The light of `albedos` (n, channels) over the measured one (n,); 1 where none is known."""
+        """The light of `albedos` (n, channels) over the measured (n,); 1 where that is unknown."""
         measured, own = (np.maximum(a.mean(axis=1), 1e-9) for a in (self.values, albedos))
         return np.where(self.known, own / measured, 1.0)
 

@@ -59,8 +59,8 @@ def density(theta_h: NDArray[np.float64], theta_d: NDArray[np.float64]) -> NDArr
 
 
 @cache
-def whole(max_angle: float) -> NDArray[np.float64]:
-    """Both measures (2,) of all pairs with both angles below `max_angle` [degrees], φ_d over 2π."""
+def whole(max_angle: float, measure: str) -> float:
+    """A measure of all pairs with both angles below `max_angle` [degrees], φ_d over 2π."""
     steps = [(np.arange(n) + 0.5) / n for n in GRID]
     theta_h, theta_d, phi_d = np.meshgrid(*steps, indexing="ij")
     theta_h, theta_d, phi_d = theta_h * np.pi / 2, theta_d * np.pi / 2, phi_d * 2 * np.pi
@@ -68,7 +68,7 @@ def whole(max_angle: float) -> NDArray[np.float64]:
     least = least_cosine(max_angle)
     inside = (wi[..., 2] > least) & (wo[..., 2] > least)
     cell = (np.pi / 2) ** 2 * 2 * np.pi / inside.size
-    return cell * np.array([inside.sum(), density(theta_h, theta_d)[inside].sum()])
+    return float(cell * np.sum(density(theta_h, theta_d)[inside] ** MEASURES[measure]))
 
 
 def estimate_extents(

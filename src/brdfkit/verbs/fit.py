@@ -206,10 +206,9 @@ def tell_weights(loss: Loss | Picture, samples: Any, max_angle: float) -> dict[s
     if isinstance(loss, Picture):
         return {}
     weights = loss.importance(samples)
-    own = weigh(samples.extents, loss.measure)
-    covered = 1.0
-    if np.ndim(own):
-        covered = float(np.sum(own) / weigh(whole(float(max_angle))[None], loss.measure)[0])
+    own, covered = weigh(samples.extents, loss.measure), 1.0
+    if isinstance(own, np.ndarray):
+        covered = float(own.sum()) / whole(float(max_angle), loss.measure)
     return {
         "effective_samples": float(weights.sum() ** 2 / (weights @ weights)),
         "unrepresented": max(1 - covered, 0.0),

@@ -19,7 +19,7 @@ NUMBERS = tuple(n for n in range(1, 62) if n not in ANISOTROPIC)
 # The thesis's widths are at most 0.5; its polynomials are fitted by bisquare without a cosine, and
 # Koenderink's basis by plain least squares
 BOUNDS = {name: {"alpha_u": (0.001, 0.5)} for name in ("ward", "ward_duer")}
-PLAIN = replace(losses["plain"], name="plain sum", measure="samples")
+PLAIN = replace(losses.by_sample["plain"], name="plain sum", measure="samples")
 BISQUARE, OLS, WLS = (PLAIN, "bisquare"), (PLAIN, None), ("kurt", None)
 METHODS = {"bisquare": BISQUARE, "least squares": OLS, "weighted by eq. 5.13": WLS}
 
