@@ -92,13 +92,17 @@ class Light:
         """Whether `albedos` (n, channels) are near the measured ones, and no light is gained."""
         return self.departure(albedos) <= np.log(HELD) and albedos.max() <= ALL
 
+    def counted(self, albedos):
+        """The angles (n,) at which a fit of these `albedos` (n, channels) is to come nearer."""
+        dark = self._steep() & (self.factors(albedos) < 1)
+        return (self.known & ~dark) | (albedos.max(axis=1) > ALL)
+
     def departure(self, albedos):
         """How far `albedos` (n, channels) are from the measured ones, as the logarithm of the
         largest factor; light that is gained adds its own. A model that is too dark at grazing
         angles is not far."""
         apart = np.log(self.factors(albedos))
-        steep = np.array(self.theta_i) > STEEP
-        apart = np.where(steep, np.maximum(apart, 0), np.abs(apart))
+        apart = np.where(self._steep(), np.maximum(apart, 0), np.abs(apart))
         most = albedos.max()
         return float(apart.max()) + (float(np.log(most / ALL)) if most > ALL else 0.0)
 
@@ -106,6 +110,9 @@ class Light:
         """The light of `albedos` (n, channels) over the measured (n,); 1 where that is unknown."""
         measured, own = (np.maximum(a.mean(axis=1), 1e-9) for a in (self.values, albedos))
         return np.where(self.known, own / measured, 1.0)
+
+    def _steep(self):
+        return np.array(self.theta_i) > STEEP
 
     def beside(self, albedos):
         """The `Albedo` of a fit with these `albedos` (n, channels)."""

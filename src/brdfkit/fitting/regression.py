@@ -8,7 +8,7 @@ import numpy as np
 from brdfkit.fitting.certainty import ON_BOUND, Certainty, certify, explain_end
 from brdfkit.fitting.folding import fold
 from brdfkit.fitting.levenberg_marquardt import ROUNDING
-from brdfkit.fitting.light import ALL, NEARER, SHARES, LightProblem
+from brdfkit.fitting.light import NEARER, SHARES, LightProblem
 from brdfkit.fitting.parameter_space import Space
 from brdfkit.fitting.part import mix_bands
 from brdfkit.fitting.picture_problem import PictureProblem
@@ -159,7 +159,7 @@ def _keep_light(whole, u, weights, light, points, rng):
     free = look(u, weights)
     if light.is_right(free):
         return None
-    counted = light.known | (free.max(axis=1) > ALL)
+    counted = light.counted(free)
     first = max(whole.sums(u, weights, curvature=False).error[0], ROUNDING * whole.black.sum())
     parts, points, kept = with_parts(whole, rng), np.concatenate([u, points]), None
     for share in SHARES:

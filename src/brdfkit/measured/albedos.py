@@ -13,7 +13,7 @@ from brdfkit.samples.measures import REACH
 # which no measurement is trusted, but no fit should gain light
 ANGLES, GRAZING = (5.0, 45.0, 75.0), 85.0
 # Half vectors of the quadrature: polar angles, spaced as in a table, and azimuths
-N_THETA, N_PHI = 180, 72
+N_THETA, N_PHI = 60, 24
 # Azimuths of incidence of an anisotropic material
 AZIMUTHS = 4
 # The share of the light that must leave near measured directions for the albedo to be known

@@ -35,7 +35,7 @@ MEASURES: dict[str, float | None] = {
 # 3.6° in theta_h, or 0.5 in sin theta_d
 REACH = 0.5
 # Points for each sample, and how many there are at least and at most
-POINTS, FEWEST, LARGEST_NUMBER = 16, 2**15, 2**18
+POINTS, FEWEST, LARGEST_NUMBER = 16, 2**13, 2**18
 # Bins of theta_h, even in its square root, by which half of the points go where the samples are
 BINS = 90
 # Cells along theta_h, theta_d and phi_d by which the measures of all pairs are known to 1e-3
