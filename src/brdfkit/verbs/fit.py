@@ -22,6 +22,7 @@ from brdfkit.measured.spectrum_to_rgb import wavelengths
 from brdfkit.model import Model, labels
 from brdfkit.model.evaluation import with_weights
 from brdfkit.pictures import draw_pixels
+from brdfkit.verbs.extrapolation import note_on_extrapolation
 from brdfkit.verbs.fit_notes import list_notes
 from brdfkit.verbs.fit_settings import require_plain, to_settings
 from brdfkit.version import versions
@@ -154,6 +155,7 @@ def fit(
             notes=(
                 *found.notes,
                 *list_notes(data, samples, loss, found, fitted, weights is not None),
+                *note_on_extrapolation(data, float(max_angle)),
             ),
             settings={
                 **given,

@@ -1,11 +1,13 @@
 """Coverage: the share of all direction pairs that a measurement reaches."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from brdfkit.auditing.symmetries import points
 from brdfkit.geometry.directions import from_angles
+from brdfkit.measured.pair_points import points
 
 NEAR = np.radians(5)  # a pair this near to a sample counts as measured
 PAIRS = 20_000  # random pairs for scattered samples: the shares are accurate to 0.4 %
@@ -25,17 +27,31 @@ class Coverage:
     beyond: float
 
 
-def coverage(data):
-    """The `Coverage` of a `Measured`."""
-    samples = data.samples
-    low, high = _cosines(samples.wi, samples.wo)
-    pairs = _table_pairs(data, low, high) if data.is_table else _random_pairs(data)
-    pair_low, pair_high, weight, reached = pairs
-    # neither the larger nor the smaller angle is above the largest such angle that was measured
-    within = pair_low >= low[samples.valid].min()
-    within &= pair_high >= high[samples.valid].min()
-    shares = (reached, ~reached & within, ~reached & ~within)
-    return Coverage(*(float(weight @ share / weight.sum()) for share in shares))
+def coverage(data: Any, max_angle: float = 90.0) -> Coverage:
+    """The `Coverage` of a `Measured`, of the pairs with both angles below `max_angle` [degrees]."""
+    least = np.cos(np.radians(max_angle))
+    if not data.is_table:
+        z, phi = np.random.default_rng(0).random((2, 2, PAIRS))
+        wi, wo = from_angles(np.arccos(least + (1 - least) * z), 2 * np.pi * phi)
+        return coverage_at(data, wi, wo)
+    low, high = _cosines(data.samples.wi, data.samples.wo)
+    weight = _solid_angles(data.table) * (low > max(least, 0))
+    return _share(data, low, high, weight, data.samples.valid)
+
+
+def coverage_at(data: Any, wi: NDArray[np.float64], wo: NDArray[np.float64]) -> Coverage:
+    """The `Coverage` of scattered samples, a `Measured`, at direction pairs (n, 3) alone."""
+    low, high = _cosines(wi, wo)
+    return _share(data, low, high, np.ones(len(wi)), is_near(data, wi, wo))
+
+
+def largest_angles(data: Any) -> tuple[float, float]:
+    """The largest measured angle of the direction nearer to the normal, and that of the other one
+    [degrees]: no pair was measured whose smaller, or larger, angle is above it."""
+    valid = data.samples.valid
+    low, high = _cosines(data.samples.wi[valid], data.samples.wo[valid])
+    smaller, larger = np.degrees(np.arccos(np.minimum([high.min(), low.min()], 1)))
+    return float(smaller), float(larger)
 
 
 def in_plane(data):
@@ -70,20 +86,21 @@ def _cosines(wi, wo):
     return np.minimum(wi[:, 2], wo[:, 2]), np.maximum(wi[:, 2], wo[:, 2])
 
 
-def _random_pairs(data):
-    """Random pairs, uniform in solid angle: their `_cosines`, weights, and which are measured."""
-    z, phi = np.random.default_rng(0).random((2, 2, PAIRS))
-    wi, wo = from_angles(np.arccos(z), 2 * np.pi * phi)
-    return *_cosines(wi, wo), np.ones(PAIRS), is_near(data, wi, wo)
+def _share(data, low, high, weight, reached):
+    """The `Coverage` of pairs with these `_cosines` (n,) and weights (n,), of which `reached` (n,)
+    were measured."""
+    measured = _cosines(*(w[data.samples.valid] for w in (data.samples.wi, data.samples.wo)))
+    # neither the larger nor the smaller angle is above the largest such angle that was measured
+    within = (low >= measured[0].min()) & (high >= measured[1].min())
+    shares = (reached, ~reached & within, ~reached & ~within)
+    return Coverage(*(float(weight @ share / weight.sum()) for share in shares))
 
 
-def _table_pairs(data, low, high):
-    """The same of a table's cells; their weights are their solid angles above the horizon.
+def _solid_angles(table):
+    """The solid angles (cells,) of a table's cells, up to a factor.
 
     dωi dωo = 4 cos θd dωh dωd [Rusinkiewicz 1998].
     """
-    table = data.table
     theta_h, theta_d, _ = np.meshgrid(*table.centres[-3:], indexing="ij", sparse=True)
     size = table.theta_h_widths * np.sin(theta_h) * np.sin(theta_d) * np.cos(theta_d)
-    weight = np.broadcast_to(size, table.shape).reshape(-1) * (low > 0)
-    return low, high, weight, data.samples.valid
+    return np.broadcast_to(size, table.shape).reshape(-1)
