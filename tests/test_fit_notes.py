@@ -226,6 +226,19 @@ def test_all_that_show_a_fit_show_its_notes(tmp_path):
     assert all("".join(n.split()) in "".join(shown.split()) for n in found.notes)
 
 
+def test_the_note_on_azimuths_comes_with_pictures_too():
+    """Pixels have no error at one azimuth, by which a least one could be told."""
+    from brdfkit.samples import Table
+
+    brushed = model("ggx", alpha_u=0.1, alpha_v=0.5)
+    wi, wo = Table(np.full((6, 8, 4, 8, 1), np.nan)).directions()
+    values = brushed.eval(wi.reshape(-1, 3), wo.reshape(-1, 3)).reshape(6, 8, 4, 8, 1)
+    data = Measured.from_table(values, channels=("Y",))
+    note = "the material changes as the surface turns, and the model as fitted does not"
+    assert note in bk.fit("lambert", data, "picture", starts=1).notes
+    assert any(n.startswith(f"{note}: no") for n in bk.fit("lambert", data).notes)
+
+
 # Extrapolation
 
 
