@@ -15,9 +15,9 @@ import brdfkit as bk
 from brdfkit import models
 from brdfkit.auditing import symmetries
 from brdfkit.auditing.albedos import Albedo, albedo_of_samples
-from brdfkit.auditing.coverage import coverage, is_near
 from brdfkit.auditing.grazing_and_retro import backwards, grazing, retroreflection
 from brdfkit.auditing.noise import noise
+from brdfkit.auditing.report import percent
 from brdfkit.auditing.spikes import spikes
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.commands.info import record
@@ -25,6 +25,8 @@ from brdfkit.geometry.directions import from_angles
 from brdfkit.json_values import plain
 from brdfkit.loading import load
 from brdfkit.measured import Measured
+from brdfkit.measured.coverage import coverage, is_near, largest_angles
+from brdfkit.measured.pair_points import points
 from brdfkit.samples import Table
 
 SHAPE = 45, 23, 36
@@ -68,8 +70,8 @@ ANGLE, AZIMUTH = st.floats(0, np.pi / 2), st.floats(-np.pi, np.pi)
 
 @given(ANGLE, ANGLE, AZIMUTH, AZIMUTH)
 def test_turned_pairs_are_the_same_point(theta_i, theta_o, phi, turn):
-    a = symmetries.points(from_angles(theta_i, [0.0]), from_angles(theta_o, [phi]))
-    b = symmetries.points(from_angles(theta_i, [turn]), from_angles(theta_o, [phi + turn]))
+    a = points(from_angles(theta_i, [0.0]), from_angles(theta_o, [phi]))
+    b = points(from_angles(theta_i, [turn]), from_angles(theta_o, [phi + turn]))
     np.testing.assert_allclose(a, b, atol=1e-7)  # acos near 1
 
 
@@ -84,7 +86,7 @@ def test_a_distance_is_about_the_angle(theta_i, theta_o, phi, part, direction):
     wi_2, wo_2 = from_angles(other[0], turns), from_angles(other[1], further + turns)
     chords = np.sum((wi - wi_2) ** 2, axis=1) + np.sum((wo - wo_2) ** 2, axis=1)
     angle = np.sqrt(chords.min())
-    distance = np.linalg.norm(symmetries.points(wi, wo) - symmetries.points(wi_2[:1], wo_2[:1]))
+    distance = np.linalg.norm(points(wi, wo) - points(wi_2[:1], wo_2[:1]))
     # near the normal, where azimuths mean little, it is off most
     assert angle / np.sqrt(2) - 2e-3 <= distance <= 1.5 * angle + 2e-3
 
@@ -137,6 +139,27 @@ def test_coverage_of_samples():
     assert found.between < 0.002
     assert found.measured + found.between + found.beyond == pytest.approx(1)
     assert coverage(one_sample()).measured < 0.002
+
+
+def test_coverage_below_an_angle():
+    """All below 60° was measured: none of the pairs below is beyond, and of all pairs three
+    quarters are, but for those within 5° of a sample."""
+    angles = range(0, 61, 4)
+    data = scattered(lambda wi, wo: np.ones((len(wi), 1)), *grid(angles, angles, range(0, 181, 5)))
+    assert coverage(data, 60).measured > 0.998
+    assert coverage(data, 60).beyond == 0
+    assert 0.6 < coverage(data).beyond < 0.75
+    assert largest_angles(data) == pytest.approx((60, 60))
+    assert largest_angles(scattered()) == pytest.approx((60, 75))
+
+
+def test_nothing_that_is_no_measurement_is_called_one():
+    """A whole table may have been extrapolated; 99.96 % are not 100 %."""
+    whole = Measured.from_table(tabulated()).audit().rows()["coverage"]
+    assert whole == "values in all cells; a table does not tell which of them were measured"
+    assert "beyond them: there values are extrapolated" in scattered().audit().rows()["coverage"]
+    for share, told in ((0.9996, "99.9 %"), (0.996, "99.6 %"), (1 - 1e-15, "100 %")):
+        assert percent(share) == told
 
 
 def test_near_allows_for_the_symmetries_of_the_material():

@@ -266,6 +266,20 @@ def test_what_is_lost_is_told(tmp_path):
     assert "negative 3.03% of the values → 0.00% of the values" in told
 
 
+def test_what_is_extrapolated_is_told(tmp_path):
+    """Of a model that was sampled below 40°, in a file of all angles."""
+    ggx = bk.models()["ggx"](alpha_u=0.2)
+    theta, phi = np.radians(np.random.default_rng(0).uniform(0, [[[40]], [[360]]], (2, 2, 60)))
+    wi, wo = from_angles(theta, phi)
+    few = Measured.from_samples(wi, wo, ggx.eval(wi, wo) * np.ones(3))
+    told = convert(few, tmp_path / "paint.bsdf").changes[0]
+    number = r"\d+%"
+    assert re.match(f"{number} of the new samples are extrapolated and {number} interpolated", told)
+    assert re.search(r"; the maximum rises from [\d.]+ to [\d.]+ sr⁻¹$", told)
+    assert not convert(few, tmp_path / "paint.npz").changes
+    assert not any("extrapolated" in c for c in convert(ggx, tmp_path / "ggx.bsdf").changes)
+
+
 def waves(wi, wo):
     """A lookup too wild for a table."""
     return (1.1 + np.sin(60 * wi[:, 2:]) * np.sin(60 * wo[:, 2:])) * [1, 1, 1]

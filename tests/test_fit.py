@@ -413,7 +413,7 @@ def test_too_few_numbers_are_noted():
     up = [[0.0, 0.0, 1.0]]
     one = bk.Measured.from_samples(up, up, [[0.2, 0.3, 0.4]])
     assert any(n.startswith("3 numbers were measured for 7") for n in bk.fit("ward", one).notes)
-    assert not bk.fit("lambert", one).notes
+    assert not any("were measured for" in note for note in bk.fit("lambert", one).notes)
 
 
 @pytest.mark.quick
@@ -424,8 +424,8 @@ def test_negatives_out_of_gamut_are_told_from_measured_ones():
     values = np.zeros((20, len(names)))
     values[:, names.index("520nm")] = 0.5
     green = bk.Measured.from_samples(wi, wi, values, channels=names, name="green")
-    (note,) = bk.fit("lambert", green).notes
+    (note,) = (note for note in bk.fit("lambert", green).notes if "negative" in note)
     assert "in linear sRGB are negative and count as 0, though none was measured so" in note
     noisy = bk.Measured.from_samples(wi, wi, values - 0.01, channels=names)
-    (note,) = bk.fit("lambert", noisy).notes
+    (note,) = (note for note in bk.fit("lambert", noisy).notes if "negative" in note)
     assert "of the measured values are negative and count as 0" in note

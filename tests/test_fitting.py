@@ -1,5 +1,7 @@
 """The parts of a fit, each against something independent of it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from random_models import random_model
@@ -17,6 +19,8 @@ from brdfkit.model import labels
 from brdfkit.model.evaluation import lobe_values
 from brdfkit.samples import Samples
 
+# The plain difference, each sample one, as textbooks have it
+PLAIN_SUM = replace(losses.by_sample["plain"], name="plain sum", measure="samples")
 MODELS_WITHOUT_SUMS = [name for name in bk.models() if name != "mixture"]
 
 
@@ -48,8 +52,8 @@ def test_squared_error_and_gradient(name, loss):
     """E² against NumPy, its gradient against central differences: at several points at once."""
     rng = np.random.default_rng(1)
     wi, wo = random_pairs(60, seed=2, max_degrees=79)
-    samples = Samples.from_arrays(wi, wo, rng.uniform(0.1, 1, (60, 3)), None, "RGB", "random")
-    problem = problem_of(name, samples, loss)
+    data = bk.Measured.from_samples(wi, wo, rng.uniform(0.1, 1, (60, 3)))
+    problem = problem_of(name, select_samples(data, 90.0), loss)
     u, weights = point(problem, 3)
     here = problem.expand_here(u, weights)
 
@@ -59,7 +63,6 @@ def test_squared_error_and_gradient(name, loss):
     for k in range(len(u)):
         values = problem.space.values(u[k])
         linear = dict(zip(problem.model.weights(), map(tuple, weights[k].T), strict=True))
-        data = bk.Measured.from_samples(wi, wo, samples.values)
         model = problem.model(**values, **linear)
         expected = bk.compare(data, model, 90.0).errors[model.name][loss]
         assert np.sqrt(here.error[k]) == pytest.approx(expected, rel=1e-10)
@@ -130,7 +133,7 @@ def test_settled_weights_give_the_solution_back(model, name):
     rng = np.random.default_rng(9)
     values = 0.3 + 0.1 * wi[:, 2:] * wo[:, 2:] + 0.01 * rng.standard_t(2, (600, 1))
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
-    fit = bk.fit(model, data, "plain", robust=name)
+    fit = bk.fit(model, data, PLAIN_SUM, robust=name)
     assert fit.message.startswith("settled")
     columns, _ = lobe_values(fit.model, wi, wo)
     solution = np.ravel([fit.values[n] for n in fit.model.weights()])

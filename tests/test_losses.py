@@ -9,6 +9,7 @@ import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.cli import main
 from brdfkit.errors import BrdfkitError
+from brdfkit.measured.selection import select_samples
 from brdfkit.samples import Table
 
 N = 400
@@ -31,7 +32,7 @@ def assert_same(found, other, rtol=1e-10):
 def test_a_loss_tells_itself_whether_it_is_linear():
     """Not by a flag: by its values, over eight decades of the model's and the measured one."""
     linear = {name for name, loss in bk.losses.items() if loss.linear}
-    assert linear == {"cosine", "plain", "lafortune"}
+    assert linear == {"cosine", "plain", "lafortune", "kurt"}
 
     def bent(model, measured, cos_i, cos_o):
         return dr.minimum(model, 100.0) - dr.minimum(measured, 100.0)
@@ -49,8 +50,9 @@ def test_a_loss_of_ones_own_is_as_good():
         return dr.log(kappa * model + 1e-3) - dr.log(kappa * dr.maximum(measured, 0) + 1e-3)
 
     data = measured(bk.models()["ward"](alpha_u=0.3), noise=0.01)
-    found, known = bk.fit("ggx", data, own_log), bk.fit("ggx", data, "log")
-    assert found.loss_name == "own_log"
+    mine = bk.Loss("own_log", "Mine", own_log, measure="angles")
+    found, known = bk.fit("ggx", data, mine), bk.fit("ggx", data, "log")
+    assert bk.fit("ggx", data, own_log).loss_name == "own_log"
     assert found.loss == pytest.approx(known.loss, rel=1e-12)
     assert_same(found, known)
     both = bk.Loss("both", "with weights", own_log, weights=lambda cos_i: cos_i)
@@ -70,10 +72,10 @@ def test_a_loss_of_ones_own_is_as_good():
         (lambda m, r, ci, co: dr.detach(m) - r, "or has no derivative by it"),
         (bk.Loss("log", "taken", lambda m, r, ci, co: m - r), "a name that brdfkit.losses lacks"),
         (
-            bk.Loss("few", "", lambda m, r, ci, co: m - r, lambda c: c[:2]),
+            bk.Loss("few", "", lambda m, r, ci, co: m - r, weights=lambda c: c[:2]),
             "weights of the loss few",
         ),
-        (bk.Loss("low", "", lambda m, r, ci, co: m - r, lambda c: -c), "at least 0"),
+        (bk.Loss("low", "", lambda m, r, ci, co: m - r, weights=lambda c: -c), "at least 0"),
         (lambda m, r, ci, co: dr.log(m) - dr.log(r + 1), "is -inf at theta_i.*the model's 0; keep"),
         (lambda m, r, ci, co: dr.log(m + 1) - dr.log(r), "is inf at theta_i.*measured value is 0"),
         (lambda m, r, ci, co: dr.sqrt(m) - dr.sqrt(r), "the derivative inf at theta_i"),
@@ -86,16 +88,34 @@ def test_a_bad_loss_is_refused(loss, words):
 
 @pytest.mark.quick
 def test_weights_count_samples():
-    """A weight of 0 leaves a sample out, and a weight of 2 is the sample twice."""
+    """A weight of 0 leaves a sample out; where each sample is one, a weight of 2 is it twice."""
     data = measured(bk.models()["ggx"](), noise=0.02)
     weights = np.random.default_rng(5).integers(0, 3, N)
     rows = np.repeat(np.arange(N), weights)
     wi, wo, values = data.samples.wi[rows], data.samples.wo[rows], data.values[rows]
-    repeated = bk.fit("ward", bk.Measured.from_samples(wi, wo, values), "cbrt")
-    found = bk.fit("ward", data, "cbrt", weights=weights)
+    repeated = bk.fit("ggx", bk.Measured.from_samples(wi, wo, values), "kurt")
+    found = bk.fit("ggx", data, "kurt", weights=weights)
     assert found.loss == pytest.approx(repeated.loss, rel=1e-10)
     assert_same(found, repeated, rtol=1e-6)
     assert found.samples == np.count_nonzero(weights)
+
+
+@pytest.mark.quick
+def test_a_sample_that_is_there_twice_counts_once():
+    """What it stands for is shared, so that a file's repeats do not pull a fit: where half of the
+    samples are there ten times, they still are about half of the measure."""
+    data = measured(bk.models()["ggx"](), noise=0.02)
+    rows = np.concatenate([np.arange(N), np.repeat(np.arange(N // 2), 9)])
+    wi, wo, values = data.samples.wi[rows], data.samples.wo[rows], data.values[rows]
+    repeated = select_samples(bk.Measured.from_samples(wi, wo, values), 80.0)
+    once = select_samples(data, 80.0)
+    for loss in bk.losses.by_sample.values():
+        if loss.measure != "samples":
+            first = loss.importance(repeated)[rows < N // 2].sum()
+            expected = loss.importance(once)[: N // 2].sum()
+            assert first / loss.importance(repeated).sum() == pytest.approx(
+                expected / loss.importance(once).sum(), rel=0.05
+            )
 
 
 @pytest.mark.quick

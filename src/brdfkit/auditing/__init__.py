@@ -11,7 +11,6 @@ import numpy as np
 
 from brdfkit.auditing import report
 from brdfkit.auditing.albedos import Albedo, albedo, albedo_of_samples
-from brdfkit.auditing.coverage import Coverage, coverage, in_plane
 from brdfkit.auditing.grazing_and_retro import backwards, grazing, retroreflection
 from brdfkit.auditing.noise import Noise, noise
 from brdfkit.auditing.spikes import Spike, spikes
@@ -19,6 +18,7 @@ from brdfkit.auditing.symmetries import Difference, by_mirror, by_reciprocity
 from brdfkit.documents import Document, Paragraph, Picture, Shown, Table
 from brdfkit.documents.parts import BAD
 from brdfkit.materials import MaterialLike, measured_material
+from brdfkit.measured.coverage import Coverage, coverage, in_plane
 from brdfkit.measured.spectrum_to_rgb import rgb_or_mean
 
 if TYPE_CHECKING:

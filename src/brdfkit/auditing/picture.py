@@ -4,8 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from brdfkit.auditing.coverage import is_near
+from brdfkit.auditing.report import percent
 from brdfkit.colours import RGB, luminance
+from brdfkit.measured.coverage import is_near
 from brdfkit.measured.spectrum_to_rgb import rgb_or_mean
 from brdfkit.plotting import Plot
 from brdfkit.plotting.lobe_plots import draw
@@ -37,8 +38,9 @@ def picture(audit):
 
 
 def _draw_title(figure, audit):
-    covered = f"{audit.coverage.measured:.0%} of the direction pairs".replace("%", " %")
-    text = f"{audit.name}: {audit.kind}, {audit.valid:,} valid, {covered} measured"
+    how = "in valid cells" if audit.data.is_table else "measured"
+    covered = f"{percent(audit.coverage.measured)} of the direction pairs {how}"
+    text = f"{audit.name}: {audit.kind}, {audit.valid:,} valid, {covered}"
     figure.suptitle(text.replace("$", r"\$"), fontsize=12)  # $ begins a formula
 
 

@@ -2,6 +2,8 @@
 
 import math
 
+from brdfkit.measured.coverage import Coverage
+
 MOST_SPIKES = 3  # spikes that are named; the others are counted
 # What is above, or for DARK_HORIZON below, is a finding:
 SHARE = 0.01  # the share of negative or of zero values
@@ -18,8 +20,6 @@ def rows(audit):
     beneath = f"; {below:,} at or below the horizon" if below else ""
     values = audit.valid * len(audit.channels)
     missing = audit.above - audit.valid
-    reach = audit.coverage
-    how = "in valid cells" if audit.data.is_table else "within 5° of a sample"
     return {
         "kind": audit.kind,
         "channels": _channels(audit.channels),
@@ -27,13 +27,12 @@ def rows(audit):
         "negative": f"{audit.negative:,} of {values:,} values; exactly 0: {audit.zero:,}",
         "BRDF": _range(audit),
         "angles": f"θi {_angles(audit.theta_i)}; θo {_angles(audit.theta_o)}",
-        "coverage": f"{_percent(reach.measured)} of the pairs of directions {how}, "
-        f"{_percent(reach.between)} between measured angles, {_percent(reach.beyond)} beyond them",
+        "coverage": _coverage(audit.coverage, audit.data.is_table),
         "reciprocity": _reciprocity(audit),
         "mirror symmetry": _difference(audit.mirror, "no mirrored pairs"),
         "noise": _noise(audit.noise),
         **_albedos(audit),
-        "a fit uses": f"{audit.used:,} {unit}, {_percent(audit.used / audit.valid)} of the valid: "
+        "a fit uses": f"{audit.used:,} {unit}, {percent(audit.used / audit.valid)} of the valid: "
         "both angles below 80°",
     }
 
@@ -44,16 +43,16 @@ def findings(audit):
     values = audit.valid * len(audit.channels)
     if audit.negative > SHARE * values:
         found.append(
-            f"{_percent(audit.negative / values)} of the values are negative: the losses log and "
+            f"{percent(audit.negative / values)} of the values are negative: the losses log and "
             "cbrt treat them as 0"
         )
     if audit.zero > SHARE * values:
-        share = _percent(audit.zero / values)
+        share = percent(audit.zero / values)
         found.append(f"{share} of the values are exactly 0: probably clipped")
     if audit.reciprocity.pairs >= PAIRS and audit.reciprocity.median > _unequal(audit.noise):
         found.append(
             f"not reciprocal: exchanging wi and wo changes the value by "
-            f"{_percent(audit.reciprocity.median)} in the median"
+            f"{percent(audit.reciprocity.median)} in the median"
         )
     if audit.in_plane:
         found.append(
@@ -95,18 +94,33 @@ def _range(audit):
     return f"{audit.smallest:.4g} to {audit.largest:.4g} sr⁻¹, median {audit.median:.4g}"
 
 
+def _coverage(reach: Coverage, is_table: bool) -> str:
+    """What was measured; a table does not tell what was interpolated before it was written."""
+    shares = (reach.measured, reach.between, reach.beyond)
+    measured, between, beyond = map(percent, shares)
+    if is_table and measured == "100 %":
+        return "values in all cells; a table does not tell which of them were measured"
+    how = "in valid cells" if is_table else "within 5° of a sample"
+    return (
+        f"{measured} of the pairs of directions {how}, {between} between measured angles, "
+        f"{beyond} beyond them: there values are extrapolated"
+    )
+
+
 def _angles(angles):
     if len(angles) > 2:
         return ", ".join(f"{a:g}" for a in angles) + "°"
     return " to ".join(f"{a:g}°" for a in angles)
 
 
-def _percent(share):
-    """A share in percent, to two digits; one above 0 is never shown as 0."""
-    percent = 100 * share
-    if 0 < percent < 0.001:
+def percent(share):
+    """A share in percent, to two digits; one above 0 is never shown as 0, one below 1 as 100."""
+    share = 100 * share
+    if 0 < share < 0.001:
         return "< 0.001 %"
-    return f"{percent:.0f} %" if percent >= 9.95 or percent == 0 else f"{percent:.2g} %"
+    if 99.5 <= share < 99.999:
+        return f"{min(share, 99.9):.1f} %"
+    return f"{share:.0f} %" if share >= 9.95 or share == 0 else f"{share:.2g} %"
 
 
 def _reciprocity(audit):
@@ -119,8 +133,8 @@ def _difference(found, without):
     if not found:
         return f"not testable: {without}"
     return (
-        f"{found.pairs:,} pairs of values differ by {_percent(found.median)} in the median, "
-        f"95 % of them by at most {_percent(found.percentile_95)}"
+        f"{found.pairs:,} pairs of values differ by {percent(found.median)} in the median, "
+        f"95 % of them by at most {percent(found.percentile_95)}"
     )
 
 
@@ -128,7 +142,7 @@ def _noise(noise):
     known = [n for n in noise.relative if not math.isnan(n)]
     if not known:
         return noise.method
-    ends = dict.fromkeys(map(_percent, (min(known), max(known))))
+    ends = dict.fromkeys(map(percent, (min(known), max(known))))
     return f"{' to '.join(ends)} of a value, from {noise.method}"
 
 

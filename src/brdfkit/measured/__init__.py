@@ -5,7 +5,8 @@
 names say what they are (`column_names.py`); `measured.py`: their lookup; `interpolation.py`:
 between scattered samples; `tabulation.py`: any BRDF as a table; `mixing.py` and
 `spectrum_to_rgb.py`: channels, wavelengths and colours; `subtraction.py`: what a BRDF leaves of it;
-`selection.py`: the samples that a fit uses; `checksum.py`: knows it again.
+`selection.py`: the samples that a fit uses; `coverage.py`: the share of all directions that was
+measured, by distances of `pair_points.py`; `checksum.py`: knows it again.
 """
 
 from brdfkit.measured.measured import Measured as Measured

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from brdfkit.fitting import Picture
 from brdfkit.fitting.derivative import differentiate
 from brdfkit.geometry.directions import rotate_z
 from brdfkit.jit.threads import in_turn
@@ -32,8 +33,8 @@ def note_on_azimuth(data, samples, loss, fitted):
     if not is_isotropic(fitted, part.wi, part.wo):
         return None
     note = "the material changes as the surface turns, and the model as fitted does not"
-    if not (data.is_table or data.has_lookup):
-        return note
+    if isinstance(loss, Picture) or not (data.is_table or data.has_lookup):
+        return note  # pixels have no error at one azimuth
     least = _least_error(data if fitted.wavelengths else data.rgb, part, loss)
     return f"{note}: no isotropic one has an error below about {least:.2g}"
 

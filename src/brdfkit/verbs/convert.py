@@ -12,6 +12,7 @@ from brdfkit.loading import save_and_read
 from brdfkit.materials import Material, MaterialLike, material
 from brdfkit.measured import Measured
 from brdfkit.measured.tabulation import table_shape, tabulate
+from brdfkit.verbs.extrapolation import describe_extrapolation
 
 # Two materials are compared at this many direction pairs, up to this angle from the normal
 PAIRS, STEEPEST = 4000, np.radians(80)
@@ -67,7 +68,9 @@ def convert(thing: MaterialLike, path: str | Path) -> Conversion:
     """
     thing = material(thing)
     if isinstance(thing, Measured):
-        return Conversion(Path(path), list_changes(thing, save_and_read(thing, path)))
+        back = save_and_read(thing, path)
+        changes = (*describe_extrapolation(thing, back), *list_changes(thing, back))
+        return Conversion(Path(path), changes)
     data = evaluate_on_grid(thing)
     note = f"{thing.name} evaluated at {len(data.values):,} direction pairs"
     return Conversion(Path(path), (note, *list_changes(data, save_and_read(data, path))))

@@ -25,6 +25,7 @@ from brdfkit.model import Model, labels
 from brdfkit.model.evaluation import with_weights
 from brdfkit.pictures import draw_pixels
 from brdfkit.samples.measures import weigh, whole
+from brdfkit.verbs.extrapolation import note_on_extrapolation
 from brdfkit.verbs.fit_notes import list_notes
 from brdfkit.verbs.fit_settings import require_plain, to_settings
 from brdfkit.version import versions
@@ -162,6 +163,7 @@ def fit(
                 *found.notes,
                 *warnings,
                 *list_notes(data, samples, loss, found, fitted, weights is not None),
+                *note_on_extrapolation(data, float(max_angle)),
             ),
             albedo=albedo,
             **tell_weights(loss, samples, max_angle),

@@ -3,6 +3,7 @@
 from brdfkit.fitting import Picture
 from brdfkit.model.evaluation import clamped_share
 from brdfkit.verbs.azimuth import note_on_azimuth
+from brdfkit.verbs.lobe_notes import list_lobe_notes
 
 
 def list_notes(data, samples, loss, found, fitted, weighted):
@@ -26,6 +27,7 @@ def list_notes(data, samples, loss, found, fitted, weighted):
         notes.append(f"{clamped:.1%} of the hemisphere's direction pairs are clamped at 0")
     if data.anisotropic and (note := note_on_azimuth(data, samples, loss, fitted)):
         notes.append(note)
+    notes += list_lobe_notes(data, samples, fitted, found.at_bounds)
     return (*notes, *found.certainty.undetermined, *found.certainty.trades)
 
 
