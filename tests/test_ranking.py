@@ -268,8 +268,11 @@ def test_doubtful_models_stand_back():
     said = str(Ranking("paint", "log", rows, 2))
     assert f"Doubtful: {doubt}, of abc." in said
     assert "tied, Pareto, doubtful" in said
-    best, why = choose(*rows, row("ward", 0.2, 33.0, 7, pareto=False))
-    assert best == "ggx"
+    beaten = row("ward", 0.11, 38.0, 7, pareto=False)
+    assert choose(*rows, beaten)[0] == "ggx"
+    best, why = choose(rows[0], beaten)
+    assert best == "ward"
+    assert why == "it is tied in error, and all models that no other beats are doubtful"
     alone = Ranking("paint", "log", (rows[0],), 1)
     assert alone.reason.startswith(f"abc is recommended, though {doubt}: no other model")
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from brdfkit.ranking.ranked import Ranked
 
-# Pictures that are worse than the best by less [dB] may be better by pixels that are drawn anew; and
+# Pictures that are worse than the best by less [dB] may be better when pixels are drawn anew; and
 # all that are as near as eight bits round to [dB] look the same
 NEAR, ROUNDED = 0.5, 59.0
 # How many other models of the Pareto set are described
@@ -19,10 +19,11 @@ LINES = 3
 
 @dataclass(frozen=True)
 class Choice:
-    """How one of the rows of a `Ranking` was chosen: each set is a part of the one before it.
+    """How one of the rows of a `Ranking` was chosen.
 
-    `pareto`: rows that no other beats; `sound`: those without a doubt, or all where each has one;
-    `near`: those whose picture is as good as the best; `tied`: those with the least error.
+    `pareto`: rows that no other beats; `sound`: those of them without a doubt, or else others that
+    are tied, or all of them where each has one; `near`: of these, those whose picture is as good as
+    the best; `tied`: of these, those with the least error.
     """
 
     pareto: list[Ranked]
@@ -34,7 +35,9 @@ class Choice:
     def of(cls, rows: Sequence[Ranked]) -> "Choice":
         """The choice from `Ranked` rows, some of which are of models that could be fitted."""
         pareto = [row for row in rows if row.pareto]
-        sound = [row for row in pareto if not row.doubt] or pareto
+        certain = [row for row in rows if not row.doubt and not row.message]
+        sound = [row for row in certain if row.pareto] or [row for row in certain if row.tied]
+        sound = sound or pareto
         best = min(max(row.psnr for row in sound), ROUNDED)
         near = [row for row in sound if row.psnr >= best - NEAR]
         tied = [row for row in near if row.tied] or [min(near, key=lambda row: row.error)]
@@ -48,9 +51,11 @@ class Choice:
     @property
     def why(self) -> str:
         """Why it is recommended: a clause."""
-        if len(self.pareto) == 1:
+        if self.pareto == [self.row]:
             return "no other model has a lesser error or a better picture"
         among = f"among the {len(self.pareto)} models that no other beats in both error and picture"
+        if not self.row.pareto:
+            return "it is tied in error, and all models that no other beats are doubtful"
         if len(self.sound) == 1:
             return f"{among} it alone is without a doubt"
         if len(self.sound) < len(self.pareto):
