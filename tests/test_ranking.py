@@ -1,6 +1,9 @@
-"""Rankings: the true model is found, ties are said, and no fit sees what it is held to."""
+"""Rankings: the true model is found, ties are said, no fit sees what it is held to, and the model
+that looks worst is not taken."""
 
 import json
+from dataclasses import replace
+from types import SimpleNamespace
 
 import drjit as dr
 import numpy as np
@@ -15,16 +18,22 @@ from brdfkit.geometry.directions import to_half_difference
 from brdfkit.measured.selection import select_samples
 from brdfkit.model import Model, labels, weight
 from brdfkit.model.lobes import Cosine, Lobe
-from brdfkit.ranking import ranking
-from brdfkit.ranking.held_out import PART, HeldOut, number_blocks
-from brdfkit.ranking.result import beside, is_tied, paired_standard_error
+from brdfkit.pictures import draw_pixels
+from brdfkit.ranking import Ranked, Ranking, ranking
+from brdfkit.ranking.appearance import Appearance
+from brdfkit.ranking.cross_validation import Validated
+from brdfkit.ranking.held_out import PART, HeldOut, number_blocks, number_regions
+from brdfkit.ranking.ranked import rows_of
+from brdfkit.ranking.ties import beside, is_tied, paired_standard_error
 
 TRUTHS = {
     "ward": {"alpha_u": 0.15, "diffuse_reflectance": 0.1},
-    "cook_torrance": {"alpha": 0.3, "f0": 0.1, "specular_reflectance": 2.0},
+    "cook_torrance": {"alpha": 0.3, "f0": 0.1, "diffuse_reflectance": 0.2},
     "oren_nayar": {"sigma": 0.5},
 }
 NOISE = 0.05
+UNBEATEN = "that no other beats in both error and picture"
+TIED = "that are tied in error and whose pictures are within 0.5 dB of the best"
 
 
 def measured(truth, n=1500, **how):
@@ -42,7 +51,7 @@ def test_the_true_model_is_recommended(name):
     assert found.best == name
     assert [row.model for row in found.rows if row.tied] == [name]
     assert found.rows[0].error == pytest.approx(NOISE, rel=0.1)
-    assert found.reason.startswith(f"{name} is recommended: its error is the least, by more than")
+    assert found.reason.startswith(f"{name} is recommended: no other model has a lesser error or a")
     assert f"{name}: Shows " in str(found)
 
 
@@ -57,8 +66,10 @@ def test_ties_are_said_as_ties():
     assert not rows["lambert"].tied
     assert rows["ggx"].parameters == 4
     assert rows["ggx+ggx"].parameters == 7
-    assert "it has the fewest parameters of 3 models that are tied" in found.reason
-    assert "student_t, with 1 more parameter and an error" in found.reason
+    assert (
+        found.why == f"among the 3 models {UNBEATEN} it has the fewest parameters of the 3 {TIED}"
+    )
+    assert "student_t, with 1 more parameter, an error" in found.reason
     # The noise says that more parameters are too many, as the criterion does
     assert rows["ggx"].bic < min(rows["ggx+ggx"].bic, rows["student_t"].bic)
 
@@ -167,6 +178,170 @@ def test_by_default_all_models_and_some_sums_are_ranked():
     assert all(labels.is_label(label) for label in ranked)
 
 
+# By pictures
+
+
+@pytest.fixture(scope="module")
+def red():
+    """A red material with a highlight of one colour, and its `Appearance`."""
+    truth = bk.models()["ggx"](alpha_u=0.2, diffuse_reflectance=(0.4, 0.05, 0.05))
+    wi, wo = random_pairs(50, seed=1, max_degrees=75)
+    samples = bk.Measured.from_samples(wi, wo, truth.eval(wi, wo)).samples
+    return truth, Appearance(SimpleNamespace(rgb=truth, anisotropic=False), samples, 80.0, 1)
+
+
+def test_the_picture_error_is_the_rms_of_what_a_screen_shows(red):
+    truth, appearance = red
+    assert appearance.picture_error(truth.eval) < 1e-9
+    pixels, total = appearance.pixels, 0.0
+    values = truth.eval(pixels.wi, pixels.wo)
+    for number, share in enumerate(pixels.weights):
+        own = slice(number * pixels.pairs, (number + 1) * pixels.pairs)
+        x = np.clip((pixels.shares[own, None] * values[own]).sum(axis=0), 0, 1)
+        srgb = np.where(x < 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
+        total += share * (srgb**2).mean()
+    black = appearance.picture_error(lambda wi, wo: 0 * truth.eval(wi, wo))
+    assert black == pytest.approx(np.sqrt(total / pixels.weights.sum()), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("rim", "said"),
+    [
+        ((0.0, 0.0, 0.0), ""),
+        ((0.2, 0.2, 0.2), ""),  # what Fresnel's equations do
+        ((0.2, 0.04, 0.04), ""),  # the material's own colour
+        ((0.0, 0.1, 0.2), "the colour at 85° is not the material's"),
+        ((0.9, 0.9, 0.9), "more light is reflected at 85° than arrives"),
+    ],
+)
+def test_a_rim_of_another_colour_is_doubtful(red, rim, said):
+    truth, appearance = red
+
+    def brdf(wi, wo):
+        grazing = np.maximum(1 - wi[:, 2:], 1 - wo[:, 2:]) ** 12
+        return truth.eval(wi, wo) + grazing * np.array(rim)
+
+    assert appearance.find_doubt(brdf) == said
+
+
+def row(model, error, psnr, parameters, **how):
+    """A row of a ranking whose best error is 0.1, of the Pareto set."""
+    how = {"behind": error - 0.1, "uncertainty": 0.01, "pareto": True} | how
+    return Ranked(model, error, picture=10 ** (-psnr / 20), parameters=parameters, **how)
+
+
+def choose(*rows):
+    """What is recommended of these rows, and why."""
+    ranking = Ranking("paint", "log", rows, len(rows))
+    return ranking.best, ranking.why
+
+
+def test_the_worst_picture_is_not_taken_for_its_few_parameters():
+    rows = row("abc", 0.1, 40.0, 12), row("ggx", 0.11, 39.7, 9), row("ward", 0.115, 32.0, 7)
+    assert all(one.tied for one in rows)
+    best, why = choose(*rows)
+    assert best == "ggx"
+    assert why == f"among the 3 models {UNBEATEN} it has the fewest parameters of the 2 {TIED}"
+
+
+def test_a_better_picture_is_taken_before_a_lesser_error():
+    best, why = choose(row("abc", 0.1, 30.0, 12), row("ggx", 0.2, 33.0, 9))
+    assert best == "ggx"
+    assert why.endswith("it has the best picture, by more than 0.5 dB")
+    best, why = choose(row("abc", 0.2, 30.0, 12), row("ggx", 0.3, 30.4, 9))
+    assert best == "abc"
+    assert why.endswith(
+        "it has the least error of the 2 whose pictures are within 0.5 dB of the best"
+    )
+
+
+def test_pictures_that_eight_bits_do_not_tell_apart_are_as_good():
+    assert choose(row("ggx+ggx", 0.1, 90.0, 12), row("ggx", 0.1, 70.0, 9))[0] == "ggx"
+
+
+def test_doubtful_models_stand_back():
+    doubt = "the colour at 85° is not the material's"
+    rows = row("abc", 0.1, 40.0, 12, doubt=doubt), row("ggx", 0.2, 33.0, 9)
+    best, why = choose(*rows)
+    assert best == "ggx"
+    assert why.endswith("it alone is without a doubt")
+    said = str(Ranking("paint", "log", rows, 2))
+    assert f"Doubtful: {doubt}, of abc." in said
+    assert "tied, Pareto, doubtful" in said
+    beaten = row("ward", 0.11, 38.0, 7, pareto=False)
+    assert choose(*rows, beaten)[0] == "ggx"
+    best, why = choose(rows[0], beaten)
+    assert best == "ward"
+    assert why == "it is tied in error, and all models that no other beats are doubtful"
+    alone = Ranking("paint", "log", (rows[0],), 1)
+    assert alone.reason.startswith(f"abc is recommended, though {doubt}: no other model")
+
+
+def test_a_model_is_beaten_only_in_both_error_and_picture():
+    """And in the error by more than noise, that of the two models' blocks."""
+    shares, noise = np.full(40, 1 / 40), np.random.default_rng(0).normal(1, 0.1, 40)
+    found = {
+        name: Validated(error * shares * noise**power, picture, "", 7, 0.0, 0.0)
+        for name, error, power, picture in [
+            ("best", 1.0, 1, 0.02),
+            ("tied", 1.01, -1, 0.05),
+            ("beaten", 2.0, 1, 0.03),
+            ("pretty", 3.0, 1, 0.01),
+        ]
+    }
+    rows = {one.model: one for one in rows_of(found, shares)}
+    assert rows["tied"].tied
+    assert [name for name, one in rows.items() if one.pareto] == ["best", "tied", "pretty"]
+    assert rows["pretty"].psnr == pytest.approx(40)
+
+
+@pytest.fixture(scope="module")
+def pixels_held_out():
+    """What is held out of fits by the picture loss, of a material without noise."""
+    data = bk.load("red_plastic")
+    samples, loss = select_samples(data, 80.0), bk.Picture(("hall", "sky"))
+    pixels = draw_pixels(loss.lights, data.eval, 80.0, 0, directions=8)
+    return HeldOut.draw(samples, loss, False, 5, np.random.default_rng(0), pixels)
+
+
+def test_a_region_of_the_ball_is_held_out_under_all_lights(pixels_held_out):
+    pixels = pixels_held_out.pixels
+    regions = number_regions(pixels)
+    folds = pixels_held_out.folds[-len(regions) :]
+    wo = pixels.wo.reshape(-1, pixels.pairs, 3)
+    wo = wo[np.arange(len(wo)), wo[..., 2].argmin(axis=1)]
+    for region in range(regions.max() + 1):
+        own = regions == region
+        assert len(set(folds[own])) == 1
+        assert np.ptp(np.hypot(wo[own, 0], wo[own, 1])) <= 0.5  # of the disc's radius
+        assert own.sum() < 10 or set(np.flatnonzero(own) % 2) == {0, 1}
+    for fold in range(5):
+        share = pixels.weights[folds == fold].sum() / pixels.weights.sum()
+        assert 0.1 < share < 0.3
+
+
+def test_a_fit_does_not_see_the_pixels_that_it_is_held_to(pixels_held_out):
+    """And the errors of all are those that the fit minimises."""
+    out, model = pixels_held_out.folds == 2, bk.models()["ward"]
+    whole = pixels_held_out.regress(model, pixels_held_out.folds >= 0, starts=2)
+    squares = pixels_held_out.squares(model, whole, pixels_held_out.folds >= 0)
+    assert pixels_held_out.importance @ squares == pytest.approx(whole.loss**2, rel=1e-6)
+
+    one = pixels_held_out.regress(model, ~out, starts=2)
+    of_samples, of_pixels = np.split(out, [len(pixels_held_out.samples.wi)])
+    samples, pixels = pixels_held_out.samples, pixels_held_out.pixels
+    spoilt = HeldOut(
+        replace(samples, values=np.where(of_samples[:, None], 7.0, samples.values)),
+        replace(pixels, values=np.where(of_pixels[:, None], 7.0, pixels.values)),
+        *(getattr(pixels_held_out, name) for name in ("loss", "importance", "blocks", "folds")),
+    )
+    again = spoilt.regress(model, ~out, starts=2)
+    assert one.shapes == again.shapes
+    np.testing.assert_array_equal(one.weights, again.weights)
+    held_to = [these.squares(model, one, out).mean() for these in (pixels_held_out, spoilt)]
+    assert held_to[1] > 10 * held_to[0]
+
+
 # On the command line
 
 
@@ -182,7 +357,7 @@ def cli(tmp_path, monkeypatch):
 def test_best_fits_the_recommended_model_and_says_why(cli):
     found = cli("fit", "paint.npz", "-m", "best")
     assert found.exit_code == 0, found.stderr
-    table, _, fit = found.stdout.partition("ggx is recommended: its error is the least")
+    table, _, fit = found.stdout.partition("ggx is recommended: no other model has a lesser error")
     assert "synthetic: errors (log) at directions that were held out" in table
     assert "ggx fitted to synthetic" in fit
     assert "lambert fitted" not in fit
@@ -190,6 +365,27 @@ def test_best_fits_the_recommended_model_and_says_why(cli):
     assert {fit["model"] for fit in record["fits"]} == {"ggx", "ward"}
     assert record["ranking"]["best"] == "ggx"
     assert [row["tied"] for row in record["ranking"]["models"]] == [True, False]
+    assert [row["pareto"] for row in record["ranking"]["models"]] == [True, False]
+    assert record["ranking"]["models"][0]["psnr"] > 30
+
+
+def test_best_ranks_by_the_picture_loss(cli):
+    shape = 30, 12, 18, 1
+    wi, wo = bk.Measured.from_table(np.ones(shape), channels=("Y",)).table.directions()
+    values = bk.models()["ggx"]().eval(wi.reshape(-1, 3), wo.reshape(-1, 3))[:, :1]
+    bk.save(bk.Measured.from_table(values.reshape(shape), channels=("Y",)), "table.npz")
+    words = "fit", "table.npz", "-m", "best", "--loss", "picture"
+    done = cli(*words, "-m", "lambert", "--json")
+    assert done.exit_code == 0, done.stderr
+    record = json.loads(done.stdout)
+    assert record["ranking"]["best"] == "ggx"
+    assert {(fit["model"], fit["loss"]) for fit in record["fits"]} == {
+        ("ggx", "picture"),
+        ("lambert", "picture"),
+    }
+    refused = cli(*words, "--robust", "huber")
+    assert refused.exit_code == 2
+    assert refused.stderr.startswith("brdfkit: robust looks at samples one by one")
 
 
 def test_best_takes_one_file(cli):

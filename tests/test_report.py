@@ -220,7 +220,7 @@ def psnr_and_delta(psnr, floor=50.0, delta=0.1, noise=0.1):
     return dict(zip(("psnr", "delta_e_2000", "delta_e_2000_95"), errors, strict=True))
 
 
-def test_of_tied_fits_the_one_with_the_fewest_numbers_is_taken_as_in_rank():
+def test_of_tied_fits_the_one_with_the_fewest_numbers_is_taken():
     found = [stood(0.30, 13, True), stood(0.31, 8, True), stood(0.5, 7, False)]
     order = standing.in_order(found, "log")
     assert order == [1, 0, 2]
@@ -333,12 +333,13 @@ def test_the_page_says_which_model_was_chosen_and_why(here, monkeypatch):
     monkeypatch.setattr("brdfkit.ranking.ranking.candidates", lambda: ["lambert", "ward"])
     done = cli("report", "paint.npz", "--spp", SPP, "--size", SIZE, "-m", "best")
     assert done.exit_code == 0, done.stderr
-    why = "ward was chosen from 2 models, because its error is the least, by more than the noise."
+    best = "no other model has a lesser error or a better picture"
+    why = f"ward was chosen from 2 models, because {best}."
     assert why in done.stdout
     page = Page(Path("paint-report.html"))
     assert why in page.text
     texts = [text for _, text in page.all("p")]
-    assert any(text.startswith("ward is recommended: its error is the least") for text in texts)
+    assert any(text.startswith("ward is recommended: no other model has") for text in texts)
     rows = [text for _, text in page.all("tr")]
     assert sum(text.startswith("lambert") for text in rows) == 1  # ranked, and not fitted
     assert [text[:8] for text in rows if "take" in text] == ["wardtake"]

@@ -15,9 +15,12 @@ def recommend(names, material, how, console):
     `how`: loss, angle and seed of the fit. An interrupted ranking is printed, and ends the command.
     """
     from brdfkit.ranking import rank
+    from brdfkit.verbs.fit_settings import require_plain
 
     if BEST not in names:
         return names, None
+    if how["loss"] == "picture":  # what the fit would refuse after the ranking
+        require_plain(robust=how.get("robust"), spectral=how.get("spectral"))
     for option in ("robust", "spectral"):
         if how.get(option):
             say(f"models are ranked without --{option}; the fit then uses it.")
@@ -45,7 +48,8 @@ def print_ranking(ranking, console):
     if not console.as_json:
         title = f"{ranking.material}: errors ({ranking.loss}) at directions that were held out"
         console.table(COLUMNS, ranking.table(), title=title)
-        console.out.print("\n".join(filter(None, [ranking.reason, ranking.suits, ""])))
+        said = [ranking.reason, *ranking.doubts, ranking.suits, ""]
+        console.out.print("\n".join(filter(None, said)))
     for problem in ranking.problems:
         say(problem)
 
@@ -55,5 +59,5 @@ def record(ranking):
     return ranking and {
         "best": ranking.best,
         "reason": ranking.reason,
-        "models": [{**vars(row), "tied": row.tied} for row in ranking.rows],
+        "models": [{**vars(row), "tied": row.tied, "psnr": row.psnr} for row in ranking.rows],
     }

@@ -61,8 +61,8 @@ def fit(
     are compared. Ctrl-C keeps the finished fits. Where a model cannot be fitted, the others go on;
     the exit status is then 2.
 
-    -m best ranks all models and two-lobe sums by their error at directions that were held out,
-    says which to take and why, and fits that one.
+    -m best ranks all models and two-lobe sums by their error at directions that were held out and
+    by their pictures, says which to take and why, and fits that one.
 
     Several FILEs are fitted in several processes, past those that cannot be read. With -o a page
     and a table are written, too, and the same command goes on where it was stopped.

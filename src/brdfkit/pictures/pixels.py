@@ -40,9 +40,14 @@ class Pixels:
 
     def first(self, count):
         """The first `count` pixels."""
-        end = count * self.pairs
-        pairs = self.wi[:end], self.wo[:end], self.shares[:end]
-        return Pixels(*pairs, self.values[:count], self.weights[:count], self.pairs)
+        return self.at(slice(count))
+
+    def at(self, rows):
+        """The pixels of these `rows` (a slice, a mask or indices)."""
+        arrays = (self.wi, self.wo, self.shares)
+        by_pixel = (a.reshape(-1, self.pairs, *a.shape[1:])[rows] for a in arrays)
+        pairs = (a.reshape(-1, *a.shape[2:]) for a in by_pixel)
+        return Pixels(*pairs, self.values[rows], self.weights[rows], self.pairs)
 
 
 def draw_pixels(lights, brdf, max_angle=90.0, seed=0, pixels=PIXELS, directions=DIRECTIONS):

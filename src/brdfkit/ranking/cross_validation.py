@@ -5,8 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.fitting import regress
-from brdfkit.fitting.loss import squares
+from brdfkit.model.evaluation import with_weights
 
 # Starts of the fits without a fold: they begin where the fit of all samples ended
 STARTS = 2
@@ -16,34 +15,41 @@ STARTS = 2
 class Validated:
     """A model's fit to all samples, and its squared errors where it did not see them.
 
-    `errors` (blocks,): of each block, in the units of E², which is their sum; `parameters`: how
-    many were sought; `bic`: of the fit to all samples; `seconds`: that it took.
+    `errors` (blocks,): of each block, in the units of E², which is their sum; of the fit to all
+    samples, `picture` and `doubt`: as in `Ranked`; `parameters`: how many were sought; `bic`: its
+    criterion; `seconds`: that it took.
     """
 
     errors: np.ndarray
+    picture: float
+    doubt: str
     parameters: int
     bic: float
     seconds: float
 
 
-def cross_validate(model, held_out, anisotropic, seed, report):
-    """The `Validated` of a model class on `HeldOut` samples; `report`: called with how many fits
-    are done."""
-    samples, loss = held_out.samples, held_out.loss
+def cross_validate(model, held_out, appearance, anisotropic, seed, report):
+    """The `Validated` of a model class on what is `HeldOut`, by the `Appearance` of the material;
+    `report`: called with how many fits are done."""
     how = {"anisotropic": anisotropic, "seed": seed}
     report(0)
     began = time.perf_counter()
-    whole = regress(model, samples, loss, **how)
+    whole = held_out.regress(model, held_out.folds >= 0, **how)
     seconds = time.perf_counter() - began
     report(1)
 
-    found = np.empty(len(samples.wi))
+    errors = np.empty(len(held_out.folds))
     for fold in range(held_out.folds.max() + 1):
         out = held_out.folds == fold
-        part = regress(model, samples.at(~out), loss, starts=STARTS, first=whole.shapes, **how)
-        seen = samples.at(out)
-        found[out] = squares(loss, part.eval(model, seen), seen)
+        part = held_out.regress(model, ~out, starts=STARTS, first=whole.shapes, **how)
+        errors[out] = held_out.squares(model, part, out)
         report(2 + fold)
-    certainty = whole.certainty
-    bic = certainty.bic(whole.loss)
-    return Validated(held_out.sum_by_block(found), certainty.parameters, bic, seconds)
+    brdf, certainty = with_weights(model, whole.shapes, whole.weights).eval, whole.certainty
+    return Validated(
+        held_out.sum_by_block(errors),
+        appearance.picture_error(brdf),
+        appearance.find_doubt(brdf),
+        certainty.parameters,
+        certainty.bic(whole.loss),
+        seconds,
+    )

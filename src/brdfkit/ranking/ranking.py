@@ -1,4 +1,4 @@
-"""`rank`: models ordered by how well they predict directions that they were not fitted to."""
+"""`rank`: models by how well they predict what they were not fitted to, and by how they look."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -9,13 +9,16 @@ import numpy as np
 
 from brdfkit.arguments import to_whole_number
 from brdfkit.errors import BrdfkitError
-from brdfkit.fitting import Loss, as_loss
+from brdfkit.fitting import Loss, Picture, as_loss
 from brdfkit.materials import MaterialLike, measured_material
 from brdfkit.measured.selection import select_samples
 from brdfkit.model import Model, labels
+from brdfkit.pictures import draw_pixels
+from brdfkit.ranking.appearance import Appearance
 from brdfkit.ranking.cross_validation import cross_validate
 from brdfkit.ranking.held_out import HeldOut
-from brdfkit.ranking.result import Ranking, order
+from brdfkit.ranking.ranked import rows_of
+from brdfkit.ranking.result import Ranking
 
 # The sums that are ranked by default: the best of docs/leaderboard.md with few and with more
 # parameters
@@ -25,7 +28,7 @@ SUMS = "ggx+ggx", "abc+ggx", "abc+student_t"
 def rank(
     data: MaterialLike,
     models: str | Path | type[Model] | Iterable[str | Path | type[Model]] | None = None,
-    loss: str | Loss | Callable[..., Any] = "cbrt",
+    loss: str | Loss | Picture | Callable[..., Any] = "cbrt",
     *,
     folds: int = 5,
     anisotropic: bool | None = None,
@@ -33,14 +36,22 @@ def rank(
     seed: int = 0,
     progress: Callable[[int, int], object] | None = None,
 ) -> Ranking:
-    """Rank models by how well each predicts a measured material where it was not fitted.
+    """Rank models by how well each predicts a measured material where it was not fitted, and by
+    how it looks.
 
     The directions are cut into blocks and these into folds. Every model is fitted to all folds but
     one and held to that one, each in its turn. A model that is no worse than the best, within twice
-    the standard error of their difference block by block, is tied with it; of tied models the one
-    with the fewest parameters is recommended. Large measurements are judged by a part of their
-    samples. A model that cannot be fitted does not stop the others; Ctrl-C ends with the models
-    that are finished.
+    the standard error of their difference block by block, is tied with it. And a picture of a ball
+    of each fit is compared to that of the measurement.
+
+    Models that no other beats in both error, by more than the noise, and picture are the Pareto
+    set. Of those of it whose pictures are within 0.5 dB of the best, and of these of those that are
+    tied for the least error, the one with the fewest parameters is recommended. A model that
+    reflects more light at 85° than falls on it, or has a colour there that is no mixture of the
+    material's own with grey, is not, unless all of the set do.
+
+    Large measurements are judged by a part of their samples. A model that cannot be fitted does not
+    stop the others; Ctrl-C ends with the models that are finished.
 
     Parameters
     ----------
@@ -48,8 +59,9 @@ def rank(
         The measured material, or the name or path of one.
     models : str, Path, class or several, optional
         The models, as for `fit`. By default all, and the two-lobe sums that fit best most often.
-    loss : str, Loss or callable, default "cbrt"
-        By which error, as for `fit`.
+    loss : str, Loss, Picture or callable, default "cbrt"
+        By which error, as for `fit`. Under a `Picture` regions of the ball are held out, too; this
+        takes several times as long, and leaves out the models that may be negative.
     folds : int, default 5
         How many, at least 2.
     anisotropic : bool, optional
@@ -80,14 +92,12 @@ def rank(
     data, classes = measured_material(data), _find_classes(models)
     folds, seed = to_whole_number("folds", folds, 2), to_whole_number("seed", seed, 0)
     chosen = as_loss(loss)
-    if not isinstance(chosen, Loss):
-        raise BrdfkitError(
-            f"The loss {chosen.name} looks at pixels, which mix directions, so that none can be "
-            "held out; choose another loss."
-        )
     anisotropic = data.anisotropic if anisotropic is None else anisotropic
-    samples = select_samples(data, max_angle)
-    held_out = HeldOut.draw(samples, chosen, data.anisotropic, folds, np.random.default_rng(seed))
+    samples, pixels, rng = select_samples(data, max_angle), None, np.random.default_rng(seed)
+    if isinstance(chosen, Picture):
+        pixels = draw_pixels(chosen.lights, data.rgb.eval, max_angle, seed)
+    held_out = HeldOut.draw(samples, chosen, data.anisotropic, folds, rng, pixels)
+    appearance = Appearance(data, samples, max_angle, seed + 1)
 
     report, fits = progress or (lambda done, total: None), folds + 1
     found: dict[str, Any] = {}
@@ -98,7 +108,7 @@ def rank(
                 report(before + done, len(classes) * fits)
 
             try:
-                found[label] = cross_validate(model, held_out, anisotropic, seed, step)
+                found[label] = cross_validate(model, held_out, appearance, anisotropic, seed, step)
             except BrdfkitError as error:
                 found[label] = error
     except KeyboardInterrupt:
@@ -106,7 +116,7 @@ def rank(
             raise
     if all(isinstance(one, BrdfkitError) for one in found.values()):
         raise next(iter(found.values()))
-    rows = order(found, held_out.sum_by_block(np.ones(len(held_out.blocks))))
+    rows = rows_of(found, held_out.sum_by_block(np.ones(len(held_out.blocks))))
     return Ranking(data.name, chosen.name, rows, len(classes), time.perf_counter() - began)
 
 

@@ -12,7 +12,7 @@ from brdfkit.fitting.named_losses import DEFAULT
 from brdfkit.geometry.directions import to_angles
 from brdfkit.measured.selection import select_samples
 from brdfkit.ranking.held_out import number_blocks
-from brdfkit.ranking.result import beside, is_tied
+from brdfkit.ranking.ties import beside, is_tied
 from brdfkit.verbs.compare import compare, told
 
 MOST_SAMPLES = 200_000  # of which quantiles and ties are told; of more, so many are drawn
@@ -80,7 +80,7 @@ def standings(material, fits, loss):
 def in_order(standings, loss):
     """The places of the fits: that of the one to take, then the others by their error.
 
-    To take is, as in `rank`, of those that are tied with the best the one with the fewest numbers.
+    To take is, of those that are tied with the best, the one with the fewest numbers.
     """
     by_error = sorted(range(len(standings)), key=lambda place: standings[place].errors[loss])
     tied = [place for place in by_error if standings[place].tied]
