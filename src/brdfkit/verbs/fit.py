@@ -76,8 +76,9 @@ def fit(
         The weight by which outliers lose their say, as ``"bisquare"`` [Kurt 2007, eq. 5.14]; the
         others are in `brdfkit.fitting.robust.WEIGHTS`. By default all samples count.
     weights : array_like, shape (n,), optional
-        How much each sample of the measurement counts; of a table, each cell, in the table's shape
-        or flat. By default all samples count alike, and cells by their width in theta_h.
+        Factors of the samples of the measurement; of a table, of its cells, in the table's shape or
+        flat. A sample counts by its factor times how much of the loss's measure of directions it
+        stands for. By default all factors are 1.
     use_standard_error : bool, default True
         Whether samples count by their standard errors, where the measurement states them: those
         whose noise is more than the model's own error, less.
