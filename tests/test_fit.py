@@ -424,8 +424,8 @@ def test_negatives_out_of_gamut_are_told_from_measured_ones():
     values = np.zeros((20, len(names)))
     values[:, names.index("520nm")] = 0.5
     green = bk.Measured.from_samples(wi, wi, values, channels=names, name="green")
-    (note,) = bk.fit("lambert", green).notes
+    (note,) = (n for n in bk.fit("lambert", green).notes if "negative" in n)
     assert "in linear sRGB are negative and count as 0, though none was measured so" in note
     noisy = bk.Measured.from_samples(wi, wi, values - 0.01, channels=names)
-    (note,) = bk.fit("lambert", noisy).notes
+    (note,) = (n for n in bk.fit("lambert", noisy).notes if "negative" in n)
     assert "of the measured values are negative and count as 0" in note

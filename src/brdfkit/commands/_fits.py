@@ -1,13 +1,15 @@
 """What `brdfkit fit` prints: the fits, a table of their errors, or both as JSON."""
 
+from dataclasses import replace
+
 # Where fits gain light, if they do [degrees]
 INCIDENCES = 0, 85
 
 
 def print_fits(material, fits, failed, comparison, pictures, written, ranking, console):
-    """Print `fits` to a `material`, a remark on each that gains light, their errors under several
-    losses and those of their `pictures`, `ImageErrors` or None; as JSON with what `failed` and with
-    the `ranking`, too."""
+    """Print `fits` to a `material`, first the notes that all have, a remark on each that gains
+    light, their errors under several losses and those of their `pictures`, `ImageErrors` or None;
+    as JSON with what `failed` and with the `ranking`, too."""
     from brdfkit.commands._ranking import record
     from brdfkit.commands.render import print_errors
     from brdfkit.verbs.compare import format_error, told
@@ -19,8 +21,12 @@ def print_fits(material, fits, failed, comparison, pictures, written, ranking, c
         entries["ranking"] = record(ranking)
         console.json({**entries, "pictures": pictures, "written": written})
         return
+    shared = _shared_notes(fits)
+    for note in shared:
+        console.out.print(f"! {note}")
     for found in fits:
-        console.out.print(str(found))
+        own = tuple(note for note in found.notes if note not in shared)
+        console.out.print(str(replace(found, notes=own)))
         if gained := _gained_light(found):
             console.out.print(f"  {gained}")
         console.out.print()
@@ -33,6 +39,12 @@ def print_fits(material, fits, failed, comparison, pictures, written, ranking, c
     if pictures:
         print_errors(pictures, console)
     console.list_written(written)
+
+
+def _shared_notes(fits):
+    """The notes that each of several fits has: those on the data, which are said once."""
+    first, *others = fits
+    return [note for note in first.notes if others and all(note in f.notes for f in others)]
 
 
 def _gained_light(found):
