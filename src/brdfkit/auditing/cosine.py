@@ -15,14 +15,14 @@ from brdfkit.samples import Samples
 # By reciprocity: the least number of pairs, and the least factor between their two cosines
 PAIRS, APART = 6, 1.2
 # The powers that are a finding, and the largest share of the differences that p = 1 may leave: of
-# 199 materials none has these, and of 193 of them the values times the cosine have
+# 194 materials none has these; times the cosine, 188 of them have
 RECIPROCAL, UNEXPLAINED = (0.6, 1.4), 0.45
 # At the horizon: the ranges of theta_o [degrees] that are compared, the second of the steeper ones
 # where the first has too few samples; within BIN degrees of theta_i, this far from light and mirror
 GRAZING, STEEPER = (67.5, 89.5), ((39.5, 60.5), (19.5, 39.5))
 SAMPLES, BIN, FROM_LIGHT, FROM_MIRROR = 2, 5, 15, 35
-# The powers that are a finding: of the 199 materials none is above 0.64; times the cosine, 191 of
-# them have these
+# The powers that are a finding: of 199 materials none is above 0.64; times the cosine, 191 of them
+# have these
 FALLING = (0.7, 1.5)
 
 BY_RECIPROCITY = "exchanging wi and wo changes them as it changes this cosine"
