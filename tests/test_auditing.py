@@ -15,10 +15,13 @@ import brdfkit as bk
 from brdfkit import models
 from brdfkit.auditing import symmetries
 from brdfkit.auditing.albedos import Albedo, albedo_of_samples
+from brdfkit.auditing.cosine import suspected_cosine
+from brdfkit.auditing.data_findings import data_findings
 from brdfkit.auditing.grazing_and_retro import backwards, grazing, retroreflection
 from brdfkit.auditing.noise import noise
 from brdfkit.auditing.report import percent
 from brdfkit.auditing.spikes import spikes
+from brdfkit.auditing.spread import some_samples
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.commands.info import record
 from brdfkit.geometry.directions import from_angles
@@ -411,10 +414,10 @@ def test_a_line_down_to_the_horizon_is_told():
     line = np.clip((90 - np.degrees(np.arccos(np.clip(wo[:, 2:], 0, 1)))) / 15, 0, 1)
     wo[:, 2] = np.maximum(wo[:, 2], 1e-9)
     honest, faulty = (scattered(v, wi, wo) for v in (np.full((len(wi), 1), 0.3), 0.3 * line))
-    assert grazing(honest) == pytest.approx(1)
-    assert grazing(faulty) == pytest.approx(1 / 3, abs=0.04)
-    assert any("falls towards the horizon" in finding for finding in faulty.audit().findings())
-    assert np.isnan(grazing(scattered()))
+    assert grazing(honest.samples) == pytest.approx(1)
+    assert grazing(faulty.samples) == pytest.approx(1 / 3, abs=0.04)
+    assert any("fall towards the horizon" in finding for finding in faulty.audit().findings())
+    assert np.isnan(grazing(scattered().samples))
 
 
 def test_light_sent_back_is_told():
@@ -423,28 +426,89 @@ def test_light_sent_back_is_told():
 
     directions = grid(theta_o=range(2, 76, 2))
     data = scattered(back, *directions)
-    assert retroreflection(data) > 5
+    assert retroreflection(data.samples) > 5
     mirror = scattered(lambda wi, wo: back(wi * [-1, -1, 1], wo), *directions)
-    assert retroreflection(mirror) == pytest.approx(1, rel=0.01)
+    assert retroreflection(mirror.samples) == pytest.approx(1, rel=0.01)
     assert any("retroreflective" in finding for finding in data.audit().findings())
-    assert retroreflection(scattered(lambert(0.5).eval, *directions)) == pytest.approx(1)
+    assert retroreflection(scattered(lambert(0.5).eval, *directions).samples) == pytest.approx(1)
     plaster = models()["oren_nayar"](sigma=1.0)
-    assert 1 < retroreflection(scattered(plaster.eval, *directions)) < 2.5
-    assert np.isnan(retroreflection(one_sample()))
+    assert 1 < retroreflection(scattered(plaster.eval, *directions).samples) < 2.5
+    assert np.isnan(retroreflection(one_sample().samples))
 
 
 def test_azimuths_counted_from_the_mirrors_side():
     """As a file in another convention has them; large steps of theta_o suffice."""
     wi, wo = grid(theta_o=range(0, 76, 10), phi=(0, 90, 180))
     right, wrong = scattered(wi=wi, wo=wo), scattered(GGX.eval(wi, wo), wi, wo * [-1, -1, 1])
-    assert backwards(right) == pytest.approx(1 / backwards(wrong))
-    assert backwards(wrong) > 10
-    (told,) = (f for f in wrong.audit().findings() if "add 180° to phi_o" in f)
-    assert told.startswith(f"{backwards(wrong):.2g} times as bright towards the light as in")
-    assert not any("add 180°" in finding for finding in right.audit().findings())
+    assert backwards(right.samples) == pytest.approx(1 / backwards(wrong.samples))
+    assert backwards(wrong.samples) > 10
+    (told,) = (f for f in wrong.audit().findings() if "mirror_azimuth" in f)
+    assert f"{backwards(wrong.samples):.2g} times as large towards the light as in" in told
+    assert not any("mirror_azimuth" in finding for finding in right.audit().findings())
     plaster = models()["oren_nayar"](sigma=1.0)
-    assert 1 < backwards(scattered(plaster.eval)) < 4
-    assert np.isnan(backwards(one_sample()))
+    assert 1 < backwards(scattered(plaster.eval).samples) < 4
+    assert np.isnan(backwards(one_sample().samples))
+
+
+# A cosine that was not divided out
+
+GRIDS = {
+    "rings": lambda: grid((20, 40, 60), range(3, 82, 3), range(0, 360, 15)),
+    "a plane": lambda: grid((10, 45), range(0, 81, 5), (0, 180)),
+    "one incidence": lambda: grid((45,), range(0, 81, 5), (0, 180)),
+    "large steps": lambda: grid((13, 37, 61), range(2, 85, 7), (3, 93, 178)),
+}
+
+
+@pytest.mark.parametrize("directions", GRIDS)
+@pytest.mark.parametrize("name", ["ggx", "lambert", "oren_nayar", "ward", "cook_torrance"])
+def test_the_cosine_of_models_is_suspected_where_it_is(name, directions):
+    wi, wo = GRIDS[directions]()
+    values = noisy(models()[name]().eval(wi, wo), 0.02)
+    assert suspected_cosine(scattered(values, wi, wo)) == ""
+    assert suspected_cosine(scattered(values * wo[:, 2:], wi, wo))
+    assert suspected_cosine(scattered(values * wi[:, 2:], wi, wo)) == ""
+    # what no cosine of the view can be in
+    assert suspected_cosine(scattered(values * wo[:, 2:], wi, wo, lookup=GGX.eval)) == ""
+
+
+def test_the_cosine_takes_the_place_of_what_follows_from_it():
+    wi, wo = grid(range(5, 86, 10), range(5, 86, 10))
+    (told,) = scattered(GGX.eval(wi, wo) * wo[:, 2:], wi, wo).audit().findings()
+    assert told.startswith("the values seem to be the BRDF times cos theta_o")
+
+
+@pytest.mark.parametrize("anisotropic", [False, True])
+def test_a_part_of_a_large_table_tells_what_all_does(anisotropic):
+    shape = (8, 40, 20, 40) if anisotropic else (90, 60, 60)
+    data = Measured.from_table(tabulated(shape=shape))
+    part, whole = some_samples(data), data.samples
+    assert len(part.wi) < len(whole.wi) / 2
+    for ratio in (grazing, retroreflection, backwards):
+        assert ratio(part) == pytest.approx(ratio(whole), rel=0.15)
+    rows = part.valid
+    np.testing.assert_allclose(data.eval(part.wi[rows], part.wo[rows]), part.values[rows])
+
+
+def test_what_is_doubtful_in_data_is_found_at_once_and_not_twice():
+    """Of a table of MERL's size in 0.03 s; the limit allows for slow machines."""
+    data = Measured.from_table(np.full((90, 90, 180, 3), 0.1))
+    seconds = []
+    for _ in range(2):
+        began = time.process_time()
+        assert data_findings(data) == ()
+        seconds.append(time.process_time() - began)
+    assert seconds[0] < 0.3
+    assert seconds[1] < 0.001
+
+
+def test_what_lies_beyond_the_samples_of_a_fit_is_not_told():
+    wi, wo = grid([60], range(0, 89, 1))
+    line = np.clip((90 - np.degrees(np.arccos(wo[:, 2:]))) / 15, 0, 1)
+    data = scattered(0.3 * line, wi, wo)
+    for max_angle, told in ((75, False), (80, False), (89, True)):
+        notes = bk.fit("lambert", data, max_angle=max_angle).notes
+        assert any("fall towards the horizon" in note for note in notes) == told
 
 
 # What is printed and drawn
@@ -616,7 +680,7 @@ def test_the_straight_line_of_mini_diff_where_nobody_masks_it(measured_data, tmp
     (tmp_path / "paint.astm").write_bytes(text.replace(b"Mini-Diff", b"Unknown"))
     audit = load(tmp_path / "paint.astm").audit()
     assert audit.theta_o[-1] == 89
-    assert any("falls towards the horizon" in finding for finding in audit.findings())
+    assert any("fall towards the horizon" in finding for finding in audit.findings())
 
 
 @pytest.mark.parametrize("name", ["retro-3M-jaune", "retro-gray-tape"])
@@ -626,6 +690,29 @@ def test_retroreflective_tapes(measured_data, name):
     assert audit.retroreflection > 20
     assert audit.theta_i == (15, 30, 60)
     assert any("retroreflective" in finding for finding in audit.findings())
+
+
+def test_the_tape_that_does_not_state_its_cosine_has_it(measured_data):
+    """Its file says of PARAM_OUT nothing, the other's that the cosine is in its values."""
+    tape = load(measured_data / "alta_retro" / "retro-gray-tape.dat.xz")
+    assert symmetries.by_reciprocity(tape).median > 0.3
+    assert any("divide_by_cos=True" in finding for finding in tape.audit().findings())
+    mended = tape.mend(divide_by_cos=True)
+    assert symmetries.by_reciprocity(mended).median < 0.1
+    assert not any("cos theta_o" in finding for finding in mended.audit().findings())
+
+
+@pytest.mark.parametrize("of", ["minidiff_paints/C*_[BGNORSW]*.astm.xz", "cornell/*.brdf"])
+def test_measured_paints_have_no_cosine_unless_they_are_given_one(measured_data, of):
+    files = sorted(measured_data.glob(of))
+    assert len(files) >= 3
+    for file in files:
+        data = load(file)
+        assert suspected_cosine(data) == "", file
+        rows = data.samples
+        assert suspected_cosine(
+            replace(data, _samples=replace(rows, values=rows.values * rows.wo[:, 2:]))
+        ), file
 
 
 @pytest.mark.parametrize(

@@ -29,6 +29,7 @@ METHODS = {
             "from_frame",
             "from_samples",
             "from_table",
+            "mend",
             "minus",
             "resampled",
         ],

@@ -12,7 +12,9 @@ from brdfkit.measured import Measured
 from brdfkit.model import Model
 
 
-def load(path: str | Path) -> Measured | Fit:
+def load(
+    path: str | Path, *, mirror_azimuth: bool = False, divide_by_cos: bool = False
+) -> Measured | Fit:
     """The measured material, or the saved fit, in a file of any known format.
 
     The content decides the format; the suffix decides between formats that all, or none, recognise
@@ -24,6 +26,12 @@ def load(path: str | Path) -> Measured | Fit:
         The file. ``abrdf.dat#1`` names a sample of one that holds many. Where there is no such
         file, the name of a material that comes with brdfkit, ``car_paint``, or of one in a public
         collection, ``merl/alum-bronze``, once ``brdfkit data get`` has downloaded it.
+    mirror_azimuth : bool, default False
+        Whether 180° is added to every phi_o of samples: where the file has the mirror direction at
+        phi_o = phi_i.
+    divide_by_cos : bool, default False
+        Whether the values of samples are divided by cos theta_o: where they are the BRDF times this
+        cosine, and the file does not say so.
 
     Returns
     -------
@@ -33,14 +41,20 @@ def load(path: str | Path) -> Measured | Fit:
     Raises
     ------
     BrdfkitError
-        For every file that cannot be read: what is wrong with it, and what to do.
+        For every file that cannot be read: what is wrong with it, and what to do; and where a fit,
+        a table or a format that states its own convention would be mended.
 
     Examples
     --------
     >>> print(load("gold-metallic-paint.binary.xz"))    # doctest: +SKIP
     gold-metallic-paint: 90×90×180 table, 1,048,000 of 1,458,000 valid, channels R G B
     """
-    return read(*locate(path))
+    found = read(*locate(path))
+    if not (mirror_azimuth or divide_by_cos):
+        return found
+    if not isinstance(found, Measured):
+        raise BrdfkitError(f"{path}: is a saved fit, of which there is nothing to mend.")
+    return found.mend(mirror_azimuth, divide_by_cos)
 
 
 def locate(path: str | Path) -> tuple[Path, str | None]:

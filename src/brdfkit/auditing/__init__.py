@@ -1,7 +1,8 @@
 """`audit`: what a measurement covers, how noisy it is and what is doubtful.
 
 One file answers one question. Besides, `symmetries.py` finds the samples that should be equal,
-`picture.py` draws the audit, and `report.py` tells it in sentences.
+`spread.py` takes a part of large measurements, `picture.py` draws the audit, `report.py` tells it
+in sentences, and `data_findings.py` has those that a fit tells, too.
 """
 
 from dataclasses import dataclass, field
@@ -14,6 +15,7 @@ from brdfkit.auditing.albedos import Albedo, albedo, albedo_of_samples
 from brdfkit.auditing.grazing_and_retro import backwards, grazing, retroreflection
 from brdfkit.auditing.noise import Noise, noise
 from brdfkit.auditing.spikes import Spike, spikes
+from brdfkit.auditing.spread import some_samples
 from brdfkit.auditing.symmetries import Difference, by_mirror, by_reciprocity
 from brdfkit.documents import Document, Paragraph, Picture, Shown, Table
 from brdfkit.documents.parts import BAD
@@ -159,7 +161,7 @@ def audit(data: MaterialLike) -> Audit:
     >>> print(audit("copper.astm"))    # doctest: +SKIP
     """
     data = measured_material(data)
-    samples = data.samples
+    samples, part = data.samples, some_samples(data)
     above = (samples.wi[:, 2] > 0) & (samples.wo[:, 2] > 0)
     values = samples.values[samples.valid]
     positive = values[values > 0]
@@ -181,15 +183,15 @@ def audit(data: MaterialLike) -> Audit:
         median=float(np.median(values)),
         largest=float(values.max()),
         coverage=coverage(data),
-        in_plane=in_plane(data),
+        in_plane=in_plane(part),
         reciprocity=by_reciprocity(data),
         mirror=by_mirror(data),
         noise=noise(data),
         albedo=albedo(seen, theta_i[-1]),
         albedo_of_samples=albedo_of_samples(seen),
-        grazing=grazing(data),
-        retroreflection=retroreflection(data),
-        backwards=backwards(data),
+        grazing=grazing(part),
+        retroreflection=retroreflection(part),
+        backwards=backwards(part),
         spikes=spikes(data),
         data=data,
     )

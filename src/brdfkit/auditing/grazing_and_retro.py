@@ -1,4 +1,4 @@
-"""Three ratios of medians: of values near the horizon, and of values near the light."""
+"""Three ratios of medians of `Samples`: of values near the horizon, and near the light."""
 
 import numpy as np
 
@@ -11,27 +11,25 @@ BESIDE = 10  # degrees: within a large step of the light, and of the mirror dire
 OBLIQUE = 29.5  # degrees of incidence, at least: a little below 30, for rounded angles
 
 
-def grazing(data):
+def grazing(samples):
     """The median BRDF beyond 80° over that between 60° and 70°; the larger angle of a pair counts.
 
     The BRDF of most surfaces stays equal or rises towards the horizon. A goniometer's values fall
     where its spot is larger than the sample, or where somebody filled rows by a line down to 0. NaN
     where one of the two was not measured.
     """
-    samples = data.samples
     cosine = np.minimum(samples.wi[:, 2], samples.wo[:, 2])
     beyond, below, above = map(_cos, (GRAZING, *STEEP))
     return _ratio(samples, cosine < beyond, (cosine < below) & (cosine > above))
 
 
-def retroreflection(data):
+def retroreflection(samples):
     """The median BRDF within 5° of the light over that far from it, at incidences from 30°.
 
     Far is also away from the mirror direction and from the horizon. About 1 for diffuse surfaces,
     at most 2 for the roughest plaster, 30 for a reflective tape. NaN where one of the two was not
     measured.
     """
-    samples = data.samples
     to_light = np.einsum("nk,nk->n", samples.wi, samples.wo)
     to_mirror = 2 * samples.wi[:, 2] * samples.wo[:, 2] - to_light
     away = (to_light < _cos(FAR)) & (to_mirror < _cos(OFF_MIRROR))
@@ -40,7 +38,7 @@ def retroreflection(data):
     return _ratio(samples, oblique & (to_light > _cos(NEAR)), oblique & away)
 
 
-def backwards(data):
+def backwards(samples):
     """The median BRDF within 10° of the light over that within 10° of the mirror direction, at
     incidences from 30°.
 
@@ -48,7 +46,6 @@ def backwards(data):
     of an instrument whose mirror direction is at phi_o = phi_i. NaN where one of the two was not
     measured.
     """
-    samples = data.samples
     to_light = np.einsum("nk,nk->n", samples.wi, samples.wo)
     to_mirror = 2 * samples.wi[:, 2] * samples.wo[:, 2] - to_light
     oblique = samples.wi[:, 2] < _cos(OBLIQUE)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.auditing.spread import some_half_vectors, some_valid
 from brdfkit.auditing.symmetries import find_mirrored, relative_differences
 
 TO_SIGMA = 1.4826  # standard deviation over median absolute deviation, for normal noise
@@ -24,18 +25,18 @@ class Noise:
 
 def noise(data):
     """The `Noise` of a `Measured`: as its file states, else from differences that should be 0."""
-    samples = data.samples
-    values = samples.values[samples.valid]
     if data.standard_error is not None:
-        stated = np.abs(data.standard_error[samples.valid] / np.where(values == 0, np.nan, values))
+        values = np.where(data.values == 0, np.nan, data.values)
+        stated = np.abs(data.standard_error / values)[data.samples.valid]
         return Noise(_per_channel(stated, _median), "the standard error that the file states")
     if data.is_table:
-        differences = _fourth_differences(data.table.values)
+        differences = _fourth_differences(some_half_vectors(data.table))
         return Noise(_per_channel(differences, _sigma), "fourth differences along phi_d")
     unknown = (np.nan,) * len(data.channels)
 
     # samples of scattered ones that mirror each other; a difference has the noise of two values
-    rows = find_mirrored(data)
+    samples = some_valid(data)
+    rows, values = find_mirrored(samples, data.anisotropic), samples.values
     differences = [
         relative_differences(*values[rows, c].T) / np.sqrt(2) for c in range(values.shape[1])
     ]

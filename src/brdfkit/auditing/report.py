@@ -2,15 +2,13 @@
 
 import math
 
+from brdfkit.auditing.data_findings import data_findings
 from brdfkit.measured.coverage import Coverage
 
 MOST_SPIKES = 3  # spikes that are named; the others are counted
-# What is above, or for DARK_HORIZON below, is a finding:
-SHARE = 0.01  # the share of negative or of zero values
-NOT_RECIPROCAL, PAIRS = 0.1, 20  # the median difference, of at least so many pairs
-OF_NOISE = 0.6745 * math.sqrt(2)  # the median difference of two equal values, over their noise
+# What is above is a finding:
+SHARE = 0.01  # the share of negative values
 BRIGHT = 1.001  # the albedo; its quadrature is accurate to 10⁻³
-DARK_HORIZON, RETROREFLECTIVE, BACKWARDS = 0.5, 5, 5  # the ratios of `grazing_and_retro.py`
 
 
 def rows(audit):
@@ -46,40 +44,7 @@ def findings(audit):
             f"{percent(audit.negative / values)} of the values are negative: the losses log and "
             "cbrt treat them as 0"
         )
-    if audit.zero > SHARE * values:
-        share = percent(audit.zero / values)
-        found.append(f"{share} of the values are exactly 0: probably clipped")
-    if audit.reciprocity.pairs >= PAIRS and audit.reciprocity.median > _unequal(audit.noise):
-        found.append(
-            f"not reciprocal: exchanging wi and wo changes the value by "
-            f"{percent(audit.reciprocity.median)} in the median"
-        )
-    if audit.in_plane:
-        found.append(
-            "measured in the plane of incidence only: all beside it is a guess, also the albedo"
-        )
-    if audit.grazing < DARK_HORIZON:
-        found.append(
-            f"falls towards the horizon: the median beyond 80° is {audit.grazing:.2g} times that "
-            "between 60° and 70°, as of few surfaces; fit with a smaller max_angle"
-        )
-    if audit.retroreflection > RETROREFLECTIVE:
-        found.append(
-            f"retroreflective: the median within 5° of the light is {audit.retroreflection:.2g} "
-            "times that elsewhere; no lobe about the mirror direction can fit this"
-        )
-    if audit.backwards > BACKWARDS:
-        found.append(
-            f"{audit.backwards:.2g} times as bright towards the light as in the mirror direction, "
-            "phi_o = phi_i + 180°: unless it is retroreflective, the instrument counts phi_o from "
-            "the mirror's side; then add 180° to phi_o"
-        )
-    return tuple(found)
-
-
-def _unequal(noise):
-    """The median difference that is a finding: also twice what the noise alone would make."""
-    return max([NOT_RECIPROCAL, *(2 * OF_NOISE * n for n in noise.relative if not math.isnan(n))])
+    return (*found, *data_findings(audit.data))
 
 
 def _channels(names):

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.auditing.spread import some_half_vectors, some_rows, some_valid
 from brdfkit.measured.pair_points import points
 
 SAME = np.radians(0.5)  # pairs this near are taken for one
@@ -33,8 +34,8 @@ def by_reciprocity(data):
         return _by_reciprocity_of_table(data.table)
     if data.has_lookup:
         return _by_lookup(data, data.samples.wo, data.samples.wi)
-    rows = find_swapped(data)
-    values = _valid(data).values
+    samples = some_valid(data)
+    rows, values = find_swapped(samples, data.anisotropic), samples.values
     return difference(values[rows[:, 0]], values[rows[:, 1]])
 
 
@@ -46,13 +47,13 @@ def by_mirror(data):
     if data.anisotropic:
         return NOTHING
     if data.is_table:
-        f = data.table.values
+        f = some_half_vectors(data.table)
         half = f.shape[-2] // 2  # cells at phi_d against those at -phi_d
         return difference(f[..., :half, :], f[..., : -half - 1 : -1, :])
     if data.has_lookup:
         return _by_lookup(data, *(w * [1, -1, 1] for w in (data.samples.wi, data.samples.wo)))
-    rows = find_mirrored(data)
-    values = _valid(data).values
+    samples = some_valid(data)
+    rows, values = find_mirrored(samples, data.anisotropic), samples.values
     return difference(values[rows[:, 0]], values[rows[:, 1]])
 
 
@@ -61,41 +62,37 @@ def _by_reciprocity_of_table(table):
     half, odd = divmod(table.shape[-1], 2)
     if table.phi_d_period == np.pi or odd:
         return NOTHING
-    return difference(table.values[..., :half, :], table.values[..., half:, :])
+    f = some_half_vectors(table)
+    return difference(f[..., :half, :], f[..., half:, :])
 
 
 def _by_lookup(data, wi, wo):
     """Of the samples and the looked-up values at `wi`, `wo`, their images by a symmetry."""
-    valid = data.samples.valid
-    return difference(data.samples.values[valid], data.eval(wi[valid], wo[valid]))
+    rows = np.flatnonzero(data.samples.valid)
+    rows = rows[some_rows(len(rows))]
+    return difference(data.samples.values[rows], data.eval(wi[rows], wo[rows]))
 
 
-def find_swapped(data):
-    """Pairs of valid samples of which one has the other's directions exchanged; rows (n, 2).
+def find_swapped(samples, anisotropic):
+    """Pairs of `Samples` of which one has the other's directions exchanged; rows (n, 2).
 
-    Samples of an isotropic material with θi = θo are left out: their exchange is a mirror image.
+    Those of an isotropic material with θi = θo are left out: their exchange is a mirror image.
     """
-    samples = _valid(data)
-    images = points(samples.wo, samples.wi, data.anisotropic)
-    if not data.anisotropic:
+    images = points(samples.wo, samples.wi, anisotropic)
+    if not anisotropic:
         images[np.abs(images[:, 0] - images[:, 1]) < 2 * SAME] = np.inf
-    return _match(points(samples.wi, samples.wo, data.anisotropic), images)
+    return _match(points(samples.wi, samples.wo, anisotropic), images)
 
 
-def find_mirrored(data):
-    """Pairs of valid samples, left and right of the plane of incidence; rows (n, 2).
+def find_mirrored(samples, anisotropic):
+    """Pairs of `Samples`, left and right of the plane of incidence; rows (n, 2).
 
     None of an anisotropic material.
     """
-    if data.anisotropic:
+    if anisotropic:
         return np.empty((0, 2), int)
-    samples = _valid(data)
     here = points(samples.wi, samples.wo)
     return _match(here, here * [1, 1, 1, -1])
-
-
-def _valid(data):
-    return data.samples.at(data.samples.valid)
 
 
 def _match(here, images):

@@ -1,8 +1,10 @@
 """What `brdfkit fit` prints: the fits, a table of their errors, or both as JSON."""
 
+from dataclasses import replace
+
 
 def print_fits(material, fits, failed, comparison, pictures, written, ranking, console):
-    """Print `fits` to a `material`, their errors under several
+    """Print `fits` to a `material`, first the notes that all have, then their errors under several
     losses and those of their `pictures`, `ImageErrors` or None; as JSON with what `failed` and with
     the `ranking`, too."""
     from brdfkit.commands._ranking import record
@@ -16,8 +18,12 @@ def print_fits(material, fits, failed, comparison, pictures, written, ranking, c
         entries["ranking"] = record(ranking)
         console.json({**entries, "pictures": pictures, "written": written})
         return
+    shared = _shared_notes(fits)
+    for note in shared:
+        console.out.print(f"! {note}")
     for found in fits:
-        console.out.print(str(found))
+        own = tuple(note for note in found.notes if note not in shared)
+        console.out.print(str(replace(found, notes=own)))
         console.out.print()
     shown = told(*(f.loss_name for f in fits))
     columns, rows = ["model", *(f">{name}" for name in shown), ">time [s]"], []
@@ -28,6 +34,12 @@ def print_fits(material, fits, failed, comparison, pictures, written, ranking, c
     if pictures:
         print_errors(pictures, console)
     console.list_written(written)
+
+
+def _shared_notes(fits):
+    """The notes that each of several fits has: those on the data, which are said once."""
+    first, *others = fits
+    return [note for note in first.notes if others and all(note in f.notes for f in others)]
 
 
 def _record(found, comparison, psnr):

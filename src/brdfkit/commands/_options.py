@@ -114,6 +114,29 @@ def _fit_options(default, others):
     )
 
 
+def mend_options(command):
+    """Adds --mirror-azimuth and --divide-by-cos to a command that reads a material; it gets
+    `mends`, those that were given, as arguments of `Measured.mend`."""
+
+    @click.option(
+        "--mirror-azimuth",
+        is_flag=True,
+        help="Add 180° to phi_o of FILE, whose mirror direction is at phi_o = phi_i.",
+    )
+    @click.option(
+        "--divide-by-cos",
+        is_flag=True,
+        help="Divide the values of FILE, which are BRDF times cos theta_o, by this cosine.",
+    )
+    @functools.wraps(command)
+    def with_mends(*args, mirror_azimuth, divide_by_cos, **kwargs):
+        given = {"mirror_azimuth": mirror_azimuth, "divide_by_cos": divide_by_cos}
+        mends = {name: True for name, is_given in given.items() if is_given}
+        return command(*args, mends=mends, **kwargs)
+
+    return with_mends
+
+
 def output_options(command):
     """Adds --json and --quiet to a command that prints a result; it gets a `Console` instead."""
 

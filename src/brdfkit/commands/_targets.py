@@ -22,6 +22,20 @@ def material(name, settings=()):
     return labels.model(label)(**model_values(label, settings))
 
 
+def measured_material(name, mends):
+    """The measured material of a name or a file, mended as `mends`, of `mend_options`, say."""
+    found = materials.measured_material(name)
+    return found.mend(**mends) if mends else found
+
+
+def refuse_mends(name, what, mends):
+    """Raise `BrdfkitError` where `mends` were given for `name`, which is `what`."""
+    if mends:
+        raise BrdfkitError(
+            f"{name} is {what}: --mirror-azimuth and --divide-by-cos are for measured samples only."
+        )
+
+
 def model_values(label, settings):
     """The values by name of ``PARAMETER=VALUE`` settings; an error where the model lacks one."""
     values = parse_settings(settings)

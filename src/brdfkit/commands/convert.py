@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from brdfkit.commands._options import output_options, values_option
+from brdfkit.commands._options import mend_options, output_options, values_option
 from brdfkit.errors import BrdfkitError
 
 
@@ -12,13 +12,14 @@ from brdfkit.errors import BrdfkitError
 @click.argument("thing", metavar="FILE|NAME|FIT|MAP")
 @click.argument("output", type=click.Path(path_type=Path))
 @values_option
+@mend_options
 @click.option("--from", "source", metavar="CONVENTION", help="Of MAP. Default: mitsuba.")
 @click.option("--to", "target", metavar="CONVENTION", help="Of OUTPUT, a map. Default: mitsuba.")
 @click.option("--turn", type=float, metavar="DEGREES", help="Turn a map's light, anticlockwise.")
 @click.option("--mirror", is_flag=True, help="Exchange left and right of a map.")
 @click.option("--height", type=int, help="Rows of a map; default: pixels stay as large.")
 @output_options
-def convert(thing, output, values, console, **how):
+def convert(thing, output, values, mends, console, **how):
     """Convert a material or an environment map.
 
     A material is written in the format that the suffix of OUTPUT names. What the format cannot hold
@@ -28,7 +29,7 @@ def convert(thing, output, values, console, **how):
     blender, or of a layout, such as cross or angular, if need be with the axes of the world that
     are right, up and ahead in it, as latlong:+x+y-z. A name that is none lists them all.
     """
-    from brdfkit.commands._targets import material, other_file
+    from brdfkit.commands._targets import material, measured_material, other_file, refuse_mends
     from brdfkit.environments import convert_environment
     from brdfkit.environments.map_files import looks_like_map
     from brdfkit.verbs.convert import convert as convert_thing
@@ -36,6 +37,7 @@ def convert(thing, output, values, console, **how):
     output = other_file(output, thing)
     given = {name: value for name, value in how.items() if value not in (None, False)}
     if looks_like_map(thing):
+        refuse_mends(thing, "an environment map", mends)
         if values:
             raise BrdfkitError(f"{thing} is an environment map: --set works for models only.")
         with console.progress(f"convert {thing}"):
@@ -48,7 +50,8 @@ def convert(thing, output, values, console, **how):
             "--height are for maps only."
         )
     with console.progress(f"convert {thing}"):
-        done = convert_thing(material(thing, values), output)
+        source = measured_material(thing, mends) if mends else material(thing, values)
+        done = convert_thing(source, output)
     _print(done.path, done.changes, done, console)
 
 

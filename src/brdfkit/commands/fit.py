@@ -9,6 +9,7 @@ from brdfkit.commands._errors import say
 from brdfkit.commands._fits import print_fits
 from brdfkit.commands._options import (
     fit_options,
+    mend_options,
     output_options,
     render_options,
     scene_options,
@@ -21,6 +22,7 @@ from brdfkit.errors import BrdfkitError, Interrupted
 @click.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @fit_options("all")
+@mend_options
 @click.option(
     "-o",
     "--output",
@@ -43,6 +45,7 @@ def fit(
     files,
     names,
     how,
+    mends,
     output,
     jobs,
     rendered,
@@ -69,8 +72,7 @@ def fit(
     """
     from brdfkit.commands._many_files import fit_many
     from brdfkit.commands._ranking import BEST, print_ranking, recommend, refuse_best
-    from brdfkit.commands._targets import results_folder
-    from brdfkit.materials import measured_material
+    from brdfkit.commands._targets import measured_material, results_folder
     from brdfkit.model import labels
     from brdfkit.names import fit_file, slug
     from brdfkit.rendering.memory import require_memory
@@ -87,13 +89,14 @@ def fit(
     how |= {"seed": seed, "spectral": spectral}
     if len(files) > 1:
         refuse_best(names)
+        _refuse_to_mend(mends)
         if rendered:
             raise BrdfkitError("--render shows one material; name one FILE, or leave it out.")
         fit_many(files, names, how, output, jobs, console)
         return
     (file,) = files
     with console.progress(f"read {file}"):
-        material = measured_material(file)
+        material = measured_material(file, mends)
     names, ranking = recommend(names, material, how, console)
     if ranking:
         print_ranking(ranking, console)
@@ -129,6 +132,15 @@ def _refuse_models(files):
     for file in files:
         if labels.is_label(file) and not Path(file).exists():
             raise BrdfkitError(f"{file} is a model, not a file: write -m {file}.")
+
+
+def _refuse_to_mend(mends):
+    """Raise `BrdfkitError` where `mends` were given for several files: each has its own."""
+    for option in ("--" + name.replace("_", "-") for name in mends):
+        raise BrdfkitError(
+            f"{option} mends one FILE: write each one that needs it by brdfkit convert FILE "
+            f"MENDED.csv {option}, and fit those."
+        )
 
 
 def _refuse_for_pictures(*options):

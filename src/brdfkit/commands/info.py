@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from brdfkit.commands._options import output_options
+from brdfkit.commands._options import mend_options, output_options
 from brdfkit.errors import BrdfkitError
 
 
@@ -25,8 +25,9 @@ from brdfkit.errors import BrdfkitError
     help="Make one voxel of N×N×N of a volume while it is read.",
 )
 @click.option("--labels", is_flag=True, help="The values of a volume are labels, not densities.")
+@mend_options
 @output_options
-def info(file, output, downsample, labels, console):
+def info(file, output, downsample, labels, mends, console):
     """Audit a measurement, an environment map or a volume.
 
     Prints what FILE holds (angles, coverage, reciprocity, noise, albedo and more; of a map, its
@@ -40,11 +41,13 @@ def info(file, output, downsample, labels, console):
 
     if file is None and output:
         raise BrdfkitError("--output draws a measurement, a map or a volume: name a FILE.")
+    if file is None and mends:
+        raise BrdfkitError("--mirror-azimuth and --divide-by-cos mend a measurement: name a FILE.")
     if file is None:
         _print_shipped(shipped.materials(), shipped.environments(), console)
         return
     output = output and figure_file(output)
-    read, audit = _ways(file, downsample, labels)
+    read, audit = _ways(file, downsample, labels, mends)
     with console.progress(f"read {file}"):
         thing = read(file)
     with console.progress("audit"):
@@ -55,23 +58,25 @@ def info(file, output, downsample, labels, console):
     print_audit(found, [output] if output else [], console)
 
 
-def _ways(file, downsample, labels):
+def _ways(file, downsample, labels, mends):
     """The functions that read and audit what the word `file` means: a map, a volume, a material."""
     from brdfkit.auditing import audit
+    from brdfkit.commands._targets import measured_material, refuse_mends
     from brdfkit.environments import audit_environment
     from brdfkit.environments.map_files import looks_like_map
-    from brdfkit.materials import measured_material
     from brdfkit.volumes.loading import load_volume, looks_like_volume
     from brdfkit.volumes.summary import summarise
 
     if looks_like_volume(file):
+        refuse_mends(file, "a volume", mends)
         how = {"downsample": downsample or 1, "labels": labels or None}
         return lambda volume: load_volume(volume, **how), summarise
     if downsample or labels:
         raise BrdfkitError(f"{file} is no volume: --downsample and --labels are for volumes only.")
     if looks_like_map(file):
+        refuse_mends(file, "an environment map", mends)
         return lambda name: name, audit_environment
-    return measured_material, audit
+    return lambda name: measured_material(name, mends), audit
 
 
 def print_audit(found, written, console):

@@ -12,10 +12,13 @@ import numpy as np
 
 from brdfkit.formats._source import Source
 from brdfkit.measured.angles import DEGREES, RADIANS
-from brdfkit.measured.column_names import PER_STERADIAN, are_columns
+from brdfkit.measured.column_names import PER_STERADIAN, are_columns, key_of_rows
+from brdfkit.measured.long_form import channel_number
 
 DELIMITERS = "\t;,"  # the first of them in the line of names; blanks where there is none
-UNITS = {"", *DEGREES, *RADIANS, *PER_STERADIAN}
+UNITS = {"", *DEGREES, *RADIANS, *PER_STERADIAN, "nm"}
+WHOLE = re.compile(r"[-+]?[0-9]*([eE][-+]?[0-9]+)?")
+MISSING = {"", "na", "n/a", "#n/a", "-"}  # what spreadsheets write where there is no number
 NUMERIC = re.compile(r"[-+0-9.,;eE\s]+")
 
 
@@ -43,13 +46,17 @@ def read_columns(source):
     names = split(header)
     names, rows = _take_units(names, rows, delimiter)
     named = [k for k, name in enumerate(names) if name]  # the index that pandas writes has none
+    texts = [k for k in named if key_of_rows(names[k]) == "channel"]
     lines, data, marks = [], [], {}
     for n, line in rows:
         fields = split(line, delimiter)
         if not any(fields):  # spreadsheets end with rows of delimiters
             continue
+        _refuse_split_numbers(source, n, fields, names, delimiter)
         source.require_count(n, fields, len(names))
         _require_one_mark(source, n, " ".join(fields), marks)
+        for k in texts:
+            fields[k] = str(channel_number(fields[k]))
         lines.append(n)
         data.append(source.parse_numbers(n, [_number(fields[k]) for k in named]))
     if not lines:
@@ -97,6 +104,18 @@ def _take_units(names, rows, delimiter):
     return [f"{n} [{u}]" if u and n[-1:] not in ")]" else n for n, u in pairs], rows[1:]
 
 
+def _refuse_split_numbers(source, line, fields, names, delimiter):
+    """Raise `BrdfkitError` where decimal commas make two fields of a number."""
+    few = len(names)
+    many = max(count for count, field in enumerate(fields, 1) if field)
+    if delimiter == "," and few < many <= 2 * few and all(map(WHOLE.fullmatch, fields)):
+        raise source.error(
+            f"line {line} has {many} columns where {few} belong, probably because decimal commas "
+            "split numbers in two; save the file with semicolons between the columns, or with "
+            "decimal points"
+        )
+
+
 def _require_one_mark(source, line, text, marks):
     """Raise `BrdfkitError` where numbers have points and commas: which are of thousands?
 
@@ -111,5 +130,5 @@ def _require_one_mark(source, line, text, marks):
 
 
 def _number(text):
-    """The text of a number as Python reads it."""
-    return text.replace(",", ".") or "nan"
+    """The text of a number as Python reads it, NaN where nothing was measured."""
+    return "nan" if text.lower() in MISSING else text.replace(",", ".")

@@ -23,6 +23,7 @@ import numpy as np
 from brdfkit.colours import RGB
 from brdfkit.formats._alta_coordinates import PARAM_IN
 from brdfkit.formats._writing import require_measured, sample_angles, write_rows
+from brdfkit.measured.mending import DIVIDED, cosines
 
 NAME = "ALTA"
 SUFFIXES = (".dat",)
@@ -31,7 +32,6 @@ CHANNELS = {1: ("Y",), 3: RGB}
 COSINE = "INV_STERADIAN_COSINE_FACTOR"
 PLAIN = ("INV_STERADIAN", "RGB_COLOR")
 UNSTATED = (None, "UNKNOWN_OUTPUT")
-LEAST_COSINE = 1e-3  # a BRDF times a smaller cosine does not tell the BRDF
 
 
 def sniff(head):
@@ -154,12 +154,11 @@ def _find_factor(source, header, wo):
     and notes."""
     stated = header.get("PARAM_OUT")
     if stated == COSINE:
-        cosine = wo[:, 2]
-        low = cosine < LEAST_COSINE
-        notes = {"cosine": "the values were BRDF × cos theta_v and are divided by it"}
+        factor, low = cosines(wo)
+        notes = dict(DIVIDED)
         if low.any():
             notes["masked"] = f"{low.sum():,} rows with the view at the horizon"
-        return np.where(low, 1, cosine)[:, None], ~low, notes
+        return factor, ~low, notes
     if stated in PLAIN:
         return 1, True, {}
     if stated in UNSTATED:

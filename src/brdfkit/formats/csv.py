@@ -14,10 +14,14 @@ that it could not be in radians, the unit has to stand there.
 
 Values: ``R, G, B`` (linear sRGB), or wavelengths such as ``550nm`` or ``550``, or one column
 ``BRDF``, in sr⁻¹. They are ``CCBRDF``, ``CCBRDF_R`` or ``CCBRDF_550nm`` where they are the BRDF
-times cos theta_o, the cosine-corrected one of ASTM E2387: the cosine is divided out, and never
-guessed. Standard errors: ``R_error``, ``550nm_error``, ``BRDF_error``, ``CCBRDF_error`` or
-``standard_error``. An empty field is a value that was not measured; a column without a name is left
-out.
+times cos theta_o, the cosine-corrected one of ASTM E2387: the cosine is divided out. It is never
+guessed; `brdfkit info` tells where values of another name seem to have it, and ``--divide-by-cos``
+divides it out. Standard errors: ``R_error``, ``550nm_error``, ``BRDF_error``, ``CCBRDF_error`` or
+``standard_error``. An empty field, NA, #N/A or - is a value that was not measured; a column without
+a name is left out.
+
+Wavelengths may stand in rows: beside one column ``BRDF`` or ``CCBRDF``, a column ``wavelength`` or
+``lambda`` [nm], or ``channel`` with R, G or B. Rows of equal directions, to 0.006°, are one sample.
 
 Semicolons, commas, tabs or blanks separate the columns; where it is not commas, or where they stand
 in quotes, numbers may have decimal commas. Lines that begin with # are comments: ``# key: text``

@@ -11,6 +11,7 @@ from brdfkit.colours import RGB
 from brdfkit.errors import nearest
 from brdfkit.measured.angles import DEGREES, RADIANS
 from brdfkit.measured.coordinates import COORDINATES
+from brdfkit.measured.long_form import NANOMETRES
 
 # Other names: the outgoing direction is that of reflection or of scattering
 ALIASES = {"theta_r": "theta_o", "theta_s": "theta_o", "phi_r": "phi_o", "phi_s": "phi_o"}
@@ -19,7 +20,8 @@ VALUE = re.compile(
     r"(?P<error>(standard)?error)?"
 )
 PER_STERADIAN = ("1/sr", "sr-1", "sr^-1", "sr⁻¹")
-NANOMETRES = (100, 100_000)  # plausible wavelengths
+# Columns that say of which wavelength or channel the value in a row is
+KEYS_OF_ROWS = {"wavelength": "wavelength", "lambda": "wavelength", "channel": "channel"}
 EXAMPLES = ("BRDF", *RGB, "550nm", "BRDF_error", "R_error")  # proposed for names that are unknown
 
 
@@ -29,7 +31,8 @@ class Layout:
 
     `coordinates`: the columns of one line of `COORDINATES`, by name; `units`: what the names of
     these state, or None; `channels`; `values` and `errors`: the columns of each channel's values
-    and standard errors, if any; `cosine`: whether the values are the BRDF times cos theta_o.
+    and standard errors, if any; `cosine`: whether the values are the BRDF times cos theta_o;
+    `key`: "wavelength" or "channel" and its column, where each row has the value of one; or None.
     """
 
     coordinates: dict[str, int]
@@ -38,6 +41,7 @@ class Layout:
     values: tuple[int, ...]
     errors: tuple[int, ...]
     cosine: bool
+    key: tuple[str, int] | None = None
 
 
 def are_columns(names):
@@ -53,23 +57,38 @@ def understand(names, origin):
     Raises `BrdfkitError` for a name that is unknown or comes twice, and where the columns do not
     give both directions, or no BRDF.
     """
-    coordinates, units, values, cosines = {}, {}, {}, set()
+    coordinates, units, values, cosines, keys = {}, {}, {}, set(), {}
     for number, name in enumerate(names):
         text, unit = _split(name)
         coordinate, value = _coordinate(text), _value(text)
-        if coordinate in coordinates or value in values:
+        key = key_of_rows(name)
+        if coordinate in coordinates or value in values or (key and keys):
             raise origin.error(f"the column {_quote(name)} comes twice; keep one")
         if coordinate and unit in _units(coordinate):
             coordinates[coordinate], units[coordinate] = number, unit
         elif value and unit in (None, *PER_STERADIAN):
             values[value] = number
             cosines |= _cosines(text, is_error=value[1])
+        elif key and unit in ((None, "nm") if key == "wavelength" else (None,)):
+            keys[key] = number
         else:
-            raise origin.error(_say_unknown(name, unit, coordinate or value, coordinates))
+            raise origin.error(_say_unknown(name, unit, coordinate or value or key, coordinates))
     if len(cosines) > 1:
         raise origin.error("has CCBRDF, values with a cosine, beside others; convert them")
     _require_both_directions(coordinates, origin)
-    return Layout(coordinates, units, *_find_channels(values, origin), cosines == {True})
+    found = _find_channels(values, origin)
+    for key in keys:
+        if found[0] != ("Y",):
+            raise origin.error(
+                f"has values of {_list(found[0])} beside a column {key}; keep one column of "
+                f"values, BRDF, with a row for each {key}, or leave the column {key} out"
+            )
+    return Layout(coordinates, units, *found, cosines == {True}, next(iter(keys.items()), None))
+
+
+def key_of_rows(name):
+    """What a column of this name says of each row's value: "wavelength", "channel", or None."""
+    return KEYS_OF_ROWS.get(_simplify(_split(name)[0]))
 
 
 def _say_unknown(name, unit, known, coordinates):
@@ -77,7 +96,7 @@ def _say_unknown(name, unit, known, coordinates):
     if known:
         return (
             f"the column {_quote(name)} has the unit {unit[:20]!r}, where deg or rad belongs for "
-            "angles and 1/sr for values; convert the column"
+            "angles, 1/sr for values and nm for wavelengths; convert the column"
         )
     others = {name for line in COORDINATES for name in line} - set(coordinates)
     near = nearest(_split(name)[0][:40], [*sorted(others), *EXAMPLES])
@@ -137,7 +156,7 @@ def _split(name):
 
 
 def _simplify(text):
-    for letter, word in {"θ": "theta", "φ": "phi", "ϕ": "phi", "δ": "delta"}.items():
+    for letter, word in {"θ": "theta", "φ": "phi", "ϕ": "phi", "δ": "delta", "λ": "lambda"}.items():
         text = text.lower().replace(letter, word)
     return re.sub(r"[\s_-]", "", text)
 

@@ -5,11 +5,12 @@ from collections.abc import Mapping
 import numpy as np
 
 from brdfkit.measured.angles import require_unit
-from brdfkit.measured.column_names import understand
+from brdfkit.measured.column_names import key_of_rows, understand
 from brdfkit.measured.coordinates import to_directions, turns
+from brdfkit.measured.long_form import channel_number, to_wide
+from brdfkit.measured.mending import DIVIDED, cosines
 
 NO_NUMBERS = "mMc"  # NumPy's kinds of what it would make numbers of: spans, dates, complex
-LEAST_COSINE = 1e-3  # a BRDF times a smaller cosine does not tell the BRDF
 
 
 def to_samples(names, columns, unit, origin):
@@ -26,6 +27,13 @@ def to_samples(names, columns, unit, origin):
     values = np.stack([columns[n] for n in layout.values], axis=1)
     errors = np.stack([columns[n] for n in layout.errors], axis=1) if layout.errors else None
     _require_positive(errors, origin)
+    channels, info = layout.channels, {}
+    if layout.key:
+        kind, number = layout.key
+        wide = to_wide(wi, wo, values, errors, kind, columns[number], origin)
+        wi, wo, values, errors = wi[wide.rows], wo[wide.rows], wide.values, wide.errors
+        channels = wide.channels
+        info[f"{kind}s"] = f"{len(channels)}, a row each, at {len(wi):,} pairs of directions"
 
     # The rows that are masked, by the reason
     finite = np.isfinite(values).all(axis=1)
@@ -33,11 +41,10 @@ def to_samples(names, columns, unit, origin):
         finite &= np.isfinite(errors).all(axis=1)
     above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
     masked = {"not finite": ~finite, "at or below the horizon": ~above}
-    info = {}
     if layout.cosine:
-        info["cosine"] = "the values were BRDF × cos theta_o and are divided by it"
-        masked["view at the horizon"] = low = above & (wo[:, 2] < LEAST_COSINE)
-        cosine = np.where(above & ~low, wo[:, 2], 1)[:, None]
+        info |= DIVIDED
+        cosine, low = cosines(wo)
+        masked["view at the horizon"] = above & low
         values = values / cosine
         errors = None if errors is None else errors / cosine
     for reason, rows in masked.items():
@@ -48,7 +55,7 @@ def to_samples(names, columns, unit, origin):
         "wo": wo,
         "values": values,
         "valid": ~np.any(list(masked.values()), axis=0),
-        "channels": layout.channels,
+        "channels": channels,
         "info": info,
         "anisotropic": turns(coordinates, units),
         "standard_error": errors,
@@ -87,6 +94,8 @@ def columns_of(frame, origin):
 
 
 def _column(name, given, origin):
+    if key_of_rows(str(name)) == "channel":
+        given = [channel_number(text) for text in np.ravel(given)]
     column = to_numbers(f"the column {name!r}", given, origin)
     if column.ndim > 1:
         raise origin.error(f"the column {name!r} has {column.ndim} axes where one belongs")

@@ -54,9 +54,8 @@ def largest_angles(data: Any) -> tuple[float, float]:
     return float(smaller), float(larger)
 
 
-def in_plane(data):
-    """Whether all valid samples of a `Measured` are in the plane of incidence, within 5°."""
-    samples = data.samples
+def in_plane(samples):
+    """Whether all valid `Samples` are in the plane of incidence, within 5°."""
     wi, wo = samples.wi[samples.valid], samples.wo[samples.valid]
     across = np.abs(wi[:, 0] * wo[:, 1] - wi[:, 1] * wo[:, 0])  # sin θi sin θo |sin Δφ|
     return bool((across <= np.sin(NEAR) * np.sqrt(1 - wi[:, 2] ** 2)).all())

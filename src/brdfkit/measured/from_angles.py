@@ -122,7 +122,8 @@ class FromAngles(MeasuredData):
         Values: R, G, B (linear sRGB), or wavelengths such as 550nm, or one column BRDF; CCBRDF,
         CCBRDF_R or CCBRDF_550nm where they are the BRDF times cos theta_o, which is divided out.
         Standard errors: R_error, 550nm_error, BRDF_error or standard_error. A unit may stand behind
-        a name, as in ``theta_i [rad]``.
+        a name, as in ``theta_i [rad]``. With a column wavelength [nm], or channel of R, G and B,
+        each row has the value BRDF of one.
 
         Parameters
         ----------

@@ -16,6 +16,7 @@ from brdfkit.jit.threads import cached_in_turn, in_turn
 from brdfkit.measured.albedos import MeasuredAlbedo, measured_albedo
 from brdfkit.measured.from_angles import FromAngles
 from brdfkit.measured.interpolation import Interpolant
+from brdfkit.measured.mending import mend
 from brdfkit.measured.mixing import mix
 from brdfkit.measured.spectrum_to_rgb import rgb_or_mean, to_rgb, wavelengths
 from brdfkit.measured.subtraction import subtract
@@ -159,6 +160,40 @@ class Measured(Shown, FromAngles):
         True
         """
         return subtract(self, brdf, max_angle)
+
+    def mend(self, mirror_azimuth: bool = False, divide_by_cos: bool = False) -> "Measured":
+        """The same samples in brdfkit's convention, where a file or an instrument has another.
+
+        What `load` does with the same arguments. The notes in `info` say what was done.
+
+        Parameters
+        ----------
+        mirror_azimuth : bool, default False
+            Whether 180° is added to every phi_o: of an instrument whose mirror direction is at
+            phi_o = phi_i.
+        divide_by_cos : bool, default False
+            Whether the values, and their standard errors, are divided by cos theta_o: of values
+            that are the BRDF times this cosine. Samples with a smaller cosine than 0.001 are
+            masked.
+
+        Returns
+        -------
+        Measured
+            The mended samples; this material itself where nothing is to be mended.
+
+        Raises
+        ------
+        BrdfkitError
+            For a table, and a format that has values between its samples: they state what they
+            hold; and for what was mended, or read as BRDF times cosine, before.
+
+        Examples
+        --------
+        >>> wi, wo = [[0.6, 0, 0.8]], [[0.6, 0, 0.8]]
+        >>> Measured.from_samples(wi, wo, [0.4]).mend(divide_by_cos=True).values
+        array([[0.5]])
+        """
+        return mend(self, mirror_azimuth, divide_by_cos)
 
     def audit(self) -> "brdfkit.Audit":
         """How far the measurement reaches, how noisy it is and what is doubtful.

@@ -102,7 +102,7 @@ def describe(material, fits, rendering, file, path, scene, envmap, ranking):
         "slices": slice_charts(material, fits),
         "albedo": albedo_chart(found.albedo, fits, material.anisotropic),
         "albedo_guessed": bool(is_guessed(found.albedo).any()),
-        "fits": [parameters.describe(fit) for fit in fits],
+        "fits": [parameters.describe(fit, found.findings()) for fit in fits],
         "audit": found.rows(),
         "findings": found.findings(),
         "info": material.info,

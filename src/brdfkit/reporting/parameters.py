@@ -11,12 +11,12 @@ from brdfkit.model.value_table import MOST
 DIGITS = 9  # of numbers in JSON: enough to build the model, and the same on every machine
 
 
-def describe(fit):
-    """What the page says of a fit, as plain data."""
+def describe(fit, told=()):
+    """What the page says of a fit, as plain data, but for the notes that it has `told` already."""
     return {
         "title": fit.model.label(),
         "rows": [_row(fit, name) for name in fit.values],
-        "remarks": [*fit.notes, fit.message],
+        "remarks": [*(note for note in fit.notes if note not in told), fit.message],
         "json": json.dumps(_rounded(_record(fit)), indent=2, ensure_ascii=False),
         "samples": f"{fit.samples:,}",
         "evaluations": fit.evaluations,

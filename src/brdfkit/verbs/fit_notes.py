@@ -1,5 +1,8 @@
 """What one should know of a fit, in sentences."""
 
+import numpy as np
+
+from brdfkit.auditing.data_findings import data_findings
 from brdfkit.fitting import Picture
 from brdfkit.model.evaluation import clamped_share
 from brdfkit.verbs.azimuth import note_on_azimuth
@@ -7,9 +10,12 @@ from brdfkit.verbs.lobe_notes import list_lobe_notes
 
 
 def list_notes(data, samples, loss, found, fitted, weighted):
-    """Notes on a fit, in words: too few measured numbers, negative values, a clamped model, an
-    isotropic one of an anisotropic material; `weighted`: whether the user gave weights."""
-    notes = ["samples count by the weights that were given; so in the loss"] if weighted else []
+    """Notes on a fit, in words: what is doubtful in the data, too few measured numbers, negative
+    values, a clamped model, an isotropic one of an anisotropic material; `weighted`: whether the
+    user gave weights."""
+    notes = [*data_findings(data, _largest_angle(samples))]
+    if weighted:
+        notes.append("samples count by the weights that were given; so in the loss")
     if isinstance(loss, Picture):
         notes.append(f"seen: {loss.describe()}; pixels tell no standard errors")
     known, sought = found.certainty.numbers, found.certainty.parameters
@@ -29,6 +35,11 @@ def list_notes(data, samples, loss, found, fitted, weighted):
         notes.append(note)
     notes += list_lobe_notes(data, samples, fitted, found.at_bounds)
     return (*notes, *found.certainty.undetermined, *found.certainty.trades)
+
+
+def _largest_angle(samples):
+    """The largest angle to the normal of `Samples` [degrees]."""
+    return np.degrees(np.arccos(min(samples.wi[:, 2].min(), samples.wo[:, 2].min())))
 
 
 def _are_equal(values):
