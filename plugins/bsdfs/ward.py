@@ -4,7 +4,8 @@
                   / (4π α_u α_v √((N·L)(N·V)))
 
 [Ward 1992]; [Kurt 2007, eqs. 3.6, 3.7]. Shows brushed metal and satin paint; loses energy at
-grazing angles, has no Fresnel effect and no retro-reflection.
+grazing angles down to about 88°, and gains it without bound in the last degree (at α = 0.5 the lobe
+reflects 0.38 k_s at 88°, 4.7 k_s at 89.99°). It has no Fresnel effect and no retro-reflection.
 """
 
 import drjit as dr

@@ -28,7 +28,8 @@ class AlbedoAtMost:
     limit : float, default 1
         The largest directional albedo of each channel, above 0; at most 1 where no light is gained.
     theta : tuple of float, default (0, 30, 60, 75, 85, 89)
-        Angles of incidence to the normal [degrees, from 0 to below 90].
+        Angles of incidence to the normal [degrees, from 0 to below 90]. Nothing is held beyond the
+        last of them, where the formulas of `ward` and `ward_duer` grow without bound.
     phi : tuple of float, default (0,)
         Azimuths of incidence [degrees], each with every `theta`; isotropic models need one.
 
