@@ -122,7 +122,10 @@ def regress(
             u, weights, stopped = stop.best.point.u, stop.best.point.weights, True
         error = whole.sums(u, weights, curvature=False).error[0]
     elif light is not None and not (limits or stopped or pixels):
-        kept = _keep_light(whole, u, weights, light, points[:FEW_STARTS], rng)
+        try:
+            kept = _keep_light(whole, u, weights, light, points[:FEW_STARTS], rng)
+        except KeyboardInterrupt:
+            kept, stopped = None, True
         if kept is not None:
             u, weights, notes = kept[0], kept[1], (*notes, kept[2])
             error = whole.sums(u, weights, curvature=False).error[0]

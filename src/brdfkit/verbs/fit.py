@@ -157,7 +157,7 @@ def fit(
             samples=len(samples.wi),
             evaluations=found.evaluations,
             seconds=time.perf_counter() - began,
-            message=found.message + (", but its light is wrong" if warnings else ""),
+            message=_add_warning(found.message) if warnings else found.message,
             at_bounds=found.at_bounds,
             certainty=found.certainty,
             notes=(
@@ -202,6 +202,12 @@ SETTINGS = {
     for name, parameter in inspect.signature(fit).parameters.items()
     if name not in ("name", "data", "weights", "progress")
 }
+
+
+def _add_warning(message):
+    """The message of a fit whose light is wrong."""
+    ended = message.startswith(("converged", "settled"))
+    return f"{message}, but its light is wrong" if ended else message
 
 
 def tell_weights(loss: Loss | Picture, samples: Any, max_angle: float) -> dict[str, float]:
