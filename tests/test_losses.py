@@ -200,7 +200,7 @@ def test_ctrl_c_on_the_command_line_prints_it(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     lambert = CliRunner().invoke(main, ["fit", "ward.npz", "-m", "lambert"])
     assert lambert.exit_code == 0
-    monkeypatch.setitem(bk.losses, "cbrt", stopping(60, "cbrt"))
+    monkeypatch.setitem(bk.losses, "cbrt", stopping(120, "cbrt"))
     found = CliRunner().invoke(
         main, ["fit", "ward.npz", "-m", "lambert", "-m", "ggx", "-m", "ward", "-o", "fits"]
     )
