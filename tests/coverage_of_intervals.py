@@ -11,6 +11,7 @@ brackets the one that is furthest from 95 %.
 """
 
 import argparse
+from dataclasses import replace
 
 import numpy as np
 from random_models import random_model
@@ -26,6 +27,7 @@ from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.robust_search import settle
 from brdfkit.model import labels
 from brdfkit.samples import Samples
+from brdfkit.samples.measures import estimate_extents
 
 
 def multiply(rng, values, wi, wo, loss):
@@ -83,11 +85,14 @@ def held(name, loss, noise, replicates, n=600, robust=None, seed=0):
     true = dict(zip(space.names, space.table(u)[0], strict=True))
     for c, own in enumerate(weights[0]):
         true |= {f"{w}[{c}]": v for w, v in zip(model.weights(), own, strict=True)}
+    extents = estimate_extents(wi, wo, False, 80.0)
     found = np.full((replicates, len(true)), np.nan)
     for k in range(replicates):
         rng = np.random.default_rng([seed, k])
         noisy = NOISES[noise](rng, values, wi, wo, loss)
-        samples = Samples.from_arrays(wi, wo, noisy, None, "RGB", "noisy")
+        samples = replace(
+            Samples.from_arrays(wi, wo, noisy, None, "RGB", "noisy"), extents=extents
+        )
         problem = Problem(model, samples, bk.losses[loss], space)
         ends = levenberg_marquardt(problem.expand, u, weights, problem.least, 50, 1e-10, 1e-4).ends
         point, passes = (ends.u, ends.weights), None

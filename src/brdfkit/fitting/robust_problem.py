@@ -35,6 +35,9 @@ class RobustProblem:
     `u`, `weights`: the optimum where all samples count alike, (1, shapes) and (1, channels, lobes);
     `part`, `rows`: a problem on some of the samples and their numbers, which gives the Hessians; by
     default the problem itself. By channel, `scales` are those of the residuals, tuned.
+
+    A residual is a difference times the root of how much its sample counts, and a sample is an
+    outlier by the difference alone. So `levers` hold that root, beside √(1 - h).
     """
 
     def __init__(self, problem, u, weights, name, part=None, rows=slice(None)):
@@ -44,9 +47,11 @@ class RobustProblem:
         require_more_samples(len(problem.samples.wi), self.rank)
         # Neither leverages, least scales nor the metric of fitted values change from pass to pass
         self.metric = self.part.expand_here(u, weights).hessian[0]
-        self.levers = [np.sqrt(1 - h) for h in self._leverages(u, weights)]
+        root = np.sqrt(problem.importance / problem.importance.mean())
+        root[root == 0] = 1.0  # its residual is 0
+        self.levers = [root * np.sqrt(1 - h) for h in self._leverages(u, weights)]
         black = problem.residuals(u, 0 * weights)
-        self.least = [least_scale(target) for target in black]
+        self.least = [least_scale(target / root) for target in black]
         self.spread = np.sqrt(sum(len(t) * np.var(t) for t in black)) or 1.0
         self.low, self.high = limits(u.shape[1], problem.channels, problem.least)
 
