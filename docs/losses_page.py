@@ -7,20 +7,22 @@ from statistics import mean, median
 from leaderboard_page import made_with
 from make_models import paragraphs, table
 
+from brdfkit.fitting.named_losses import DEFAULT
 from brdfkit.names import listed
 from brdfkit.reproducing.drawing import COLOURS, figure, tidy
 
 PAGE = Path(__file__).with_name("losses.md")
 # The losses that the figure shows, and the difference that is clear [dB]
-DRAWN, CLEAR = ("log", "cbrt", "picture", "cosine"), 0.5
+DRAWN, CLEAR = (DEFAULT, "log", "picture", "cosine"), 0.5
 INTRODUCTION = """A fit by another loss is another picture. Here the same models are fitted to
 {count} materials by {losses}, and each fit is path-traced beside the measurement, on the
 ball that `brdfkit render` shows. Made by `BRDFKIT_DATA=FOLDER python docs/make_losses.py
 --cache CACHE`; FOLDER holds third-party files, which brdfkit does not ship.
 
-The materials are neural reconstructions, which stand for MERL's tables [Sztrajman et al. 2021], in
-tables of 60×30×60 cells. Samples were added until the measurement beside itself, with another seed,
-has a PSNR of {until:g} dB (least: {floor:.1f} dB), at {size}×{size} pixels.
+The materials are every fifth of the neural reconstructions that stand for MERL's tables [Sztrajman
+et al. 2021], in tables of 60×30×60 cells. What each loss is a mean over:
+[fitting](theory/fitting.md#losses). Samples were added until the measurement beside itself, with
+another seed, has a PSNR of {until:g} dB (least: {floor:.1f} dB), at {size}×{size} pixels.
 
 {versions}; seed 0."""
 
@@ -41,7 +43,7 @@ def write_page(rows, until, size):
         INTRODUCTION.format(**facts),
         *("## The answer", advice(found)),
         *("## Means over all materials", MEANS, means(found)),
-        "![How much better than the log loss each material looks](losses.png)",
+        "![How much better than by the default loss each material looks](losses.png)",
         *("## How often each loss is best", WINS, wins(found)),
         *("## Each material", EACH, each(found)),
     )
@@ -85,24 +87,24 @@ def means(found):
 
 
 WINS = """On how many materials the picture of each loss has the highest PSNR of all losses, and how
-often it is lower than the log loss's by more than 0.5 dB."""
+often it is lower than the default loss's by more than 0.5 dB."""
 
 
 def wins(found):
-    """How often each loss is the best one, and how often clearly worse than log."""
+    """How often each loss is the best one, and how often clearly worse than the default."""
     losses = list(next(iter(found.values())))
     rows = []
     for model, by_loss in found.items():
         best = Counter(
             max(losses, key=lambda loss: by_loss[loss][material]["psnr"])
-            for material in by_loss["log"]
+            for material in by_loss[DEFAULT]
         )
         cells = [f"{best[loss]} ({worse(by_loss, loss)})" for loss in losses]
         rows.append((f"`{model}`", *cells))
     return table(", ".join(["model", *losses]), rows)
 
 
-def gains(by_loss, loss, other="log"):
+def gains(by_loss, loss, other=DEFAULT):
     """By how many dB each material's picture is better than by another loss."""
     return {
         material: row["psnr"] - by_loss[other][material]["psnr"]
@@ -115,22 +117,22 @@ def worse(by_loss, loss):
 
 
 def advice(found):
-    """Which loss looks best, and how every other does beside `log`, in words with figures."""
+    """Which loss looks best, and how every other does beside the default, in words with figures."""
     losses = list(next(iter(found.values())))
     overall = {loss: mean(mean_of(by[loss]) for by in found.values()) for loss in losses}
     best = max(losses, key=overall.get)
     means_ = ", ".join(f"`{loss}` {overall[loss]:.1f}" for loss in sorted(losses, key=overall.get))
-    lead = min(mean_of(by[best]) - mean_of(by["log"]) for by in found.values())
+    lead = min(mean_of(by[best]) - mean_of(by[DEFAULT]) for by in found.values())
     verdict = "clearly" if lead > CLEAR else "but not clearly"
     lines = [f"By the mean PSNR of all models `{best}` looks best, {verdict}: {means_} dB."]
     for loss in losses[1:]:
-        lines += ["", f"`{loss}` beside `log`:", ""]
+        lines += ["", f"`{loss}` beside `{DEFAULT}`:", ""]
         lines += [f"- `{model}`: {beside(by, loss)}" for model, by in found.items()]
     return "\n".join(lines)
 
 
 def beside(by_loss, loss):
-    """How the pictures of one model by a loss do beside those by `log`, in words."""
+    """How the pictures of one model by a loss do beside those by the default, in words."""
     ends = gains(by_loss, loss)
     low, high = (f"{ends[m]:+.1f} ({m})" for m in (f(ends, key=ends.get) for f in (min, max)))
     return (
@@ -147,7 +149,7 @@ def each(found):
     """The PSNR of every material."""
     losses = list(found["ggx"])
     rows = []
-    for material in sorted(found["ggx"]["log"]):
+    for material in sorted(found["ggx"][DEFAULT]):
         cells = [f"{found['ggx'][loss][material]['psnr']:.1f}" for loss in losses]
         top = max(
             (
@@ -161,7 +163,7 @@ def each(found):
 
 
 def draw(found):
-    """The figure: gains over the log loss of all materials, sorted, a panel for each model."""
+    """The figure: gains over the default loss of all materials, sorted, a panel for each model."""
     drawn = figure(3.2 * len(found), 3.0)
     panels = drawn.subplots(1, len(found), sharey=True, squeeze=False)[0]
     for axes, (model, by_loss) in zip(panels, found.items(), strict=True):
@@ -172,6 +174,6 @@ def draw(found):
         axes.axhline(0, color="0.3", linewidth=0.8)
         tidy(axes, model, "")
         axes.set_xlabel("materials, sorted")
-    panels[0].set_ylabel("PSNR beside the log loss [dB]")
+    panels[0].set_ylabel("PSNR beside the default loss [dB]")
     panels[0].legend(frameon=False)
     return drawn

@@ -59,5 +59,13 @@ def record(ranking):
     return ranking and {
         "best": ranking.best,
         "reason": ranking.reason,
-        "models": [{**vars(row), "tied": row.tied, "psnr": row.psnr} for row in ranking.rows],
+        "models": [
+            {
+                **vars(row),
+                "tied": row.tied,
+                "psnr": row.psnr,
+                "albedo": row.albedo and vars(row.albedo),
+            }
+            for row in ranking.rows
+        ],
     }

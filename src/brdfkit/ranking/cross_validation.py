@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.fitting.light import Albedo
 from brdfkit.model.evaluation import with_weights
 
 # Starts of the fits without a fold: they begin where the fit of all samples ended
@@ -16,11 +17,12 @@ class Validated:
     """A model's fit to all samples, and its squared errors where it did not see them.
 
     `errors` (blocks,): of each block, in the units of E², which is their sum; of the fit to all
-    samples, `picture` and `doubt`: as in `Ranked`; `parameters`: how many were sought; `bic`: its
-    criterion; `seconds`: that it took.
+    samples, `albedo`, `picture` and `doubt`: as in `Ranked`; `parameters`: how many were sought;
+    `bic`: its criterion; `seconds`: that it took.
     """
 
     errors: np.ndarray
+    albedo: Albedo
     picture: float
     doubt: str
     parameters: int
@@ -28,13 +30,13 @@ class Validated:
     seconds: float
 
 
-def cross_validate(model, held_out, appearance, anisotropic, seed, report):
-    """The `Validated` of a model class on what is `HeldOut`, by the `Appearance` of the material;
-    `report`: called with how many fits are done."""
+def cross_validate(model, held_out, appearance, light, anisotropic, seed, report):
+    """The `Validated` of a model class on what is `HeldOut`, by the material's `Appearance` and its
+    `Light`, which the fit to all samples keeps; `report`: called with how many fits are done."""
     how = {"anisotropic": anisotropic, "seed": seed}
     report(0)
     began = time.perf_counter()
-    whole = held_out.regress(model, held_out.folds >= 0, **how)
+    whole = held_out.regress(model, held_out.folds >= 0, light=light, **how)
     seconds = time.perf_counter() - began
     report(1)
 
@@ -45,10 +47,12 @@ def cross_validate(model, held_out, appearance, anisotropic, seed, report):
         errors[out] = held_out.squares(model, part, out)
         report(2 + fold)
     brdf, certainty = with_weights(model, whole.shapes, whole.weights).eval, whole.certainty
+    albedo = light.beside(light.look(brdf))
     return Validated(
         held_out.sum_by_block(errors),
+        albedo,
         appearance.picture_error(brdf),
-        appearance.find_doubt(brdf),
+        appearance.find_doubt(brdf) or next(iter(albedo.warnings()), ""),
         certainty.parameters,
         certainty.bic(whole.loss),
         seconds,

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.fitting.light import Albedo
 from brdfkit.names import printable
 from brdfkit.ranking.ties import beside, is_tied
 
@@ -30,6 +31,8 @@ class Ranked:
         By how much E is larger than the best model's.
     uncertainty : float
         The standard error of `behind`, of the differences in each block of directions.
+    albedo : Albedo, optional
+        The light that the fit to all samples that were drawn reflects, beside the data's.
     picture : float
         RMS difference of pictures of a ball, of the fit to all samples that were drawn and of the
         measurement, as a screen shows them, 1 being white; nan where there is no fit.
@@ -37,8 +40,8 @@ class Ranked:
         Whether no other model has a better picture and an error that is less by more than the
         noise.
     doubt : str
-        A clause on what the fit to all samples does at 85° that the material hardly does; or
-        nothing.
+        A clause on the light of the fit to all samples, or on what it does at 85° that the material
+        hardly does; or nothing.
     parameters : int
         How many numbers were sought: the weights of each channel, and the shape parameters.
     bic : float
@@ -54,6 +57,7 @@ class Ranked:
     error: float = math.nan
     behind: float = math.nan
     uncertainty: float = math.nan
+    albedo: Albedo | None = None
     picture: float = math.nan
     pareto: bool = False
     doubt: str = ""
@@ -82,7 +86,7 @@ def rows_of(results: Mapping[str, Any], shares: NDArray[np.float64]) -> tuple[Ra
     for label, one in fitted.items():
         error, behind, uncertainty = beside(one.errors, best.errors, shares)
         pareto = not any(_beats(other, one, shares) for other in fitted.values())
-        looks = one.picture, pareto, one.doubt
+        looks = one.albedo, one.picture, pareto, one.doubt
         fit = one.parameters, one.bic, one.seconds
         rows.append(Ranked(label, error, behind, uncertainty, *looks, *fit))
     failed = [

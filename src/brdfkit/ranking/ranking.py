@@ -10,6 +10,7 @@ import numpy as np
 from brdfkit.arguments import to_whole_number
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Loss, Picture, as_loss
+from brdfkit.fitting.light import Light
 from brdfkit.materials import MaterialLike, measured_material
 from brdfkit.measured.selection import select_samples
 from brdfkit.model import Model, labels
@@ -98,6 +99,8 @@ def rank(
         pixels = draw_pixels(chosen.lights, data.rgb.eval, max_angle, seed)
     held_out = HeldOut.draw(samples, chosen, data.anisotropic, folds, rng, pixels)
     appearance = Appearance(data, samples, max_angle, seed + 1)
+    light = Light.of(data.rgb.albedo, data.anisotropic)
+    how = appearance, light, anisotropic, seed
 
     report, fits = progress or (lambda done, total: None), folds + 1
     found: dict[str, Any] = {}
@@ -108,7 +111,7 @@ def rank(
                 report(before + done, len(classes) * fits)
 
             try:
-                found[label] = cross_validate(model, held_out, appearance, anisotropic, seed, step)
+                found[label] = cross_validate(model, held_out, *how, step)
             except BrdfkitError as error:
                 found[label] = error
     except KeyboardInterrupt:
