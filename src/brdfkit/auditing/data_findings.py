@@ -3,6 +3,8 @@
 import math
 from weakref import WeakKeyDictionary
 
+import numpy as np
+
 from brdfkit.auditing.cosine import suspected_cosine
 from brdfkit.auditing.grazing_and_retro import (
     GRAZING,
@@ -25,6 +27,7 @@ OF_NOISE = 0.6745 * math.sqrt(2)  # the median difference of two equal values, o
 DARK_HORIZON, RETROREFLECTIVE = 0.5, 5  # ratios of `grazing_and_retro.py`
 # ... and `backwards` there: alone, or with this `retroreflection`; of rough plaster 3.5 and 1.6
 BACKWARDS, WITH_A_LOBE = 5, (2, 2.5)
+SAME = 1.0  # degrees: angles of incidence that differ by less are one
 ZERO = 0.01  # the share of samples that are 0
 ALONG = math.cos(math.radians(5))  # the cosine of directions along the normal
 
@@ -54,6 +57,7 @@ def _find(data: Measured) -> dict[str, str]:
         "reciprocity": "" if cosine else _say_reciprocity(data),
         "horizon": "" if cosine else _say_horizon(samples),
         "plane": _say_plane(samples),
+        "incidence": _say_incidence(samples),
         "zero": _say_zero(samples),
     }
 
@@ -124,6 +128,17 @@ def _say_plane(samples: Samples) -> str:
     return (
         "the material was measured in the plane of incidence only: all beside it is a guess, also "
         "the albedo"
+    )
+
+
+def _say_incidence(samples: Samples) -> str:
+    """On samples that all have the light at one angle to the normal."""
+    angles = np.degrees(np.arccos(np.clip(samples.wi[samples.valid, 2], -1, 1)))
+    if len(angles) < 2 or np.ptp(angles) > SAME:
+        return ""
+    return (
+        f"the material was measured at one angle of incidence, {np.median(angles):.0f}°: how its "
+        "highlight changes with that angle is a guess of the model's"
     )
 
 
