@@ -46,9 +46,9 @@ footer { margin-top: 2rem; font-size: .9rem; }
 """
 NUMBER = "number"  # the class of a cell
 ALBEDOS = (
-    f"Under {listed([f'{angle:g}°' for angle in ANGLES])}: the albedo, the share of the light from "
-    "that angle to the normal which is reflected, the mean over the channels; of the fit, and below "
-    "it of the measurement."
+    f"Under {listed([f'{angle:g}°' for angle in ANGLES])}: the albedo of the fit, the share of the "
+    "light from that angle to the normal that it reflects, the mean over the channels; below it "
+    "that of the measurement."
 )
 FAR = 4.0  # times the error of the best: from there a cell has no tint
 

@@ -1,4 +1,4 @@
-"""`compare`: how well models describe a measured material, as a table."""
+"""`compare`: how well models describe a measured material, and its light, as a table."""
 
 import math
 from collections.abc import Iterable
@@ -97,7 +97,7 @@ def compare(
     max_angle: float = 80.0,
     spectral: bool = False,
 ) -> Comparison:
-    """Compare fits, models or other materials to a measured one: errors under every loss, light.
+    """Compare fits, models or other materials to a measured one, by every loss and by their light.
 
     Parameters
     ----------
