@@ -39,7 +39,7 @@ td.best { font-weight: 600; }
 td.near { background: color-mix(in srgb, var(--tint) calc(var(--near) * 1%), transparent); }
 td.failed, li, .bad { color: var(--bad); }
 .bad::before { content: "! "; font-weight: 700; }
-td.remarks { white-space: normal; min-width: 20rem; }
+td.remarks { white-space: normal; min-width: 16rem; }
 a { color: inherit; text-decoration-color: var(--line); text-underline-offset: .2em; }
 a:hover { text-decoration-color: currentColor; }
 footer { margin-top: 2rem; font-size: .9rem; }
