@@ -147,6 +147,12 @@ def test_fit(cli):
         assert fit["parameters"].keys() == fit["standard_errors"].keys() == saved.values.keys()
         assert fit["degrees_of_freedom"] == saved.degrees_of_freedom
         assert fit["bic"] == saved.bic
+        assert fit["albedos"] == pytest.approx(np.mean(saved.albedo.fit[:3], axis=1))
+        assert fit["notes"] == list(saved.notes)
+    assert record["measured_albedo"] == pytest.approx(list(bk.load("paint.binary").albedo.means))
+    saved_fits = [bk.load(file) for file in record["written"]]
+    printed = cli("fit", "paint.binary", "-m", "lambert", "-m", "ward").stdout
+    assert str(bk.compare("paint.binary", saved_fits)) in printed
 
 
 UNDEFINED_MODEL = '''"""Fog: not a number at normal incidence."""

@@ -185,7 +185,7 @@ def test_text_is_aligned_and_without_pictures():
         "title",
         "  what       much",
         "  long name   1.5",
-        "  b            10",
+        "  ! b          10",
         "                2",
         "  ! bad",
     ]
@@ -209,7 +209,7 @@ def test_a_name_is_one_line_of_text():
 def test_values_on_bounds_and_errors_are_told():
     fit = bk.fit("ggx", bk.load("plaster"))  # it has no highlight: that weight ends on its bound
     row = next(line for line in str(fit).splitlines() if "specular" in line)
-    assert row.endswith("on its bound")
+    assert row.endswith("! on its bound")
     assert "±" not in row
     assert str(fit).count("±") == 3
     assert 'class="bad"' in fit._repr_html_()

@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from dataclasses import replace
 
 import drjit as dr
 import numpy as np
@@ -220,18 +221,66 @@ def test_a_black_material_is_fitted():
 
 @pytest.mark.quick
 def test_one_sample_is_fitted():
-    """At normal incidence, where the cosine loss, weighted by sin θ_i, has nothing to say."""
+    """At normal incidence, where the loss kurt, weighted by sin θ_i, has nothing to say."""
     up = np.array([[0.0, 0.0, 1.0]])
     data = bk.Measured.from_samples(up, up, [[0.1, 0.2, 0.3]])
     found = bk.fit("lambert", data)
     np.testing.assert_allclose(found.values["diffuse_reflectance"], np.pi * data.values[0])
     compared = bk.compare(data, found)
-    assert np.isnan(compared.errors["lambert"].pop("cosine"))
+    assert np.isnan(compared.errors["lambert"].pop("kurt"))
     assert max(compared.errors["lambert"].values()) < 1e-9
-    row = str(bk.compare(data, found)).splitlines()[2].split()
-    assert row[:3] == ["lambert", "-", "0.00000"]
-    with pytest.raises(BrdfkitError, match="cosine loss weighs no sample"):
-        bk.fit("lambert", data, "cosine")
+    measured, lambert = (line.split() for line in str(compared).splitlines()[2:])
+    assert measured == ["measured", *"-------"]
+    assert lambert == ["lambert", *["0.00000"] * 4, *["0.63"] * 3]
+    with pytest.raises(BrdfkitError, match="kurt loss weighs no sample"):
+        bk.fit("lambert", data, "kurt")
+
+
+@pytest.mark.quick
+def test_compare_finds_the_light_of_the_fit_and_marks_what_is_wrong():
+    """By the quadrature of the fit; of a model, the one that refines."""
+    data, light = bk.load("red_plastic"), bk.load("plaster")
+    found, narrow = bk.fit("ward", data), bk.models()["ggx"](alpha_u=0.01)
+    compared = bk.compare(data, [found, narrow, light, {"type": "diffuse"}])
+    assert compared.measured_albedo == pytest.approx(data.albedo.values[:3].mean(axis=1))
+    assert compared.albedos["ward"] == pytest.approx(np.mean(found.albedo.fit[:3], axis=1))
+    wi = from_angles(np.radians([5, 45, 75]), np.zeros(3))
+    refined = [bk.albedo(narrow, direction).mean() for direction in wi]
+    assert compared.albedos["ggx"] == pytest.approx(refined, rel=1e-4)
+    assert compared.albedos["plaster"] == light.albedo.means
+    assert compared.albedos["diffuse"] == pytest.approx([0.5] * 3, rel=1e-4)
+    lines = str(compared).splitlines()
+    assert [line.count("!") for line in lines] == [0, 0, 0, 1, 3, 3, 3]
+    assert max(map(len, lines)) <= 80
+    assert compared.shown == ("cosine", "log", "cbrt", "plain")
+    assert "kurt" in str(bk.compare(data, bk.fit("lambert", data, "kurt")))
+
+
+@pytest.mark.quick
+def test_print_tells_the_light_its_warnings_and_samples_that_count_little():
+    found = bk.fit("lambert", bk.load("red_plastic"))
+    (warning,) = found.warnings
+    assert warning in found.notes
+    said = str(found).splitlines()
+    albedo = f"{np.mean(found.albedo.fit[0]):.2f}"
+    assert (
+        f"  albedo at 5°, 45°, 75°: {', '.join([albedo] * 3)}; measured: 0.23, 0.24, 0.34" in said
+    )
+    assert f"  ! {warning}" in said
+    assert "converged, but its light is wrong; 116,498 samples, " in said[-1]
+    assert "worth" not in said[-1]
+    wi, wo = from_angles(np.full(40, 0.3), np.zeros(40)), from_angles(np.linspace(0, 0.7, 40), 3.0)
+    few = bk.Measured.from_samples(wi, wo, np.linspace(0.1, 0.3, 40))
+    weights = np.r_[np.ones(10), np.full(30, 1e-6)]
+    found = bk.fit("lambert", few, weights=weights)
+    assert found.unrepresented > 0.5
+    said = str(found).splitlines()
+    assert said[2].endswith("measured: -, -, -")
+    share = f"none for {found.unrepresented:.0%} of the directions, "
+    assert f"; 40 samples, worth {found.effective_samples:.0f} of equal weight, {share}" in said[-1]
+    older = str(replace(found, albedo=None, effective_samples=0.0, unrepresented=0.0))
+    assert "albedo" not in older
+    assert "; 40 samples, " + said[-1].split(share)[1] in older
 
 
 @pytest.mark.quick

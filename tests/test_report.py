@@ -200,6 +200,22 @@ def test_the_verdict_is_what_the_samples_say(written, material, fits):
     assert "Its lead over the others is more than noise." in said.said["more"]
 
 
+def test_the_light_is_shown_beside_the_measured_and_marked_where_it_is_wrong(
+    written, material, fits
+):
+    """In the words of the fit's notes: below the table of fits, and with the parameters."""
+    page, (warning,) = Page(written[0]), fits[0].warnings
+    assert warning in fits[0].notes
+    assert not fits[1].warnings
+    bad = {"bad", "small bad", "number bad"}
+    said, marked = ([t for a, t in page.all(tag) if a.get("class") in bad] for tag in ("p", "td"))
+    assert said == [f"lambert: {warning}", warning]
+    albedo = f"{np.mean(fits[0].albedo.fit[0]):.2f}"
+    assert marked == [albedo]
+    (row,) = [text for _, text in page.all("tr") if text.startswith("measured-")]
+    assert row.split("-")[-2] == "".join(f"{a:.2f}" for a in material.albedo.means)
+
+
 def test_equal_fits_are_tied_and_worse_ones_are_not(material, fits):
     lambert, ward = fits
     near = bk.fit("ward", material, max_angle=79)
@@ -210,7 +226,7 @@ def test_equal_fits_are_tied_and_worse_ones_are_not(material, fits):
 def stood(error, numbers, tied):
     """A `Standing` by log and cbrt, of which cbrt likes few numbers."""
     errors = {"log": error, "cbrt": numbers / 10}
-    return standing.Standing(errors, 1.1, 1.4, 1.2, (75, 90), numbers, tied)
+    return standing.Standing(errors, (0.2, 0.3, 1.1), 1.1, 1.4, 1.2, (75, 90), numbers, tied)
 
 
 def psnr_and_delta(psnr, floor=50.0, delta=0.1, noise=0.1):
@@ -231,7 +247,9 @@ def test_of_tied_fits_the_one_with_the_fewest_numbers_is_taken():
     )
     assert more[0] == "By cbrt, ward is ahead."
     assert "In the picture ggx+ggx comes nearest: PSNR 40.8 dB, against 40.0 dB of ggx." in more
-    assert [row["verdict"] for row in errors_table(found, "log")["rows"]] == ["take", "tied", ""]
+    rows = errors_table(found, "log", (0.2, np.nan, np.nan))["rows"]
+    assert [row["verdict"] for row in rows] == ["take", "tied", ""]
+    assert rows[0]["albedos"] == [("0.20", False), ("0.30", False), ("1.10", True)]
 
 
 def test_the_verdict_leaves_out_what_is_noise_or_said_already():
@@ -376,9 +394,13 @@ def test_doubts_stand_under_the_head_and_in_the_terminal(here):
     assert doubts
     for doubt in doubts:
         assert f"The measurement is doubtful: {doubt}.\n" in done.stdout
+    warnings = [f"ward: {warning}" for warning in bk.fit("ward", "bright.npz").warnings]
+    assert warnings
+    for warning in warnings:
+        assert f"! {warning}\n" in done.stdout
     page = Page(Path("bright-report.html"))
     ((_, head),) = page.all("header")
-    assert all(doubt in head for doubt in doubts)
+    assert all(doubt in head for doubt in (*doubts, *warnings))
 
 
 def test_in_python_models_and_the_file_have_defaults(here):

@@ -99,6 +99,29 @@ def test_rows_and_the_best(here, fitted):
 
 
 @pytest.mark.quick
+def test_fits_whose_light_is_wrong_are_marked_and_counted(here, fitted):
+    found = bk.sweep(["plaster", "red_plastic"], ["lambert", "ggx"], output="out")
+    wrong = [row for row in found.rows if row.fit.warnings]
+    assert found.warned == wrong
+    assert 0 < len(wrong) < 4
+    assert f"; the light of {len(wrong)} is wrong (!); " in found.summary
+    lines = str(found).splitlines()
+    assert sum(line.count("! 0.") for line in lines) == len(wrong)
+    counts = [sum(row.model == model for row in wrong) for model in ("lambert", "ggx")]
+    assert f"! light is wrong {counts[0]} {counts[1]}" in [" ".join(line.split()) for line in lines]
+    text = Path("out/index.html").read_text(encoding="utf-8")
+    assert text.count(' bad" style=') == len(wrong)
+    assert all(row.fit.warnings[0] in text for row in wrong)
+    with Path("out/table.csv").open(encoding="utf-8", newline="") as stream:
+        for row, read in zip(found.rows, csv.DictReader(stream), strict=True):
+            assert read["warnings"] == "; ".join(row.fit.warnings)
+            for place, angle in enumerate((5, 45, 75)):
+                own, known = row.fit.albedo.fit[place], row.fit.albedo.measured[place]
+                assert float(read[f"albedo_{angle}"]) == pytest.approx(sum(own) / 3)
+                assert float(read[f"measured_albedo_{angle}"]) == pytest.approx(sum(known) / 3)
+
+
+@pytest.mark.quick
 def test_settings_are_those_of_a_fit(here, fitted):
     settings = {"loss": "cbrt", "robust": "bisquare", "max_angle": 60, "fixed": {"alpha_u": 0.1}}
     settings |= {"solver": "trust_region"}

@@ -4,42 +4,39 @@ from dataclasses import replace
 
 
 def print_fits(material, fits, failed, comparison, pictures, written, ranking, console):
-    """Print `fits` to a `material`, first the notes that all have, then their errors under several
-    losses and those of their `pictures`, `ImageErrors` or None; as JSON with what `failed` and with
-    the `ranking`, too."""
+    """Print `fits` to a `material`, first the notes that all have, then their `comparison` and the
+    errors of their `pictures`, `ImageErrors` or None; as JSON with what `failed` and with the
+    `ranking`, too."""
     from brdfkit.commands._ranking import record
     from brdfkit.commands.render import print_errors
-    from brdfkit.verbs.compare import format_error, told
 
     if console.as_json:
         psnr = {n: row["psnr"] for n, row in pictures.by_name.items()} if pictures else {}
         records = [_record(f, comparison, psnr) for f in fits]
         entries = {"material": material.name, "fits": records, "failed": failed}
+        entries["measured_albedo"] = comparison.measured_albedo
         entries["ranking"] = record(ranking)
         console.json({**entries, "pictures": pictures, "written": written})
         return
     shared = _shared_notes(fits)
     for note in shared:
         console.out.print(f"! {note}")
-    for found in fits:
-        own = tuple(note for note in found.notes if note not in shared)
-        console.out.print(str(replace(found, notes=own)))
+    own = [tuple(note for note in f.notes if note not in shared) for f in fits]
+    fits = [replace(f, notes=notes) for f, notes in zip(fits, own, strict=True)]
+    for shown in (*fits, comparison):
+        console.out.print(str(shown))
         console.out.print()
-    shown = told(*(f.loss_name for f in fits))
-    columns, rows = ["model", *(f">{name}" for name in shown), ">time [s]"], []
-    for found in fits:
-        errors = [format_error(comparison.errors[found.name][name]) for name in shown]
-        rows.append((found.name, *errors, f"{found.seconds:.2f}"))
-    console.table(columns, rows, title=f"{material.name}: errors")
     if pictures:
         print_errors(pictures, console)
     console.list_written(written)
 
 
 def _shared_notes(fits):
-    """The notes that each of several fits has: those on the data, which are said once."""
+    """The notes that each of several fits has: those on the data, which are said once; those on
+    the light of a fit speak of it alone."""
     first, *others = fits
-    return [note for note in first.notes if others and all(note in f.notes for f in others)]
+    notes = [note for note in first.notes if note not in first.warnings]
+    return [note for note in notes if others and all(note in f.notes for f in others)]
 
 
 def _record(found, comparison, psnr):
@@ -56,6 +53,7 @@ def _record(found, comparison, psnr):
         "loss": found.loss_name,
         "error": found.loss,
         "errors": comparison.errors[found.name],
+        "albedos": comparison.albedos[found.name],
         "psnr": psnr.get(found.name),
         "albedo": found.albedo and vars(found.albedo),
         "effective_samples": found.effective_samples,

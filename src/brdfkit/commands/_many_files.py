@@ -62,6 +62,7 @@ def _record(row):
         "parameters": row.fit.values,
         "loss": row.loss,
         "error": row.error,
+        "albedo": row.fit.albedo,
         "at_bounds": row.at_bounds,
         "notes": row.fit.notes,
         "samples": row.samples,

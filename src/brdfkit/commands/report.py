@@ -91,8 +91,10 @@ def _report_one(file, names, how, output, pictures, console):
 
 
 def _print_verdict(said, console):
-    """Print the sentence at the head of a report's `Contents`, and what is doubtful."""
+    """Print the sentence at the head of a report's `Contents`, and what is wrong or doubtful."""
     console.out.print(f"{said.material}: {said.verdict}")
+    for warning in said.warnings:
+        console.out.print(f"! {warning}")
     console.list_doubts(said.findings)
 
 
@@ -100,7 +102,7 @@ def _record(said):
     """The `Contents` of a report for JSON."""
     best = {"best": said.names[0], "loss": said.loss, "error": said.error}
     found = {"material": said.material, "verdict": said.verdict, **best}
-    return {**found, "findings": said.findings}
+    return {**found, "warnings": said.warnings, "findings": said.findings}
 
 
 def _report_many(files, names, how, folder, pictures, console):

@@ -4,6 +4,7 @@ from brdfkit.documents.parts import BAD, Cell, Paragraph, Table
 from brdfkit.names import printable
 
 INDENT, BETWEEN = "  ", "  "
+MARK = "! "  # of what is bad
 
 
 def to_text(document):
@@ -13,14 +14,16 @@ def to_text(document):
         if isinstance(part, Table):
             lines += _table(part)
         elif isinstance(part, Paragraph):
-            mark = "! " if part.kind == BAD else ""
+            mark = MARK if part.kind == BAD else ""
             lines += [f"{mark}{line}" for line in part.text.splitlines()]
     return "\n".join([document.title, *(INDENT + line for line in lines)])
 
 
 def plain(cell):
-    """The text of a cell."""
-    return cell.text if isinstance(cell, Cell) else cell
+    """The text of a cell, behind a mark where it is bad."""
+    if not isinstance(cell, Cell):
+        return cell
+    return f"{MARK}{cell.text}" if cell.kind == BAD else cell.text
 
 
 def _table(table):

@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.documents import Document, Folded, Paragraph, Shown
-from brdfkit.documents.parts import SOFT
+from brdfkit.documents.parts import BAD, SOFT
 from brdfkit.errors import BrdfkitError
+from brdfkit.fitting.albedo_cells import albedo_line
 from brdfkit.fitting.certainty import Certainty, intervals
 from brdfkit.fitting.light import Albedo
 from brdfkit.model import Model
@@ -17,6 +18,9 @@ from brdfkit.plugins.pages import page
 from brdfkit.thumbnails import thumbnails
 
 NAN = float("nan")
+# The share of effective samples below which a fit tells them, less than cells of a table have by
+# the default loss; and that of directions without any sample, from which
+FEW, MUCH = 0.49, 0.01
 
 
 @dataclass(frozen=True, repr=False)
@@ -112,6 +116,11 @@ class Fit(Shown):
     def rgb(self) -> Model:
         """The model in linear sRGB: `Model.rgb`."""
         return self.model.rgb
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Those of the `notes` that say what is wrong with the light of the fit."""
+        return tuple(self.albedo.warnings()) if self.albedo else ()
 
     @property
     def standard_errors(self) -> dict[str, float | tuple[float, ...]]:
@@ -214,20 +223,28 @@ class Fit(Shown):
         return self.model.scene_dict()
 
     def document(self) -> Document:
-        """What the fit tells of itself: its values, notes on them, and how they were found."""
+        """What the fit tells of itself: its values, its light, notes, and how they were found."""
         old = ("no standard errors: saved by an earlier version",) * (self.certainty is None)
-        sample, often = "s" * (self.samples != 1), "s" * (self.evaluations != 1)
         return Document(
             f"{self.name} fitted to {self.data}: {self.loss_name} loss {self.loss:.6g}",
             (
                 *thumbnails(self.name, self.rgb.eval),
                 value_table(self.model, self.standard_errors, self.at_bounds),
-                *(Paragraph(note) for note in (*self.notes, *old)),
-                Paragraph(
-                    f"{self.message}; {self.samples:,} sample{sample}, "
-                    f"{self.evaluations} evaluation{often}, {self.seconds:.2f} s",
-                    kind=SOFT,
-                ),
+                *((Paragraph(albedo_line(self.albedo)),) if self.albedo else ()),
+                *(Paragraph(note, BAD if note in self.warnings else "") for note in self.notes),
+                *(Paragraph(note) for note in old),
+                Paragraph(f"{self.message}; {self._effort()}", kind=SOFT),
                 Folded(f"the page of {self.model.type_name()}", str(page(type(self.model)))),
             ),
         )
+
+    def _effort(self):
+        """How many samples, evaluations and seconds made the fit; what the samples leave out."""
+        sample, often = "s" * (self.samples != 1), "s" * (self.evaluations != 1)
+        parts = [f"{self.samples:,} sample{sample}"]
+        if 0 < self.effective_samples < FEW * self.samples:
+            parts.append(f"worth {self.effective_samples:,.0f} of equal weight")
+        if self.unrepresented >= MUCH:
+            parts.append(f"none for {self.unrepresented:.0%} of the directions")
+        parts += [f"{self.evaluations} evaluation{often}", f"{self.seconds:.2f} s"]
+        return ", ".join(parts)

@@ -33,6 +33,12 @@ class MeasuredAlbedo:
     values: NDArray[np.float64]
     known: NDArray[np.bool_]
 
+    @property
+    def means(self) -> tuple[float, ...]:
+        """The mean over the channels at `ANGLES`; nan where the samples do not tell it."""
+        means = np.where(self.known, self.values.mean(axis=1), np.nan)
+        return tuple(means[: len(ANGLES)].tolist())
+
 
 def albedo_at(data, wi):
     """The albedo (channels,) of a `Measured` for light from `wi` (3,).

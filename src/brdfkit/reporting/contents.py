@@ -2,6 +2,7 @@
 first."""
 
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -28,8 +29,9 @@ from brdfkit.version import __version__
 class Contents:
     """What a report says: `said` for its template; and for the page of many reports the `names` of
     the fits, that to take first, with its `error` by the `loss`, the `picture_errors`, the
-    `findings` of the audit, and small pictures of the measurement and the first fit; and the
-    samples per pixel that there are, and that were asked for."""
+    `findings` of the audit, the `warnings` about the light of the fits, and small pictures of the
+    measurement and the first fit; and the samples per pixel that there are, and that were asked
+    for."""
 
     said: dict[str, Any]
     material: str
@@ -39,6 +41,7 @@ class Contents:
     error: float
     picture_errors: list[PictureError]
     findings: tuple[str, ...]
+    warnings: list[str]
     thumbnails: list[str]
     spp: int
     asked: int
@@ -69,6 +72,8 @@ def describe(material, fits, rendering, file, path, scene, envmap, ranking):
     names: list[str] = []
     for fit in fits:
         names.append(make_unique(fit.name, names))
+    named = zip(names, fits, strict=True)
+    warnings = [[f"{name}: {text}" for text in fit.warnings] for name, fit in named]
 
     head, more = verdict(names, standing, errors, loss, ranking)
     found = audit(material)
@@ -93,7 +98,8 @@ def describe(material, fits, rendering, file, path, scene, envmap, ranking):
         "captions": [_caption(errors, place) for place in range(len(names))],
         "picture_errors": [*errors.values()],
         "pixels": for_script([material.name, *names], pictures, differences),
-        "errors": errors_table(standing, loss),
+        "errors": errors_table(standing, loss, material.rgb.albedo.means),
+        "warnings": warnings,
         "meanings": {n: losses[n].meaning.replace("θ_", "θ") for n in standing[0].errors},
         "loss": loss,
         "ranking": ranking and _ranked(ranking),
@@ -117,6 +123,7 @@ def describe(material, fits, rendering, file, path, scene, envmap, ranking):
         standing[0].errors[loss],
         [*errors.values()],
         found.findings(),
+        [*chain(*warnings)],
         [jpeg(halved(picture)) for picture in pictures[:2]],
         rendering.spp,
         rendering.asked,

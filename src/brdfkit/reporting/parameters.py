@@ -17,6 +17,7 @@ def describe(fit, told=()):
         "title": fit.model.label(),
         "rows": [_row(fit, name) for name in fit.values],
         "remarks": [*(note for note in fit.notes if note not in told), fit.message],
+        "warnings": fit.warnings,
         "json": json.dumps(_rounded(_record(fit)), indent=2, ensure_ascii=False),
         "samples": f"{fit.samples:,}",
         "evaluations": fit.evaluations,

@@ -1,5 +1,5 @@
-"""How the fits stand: their errors by every loss, how far off their values are, which cannot be
-told from the best, and which one to take."""
+"""How the fits stand: their errors by every loss, how far off their values are, their light, which
+cannot be told from the best, and which one to take."""
 
 from dataclasses import dataclass
 
@@ -23,14 +23,15 @@ BAND, LEAST = 15.0, 20  # degrees of θi over which a deviation is told; samples
 class Standing:
     """How a fit stands.
 
-    `errors`: E by loss; `typical`, `most`: the factors within which half, and 95 %, of the measured
-    values are met, those above 0 of every channel, each counted once; `worst`: the factor for half
-    of them in the band of incidences (from, to) [degrees] `worst_at` where it is largest;
-    `numbers`: how many were sought; `tied`: no worse than the best, within the noise between blocks
-    of directions.
+    `errors`: E by loss; `albedos`: as `compare` finds them; `typical`, `most`: the factors within
+    which half, and 95 %, of the measured values are met, those above 0 of every channel, each
+    counted once; `worst`: the factor for half of them in the band of incidences (from, to)
+    [degrees] `worst_at` where it is largest; `numbers`: how many were sought; `tied`: no worse than
+    the best, within the noise between blocks of directions.
     """
 
     errors: dict[str, float]
+    albedos: tuple[float, ...]
     typical: float
     most: float
     worst: float
@@ -50,7 +51,7 @@ def standings(material, fits, loss):
     """The `Standing` of each of the `fits` to a `Measured`, in their order, by the name of a
     loss."""
     max_angle = fits[0].settings.get("max_angle", 80.0)
-    errors = _errors(material, fits, max_angle)
+    compared = [compare(material, fit, max_angle) for fit in fits]
     samples = _some(select_samples(material, max_angle))
     if not (samples.values > 0).any():
         raise BrdfkitError(
@@ -68,12 +69,13 @@ def standings(material, fits, loss):
     shares = np.bincount(blocks, weight)
     return [
         Standing(
-            {name: found[name] for name in told(loss)},
+            {name: one.errors[one.best][name] for name in told(loss)},
+            one.albedos[one.best],
             *own_factors,
             _count_numbers(fit),
             is_tied(*beside(own, best, shares)),
         )
-        for fit, found, own, own_factors in zip(fits, errors, sums, factors, strict=True)
+        for fit, one, own, own_factors in zip(fits, compared, sums, factors, strict=True)
     ]
 
 
@@ -86,11 +88,6 @@ def in_order(standings, loss):
     tied = [place for place in by_error if standings[place].tied]
     taken = min(tied, key=lambda place: standings[place].numbers)
     return [taken, *(place for place in by_error if place != taken)]
-
-
-def _errors(material, fits, max_angle):
-    """The errors by loss of each fit, in their order."""
-    return [next(iter(compare(material, fit, max_angle).errors.values())) for fit in fits]
 
 
 def _some(samples):

@@ -8,7 +8,10 @@ from urllib.parse import quote
 
 from brdfkit.files import write_safely
 from brdfkit.fitting import losses
-from brdfkit.names import printable
+from brdfkit.fitting.albedo_cells import format_albedo, is_wrong, mean_albedos
+from brdfkit.fitting.light import WRONG
+from brdfkit.measured.albedos import ANGLES
+from brdfkit.names import listed, printable
 from brdfkit.sweeping import tables
 from brdfkit.verbs.compare import format_error
 from brdfkit.version import __version__
@@ -34,13 +37,19 @@ th { font-weight: 600; }
 tfoot, tfoot th { color: var(--soft); font-weight: 400; }
 td.best { font-weight: 600; }
 td.near { background: color-mix(in srgb, var(--tint) calc(var(--near) * 1%), transparent); }
-td.failed, li { color: var(--bad); }
-td.remarks { white-space: normal; min-width: 20rem; }
+td.failed, li, .bad { color: var(--bad); }
+.bad::before { content: "! "; font-weight: 700; }
+td.remarks { white-space: normal; min-width: 16rem; }
 a { color: inherit; text-decoration-color: var(--line); text-underline-offset: .2em; }
 a:hover { text-decoration-color: currentColor; }
 footer { margin-top: 2rem; font-size: .9rem; }
 """
 NUMBER = "number"  # the class of a cell
+ALBEDOS = (
+    f"Under {listed([f'{angle:g}°' for angle in ANGLES])}: the albedo of the fit, the share of the "
+    "light from that angle to the normal that it reflects, the mean over the channels; below it "
+    "that of the measurement."
+)
 FAR = 4.0  # times the error of the best: from there a cell has no tint
 
 
@@ -62,14 +71,14 @@ def page(sweep, folder):
         f'<p class="soft">{_text(sweep.summary)}</p>',
         "<h2>Errors</h2>",
         f'<p class="soft">Loss {loss}: {_text(losses[loss].meaning)}. The best of a row is bold, '
-        "the others have the more colour the nearer they come to it.</p>",
+        f"the others have the more colour the nearer they come to it.{_explain_marks(sweep)}</p>",
         _errors(sweep, materials, models, folder),
     ]
     if sweep.problems:
         items = "".join(f"<li>{_text(problem)}</li>" for problem in sweep.problems)
         parts += ["<h2>Failures</h2>", f"<ul>{items}</ul>"]
     if sweep.fits:
-        parts += ["<h2>Every fit</h2>", _fits(sweep)]
+        parts += ["<h2>Every fit</h2>", f'<p class="soft">{ALBEDOS}</p>', _fits(sweep)]
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width">'
@@ -103,34 +112,55 @@ def _error(row, least, folder):
     ratio = row.error / least if least else math.inf if row.error else 1.0
     near = round(100 * max(0.0, 1 - math.log(ratio) / math.log(FAR)))
     kind = f"{NUMBER} near best" if row.error == least else f"{NUMBER} near"
+    kind += " bad" if row.fit.warnings else ""
     text = format_error(row.error)
     if row.saved:
         link = quote(Path(os.path.relpath(row.saved, folder)).as_posix())
         text = f'<a href="{link}">{text}</a>'
-    return f'<td class="{kind}" style="--near: {near}" title="{row.error:.9g}">{text}</td>'
+    hint = _text("; ".join([f"{row.error:.9g}", *row.fit.warnings]))
+    return f'<td class="{kind}" style="--near: {near}" title="{hint}">{text}</td>'
+
+
+def _explain_marks(sweep):
+    """What marks the fits whose light is wrong; nothing where there are none."""
+    if not sweep.warned:
+        return ""
+    return (
+        " Marked are fits whose light is wrong: they reflect more than arrives, or differ by more "
+        f"than a factor of {WRONG:g} from the measured albedo."
+    )
 
 
 def _fits(sweep):
-    """Every fit with its values."""
-    columns = "material", "model", ">error", ">parameters", ">samples", ">time [s]", "remarks", ""
+    """Every fit with its albedos, over those of the measurement, and its values."""
+    angles = [f">{angle:g}°" for angle in ANGLES]
+    numbers = ">parameters", ">samples", ">time [s]"
+    columns = "material", "model", ">error", *angles, *numbers, "remarks", ""
     body = []
     for row in sweep.rows:
         if row.fit:
-            numbers = (
-                format_error(row.error),
-                row.parameters,
-                f"{row.samples:,}",
-                f"{row.seconds:.2f}",
-            )
+            numbers = row.parameters, f"{row.samples:,}", f"{row.seconds:.2f}"
+            albedos = map(_albedo, *mean_albedos(row.fit.albedo))
             bounds = [f"on a bound: {', '.join(row.at_bounds)}"] if row.at_bounds else []
             remarks = "; ".join([*bounds, *row.fit.notes, row.message])
             values = "<br>".join(_text(f"{n} = {_short(v)}") for n, v in row.fit.values.items())
             body.append(
-                f"<tr>{_cells([row.material, row.model])}{_cells(numbers, NUMBER)}"
-                f"{_cells([remarks], 'remarks')}"
+                f"<tr>{_cells([row.material, row.model])}"
+                f"{_cells([format_error(row.error)], NUMBER)}{''.join(albedos)}"
+                f"{_cells(numbers, NUMBER)}{_cells([remarks], 'remarks')}"
                 f"<td><details><summary>values</summary>{values}</details></td></tr>"
             )
     return _table("fits", columns, body)
+
+
+def _albedo(own, measured):
+    """The cell of an albedo of a fit, above the measured one."""
+    kind = "bad" if is_wrong(own, measured) else ""
+    texts = format_albedo(own), format_albedo(measured)
+    return (
+        f'<td class="{NUMBER}"><span class="{kind}">{texts[0]}</span><br>'
+        f'<span class="soft">{texts[1]}</span></td>'
+    )
 
 
 def _table(kind, columns, body, foot=()):

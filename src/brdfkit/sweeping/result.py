@@ -88,6 +88,11 @@ class Sweep(Shown):
         return [row for row in self.rows if not row.fit]
 
     @property
+    def warned(self) -> list[Row]:
+        """The rows of the fits whose light is wrong; their ``fit.warnings`` say how."""
+        return [row for row in self.rows if row.fit and row.fit.warnings]
+
+    @property
     def best(self) -> dict[str, Fit]:
         """The fit with the least error of every material that has one, by the material's name."""
         best: dict[str, Fit] = {}
@@ -103,10 +108,12 @@ class Sweep(Shown):
 
     @property
     def summary(self) -> str:
-        """How many fits there are, in words."""
+        """How many fits there are, and of how many the light is wrong, in words."""
         before = f", {self.found} of them saved before" if self.found else ""
         failed = f"; {len(self.failed)} failed" if self.failed else ""
-        return f"{len(self.fits)} of {self.asked} fits{before}{failed}; {self.seconds:.1f} s"
+        wrong = f"; the light of {len(self.warned)} is wrong (!)" if self.warned else ""
+        done = f"{len(self.fits)} of {self.asked} fits{before}"
+        return f"{done}{failed}{wrong}; {self.seconds:.1f} s"
 
     def to_csv(self, path: str | Path) -> None:
         """Write the rows as comma-separated values, in UTF-8.
@@ -114,7 +121,8 @@ class Sweep(Shown):
         Parameters
         ----------
         path : str or Path
-            The file. The parameters' values are in one column, as JSON.
+            The file. The parameters' values are in one column, as JSON; the albedos of a fit and
+            of its measurement, the mean over the channels, in one for each angle [degrees].
 
         Raises
         ------

@@ -7,15 +7,19 @@ from collections import Counter
 from dataclasses import fields
 from statistics import median
 
+from brdfkit.documents.text import MARK
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import write_safely
+from brdfkit.fitting.albedo_cells import mean_albedos
+from brdfkit.measured.albedos import ANGLES
 from brdfkit.verbs.compare import format_error
 
 
 def errors(sweep):
     """The names of the columns, a row of texts for each material, and rows on all of them.
 
-    A column of numbers has a name that begins with ">".
+    A column of numbers has a name that begins with ">"; an error is marked where the light of the
+    fit is wrong.
     """
     rows = by_material(sweep)
     models = list(dict.fromkeys(row.model for row in sweep.rows))
@@ -29,6 +33,9 @@ def errors(sweep):
         ("median", *(format_error(m) for m in medians(sweep, models)), ""),
         ("times best", *(str(wins[model]) for model in models), ""),
     ]
+    if sweep.warned:
+        wrong = Counter(row.model for row in sweep.warned)
+        foot.append((f"{MARK}light is wrong", *(str(wrong[model]) for model in models), ""))
     columns = "material", *(f">{model}" for model in models), "best"
     return columns, body, foot if len(rows) > 1 else []
 
@@ -81,11 +88,22 @@ def _record(row):
     record = {f.name: getattr(row, f.name) for f in fields(row) if f.name not in ("fit", "saved")}
     record["at_bounds"] = " ".join(row.at_bounds)
     record["values"] = json.dumps(row.fit.values) if row.fit else None
+    for name, albedos in zip(("albedo", "measured_albedo"), _albedos(row), strict=True):
+        record |= {f"{name}_{angle:g}": a for angle, a in zip(ANGLES, albedos, strict=True)}
+    record["warnings"] = "; ".join(row.fit.warnings) if row.fit else None
     return {name: None if value != value else value for name, value in record.items()}
 
 
+def _albedos(row):
+    """The mean albedos of the fit of a row and of its data; nan where they are not known."""
+    return mean_albedos(row.fit.albedo if row.fit else None)
+
+
 def _cell(row):
-    """The error of a row in words; nothing for a fit that did not come about."""
+    """The error of a row in words, marked where its light is wrong; nothing for a fit that did not
+    come about."""
     if row is None:
         return ""
-    return format_error(row.error) if row.fit else "failed"
+    if not row.fit:
+        return "failed"
+    return (MARK if row.fit.warnings else "") + format_error(row.error)

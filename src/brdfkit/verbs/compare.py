@@ -1,4 +1,4 @@
-"""`compare`: how well models describe a measured material, as a table."""
+"""`compare`: how well models describe a measured material, and its light, as a table."""
 
 import math
 from collections.abc import Iterable
@@ -9,10 +9,14 @@ import numpy as np
 from brdfkit.documents import Cell, Document, Shown, Table
 from brdfkit.documents.parts import STRONG
 from brdfkit.errors import BrdfkitError
-from brdfkit.fitting import losses
+from brdfkit.fitting import Fit, losses
+from brdfkit.fitting.albedo_cells import albedo_cell
+from brdfkit.fitting.light import Light
 from brdfkit.fitting.loss import squares
 from brdfkit.fitting.named_losses import DEFAULT
 from brdfkit.materials import MaterialLike, materials, measured_material
+from brdfkit.measured import Measured
+from brdfkit.measured.albedos import ANGLES
 from brdfkit.measured.selection import select_samples
 from brdfkit.names import make_unique
 
@@ -22,7 +26,8 @@ USUAL = "cosine", "log", "cbrt", "plain"
 
 @dataclass(frozen=True, repr=False)
 class Comparison(Shown):
-    """Errors of several BRDFs against one measured material, under every loss; prints as a table.
+    """Errors of several BRDFs against one measured material, under every loss, and the light that
+    they reflect; prints as a table.
 
     Attributes
     ----------
@@ -31,10 +36,19 @@ class Comparison(Shown):
     errors : dict
         Name → loss → E, in the units of `brdfkit.losses`, the best by the cbrt loss first; nan
         where a loss weighs no sample.
+    albedos : dict
+        Name → the directional albedo at 5°, 45° and 75° of incidence, the mean over the channels.
+    measured_albedo : tuple of float
+        That of the measured material; nan where its samples do not tell it.
+    shown : tuple of str
+        The losses of the table: the usual ones, and those that the compared fits made small.
     """
 
     material: str
     errors: dict[str, dict[str, float]]
+    albedos: dict[str, tuple[float, ...]]
+    measured_albedo: tuple[float, ...]
+    shown: tuple[str, ...]
 
     @property
     def best(self) -> str:
@@ -42,18 +56,25 @@ class Comparison(Shown):
         return next(iter(self.errors))
 
     def document(self) -> Document:
-        """The errors, a row for each BRDF and a column for each loss, the least of it strong."""
-        names = list(next(iter(self.errors.values())))
-        table = np.array([[row[name] for name in names] for row in self.errors.values()])
-        is_least = table == np.nanmin(np.vstack([table, np.full(len(names), np.inf)]), axis=0)
+        """The errors and albedos, the measurement's first, and a row for each BRDF; the least error
+        by each loss is strong, and an albedo that is wrong is marked."""
+        table = np.array([[row[loss] for loss in self.shown] for row in self.errors.values()])
+        is_least = table == np.nanmin(np.vstack([table, np.full(len(self.shown), np.inf)]), axis=0)
         kinds = np.where(is_least, STRONG, "").tolist()
-        hints = [losses[name].meaning for name in names]
+        hints = [losses[loss].meaning for loss in self.shown]
+        measured = "measured", *"-" * len(hints), *map(albedo_cell, self.measured_albedo)
         rows = tuple(
-            (Cell(name), *map(Cell, map(format_error, errors), kind, hints))
+            (
+                Cell(name),
+                *map(Cell, map(format_error, errors), kind, hints),
+                *map(albedo_cell, self.albedos[name], self.measured_albedo),
+            )
             for name, errors, kind in zip(self.errors, table, kinds, strict=True)
         )
-        columns = ("", *(f">{name}" for name in names))
-        return Document(f"{self.material}: errors by loss", (Table(rows, columns),))
+        angles = [f"{angle:g}°" for angle in ANGLES]
+        columns = ("", *(f">{name}" for name in (*self.shown, *angles)))
+        title = f"{self.material}: errors by loss, and albedo at {', '.join(angles)}"
+        return Document(title, (Table((measured, *rows), columns),))
 
 
 def told(*minimised):
@@ -76,7 +97,7 @@ def compare(
     max_angle: float = 80.0,
     spectral: bool = False,
 ) -> Comparison:
-    """Compare fits, models or other materials to a measured one, under every loss.
+    """Compare fits, models or other materials to a measured one, by every loss and by their light.
 
     Parameters
     ----------
@@ -94,7 +115,8 @@ def compare(
     Returns
     -------
     Comparison
-        The errors, in the order of the cbrt loss, the best first; prints as a table.
+        The errors, in the order of the cbrt loss, the best first, and the albedos; prints as a
+        table.
 
     Raises
     ------
@@ -108,22 +130,38 @@ def compare(
     """
     data, found = measured_material(data), materials(things)
     samples = select_samples(data, max_angle, spectral=spectral)
+    light = (data if spectral else data.rgb).albedo
+    pixels = Light.of(light, data.anisotropic).pixels.first(len(ANGLES))
     errors: dict[str, dict[str, float]] = {}
+    albedos: dict[str, tuple[float, ...]] = {}
     for thing in found:
-        values = _evaluate(thing, data, samples, spectral)
-        errors[make_unique(thing.name, errors)] = {
-            name: _error(loss, values, samples) for name, loss in losses.by_sample.items()
-        }
-    return Comparison(data.name, dict(sorted(errors.items(), key=lambda item: item[1][DEFAULT])))
+        name, brdf = make_unique(thing.name, errors), thing if spectral else _in_rgb(thing)
+        values = _evaluate(brdf, data, samples)
+        errors[name] = {loss: _error(losses[loss], values, samples) for loss in losses.by_sample}
+        albedos[name] = _reflect(brdf, pixels)
+    errors = dict(sorted(errors.items(), key=lambda item: item[1][DEFAULT]))
+    shown = told(*(thing.loss_name for thing in found if isinstance(thing, Fit)))
+    return Comparison(data.name, errors, albedos, light.means, tuple(shown))
 
 
-def _evaluate(thing, data, samples, spectral):
-    """The values (n, channels) of `thing` at `Samples` of a `Measured`."""
-    shown = thing if spectral else getattr(thing, "rgb", thing)
-    values = shown.eval(samples.wi, samples.wo)
+def _in_rgb(thing):
+    """A material in linear sRGB, or as it is where it has no other channels."""
+    return getattr(thing, "rgb", thing)
+
+
+def _reflect(brdf, pixels):
+    """The mean albedos at `ANGLES` of a BRDF, by the quadrature of `pixels`."""
+    if isinstance(brdf, Measured):
+        return brdf.albedo.means
+    return tuple(pixels.look(brdf.eval).mean(axis=1).tolist())
+
+
+def _evaluate(brdf, data, samples):
+    """The values (n, channels) of a BRDF at `Samples` of a `Measured`."""
+    values = brdf.eval(samples.wi, samples.wo)
     if values.shape[1] not in (1, samples.values.shape[1]):
         raise BrdfkitError(
-            f"{thing.name} has {values.shape[1]} channels and {data.name} "
+            f"{brdf.name} has {values.shape[1]} channels and {data.name} "
             f"{samples.values.shape[1]}; compare what has the same ones."
         )
     return np.broadcast_to(values, samples.values.shape)
