@@ -90,9 +90,7 @@ def held(name, loss, noise, replicates, n=600, robust=None, seed=0):
     for k in range(replicates):
         rng = np.random.default_rng([seed, k])
         noisy = NOISES[noise](rng, values, wi, wo, loss)
-        samples = replace(
-            Samples.from_arrays(wi, wo, noisy, None, "RGB", "noisy"), extents=extents
-        )
+        samples = replace(Samples.from_arrays(wi, wo, noisy, None, "RGB", "noisy"), extents=extents)
         problem = Problem(model, samples, bk.losses[loss], space)
         ends = levenberg_marquardt(problem.expand, u, weights, problem.least, 50, 1e-10, 1e-4).ends
         point, passes = (ends.u, ends.weights), None
