@@ -2,6 +2,7 @@
 
 import pickle
 import textwrap
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -66,20 +67,22 @@ def test_slsqp_ends_where_scipy_does_by_itself(noisy):
     start = [0.3, *[0.4] * 3, *[0.2] * 3]
     bounds = [(0.001, 1), *[(0, None)] * 6]
     direct = minimize(error, start, method="SLSQP", bounds=bounds, options={"ftol": 1e-14})
-    found = bk.fit("ward_duer", noisy, "log", solver=bk.SLSQP(starts=2))
+    # Each sample counts as one, as in `error`
+    loss = replace(bk.losses["log"], name="log sum", measure="samples")
+    found = bk.fit("ward_duer", noisy, loss, solver=bk.SLSQP(starts=2))
     assert found.loss == pytest.approx(np.sqrt(direct.fun), rel=1e-6)
     assert found.values["alpha_u"] == pytest.approx(direct.x[0], rel=1e-3)
 
 
 def test_differential_evolution_does_not_depend_on_its_start():
     """Lafortune's lobe lies far from where the single start looks for it."""
-    truth = bk.models()["lafortune"](c_x=-0.6, c_y=0.9, c_z=0.7, exponent=20)
+    truth = bk.models()["lafortune"](c_x=0.8, c_y=0.8, c_z=0.7, exponent=20)
     wi, wo = random_pairs(N, seed=1, max_degrees=79)
     data = bk.Measured.from_samples(wi, wo, truth.eval(wi, wo), channels=("Y",))
     how = {"anisotropic": True, "starts": 1}
-    assert bk.fit("lafortune", data, **how).loss > 0.01
+    assert bk.fit("lafortune", data, "cosine", **how).loss > 0.005
     evolution = bk.DifferentialEvolution(population=6, iterations=20)
-    assert bk.fit("lafortune", data, solver=evolution, **how).loss < 1e-9
+    assert bk.fit("lafortune", data, "cosine", solver=evolution, **how).loss < 1e-8
 
 
 def test_a_fit_by_any_solver_is_reproducible(noisy):
@@ -119,7 +122,7 @@ def test_the_solver_that_the_documentation_shows_works(noisy):
     exec(code, scope)
     found = bk.fit("ward", noisy, solver=scope["RandomSearch"]())
     assert found.loss < 1.1 * bk.fit("ward", noisy).loss
-    assert bk.compare(noisy, found).errors["ward"]["log"] == pytest.approx(found.loss, rel=1e-9)
+    assert bk.compare(noisy, found).errors["ward"]["cbrt"] == pytest.approx(found.loss, rel=1e-9)
     assert found.message == "as good as chance had it"
     assert found.evaluations > 10_000
 
@@ -194,7 +197,7 @@ def test_the_error_of_an_end_is_computed_anew(noisy):
             return solvers.End(objective.starts[0], -1.0, None)
 
     found = bk.fit("ward", noisy, solver=Boaster())
-    assert found.loss == pytest.approx(bk.compare(noisy, found).errors["ward"]["log"], rel=1e-9)
+    assert found.loss == pytest.approx(bk.compare(noisy, found).errors["ward"]["cbrt"], rel=1e-9)
 
 
 @pytest.mark.quick
@@ -207,4 +210,4 @@ def test_ctrl_c_in_any_solver_keeps_the_best_point(noisy):
     with pytest.raises(bk.Interrupted) as stop:
         bk.fit("ward", noisy, solver=Stopping())
     best = stop.value.best
-    assert best.loss == pytest.approx(bk.compare(noisy, best).errors["ward"]["log"], rel=1e-9)
+    assert best.loss == pytest.approx(bk.compare(noisy, best).errors["ward"]["cbrt"], rel=1e-9)

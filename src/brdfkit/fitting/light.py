@@ -24,8 +24,9 @@ from brdfkit.geometry.quadrature import ring_rule
 from brdfkit.pictures import Pixels
 
 # The factor between the albedos of a fit and its data beyond which the fit is searched once more;
-# the search is kept where it brings the albedos nearer, the logarithm of their factor to this share
-HELD, NEARER = 1.2, 0.6
+# the search is kept where it brings the logarithm of the factor to this share, and where the error
+# E is at most so many times as large: a model that pays more for its light is left as it is
+HELD, NEARER, DEAREST = 1.2, 0.6, 1.4
 # The factor beyond which the light of a fit is said to be wrong
 WRONG = 1.25
 # Beyond this angle [degrees] a model that is too dark is left so: few rise as materials do

@@ -8,7 +8,7 @@ import numpy as np
 from brdfkit.fitting.certainty import ON_BOUND, Certainty, certify, explain_end
 from brdfkit.fitting.folding import fold
 from brdfkit.fitting.levenberg_marquardt import ROUNDING
-from brdfkit.fitting.light import NEARER, SHARES, LightProblem
+from brdfkit.fitting.light import DEAREST, NEARER, SHARES, LightProblem
 from brdfkit.fitting.parameter_space import Space
 from brdfkit.fitting.part import mix_bands
 from brdfkit.fitting.picture_problem import PictureProblem
@@ -169,6 +169,9 @@ def _keep_light(whole, u, weights, light, points, rng):
         problems = [LightProblem(part, light, counted, first, share) for part in parts]
         ends, *_ = search(problems, points, lambda done, total: None)
         held = look(ends.u[:1], ends.weights[:1])
+        error = whole.sums(ends.u[:1], ends.weights[:1], curvature=False).error[0]
+        if error > DEAREST**2 * first:
+            break
         if light.departure(held) <= NEARER * light.departure(free):
             kept = ends.u[:1], ends.weights[:1], _explain_light(light, free, held)
         if light.is_right(held):

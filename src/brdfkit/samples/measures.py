@@ -36,6 +36,8 @@ MEASURES: dict[str, float | None] = {
 REACH = 0.5
 # Points for each sample, and how many there are at least and at most
 POINTS, FEWEST, LARGEST_NUMBER = 16, 2**13, 2**18
+# The least extent, as a share of the mean one
+LITTLE = 0.01
 # Bins of theta_h, even in its square root, by which half of the points go where the samples are
 BINS = 90
 # Cells along theta_h, theta_d and phi_d by which the measures of all pairs are known to 1e-3
@@ -90,6 +92,8 @@ def estimate_extents(
     sums = np.stack(
         [np.bincount(nearest[near], volume[near], len(places)) for volume in volumes.T], axis=1
     )
+    # A place so near to others that no point reached it stands for little, but for something
+    sums = np.maximum(sums, LITTLE * sums.mean(axis=0))
     # Samples at one place share what it stands for
     shares = (sums / np.bincount(same)[:, None])[same]
     return shares.reshape(-1, len(wi), 2).sum(axis=0)
