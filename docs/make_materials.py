@@ -14,6 +14,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 import brdfkit as bk
 from brdfkit.catalogue import shipped
+from brdfkit.fitting.named_losses import DEFAULT
 
 FOLDER = Path(__file__).with_name("materials")
 MODELS = ("ward", "ggx", "ggx+ggx", "abc+student_t")
@@ -24,9 +25,9 @@ INDEX = """They come with brdfkit, are free to use, and are found by their names
 so every fit has something to miss. [How they were made](../../data/measured/README.md)."""
 FITS = """## Four fits
 
-Each by `bk.fit(model, "{name}")`, with the log loss. *Log error*: what the fit made small; *PSNR*:
-of the fit's ball against the measured one, {spp} samples per pixel. The picture shows `{best}`,
-which has the least log error."""
+Each by `bk.fit(model, "{name}")`, with the default loss, cbrt. *Error*: what the fit made small;
+*PSNR*: of the fit's ball against the measured one, {spp} samples per pixel. The picture shows
+`{best}`, which has the least error."""
 AGAIN = """    brdfkit info {name}
     brdfkit fit {name} -m {best} --render -o {name}"""
 
@@ -57,17 +58,17 @@ def make(material):
     fits = {name: bk.fit(name, measured) for name in MODELS}
     rendering = bk.render([measured, *fits.items()], spp=SPP, size=SIZE)
     psnr, errors = rendering.psnr(), bk.compare(measured, fits.values()).errors
-    log = {name: errors[fit.name]["log"] for name, fit in fits.items()}
-    best = min(log, key=log.get)
+    error = {name: errors[fit.name][DEFAULT] for name, fit in fits.items()}
+    best = min(error, key=error.get)
     write(rendering.pictures[rendering.reference], FOLDER / f"{material.name}.jpg")
     write(rendering.pictures[best], FOLDER / f"{material.name}_fit.jpg")
     shown = [image(material.name, material.name, SIZE), image(f"{material.name}_fit", best, SIZE)]
-    rows = [(f"`{name}`", f"{log[name]:.4f}", f"{psnr[name]:.1f} dB") for name in MODELS]
+    rows = [(f"`{name}`", f"{error[name]:.4f}", f"{psnr[name]:.1f} dB") for name in MODELS]
     text = paragraphs(
         head(material).rstrip(),
         table(f"measured, fitted by `{best}`", [shown]),
         FITS.format(name=material.name, best=best, spp=SPP),
-        table("model, log error, PSNR", rows),
+        table("model, error, PSNR", rows),
         AGAIN.format(name=material.name, best=best),
         "[All materials](README.md)",
     )

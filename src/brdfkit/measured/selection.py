@@ -42,15 +42,10 @@ def select_samples(data, max_angle, weights=None, errors=False, spectral=False):
         )
         rows = samples.within(max_angle)
         samples = samples.at(rows)
-        if hasattr(data._lookup, "stored_extents"):
-            extents = _keep(
-                data, max_angle, lambda: data._lookup.stored_extents(max_angle, rows)[rows]
-            )
-            samples = replace(samples, extents=extents)
+        if rows.any():
+            samples = replace(samples, extents=_find_extents(data, samples, rows, max_angle))
     if weights is not None:
         samples = samples.at(samples.weight > 0)
-    if samples.extents is None and len(samples.wi):
-        samples = replace(samples, extents=_estimate(data, samples, max_angle))
     if not len(samples.wi):
         what, more = "a larger max_angle", ""
         if weights is not None:
@@ -69,20 +64,15 @@ def require_max_angle(max_angle):
         )
 
 
-def _estimate(data, samples, max_angle):
-    """The extents (n, 2) of scattered `samples` of `data`."""
-
-    def estimate():
-        return estimate_extents(samples.wi, samples.wo, data.anisotropic, max_angle)
-
-    chosen = (samples.weight != 1).any()  # by a user's weights: others may be left out next time
-    return estimate() if chosen else _keep(data, max_angle, estimate)
-
-
-def _keep(data, max_angle, make):
-    """What `make` returns for the samples below an angle, made once for a `Measured`."""
+def _find_extents(data, samples, rows, max_angle):
+    """How much of both measures of directions the `samples` of `data` in these `rows`, a mask,
+    stand for (n, 2): by the format's own grid or else estimated, once for each `max_angle`."""
     if max_angle not in data.extents_by_angle:
-        data.extents_by_angle[max_angle] = make()
+        if hasattr(data._lookup, "stored_extents"):
+            found = data._lookup.stored_extents(max_angle, rows)[rows]
+        else:
+            found = estimate_extents(samples.wi, samples.wo, data.anisotropic, max_angle)
+        data.extents_by_angle[max_angle] = found
     return data.extents_by_angle[max_angle]
 
 
