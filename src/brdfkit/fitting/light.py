@@ -149,7 +149,7 @@ class Albedo:
         angle, most = max(((angle, max(fit)) for angle, fit, _ in rows), key=lambda pair: pair[1])
         if most > ALL:
             found.append(
-                f"it reflects {most:.3g} of the light at {angle:g}°, more than arrives; a "
+                f"it reflects {most:.2f} of the light at {angle:g}°, more than arrives; a "
                 "constraint prevents it: AlbedoAtMost(1), or --albedo-at-most 1"
             )
         means = [(angle, _mean(fit), _mean(own)) for angle, fit, own in rows if own]
@@ -157,8 +157,8 @@ class Albedo:
         if off:
             angle, fit, own = max(off, key=lambda row: _factor(*row[1:]))
             found.append(
-                f"it reflects {fit:.2g} of the light at {angle:g}°, where the measurement reflects "
-                f"{own:.2g}"
+                f"it reflects {fit:.2f} of the light at {angle:g}°, where the measurement reflects "
+                f"{own:.2f}"
             )
         return found
 
