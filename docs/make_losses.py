@@ -17,7 +17,7 @@ import brdfkit as bk
 
 MODELS = "ggx", "abc", "ggx+ggx", "abc+student_t"
 # The losses, those that matter most first
-LOSSES = "cbrt", "log", "picture", "cosine", "lafortune", "plain", "relative"
+LOSSES = "cbrt", "log", "picture", "cosine"
 # One of so many materials is shown
 EVERY = 5
 SIZE, UNTIL = 64, 45.0  # of pictures [pixels], and their noise floor [dB]

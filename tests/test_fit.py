@@ -124,7 +124,7 @@ def test_optima_on_curet(sample, name, measured_data):
     loss, expected = CURET[sample, name]
     data = bk.load(measured_data / "curet" / f"abrdf.dat#{sample}")
     bounds = {"alpha_u": (0.001, 0.5)} if name.startswith("ward") else {}
-    found = bk.fit(name, data, loss="cosine", bounds=bounds)
+    found = bk.fit(name, data, loss="kurt", bounds=bounds)
     assert found.samples == 189
     assert found.loss == pytest.approx(loss, rel=3e-3)
     for parameter, value in expected.items():

@@ -54,7 +54,8 @@ class Losses(Shown, dict[str, Loss | Picture]):
     root [sr^(-1/3)] for "cbrt", of f [sr⁻¹] for "plain", of f cos θ_i cos θ_o [sr⁻¹] for
     "lafortune", and without a unit, 0.1 being about 10 %, of the logarithm of f cos θ_i cos θ_o for
     "log" and of f as a share of the measured one for "relative"; for "picture", of pixels, 1 being
-    white. `by_sample`: all but the last, which judge a model sample by sample.
+    white. "kurt" is the thesis's sum of f cos θ_i [sr⁻¹] over the samples as they are. `by_sample`:
+    all but "picture", which judge a model sample by sample.
 
     >>> losses["plain"].meaning
     'RMS difference of f: what is bright counts'

@@ -185,9 +185,11 @@ def fit(
         require_plain(robust=robust, weights=weights, spectral=spectral)
         pixels = draw_pixels(loss.lights, data.rgb.eval, max_angle, checked["seed"])
         solve = partial(regress, pixels=pixels)
+    # A sum over the samples as they are is just that
+    kept = None if getattr(loss, "measure", None) == "samples" else light
     try:
         return to_fit(
-            solve(model, samples, loss, robust=robust, light=light, **how, report=progress)
+            solve(model, samples, loss, robust=robust, light=kept, **how, report=progress)
         )
     except Stopped as stop:
         best = to_fit(stop.best)
