@@ -277,7 +277,7 @@ NOTES = {  # the files that make notes, and in which of their functions or names
     "verbs/lobe_colours.py": None,
     "verbs/extrapolation.py": ("note_on_extrapolation",),
     "fitting/light.py": ("warnings",),
-    "fitting/regression.py": ("_explain_light",),
+    "fitting/light_search.py": ("_explain_light",),
     "auditing/data_findings.py": (
         "_say_direction",
         "_say_cosine",

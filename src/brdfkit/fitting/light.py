@@ -1,52 +1,26 @@
-"""The light that a fit reflects, beside that of its data; and fits that keep it.
-
-A loss compares values, and a model that cannot meet them all may end with far too much light or too
-little: where grazing angles are missing, a highlight falls between the samples, or a material
-reflects light back. Such a fit is searched once more, with a term for its light,
-
-    E² / E₀² + share · mean over θ_i and channels of ((a - a*) / ā*)²,
-
-a being the model's albedo and a* the data's, ā* its mean over the channels, and E₀ the error of the
-first search. A fit whose light is right is left as it is.
-"""
+"""The light that a fit reflects, beside that of its data: albedos at a few angles of incidence."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.fitting.blocks import Blocks
-from brdfkit.fitting.loss import Loss
-from brdfkit.fitting.pixel_blocks import PixelBlocks
-from brdfkit.fitting.problem import Problem
 from brdfkit.geometry.directions import from_angles
 from brdfkit.geometry.quadrature import ring_rule
 from brdfkit.pictures import Pixels
 
-# The factor between the albedos of a fit and its data beyond which the fit is searched once more;
-# the search is kept where it brings the logarithm of the factor to this share, and where the error
-# E is at most so many times as large: a model that pays more for its light is left as it is
-HELD, NEARER, DEAREST = 1.2, 0.6, 1.4
-# The factor beyond which the light of a fit is said to be wrong
-WRONG = 1.25
+# The factor between the albedos of a fit and its data beyond which the fit is searched once more,
+# and the one beyond which its light is said to be wrong
+HELD, WRONG = 1.2, 1.25
 # Beyond this angle [degrees] a model that is too dark is left so: few rise as materials do
 STEEP = 60
 # No surface reflects more; beyond rounding of the quadrature
 ALL = 1.001
-# How much the light counts beside the error: more where less does not do
-SHARES = 10.0, 40.0, 160.0
 # Half the rings of the quadrature, and the points on each
 POINTS = 32
 # Azimuths of incidence of an anisotropic material
 AZIMUTHS = 4
 UP = 0.0, 0.0, 1.0
-
-DIFFERENCE = Loss(
-    "light",
-    "difference of albedos",
-    lambda model, measured, cos_i, cos_o: model - measured,
-    measure="samples",
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,34 +145,3 @@ def _factor(fit, measured):
     """The factor, above 1, between two albedos."""
     fit, measured = max(fit, 1e-9), max(measured, 1e-9)
     return max(fit / measured, measured / fit)
-
-
-class LightProblem(Problem):
-    """E² of a model class on `Samples`, over that of a first search, and its difference in light.
-
-    `counted`: at which angles of the `light` (n,); `error`: E² of the first search; `share`: how
-    much the light counts.
-    """
-
-    def __init__(self, problem, light, counted, error, share):
-        super().__init__(problem.model, problem.samples, problem.loss, problem.space)
-        self.given = light, counted, error, share
-        mean = np.maximum(light.values[counted].mean(axis=1), 1e-6)
-        pixels, rows = light.pixels, np.repeat(counted, light.pixels.pairs)
-        pairs = pixels.wi[rows], pixels.wo[rows], pixels.shares[rows]
-        pixels = Pixels(*pairs, pixels.values[counted], pixels.weights[counted], pixels.pairs)
-        of_light = share / (len(mean) * self.channels) / mean**2
-        of_samples = self.importance / error
-        self._of_samples = Blocks(self.samples, of_samples, self.loss)
-        self._of_light = PixelBlocks(pixels, of_light, DIFFERENCE)
-        self.importance = np.concatenate([of_samples, of_light])
-        self.blocks = self._all_blocks
-
-    def on(self, samples):
-        """The same problem on other `Samples`."""
-        part = Problem(self.model, samples, self.loss, self.space)
-        return LightProblem(part, *self.given)
-
-    def _all_blocks(self, count):
-        yield from self._of_samples(count)
-        yield from self._of_light(count)

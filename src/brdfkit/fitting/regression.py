@@ -8,7 +8,7 @@ import numpy as np
 from brdfkit.fitting.certainty import ON_BOUND, Certainty, certify, explain_end
 from brdfkit.fitting.folding import fold
 from brdfkit.fitting.levenberg_marquardt import ROUNDING
-from brdfkit.fitting.light import DEAREST, NEARER, SHARES, LightProblem
+from brdfkit.fitting.light_search import keep_light
 from brdfkit.fitting.parameter_space import Space
 from brdfkit.fitting.part import mix_bands
 from brdfkit.fitting.picture_problem import PictureProblem
@@ -123,7 +123,7 @@ def regress(
         error = whole.sums(u, weights, curvature=False).error[0]
     elif light is not None and not (limits or stopped or pixels):
         try:
-            kept = _keep_light(whole, u, weights, light, points[:FEW_STARTS], rng)
+            kept = keep_light(whole, u, weights, light, points[:FEW_STARTS], rng)
         except KeyboardInterrupt:
             kept, stopped = None, True
         if kept is not None:
@@ -146,49 +146,6 @@ def regress(
     if stopped:
         raise Stopped(found)
     return found
-
-
-def _keep_light(whole, u, weights, light, points, rng):
-    """Where a search has ended with other light than the data's, the end (u, weights) of another
-    one with a term for it, and a note; None where the light is right, or the model cannot.
-
-    `points` (count, shapes): where it begins, beside the first end.
-    """
-
-    def look(u, weights):
-        model = whole.model(**whole.space.values(u[0]))
-        return light.look(lambda wi, wo: mix_lobes(model, weights[0].T, wi, wo))
-
-    free = look(u, weights)
-    if light.is_right(free):
-        return None
-    counted = light.counted(free)
-    first = max(whole.sums(u, weights, curvature=False).error[0], ROUNDING * whole.black.sum())
-    parts, points, kept = with_parts(whole, rng), np.concatenate([u, points]), None
-    for share in SHARES:
-        problems = [LightProblem(part, light, counted, first, share) for part in parts]
-        ends, *_ = search(problems, points, lambda done, total: None)
-        held = look(ends.u[:1], ends.weights[:1])
-        error = whole.sums(ends.u[:1], ends.weights[:1], curvature=False).error[0]
-        if error > DEAREST**2 * first:
-            break
-        if light.departure(held) <= NEARER * light.departure(free):
-            kept = ends.u[:1], ends.weights[:1], _explain_light(light, free, held)
-        if light.is_right(held):
-            break
-        points = ends.u[:1]
-    return kept
-
-
-def _explain_light(light, free, held):
-    """The note on a fit that keeps the `light`; `free`, `held`: albedos without and with it."""
-    row = int(np.argmax(np.maximum(abs(np.log(light.factors(free))), np.log(free.max(axis=1)))))
-    measured = f", where the measurement reflects {light.values[row].mean():.2f}"
-    return (
-        f"by the loss alone it would reflect {free[row].mean():.2f} of the light at "
-        f"{light.theta_i[row]:g}°{measured * bool(light.known[row])}; with a term for its light it "
-        f"reflects {held[row].mean():.2f}"
-    )
 
 
 def default_solver(constraints):

@@ -1,0 +1,111 @@
+"""Searches a fit once more, with a term for its light, where the first search ends far from it.
+
+A loss compares values, and a model that cannot meet them all may end with far too much light or too
+little: where grazing angles are missing, a highlight falls between the samples, or a material
+reflects light back. The second search minimises
+
+    E² / E₀² + share · mean over θ_i and channels of ((a - a*) / ā*)²,
+
+a being the model's albedo and a* the data's, ā* its mean over the channels, and E₀ the error of the
+first search. A fit whose light is right is left as it is.
+"""
+
+import numpy as np
+
+from brdfkit.fitting.blocks import Blocks
+from brdfkit.fitting.levenberg_marquardt import ROUNDING
+from brdfkit.fitting.loss import Loss
+from brdfkit.fitting.pixel_blocks import PixelBlocks
+from brdfkit.fitting.problem import Problem
+from brdfkit.fitting.search import search, with_parts
+from brdfkit.model.evaluation import mix_lobes
+from brdfkit.pictures import Pixels
+
+# How much the light counts beside the error: more where less does not do
+SHARES = 10.0, 40.0, 160.0
+# The second end is kept where it brings the logarithm of the factor between the albedos to this
+# share, and where E is at most so many times as large: a model that pays more for its light is left
+# as it is
+NEARER, DEAREST = 0.6, 1.4
+
+DIFFERENCE = Loss(
+    "light",
+    "difference of albedos",
+    lambda model, measured, cos_i, cos_o: model - measured,
+    measure="samples",
+)
+
+
+def keep_light(whole, u, weights, light, points, rng):
+    """Where a search has ended with other light than the data's, the end (u, weights) of another
+    one with a term for it, and a note; None where the light is right, or the model cannot.
+
+    `points` (count, shapes): where it begins, beside the first end.
+    """
+
+    def look(u, weights):
+        model = whole.model(**whole.space.values(u[0]))
+        return light.look(lambda wi, wo: mix_lobes(model, weights[0].T, wi, wo))
+
+    free = look(u, weights)
+    if light.is_right(free):
+        return None
+    counted = light.counted(free)
+    first = max(whole.sums(u, weights, curvature=False).error[0], ROUNDING * whole.black.sum())
+    parts, points, kept = with_parts(whole, rng), np.concatenate([u, points]), None
+    for share in SHARES:
+        problems = [LightProblem(part, light, counted, first, share) for part in parts]
+        ends, *_ = search(problems, points, lambda done, total: None)
+        held = look(ends.u[:1], ends.weights[:1])
+        error = whole.sums(ends.u[:1], ends.weights[:1], curvature=False).error[0]
+        if error > DEAREST**2 * first:
+            break
+        if light.departure(held) <= NEARER * light.departure(free):
+            kept = ends.u[:1], ends.weights[:1], _explain_light(light, free, held)
+        if light.is_right(held):
+            break
+        points = ends.u[:1]
+    return kept
+
+
+def _explain_light(light, free, held):
+    """The note on a fit that keeps the `light`; `free`, `held`: albedos without and with it."""
+    gains = np.log(np.maximum(free.max(axis=1), 1e-9))
+    row = int(np.argmax(np.maximum(np.abs(np.log(light.factors(free))), gains)))
+    measured = f", where the measurement reflects {light.values[row].mean():.2f}"
+    return (
+        f"by the loss alone it would reflect {free[row].mean():.2f} of the light at "
+        f"{light.theta_i[row]:g}°{measured * bool(light.known[row])}; with a term for its light it "
+        f"reflects {held[row].mean():.2f}"
+    )
+
+
+class LightProblem(Problem):
+    """E² of a model class on `Samples`, over that of a first search, and its difference in light.
+
+    `counted`: at which angles of the `light` (n,); `error`: E² of the first search; `share`: how
+    much the light counts.
+    """
+
+    def __init__(self, problem, light, counted, error, share):
+        super().__init__(problem.model, problem.samples, problem.loss, problem.space)
+        self.given = light, counted, error, share
+        mean = np.maximum(light.values[counted].mean(axis=1), 1e-6)
+        pixels, rows = light.pixels, np.repeat(counted, light.pixels.pairs)
+        pairs = pixels.wi[rows], pixels.wo[rows], pixels.shares[rows]
+        pixels = Pixels(*pairs, pixels.values[counted], pixels.weights[counted], pixels.pairs)
+        of_light = share / (len(mean) * self.channels) / mean**2
+        of_samples = self.importance / error
+        self._of_samples = Blocks(self.samples, of_samples, self.loss)
+        self._of_light = PixelBlocks(pixels, of_light, DIFFERENCE)
+        self.importance = np.concatenate([of_samples, of_light])
+        self.blocks = self._all_blocks
+
+    def on(self, samples):
+        """The same problem on other `Samples`."""
+        part = Problem(self.model, samples, self.loss, self.space)
+        return LightProblem(part, *self.given)
+
+    def _all_blocks(self, count):
+        yield from self._of_samples(count)
+        yield from self._of_light(count)
