@@ -17,12 +17,13 @@ def test_an_end_is_found_to_which_one_start_in_seventeen_leads(measured_data):
 
 
 def test_a_black_lobe_is_lit_where_it_helps():
-    """Every start ends black; a lobe as wide as it goes is better, as another solver finds."""
+    """Every start ends black; a lobe as wide as it goes is better, and no worse than what another
+    solver finds."""
     how = {"loss": "cosine", "use_standard_error": False}
     found = bk.fit("ggx", "plaster", **how)
     other = bk.fit("ggx", "plaster", **how, solver="trust_region")
     assert found.values["specular_reflectance"][0] > 0
-    assert found.loss == pytest.approx(other.loss, rel=1e-7)
+    assert found.loss <= other.loss * (1 + 1e-7)
 
 
 def test_a_parameter_that_does_nothing_has_no_correction():

@@ -10,9 +10,9 @@ loss; `picture_problem.py`: on `pixel_blocks.py`, too).
 many samples to one end and all. This and other ways to search are the `solvers/`, where constraints
 are, too. `robust.py` weighs down outliers, `robust_search.py` until weights and solution give each
 other back, which `convexity.py` speeds up. `light.py` has the albedos of a fit and its data, and
-`light_search.py` searches again where they differ. `certainty.py` says how certain the parameters are.
-`regression.py` runs these one after the other; `result.py` is `Fit`. `refitting.py` fits again from
-the end of one, and `profiling.py` follows its loss over a parameter.
+`light_search.py` searches again where they differ. `certainty.py` says how certain the parameters
+are. `regression.py` runs these one after the other; `result.py` is `Fit`. `refitting.py` fits again
+from the end of one, and `profiling.py` follows its loss over a parameter.
 """
 
 from brdfkit.fitting.loss import Loss as Loss
