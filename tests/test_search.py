@@ -1,7 +1,6 @@
 """The search for the end of a fit: where few starts lead to it, where a parameter does nothing."""
 
 import numpy as np
-import pytest
 
 import brdfkit as bk
 from brdfkit.fitting.levenberg_marquardt import _correct
