@@ -47,7 +47,7 @@ def measured(truth, n=1500, **how):
 @pytest.mark.parametrize("name", TRUTHS)
 def test_the_true_model_is_recommended(name):
     """And its held-out error is the noise."""
-    found = bk.rank(measured(bk.models()[name](**TRUTHS[name])), TRUTHS)
+    found = bk.rank(measured(bk.models()[name](**TRUTHS[name])), TRUTHS, "log")
     assert found.best == name
     assert [row.model for row in found.rows if row.tied] == [name]
     assert found.rows[0].error == pytest.approx(NOISE, rel=0.1)
@@ -78,12 +78,14 @@ def test_held_out_errors_are_those_of_fits_without_the_fold():
     """Of a constant, whose fit is a mean: by hand."""
     data, rng = measured(bk.models()["ward"](), n=300), np.random.default_rng(0)
     samples = select_samples(data, 80.0)
-    held_out = HeldOut.draw(samples, bk.losses["plain"], False, 5, rng)
+    # Each sample counts as one, as in a mean
+    plain_sum = replace(bk.losses["plain"], name="plain sum", measure="samples")
+    held_out = HeldOut.draw(samples, plain_sum, False, 5, rng)
     values, squares = samples.values[:, 0], np.empty(len(samples.wi))
     for fold in range(5):
         out = held_out.folds == fold
         squares[out] = (values[out] - values[~out].mean()) ** 2
-    (row,) = bk.rank(data, "lambert", "plain").rows
+    (row,) = bk.rank(data, "lambert", plain_sum).rows
     assert row.error == pytest.approx(np.sqrt(squares.mean()), rel=1e-9)
     assert (row.behind, row.uncertainty, row.tied) == (0.0, 0.0, True)
 
@@ -281,7 +283,7 @@ def test_a_model_is_beaten_only_in_both_error_and_picture():
     """And in the error by more than noise, that of the two models' blocks."""
     shares, noise = np.full(40, 1 / 40), np.random.default_rng(0).normal(1, 0.1, 40)
     found = {
-        name: Validated(error * shares * noise**power, picture, "", 7, 0.0, 0.0)
+        name: Validated(error * shares * noise**power, None, picture, "", 7, 0.0, 0.0)
         for name, error, power, picture in [
             ("best", 1.0, 1, 0.02),
             ("tied", 1.01, -1, 0.05),
@@ -358,7 +360,7 @@ def test_best_fits_the_recommended_model_and_says_why(cli):
     found = cli("fit", "paint.npz", "-m", "best")
     assert found.exit_code == 0, found.stderr
     table, _, fit = found.stdout.partition("ggx is recommended: no other model has a lesser error")
-    assert "synthetic: errors (log) at directions that were held out" in table
+    assert "synthetic: errors (cbrt) at directions that were held out" in table
     assert "ggx fitted to synthetic" in fit
     assert "lambert fitted" not in fit
     record = json.loads(cli("fit", "paint.npz", "-m", "best", "-m", "ward", "--json").stdout)

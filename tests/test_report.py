@@ -342,7 +342,7 @@ def test_settings_that_no_option_tells_are_named(material):
         "--seed 0 -o 'x y.html'"
     )
     assert untold == []
-    ward = bk.fit("ward", material, "cbrt", bounds={"alpha_u": (0.1, 0.3)}, seed=3, starts=1)
+    ward = bk.fit("ward", material, "log", bounds={"alpha_u": (0.1, 0.3)}, seed=3, starts=1)
     _, untold = origin.command(material, None, [told, ward], "x.html", **how)
     assert {"loss", "bounds", "seed", "starts"} <= set(untold)
 
