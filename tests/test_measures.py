@@ -1,0 +1,103 @@
+"""What samples stand for, against integrals that are known; fits that keep the light of data."""
+
+import numpy as np
+import pytest
+
+import brdfkit as bk
+from brdfkit.checks.material_subject import random_pairs
+from brdfkit.geometry.directions import from_angles, to_half_difference
+from brdfkit.measured.selection import select_samples
+from brdfkit.samples.measures import MEASURES, weigh, whole
+
+pytestmark = pytest.mark.quick
+
+INTEGRALS = [name for name, power in MEASURES.items() if power is not None]
+
+
+def grid(theta_i, theta_o, phi):
+    """A grey material at a goniometer's angles [degrees]."""
+    angles = np.meshgrid(*map(np.radians, (theta_i, theta_o, phi)), indexing="ij")
+    wi, wo = from_angles(angles[0].ravel(), 0.0), from_angles(angles[1].ravel(), angles[2].ravel())
+    return bk.Measured.from_samples(wi, wo, np.full(len(wi), 0.1))
+
+
+def shares(data, measure, max_angle=80.0):
+    """How much of a measure each sample stands for, as a share of all below `max_angle`."""
+    samples = select_samples(data, max_angle)
+    return samples, weigh(samples.extents, measure) / whole(max_angle, measure)
+
+
+def test_all_directions_have_the_solid_angle_of_two_caps():
+    """Divided by 4 · 2π: dω_i dω_o = 4 s dθ_h dθ_d dφ_d dφ_h."""
+    for angle in (40.0, 80.0):
+        cap = 2 * np.pi * (1 - np.cos(np.radians(angle)))
+        assert whole(angle, "solid_angle") == pytest.approx(cap**2 / (8 * np.pi), rel=3e-3)
+
+
+@pytest.mark.parametrize("measure", INTEGRALS)
+def test_cells_of_a_table_stand_for_all(measure):
+    _, parts = shares(bk.load("car_paint"), measure)
+    # The geometric mean of a cell's two sizes is a little more than the mean of √s in it
+    assert parts.sum() == pytest.approx(1, abs=2e-3)
+
+
+@pytest.mark.parametrize("measure", INTEGRALS)
+def test_random_samples_integrate_as_a_table_does(measure):
+    """A narrow and a wide function of theta_h, and one of theta_d, to 2 %."""
+    wi, wo = random_pairs(8_000, seed=3, max_degrees=79.9)
+    near = wi * [-1, -1, 1] + np.random.default_rng(1).normal(0, 0.1, wi.shape)
+    near /= np.linalg.norm(near, axis=1, keepdims=True)
+    wo = np.where((np.arange(len(wi)) % 2 == 0)[:, None] & (near[:, 2:] > 0.18), near, wo)
+    scattered = bk.Measured.from_samples(wi, wo, np.full(len(wi), 0.1))
+    for function in (
+        lambda theta_h, theta_d: np.exp(-((theta_h / 0.15) ** 2)),
+        lambda theta_h, theta_d: np.cos(theta_h),
+        lambda theta_h, theta_d: np.sin(theta_d) ** 2,
+    ):
+        means = []
+        for data in (bk.load("car_paint"), scattered):
+            samples, parts = shares(data, measure)
+            theta_h, theta_d, _ = to_half_difference(samples.wi, samples.wo)
+            means.append(parts @ function(theta_h, theta_d) / parts.sum())
+        assert means[1] == pytest.approx(means[0], rel=0.02)
+
+
+def test_what_is_far_from_all_samples_is_unrepresented():
+    full = grid(range(0, 80, 5), range(0, 80, 5), range(0, 181, 15))
+    narrow = grid(range(0, 40, 5), range(0, 40, 5), range(0, 181, 15))
+    assert bk.fit("lambert", full).unrepresented < 0.01
+    assert bk.fit("lambert", narrow).unrepresented > 0.2
+
+
+@pytest.mark.parametrize("name", ["paper_white", "cc_ibiza_sunset"])
+def test_the_grid_of_an_rgl_file_stands_for_nearly_all(name, measured_data):
+    """Of its eight incidences one stands for 10°: to 10 %."""
+    data = bk.load(measured_data / "rgl" / f"{name}_rgb.bsdf")
+    for measure in INTEGRALS:
+        _, parts = shares(data, measure)
+        assert parts.sum() == pytest.approx(1, abs=0.1)
+
+
+def test_a_fit_without_grazing_angles_keeps_its_light(measured_data):
+    """By the loss alone a ggx of this white paint reflects 1.5 times the light at 75°."""
+    data = bk.load(measured_data / "minidiff_paints" / "C1_White.astm.xz")
+    found = bk.fit("ggx", data)
+    assert any("with a term for its light" in note for note in found.notes)
+    assert max(map(max, found.albedo.fit)) <= 1.001
+    assert found.message == "converged"
+    fit, measured = (
+        np.array(a[:3]).mean(axis=1) for a in (found.albedo.fit, found.albedo.measured)
+    )
+    np.testing.assert_allclose(fit, measured, rtol=0.2)
+
+
+def test_a_model_that_cannot_have_the_light_says_so(measured_data):
+    data = bk.load(measured_data / "alta_retro" / "retro-gray-tape.dat.xz")
+    found = bk.fit("ggx", data)
+    assert found.message == "converged, but its light is wrong"
+    assert any("where the measurement reflects" in note for note in found.notes)
+
+
+def test_an_unknown_measure_is_refused():
+    with pytest.raises(bk.BrdfkitError, match="no measure of directions 'solid'"):
+        bk.Loss("mine", "mine", lambda m, r, ci, co: m - r, measure="solid")
