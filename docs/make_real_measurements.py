@@ -1,0 +1,188 @@
+"""Makes `docs/real_measurements.md`, its figures and its picture: fits of files as instruments give
+them, and of one material as five files.
+
+    BRDFKIT_DATA=FOLDER python docs/make_real_measurements.py [FILE...]    # minutes on two cores
+
+FOLDER holds third-party measurements, which brdfkit does not ship. What is measured is kept in
+`real_measurements.json`, and the same command goes on from there; where files or materials are
+named, they alone are measured, anew. `--only files`, `invariance`, `balls` or `page` makes one
+part. To measure everything anew, delete the JSON.
+
+The figures of files are those of `real_measurements_errors.py`; the five files are written by
+`real_measurements_files.py` and compared by `real_measurements_invariance.py`; the words are in
+`real_measurements_page.py`.
+"""
+
+import argparse
+import json
+import os
+import sys
+import tempfile
+import time
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from multiprocessing import get_context
+from pathlib import Path
+
+import numpy as np
+import real_measurements_page as page
+from PIL import Image, ImageDraw, ImageFont
+from real_measurements_errors import MODELS, measure
+from real_measurements_files import FILES, read_again
+from real_measurements_invariance import LOSSES, Part, compare_files
+
+import brdfkit as bk
+from brdfkit.catalogue import shipped
+from brdfkit.colours import to_srgb
+from brdfkit.files import write_safely
+from brdfkit.jit.threads import use_threads
+from brdfkit.samples.neural import decode_network
+
+RESULTS = Path(__file__).with_name("real_measurements.json")
+# Where measurements lie in the folder; of CUReT's file of 61 samples every tenth
+COLLECTIONS = "rgl/*.bsdf", "minidiff_paints/*.astm.xz", "cornell/*.[ab]*", "alta_retro/*.dat.xz"
+CURET = "curet/abrdf.dat", range(1, 61, 10)
+# What is written as five files: reconstructions, beside the isotropic tables that brdfkit ships
+NETWORKS = "nbrdf_derived/merl_nbrdf.npz"
+RECONSTRUCTIONS = "nickel", "red-fabric", "specular-blue-phenolic", "white-paint"
+SHAPE = 90, 45, 90
+# What the picture shows, and its size
+SHOWN = (
+    "rgl/satin_rosaline_rgb.bsdf",
+    "rgl/cc_iris_purple_gem_rgb.bsdf",
+    "rgl/acrylic_felt_green_rgb.bsdf",
+    "minidiff_paints/C2_Black.astm.xz",
+    "minidiff_paints/C8_Silver.astm.xz",
+    "cornell/cayman.brdf",
+    "alta_retro/retro-gray-tape.dat.xz",
+    "curet/abrdf.dat#21",
+)
+BALLS = "ggx", "ggx+ggx"
+SIZE, SPP, CAPTION, FONT, COLUMNS = 150, 256, 20, 12, 2
+
+
+def measurements(folder):
+    """The names of the measured files in the folder, below it."""
+    found = [str(p.relative_to(folder)) for c in COLLECTIONS for p in sorted(folder.glob(c))]
+    file, numbers = CURET
+    return found + [f"{file}#{number}" for number in numbers if (folder / file).is_file()]
+
+
+def materials(folder):
+    """The names of what is written as five files."""
+    own = [name for name in shipped.materials() if not bk.load(name).anisotropic]
+    return own + list(RECONSTRUCTIONS) * (folder / NETWORKS).is_file()
+
+
+def table_of(name, folder):
+    """The table of a material, of half the cells of MERL's along theta_d and phi_d."""
+    if name not in RECONSTRUCTIONS:
+        return bk.Measured.from_table(bk.load(name).resampled(SHAPE).values, name=name)
+    with np.load(folder / NETWORKS) as networks:
+        table = decode_network(networks[name].astype(float), SHAPE)
+    return bk.Measured.from_table(table.values, name=name)
+
+
+def measure_file(name, folder):
+    """The figures of one measured file."""
+    use_threads(1)
+    return measure(bk.load(str(folder / name)))
+
+
+def measure_invariance(name, folder):
+    """Model → loss → how the fits of one material differ by the file that it is read from."""
+    use_threads(1)
+    table = table_of(name, folder)
+    with tempfile.TemporaryDirectory() as beside:
+        files = {kind: read_again(kind, table, Path(beside)) for kind in FILES}
+    part = Part(files["table"])
+    return {
+        model: {loss: compare_files(files, model, loss, part) for loss in LOSSES}
+        for model in MODELS
+    }
+
+
+def run(part, folder, results, given):
+    """Measure what is named, or else all that is not measured yet, each name in a process."""
+    work, list_names = WORK[part]
+    found, names = results.setdefault(part, {}), list_names(folder)
+    missing = [n for n in names if (n in given.names if given.names else n not in found)]
+    began, done = time.perf_counter(), 0
+    with ProcessPoolExecutor(given.workers, get_context("spawn")) as pool:
+        futures = {pool.submit(work, name, folder): name for name in missing}
+        for future in as_completed(futures):
+            found[futures[future]] = rounded(future.result())
+            results[part] = {name: found[name] for name in names if name in found}
+            write(results)
+            done += 1
+            seconds = time.perf_counter() - began
+            print(
+                f"{part}: {done} of {len(missing)}, {seconds:.0f} s, {futures[future]}", flush=True
+            )
+
+
+def write(results):
+    """Write the results, a line for each name."""
+    parts = []
+    for part, found in results.items():
+        lines = [f"{json.dumps(k)}: {json.dumps(v, ensure_ascii=False)}" for k, v in found.items()]
+        parts.append(f"{json.dumps(part)}: {{\n" + ",\n".join(lines) + "\n}")
+    with write_safely(RESULTS) as beside:
+        beside.write_text("{\n" + ",\n".join(parts) + "\n}\n", encoding="utf-8")
+
+
+def rounded(value):
+    """Numbers with four digits, in dictionaries and lists."""
+    if isinstance(value, dict):
+        return {k: rounded(v) for k, v in value.items()}
+    if isinstance(value, list):
+        return [rounded(v) for v in value]
+    return float(f"{value:.4g}") if isinstance(value, float) else value
+
+
+def balls(folder):
+    """One image of the balls: of each file that measured, and those of its fits."""
+    shown = [name for name in SHOWN if (folder / name.partition("#")[0]).is_file()]
+    width, height = SIZE * (1 + len(BALLS)), SIZE + CAPTION
+    rows = -(-len(shown) // COLUMNS)
+    sheet = Image.new("RGB", (COLUMNS * (width + CAPTION), rows * height), "white")
+    draw, font = ImageDraw.Draw(sheet), ImageFont.load_default(FONT)
+    for k, name in enumerate(shown):
+        data = bk.load(str(folder / name))
+        fits = [bk.fit(model, data) for model in BALLS]
+        pictures = bk.render([data, *fits], spp=SPP, size=SIZE).pictures.values()
+        left, top = k % COLUMNS * (width + CAPTION), k // COLUMNS * height
+        for column, (title, picture) in enumerate(zip((data.name, *BALLS), pictures, strict=True)):
+            image = Image.fromarray((to_srgb(picture) * 255 + 0.5).astype(np.uint8))
+            at = left + column * SIZE
+            sheet.paste(image, (at, top + CAPTION))
+            draw.text((at + 3, top + CAPTION // 2), title, "black", font, anchor="lm")
+        print(f"balls: {k + 1} of {len(shown)}", flush=True)
+    return sheet
+
+
+WORK = {"files": (measure_file, measurements), "invariance": (measure_invariance, materials)}
+
+
+def main():
+    """Measure what is asked for, and write the page."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("names", nargs="*", help="files and materials that are measured anew")
+    parser.add_argument("--only", choices=(*WORK, "balls", "page"), help="one part; default: all")
+    parser.add_argument("--workers", type=int, default=2, help="processes")
+    given = parser.parse_args()
+    folder = os.environ.get("BRDFKIT_DATA")
+    if not folder:
+        sys.exit("BRDFKIT_DATA names no folder of measurements")
+    folder = Path(folder)
+    results = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.is_file() else {}
+    for part in WORK:
+        if given.only in (part, None):
+            run(part, folder, results, given)
+    if given.only in ("balls", None) and not given.names:
+        balls(folder).save(page.PAGE.with_suffix(".jpg"), quality=90)
+    page.write_page(results)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,148 @@
+"""How far fits are from a measured material: their light, and balls under the maps that brdfkit
+brings."""
+
+from itertools import pairwise
+
+import numpy as np
+
+import brdfkit as bk
+from brdfkit.catalogue import shipped
+from brdfkit.colours import luminance, to_srgb
+from brdfkit.environments import map_files
+from brdfkit.environments.conventions import convention
+from brdfkit.environments.resampling import look_up, parts_of
+from brdfkit.geometry.directions import from_angles, to_half_difference
+from brdfkit.measured.coverage import largest_angles
+from brdfkit.measured.selection import select_samples
+from brdfkit.pictures import LIGHTS, draw_pixels
+from brdfkit.samples.measures import weigh
+
+MODELS = "ward_duer", "ggx", "ggx+ggx", "abc+student_t"
+LOSSES = "cosine", "log", "cbrt"
+MAPS = "room", "sky", "studio"
+# Pixels of each picture; directions of a pixel by the light, and as many by the BRDF
+PIXELS, DIRECTIONS = 600, 48
+HUES = 0, 20, 40, 60
+# Angles of incidence [degrees] at which fits and data are compared; one more at which fits are
+# tested by brdfkit for light that they gain, and some at which they are not
+ANGLES, GRAZING, MORE = (5, 45, 75), 85, (60, 80, 89)
+
+
+def measure(data):
+    """The figures of a `Measured` and of its fits by all models and losses."""
+    judge = Judge(data)
+    found = {
+        "name": data.name,
+        "albedo": judge.albedos.mean(axis=1).tolist(),
+        "hues": judge.hues(),
+        "reach": [float(angle) for angle in largest_angles(data)],
+        "known": data.rgb.albedo.known[: len(ANGLES)].tolist(),
+        "negative": float((judge.data.values[judge.data.samples.valid] < 0).mean()),
+        "findings": list(data.audit().findings()),
+        "fits": {},
+    }
+    for model in MODELS:
+        fits = [bk.fit(model, data, loss) for loss in LOSSES]
+        found["fits"][model] = {fit.loss_name: judge(fit) for fit in fits}
+    best = max(found["fits"], key=lambda model: found["fits"][model]["cbrt"]["psnr"])
+    found["regions"] = judge.regions(bk.fit(best, data))
+    return found
+
+
+class Judge:
+    """What the fits of one measured material are held to: its albedos and its pictures."""
+
+    def __init__(self, data):
+        self.data = data.rgb
+        self.albedos = albedos(self.data, ANGLES)
+        self.pictures = [draw_picture(name, self.data) for name in MAPS]
+
+    def __call__(self, fit):
+        """The figures of a fit."""
+        said = [note for note in fit.notes if note in fit.albedo.warnings()]
+        gains = [note for note in said if "more than arrives" in note]
+        own = albedos(fit, (*ANGLES, GRAZING))
+        return {
+            "albedo": own[: len(ANGLES)].mean(axis=1).tolist(),
+            "most": float(own.max()),
+            "most elsewhere": float(albedos(fit, MORE).max()),
+            "psnr": float(np.mean([psnr(picture, fit) for picture in self.pictures])),
+            "log error": bk.compare(self.data, fit).errors[fit.name]["log"],
+            "said": len(said) > len(gains),
+            "gain said": bool(gains),
+            "searched again": any(n.startswith("by the loss alone") for n in fit.notes),
+        }
+
+    def hues(self):
+        """The shares (3, channels) of the channels in the highlight, by the difference angle: from
+        one of `HUES` [degrees] to the next."""
+        samples = select_samples(self.data, 80.0)
+        theta_h, theta_d, _ = np.degrees(to_half_difference(samples.wi, samples.wo))
+        light = weigh(samples.extents, "angles")[:, None] * np.maximum(samples.values, 0)
+        sums = [
+            light[(theta_h < 5) & (theta_d >= a) & (theta_d < b)].sum(axis=0)
+            for a, b in pairwise(HUES)
+        ]
+        return [(s / max(s.sum(), 1e-12)).tolist() for s in sums]
+
+    def regions(self, fit):
+        """Where the log error of a fit comes from: region → its share of the squares, and how many
+        times too bright the fit is there, in the mean."""
+        samples = select_samples(self.data, 80.0)
+        cosines = (samples.wi[:, 2] * samples.wo[:, 2])[:, None]
+        own, its = (
+            np.log(np.maximum(values, 0) * cosines + 1e-3)
+            for values in (fit.eval(samples.wi, samples.wo), samples.values)
+        )
+        theta_h, theta_d, _ = np.degrees(to_half_difference(samples.wi, samples.wo))
+        lower = np.degrees(np.arccos(np.minimum(samples.wi[:, 2], samples.wo[:, 2])))
+        mirror, back = theta_h < 10, (theta_d < 10) & (theta_h >= 10)
+        regions = {
+            "mirror": mirror,
+            "back": back,
+            "grazing": ~mirror & ~back & (lower > 65),
+            "other": ~mirror & ~back & (lower <= 65),
+        }
+        weight = weigh(samples.extents, "angles")
+        squares = weight * ((own - its) ** 2).mean(axis=1)
+        return {
+            name: [
+                float(squares[rows].sum() / squares.sum()),
+                float(np.exp(np.average((own - its).mean(axis=1)[rows], weights=weight[rows]))),
+            ]
+            for name, rows in regions.items()
+            if weight[rows].any()
+        }
+
+
+def albedos(brdf, angles):
+    """The albedos (n, channels) at `angles` of incidence [degrees], by quadrature of `.eval`."""
+    return np.array([bk.albedo(brdf, from_angles(np.radians(a), 0.0)) for a in angles])
+
+
+def draw_picture(name, data):
+    """The `Pixels` of a ball of a `Measured` under a map that brdfkit brings, in grey light."""
+    LIGHTS.setdefault(f"{name}.exr", light_of(name))
+    return draw_pixels((f"{name}.exr",), data.eval, pixels=PIXELS, directions=DIRECTIONS)
+
+
+def light_of(name):
+    """The light of a map that brdfkit brings: a function of directions (n, 3), z up, to grey
+    radiances (n,)."""
+    grey = luminance(map_files.read(shipped.environment_path(name)))[..., None]
+    own = convention("mitsuba")
+    parts = parts_of(own.layout, *grey.shape[:2])
+
+    def light(w):
+        with_y_up = np.stack([w[:, 0], w[:, 2], -w[:, 1]], axis=1)
+        return look_up(grey, own.layout, with_y_up @ own.frame, parts)[:, 0]
+
+    return light
+
+
+def psnr(picture, fit):
+    """PSNR [dB] of what a screen shows of a fit beside the measurement, of which the brightest
+    hundredth is white."""
+    shown, own = (to_srgb(values) for values in (picture.look(fit.eval), picture.values))
+    squares = ((shown - own) ** 2).mean(axis=1)
+    return -10 * np.log10(max(np.average(squares, weights=picture.weights), 1e-10))
