@@ -50,6 +50,7 @@ docs: $(VENV)/.ready
 	$(RUN)/python docs/make_formats.py
 	$(RUN)/python docs/make_references.py
 	$(RUN)/python docs/make_architecture.py
+	[ -z "$$BRDFKIT_DATA" ] || $(RUN)/python docs/make_real_measurements.py
 	$(MAKE) site
 
 site: $(VENV)/.ready
