@@ -24,8 +24,8 @@ from brdfkit.pictures import Pixels
 # How much the light counts beside the error: more where less does not do
 SHARES = 10.0, 40.0, 160.0
 # The second end is kept where it brings the logarithm of the factor between the albedos to this
-# share, and where E is at most so many times as large: a model that pays more for its light is left
-# as it is
+# share, and where E is at most so many times as large, times the light that is gained, if any: a
+# model that pays more for its light is left as it is
 NEARER, DEAREST = 0.6, 1.4
 
 DIFFERENCE = Loss(
@@ -56,15 +56,16 @@ def keep_light(whole, u, weights, light, points, rng):
     for share in SHARES:
         problems = [LightProblem(part, light, counted, first, share) for part in parts]
         ends, *_ = search(problems, points, lambda done, total: None)
-        held = look(ends.u[:1], ends.weights[:1])
-        error = whole.sums(ends.u[:1], ends.weights[:1], curvature=False).error[0]
-        if error > DEAREST**2 * first:
+        # Copies: a search works in the arrays that it is given
+        end = ends.u[:1].copy(), ends.weights[:1].copy()
+        held, error = look(*end), whole.sums(*end, curvature=False).error[0]
+        if error > (DEAREST * max(free.max(), 1)) ** 2 * first:
             break
         if light.departure(held) <= NEARER * light.departure(free):
-            kept = ends.u[:1], ends.weights[:1], _explain_light(light, free, held)
+            kept = *end, _explain_light(light, free, held)
         if light.is_right(held):
             break
-        points = ends.u[:1]
+        points = end[0].copy()
     return kept
 
 

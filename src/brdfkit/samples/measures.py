@@ -20,7 +20,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.geometry.directions import from_half_difference
+from brdfkit.geometry.directions import from_half_difference, to_half_difference
 from brdfkit.samples.cells import least_cosine
 from brdfkit.samples.coordinates import anisotropic_coordinates, isotropic_coordinates
 
@@ -36,7 +36,7 @@ MEASURES: dict[str, float | None] = {
 REACH = 0.5
 # Points for each sample, and how many there are at least and at most
 POINTS, FEWEST, LARGEST_NUMBER = 16, 2**13, 2**18
-# The least extent, as a share of the mean one
+# The least extent in the angles, as a share of the mean one
 LITTLE = 0.01
 # Bins of theta_h, even in its square root, by which half of the points go where the samples are
 BINS = 90
@@ -92,11 +92,15 @@ def estimate_extents(
     sums = np.stack(
         [np.bincount(nearest[near], volume[near], len(places)) for volume in volumes.T], axis=1
     )
-    # A place so near to others that no point reached it stands for little, but for something
-    sums = np.maximum(sums, LITTLE * sums.mean(axis=0))
     # Samples at one place share what it stands for
     shares = (sums / np.bincount(same)[:, None])[same]
-    return shares.reshape(-1, len(wi), 2).sum(axis=0)
+    extents = shares.reshape(-1, len(wi), 2).sum(axis=0)
+    # One so near to others that no point reached it stands for little, but for something
+    missed = extents[:, 0] == 0
+    theta_h, theta_d, _ = to_half_difference(wi[missed], wo[missed])
+    extents[missed, 0] = LITTLE * extents[:, 0].mean()
+    extents[missed, 1] = extents[missed, 0] * density(theta_h, theta_d)
+    return extents
 
 
 def _spread_points(wi, wo, anisotropic, max_angle):
