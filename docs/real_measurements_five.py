@@ -65,15 +65,13 @@ def unrepresented(materials):
     for *_, loss, kind, row in rows_of(materials):
         if loss == DEFAULT:
             found.setdefault(kind, []).append(row)
-    words = [
-        f"{kind} {percent(max(r['unrepresented'] for r in rows), 1)} and "
-        f"{median(r['effective'] for r in rows):,.0f}"
-        for kind, rows in found.items()
-    ]
-    return (
-        "By `cbrt`, `unrepresented` is at most, and `effective_samples` is in the median: "
-        f"{'; '.join(words)}."
+    shares = [percent(max(row["unrepresented"] for row in rows), 1) for rows in found.values()]
+    counts = [f"{median(row['effective'] for row in rows):,.0f}" for rows in found.values()]
+    rows = (
+        ("`unrepresented`, at most", *shares),
+        ("`effective_samples`, in the median", *counts),
     )
+    return table(", ".join([f"by `{DEFAULT}`", *found]), rows)
 
 
 def causes(materials):

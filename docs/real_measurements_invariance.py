@@ -38,8 +38,8 @@ CAUSES = {
     "inner": "The file is coarse or ends where directions graze: below 70° the fits are the same.",
     "ordered": "The losses `cosine` and `cbrt` hold cosθ_i, but not cosθ_o: with every sample in "
     "both orders of its directions the fits are the same.",
-    "estimate": "What the model leaves is narrower than the samples are apart: the file's estimate "
-    "of the error of one and the same fit is 2 % or more off.",
+    "estimate": "The file's estimate of the error of one and the same fit is 2 % or more off: its "
+    "samples are too few or too coarse for what the model leaves of a highlight, or count wrongly.",
     "open": "None of these.",
 }
 
