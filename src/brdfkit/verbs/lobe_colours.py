@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.geometry.directions import to_half_difference
 from brdfkit.measured import Measured
 from brdfkit.model import Model
 from brdfkit.names import listed
 from brdfkit.samples import Samples
+from brdfkit.samples.measures import weigh
 from brdfkit.verbs.lobe_widths import cosine_of_half_angle
 
 # A lobe is of one hue where its least channel is below this share of its largest, and two hues
@@ -61,9 +61,8 @@ def note_on_rim(data: Measured, samples: Samples, fitted: Model) -> list[str]:
         return []
     rim = samples.at(cosine < np.cos(np.radians(largest - RIM)))
     light = rim.weight * rim.wi[:, 2] * rim.wo[:, 2]
-    if data.is_table:  # the weight is the width in theta_h; the others make it a solid angle
-        theta_h, theta_d, _ = to_half_difference(rim.wi, rim.wo)
-        light = light * np.sin(theta_h) * np.sin(2 * theta_d)
+    if data.is_table:  # whose cells are small in the highlight, and many
+        light = light * weigh(rim.extents, "solid_angle")
     each = light * np.maximum(rim.values, 0).sum(axis=1)
     if not each.sum() or each.sum() ** 2 < SPREAD * (each**2).sum():
         return []  # dark, or a few bright samples
