@@ -48,7 +48,7 @@ def levenberg_marquardt(expand, u, weights, least, iterations, tolerance=1e-6, d
     ends, too, that would not come below one that has converged. On Ctrl-C `Stopped` has the
     `Expansion` about where the searches are.
     """
-    now = expand(u, weights)
+    now = expand(u.copy(), weights.copy())  # the ends are put into these
     points, shapes = now.u.shape
     channels = weights.shape[1]
     low, high = limits(shapes, channels, least)

@@ -56,8 +56,7 @@ def keep_light(whole, u, weights, light, points, rng):
     for share in SHARES:
         problems = [LightProblem(part, light, counted, first, share) for part in parts]
         ends, *_ = search(problems, points, lambda done, total: None)
-        # Copies: a search works in the arrays that it is given
-        end = ends.u[:1].copy(), ends.weights[:1].copy()
+        end = ends.u[:1], ends.weights[:1]
         held, error = look(*end), whole.sums(*end, curvature=False).error[0]
         if error > (DEAREST * max(free.max(), 1)) ** 2 * first:
             break
@@ -65,7 +64,7 @@ def keep_light(whole, u, weights, light, points, rng):
             kept = *end, _explain_light(light, free, held)
         if light.is_right(held):
             break
-        points = end[0].copy()
+        points = end[0]
     return kept
 
 
