@@ -4,7 +4,7 @@ From the ground up: `loss.py` is the error E that a fit minimises, `named_losses
 `picture.py` that of pictures. `columns.py` evaluates the lobes of a model and their derivatives, on
 `blocks.py` of samples; `sums.py` adds them up, `expansion.py` makes of the sums E² to second order,
 and `problem.py` all this of a model on samples (`folding.py`: quicker, on a table with a linear
-loss; `picture_problem.py`: on `pixel_blocks.py`, too).
+loss; `pixel_problem.py`: on `pixel_blocks.py`, too, as `picture_problem.py` has them).
 `levenberg_marquardt.py` searches in the bounds of `parameter_space.py`, by steps that
 `box_quadratic.py` finds; `search.py` has it go from many `starting_points.py` and a `part.py` of
 many samples to one end and all. This and other ways to search are the `solvers/`, where constraints

@@ -12,14 +12,12 @@ first search. A fit whose light is right is left as it is.
 
 import numpy as np
 
-from brdfkit.fitting.blocks import Blocks
 from brdfkit.fitting.levenberg_marquardt import ROUNDING
 from brdfkit.fitting.loss import Loss
-from brdfkit.fitting.pixel_blocks import PixelBlocks
+from brdfkit.fitting.pixel_problem import PixelProblem
 from brdfkit.fitting.problem import Problem
 from brdfkit.fitting.search import search, with_parts
 from brdfkit.model.evaluation import mix_lobes
-from brdfkit.pictures import Pixels
 
 # How much the light counts beside the error: more where less does not do
 SHARES = 10.0, 40.0, 160.0
@@ -80,7 +78,7 @@ def _explain_light(light, free, held):
     )
 
 
-class LightProblem(Problem):
+class LightProblem(PixelProblem):
     """E² of a model class on `Samples`, over that of a first search, and its difference in light.
 
     `counted`: at which angles of the `light` (n,); `error`: E² of the first search; `share`: how
@@ -88,24 +86,14 @@ class LightProblem(Problem):
     """
 
     def __init__(self, problem, light, counted, error, share):
-        super().__init__(problem.model, problem.samples, problem.loss, problem.space)
         self.given = light, counted, error, share
         mean = np.maximum(light.values[counted].mean(axis=1), 1e-6)
-        pixels, rows = light.pixels, np.repeat(counted, light.pixels.pairs)
-        pairs = pixels.wi[rows], pixels.wo[rows], pixels.shares[rows]
-        pixels = Pixels(*pairs, pixels.values[counted], pixels.weights[counted], pixels.pairs)
-        of_light = share / (len(mean) * self.channels) / mean**2
-        of_samples = self.importance / error
-        self._of_samples = Blocks(self.samples, of_samples, self.loss)
-        self._of_light = PixelBlocks(pixels, of_light, DIFFERENCE)
-        self.importance = np.concatenate([of_samples, of_light])
-        self.blocks = self._all_blocks
+        weights = share / (len(mean) * problem.channels) / mean**2
+        of_pixels = light.pixels.at(counted), weights, DIFFERENCE
+        given = problem.model, problem.samples, problem.loss, problem.space
+        super().__init__(*given, 1 / error, *of_pixels)
 
     def on(self, samples):
         """The same problem on other `Samples`."""
         part = Problem(self.model, samples, self.loss, self.space)
         return LightProblem(part, *self.given)
-
-    def _all_blocks(self, count):
-        yield from self._of_samples(count)
-        yield from self._of_light(count)
