@@ -4,7 +4,7 @@ import math
 
 from brdfkit.documents import Cell
 from brdfkit.documents.parts import BAD
-from brdfkit.fitting.light import ALL, WRONG, Albedo
+from brdfkit.fitting.light import ALL, WRONG, Albedo, factor_between
 
 # How many angles of an `Albedo` are shown: all but the grazing one, which no measurement tells
 SHOWN = 3
@@ -18,10 +18,7 @@ def mean_albedos(albedo: Albedo | None) -> tuple[tuple[float, ...], tuple[float,
     """
     if albedo is None:
         return UNKNOWN, UNKNOWN
-    fit, measured = (
-        tuple(sum(row) / len(row) if row else math.nan for row in rows[:SHOWN])
-        for rows in (albedo.fit, albedo.measured)
-    )
+    fit, measured = (means[:SHOWN] for means in albedo.means())
     return fit, measured
 
 
@@ -30,10 +27,7 @@ def is_wrong(albedo: float, measured: float = math.nan) -> bool:
 
     Of nan nothing is known to be wrong.
     """
-    if albedo > ALL:
-        return True
-    low, high = sorted((max(albedo, 1e-9), max(min(measured, 1.0), 1e-9)))
-    return not math.isnan(albedo + measured) and high > WRONG * low
+    return albedo > ALL or factor_between(albedo, min(measured, 1.0)) > WRONG
 
 
 def format_albedo(albedo: float) -> str:

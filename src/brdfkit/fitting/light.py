@@ -1,6 +1,8 @@
 """The light that a fit reflects, beside that of its data: albedos at a few angles of incidence."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +20,30 @@ STEEP = 60
 ALL = 1.001
 # Half the rings of the quadrature, and the points on each
 POINTS = 32
-# Azimuths of incidence of an anisotropic material
-AZIMUTHS = 4
+# Azimuths of incidence [rad], of an isotropic material and of another one
+ONE, FOUR = (0.0,), tuple(np.arange(4) * np.pi / 2)
 UP = 0.0, 0.0, 1.0
+
+
+@cache
+def albedo_pixels(theta_i: tuple[float, ...], azimuths: tuple[float, ...] = ONE) -> Pixels:
+    """The quadrature by which `Pixels.look` gives the albedos (n, channels) of a BRDF for light
+    from angles `theta_i` [degrees] (n,), the mean over `azimuths` [rad]; without values."""
+    rules = [
+        [(wi, *ring_rule(wi, POINTS)) for wi in from_angles(np.radians(theta), azimuths)]
+        for theta in theta_i
+    ]
+    pairs = max(sum(len(weight) for *_, weight in rule) for rule in rules)
+    wi, wo = (np.tile(UP, (len(rules), pairs, 1)) for _ in range(2))
+    shares = np.zeros((len(rules), pairs))
+    for row, rule in enumerate(rules):
+        incident = [np.broadcast_to(w, directions.shape) for w, directions, _ in rule]
+        directions, weights = ([part[k] for part in rule] for k in (1, 2))
+        count = sum(map(len, weights))
+        wi[row, :count], wo[row, :count] = np.concatenate(incident), np.concatenate(directions)
+        shares[row, :count] = np.concatenate(weights) / len(azimuths)
+    flat = wi.reshape(-1, 3), wo.reshape(-1, 3), shares.ravel()
+    return Pixels(*flat, np.zeros((len(rules), 0)), np.ones(len(rules)), pairs)
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,25 +62,9 @@ class Light:
     @classmethod
     def of(cls, albedo, anisotropic):
         """The light of a `MeasuredAlbedo`."""
-        theta_i = albedo.theta_i
-        azimuths = np.arange(AZIMUTHS) * 2 * np.pi / AZIMUTHS if anisotropic else np.zeros(1)
-        rules = [
-            [(wi, *ring_rule(wi, POINTS)) for wi in from_angles(np.radians(theta), azimuths)]
-            for theta in theta_i
-        ]
-        pairs = max(sum(len(weight) for *_, weight in rule) for rule in rules)
-        wi, wo = (np.tile(UP, (len(rules), pairs, 1)) for _ in range(2))
-        shares = np.zeros((len(rules), pairs))
-        for row, rule in enumerate(rules):
-            incident = [np.broadcast_to(w, directions.shape) for w, directions, _ in rule]
-            directions, weights = ([part[k] for part in rule] for k in (1, 2))
-            count = sum(map(len, weights))
-            wi[row, :count], wo[row, :count] = np.concatenate(incident), np.concatenate(directions)
-            shares[row, :count] = np.concatenate(weights) / len(azimuths)
-        flat = wi.reshape(-1, 3), wo.reshape(-1, 3), shares.ravel()
         values = np.minimum(albedo.values, 1)  # what a file may gain, no fit should
-        pixels = Pixels(*flat, values, np.ones(len(theta_i)), pairs)
-        return cls(theta_i, values, albedo.known, pixels)
+        pixels = albedo_pixels(albedo.theta_i, FOUR if anisotropic else ONE)
+        return cls(albedo.theta_i, values, albedo.known, replace(pixels, values=values))
 
     def look(self, brdf):
         """The albedos (n, channels) of a BRDF (wi, wo) → (n, channels)."""
@@ -119,29 +126,33 @@ class Albedo:
     def warnings(self) -> list[str]:
         """What is wrong with the light of the fit, in sentences."""
         found = []
-        rows = list(zip(self.theta_i, self.fit, self.measured, strict=True))
-        angle, most = max(((angle, max(fit)) for angle, fit, _ in rows), key=lambda pair: pair[1])
-        if most > ALL:
+        most = [max(albedos) for albedos in self.fit]
+        angle, gain = max(zip(self.theta_i, most, strict=True), key=lambda pair: pair[1])
+        if gain > ALL:
             found.append(
-                f"it reflects {most:.2f} of the light at {angle:g}°, more than arrives; a "
+                f"it reflects {gain:.2f} of the light at {angle:g}°, more than arrives; a "
                 "constraint prevents it: AlbedoAtMost(1), or --albedo-at-most 1"
             )
-        means = [(angle, _mean(fit), _mean(own)) for angle, fit, own in rows if own]
-        off = [row for row in means if _factor(*row[1:]) > WRONG]
-        if off:
-            angle, fit, own = max(off, key=lambda row: _factor(*row[1:]))
+        means = zip(self.theta_i, *self.means(), strict=True)
+        angle, fit, measured = max(means, key=lambda row: factor_between(*row[1:]))
+        if factor_between(fit, measured) > WRONG:
             found.append(
                 f"it reflects {fit:.2f} of the light at {angle:g}°, where the measurement reflects "
-                f"{own:.2f}"
+                f"{measured:.2f}"
             )
         return found
 
+    def means(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """The mean over the channels of the light of the fit, and of its data, at each angle; nan
+        where the samples do not tell it."""
+        fit = tuple(sum(row) / len(row) for row in self.fit)
+        measured = tuple(sum(row) / len(row) if row else math.nan for row in self.measured)
+        return fit, measured
 
-def _mean(numbers):
-    return sum(numbers) / len(numbers)
 
-
-def _factor(fit, measured):
-    """The factor, above 1, between two albedos."""
-    fit, measured = max(fit, 1e-9), max(measured, 1e-9)
-    return max(fit / measured, measured / fit)
+def factor_between(one: float, other: float) -> float:
+    """The factor between two albedos, at least 1, and 1 where one of them is nan."""
+    if math.isnan(one + other):
+        return 1.0
+    low, high = sorted((max(one, 1e-9), max(other, 1e-9)))
+    return high / low

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from brdfkit.fitting.light import FOUR, ONE
 from brdfkit.geometry.directions import from_angles
 from brdfkit.samples.coordinates import anisotropic_coordinates, isotropic_coordinates
 from brdfkit.samples.measures import REACH
@@ -14,8 +15,6 @@ from brdfkit.samples.measures import REACH
 ANGLES, GRAZING = (5.0, 45.0, 75.0), 85.0
 # Half vectors of the quadrature: polar angles, spaced as in a table, and azimuths
 N_THETA, N_PHI = 60, 24
-# Azimuths of incidence of an anisotropic material
-AZIMUTHS = 4
 # The share of the light that must leave near measured directions for the albedo to be known
 KNOWN = 0.75
 
@@ -69,7 +68,7 @@ def hemisphere(wi):
 
 def measured_albedo(data):
     """The `MeasuredAlbedo` of a `Measured` at `ANGLES` and `GRAZING`."""
-    azimuths = np.arange(AZIMUTHS) / AZIMUTHS * 2 * np.pi if data.anisotropic else (0.0,)
+    azimuths = FOUR if data.anisotropic else ONE
     angles, is_near, values, known = (*ANGLES, GRAZING), _nearness(data), [], []
     for angle in angles:
         directions = [from_angles(np.radians(angle), phi) for phi in azimuths]

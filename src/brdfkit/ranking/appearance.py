@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.colours import LUMINANCE, to_srgb
-from brdfkit.geometry.directions import from_angles
-from brdfkit.geometry.quadrature import ring_rule
+from brdfkit.fitting.light import ONE, albedo_pixels
 from brdfkit.measured import Measured
 from brdfkit.picture_errors.colour_difference import ciede2000
 from brdfkit.pictures import LIGHTS, draw_pixels
@@ -25,7 +24,6 @@ Brdf = Callable[[Array, Array], Array]  # (wi, wo) → (n, channels)
 # Angles of incidence of the material's colours, as far as it was measured; and of a fit's that is
 # compared to them [degrees]
 ANGLES, GRAZING = (15.0, 30.0, 45.0, 60.0, 75.0), 85.0
-POINTS = 32  # of each ring of the quadrature, which so is good to 1 %
 # Of each pixel, by the light and as many by the material: more of them tell models apart no better
 DIRECTIONS = 16
 # So far from all mixtures with grey, of so many for each colour, a colour is another [ΔE2000]: fits
@@ -45,11 +43,11 @@ class Appearance:
     def __init__(self, data: Measured, samples: Samples, max_angle: float, seed: int):
         brdf = data.rgb.eval
         self.pixels = draw_pixels(tuple(LIGHTS), brdf, max_angle, seed, directions=DIRECTIONS)
-        self.azimuths = (0.0, np.pi / 2) if data.anisotropic else (0.0,)
+        self.azimuths = (0.0, np.pi / 2) if data.anisotropic else ONE
         lowest = min(samples.wi[:, 2].min(), samples.wo[:, 2].min())
         end = float(np.degrees(np.arccos(min(lowest, 1.0))))
         angles = [angle for angle in ANGLES if angle <= end] or [end]
-        self.albedos = np.array([self._albedo(brdf, angle) for angle in angles])
+        self.albedos = albedo_pixels(tuple(angles), self.azimuths).look(brdf)
 
     def picture_error(self, brdf: Brdf) -> float:
         """RMS difference of the pixels of a BRDF from the measured ones, by sRGB's curve from 0 to
@@ -60,21 +58,12 @@ class Appearance:
 
     def find_doubt(self, brdf: Brdf) -> str:
         """A clause on what a BRDF does at 85° that the material hardly does; or nothing."""
-        albedo = self._albedo(brdf, GRAZING)
+        (albedo,) = albedo_pixels((GRAZING,), self.azimuths).look(brdf)
         if (albedo > GAIN * np.maximum(self.albedos.max(axis=0), 1)).any():
             return f"more light is reflected at {GRAZING:g}° than arrives"
         if len(albedo) == 3 and self._difference(albedo) > OTHER:
             return f"the colour at {GRAZING:g}° is not the material's"
         return ""
-
-    def _albedo(self, brdf: Brdf, angle: float) -> Array:
-        """The albedo (channels,) at an angle of incidence [degrees], a mean over the azimuths."""
-        albedos = []
-        for azimuth in self.azimuths:
-            wi = from_angles(np.radians(angle), azimuth)
-            wo, weight = ring_rule(wi, POINTS)
-            albedos.append(weight @ brdf(np.broadcast_to(wi, wo.shape), wo))
-        return np.array(albedos).mean(axis=0)
 
     def _difference(self, colour: Array) -> float:
         """ΔE2000 of a colour (3,) from the nearest mixture of one of the material's with grey."""

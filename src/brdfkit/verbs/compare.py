@@ -11,7 +11,7 @@ from brdfkit.documents.parts import STRONG
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting import Fit, losses
 from brdfkit.fitting.albedo_cells import albedo_cell
-from brdfkit.fitting.light import Light
+from brdfkit.fitting.light import FOUR, ONE, albedo_pixels
 from brdfkit.fitting.loss import squares
 from brdfkit.fitting.named_losses import DEFAULT
 from brdfkit.materials import MaterialLike, materials, measured_material
@@ -131,7 +131,7 @@ def compare(
     data, found = measured_material(data), materials(things)
     samples = select_samples(data, max_angle, spectral=spectral)
     light = (data if spectral else data.rgb).albedo
-    pixels = Light.of(light, data.anisotropic).pixels.first(len(ANGLES))
+    pixels = albedo_pixels(ANGLES, FOUR if data.anisotropic else ONE)
     errors: dict[str, dict[str, float]] = {}
     albedos: dict[str, tuple[float, ...]] = {}
     for thing in found:

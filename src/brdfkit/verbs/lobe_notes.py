@@ -5,8 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.geometry.directions import from_angles
-from brdfkit.geometry.quadrature import ring_rule
+from brdfkit.fitting.light import albedo_pixels
 from brdfkit.measured import Measured
 from brdfkit.model import Model
 from brdfkit.model.evaluation import lobe_values, weight_matrix
@@ -15,8 +14,8 @@ from brdfkit.samples import Samples
 from brdfkit.verbs.lobe_colours import note_on_lobe_colours, note_on_rim
 from brdfkit.verbs.lobe_widths import half_widths, lobes_of, notes_on_widths, width_power
 
-# Where the albedo of a lobe is asked for [degrees], by so many points a ring, and what is a gain
-INCIDENCES, POINTS, GAIN = (5, 45, 75), 64, 1.05
+# Where the albedo of a lobe is looked at [degrees], and what is a gain
+INCIDENCES, GAIN = (5, 45, 75), 1.05
 # An index of refraction above this is that of no surface
 LARGEST_IOR = 5.0
 # A highlight that reflects less from above is of no metal, and should rise by this factor to 75°
@@ -74,13 +73,10 @@ def list_lobe_notes(
 
 def lobe_albedos(model: Model) -> NDArray[np.float64]:
     """The directional albedo (incidences, lobes, channels) of each lobe with its weight."""
-    weights, found = weight_matrix(model), []
-    for degrees in INCIDENCES:
-        wi = from_angles(np.radians(degrees), 0.0)
-        wo, size = ring_rule(wi, POINTS)
-        plain, squared = lobe_values(model, np.broadcast_to(wi, wo.shape), wo)
-        found.append((size @ plain)[:, None] * weights + (size @ squared)[:, None] * weights**2)
-    return np.array(found)
+    both = albedo_pixels(INCIDENCES).look(lambda wi, wo: np.hstack(lobe_values(model, wi, wo)))
+    plain, squared = np.split(both[..., None], 2, axis=1)
+    weights = weight_matrix(model)
+    return plain * weights + squared * weights**2
 
 
 def _list_gains(fitted: Model, albedos: NDArray[np.float64]) -> list[str]:
