@@ -31,8 +31,10 @@ from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
 from brdfkit.distance_fields.shadows.quilez import quilez
 from brdfkit.distance_fields.shadows.split import split
 from brdfkit.distance_fields.shadows.tau import tau
+from brdfkit.json_values import rounded
 
 RESULTS = Path(__file__).with_suffix(".json")
+DIGITS = 4  # of numbers in it
 LANES, TRUE_RAYS, HIT = 4096, 2048, 1e-4  # random scenes of a kind, and rays of the truth
 SIZE, FRAME_RAYS = 160, 512  # pixels along a side of a frame, and rays of its truth
 RAYS = 1, 2, 4, 8, 16, 32, 64, 128
@@ -120,18 +122,9 @@ def main():
     for name, measure in parts().items():
         if name not in results:
             print(name, flush=True)
-            results[name] = rounded(measure())
+            results[name] = rounded(measure(), DIGITS)
             RESULTS.write_text(json.dumps(results, indent=1, ensure_ascii=False) + "\n")
     page.write(results)
-
-
-def rounded(value):
-    """Numbers with four digits, in dictionaries and lists."""
-    if isinstance(value, dict):
-        return {k: rounded(v) for k, v in value.items()}
-    if isinstance(value, list):
-        return [rounded(v) for v in value]
-    return float(f"{value:.4g}") if isinstance(value, float) else value
 
 
 if __name__ == "__main__":

@@ -35,9 +35,11 @@ from brdfkit.catalogue import shipped
 from brdfkit.colours import to_srgb
 from brdfkit.files import write_safely
 from brdfkit.jit.threads import use_threads
+from brdfkit.json_values import rounded
 from brdfkit.samples.neural import decode_network
 
 RESULTS = Path(__file__).with_name("real_measurements.json")
+DIGITS = 4  # of numbers in it
 # Where measurements lie in the folder; of CUReT's file of 61 samples every tenth
 COLLECTIONS = "rgl/*.bsdf", "minidiff_paints/*.astm.xz", "cornell/*.[ab]*", "alta_retro/*.dat.xz"
 CURET = "curet/abrdf.dat", range(1, 61, 10)
@@ -110,7 +112,7 @@ def run(part, folder, results, given):
     with ProcessPoolExecutor(given.workers, get_context("spawn")) as pool:
         futures = {pool.submit(work, name, folder): name for name in missing}
         for future in as_completed(futures):
-            found[futures[future]] = rounded(future.result())
+            found[futures[future]] = rounded(future.result(), DIGITS)
             results[part] = {name: found[name] for name in names if name in found}
             write(results)
             done += 1
@@ -128,15 +130,6 @@ def write(results):
         parts.append(f"{json.dumps(part)}: {{\n" + ",\n".join(lines) + "\n}")
     with write_safely(RESULTS) as beside:
         beside.write_text("{\n" + ",\n".join(parts) + "\n}\n", encoding="utf-8")
-
-
-def rounded(value):
-    """Numbers with four digits, in dictionaries and lists."""
-    if isinstance(value, dict):
-        return {k: rounded(v) for k, v in value.items()}
-    if isinstance(value, list):
-        return [rounded(v) for v in value]
-    return float(f"{value:.4g}") if isinstance(value, float) else value
 
 
 def balls(folder):

@@ -6,6 +6,15 @@ from dataclasses import fields, is_dataclass
 import numpy as np
 
 
+def rounded(value, digits):
+    """JSON's types with numbers of so many digits."""
+    if isinstance(value, dict):
+        return {key: rounded(v, digits) for key, v in value.items()}
+    if isinstance(value, list):
+        return [rounded(v, digits) for v in value]
+    return float(f"{value:.{digits}g}") if isinstance(value, float) else value
+
+
 def plain(value):
     """`value` in JSON's types: NumPy's numbers as Python's, numbers that are not finite as null."""
     if is_dataclass(value):

@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from brdfkit.geometry.directions import cos_theta_h
+
 BANDS = 4
 
 
@@ -37,15 +39,10 @@ def _order(samples):
     """The order of theta_h; None where the samples are in it, as a table's cells."""
     if samples.cells is not None:  # one of each half vector tells
         first = np.flatnonzero(np.diff(samples.cells[0], prepend=-1))
-        if _falls(_cos_theta_h(samples.wi[first], samples.wo[first])):
+        if _falls(cos_theta_h(samples.wi[first], samples.wo[first])):
             return None
-    cosine = _cos_theta_h(samples.wi, samples.wo)
+    cosine = cos_theta_h(samples.wi, samples.wo)
     return None if _falls(cosine) else np.argsort(-cosine, kind="stable")
-
-
-def _cos_theta_h(wi, wo):
-    x, y, z = (wi + wo).T
-    return z / np.sqrt(x * x + y * y + z * z)
 
 
 def _falls(cosine):

@@ -10,13 +10,13 @@ import numpy as np
 from brdfkit.errors import BrdfkitError
 from brdfkit.formats._notes import note_lone_point, note_short_rings
 from brdfkit.formats._writing import require_measured, sample_angles, write_rows
+from brdfkit.measured.long_form import NANOMETRES
 from brdfkit.measured.spectrum_to_rgb import wavelengths
 
 NAME = "Cornell"
 SUFFIXES = (".brdf",)
 
 MOST_WAVELENGTHS = 4096
-NANOMETRES = (100, 100_000)  # the least and the largest plausible wavelength
 
 
 def sniff(head):

@@ -47,6 +47,13 @@ def to_half_difference(wi, wo):
     return theta_h, theta_d, np.mod(phi_d, 2 * np.pi)
 
 
+def cos_theta_h(wi, wo):
+    """The cosine (n,) of theta_h, the half vector's angle to the normal, of direction pairs
+    (n, 3)."""
+    x, y, z = (wi + wo).T
+    return z / np.sqrt(x * x + y * y + z * z)
+
+
 def half_azimuth(wi, wo):
     """phi_h in [0, 2π) [rad], the azimuth of the half vector, of direction pairs (..., 3)."""
     s = np.asarray(wi, float) + np.asarray(wo, float)

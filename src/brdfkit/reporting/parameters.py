@@ -5,7 +5,7 @@ import json
 import numpy as np
 
 from brdfkit.colours import RGB
-from brdfkit.json_values import plain
+from brdfkit.json_values import plain, rounded
 from brdfkit.model.value_table import MOST
 
 DIGITS = 9  # of numbers in JSON: enough to build the model, and the same on every machine
@@ -18,7 +18,7 @@ def describe(fit, told=()):
         "rows": [_row(fit, name) for name in fit.values],
         "remarks": [*(note for note in fit.notes if note not in told), fit.message],
         "warnings": fit.warnings,
-        "json": json.dumps(_rounded(_record(fit)), indent=2, ensure_ascii=False),
+        "json": json.dumps(rounded(_record(fit), DIGITS), indent=2, ensure_ascii=False),
         "samples": f"{fit.samples:,}",
         "evaluations": fit.evaluations,
         "loss": f"{fit.loss_name} {fit.loss:.5g}",
@@ -73,12 +73,3 @@ def _record(fit):
             "checksum": fit.checksum,
         }
     )
-
-
-def _rounded(value):
-    """JSON's types with numbers of so many digits."""
-    if isinstance(value, dict):
-        return {key: _rounded(v) for key, v in value.items()}
-    if isinstance(value, list):
-        return [_rounded(v) for v in value]
-    return float(f"{value:.{DIGITS}g}") if isinstance(value, float) else value

@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from brdfkit.geometry.directions import cos_theta_h
 from brdfkit.measured import Measured
 from brdfkit.model import Model
 from brdfkit.names import listed
 from brdfkit.samples import Samples
 from brdfkit.samples.measures import weigh
-from brdfkit.verbs.lobe_widths import cosine_of_half_angle
 
 # A lobe is of one hue where its least channel is below this share of its largest, and two hues
 # differ where the cosine between them is smaller than the second
@@ -39,7 +39,7 @@ def note_on_lobe_colours(
     ]
     if not names:
         return []
-    cosine = cosine_of_half_angle(samples)
+    cosine = cos_theta_h(samples.wi, samples.wo)
     near = cosine >= min(HIGHLIGHT, np.sort(cosine)[-min(10, len(cosine))])
     highlight = np.maximum(samples.values[near], 0).mean(axis=0)
     if highlight.min() < 2 * PURE * highlight.max():

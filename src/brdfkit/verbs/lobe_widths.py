@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.geometry.directions import from_half_difference
+from brdfkit.geometry.directions import cos_theta_h, from_half_difference
 from brdfkit.model import Model
 from brdfkit.model.evaluation import lobe_values, weight_matrix
 from brdfkit.samples import Samples
@@ -45,16 +45,10 @@ def width_power(model: Model, name: str) -> float:
 def half_angle_step(samples: Samples) -> float:
     """The second smallest half angle theta_h of `Samples` [degrees]: below it lies at most one, and
     no width of a highlight can be told."""
-    cosine = cosine_of_half_angle(samples)
+    cosine = cos_theta_h(samples.wi, samples.wo)
     few = np.partition(cosine, -NEAREST)[-NEAREST:] if len(cosine) > NEAREST else cosine
     different = np.unique(np.round(np.degrees(np.arccos(np.minimum(few, 1))) / SAME)) * SAME
     return float(different[min(1, len(different) - 1)])
-
-
-def cosine_of_half_angle(samples: Samples) -> NDArray[np.float64]:
-    """cos theta_h (n,) of `Samples`."""
-    sums = samples.wi + samples.wo
-    return sums[:, 2] / np.sqrt(np.einsum("nk,nk->n", sums, sums))
 
 
 def half_widths(model: Model) -> NDArray[np.float64]:
