@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.geometry.directions import to_angles
-from brdfkit.samples.coordinates import anisotropic_coordinates, isotropic_coordinates
+from brdfkit.samples.coordinates import coordinates
 
 FACTOR = 4  # over the largest neighbour; of rough and smooth paints, cloth and stone at most 3.4
 NEIGHBOURS = 6  # of a scattered sample
@@ -83,8 +83,7 @@ def _largest_nearby(data, values):
     from scipy.spatial import cKDTree
 
     samples, valid = data.samples, np.flatnonzero(data.samples.valid)
-    coordinates = anisotropic_coordinates if data.anisotropic else isotropic_coordinates
-    here = coordinates(samples.wi[valid], samples.wo[valid])
+    here = coordinates(samples.wi[valid], samples.wo[valid], data.anisotropic)
     around = np.full(len(values), np.nan)
     if len(valid) > NEIGHBOURS:
         _, nearest = cKDTree(here).query(here, k=NEIGHBOURS + 1)

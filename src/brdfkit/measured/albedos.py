@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from brdfkit.fitting.light import FOUR, ONE
 from brdfkit.geometry.directions import from_angles
-from brdfkit.samples.coordinates import anisotropic_coordinates, isotropic_coordinates
+from brdfkit.samples.coordinates import coordinates, sample_coordinates
 from brdfkit.samples.measures import REACH
 
 # Angles of incidence [degrees] at which fits and measurements are compared, and a grazing one, at
@@ -92,9 +92,10 @@ def _nearness(data):
         known = np.isfinite(data.table.values).all(axis=-1)
         return lambda wi, wo: known[data.table.cells_of(wi, wo)]
     samples = data.samples.at(data.samples.valid)
-    locate = anisotropic_coordinates if data.anisotropic else isotropic_coordinates
-    places = locate(samples.wi, samples.wo)
-    if data.anisotropic:
-        places = np.concatenate([places, locate(samples.wo, samples.wi)])
-    tree = cKDTree(places)
-    return lambda wi, wo: tree.query(locate(wi, wo), distance_upper_bound=REACH)[0] <= REACH
+    tree = cKDTree(sample_coordinates(samples.wi, samples.wo, data.anisotropic))
+
+    def is_near(wi, wo):
+        points = coordinates(wi, wo, data.anisotropic)
+        return tree.query(points, distance_upper_bound=REACH)[0] <= REACH
+
+    return is_near

@@ -44,8 +44,7 @@ class Appearance:
         brdf = data.rgb.eval
         self.pixels = draw_pixels(tuple(LIGHTS), brdf, max_angle, seed, directions=DIRECTIONS)
         self.azimuths = (0.0, np.pi / 2) if data.anisotropic else ONE
-        lowest = min(samples.wi[:, 2].min(), samples.wo[:, 2].min())
-        end = float(np.degrees(np.arccos(min(lowest, 1.0))))
+        end = samples.largest_angle
         angles = [angle for angle in ANGLES if angle <= end] or [end]
         self.albedos = albedo_pixels(tuple(angles), self.azimuths).look(brdf)
 

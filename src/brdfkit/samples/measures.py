@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from brdfkit.geometry.directions import from_half_difference, to_half_difference
 from brdfkit.samples.cells import least_cosine
-from brdfkit.samples.coordinates import anisotropic_coordinates, isotropic_coordinates
+from brdfkit.samples.coordinates import coordinates, sample_coordinates
 
 # The power of s that is the density of a measure in the angles; without one, each sample counts 1
 MEASURES: dict[str, float | None] = {
@@ -81,19 +81,17 @@ def estimate_extents(
     from scipy.spatial import cKDTree
 
     points_i, points_o, volumes = _spread_points(wi, wo, anisotropic, max_angle)
-    locate = anisotropic_coordinates if anisotropic else isotropic_coordinates
-    places = locate(wi, wo)
-    if anisotropic:  # a pair and its reciprocal are one sample
-        places = np.concatenate([places, locate(wo, wi)])
+    places = sample_coordinates(wi, wo, anisotropic)
     places, same = np.unique(places.round(6), axis=0, return_inverse=True)
     same = same.ravel()
-    distance, nearest = cKDTree(places).query(locate(points_i, points_o))
+    distance, nearest = cKDTree(places).query(coordinates(points_i, points_o, anisotropic))
     near = distance <= REACH
     sums = np.stack(
         [np.bincount(nearest[near], volume[near], len(places)) for volume in volumes.T], axis=1
     )
     # Samples at one place share what it stands for
     shares = (sums / np.bincount(same)[:, None])[same]
+    # A pair in both orders is one sample
     extents = shares.reshape(-1, len(wi), 2).sum(axis=0)
     # One so near to others that no point reached it stands for little, but for something
     missed = extents[:, 0] == 0

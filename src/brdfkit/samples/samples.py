@@ -86,6 +86,11 @@ class Samples:
         samples = cls(wi, wo, values, known, weight, extents, (half_vectors, pairs), own)
         return samples if known.all() else samples.at(known)
 
+    @property
+    def largest_angle(self):
+        """The largest angle to the normal of all directions [degrees]."""
+        return float(np.degrees(np.arccos(min(self.wi[:, 2].min(), self.wo[:, 2].min(), 1.0))))
+
     def within(self, max_angle):
         """A mask (n,) of the valid samples with θ_i and θ_o below `max_angle` [degrees]."""
         cos_min = least_cosine(max_angle)

@@ -1,7 +1,5 @@
 """What one should know of a fit, in sentences."""
 
-import numpy as np
-
 from brdfkit.auditing.data_findings import data_findings
 from brdfkit.fitting import Picture
 from brdfkit.model.evaluation import clamped_share
@@ -13,7 +11,7 @@ def list_notes(data, samples, loss, found, fitted, weighted):
     """Notes on a fit, in words: what is doubtful in the data, too few measured numbers, negative
     values, a clamped model, an isotropic one of an anisotropic material; `weighted`: whether the
     user gave weights."""
-    notes = [*data_findings(data, _largest_angle(samples))]
+    notes = [*data_findings(data, samples.largest_angle)]
     if weighted:
         notes.append("samples count by the weights that were given; so in the loss")
     if isinstance(loss, Picture):
@@ -35,11 +33,6 @@ def list_notes(data, samples, loss, found, fitted, weighted):
         notes.append(note)
     notes += list_lobe_notes(data, samples, fitted, found.at_bounds)
     return (*notes, *found.certainty.undetermined, *found.certainty.trades)
-
-
-def _largest_angle(samples):
-    """The largest angle to the normal of `Samples` [degrees]."""
-    return np.degrees(np.arccos(min(samples.wi[:, 2].min(), samples.wo[:, 2].min())))
 
 
 def _are_equal(values):
