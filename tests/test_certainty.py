@@ -2,11 +2,11 @@
 
 import json
 import pickle
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from coverage_of_intervals import held
+from sample_sums import sample_sum
 from scipy.stats import binom
 from test_fit import synthetic
 
@@ -67,8 +67,7 @@ def test_a_linear_model_has_the_sandwich_of_the_textbook():
     rng = np.random.default_rng(2)
     values = 0.1 + 0.05 * wi[:, 2:] + 0.02 * wo[:, 2:] * rng.normal(size=(100, 1))
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
-    # Each sample counts as one, as textbooks have it
-    fit = bk.fit("koenderink", data, replace(losses["plain"], name="sum", measure="samples"))
+    fit = bk.fit("koenderink", data, sample_sum("plain"))
     J, _ = lobe_values(fit.model, wi, wo)
     J = J.T if len(J) == len(fit.values) else J
     inverse = np.linalg.inv(J.T @ J)

@@ -1,10 +1,9 @@
 """Constraints of fits: they are met, at the best point that meets them, and said."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from sample_sums import sample_sum
 from scipy.optimize import minimize_scalar, nnls
 
 import brdfkit as bk
@@ -87,8 +86,7 @@ def test_one_parameter_by_brute_force():
         return np.mean((np.log(cosines * model + 1e-3) - np.log(cosines * measured + 1e-3)) ** 2)
 
     best = minimize_scalar(error, bounds=(0, 0.3), method="bounded", options={"xatol": 1e-9})
-    # Each sample counts as one, as in `error`
-    loss = replace(losses["log"], name="log sum", measure="samples")
+    loss = sample_sum("log")
     found = bk.fit("ward", data, loss, fixed={"alpha_u": 0.3}, constraints=bk.AlbedoAtMost(0.3))
     assert found.loss == pytest.approx(np.sqrt(best.fun), rel=1e-9)
     assert found.values["diffuse_reflectance"][0] == pytest.approx(best.x, rel=1e-4)

@@ -6,6 +6,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+from sample_sums import sample_sum
 from test_fit import synthetic
 
 import brdfkit as bk
@@ -92,8 +93,7 @@ def test_residuals_keep_what_is_known_of_the_data():
     wi = wo = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.999, 0.0, 0.04]])
     errors = np.full((3, 1), 0.01)
     data = bk.Measured.from_samples(wi, wo, [1, 2, 3], channels=("Y",), standard_error=errors)
-    plain_sum = replace(bk.losses["plain"], name="plain sum", measure="samples")
-    left = bk.fit("lambert", data, plain_sum).residuals(data)
+    left = bk.fit("lambert", data, sample_sum("plain")).residuals(data)
     np.testing.assert_allclose(left.values[:, 0], [-0.5, 0.5, np.nan])
     np.testing.assert_array_equal(left.standard_error, errors)
     assert str(left) == "samples - lambert: samples, 2 of 3 valid, channels Y"

@@ -1,10 +1,9 @@
 """The parts of a fit, each against something independent of it."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from random_models import random_model
+from sample_sums import sample_sum
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
@@ -19,8 +18,6 @@ from brdfkit.model import labels
 from brdfkit.model.evaluation import lobe_values
 from brdfkit.samples import Samples
 
-# The plain difference, each sample one, as textbooks have it
-PLAIN_SUM = replace(losses.by_sample["plain"], name="plain sum", measure="samples")
 MODELS_WITHOUT_SUMS = [name for name in bk.models() if name != "mixture"]
 
 
@@ -133,7 +130,7 @@ def test_settled_weights_give_the_solution_back(model, name):
     rng = np.random.default_rng(9)
     values = 0.3 + 0.1 * wi[:, 2:] * wo[:, 2:] + 0.01 * rng.standard_t(2, (600, 1))
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
-    fit = bk.fit(model, data, PLAIN_SUM, robust=name)
+    fit = bk.fit(model, data, sample_sum("plain"), robust=name)
     assert fit.message.startswith("settled")
     columns, _ = lobe_values(fit.model, wi, wo)
     solution = np.ravel([fit.values[n] for n in fit.model.weights()])

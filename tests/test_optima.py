@@ -7,6 +7,8 @@ take three minutes. `python tests/optima.py` runs all of it.
 import optima
 import pytest
 
+from brdfkit.model import labels
+
 KNOWN = optima.read()
 MATERIALS = [*optima.SHIPPED, *optima.MEASURED, *optima.RECONSTRUCTED]
 
@@ -21,7 +23,9 @@ def test_optima(name):
     for number, (model, loss, error) in enumerate(rows):
         if (number + MATERIALS.index(name)) % 7 == 0:
             found = optima.search(model, data, loss)
-            # A fit of few samples that nearly meets them all is rounding
-            if found > error * (1 + 1e-6) + 1e-9:
+            # Models that are clamped at 0 have an end at every kink, and rounding leads to one or
+            # another; a fit of few samples that nearly meets them all is rounding
+            share = 1e-2 if labels.model(model).signed() else 1e-6
+            if found > error * (1 + share) + 1e-9:
                 worse.append(f"{model} {loss}: {found:.9g}, not {error:.9g}")
     assert not worse

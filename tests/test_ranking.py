@@ -9,6 +9,7 @@ import drjit as dr
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from sample_sums import sample_sum
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
@@ -78,8 +79,7 @@ def test_held_out_errors_are_those_of_fits_without_the_fold():
     """Of a constant, whose fit is a mean: by hand."""
     data, rng = measured(bk.models()["ward"](), n=300), np.random.default_rng(0)
     samples = select_samples(data, 80.0)
-    # Each sample counts as one, as in a mean
-    plain_sum = replace(bk.losses["plain"], name="plain sum", measure="samples")
+    plain_sum = sample_sum("plain")
     held_out = HeldOut.draw(samples, plain_sum, False, 5, rng)
     values, squares = samples.values[:, 0], np.empty(len(samples.wi))
     for fold in range(5):

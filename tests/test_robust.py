@@ -1,9 +1,8 @@
 """Robust least squares: MATLAB's figures, planted outliers, and the thesis's fits of CUReT."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from sample_sums import sample_sum
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
@@ -11,9 +10,6 @@ from brdfkit.fitting import losses
 from brdfkit.fitting.robust import WEIGHTS, robust_least_squares
 from brdfkit.measured.selection import select_samples
 from brdfkit.model.evaluation import lobe_values
-
-# The plain difference, each sample one, as MATLAB has it
-PLAIN_SUM = replace(losses.by_sample["plain"], name="plain sum", measure="samples")
 
 # y = 10 - 2x + e with the last one set to 0; MATLAB's robustfit (Kurt 2007, digest 6.5)
 NOISE = [0.5377, 1.8339, -2.2588, 0.8622, 0.3188, -1.3077, -0.4336, 0.3426, 3.5784, 2.7694]
@@ -94,7 +90,7 @@ def test_few_samples_settle_where_matlabs_passes_do(name, seed):
     wi, wo = random_pairs(12, seed=seed, max_degrees=79)
     values = np.random.default_rng(seed).standard_t(2, (12, 1)) + 3
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
-    fit = bk.fit("koenderink:order=2", data, PLAIN_SUM, robust=name)
+    fit = bk.fit("koenderink:order=2", data, sample_sum("plain"), robust=name)
     columns, _ = lobe_values(fit.model, wi, wo)
     found = robust_least_squares(columns, values[:, 0], name)
     assert found.converged
@@ -117,7 +113,7 @@ def test_a_linear_fit_is_the_least_squares():
     values = np.random.default_rng(9).standard_t(2, (400, 1)) + 3
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
     for name in ("bisquare", "huber"):
-        fit = bk.fit("koenderink", data, PLAIN_SUM, robust=name)
+        fit = bk.fit("koenderink", data, sample_sum("plain"), robust=name)
         samples = select_samples(data, 80.0)
         columns, _ = lobe_values(fit.model, samples.wi, samples.wo)
         found = robust_least_squares(columns, values[:, 0], name)
@@ -130,7 +126,7 @@ def test_the_thesis_polynomial(measured_data):
     data = bk.load(measured_data / "curet" / "abrdf.dat#12")
     expected = {None: 0.011160, "bisquare": 0.0243}
     for robust, error in expected.items():
-        fit = bk.fit("pca_polynomial:degree=7", data, PLAIN_SUM, robust=robust)
+        fit = bk.fit("pca_polynomial:degree=7", data, sample_sum("plain"), robust=robust)
         samples = select_samples(data, 80.0)
         columns, _ = lobe_values(fit.model, samples.wi, samples.wo)
         weights = np.ravel([fit.values[n] for n in fit.model.weights()])

@@ -18,6 +18,8 @@ HELD, WRONG = 1.2, 1.25
 STEEP = 60
 # No surface reflects more; beyond rounding of the quadrature
 ALL = 1.001
+# A measurement that reflects more has another unit than 1/sr, and tells nothing of light
+OTHER_UNIT = 2.0
 # Half the rings of the quadrature, and the points on each
 POINTS = 32
 # Azimuths of incidence [rad], of an isotropic material and of another one
@@ -62,9 +64,19 @@ class Light:
     @classmethod
     def of(cls, albedo, anisotropic):
         """The light of a `MeasuredAlbedo`."""
-        values = np.minimum(albedo.values, 1)  # what a file may gain, no fit should
         pixels = albedo_pixels(albedo.theta_i, FOUR if anisotropic else ONE)
-        return cls(albedo.theta_i, values, albedo.known, replace(pixels, values=values))
+        target = np.minimum(albedo.values, 1)  # what a file may gain, no fit should
+        return cls(albedo.theta_i, albedo.values, albedo.known, replace(pixels, values=target))
+
+    @property
+    def target(self):
+        """The albedos (n, channels) that a fit should have: the measured ones, but at most 1."""
+        return self.pixels.values
+
+    @property
+    def has_another_unit(self):
+        """Whether the measurement reflects so much that its values cannot be in 1/sr."""
+        return bool((self.known[:, None] & (self.values > OTHER_UNIT)).any())
 
     def look(self, brdf):
         """The albedos (n, channels) of a BRDF (wi, wo) → (n, channels)."""
@@ -90,7 +102,7 @@ class Light:
 
     def factors(self, albedos):
         """The light of `albedos` (n, channels) over the measured (n,); 1 where that is unknown."""
-        measured, own = (np.maximum(a.mean(axis=1), 1e-9) for a in (self.values, albedos))
+        measured, own = (np.maximum(a.mean(axis=1), 1e-9) for a in (self.target, albedos))
         return np.where(self.known, own / measured, 1.0)
 
     def _steep(self):
@@ -129,13 +141,14 @@ class Albedo:
         most = [max(albedos) for albedos in self.fit]
         angle, gain = max(zip(self.theta_i, most, strict=True), key=lambda pair: pair[1])
         if gain > ALL:
+            digits = 3 if gain < 1.01 else 2
             found.append(
-                f"it reflects {gain:.2f} of the light at {angle:g}°, more than arrives; a "
+                f"it reflects {gain:.{digits}f} of the light at {angle:g}°, more than arrives; a "
                 "constraint prevents it: AlbedoAtMost(1), or --albedo-at-most 1"
             )
         means = zip(self.theta_i, *self.means(), strict=True)
-        angle, fit, measured = max(means, key=lambda row: factor_between(*row[1:]))
-        if factor_between(fit, measured) > WRONG:
+        angle, fit, measured = max(means, key=lambda row: factor_between(row[1], min(row[2], 1.0)))
+        if factor_between(fit, min(measured, 1.0)) > WRONG:
             found.append(
                 f"it reflects {fit:.2f} of the light at {angle:g}°, where the measurement reflects "
                 f"{measured:.2f}"

@@ -87,7 +87,7 @@ class LightProblem(PixelProblem):
 
     def __init__(self, problem, light, counted, error, share):
         self.given = light, counted, error, share
-        mean = np.maximum(light.values[counted].mean(axis=1), 1e-6)
+        mean = np.maximum(light.target[counted].mean(axis=1), 1e-6)
         weights = share / (len(mean) * problem.channels) / mean**2
         of_pixels = light.pixels.at(counted), weights, DIFFERENCE
         given = problem.model, problem.samples, problem.loss, problem.space

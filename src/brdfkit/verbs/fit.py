@@ -186,7 +186,8 @@ def fit(
         pixels = draw_pixels(loss.lights, data.rgb.eval, max_angle, checked["seed"])
         solve = partial(regress, pixels=pixels)
     # A sum over the samples as they are is just that
-    kept = None if getattr(loss, "measure", None) == "samples" else light
+    as_it_is = getattr(loss, "measure", None) == "samples" or light.has_another_unit
+    kept = None if as_it_is else light
     try:
         return to_fit(
             solve(model, samples, loss, robust=robust, light=kept, **how, report=progress)
