@@ -72,7 +72,7 @@ def test_the_checksum_is_of_what_was_measured(tmp_path):
 def test_residuals_are_measured_less_modelled():
     """Of samples and of a table, at what was fitted; rendered and plotted as any material."""
     for data in (synthetic(bk.models()["ggx"](), n=300), bk.load("red_plastic")):
-        fit = bk.fit("lambert", data, "cosine", max_angle=70)
+        fit = bk.fit("lambert", data, "lafortune", max_angle=70)
         left = fit.residuals(data)
         assert left.is_table == data.is_table
         assert left.samples.valid.sum() == fit.samples
@@ -81,7 +81,8 @@ def test_residuals_are_measured_less_modelled():
         np.testing.assert_allclose(left.values[rows] + fit.eval(wi, wo), data.values[rows])
         assert (left.values[rows] < 0).any()
         samples = select_samples(left, 70.0)
-        loss = bk.losses["cosine"].importance(samples) @ ((samples.wi[:, 2:] * samples.values) ** 2)
+        cosines = samples.wi[:, 2:] * samples.wo[:, 2:]
+        loss = bk.losses["lafortune"].importance(samples) @ (cosines * samples.values) ** 2
         assert loss.sum() == pytest.approx(fit.loss**2)
         bk.plot(left)
         assert bk.render(left, spp=1, size=4).pictures[f"{data.name} - lambert"].min() >= 0

@@ -101,3 +101,15 @@ def test_a_model_that_cannot_have_the_light_says_so(measured_data):
 def test_an_unknown_measure_is_refused():
     with pytest.raises(bk.BrdfkitError, match="no measure of directions 'solid'"):
         bk.Loss("mine", "mine", lambda m, r, ci, co: m - r, measure="solid")
+
+
+@pytest.mark.parametrize("loss", [n for n, one in bk.losses.by_sample.items() if n != "kurt"])
+def test_either_direction_may_be_first(loss):
+    """A goniometer that turns the detector, and one that turns the lamp, give one fit."""
+    wi, wo = random_pairs(2_000, seed=5, max_degrees=75.0)
+    values = bk.models()["ggx"](alpha_u=0.3, alpha_v=0.3).eval(wi, wo)
+    values = values * np.random.default_rng(2).lognormal(0, 0.2, values.shape)
+    pairs = (wi, wo), (wo, wi)
+    one, other = (bk.fit("ggx", bk.Measured.from_samples(*p, values), loss) for p in pairs)
+    assert other.loss == pytest.approx(one.loss, rel=1e-9)
+    assert other.values["alpha_u"] == pytest.approx(one.values["alpha_u"], rel=1e-6)

@@ -1,5 +1,9 @@
 """The losses by name.
 
+Those with a cosine of θ_i alone have a mean of both cosines' in its place: over all pairs of
+directions the integral is the same, because a BRDF is reciprocal, and a file's samples may have
+either direction first.
+
 A measured value may be negative (noise, or a colour out of gamut): the losses that are linear in
 the model take it as it is, the others as 0, because their functions need values ≥ 0.
 """
@@ -24,19 +28,19 @@ OFFSET = 1e-3
 CBRT_OFFSET = 1e-6
 
 
-def _difference_of(g, cosines):
-    """The difference of g(κ f) between the model's f, which is ≥ 0, and the measured one, which
-    counts as 0 where it is not; κ = `cosines(cos_i, cos_o)`."""
-
-    def difference(model, measured, cos_i, cos_o):
-        kappa = cosines(cos_i, cos_o)
-        return g(kappa * model) - g(kappa * dr.maximum(measured, 0))
-
-    return difference
+def _cosine(model, measured, cos_i, cos_o):
+    return dr.sqrt((dr.square(cos_i) + dr.square(cos_o)) / 2) * (model - measured)
 
 
-def _difference_times_cosine(model, measured, cos_i, cos_o):
-    return cos_i * (model - measured)
+def _cbrt(model, measured, cos_i, cos_o):
+    squares = dr.square(dr.cbrt(cos_i)) + dr.square(dr.cbrt(cos_o))
+    roots = dr.cbrt(model + CBRT_OFFSET), dr.cbrt(dr.maximum(measured, 0) + CBRT_OFFSET)
+    return dr.sqrt(squares / 2) * (roots[0] - roots[1])
+
+
+def _log(model, measured, cos_i, cos_o):
+    cosines = cos_i * cos_o
+    return dr.log(cosines * model + OFFSET) - dr.log(cosines * dr.maximum(measured, 0) + OFFSET)
 
 
 def _relative(model, measured, cos_i, cos_o):
@@ -81,23 +85,19 @@ losses = Losses(
         Loss(
             name="cosine",
             meaning="RMS difference of f cos θ_i by solid angle: the light that is reflected",
-            difference=_difference_times_cosine,
+            difference=_cosine,
             measure="solid_angle",
         ),
         Loss(
             name="log",
             meaning="RMS difference of ln(f cos θ_i cos θ_o + 0.001): relative error, dark counts",
-            difference=_difference_of(
-                lambda x: dr.log(x + OFFSET), lambda cos_i, cos_o: cos_i * cos_o
-            ),
+            difference=_log,
             measure="angles",
         ),
         Loss(
             name="cbrt",
             meaning="RMS difference of the cube root of f cos θ_i: between cosine and log",
-            difference=_difference_of(
-                lambda x: dr.cbrt(x + CBRT_OFFSET), lambda cos_i, cos_o: cos_i
-            ),
+            difference=_cbrt,
         ),
         Loss(
             name="plain",
@@ -121,7 +121,7 @@ losses = Losses(
             name="kurt",
             meaning="the sum of [Kurt 2007, eq. 5.13]: f cos θ_i, w = sin θ_i, each sample one, "
             "channels summed",
-            difference=_difference_times_cosine,
+            difference=lambda model, measured, cos_i, cos_o: cos_i * (model - measured),
             measure="samples",
             weights=_sine,
             channel_mean=False,
