@@ -23,9 +23,9 @@ MAPS = "room", "sky", "studio"
 # Pixels of each picture; directions of a pixel by the light, and as many by the BRDF
 PIXELS, DIRECTIONS = 600, 48
 HUES = 0, 20, 40, 60
-# Angles of incidence [degrees] at which fits and data are compared; one more at which fits are
-# tested by brdfkit for light that they gain, and some at which they are not
-ANGLES, GRAZING, MORE = (5, 45, 75), 85, (60, 80, 89)
+# Angles of incidence [degrees] at which fits and data are compared, and others at which fits should
+# gain no light
+ANGLES, OTHERS = (5, 45, 75), (30, 60, 80, 85, 89)
 
 
 def measure(data):
@@ -61,11 +61,10 @@ class Judge:
         """The figures of a fit."""
         said = [note for note in fit.notes if note in fit.albedo.warnings()]
         gains = [note for note in said if "more than arrives" in note]
-        own = albedos(fit, (*ANGLES, GRAZING))
+        own = albedos(fit, (*ANGLES, *OTHERS))
         return {
             "albedo": own[: len(ANGLES)].mean(axis=1).tolist(),
             "most": float(own.max()),
-            "most elsewhere": float(albedos(fit, MORE).max()),
             "psnr": float(np.mean([psnr(picture, fit) for picture in self.pictures])),
             "log error": bk.compare(self.data, fit).errors[fit.name]["log"],
             "said": len(said) > len(gains),

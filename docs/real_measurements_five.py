@@ -24,8 +24,8 @@ weight and its Fresnel parameter: these trade off. A parameter is the same withi
 lobe's albedo also within {OF_ALL:.0%} of all light; an albedo of the whole, at 5°, 45° and 75°,
 within {SAME_ALBEDO:.0%}.""".replace("%", " %")
 CAUSED = """A fit with a parameter or an albedo that is not the same is tried further: its error on
-the table, the error of the table's fit on the file, fits of directions below 70°, and a fit of the
-file's samples in both orders of their directions. The first of these that applies:"""
+the table, the error of the table's fit on the file, and fits of directions below 70°. The first of
+these that applies:"""
 
 
 def rows_of(materials):

@@ -1,6 +1,6 @@
 """Fits of one material as five files, held to the fit of the MERL table."""
 
-from functools import cache, lru_cache, partial
+from functools import cache, partial
 
 import numpy as np
 
@@ -20,8 +20,6 @@ SAME_ALBEDO = 0.02
 PART = 40_000
 # Where fits differ, they are made again of directions below this angle [degrees]
 INNER = 70
-# Losses that hold cosθ_i and not cosθ_o
-ONE_COSINE = "cosine", "cbrt"
 # Angles [degrees] of the albedos of lobes
 LOBES = 5, 75
 # An excess of the error on the table by which it tells two fits apart, and an estimate of the error
@@ -36,8 +34,6 @@ CAUSES = {
     "end": "The search on the table ended in another minimum: on the table, too, the error of the "
     "file's fit is the smaller one.",
     "inner": "The file is coarse or ends where directions graze: below 70° the fits are the same.",
-    "ordered": "The losses `cosine` and `cbrt` hold cosθ_i, but not cosθ_o: with every sample in "
-    "both orders of its directions the fits are the same.",
     "estimate": "The file's estimate of the error of one and the same fit is 2 % or more off: its "
     "samples are too few or too coarse for what the model leaves of a highlight, or count wrongly.",
     "open": "None of these.",
@@ -114,8 +110,7 @@ def compare_files(files, model, loss, part):
     error of the fit on the table over that of the table's own fit, less 1; `estimate`, the error of
     the table's fit on the file over that on the table, less 1; `again`, whether one of the two was
     searched again for its light. Where the excess tells them apart and neither was searched again,
-    also comparisons of the `inner` fits, below 70°, and, where they differ, of the file's samples
-    in both orders of their directions, `ordered`.
+    also comparisons of the `inner` fits, below 70°.
     """
     (table, *others), found = files, {}
     fit = partial(bk.fit, model, loss=loss)
@@ -138,8 +133,6 @@ def compare_files(files, model, loss, part):
         row["again"] = any(note.startswith("by the loss alone") for note in notes)
         if row["excess"] >= TOLD and not row["again"]:
             row["inner"] = Numbers(fit(data, max_angle=INNER)).beside(inner())
-            if loss in ONE_COSINE and not data.has_lookup and not is_same(row["inner"]):
-                row["ordered"] = Numbers(fit(in_both_orders(data))).beside(own)
     return found
 
 
@@ -153,9 +146,8 @@ def cause(row):
         return "light"
     if row["excess"] < 0:
         return "end"
-    for name in ("inner", "ordered"):
-        if name in row and is_same(row[name]):
-            return name
+    if "inner" in row and is_same(row["inner"]):
+        return "inner"
     return "estimate" if abs(row["estimate"]) >= ESTIMATED else "open"
 
 
@@ -163,12 +155,3 @@ def is_same(beside):
     """Whether all numbers of a comparison are the same."""
     count, same, _, _, *factors = beside
     return count == same and all(abs(factor - 1) <= SAME_ALBEDO for factor in factors)
-
-
-@lru_cache(maxsize=3)  # the kinds of scattered files of one material
-def in_both_orders(data):
-    """The samples of a `Measured`, and each again with its directions exchanged."""
-    s = data.samples.at(data.samples.valid)
-    pairs = np.concatenate([s.wi, s.wo]), np.concatenate([s.wo, s.wi])
-    values = np.concatenate([s.values] * 2)
-    return bk.Measured.from_samples(*pairs, values, channels=data.channels, name=data.name)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.geometry.directions import from_angles
-from brdfkit.geometry.quadrature import ring_rule
+from brdfkit.geometry.quadrature import directional_albedo, ring_rule
 from brdfkit.pictures import Pixels
 
 # The factor between the albedos of a fit and its data beyond which the fit is searched once more,
@@ -16,6 +16,8 @@ from brdfkit.pictures import Pixels
 HELD, WRONG = 1.2, 1.25
 # Beyond this angle [degrees] a model that is too dark is left so: few rise as materials do
 STEEP = 60
+# More angles of incidence [degrees] at which a fit is only looked at
+OTHERS = 60.0, 80.0, 89.0
 # No surface reflects more; beyond rounding of the quadrature
 ALL = 1.001
 # A measurement that reflects more has another unit than 1/sr, and tells nothing of light
@@ -53,20 +55,24 @@ class Light:
     """What a measurement reflects of light from some angles.
 
     `theta_i`: the angles [degrees] (n,); `values` (n, channels): the albedos; `known` (n,): whether
-    the samples tell them; `pixels`: the quadrature that sums a model up to its own albedos.
+    the samples tell them; `pixels`: the quadrature that sums a model up to its own albedos, the
+    mean over `azimuths` [rad].
     """
 
     theta_i: tuple[float, ...]
     values: NDArray[np.float64]
     known: NDArray[np.bool_]
     pixels: Pixels
+    azimuths: tuple[float, ...]
 
     @classmethod
     def of(cls, albedo, anisotropic):
         """The light of a `MeasuredAlbedo`."""
-        pixels = albedo_pixels(albedo.theta_i, FOUR if anisotropic else ONE)
+        azimuths = FOUR if anisotropic else ONE
+        pixels = albedo_pixels(albedo.theta_i, azimuths)
         target = np.minimum(albedo.values, 1)  # what a file may gain, no fit should
-        return cls(albedo.theta_i, albedo.values, albedo.known, replace(pixels, values=target))
+        pixels = replace(pixels, values=target)
+        return cls(albedo.theta_i, albedo.values, albedo.known, pixels, azimuths)
 
     @property
     def target(self):
@@ -77,6 +83,28 @@ class Light:
     def has_another_unit(self):
         """Whether the measurement reflects so much that its values cannot be in 1/sr."""
         return bool((self.known[:, None] & (self.values > OTHER_UNIT)).any())
+
+    def judge(self, brdf):
+        """The `Albedo` of a fit, a BRDF (wi, wo) → (n, channels)."""
+        albedos = self.look(brdf)
+        measured = [
+            tuple(row.tolist()) if known else None
+            for row, known in zip(self.values, self.known, strict=True)
+        ]
+        fit = tuple(map(tuple, albedos.tolist()))
+        return Albedo(self.theta_i, fit, tuple(measured), self._find_peak(brdf, albedos))
+
+    def _find_peak(self, brdf, albedos):
+        """The angle at which a BRDF with these `albedos` (n, channels) reflects most, and how much
+        that is: summed with more points where it seems to gain light."""
+        angles = (*self.theta_i, *OTHERS)
+        others = albedo_pixels(OTHERS, self.azimuths).look(brdf)
+        peaks = np.concatenate([albedos, others]).max(axis=1)
+        for row in np.flatnonzero(peaks > ALL):
+            incident = from_angles(np.radians(angles[row]), self.azimuths)
+            peaks[row] = np.mean([directional_albedo(brdf, wi) for wi in incident], axis=0).max()
+        row = int(np.argmax(peaks))
+        return angles[row], float(peaks[row])
 
     def look(self, brdf):
         """The albedos (n, channels) of a BRDF (wi, wo) → (n, channels)."""
@@ -108,14 +136,6 @@ class Light:
     def _steep(self):
         return np.array(self.theta_i) > STEEP
 
-    def beside(self, albedos):
-        """The `Albedo` of a fit with these `albedos` (n, channels)."""
-        measured = [
-            tuple(row.tolist()) if known else None
-            for row, known in zip(self.values, self.known, strict=True)
-        ]
-        return Albedo(self.theta_i, tuple(map(tuple, albedos.tolist())), tuple(measured))
-
 
 @dataclass(frozen=True)
 class Albedo:
@@ -129,17 +149,22 @@ class Albedo:
         The directional albedo of the fit at each angle, by channel.
     measured : tuple of tuple of float or None
         That of the data; None where the samples do not tell it.
+    peak : tuple of float, optional
+        The angle [degrees], of some up to 89°, at which a channel of the fit reflects most, and how
+        much that is.
     """
 
     theta_i: tuple[float, ...]
     fit: tuple[tuple[float, ...], ...]
     measured: tuple[tuple[float, ...] | None, ...]
+    peak: tuple[float, float] | None = None
 
     def warnings(self) -> list[str]:
         """What is wrong with the light of the fit, in sentences."""
         found = []
         most = [max(albedos) for albedos in self.fit]
-        angle, gain = max(zip(self.theta_i, most, strict=True), key=lambda pair: pair[1])
+        pairs = list(zip(self.theta_i, most, strict=True))
+        angle, gain = self.peak or max(pairs, key=lambda pair: pair[1])
         if gain > ALL:
             digits = 3 if gain < 1.01 else 2
             found.append(

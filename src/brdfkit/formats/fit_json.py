@@ -101,11 +101,16 @@ def _to_albedo(record):
     """The `Albedo` of its attributes; fits of earlier versions have none."""
     if record is None:
         return None
-    angles, fit, measured = (_to_type(tuple, record[f.name]) for f in fields(Albedo))
+    angles, fit, measured = (_to_type(tuple, record[n]) for n in ("theta_i", "fit", "measured"))
     rows = [None if row is None else tuple(map(float, row)) for row in (*fit, *measured)]
     if not len(angles) == len(fit) == len(measured):
         raise ValueError
-    return Albedo(tuple(map(float, angles)), tuple(rows[: len(fit)]), tuple(rows[len(fit) :]))
+    peak = record.get("peak")
+    if peak is not None:
+        peak = tuple(map(float, _to_type(tuple, peak)))
+        if len(peak) != 2:
+            raise ValueError
+    return Albedo(tuple(map(float, angles)), tuple(rows[: len(fit)]), tuple(rows[len(fit) :]), peak)
 
 
 def _to_type(kind, value):

@@ -47,7 +47,7 @@ def cross_validate(model, held_out, appearance, light, anisotropic, seed, report
         errors[out] = held_out.squares(model, part, out)
         report(2 + fold)
     brdf, certainty = with_weights(model, whole.shapes, whole.weights).eval, whole.certainty
-    albedo = light.beside(light.look(brdf))
+    albedo = light.judge(brdf)
     return Validated(
         held_out.sum_by_block(errors),
         albedo,

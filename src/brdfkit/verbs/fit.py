@@ -147,7 +147,7 @@ def fit(
     def to_fit(found):
         known = wavelengths(data) if spectral else ()
         fitted = with_weights(model, found.shapes, found.weights, known)
-        albedo = light.beside(light.look(fitted.eval))
+        albedo = light.judge(fitted.eval)
         warnings = albedo.warnings()
         return Fit(
             model=fitted,
