@@ -4,6 +4,7 @@ import itertools
 import os
 import signal
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 
@@ -12,11 +13,18 @@ from brdfkit.model import labels
 from brdfkit.plugins import discovery
 
 
-def pytest_configure():
-    """Share the cores: the threads of Dr.Jit's in one worker would wait for those in another. And
+def pytest_configure(config):
+    """Keep the user's cache folder out of it, where commands remember what they wrote.
+
+    Share the cores: the threads of Dr.Jit's in one worker would wait for those in another. And
     hear Ctrl-C, as what the tests start should, where a shell in the background ignores it."""
     import drjit as dr
+    import matplotlib as mpl
 
+    os.environ["MPLCONFIGDIR"] = mpl.get_cachedir()  # its list of fonts takes seconds to make
+    folder = TemporaryDirectory(prefix="brdfkit-tests-")
+    config.add_cleanup(folder.cleanup)
+    os.environ["XDG_CACHE_HOME"] = folder.name
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
     workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", 1))

@@ -1,7 +1,9 @@
 """Files, safely: written whole or not at all, read within a limit, compressed or not."""
 
 import os
+from collections.abc import Callable
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
 
 from brdfkit.errors import BrdfkitError, nearest
@@ -9,6 +11,9 @@ from brdfkit.errors import BrdfkitError, nearest
 LIMIT = 2**30  # bytes, decompressed; the largest MERL table has 70 MB
 CHUNK = 2**20  # bytes
 GZIP, XZ = ".gz", ".xz"
+# What is called with the path of a file before it is written, and after: see `watch_writing`
+Watcher = Callable[[Path], object]
+_watchers: ContextVar[tuple[tuple[Watcher, Watcher], ...]] = ContextVar("watchers", default=())
 COMPRESSED = {GZIP: b"\x1f\x8b", XZ: b"\xfd7zXZ\x00"}  # suffix: first bytes
 
 
@@ -30,6 +35,8 @@ def write_safely(path):
         beside.touch(exist_ok=False)
         yield beside
         os.replace(beside, target)
+        for _, after in _watchers.get():
+            after(target)
     except OSError as error:
         raise BrdfkitError(
             f"{path}: cannot be written ({_reason(error)}); choose another folder or make room."
@@ -63,6 +70,7 @@ def require_writable(path):
     that can be known.
     """
     try:
+        os.fsencode(path)
         target = Path(os.path.realpath(path))
         if target.is_symlink():
             raise BrdfkitError(f"{path}: is a link that leads to itself; choose another name.")
@@ -72,11 +80,34 @@ def require_writable(path):
             raise BrdfkitError(f"{path}: is no regular file; choose another name.")
         if target.exists() and not os.access(target, os.W_OK):
             raise BrdfkitError(f"{path}: is write-protected; choose another name.")
+        if not os.access(target.parent, os.W_OK | os.X_OK):
+            raise BrdfkitError(f"{path}: the folder is write-protected; choose another one.")
+        for before, _ in _watchers.get():
+            before(target)
     except OSError as error:
         raise BrdfkitError(
             f"{path}: cannot be written ({_reason(error)}); choose another folder or name."
         ) from error
+    except UnicodeEncodeError:
+        raise BrdfkitError(
+            f"{str(path)!a}: this system's locale has no such file names; choose one of plain "
+            "letters, or set LC_ALL=C.UTF-8."
+        ) from None
     return target
+
+
+@contextmanager
+def watch_writing(before, after):
+    """Within the block `before(path)` is called before a file is written, and as soon as it is
+    known that it will be, and `after(path)` when it was written.
+
+    `before` may raise a `BrdfkitError`: then the file stays as it is.
+    """
+    token = _watchers.set((*_watchers.get(), (before, after)))
+    try:
+        yield
+    finally:
+        _watchers.reset(token)
 
 
 def contents(path):

@@ -8,8 +8,10 @@ from contextlib import contextmanager, nullcontext
 
 import click
 
+from brdfkit.commands._outputs import refuse_to_replace, remember
 from brdfkit.commands._stopping import status, stop_on_sigterm
 from brdfkit.errors import BrdfkitError, no_such
+from brdfkit.files import watch_writing
 from brdfkit.names import printable
 
 NO_ROOM = errno.ENOSPC, errno.EDQUOT, errno.EIO  # writing to standard output, a file, failed
@@ -26,7 +28,8 @@ class Group(click.Group):
         for stream in (sys.stdout, sys.stderr):  # where a terminal does not know θ it shows ?
             if hasattr(stream, "reconfigure"):
                 stream.reconfigure(errors="replace")
-        with tell_errors(), stop_on_sigterm(), warnings.catch_warnings():
+        guard = watch_writing(refuse_to_replace, remember)
+        with tell_errors(), stop_on_sigterm(), guard, warnings.catch_warnings():
             warnings.showwarning = _say_warning
             try:
                 return super().invoke(ctx)

@@ -33,7 +33,7 @@ def command_line(parameters):
     """The command line with all `parameters` that determine the measurement."""
     words = ["brdfkit", "measure", parameters["geometry"]]
     for name, value in parameters.items():
-        if name not in ("geometry", "output", "as_json", "quiet") and value is not None:
+        if name not in ("geometry", "output", "force", "as_json", "quiet") and value is not None:
             for single in value if isinstance(value, tuple) else (value,):
                 words += [f"--{name.replace('_', '-')}", str(single)]
     return shlex.join(words)

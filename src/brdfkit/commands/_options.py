@@ -151,6 +151,18 @@ def output_options(command):
     return with_output
 
 
+def writing_options(command):
+    """Adds --force, --json and --quiet to a command that writes files; see `_outputs.py`."""
+
+    @click.option("--force", is_flag=True, help="Replace files that another command wrote.")
+    @output_options
+    @functools.wraps(command)
+    def with_force(*args, force, **kwargs):
+        return command(*args, **kwargs)
+
+    return with_force
+
+
 def render_options(command, spp=SPP, size="512, or what a scene file has"):
     """Adds --spp, --until, --size and --seed to a command that renders.
 

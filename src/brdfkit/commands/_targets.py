@@ -100,12 +100,3 @@ def write_figure(figure, path):
     """Write a matplotlib `Figure` to `path`, whole or not at all."""
     with write_safely(path) as beside:
         figure.savefig(beside, dpi=130)
-
-
-def other_file(path, source):
-    """`path`; an error where it cannot be written, or is the file that `source` names."""
-    require_writable(path)
-    for read in (source, source.rpartition("#")[0]):
-        if read and path.exists() and Path(read).exists() and path.samefile(read):
-            raise BrdfkitError(f"{path} is the file to read; name another to write.")
-    return path

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from brdfkit.commands._options import mend_options, output_options, values_option
+from brdfkit.commands._options import mend_options, values_option, writing_options
 from brdfkit.errors import BrdfkitError
 
 
@@ -18,7 +18,7 @@ from brdfkit.errors import BrdfkitError
 @click.option("--turn", type=float, metavar="DEGREES", help="Turn a map's light, anticlockwise.")
 @click.option("--mirror", is_flag=True, help="Exchange left and right of a map.")
 @click.option("--height", type=int, help="Rows of a map; default: pixels stay as large.")
-@output_options
+@writing_options
 def convert(thing, output, values, mends, console, **how):
     """Convert a material or an environment map.
 
@@ -29,12 +29,13 @@ def convert(thing, output, values, mends, console, **how):
     blender, or of a layout, such as cross or angular, if need be with the axes of the world that
     are right, up and ahead in it, as latlong:+x+y-z. A name that is none lists them all.
     """
-    from brdfkit.commands._targets import material, measured_material, other_file, refuse_mends
+    from brdfkit.commands._targets import material, measured_material, refuse_mends
     from brdfkit.environments import convert_environment
     from brdfkit.environments.map_files import looks_like_map
+    from brdfkit.files import require_writable
     from brdfkit.verbs.convert import convert as convert_thing
 
-    output = other_file(output, thing)
+    require_writable(output)
     given = {name: value for name, value in how.items() if value not in (None, False)}
     if looks_like_map(thing):
         refuse_mends(thing, "an environment map", mends)

@@ -10,9 +10,9 @@ from brdfkit.commands._fits import print_fits
 from brdfkit.commands._options import (
     fit_options,
     mend_options,
-    output_options,
     render_options,
     scene_options,
+    writing_options,
 )
 from brdfkit.commands._stopping import status
 from brdfkit.commands.render import path_trace
@@ -40,7 +40,7 @@ from brdfkit.errors import BrdfkitError, Interrupted
 @click.option("--spectral", is_flag=True, help="Fit a weight for each measured wavelength.")
 @scene_options
 @render_options
-@output_options
+@writing_options
 def fit(
     files,
     names,
@@ -107,6 +107,7 @@ def fit(
 
     errors = None  # of pictures
     with results_folder(output):
+        _require_files(output, names, rendered)
         fits, failed, interrupted = _fit_each(names, material, how, output, console)
         files = [fit_file(output, f.name) for f in fits] if output else []
         written = [file for file in files if file.is_file()]
@@ -123,6 +124,20 @@ def fit(
         say(error)
     if interrupted or failed:
         click.get_current_context().exit(status() if interrupted else 2)
+
+
+def _require_files(folder, names, rendered):
+    """Raise `BrdfkitError` where a file cannot be written to `folder`, unless it is None."""
+    from brdfkit.commands._targets import picture_file
+    from brdfkit.files import require_writable
+    from brdfkit.model import labels
+    from brdfkit.names import fit_file
+
+    if folder is not None:
+        for name in names:
+            require_writable(fit_file(folder, labels.model(name)().name))
+    if rendered:
+        picture_file(folder / "render.exr")
 
 
 def _refuse_models(files):

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from brdfkit.commands._options import mend_options, output_options
+from brdfkit.commands._options import mend_options, writing_options
 from brdfkit.errors import BrdfkitError
 
 
@@ -26,7 +26,7 @@ from brdfkit.errors import BrdfkitError
 )
 @click.option("--labels", is_flag=True, help="The values of a volume are labels, not densities.")
 @mend_options
-@output_options
+@writing_options
 def info(file, output, downsample, labels, mends, console):
     """Audit a measurement, an environment map or a volume.
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from brdfkit.commands._errors import say
-from brdfkit.commands._options import output_options
+from brdfkit.commands._options import writing_options
 from brdfkit.commands._stopping import status
 from brdfkit.commands.info import print_audit
 
@@ -48,7 +48,7 @@ from brdfkit.commands.info import print_audit
     type=click.Path(path_type=Path),
     help="File to write, .npz. Default: GEOMETRY.npz.",
 )
-@output_options
+@writing_options
 def measure(
     geometry, facets, facet_alpha, specimen, cells, error, spp, seed, output, console, **relief
 ):

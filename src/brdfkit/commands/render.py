@@ -8,11 +8,11 @@ import click
 from brdfkit.commands._errors import say
 from brdfkit.commands._options import (
     SPP,
-    output_options,
     render_options,
     scene_options,
     tone_options,
     values_option,
+    writing_options,
 )
 from brdfkit.commands._stopping import status
 from brdfkit.commands._volumes import render_volume, the_volume, volume_options
@@ -48,7 +48,7 @@ from brdfkit.errors import BrdfkitError
 @scene_options
 @render_options
 @volume_options
-@output_options
+@writing_options
 def render(
     things,
     output,

@@ -9,9 +9,9 @@ from brdfkit.commands._errors import say
 from brdfkit.commands._options import (
     MESHES,
     fit_options,
-    output_options,
     render_options,
     scene_options,
+    writing_options,
 )
 from brdfkit.commands._stopping import status
 from brdfkit.errors import BrdfkitError
@@ -29,7 +29,7 @@ from brdfkit.reporting.defaults import LARGEST, MODELS, SIZE, SMALLEST, SPP
 )
 @partial(scene_options, files=f"or {MESHES}")
 @partial(render_options, spp=SPP, size=f"{SIZE}; from {SMALLEST} to {LARGEST}")
-@output_options
+@writing_options
 def report(files, names, how, output, scene, envmap, spp, until, size, seed, console):
     """Show how well models fit, in one HTML file.
 

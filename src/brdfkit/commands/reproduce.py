@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from brdfkit.commands._errors import say
-from brdfkit.commands._options import output_options
+from brdfkit.commands._options import writing_options
 from brdfkit.commands._stopping import status
 
 
@@ -37,7 +37,7 @@ from brdfkit.commands._stopping import status
     metavar="PART",
     help="Run only this part, as table_9_1; repeat it for more.",
 )
-@output_options
+@writing_options
 def reproduce(name, output, data, tables, parts, console):
     """Run the claims of a thesis again.
 

@@ -7,7 +7,7 @@ import click
 
 import brdfkit
 from brdfkit.commands._errors import say
-from brdfkit.commands._options import output_options
+from brdfkit.commands._options import writing_options
 from brdfkit.commands._stopping import status
 
 # by the names of their files: to import them takes a second
@@ -63,7 +63,7 @@ def technique(kind, default, help):
     type=click.Path(path_type=Path),
     help="A page, .html, with the table, to sort, and the pictures of all techniques.",
 )
-@output_options
+@writing_options
 def shadows(scene, projections, filters, partitions, others, resolution, size, output, console):
     """Score shadow techniques on a scene.
 

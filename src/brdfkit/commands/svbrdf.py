@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from brdfkit.commands._errors import say
-from brdfkit.commands._options import output_options
+from brdfkit.commands._options import writing_options
 from brdfkit.commands._stopping import status
 from brdfkit.errors import Interrupted
 
@@ -48,7 +48,7 @@ from brdfkit.errors import Interrupted
     type=click.Path(path_type=Path),
     help="The folder of the maps, a scene and a report. Default: FOLDER/maps.",
 )
-@output_options
+@writing_options
 def svbrdf(folder, model, resolution, anisotropic, fixed, smoothness, linearise, output, console):
     """Fit maps to the photographs in FOLDER.
 
@@ -56,11 +56,15 @@ def svbrdf(folder, model, resolution, anisotropic, fixed, smoothness, linearise,
     and the file capture.toml, which says where the camera and the lights were; the camera may move,
     as a phone does with its flash. See docs/how_to/photographs.md.
     """
+    from brdfkit.commands._targets import results_folder
+    from brdfkit.model import labels
     from brdfkit.photographs import svbrdf as fit_maps
+    from brdfkit.photographs.writing import require_files
 
-    values = dict(map(_to_value, fixed))
+    values, output = dict(map(_to_value, fixed)), output or folder / "maps"
     interrupted = False
-    with console.progress("fit maps") as progress:
+    with results_folder(output), console.progress("fit maps") as progress:
+        require_files(labels.model(labels.read_files(model)), output)
         try:
             found = fit_maps(
                 folder,
@@ -74,9 +78,9 @@ def svbrdf(folder, model, resolution, anisotropic, fixed, smoothness, linearise,
             )
         except Interrupted as stop:
             found, interrupted = stop.best, True
+        written = found.write(output)
     if not console.as_json:
         console.out.print(str(found), markup=False, highlight=False)
-    written = found.write(output or folder / "maps")
     if console.as_json:
         said = ("smoothness", "residual", "held_out", "predicted", "notes", "seconds")
         console.json({**{name: getattr(found, name) for name in said}, "written": written})

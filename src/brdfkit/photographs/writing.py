@@ -4,10 +4,23 @@ from pathlib import Path
 
 import numpy as np
 
-from brdfkit.files import make_folder, write_safely
+from brdfkit.files import make_folder, require_writable, write_safely
 from brdfkit.jit.threads import two_threads
 from brdfkit.photographs.in_mitsuba import scene_xml
 from brdfkit.photographs.report import write_report
+
+# Names of files beside the maps; what the name of a map's uncertainty ends with
+MISFIT, SCENE, REPORT, ERROR = "misfit.exr", "sample.xml", "report.html", "_error"
+
+
+def require_files(model, folder):
+    """Make the `folder`; raise `BrdfkitError` where a file that `write_all` may write to it for a
+    `model` class cannot be written."""
+    make_folder(folder)
+    maps = *model.parameters, "normal", "anisotropy_angle"
+    names = *(f"{name}{end}.exr" for name in maps for end in ("", ERROR)), MISFIT, SCENE, REPORT
+    for name in names:
+        require_writable(Path(folder) / name)
 
 
 def write_all(svbrdf, folder):
@@ -20,12 +33,12 @@ def write_all(svbrdf, folder):
         # upright, as programs show and use them; normals as colours, green along the sample's y
         shown = (values + 1) / 2 if name == "normal" else values
         written.append(_write(folder / files[name], shown))
-        written.append(_write(folder / f"{name}_error.exr", svbrdf.uncertainty[name]))
-    written.append(_write(folder / "misfit.exr", svbrdf.misfit))
-    scene = folder / "sample.xml"
+        written.append(_write(folder / f"{name}{ERROR}.exr", svbrdf.uncertainty[name]))
+    written.append(_write(folder / MISFIT, svbrdf.misfit))
+    scene = folder / SCENE
     with write_safely(scene) as beside:
         Path(beside).write_text(scene_xml(svbrdf, files), encoding="utf-8")
-    report = folder / "report.html"
+    report = folder / REPORT
     write_report(svbrdf, report)
     return [*written, scene, report]
 

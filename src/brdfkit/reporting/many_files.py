@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.files import make_folder
+from brdfkit.files import make_folder, require_writable
 from brdfkit.materials import measured_material
 from brdfkit.names import make_unique, printable, slug
 from brdfkit.reporting import page
@@ -62,6 +62,7 @@ def report_many(files, things, folder, settings, progress=None, **pictures):
     """
     folder = Path(folder)
     make_folder(folder)
+    require_writable(folder / PAGE)
     entries: dict[str, Entry] = {}
     problems, interrupted = [], False
     try:
@@ -70,10 +71,11 @@ def report_many(files, things, folder, settings, progress=None, **pictures):
                 progress(number, len(files))
             try:
                 material = measured_material(file)
-                fits, failed = fit_each(things, material, settings)
-                problems += [f"{material.name}: {error}" for error in failed]
                 name = make_unique(slug(material.name), {*entries, PAGE.removesuffix(".html")})
                 path = folder / f"{name}.html"
+                require_writable(path)
+                fits, failed = fit_each(things, material, settings)
+                problems += [f"{material.name}: {error}" for error in failed]
                 said = write_report(material, fits, path, file, **pictures)
             except BrdfkitError as error:
                 problems.append(str(error) if str(file) in str(error) else f"{file}: {error}")

@@ -9,7 +9,7 @@ from types import ModuleType
 
 from brdfkit.documents import Document, Shown, Table
 from brdfkit.errors import no_such
-from brdfkit.files import make_folder
+from brdfkit.files import make_folder, require_writable
 from brdfkit.reproducing.claims import Claim, count
 from brdfkit.reproducing.page import write_page
 from brdfkit.reproducing.sources import find_sources
@@ -106,6 +106,7 @@ def reproduce(
     sources = find_sources(data, tables, thesis.NEEDS)
     if output is not None:
         make_folder(output)
+        require_writable(Path(output) / f"{name}.md")
 
     chosen = [part for part in thesis.PARTS if parts is None or part in parts]
     modules = [importlib.import_module(f"{thesis.__name__}.{part}") for part in chosen]

@@ -9,7 +9,7 @@ from typing import Any
 
 from brdfkit.arguments import to_dictionary, to_whole_number
 from brdfkit.errors import BrdfkitError
-from brdfkit.files import make_folder
+from brdfkit.files import make_folder, require_writable
 from brdfkit.fitting import Fit
 from brdfkit.fitting.solvers.settings import require_plain
 from brdfkit.model import Model
@@ -83,6 +83,8 @@ def sweep(
     folder = None if output is None else Path(output)
     if folder:
         make_folder(folder)
+        for name in (TABLE, PAGE):
+            require_writable(folder / name)
 
     # What is saved, and what is left to do
     rows = {key: row for task in tasks for key, row in _find_rows(task, folder)}
