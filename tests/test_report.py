@@ -11,6 +11,7 @@ import zlib
 from base64 import b64decode, b64encode
 from contextlib import contextmanager
 from dataclasses import replace
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -454,12 +455,14 @@ def test_a_gallery_passes_bad_files_and_models_that_cannot_be_fitted(reports):
     assert [line for line in done.stdout.splitlines() if "written" not in line] == said
 
 
-def test_ctrl_c_leaves_the_reports_that_are_finished(here, written, monkeypatch):
+@pytest.mark.parametrize("when", ["between", "during pictures"])
+def test_ctrl_c_leaves_the_reports_that_are_finished(when, here, written, monkeypatch):
     def write(material, fits, path, *_, **__):
         if material.name != "paint":
             raise KeyboardInterrupt
         path.write_text("finished")
-        return written[1]
+        said = written[1]
+        return replace(said, asked=2 * said.spp) if when == "during pictures" else said
 
     monkeypatch.setattr(many_files, "write_report", write)
     done = cli("report", "paint.npz", "second paint.npz", "-m", "lambert", "-o", "some")

@@ -16,6 +16,8 @@ def load_by_mitsuba(function, source, name):
         with two_threads():
             return function(source, parallel=False)
     except (RuntimeError, TypeError) as error:
+        if "KeyboardInterrupt" in str(error):  # Ctrl-C in a plugin that is written in Python
+            raise KeyboardInterrupt from None
         lines = [line.strip() for line in str(error).splitlines() if line.strip()]
         # a plugin written in Python reports its whole traceback: people need its last line only
         reason = lines[-1] if any("Traceback" in line for line in lines) else " ".join(lines)

@@ -81,6 +81,9 @@ def report_many(files, things, folder, settings, progress=None, **pictures):
                 problems.append(str(error) if str(file) in str(error) else f"{file}: {error}")
                 continue
             entries[name] = Entry(name, said)
+            if said.spp < said.asked:  # Ctrl-C during its pictures, which keeps it
+                interrupted = True
+                break
     except KeyboardInterrupt:
         interrupted = True
         if not entries:
