@@ -40,8 +40,7 @@ FILES = """The files are RGL's adaptive grids [Dupuy & Jakob 2018], goniometer d
 *Light*: the albedo of a fit over that of the measured material, which is looked up between its
 samples; by `brdfkit.albedo`, apart from any fit. *Near*: fits within 25 % at 5° and at 45°.
 *Off*: fits farther off at 5°, 45° or 75°, and of these how many say so. *Gains*: fits that reflect
-more than arrives at one of these angles or at 85°, and how many say so. *At others*: those that
-gain light at 60°, 80° or 89° alone, which no fit looks at."""
+more than arrives at one of these angles, or at 30°, 60°, 80°, 85° or 89°, and how many say so."""
 PICTURES = """PSNR [dB] of a ball beside the measured material itself, in the median and at least,
 under the maps `room`, `sky` and `studio` in grey. Its pixels are sums over pairs of directions,
 drawn once for a file and the same for all fits, so that they differ by no noise; they are about

@@ -11,7 +11,6 @@ import zlib
 from base64 import b64decode, b64encode
 from contextlib import contextmanager
 from dataclasses import replace
-from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 

@@ -79,10 +79,12 @@ def render(
     from brdfkit.commands._targets import material, picture_file
     from brdfkit.distance_fields import load as load_field
     from brdfkit.distance_fields.stored import is_field
+    from brdfkit.environments.map_files import looks_like_map
     from brdfkit.host.users_plugins import load_plugins
     from brdfkit.names import slug
     from brdfkit.rendering import render_scene
     from brdfkit.rendering.users_mesh import SUFFIXES
+    from brdfkit.volumes.loading import looks_like_volume
 
     for folder in folders:
         load_plugins(folder)
@@ -93,6 +95,12 @@ def render(
         raise BrdfkitError(
             f"{mesh} is a mesh, which needs a material: render ggx --scene {mesh}, for instance."
         )
+    for light in (t for t in things if Path(t).is_file() and looks_like_map(t)):
+        if not looks_like_volume(light):
+            raise BrdfkitError(
+                f"{light} is an environment map, which lights a material: render ggx --envmap "
+                f"{light}, for instance."
+            )
     if shadows and not quickly:
         raise BrdfkitError("--shadows is for --preview: path-traced pictures have them anyway.")
     fields = [t for t in things if is_field(t)]

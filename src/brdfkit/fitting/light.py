@@ -12,8 +12,8 @@ from brdfkit.geometry.quadrature import directional_albedo, ring_rule
 from brdfkit.pictures import Pixels
 
 # The factor between the albedos of a fit and its data beyond which the fit is searched once more,
-# and the one beyond which its light is said to be wrong
-HELD, WRONG = 1.2, 1.25
+# and the one beyond which its light is said to be wrong: 1.25, less what a quadrature may be off
+HELD, WRONG = 1.2, 1.24
 # Beyond this angle [degrees] a model that is too dark is left so: few rise as materials do
 STEEP = 60
 # More angles of incidence [degrees] at which a fit is only looked at

@@ -104,9 +104,22 @@ def load_volume(
 
 
 def looks_like_volume(name: str) -> bool:
-    """Whether a word of the command line means a volume: a file by its suffix, a series, a name."""
+    """Whether a word of the command line means a volume: a file by its suffix, a series, a name.
+
+    A file .hdr that begins as Radiance's maps do is none: Analyze's begin otherwise.
+    """
     path, _ = _split(name)
-    return name in made.names() or formats.has_format(path) or formats.is_series(Path(path))
+    if name in made.names() or formats.is_series(Path(path)):
+        return True
+    return formats.has_format(path) and not _is_radiance(Path(path))
+
+
+def _is_radiance(path):
+    """Whether a file is a map in Radiance's format."""
+    if path.suffix.lower() != ".hdr" or not path.is_file():
+        return False
+    with path.open("rb") as stream:
+        return stream.read(2) == b"#?"
 
 
 def _read(file, stored, downsample, doubtful):
