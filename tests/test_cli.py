@@ -243,7 +243,7 @@ def test_render_by_a_tone_mapping(cli):
     Path("room.xml").write_text(SCENE.format(alpha=0.3))
     for words in (["ward", *SMALL], ["room.xml", "--spp", "1"]):
         for name, tone in (("it", ()), ("dark", ("--tone-mapping", "reinhard", "--exposure", "0"))):
-            assert_fine(cli("render", *words, *tone, "-o", f"{name}.exr"))
+            assert_fine(cli("render", *words, *tone, "-o", f"{name}.exr", "--force"))
         linear = [OpenEXR.File(f"{n}.exr").channels()["RGB"].pixels for n in ("it", "dark")]
         np.testing.assert_allclose(*linear, rtol=1e-4)
         assert Path("it.png").read_bytes() != Path("dark.png").read_bytes()
@@ -258,11 +258,12 @@ def test_render_until_the_noise_is_low(cli):
     for words in (["ward", "--size", "8"], ["room.xml"]):
         record = json.loads(cli("render", *words, "--until", "30dB", "--json").stdout)
         assert record["errors"]["floor"]["psnr"] >= 30
-    result = cli("render", "ward", "lambert", "--size", "8", "--spp", "4", "--until", "60 dB")
+    few = "--size", "8", "--spp", "4", "--until", "60 dB", "--force"
+    result = cli("render", "ward", "lambert", *few)
     assert result.exit_code == 0
     assert re.search(r"The noise floor is .* dB; 60 dB take about [\d,]+ samples", result.stderr)
     assert re.search(r"\n lambert .*\n noise floor ", result.stdout, re.DOTALL)
-    alone = cli("render", "ward", "--size", "8", "--spp", "4", "--until", "60 dB")
+    alone = cli("render", "ward", *few)
     assert "The noise floor is" in alone.stderr
     assert "The noise floor is" not in alone.stdout
 
@@ -281,7 +282,7 @@ def test_render_a_volume(cli):
     assert all(name in cli("render", "--help").stdout for name in (*RENDERERS, *presets()))
     assert_fine(cli("render", "sphere", "--tone-mapping", "filmic", "--azimuth", "0", *SMALL))
     assert Path("sphere.png").exists()
-    by_scan = cli("render", "sphere", "--transfer", "ct_bone", *SMALL)
+    by_scan = cli("render", "sphere", "--transfer", "ct_bone", *SMALL, "--force")
     assert by_scan.exit_code == 0
     assert "ct_bone is for HU" in by_scan.stderr
     for words, said in (
@@ -331,7 +332,7 @@ def test_render_in_another_scene(cli):
     scene = SCENE.format(alpha=0.3).replace('"ward"', '"ward" id="it"')
     Path("room.xml").write_text(scene)
     for words, shape in (((), (6, 8)), (("--size", "5"), (5, 5))):
-        words = *words, "--spp", "1", "--scene", "room.xml#it", "-o", "it.exr"
+        words = *words, "--spp", "1", "--scene", "room.xml#it", "-o", "it.exr", "--force"
         assert_fine(cli("render", "lambert", *words))
         assert OpenEXR.File("it.exr").channels()["RGB"].pixels.shape[:2] == shape
     assert_fine(cli("render", "lambert", *SMALL, "--scene", "cornell_box"))
@@ -568,7 +569,7 @@ TRAPS = [
     ([*LAMBERT, "-o", "paint.binary"], ["paint.binary", "folder"]),
     ([*LAMBERT, "-o", "paint.binary/new"], ["paint.binary/new", "folder"]),
     (["fit"], ["FILE", "fit --help"]),
-    (["info", "--nope"], ["no option '--nope'; there are --output", "see brdfkit info --help."]),
+    (["info", "--xyz"], ["no option '--xyz'; there are --output", "see brdfkit info --help."]),
     (
         [*WARD, "--spx", "3"],
         ["no option '--spx'; did you mean --spp? There are --output", "--seed"],
@@ -629,7 +630,7 @@ def test_ctrl_c_keeps_the_passes_of_a_picture_and_says_so(cli, monkeypatch):
     said = "brdfkit: interrupted; rendered with 2 of 5 samples per pixel.\n"
     Path("room.xml").write_text(SCENE.format(alpha=0.3))
     for words in (["ward", "--size", "8"], ["room.xml"]):
-        result = cli("render", *words, "--spp", "5", "-o", "it.png")
+        result = cli("render", *words, "--spp", "5", "-o", "it.png", "--force")
         assert (result.exit_code, result.stderr) == (130, said)
         assert "2 spp" in result.stdout
         assert "written: it.png" in result.stdout

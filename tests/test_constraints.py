@@ -182,6 +182,6 @@ def test_a_fit_that_gains_light_is_remarked():
     words = ["fit", "blasted_gold", "-m", "ward_duer"]
     free = CliRunner().invoke(main, words)
     kept = CliRunner().invoke(main, [*words, "--albedo-at-most", "1"])
-    assert "of the light at 85°, more than arrives" in free.stdout
+    assert "of the light at 89°, more than arrives" in free.stdout
     assert "converged, but its light is wrong" in free.stdout
     assert "more than arrives" not in kept.stdout

@@ -350,13 +350,13 @@ def test_command_takes_models_with_parameters(tmp_path):
 @pytest.mark.parametrize(
     ("source", "target", "match"),
     [
-        ("paint.brdf", "paint.brdf", "is the file to read; name another to write"),
-        ("abrdf.dat#4", "abrdf.dat", "is the file to read"),
+        ("paint.brdf", "paint.brdf", "is a file to read; name another to write"),
+        ("abrdf.dat#4", "abrdf.dat", "is a file to read"),
         ("paint.brdf", "none/paint.npz", "there is no folder"),
         ("paint.brdf", "paint.jpg", "no format with this suffix; written are ALTA"),
         ("paint.brdf", "paint.json", "holds a fit, not a Measured"),
         ("none.brdf", "paint.npz", "no such file"),
-        ("lambert", "paint.brdf", "lambert has the channels Y; choose another suffix"),
+        ("lambert", "grey.brdf", "lambert has the channels Y; choose another suffix"),
     ],
 )
 def test_command_refuses(tmp_path, source, target, match):

@@ -109,3 +109,53 @@ def test_what_cannot_be_subtracted_is_refused():
         data.minus(bk.load("car_paint"))
     with pytest.raises(BrdfkitError, match="max_angle = 100"):
         data.minus(fit, 100)
+
+
+WRONG = None, -1, "x", [], {}, [[1, 2]], [1], [None], 10**400, 1e308, True, "99.0"
+
+
+def entries(record, path=()):
+    """Yield the path of every entry of a record of JSON; of lists the first and last."""
+    if path:
+        yield path
+    keys = []
+    if isinstance(record, dict):
+        keys = [*record]
+    elif isinstance(record, list) and record:
+        keys = sorted({0, len(record) - 1})
+    for key in keys:
+        yield from entries(record[key], (*path, key))
+
+
+def test_a_damaged_saved_fit_is_refused_in_a_sentence(tmp_path):
+    """Every entry in turn is of another kind; a file that is accepted works."""
+    file = tmp_path / "fit.json"
+    bk.save(bk.fit("ggx", synthetic(bk.models()["ggx"](), n=50)), file)
+    record = json.loads(file.read_text())
+    wi = wo = np.array([[0.0, 0.6, 0.8]])
+    refused = []
+    for path in entries(record):
+        for wrong in WRONG:
+            copy = json.loads(json.dumps(record))
+            inside = copy
+            for key in path[:-1]:
+                inside = inside[key]
+            inside[path[-1]] = wrong
+            file.write_text(json.dumps(copy))
+            try:
+                found = bk.load(file)
+            except bk.BrdfkitError as error:
+                refused.append(str(error))
+            else:
+                assert str(found)
+                assert np.isfinite(found.eval(wi, wo)).all()
+    assert len(refused) > 300
+    assert all(sentence.startswith(f"{file}: ") for sentence in refused)
+
+
+def test_a_saved_fit_of_a_later_version_is_refused(tmp_path):
+    file = tmp_path / "fit.json"
+    bk.save(bk.fit("lambert", synthetic(bk.models()["lambert"](), n=20)), file)
+    file.write_text(file.read_text().replace(bk.__version__, "99.0", 1))
+    with pytest.raises(bk.BrdfkitError, match=r"saved by brdfkit 99\.0, and this is .*: update"):
+        bk.load(file)

@@ -113,3 +113,59 @@ def test_either_direction_may_be_first(loss):
     one, other = (bk.fit("ggx", bk.Measured.from_samples(*p, values), loss) for p in pairs)
     assert other.loss == pytest.approx(one.loss, rel=1e-9)
     assert other.values["alpha_u"] == pytest.approx(one.values["alpha_u"], rel=1e-6)
+
+
+def test_samples_that_are_left_out_tell_no_light():
+    """Of weight 0, or beyond the largest angle: values there change no fit and no albedo."""
+    wi, wo = random_pairs(1_500, seed=4, max_degrees=79.0)
+    values = bk.models()["ggx"](alpha_u=0.3, alpha_v=0.3).eval(wi, wo)
+    out = np.arange(len(wi)) % 10 == 0
+    steep = np.minimum(wi[:, 2], wo[:, 2]) < np.cos(np.radians(60))
+    for rows, how in ((out, {"weights": 1.0 - out}), (steep, {"max_angle": 60.0})):
+        changed = np.where(rows[:, None], 30 * values, values)
+        fits = [
+            bk.fit("ward", bk.Measured.from_samples(wi, wo, v), **how) for v in (values, changed)
+        ]
+        assert fits[1].albedo == fits[0].albedo
+        assert fits[1].values == fits[0].values
+
+
+@pytest.mark.parametrize(
+    ("factor", "said"), [(100.0, "more than arrives"), (1e-4, "blackest paints")]
+)
+def test_a_file_in_another_unit_is_told_so(factor, said):
+    """In one sentence, and no constraint is advised."""
+    model = bk.models()["ggx"](alpha_u=0.3, alpha_v=0.3)
+    wi, wo = random_pairs(1_500, seed=4, max_degrees=79.0)
+    found = bk.fit("ggx", bk.Measured.from_samples(wi, wo, factor * model.eval(wi, wo)), "plain")
+    (note,) = [note for note in found.notes if "another unit than 1/sr" in note]
+    assert said in note
+    assert not any("AlbedoAtMost" in note for note in found.notes)
+    assert found.message == "converged"
+    assert found.values["alpha_u"] == pytest.approx(0.3, rel=1e-3)
+
+
+def test_marks_of_what_was_not_measured_are_told():
+    wi, wo = random_pairs(300, seed=4, max_degrees=70.0)
+    values = bk.models()["ggx"]().eval(wi, wo)
+    values[::20] = -9999
+    notes = bk.Measured.from_samples(wi, wo, values).audit().findings()
+    assert any(" values are exactly -9999: probably a mark" in note for note in notes)
+
+
+def test_light_is_not_told_by_noise():
+    """Where values are negative, what is interpolated between their logarithms is too low."""
+    wi, wo = random_pairs(2_000, seed=6, max_degrees=75.0)
+    truth = bk.models()["ggx"](diffuse_reflectance=0.02, alpha_u=0.25).eval(wi, wo)
+    noise = np.random.default_rng(1).normal(0, 1, truth.shape)
+    found = bk.fit(
+        "ggx", bk.Measured.from_samples(wi, wo, truth * (1 + 0.3 * noise) + 0.01 * noise)
+    )
+    assert not any("where the measurement reflects" in note for note in found.notes)
+
+
+def test_the_light_that_is_mended_is_the_light_that_is_told():
+    """Not that of another angle, where a model that is too dark is left so."""
+    notes = bk.fit("ward", bk.load("red_plastic")).notes
+    (said,) = [note for note in notes if note.startswith("by the loss alone")]
+    assert "of the light at 5°" in said

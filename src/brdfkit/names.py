@@ -20,6 +20,15 @@ def make_unique(name, taken):
     return result
 
 
+def format_percent(percent):
+    """A percentage in words, with two digits where it is small.
+
+    >>> format_percent(0.0312), format_percent(41.3), format_percent(100)
+    ('0.031 %', '41 %', '100 %')
+    """
+    return f"{percent:.2g} %" if percent < 10 else f"{percent:.0f} %"
+
+
 def printable(text, keep=""):
     """`text` without control characters, by which a file could steer the terminal.
 

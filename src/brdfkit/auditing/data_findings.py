@@ -16,9 +16,11 @@ from brdfkit.auditing.grazing_and_retro import (
 from brdfkit.auditing.noise import noise
 from brdfkit.auditing.spread import some_samples
 from brdfkit.auditing.symmetries import by_reciprocity
+from brdfkit.fitting.light import format_share
 from brdfkit.measured import Measured
 from brdfkit.measured.coverage import in_plane
 from brdfkit.measured.mending import can_be_mended
+from brdfkit.names import format_percent
 from brdfkit.samples import Samples
 
 # What is above these, or below DARK_HORIZON, is a finding:
@@ -29,6 +31,9 @@ DARK_HORIZON, RETROREFLECTIVE = 0.5, 5  # ratios of `grazing_and_retro.py`
 BACKWARDS, WITH_A_LOBE = 5, (2, 2.5)
 SAME = 1.0  # degrees: angles of incidence that differ by less are one
 ZERO = 0.01  # the share of samples that are 0
+SEVERAL = 5  # values below 0 that are equal
+GAIN, LEAST_LIGHT = 1.25, 1e-3  # the light that is reflected ...
+OBLIQUE = 60  # ... below this angle of incidence [degrees]
 ALONG = math.cos(math.radians(5))  # the cosine of directions along the normal
 
 # A fit of each of many models asks the same
@@ -59,6 +64,8 @@ def _find(data: Measured) -> dict[str, str]:
         "plane": _say_plane(samples),
         "incidence": _say_incidence(samples),
         "zero": _say_zero(samples),
+        "sentinel": _say_sentinel(samples),
+        "unit": _say_unit(data),
     }
 
 
@@ -147,4 +154,39 @@ def _say_zero(samples: Samples) -> str:
     share = (samples.values[samples.valid] == 0).all(axis=1).mean()
     if not share > ZERO:
         return ""
-    return f"{100 * share:.2g} % of the samples are exactly 0: probably clipped, or not measured"
+    share = format_percent(100 * share)
+    return f"{share} of the samples are exactly 0: probably clipped, or not measured"
+
+
+def _say_sentinel(samples: Samples) -> str:
+    """On a negative whole number of many samples, as -9999: a mark of what was not measured."""
+    values = samples.values[samples.valid]
+    whole = (values < 0) & (values == np.round(values))
+    below, counts = np.unique(values[whole], return_counts=True)
+    if not len(counts) or counts.max() < SEVERAL:
+        return ""
+    mark = below[counts.argmax()]
+    return (
+        f"{counts.max():,} values are exactly {mark:g}: probably a mark of what was not measured; "
+        "leave those cells of the file empty"
+    )
+
+
+def _say_unit(data: Measured) -> str:
+    """On a measurement that reflects more light than arrives, or next to none."""
+    albedo = data.rgb.albedo
+    angles = zip(albedo.theta_i, albedo.means, strict=False)
+    shares = {angle: share for angle, share in angles if angle < OBLIQUE and share > 0}
+    if not shares:
+        return ""
+    angle = max(shares, key=lambda angle: shares[angle])
+    share = shares[angle]
+    if LEAST_LIGHT <= share <= GAIN:
+        return ""
+    what = f"the measurement reflects {format_share(share)} of the light at {angle:g}°"
+    if share > GAIN:
+        return (
+            f"{what}, more than arrives: the values are in another unit than 1/sr, or hold a "
+            "factor, as 100 of per cent; divide them by it"
+        )
+    return f"{what}, less than the blackest paints: the values may be in another unit than 1/sr"

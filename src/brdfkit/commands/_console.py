@@ -9,6 +9,8 @@ from brdfkit.commands import _tables
 from brdfkit.json_values import plain
 from brdfkit.progress_bar import progress
 
+NARROWEST = 20  # characters
+
 
 @dataclass(frozen=True)
 class Console:
@@ -23,7 +25,11 @@ class Console:
         from rich.console import Console
 
         # no markup: names from files may hold brackets
-        return Console(quiet=self.quiet, highlight=False, markup=False, emoji=False, soft_wrap=True)
+        found = Console(
+            quiet=self.quiet, highlight=False, markup=False, emoji=False, soft_wrap=True
+        )
+        found.width = max(found.width, NARROWEST)  # a terminal may say that it has 0 columns
+        return found
 
     def progress(self, what):
         """Within the block a bar shows the progress of `what`; gives a function (done, total)."""

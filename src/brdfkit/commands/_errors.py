@@ -52,7 +52,8 @@ class LastWords(click.ClickException):
 def tell_errors():
     """Within the block, what should end the program with a sentence becomes `LastWords`.
 
-    That is: errors for people, errors of click, an output that fails, Ctrl-C and SIGTERM.
+    That is: errors for people, errors of click, an output that fails, too little memory, Ctrl-C and
+    SIGTERM.
     """
     try:
         yield
@@ -66,6 +67,8 @@ def tell_errors():
             raise
         _drop_output()
         raise LastWords(f"the output cannot be written ({error.strerror}); make room.") from error
+    except MemoryError as error:
+        raise LastWords("there is too little memory for this; make it smaller.") from error
     except KeyboardInterrupt as error:
         raise LastWords("interrupted.", status()) from error
 

@@ -31,13 +31,19 @@ def refuse_to_replace(target):
     if context is None or not target.exists() or _is_own(target, context):
         return
     if _is_input(target, context.params):
-        raise BrdfkitError(f"{target} is a file to read; name another to write.")
+        raise BrdfkitError(f"{_shown(target)} is a file to read; name another to write.")
     if context.params.get("force"):
         return
     raise BrdfkitError(
-        f"{target} is there already, and not of this command: name another file, or add --force "
-        "to replace it."
+        f"{_shown(target)} is there already, and not of this command: name another file, or add "
+        "--force to replace it."
     )
+
+
+def _shown(target):
+    """The path of a file as the user would write it."""
+    here = Path.cwd()
+    return target.relative_to(here) if target.is_relative_to(here) else target
 
 
 def remember(target):

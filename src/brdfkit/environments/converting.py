@@ -12,6 +12,9 @@ from brdfkit.environments.map_files import load_light, write
 from brdfkit.environments.resampling import resample
 from brdfkit.errors import BrdfkitError
 
+# Rows of a map: more are a mistake
+LARGEST = 16_384
+
 
 def convert_environment(
     environment: str | Path | NDArray[Any],
@@ -70,6 +73,8 @@ def convert_environment(
         same = before.layout.rows == after.layout.rows
         height = rgb.shape[0] if same else max(2, int(quarter * after.layout.rows))
     height = to_whole_number("height", height, least=2)
+    if height > LARGEST:
+        raise BrdfkitError(f"height = {height} is more than a map may have, {LARGEST} rows.")
     if isinstance(after.layout, Cube) and height % after.layout.lines:
         raise BrdfkitError(
             f"height = {height} should be a multiple of {after.layout.lines}, the faces from top "

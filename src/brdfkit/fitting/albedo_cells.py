@@ -4,7 +4,7 @@ import math
 
 from brdfkit.documents import Cell
 from brdfkit.documents.parts import BAD
-from brdfkit.fitting.light import ALL, WRONG, Albedo, factor_between
+from brdfkit.fitting.light import ALL, WRONG, Albedo, factor_between, format_share
 
 # How many angles of an `Albedo` are shown: all but the grazing one, which no measurement tells
 SHOWN = 3
@@ -36,9 +36,7 @@ def format_albedo(albedo: float) -> str:
     >>> format_albedo(0.3521), format_albedo(0.01201)
     ('0.35', '0.012')
     """
-    if math.isnan(albedo):
-        return "-"
-    return f"{albedo:.2f}" if albedo >= 0.1 else f"{albedo:#.2g}"
+    return "-" if math.isnan(albedo) else format_share(albedo)
 
 
 def albedo_cell(albedo: float, measured: float = math.nan) -> Cell:

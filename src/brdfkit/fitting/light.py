@@ -92,19 +92,19 @@ class Light:
             for row, known in zip(self.values, self.known, strict=True)
         ]
         fit = tuple(map(tuple, albedos.tolist()))
-        return Albedo(self.theta_i, fit, tuple(measured), self._find_peak(brdf, albedos))
+        return Albedo(self.theta_i, fit, tuple(measured), self._find_peak(brdf))
 
-    def _find_peak(self, brdf, albedos):
-        """The angle at which a BRDF with these `albedos` (n, channels) reflects most, and how much
-        that is: summed with more points where it seems to gain light."""
+    def _find_peak(self, brdf):
+        """The angle at which a BRDF reflects most, and how much that is: along the axes of an
+        anisotropic one; summed with more points where it seems to gain light."""
         angles = (*self.theta_i, *OTHERS)
-        others = albedo_pixels(OTHERS, self.azimuths).look(brdf)
-        peaks = np.concatenate([albedos, others]).max(axis=1)
-        for row in np.flatnonzero(peaks > ALL):
-            incident = from_angles(np.radians(angles[row]), self.azimuths)
-            peaks[row] = np.mean([directional_albedo(brdf, wi) for wi in incident], axis=0).max()
-        row = int(np.argmax(peaks))
-        return angles[row], float(peaks[row])
+        every = [albedo_pixels(angles, (azimuth,)).look(brdf) for azimuth in self.azimuths[:2]]
+        peaks = np.array(every).max(axis=2)
+        for azimuth, row in np.argwhere(peaks > ALL):
+            wi = from_angles(np.radians(angles[row]), self.azimuths[azimuth])
+            peaks[azimuth, row] = directional_albedo(brdf, wi).max()
+        row = int(np.argmax(peaks.max(axis=0)))
+        return angles[row], float(peaks[:, row].max())
 
     def look(self, brdf):
         """The albedos (n, channels) of a BRDF (wi, wo) → (n, channels)."""
@@ -166,17 +166,17 @@ class Albedo:
         pairs = list(zip(self.theta_i, most, strict=True))
         angle, gain = self.peak or max(pairs, key=lambda pair: pair[1])
         if gain > ALL:
-            digits = 3 if gain < 1.01 else 2
+            text = f"{gain:.3f}" if gain < 1.01 else format_share(gain)
             found.append(
-                f"it reflects {gain:.{digits}f} of the light at {angle:g}°, more than arrives; a "
+                f"it reflects {text} of the light at {angle:g}°, more than arrives; a "
                 "constraint prevents it: AlbedoAtMost(1), or --albedo-at-most 1"
             )
         means = zip(self.theta_i, *self.means(), strict=True)
         angle, fit, measured = max(means, key=lambda row: factor_between(row[1], min(row[2], 1.0)))
         if factor_between(fit, min(measured, 1.0)) > WRONG:
             found.append(
-                f"it reflects {fit:.2f} of the light at {angle:g}°, where the measurement reflects "
-                f"{measured:.2f}"
+                f"it reflects {format_share(fit)} of the light at {angle:g}°, where the "
+                f"measurement reflects {format_share(measured)}"
             )
         return found
 
@@ -186,6 +186,17 @@ class Albedo:
         fit = tuple(sum(row) / len(row) for row in self.fit)
         measured = tuple(sum(row) / len(row) if row else math.nan for row in self.measured)
         return fit, measured
+
+
+def format_share(share: float) -> str:
+    """A share of light as text.
+
+    >>> format_share(0.3521), format_share(0.01201), format_share(2e9)
+    ('0.35', '0.012', '2e+09')
+    """
+    if share >= 1000:
+        return f"{share:.3g}"
+    return f"{share:.2f}" if share >= 0.1 else f"{share:#.2g}"
 
 
 def factor_between(one: float, other: float) -> float:

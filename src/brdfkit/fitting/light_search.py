@@ -13,6 +13,7 @@ first search. A fit whose light is right is left as it is.
 import numpy as np
 
 from brdfkit.fitting.levenberg_marquardt import ROUNDING
+from brdfkit.fitting.light import format_share
 from brdfkit.fitting.loss import Loss
 from brdfkit.fitting.pixel_problem import PixelProblem
 from brdfkit.fitting.problem import Problem
@@ -59,22 +60,26 @@ def keep_light(whole, u, weights, light, points, rng):
         if error > (DEAREST * max(free.max(), 1)) ** 2 * first:
             break
         if light.departure(held) <= NEARER * light.departure(free):
-            kept = *end, _explain_light(light, free, held)
+            kept = *end, _explain_light(light, counted, free, held)
         if light.is_right(held):
             break
         points = end[0]
     return kept
 
 
-def _explain_light(light, free, held):
-    """The note on a fit that keeps the `light`; `free`, `held`: albedos without and with it."""
+def _explain_light(light, counted, free, held):
+    """The note on a fit that keeps the `light` at the `counted` angles (n,); `free`, `held`:
+    albedos without and with it."""
     gains = np.log(np.maximum(free.max(axis=1), 1e-9))
-    row = int(np.argmax(np.maximum(np.abs(np.log(light.factors(free))), gains)))
-    measured = f", where the measurement reflects {light.values[row].mean():.2f}"
+    apart = np.maximum(np.abs(np.log(light.factors(free))), gains)
+    row = int(np.argmax(np.where(counted, apart, -np.inf)))
+    shares = (format_share(albedos[row].mean()) for albedos in (free, light.values, held))
+    before, measured, after = shares
+    measured = f", where the measurement reflects {measured}"
     return (
-        f"by the loss alone it would reflect {free[row].mean():.2f} of the light at "
+        f"by the loss alone it would reflect {before} of the light at "
         f"{light.theta_i[row]:g}°{measured * bool(light.known[row])}; with a term for its light it "
-        f"reflects {held[row].mean():.2f}"
+        f"reflects {after}"
     )
 
 

@@ -2,7 +2,9 @@
 
 import json
 from dataclasses import fields
-from typing import get_origin
+from typing import get_args, get_origin
+
+import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.certainty import Certainty
@@ -17,6 +19,8 @@ KEY = "brdfkit"
 FIELDS = [f for f in fields(Fit) if f.name not in ("model", "certainty", "albedo")]
 # What fits of earlier versions lack
 LATER = ("checksum", "versions", "effective_samples", "unrepresented")
+# What is raised where an entry is of another kind, or missing, or too large for a float
+DAMAGED = ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError
 
 
 def sniff(head):
@@ -28,18 +32,24 @@ def read(source):
     """The `Fit` that `write` wrote."""
     try:
         record = json.loads(source.data)
+        version = _to_type(str, record[KEY])
         label, values = _to_type(str, record["model"]), dict(record["parameters"])
+        for value in values.values():
+            np.asarray(value, float)  # of a number that is too large for one an OverflowError
         given = record["fit"]
         there = [f for f in FIELDS if f.name in given or f.name not in LATER]
         found = {f.name: _to_type(f.type, given[f.name]) for f in there}
-        if bounds := found["settings"].get("bounds"):
-            found["settings"] |= {"bounds": {n: tuple(pair) for n, pair in bounds.items()}}
+        found["settings"] = _to_settings(found["settings"])
         found["certainty"] = _to_certainty(given.get("certainty"))
         found["albedo"] = _to_albedo(given.get("albedo"))
-    except (ValueError, KeyError, TypeError, RecursionError):
+    except DAMAGED:
         if source.data.lstrip().startswith(b'{"kind"'):
             raise source.error("is a distance field; load it by brdfkit.distance_fields") from None
         raise source.error("is no fit that brdfkit saved, or is damaged; fit it again") from None
+    if _is_newer(version):
+        raise source.error(
+            f"was saved by brdfkit {version[:20]}, and this is {__version__}: update brdfkit"
+        )
     try:
         return Fit(model=labels.model(label)(**values), **found)
     except (BrdfkitError, TypeError) as error:
@@ -83,7 +93,7 @@ def _to_certainty(record):
     """The `Certainty` of `_from_certainty`; fits of earlier versions have none."""
     if record is None:
         return None
-    names = _to_type(tuple, record["names"])
+    names = _to_type(tuple[str, ...], record["names"])
     lower = [tuple(map(float, row.split())) for row in record["covariance"]]
     if [len(row) for row in lower] != [*range(1, len(names) + 1)]:
         raise ValueError
@@ -92,7 +102,7 @@ def _to_certainty(record):
     freedom = tuple(map(float, record["freedom"]))
     if len(freedom) != len(names):
         raise ValueError
-    said = (_to_type(tuple, record[name]) for name in ("undetermined", "trades"))
+    said = (_to_type(tuple[str, ...], record[name]) for name in ("undetermined", "trades"))
     counts = (_to_type(int, record[name]) for name in ("numbers", "parameters"))
     return Certainty(names, rows, freedom, *said, *counts)
 
@@ -103,7 +113,10 @@ def _to_albedo(record):
         return None
     angles, fit, measured = (_to_type(tuple, record[n]) for n in ("theta_i", "fit", "measured"))
     rows = [None if row is None else tuple(map(float, row)) for row in (*fit, *measured)]
-    if not len(angles) == len(fit) == len(measured):
+    lengths = {len(row) for row in rows if row is not None}
+    if not len(angles) == len(fit) == len(measured) or len(lengths) != 1:
+        raise ValueError
+    if None in fit or 0 in lengths:
         raise ValueError
     peak = record.get("peak")
     if peak is not None:
@@ -113,11 +126,32 @@ def _to_albedo(record):
     return Albedo(tuple(map(float, angles)), tuple(rows[: len(fit)]), tuple(rows[len(fit) :]), peak)
 
 
+def _to_settings(settings):
+    """The settings of a fit, whose bounds are pairs of numbers."""
+    if bounds := settings.get("bounds"):
+        settings |= {"bounds": {n: tuple(map(float, pair)) for n, pair in bounds.items()}}
+    return settings
+
+
+def _is_newer(version):
+    """Whether a version, as 1.2.3, is a later one than this."""
+    numbers = ([int(part) for part in v.split(".")[:2]] for v in (version, __version__))
+    try:
+        theirs, ours = numbers
+    except ValueError:  # of a version between two
+        return False
+    return theirs > ours
+
+
 def _to_type(kind, value):
     """A value of JSON as the type `kind`, which `Fit` declares, or a TypeError."""
-    kind = get_origin(kind) or kind
-    if isinstance(value, list) and kind is tuple:
+    origin, of = get_origin(kind) or kind, get_args(kind)
+    if isinstance(value, list) and origin is tuple:
+        if of[1:] == (...,) and not all(isinstance(part, of[0]) for part in value):
+            raise TypeError
         return tuple(value)
-    if not isinstance(value, (int, float) if kind is float else kind):
+    if origin in (int, float) and isinstance(value, int):
+        return origin(float(value))  # which a number too large for one is not
+    if not isinstance(value, origin):
         raise TypeError
     return value

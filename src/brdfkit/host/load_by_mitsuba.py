@@ -15,6 +15,10 @@ def load_by_mitsuba(function, source, name):
     try:
         with two_threads():
             return function(source, parallel=False)
+    except (MemoryError, IndexError, OverflowError) as error:  # of a size that no file has
+        raise BrdfkitError(
+            f"{name}: Mitsuba cannot load it: it states a size for which there is no memory."
+        ) from error
     except (RuntimeError, TypeError) as error:
         if "KeyboardInterrupt" in str(error):  # Ctrl-C in a plugin that is written in Python
             raise KeyboardInterrupt from None

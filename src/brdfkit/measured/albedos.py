@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.fitting.light import FOUR, ONE
+from brdfkit.fitting.light import FOUR, ONE, OTHER_UNIT
 from brdfkit.geometry.directions import from_angles
 from brdfkit.samples.coordinates import coordinates, sample_coordinates
 from brdfkit.samples.measures import REACH
@@ -17,6 +17,9 @@ ANGLES, GRAZING = (5.0, 45.0, 75.0), 85.0
 N_THETA, N_PHI = 60, 24
 # The share of the light that must leave near measured directions for the albedo to be known
 KNOWN = 0.75
+# Where a larger share of the samples is not positive, noise decides: the logarithms, between which
+# is interpolated, are too low
+NOISY = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +34,11 @@ class MeasuredAlbedo:
     theta_i: tuple[float, ...]
     values: NDArray[np.float64]
     known: NDArray[np.bool_]
+
+    @property
+    def has_another_unit(self) -> bool:
+        """Whether so much light is reflected that the values cannot be in 1/sr."""
+        return bool((self.known[:, None] & (self.values > OTHER_UNIT)).any())
 
     @property
     def means(self) -> tuple[float, ...]:
@@ -74,8 +82,16 @@ def measured_albedo(data):
         directions = [from_angles(np.radians(angle), phi) for phi in azimuths]
         values.append(np.mean([albedo_at(data, wi) for wi in directions], axis=0))
         share = np.mean([_known_share(is_near, wi) for wi in directions])
-        known.append(angle < GRAZING and share >= KNOWN)
+        known.append(angle < GRAZING and share >= KNOWN and not _is_noisy(data))
     return MeasuredAlbedo(angles, np.array(values), np.array(known))
+
+
+def _is_noisy(data):
+    """Whether many of scattered samples are not positive."""
+    if data.is_table:
+        return False
+    means = data.samples.values[data.samples.valid].mean(axis=1)
+    return bool((means <= 0).mean() > NOISY)
 
 
 def _known_share(is_near, wi):

@@ -30,6 +30,7 @@ def select_samples(data, max_angle, weights=None, errors=False, spectral=False):
         )
     if weights is not None:
         weights = _check_weights(weights, data)
+        weights = weights / (weights.max(initial=0) or 1)  # of any size, their squares are finite
     own = data.standard_error if errors else None
     if data.is_table:
         samples = Samples.of_cells(data.table, max_angle, weights, own)

@@ -9,6 +9,8 @@ import numpy as np
 from brdfkit.errors import BrdfkitError
 
 NOT_NEGATIVE, SIGNED = (0.0, math.inf), (-math.inf, math.inf)
+# Weights beyond this have squares that are no numbers
+LARGEST = 1e100
 
 
 @dataclass(frozen=True)
@@ -49,7 +51,8 @@ class Parameter:
         low, high = self.bounds
         given = np.asarray(value)
         if np.all(np.isfinite(given) & (given >= low) & (given <= high)):
-            return None
+            large = np.abs(given).max(initial=0) > LARGEST
+            return f"{value} is out of bounds: it should be at most {LARGEST:g}" if large else None
         limits = f"at least {low:g}" if math.isinf(high) else f"between {low:g} and {high:g}"
         return f"{value} is out of bounds: it should be {limits}"
 

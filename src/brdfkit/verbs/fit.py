@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 
 from brdfkit.errors import Interrupted, no_such
 from brdfkit.fitting import Fit, Loss, Picture, as_loss, regress
-from brdfkit.fitting.light import Light
 from brdfkit.fitting.measurement_noise import regress_noisy
 from brdfkit.fitting.solvers import AlbedoAtMost, Solver, WeightsAtMost
 from brdfkit.fitting.solvers.settings import to_plain
@@ -28,6 +27,7 @@ from brdfkit.samples.measures import weigh, whole
 from brdfkit.verbs.extrapolation import note_on_extrapolation
 from brdfkit.verbs.fit_notes import list_notes
 from brdfkit.verbs.fit_settings import require_plain, to_settings
+from brdfkit.verbs.light_of_data import light_of_data
 from brdfkit.version import versions
 
 Constraint = AlbedoAtMost | WeightsAtMost | Callable[[Model], ArrayLike]
@@ -142,13 +142,13 @@ def fit(
     loss = as_loss(loss)
     samples = select_samples(data, max_angle, weights, use_standard_error, spectral)
 
-    light = Light.of((data if spectral else data.rgb).albedo, data.anisotropic)
+    light = light_of_data(data if spectral else data.rgb, weights, max_angle)
 
     def to_fit(found):
         known = wavelengths(data) if spectral else ()
         fitted = with_weights(model, found.shapes, found.weights, known)
         albedo = light.judge(fitted.eval)
-        warnings = albedo.warnings()
+        warnings = [] if light.has_another_unit else albedo.warnings()
         return Fit(
             model=fitted,
             data=data.name,

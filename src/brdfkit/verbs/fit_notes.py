@@ -3,6 +3,7 @@
 from brdfkit.auditing.data_findings import data_findings
 from brdfkit.fitting import Picture
 from brdfkit.model.evaluation import clamped_share
+from brdfkit.names import format_percent
 from brdfkit.verbs.azimuth import note_on_azimuth
 from brdfkit.verbs.lobe_notes import list_lobe_notes
 
@@ -25,7 +26,7 @@ def list_notes(data, samples, loss, found, fitted, weighted):
         notes.append("all measured values are equal: they tell nothing of a highlight's shape")
     negative = (samples.values < 0).mean()
     if negative and not loss.linear:
-        notes.append(f"{negative:.1%} of the {_explain_negative(data)}")
+        notes.append(f"{format_percent(100 * negative)} of the {_explain_negative(data)}")
     if fitted.signed():
         clamped = clamped_share(fitted)
         notes.append(f"{clamped:.1%} of the hemisphere's direction pairs are clamped at 0")

@@ -60,8 +60,9 @@ def list_lobe_notes(
     highlight = albedos[:, ~diffuse].sum(axis=1).max(axis=1)
     narrow = notes_on_widths(samples, fitted)
     others = tuple(name for name in at_bounds if name not in narrow)
+    other_unit = data.rgb.albedo.has_another_unit  # then no lobe means anything
     return [
-        *_list_gains(fitted, albedos),
+        *([] if other_unit else _list_gains(fitted, albedos)),
         *_list_unused(fitted, at_bounds),
         *_list_fresnel(fitted),
         *_list_bounds(fitted, others, highlight),
