@@ -169,3 +169,16 @@ def test_the_light_that_is_mended_is_the_light_that_is_told():
     notes = bk.fit("ward", bk.load("red_plastic")).notes
     (said,) = [note for note in notes if note.startswith("by the loss alone")]
     assert "of the light at 5°" in said
+
+
+def test_the_bootstrap_of_a_fit_that_keeps_its_light_keeps_it(measured_data):
+    """Its intervals hold the fit; the profile of the loss alone, which would not, is refused."""
+    data = bk.load(measured_data / "minidiff_paints" / "C2_Black.astm.xz")
+    found = bk.fit("ggx", data)
+    assert any(note.startswith("by the loss alone") for note in found.notes)
+    for name, interval in bk.bootstrap(found, data, 20).intervals(0.99).items():
+        low, high = np.reshape(interval, (-1, 2)).T
+        assert (low <= found.values[name]).all(), name
+        assert (found.values[name] <= high).all(), name
+    with pytest.raises(bk.BrdfkitError, match="searched again for the light of its data"):
+        bk.profile(found, data, "alpha_u")

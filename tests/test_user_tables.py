@@ -265,3 +265,17 @@ def test_many_models_say_what_is_doubtful_once(tmp_path):
     run = CliRunner().invoke(main, ["fit", path, "-m", "ward", "-m", "lambert"])
     assert run.output.count("--mirror-azimuth") == 1
     assert run.output.startswith("! the values are")
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.03])
+@pytest.mark.parametrize("alpha", [0.05, 0.12, 0.25])
+def test_a_mirrored_azimuth_is_told_on_a_grid_of_large_steps(alpha, noise):
+    """Also where the highlight is hardly brighter than the white ground."""
+    angles = np.meshgrid([15, 30, 45, 60, 75], range(0, 76, 5), range(0, 331, 30), indexing="ij")
+    theta_i, theta_o, phi = (np.radians(a.ravel()) for a in angles)
+    wi, wo = from_angles(theta_i, 0.0), from_angles(theta_o, phi)
+    model = bk.models()["ggx"](diffuse_reflectance=0.5, alpha_u=alpha, alpha_v=alpha, f0=0.05)
+    values = model.eval(wi, wo) * np.random.default_rng(0).normal(1, noise, (len(wi), 1))
+    for turn, told in (([1, 1, 1], False), ([-1, -1, 1], True)):
+        notes = bk.fit("ggx", bk.Measured.from_samples(wi, wo * turn, values)).notes
+        assert any("--mirror-azimuth" in note for note in notes) == told

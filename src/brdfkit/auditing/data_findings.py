@@ -16,6 +16,7 @@ from brdfkit.auditing.grazing_and_retro import (
 from brdfkit.auditing.noise import noise
 from brdfkit.auditing.spread import some_samples
 from brdfkit.auditing.symmetries import by_reciprocity
+from brdfkit.auditing.turned import error_when_turned
 from brdfkit.fitting.light import format_share
 from brdfkit.measured import Measured
 from brdfkit.measured.coverage import in_plane
@@ -29,6 +30,8 @@ OF_NOISE = 0.6745 * math.sqrt(2)  # the median difference of two equal values, o
 DARK_HORIZON, RETROREFLECTIVE = 0.5, 5  # ratios of `grazing_and_retro.py`
 # ... and `backwards` there: alone, or with this `retroreflection`; of rough plaster 3.5 and 1.6
 BACKWARDS, WITH_A_LOBE = 5, (2, 2.5)
+# ... where that ratio is not below FORWARDS, `error_when_turned` is below TURNED
+FORWARDS, TURNED = 0.9, 0.3
 SAME = 1.0  # degrees: angles of incidence that differ by less are one
 ZERO = 0.01  # the share of samples that are 0
 SEVERAL = 5  # values below 0 that are equal
@@ -72,14 +75,20 @@ def _find(data: Measured) -> dict[str, str]:
 def _say_direction(data: Measured, samples: Samples) -> str:
     """On light that is sent back to where it comes from, or azimuths that make it seem so."""
     ratio, near_light = backwards(samples), retroreflection(samples)
+    mendable = can_be_mended(data, "mirror_azimuth")
+    found = ""
     if ratio > BACKWARDS or (ratio > WITH_A_LOBE[0] and near_light > WITH_A_LOBE[1]):
+        found = f"the values are {ratio:.2g} times as large towards the light as"
+    elif mendable and not ratio < FORWARDS and error_when_turned(samples) < TURNED:
+        found = "the highlight lies towards the light, and not"
+    if found:
         mirrored = "the instrument counts phi_o from the mirror's side"
-        if can_be_mended(data, "mirror_azimuth"):
+        if mendable:
             mirrored += ", which mirror_azimuth=True (--mirror-azimuth) mends"
         return (
-            f"the values are {ratio:.2g} times as large towards the light as in the mirror "
-            "direction, phi_o = phi_i + 180°: either the material is retroreflective, which no "
-            f"lobe about the mirror direction can fit, or {mirrored}"
+            f"{found} in the mirror direction, phi_o = phi_i + 180°: either the material is "
+            "retroreflective, which no lobe about the mirror direction can fit, or "
+            f"{mirrored}"
         )
     if near_light > RETROREFLECTIVE:
         return (

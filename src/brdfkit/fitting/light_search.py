@@ -27,6 +27,9 @@ SHARES = 10.0, 40.0, 160.0
 # model that pays more for its light is left as it is
 NEARER, DEAREST = 0.6, 1.4
 
+# How the note begins on a fit that keeps the light
+NOTE = "by the loss alone"
+
 DIFFERENCE = Loss(
     "light",
     "difference of albedos",
@@ -77,7 +80,7 @@ def _explain_light(light, counted, free, held):
     before, measured, after = shares
     measured = f", where the measurement reflects {measured}"
     return (
-        f"by the loss alone it would reflect {before} of the light at "
+        f"{NOTE} it would reflect {before} of the light at "
         f"{light.theta_i[row]:g}°{measured * bool(light.known[row])}; with a term for its light it "
         f"reflects {after}"
     )

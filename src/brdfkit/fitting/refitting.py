@@ -8,6 +8,7 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.levenberg_marquardt import levenberg_marquardt
+from brdfkit.fitting.light_search import NOTE, keep_light
 from brdfkit.fitting.named_losses import as_loss, losses
 from brdfkit.fitting.parameter_space import Space
 from brdfkit.fitting.picture import Picture
@@ -19,10 +20,12 @@ from brdfkit.model.evaluation import weight_matrix, with_weights
 
 @dataclass(frozen=True, eq=False)
 class Refit:
-    """A `Fit` and the `Samples` that were fitted, ready to be fitted again."""
+    """A `Fit` and the `Samples` that were fitted, ready to be fitted again; `light`: the `Light` of
+    the data, which a fit keeps again that has kept it."""
 
     fit: Any
     samples: Any
+    light: Any = None
 
     def __post_init__(self):
         if self.fit.loss_name == "rendered":
@@ -66,6 +69,20 @@ class Refit:
         matrix = weight_matrix(self.fit.model)
         return np.broadcast_to(matrix, (len(matrix), channels)).T[None].copy()
 
+    @property
+    def keeps_light(self):
+        """Whether the fit was searched again for the light of its data."""
+        return any(note.startswith(NOTE) for note in self.fit.notes)
+
+    def require_least(self):
+        """Raise `BrdfkitError` where the fit is not the least of its loss."""
+        if self.keeps_light:
+            raise BrdfkitError(
+                f"{self.fit.name} was searched again for the light of its data, and is not the "
+                "least of its loss alone, as is needed here; brdfkit.bootstrap tells how certain "
+                "it is."
+            )
+
     def problem(self, **held):
         """The `Problem` of the fit, with parameters `held` at values, by name."""
         model, settings = type(self.fit.model), self.fit.settings
@@ -81,7 +98,12 @@ class Refit:
         u = problem.space.coordinates(values)[None]
         given = problem.expand, u, weights, problem.least
         ends = levenberg_marquardt(*given, MOST_STEPS, EXACT).ends
-        u, weights, error = ends.u, ends.weights, ends.error[0]
+        start, u, weights, error = u, ends.u, ends.weights, ends.error[0]
+        if self.light is not None and self.keeps_light:
+            kept = keep_light(problem, u, weights, self.light, start, rng)
+            if kept is not None:
+                u, weights = kept[:2]
+                error = problem.sums(u, weights, curvature=False).error[0]
         if robust := self.fit.settings.get("robust"):
             u, weights, *_ = settle(problem, u, weights, robust, rng, lambda done, total: None)
         return problem.space.values(u[0]), weights, error

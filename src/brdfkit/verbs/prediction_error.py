@@ -88,7 +88,8 @@ def prediction_error(
     """
     samples = fitted_samples(fit, data)
     _require_linear(fit, samples)
-    Refit(fit, samples)  # raises for weights, constraints and standard errors, not known here
+    # raises for weights, constraints and standard errors, not known here
+    Refit(fit, samples).require_least()
     Z = lobe_values(fit.model, samples.wi, samples.wo)[0]
     # (Z'WZ)⁻¹ Z'W, of the weights W of the loss
     root = _root_weights(as_loss(fit.loss_name), samples)

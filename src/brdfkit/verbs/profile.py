@@ -97,8 +97,9 @@ def profile(fit: Fit, data: MaterialLike, parameter: str, points: int = 25) -> P
     Raises
     ------
     BrdfkitError
-        For a parameter that was not searched, a robust fit or one by standard errors, where `data`
-        was not measured, and where no number is left beyond the parameters.
+        For a parameter that was not searched, a robust fit, one by standard errors or one that was
+        searched again for its light, where `data` was not measured, and where no number is left
+        beyond the parameters.
 
     Examples
     --------
@@ -109,6 +110,7 @@ def profile(fit: Fit, data: MaterialLike, parameter: str, points: int = 25) -> P
 
     points = to_whole_number("points", points, least=5)
     again = refit(fit, data)
+    again.require_least()
     space = again.problem().space
     if parameter not in space.names:
         raise BrdfkitError(

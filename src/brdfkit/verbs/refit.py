@@ -5,11 +5,16 @@ from brdfkit.fitting import Fit
 from brdfkit.fitting.refitting import Refit
 from brdfkit.materials import measured_material
 from brdfkit.measured.selection import select_samples
+from brdfkit.verbs.light_of_data import light_of_data
 
 
 def refit(fit, data):
     """The `Refit` of a fit and the material that was fitted."""
-    return Refit(fit, fitted_samples(fit, data))
+    samples = fitted_samples(fit, data)
+    material = measured_material(data)
+    material = material if fit.wavelengths else material.rgb
+    light = light_of_data(material, None, fit.settings.get("max_angle", 80.0))
+    return Refit(fit, samples, light)
 
 
 def fitted_samples(fit, data):
