@@ -279,3 +279,12 @@ def test_a_mirrored_azimuth_is_told_on_a_grid_of_large_steps(alpha, noise):
     for turn, told in (([1, 1, 1], False), ([-1, -1, 1], True)):
         notes = bk.fit("ggx", bk.Measured.from_samples(wi, wo * turn, values)).notes
         assert any("--mirror-azimuth" in note for note in notes) == told
+
+
+def test_directions_without_all_wavelengths_are_counted():
+    rows = pd.DataFrame(
+        [(30, theta, 0, nm, 0.1) for theta in range(0, 60, 10) for nm in (450, 550, 650)],
+        columns=["theta_i", "theta_o", "delta_phi", "wavelength", "brdf"],
+    ).drop(index=[4, 5])
+    found = bk.Measured.from_frame(rows, unit="deg")
+    assert found.info["without all wavelengths"] == "1 of 6 pairs of directions, masked"

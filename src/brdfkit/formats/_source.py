@@ -132,8 +132,8 @@ class Source:
             finite &= np.isfinite(standard_error).all(axis=1)
             details["standard_error"] = standard_error
         info, name = dict(info or {}), name or self.name
-        if not finite.all():
-            info["not finite"] = f"{(~finite).sum()} of {len(finite)} rows, masked"
+        if (lost := ~finite & valid).any():  # those that the reader did not mask have no note yet
+            info["not finite"] = f"{lost.sum():,} of {len(finite):,} rows, masked"
         try:
             return Measured.from_samples(
                 wi, wo, values, finite & valid, channels, name, info, **details

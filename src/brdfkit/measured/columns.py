@@ -27,20 +27,21 @@ def to_samples(names, columns, unit, origin):
     values = np.stack([columns[n] for n in layout.values], axis=1)
     errors = np.stack([columns[n] for n in layout.errors], axis=1) if layout.errors else None
     _require_positive(errors, origin)
-    channels, info = layout.channels, {}
+    channels, info, holes = layout.channels, {}, "not finite"
     if layout.key:
         kind, number = layout.key
         wide = to_wide(wi, wo, values, errors, kind, columns[number], origin)
         wi, wo, values, errors = wi[wide.rows], wo[wide.rows], wide.values, wide.errors
         channels = wide.channels
         info[f"{kind}s"] = f"{len(channels)}, a row each, at {len(wi):,} pairs of directions"
+        holes = f"without all {kind}s"
 
     # The rows that are masked, by the reason
     finite = np.isfinite(values).all(axis=1)
     if errors is not None:
         finite &= np.isfinite(errors).all(axis=1)
     above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
-    masked = {"not finite": ~finite, "at or below the horizon": ~above}
+    masked = {holes: ~finite, "at or below the horizon": ~above}
     if layout.cosine:
         info |= DIVIDED
         cosine, low = cosines(wo)
@@ -49,7 +50,8 @@ def to_samples(names, columns, unit, origin):
         errors = None if errors is None else errors / cosine
     for reason, rows in masked.items():
         if rows.any():
-            info[reason] = f"{rows.sum():,} of {len(rows):,} rows, masked"
+            what = "pairs of directions" if layout.key else "rows"
+            info[reason] = f"{rows.sum():,} of {len(rows):,} {what}, masked"
     return {
         "wi": wi,
         "wo": wo,

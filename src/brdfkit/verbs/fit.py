@@ -209,8 +209,9 @@ SETTINGS = {
 
 def _add_warning(message):
     """The message of a fit whose light is wrong."""
-    ended = message.startswith(("converged", "settled"))
-    return f"{message}, but its light is wrong" if ended else message
+    end, semicolon, rest = message.partition(";")
+    ended = end.startswith(("converged", "settled"))
+    return f"{end}, but its light is wrong{semicolon}{rest}" if ended else message
 
 
 def tell_weights(loss: Loss | Picture, samples: Any, max_angle: float) -> dict[str, float]:
