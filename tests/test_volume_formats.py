@@ -3,6 +3,7 @@
 import gzip
 import struct
 import tracemalloc
+import warnings
 import zlib
 from pathlib import Path
 
@@ -528,3 +529,30 @@ def test_the_page_of_volumes_names_what_there_is():
 def test_no_two_formats_take_one_suffix():
     suffixes = [suffix for module in formats() for suffix in module.SUFFIXES]
     assert len(suffixes) == len(set(suffixes))
+
+
+def test_a_sparse_file_packed_by_bzip2_is_whole(tmp_path):
+    """bzip2 makes 40 bytes of millions of equal ones."""
+    nrrd = pytest.importorskip("nrrd")
+    sparse = np.zeros((64, 64, 64), np.uint8)
+    sparse[30, 30, 30] = 200
+    nrrd.write(str(tmp_path / "sparse.nrrd"), sparse, header={"encoding": "bzip2"})
+    assert bk.load_volume(tmp_path / "sparse.nrrd").values.sum() == 200
+
+
+def test_names_of_a_stack_may_have_any_digits(tmp_path):
+    for name in ("1²3.tif", "1²10.tif", "①.tif"):
+        tifffile.imwrite(tmp_path / name, np.ones((8, 8), np.uint8))
+    assert bk.load_volume(tmp_path).values.shape == (3, 8, 8)
+
+
+@pytest.mark.parametrize(("offset", "told"), [(0.0, False), (1e9, True)])
+def test_rounding_to_single_precision_is_told(tmp_path, offset, told):
+    nrrd = pytest.importorskip("nrrd")
+    exact = offset + np.random.default_rng(0).uniform(0, 100, (6, 6, 6))
+    nrrd.write(str(tmp_path / "double.nrrd"), exact)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        found = bk.load_volume(tmp_path / "double.nrrd")
+    assert np.abs(found.values - exact.T).max() <= 32
+    assert any("off by up to 3" in str(w.message) for w in caught) == told

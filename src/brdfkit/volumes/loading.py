@@ -18,6 +18,8 @@ from brdfkit.volumes.formats import VolumeFile
 from brdfkit.volumes.histograms import FEW
 from brdfkit.volumes.volume import Volume, require_transform
 
+# Values whose rounding is more than this share of their range are told of
+COARSE = 1e-6
 MOST = 65  # up to which a `downsample` is proposed
 SPARE = 1.2  # times what the voxels take, for what Python and NumPy take beside them
 
@@ -130,14 +132,27 @@ def _read(file, stored, downsample, doubtful):
     values = np.empty(shape, _dtype(stored, downsample))
     layers = stored.layers()
     different: set[float] = set()  # values of one voxel of each block
-    with np.errstate(over="ignore"):  # a double beyond float32 is infinite, which Volume refuses
+    rounding, ends = 0.0, []
+    # A double beyond float32 is infinite, which Volume refuses
+    with np.errstate(over="ignore", invalid="ignore"):
         for k in range(shape[0]):
             slab = np.stack(list(itertools.islice(layers, downsample)))
-            values[k] = reducing.reduced(slab, downsample, stored.labels)
+            exact = reducing.reduced(slab, downsample, stored.labels)
+            values[k] = exact
+            if exact.dtype.kind == "f" and exact.dtype.itemsize > values.dtype.itemsize:
+                rounding = max(rounding, np.abs(values[k] - exact).max())
+                ends += [exact.min(), exact.max()]
             if doubtful and len(different) <= FEW:
                 different.update(np.unique(slab[0, ::downsample, ::downsample]).tolist())
     to_world = reducing.transform(stored.to_world, downsample)
     name = _name(file)
+    if ends and np.isfinite(rounding) and rounding > COARSE * (max(ends) - min(ends)):
+        warnings.warn(
+            f"{name}: its values, {min(ends):.10g} to {max(ends):.10g}, are kept in single "
+            f"precision, by which they are off by up to {rounding:.2g}; subtract what they have in "
+            "common first.",
+            stacklevel=3,
+        )
     if not stored.labels and _may_be_labels(different, values.size):
         warnings.warn(
             f"{name} has {len(different)} different values, all whole, of which means were taken: "

@@ -10,23 +10,27 @@ from math import prod
 import numpy as np
 
 CHUNK = 2**20  # bytes
-MOST_ZLIB = 1032  # bytes that zlib makes of one, at most
+# Bytes that one packed byte may stand for, at most: bzip2 makes 40 of 45 million equal ones
+LARGEST_PACKING = {"gzip": 1032, "zlib": 1032, "bz2": 2**21}
 CUT_SHORT = "the data are cut short or damaged; fetch the file again"
 
 
-def require_bytes(file, path, offset, shape, dtype, packed=False):
-    """Raise `BrdfkitError` unless a file at `path` can hold the voxels that its header tells of."""
+def require_bytes(file, path, offset, shape, dtype, packing=""):
+    """Raise `BrdfkitError` unless a file at `path` can hold the voxels that its header tells of.
+
+    `packing`: how they are packed, "gzip", "bz2" or "zlib", or not at all.
+    """
     try:
         present = path.stat().st_size - offset
     except (OSError, ValueError) as error:  # a name out of a damaged header may hold anything
         raise file.error(f"needs {path.name} beside it; put the two in one folder") from error
     needed = prod(shape) * np.dtype(dtype).itemsize
-    if needed > present * (MOST_ZLIB if packed else 1):
+    if needed > present * LARGEST_PACKING.get(packing, 1):
         size = "×".join(map(str, shape[::-1]))
         raise file.error(
             f"its header tells of {size} voxels, {needed:,} bytes, and the file has {present:,} "
-            f"{'packed ones ' if packed else ''}for them: it is cut short, or its header is wrong; "
-            "fetch it again"
+            f"{'packed ones ' if packing else ''}for them: it is cut short, or its header is "
+            "wrong; fetch it again"
         )
 
 

@@ -47,7 +47,7 @@ def opener(file, start, stop, encoding, shape, dtype):
     """
     is_text = encoding.form == "ascii"
     least = np.uint8 if is_text else dtype  # a digit and a blank, or more
-    require_bytes(file, file.path, start, shape, least, encoding.packed)
+    require_bytes(file, file.path, start, shape, least, "zlib" if encoding.packed else "")
 
     @contextmanager
     def open_stream():

@@ -62,7 +62,7 @@ def find(file):
         if skip == -1 and not packed and path.exists():  # the data are the end of the file
             start, skip = path.stat().st_size - int(np.prod(shape)) * dtype.itemsize, 0
         start = max(start + max(skip, 0), 0)
-        require_bytes(file, path, start, shape, dtype, packed)
+        require_bytes(file, path, start, shape, dtype, "zlib" if packed else "")
         stream = opener(path, start, "zlib" if packed else "")
     return Stored(
         shape=shape,

@@ -50,7 +50,9 @@ def find(file):
     path = Path(image.file_map["image"].filename)
     packed = path.suffix.lower() == ".gz"
     volume = prod(shape) * dtype.itemsize
-    require_bytes(file, path, 0 if packed else start + number * volume, shape, dtype, packed)
+    require_bytes(
+        file, path, 0 if packed else start + number * volume, shape, dtype, "gzip" if packed else ""
+    )
     start += number * volume
     stream = opener(path, 0, "gzip", start) if packed else opener(path, start)
     scaled = (slope, intercept) != (1, 0)

@@ -135,4 +135,4 @@ def _spacing(tiff):
 
 def _by_numbers(path):
     """A key by which slice_9 comes before slice_10."""
-    return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", path.name)]
+    return [int(part) if part.isdecimal() else part for part in re.split(r"(\d+)", path.name)]
