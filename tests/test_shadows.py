@@ -256,7 +256,7 @@ def test_the_command(tmp_path, capsys):
         bk.shadows.compare(file, ["focussed"])
     words[1] = "foliag"
     with pytest.raises(SystemExit) as ended:
-        main(words)
+        main([*words, "--force"])
     assert ended.value.code == 2
     assert "did you mean foliage" in capsys.readouterr().err
     with pytest.raises(bk.BrdfkitError, match="did you mean shadow_volume"):
