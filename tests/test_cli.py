@@ -901,3 +901,26 @@ def test_python_knows_the_command_line(tmp_path):
     done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith("brdfkit: There is no model 'nope'")
+
+
+@pytest.mark.quick
+def test_shape_parameters_are_fixed_bounded_and_tied(cli):
+    words = "fit", "paint.binary", "-m", "ggx", "--fix", "f0=0.04", "--bound", "alpha_u=0.3,0.4"
+    result = cli(*words, "--tie", "--json")
+    assert_fine(result)
+    (found,) = json.loads(result.stdout)["fits"]
+    assert found["parameters"]["f0"] == 0.04
+    assert 0.3 <= found["parameters"]["alpha_u"] == found["parameters"]["alpha_v"] <= 0.4
+    assert "Nothing was saved; -o FOLDER keeps the fits." in cli(*words).stdout
+    for wrong in (["--fix", "f0"], ["--bound", "f0=1"], ["--fix", "f0=x"], ["--bound", "a=1,2,3"]):
+        result = cli("fit", "paint.binary", "-m", "ggx", *wrong)
+        assert (result.exit_code, result.stderr.count("\n")) == (2, 1)
+        assert f"{wrong[0]} {wrong[1]!r} should read NAME=" in result.stderr
+
+
+@pytest.mark.quick
+def test_values_that_gain_light_are_told(cli):
+    words = "render", "lambert", *SMALL, "-p"
+    assert "reflects" not in cli(*words, "diffuse_reflectance=0.5", "-o", "a.png").stderr
+    said = "lambert reflects 5.00 of the light, more than arrives."
+    assert said in cli(*words, "diffuse_reflectance=5,5,5", "-o", "b.png").stderr

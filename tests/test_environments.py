@@ -325,6 +325,14 @@ def test_shipped_maps_are_not_doubtful():
 # Bad files
 
 
+# Sizes that the headers of damaged Radiance files state
+SIZES = {
+    "huge.hdr": "-Y 99999999 +X 99999999",
+    "negative.hdr": "-Y -5 +X 10",
+    "overflow.hdr": "-Y 4294967299 +X 18446744073709551617",
+}
+
+
 @pytest.fixture
 def bad(tmp_path, monkeypatch):
     """A folder with files that are no good maps."""
@@ -335,6 +343,9 @@ def bad(tmp_path, monkeypatch):
     mi.Bitmap(good).write("whole.hdr")
     whole = (tmp_path / "whole.hdr").read_bytes()
     (tmp_path / "cut.hdr").write_bytes(whole[: len(whole) // 2])
+    for name, size in SIZES.items():
+        head = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n{size}\n"
+        (tmp_path / name).write_bytes(head.encode() + whole[-20:])
     (tmp_path / "text.exr").write_text("no picture")
     (tmp_path / "empty.exr").write_bytes(b"")
     write(good[:1, :1], "one.exr")
@@ -351,6 +362,7 @@ def test_bad_files(bad, module_in_llvm):
     everywhere = {
         "cut.exr": "fetch it again",
         "cut.hdr": "fetch it again",
+        **dict.fromkeys(SIZES, "states a size for which there is no memory"),
         "text.exr": "fetch it again",
         "empty.exr": "fetch it again",
         "one.exr": "1×1 pixels; it needs 2×2",

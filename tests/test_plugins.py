@@ -217,6 +217,7 @@ def test_a_model_may_lie_anywhere(tmp_path, no_user_plugins):
         ("emitters/users_lamp.py", "1 / 0", "division by zero"),
         ("emitters/users_lamp.py", "raise Exception", "cannot be imported: Exception"),
         ("emitters/users_lamp.py", "raise SystemExit(3)", "ends the program"),
+        ("emitters/users_lamp.py", "raise BaseException('no')", "cannot be imported: no"),
         ("emiters/users_lamp.py", FILES["emitters"], r"emiters is no kind .* rename it emitters/"),
         ("emitters/schlick.py", FILES["emitters"], "brdfkit has a plugin 'schlick'"),
         ("emitters/envmap.py", FILES["emitters"], "Mitsuba has a plugin 'envmap'"),

@@ -7,6 +7,7 @@ def print_fits(material, fits, failed, comparison, pictures, written, ranking, c
     """Print `fits` to a `material`, first the notes that all have, then their `comparison` and the
     errors of their `pictures`, `ImageErrors` or None; as JSON with what `failed` and with the
     `ranking`, too."""
+    from brdfkit.auditing.data_findings import data_findings
     from brdfkit.commands._ranking import record
     from brdfkit.commands.render import print_errors
 
@@ -18,7 +19,7 @@ def print_fits(material, fits, failed, comparison, pictures, written, ranking, c
         entries["ranking"] = record(ranking)
         console.json({**entries, "pictures": pictures, "written": written})
         return
-    shared = _shared_notes(fits)
+    shared = _shared_notes(fits, data_findings(material))
     for note in shared:
         console.out.print(f"! {note}")
     own = [tuple(note for note in f.notes if note not in shared) for f in fits]
@@ -29,14 +30,17 @@ def print_fits(material, fits, failed, comparison, pictures, written, ranking, c
     if pictures:
         print_errors(pictures, console)
     console.list_written(written)
+    if not written:
+        console.out.print("Nothing was saved; -o FOLDER keeps the fits.")
 
 
-def _shared_notes(fits):
-    """The notes that each of several fits has: those on the data, which are said once; those on
-    the light of a fit speak of it alone."""
+def _shared_notes(fits, findings):
+    """The notes that are said once: those on the data, its `findings`, and others that each of
+    several fits has; those on the light of a fit speak of it alone."""
     first, *others = fits
     notes = [note for note in first.notes if note not in first.warnings]
-    return [note for note in notes if others and all(note in f.notes for f in others)]
+    shared = [note for note in notes if others and all(note in f.notes for f in others)]
+    return [note for note in notes if note in shared or note in findings]
 
 
 def _record(found, comparison, psnr):

@@ -42,11 +42,15 @@ def fit_options(default, others="FILE.py with one, or best"):
 
     def add(command):
         @functools.wraps(command)
-        def with_settings(*args, loss, robust, solver, albedo_at_most, max_angle, **kwargs):
+        def with_settings(
+            *args, loss, robust, solver, albedo_at_most, max_angle, fixed, bounds, tie, **kwargs
+        ):
             from brdfkit.fitting.solvers import AlbedoAtMost
 
             _require_one_each(kwargs["names"])
             how = {"loss": loss, "robust": robust, "solver": solver, "max_angle": max_angle}
+            how |= {"fixed": _to_numbers(fixed, "--fix", 1), "anisotropic": False if tie else None}
+            how["bounds"] = _to_numbers(bounds, "--bound", 2)
             how["constraints"] = () if albedo_at_most is None else AlbedoAtMost(albedo_at_most)
             return command(*args, how=how, **kwargs)
 
@@ -55,6 +59,22 @@ def fit_options(default, others="FILE.py with one, or best"):
         return with_settings
 
     return add
+
+
+def _to_numbers(words, option, count):
+    """Name → number, or a tuple of `count` of them, of words NAME=NUMBER,... behind an `option`."""
+    found = {}
+    for word in words:
+        name, _, text = word.partition("=")
+        try:
+            numbers = tuple(map(float, text.split(",")))
+        except ValueError:
+            numbers = ()
+        if not name or len(numbers) != count:
+            form = "NAME=VALUE" if count == 1 else "NAME=LOW,HIGH"
+            raise BrdfkitError(f"{option} {word!r} should read {form}; repeat {option} for more.")
+        found[name] = numbers[0] if count == 1 else numbers
+    return found
 
 
 def _require_one_each(names):
@@ -110,6 +130,23 @@ def _fit_options(default, others):
             default=80.0,
             show_default=True,
             help="Use the samples with both angles below this one [degrees].",
+        ),
+        click.option(
+            "--fix",
+            "fixed",
+            multiple=True,
+            metavar="NAME=VALUE",
+            help="Keep a shape parameter at a value, as f0=0.04; repeat it for more.",
+        ),
+        click.option(
+            "--bound",
+            "bounds",
+            multiple=True,
+            metavar="NAME=LOW,HIGH",
+            help="Search a shape parameter between these, as alpha_u=0.01,0.5; repeat it for more.",
+        ),
+        click.option(
+            "--tie", is_flag=True, help="Let alpha_v and its like follow alpha_u: no grooves."
         ),
     )
 

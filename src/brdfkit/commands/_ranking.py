@@ -7,6 +7,8 @@ from brdfkit.commands._stopping import status
 from brdfkit.errors import BrdfkitError
 
 BEST = "best"  # stands for the recommended model
+# Options that a ranking leaves out, with the settings that they give
+LATER = {"robust": "robust", "spectral": "spectral", "fix": "fixed", "bound": "bounds"}
 
 
 def recommend(names, material, how, console):
@@ -21,8 +23,8 @@ def recommend(names, material, how, console):
         return names, None
     if how["loss"] == "picture":  # what the fit would refuse after the ranking
         require_plain(robust=how.get("robust"), spectral=how.get("spectral"))
-    for option in ("robust", "spectral"):
-        if how.get(option):
+    for option, name in LATER.items():
+        if how.get(name):
             say(f"models are ranked without --{option}; the fit then uses it.")
     how = {name: how[name] for name in ("loss", "max_angle", "seed")}
     with console.progress(f"rank models on {material.name}") as progress:

@@ -134,6 +134,8 @@ def render(
         _write(picture, output, tone)
     else:
         found = [material(thing, values) for thing in things]
+        if values:
+            _warn_of_gains(found)
         output = picture_file(output or f"{slug(found[0].name)}.png")
         where = {"size": size, "seed": seed, "scene": scene, "envmap": envmap}
         if quickly:
@@ -143,6 +145,16 @@ def render(
     _print_picture(picture, output, console)
     if picture.spp < picture.asked:
         click.get_current_context().exit(status())
+
+
+def _warn_of_gains(models):
+    """Say which models reflect more light than arrives, by the values that were set."""
+    from brdfkit.fitting.light import ALL, albedo_pixels, format_share
+
+    for model in models:
+        most = float(albedo_pixels((5.0, 45.0, 75.0)).look(model.eval).max())
+        if most > ALL:
+            say(f"{model.name} reflects {format_share(most)} of the light, more than arrives.")
 
 
 def path_trace(things, output, console, spp, until, tone="range", usual=SPP, **where):

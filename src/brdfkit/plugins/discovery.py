@@ -113,8 +113,10 @@ def _import_file(file, _modified):
     sys.modules[name] = imported
     try:
         spec.loader.exec_module(imported)
-    except (Exception, SystemExit) as error:
+    except BaseException as error:  # a file may raise anything; but Ctrl-C is no error of it
         del sys.modules[name]
+        if isinstance(error, KeyboardInterrupt):
+            raise
         reason = str(error).rstrip(".") or type(error).__name__
         if isinstance(error, SystemExit):
             reason = "it ends the program, by sys.exit"

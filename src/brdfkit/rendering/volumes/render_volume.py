@@ -17,11 +17,11 @@ from brdfkit.rendering.rendering import rendering_of, to_size
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.tracing import trace
 from brdfkit.rendering.volumes import looks
-from brdfkit.rendering.volumes.scene import RENDERERS, scene
+from brdfkit.rendering.volumes.scene import RENDERERS, UNLIT, scene
 from brdfkit.volumes import TransferFunction, Volume, load_volume
 from brdfkit.volumes.transfer_function import SHARES
 
-SPP = 64  # samples per pixel
+SPP, UNLIT_SPP = 64, 8  # samples per pixel
 MOST = 16_384  # of them, where a noise floor or a time is asked for
 PASS = 4  # of them, so that the first picture is there soon
 BACKGROUND = 0.02
@@ -62,8 +62,8 @@ def render_volume(
         glows and dims; "maximum_intensity": the largest value along each ray; "isosurface": the
         surface of one value, in light.
     spp : int, optional
-        Samples per pixel, by default 64; with `until` or `seconds` the most of them, by default
-        16,384.
+        Samples per pixel, by default 64, and 8 of what has no light but its own, where they leave
+        no noise that is seen; with `until` or `seconds` the most of them, by default 16,384.
     size : int or (int, int), default 512
         Side, or width and height, of the picture [pixels].
     seed : int, default 0
@@ -108,7 +108,7 @@ def render_volume(
     """
     until = None if until is None else to_positive("until", until)
     limit = None if seconds is None else to_positive("seconds", seconds)
-    most = SPP if until is None and limit is None else MOST
+    most = (UNLIT_SPP if renderer in UNLIT else SPP) if until is None and limit is None else MOST
     spp = to_whole_number("spp", most if spp is None else spp, least=1)
     seed, size = to_whole_number("seed", seed, least=0), to_size(size)
     view = to_number("azimuth", azimuth), to_number("elevation", elevation)
