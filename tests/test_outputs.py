@@ -96,3 +96,13 @@ def test_a_folder_of_fits(run, tmp_path):
     (tmp_path / "fits" / "lambert.json").write_text("{}")
     assert "is there already" in run(*words)[1]
     assert (tmp_path / "fits" / "lambert.json").read_text() == "{}"
+
+
+def test_without_a_cache_folder_a_command_may_still_write_twice(run, monkeypatch, tmp_path):
+    """What it wrote in this run is its own; the next run asks."""
+    (tmp_path / "no folder").write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "no folder"))
+    words = "render", "lambert", *SMALL, "-o", "a.exr"
+    assert run(*words)[0] == 0
+    assert "--force" in run(*words)[1]
+    assert run(*words, "--force")[0] == 0

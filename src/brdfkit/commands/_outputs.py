@@ -19,6 +19,8 @@ from brdfkit.files import sha256
 
 # Options that say where the output goes and how it is printed, not what it is
 NOT_ORIGIN = "force", "as_json", "quiet", "jobs"
+# Where click's context has the files that the running command wrote
+WRITTEN = "brdfkit.written"
 # Text files that refer to other files, which are read, too; so much of a text is looked at
 REFERRING, LARGEST_TEXT = (".xml", ".toml", ".json", ".nhdr", ".mhd", ".vti", ".obj", ".mtl"), 2**22
 WORDS = re.compile(r"\"([^\"\n]+)\"|'([^'\n]+)'|([^\s\"'<>=]+)")
@@ -28,7 +30,7 @@ def refuse_to_replace(target):
     """Raise `BrdfkitError` where the running command should not write the file `target`: where it
     reads it, or where the file is there already, of another origin and without --force."""
     context = click.get_current_context(silent=True)
-    if context is None or not target.exists() or _is_own(target, context):
+    if context is None or not target.exists() or _is_ours(target) or _is_own(target, context):
         return
     if _is_input(target, context.params):
         raise BrdfkitError(f"{_shown(target)} is a file to read; name another to write.")
@@ -49,8 +51,9 @@ def _shown(target):
 def remember(target):
     """Remember the file `target` as one that the running command wrote."""
     context = click.get_current_context(silent=True)
-    if context is None:
+    if context is None or _is_ours(target):
         return
+    context.meta.setdefault(WRITTEN, set()).add(target)
     with suppress(OSError, BrdfkitError):  # without a cache folder --force is asked for
         record = _record_of(target)
         record.parent.mkdir(parents=True, exist_ok=True)
@@ -58,8 +61,17 @@ def remember(target):
         record.write_text(json.dumps(written), encoding="utf-8")
 
 
+def _is_ours(target):
+    """Whether a file is brdfkit's own, in the user's cache folder."""
+    from brdfkit.catalogue.public import cache  # only here: `--help` should be instant
+
+    return target.is_relative_to(cache().resolve())
+
+
 def _is_own(target, context):
-    """Whether the same command wrote the file as it is."""
+    """Whether this command wrote the file, just now or, as it is, the last time."""
+    if target in context.meta.get(WRITTEN, ()):
+        return True
     try:
         written = json.loads(_record_of(target).read_text(encoding="utf-8"))
         return written["origin"] == _origin(context) and written["sha256"] == sha256(target)
