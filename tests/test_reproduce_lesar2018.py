@@ -163,3 +163,14 @@ def test_a_bias_against_volpath_is_found(bias, verdict, monkeypatch):
 
     monkeypatch.setattr(against_volpath, "pictures", pictures)
     assert verdicts("against_volpath")[0] == verdict
+
+
+@pytest.mark.quick
+def test_a_missing_package_is_asked_for_before_the_work(tmp_path, monkeypatch):
+    (tmp_path / "measured").mkdir()
+    (tmp_path / "volumes").mkdir()
+    (tmp_path / "volumes" / "mni152_t1_1mm.nii.gz").write_bytes(b"")
+    monkeypatch.setattr("brdfkit.reproducing.reproducing.find_spec", lambda name: None)
+    monkeypatch.setattr("brdfkit.reproducing.lesar2018.PARTS", ())
+    with pytest.raises(bk.BrdfkitError, match=r"needs the package nibabel; pip install .*volumes"):
+        bk.reproduce("lesar2018", data=tmp_path / "measured")

@@ -4,15 +4,16 @@ import importlib
 import pkgutil
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 
 from brdfkit.documents import Document, Shown, Table
-from brdfkit.errors import no_such
+from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.files import make_folder, require_writable
 from brdfkit.reproducing.claims import Claim, count
 from brdfkit.reproducing.page import write_page
-from brdfkit.reproducing.sources import find_sources
+from brdfkit.reproducing.sources import Sources, find_sources
 
 
 @dataclass(frozen=True, repr=False)
@@ -104,6 +105,7 @@ def reproduce(
         if part not in thesis.PARTS:
             raise no_such("part", part, thesis.PARTS, where=name)
     sources = find_sources(data, tables, thesis.NEEDS)
+    _require_packages(thesis, sources)
     if output is not None:
         make_folder(output)
         require_writable(Path(output) / f"{name}.md")
@@ -125,6 +127,15 @@ def reproduce(
         written = write_page(page, thesis.TITLE, thesis.INTRODUCTION, sections, left)
     claims = tuple(claim for section in sections for claim in section.claims)
     return Reproduction(name, claims, tuple(written), tuple(chosen[len(sections) :]))
+
+
+def _require_packages(thesis: ModuleType, sources: Sources) -> None:
+    """Raise `BrdfkitError`, before the work, where a package is missing that reads a file."""
+    for file, package in getattr(thesis, "PACKAGES", {}).items():
+        if sources.beside(file) and find_spec(package) is None:
+            raise BrdfkitError(
+                f'{file}: needs the package {package}; pip install "brdfkit[volumes]" brings it.'
+            )
 
 
 def _thesis(name: str) -> ModuleType:

@@ -17,6 +17,8 @@ where the thesis gives no figure to compare ours to, and *not run* where what it
 hand."""
 
 NEEDS: dict[str, str] = {}  # scans are used where they lie beside the measurements
+# The packages of the extra "volumes" that read scans
+PACKAGES = {"volumes/mni152_t1_1mm.nii.gz": "nibabel"}
 
 PARTS = (
     "phase_functions",
