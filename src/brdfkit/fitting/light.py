@@ -86,20 +86,19 @@ class Light:
 
     def judge(self, brdf):
         """The `Albedo` of a fit, a BRDF (wi, wo) → (n, channels)."""
-        albedos = self.look(brdf)
+        angles = (*self.theta_i, *OTHERS)
+        every = [albedo_pixels(angles, (azimuth,)).look(brdf) for azimuth in self.azimuths]
+        fit = np.mean(every, axis=0)[: len(self.theta_i)]
         measured = [
             tuple(row.tolist()) if known else None
             for row, known in zip(self.values, self.known, strict=True)
         ]
-        fit = tuple(map(tuple, albedos.tolist()))
-        return Albedo(self.theta_i, fit, tuple(measured), self._find_peak(brdf))
+        peak = self._find_peak(brdf, angles, np.max(every, axis=2))
+        return Albedo(self.theta_i, tuple(map(tuple, fit.tolist())), tuple(measured), peak)
 
-    def _find_peak(self, brdf):
-        """The angle at which a BRDF reflects most, and how much that is: along the axes of an
-        anisotropic one; summed with more points where it seems to gain light."""
-        angles = (*self.theta_i, *OTHERS)
-        every = [albedo_pixels(angles, (azimuth,)).look(brdf) for azimuth in self.azimuths[:2]]
-        peaks = np.array(every).max(axis=2)
+    def _find_peak(self, brdf, angles, peaks):
+        """The angle at which a BRDF reflects most, and how much that is, of its `peaks` (azimuths,
+        angles): summed with more points where it seems to gain light."""
         for azimuth, row in np.argwhere(peaks > ALL):
             wi = from_angles(np.radians(angles[row]), self.azimuths[azimuth])
             peaks[azimuth, row] = directional_albedo(brdf, wi).max()

@@ -4,8 +4,6 @@ import json
 from dataclasses import fields
 from typing import get_args, get_origin
 
-import numpy as np
-
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.certainty import Certainty
 from brdfkit.fitting.light import Albedo
@@ -34,8 +32,6 @@ def read(source):
         record = json.loads(source.data)
         version = _to_type(str, record[KEY])
         label, values = _to_type(str, record["model"]), dict(record["parameters"])
-        for value in values.values():
-            np.asarray(value, float)  # of a number that is too large for one an OverflowError
         given = record["fit"]
         there = [f for f in FIELDS if f.name in given or f.name not in LATER]
         found = {f.name: _to_type(f.type, given[f.name]) for f in there}
@@ -52,7 +48,7 @@ def read(source):
         )
     try:
         return Fit(model=labels.model(label)(**values), **found)
-    except (BrdfkitError, TypeError) as error:
+    except (BrdfkitError, TypeError, OverflowError) as error:
         if not labels.is_label(label):
             raise source.error(
                 f"is a fit of {label[:80]!r}, a model of somebody's own; load its file first, "

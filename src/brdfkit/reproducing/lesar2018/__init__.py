@@ -18,7 +18,8 @@ hand."""
 
 NEEDS: dict[str, str] = {}  # scans are used where they lie beside the measurements
 # The packages of the extra "volumes" that read scans
-PACKAGES = {"volumes/mni152_t1_1mm.nii.gz": "nibabel"}
+MRI = "volumes/mni152_t1_1mm.nii.gz"
+PACKAGES = {MRI: "nibabel"}
 
 PARTS = (
     "phase_functions",

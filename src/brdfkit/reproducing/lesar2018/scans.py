@@ -5,9 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from brdfkit.reproducing.lesar2018 import MRI
 from brdfkit.volumes import TransferFunction, Volume, load_volume
 
-MRI, FROG = "volumes/mni152_t1_1mm.nii.gz", "volumes/frog_tissues.vti"
+FROG = "volumes/frog_tissues.vti"
 PHANTOM = 96  # voxels along an edge
 DENSE = 40.0  # optical depth of the longest edge, where A is 1
 SKELETON = 13  # the frog's label of it
