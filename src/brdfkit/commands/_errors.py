@@ -9,7 +9,7 @@ from contextlib import contextmanager, nullcontext
 import click
 
 from brdfkit.commands._outputs import refuse_to_replace, remember
-from brdfkit.commands._stopping import status, stop_on_sigterm
+from brdfkit.commands._stopping import is_stopped, status, stop_on_signals
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.files import watch_writing
 from brdfkit.names import printable
@@ -29,7 +29,7 @@ class Group(click.Group):
             if hasattr(stream, "reconfigure"):
                 stream.reconfigure(errors="replace")
         guard = watch_writing(refuse_to_replace, remember)
-        with tell_errors(), stop_on_sigterm(), guard, warnings.catch_warnings():
+        with stop_on_signals(), tell_errors(), guard, warnings.catch_warnings():
             warnings.showwarning = _say_warning
             try:
                 return super().invoke(ctx)
@@ -53,10 +53,11 @@ def tell_errors():
     """Within the block, what should end the program with a sentence becomes `LastWords`.
 
     That is: errors for people, errors of click, an output that fails, too little memory, Ctrl-C and
-    SIGTERM.
+    SIGTERM, and any error that one of these two became.
     """
     try:
-        yield
+        with _stops_as_such():
+            yield
     except BrdfkitError as error:
         raise LastWords(str(error)) from error
     except click.UsageError as error:
@@ -71,6 +72,19 @@ def tell_errors():
         raise LastWords("there is too little memory for this; make it smaller.") from error
     except KeyboardInterrupt as error:
         raise LastWords("interrupted.", status()) from error
+
+
+@contextmanager
+def _stops_as_such():
+    """Within the block, an error after Ctrl-C, which native code made of it, is Ctrl-C again."""
+    try:
+        yield
+    except (click.exceptions.Exit, LastWords):
+        raise
+    except Exception as error:
+        if is_stopped():
+            raise KeyboardInterrupt from error
+        raise
 
 
 def _describe_misuse(error):

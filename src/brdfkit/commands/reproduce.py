@@ -45,13 +45,14 @@ def reproduce(name, output, data, tables, parts, console):
     ours. Without NAME, lists the theses. The measurements are third-party files: where one is
     missing, its source is named. Ctrl-C keeps the parts that are finished.
     """
+    from brdfkit.commands._targets import results_folder
     from brdfkit.reproducing import reproduce as run
     from brdfkit.reproducing import theses
 
     if name is None:
         _print_theses(theses(), console)
         return
-    with console.progress(f"reproduce {name}") as progress:
+    with results_folder(output), console.progress(f"reproduce {name}") as progress:
         found = run(
             name, output, data=data, tables=tables, parts=list(parts) or None, progress=progress
         )

@@ -87,7 +87,7 @@ def svbrdf(folder, model, resolution, anisotropic, fixed, smoothness, linearise,
     else:
         console.list_written(written)
     if interrupted:
-        say("interrupted; the maps are coarser than they were to be.")
+        say("interrupted; these are the maps so far, without standard errors.")
         click.get_current_context().exit(status())
 
 

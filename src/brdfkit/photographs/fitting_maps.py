@@ -26,13 +26,14 @@ def usual_total(lights, smoothness):
 class FittedMaps:
     """Rows `x` (n, count) and the `Equations` there; `tau`, by which neighbours may differ; the
     `noise`, as a variance of relative radiances; and `errors`: of each τ that was tried, that of
-    the lights held out, relative."""
+    the lights held out, relative. The equations and the `strength` of the neighbours are None where
+    Ctrl-C ended the search."""
 
     x: np.ndarray
-    about: Equations
+    about: Equations | None
     tau: float
     noise: float
-    strength: np.ndarray
+    strength: np.ndarray | None
     errors: dict[float, float]
 
 
@@ -57,20 +58,19 @@ def fit_maps(numbers, seen, smoothness=None, report=lambda: None):
     except KeyboardInterrupt:
         if finest is None:
             raise
-        raise Stopped(_enlarged(numbers, seen, *finest)) from None
+        raise Stopped(_enlarged(seen.shape, *finest)) from None
     return FittedMaps(x, equations(numbers, x, seen), tau, noise, strength, errors)
 
 
-def _enlarged(numbers, seen, x, noise, coarse):
-    """The `FittedMaps` of rows of maps of the shape `coarse`."""
-    height, width = seen.shape
+def _enlarged(shape, x, noise, coarse):
+    """The `FittedMaps` of rows of maps of the shape `coarse`, as they are: without equations."""
+    height, width = shape
     side = 1  # a power of 2, as in `coarse_to_fine`
     while side * coarse[0] < height or side * coarse[1] < width:
         side *= 2
     grid = x.reshape(*coarse, -1).repeat(side, axis=0).repeat(side, axis=1)
     x = grid[:height, :width].reshape(height * width, -1)
-    strength = strengths(numbers, x, seen, noise, USUAL)
-    return FittedMaps(x, equations(numbers, x, seen), USUAL, noise, strength, {})
+    return FittedMaps(x, None, USUAL, noise, None, {})
 
 
 def standard_errors(numbers, fitted, seen):

@@ -27,33 +27,34 @@ def write_report(svbrdf, path):
         rows=table.rows,
         said=[paragraph.text for paragraph in paragraphs],
         maps=[_shown_map(svbrdf, name) for name in svbrdf.maps],
-        misfit=_scaled(svbrdf.misfit, 0, 2 * MISFIT),
+        misfit=None if svbrdf.misfit is None else _scaled(svbrdf.misfit, 0, 2 * MISFIT),
         most=2 * MISFIT,
-        photographs=_photographs(svbrdf),
+        photographs=[] if svbrdf.misfit is None else _photographs(svbrdf),
         version=__version__,
     )
 
 
 def _shown_map(svbrdf, name):
-    values, errors = svbrdf.maps[name], svbrdf.uncertainty[name]
+    values, errors = svbrdf.maps[name], svbrdf.uncertainty.get(name)
     if name == "normal":
         picture, said = png(narrowed((values + 1) / 2, WIDEST)), "x, y and z as red, green and blue"
-        errors = np.degrees(errors)
     elif values.ndim == 3:
         white = max(1e-6, float(np.quantile(values, 0.99)))
         picture, said = jpeg(narrowed(values / white, WIDEST)), f"white is {white:.3g}"
     else:
         low, high = np.quantile(values, (0.01, 0.99))
         picture, said = _scaled(values, low, high), f"{low:.3g} (dark) to {high:.3g} (bright)"
-    unit = "°" if name == "normal" else ""
+    return {"name": name, "said": said, "picture": picture, **_shown_errors(name, errors)}
+
+
+def _shown_errors(name, errors):
+    """The picture of a map's standard errors, if there are any, and what it shows."""
+    if errors is None:
+        return {"error": None}
+    unit, errors = ("°", np.degrees(errors)) if name == "normal" else ("", errors)
     high = float(np.quantile(errors, 0.9))  # at the edge they are much larger
-    return {
-        "name": name,
-        "said": said,
-        "picture": picture,
-        "error": _scaled(errors, 0, high),
-        "error_said": f"standard error, 0 (dark) to {high:.2g}{unit} (bright)",
-    }
+    said = f"standard error, 0 (dark) to {high:.2g}{unit} (bright)"
+    return {"error": _scaled(errors, 0, high), "error_said": said}
 
 
 def _photographs(svbrdf):

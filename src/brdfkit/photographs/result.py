@@ -1,5 +1,6 @@
 """`Svbrdf`, what `svbrdf` returns: maps of a sample, and how certain they are."""
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -32,12 +33,6 @@ class Svbrdf(Shown):
     fixed : dict of str to float
         Shape parameters that are alike everywhere. Where ``f0`` is, the reflectance at normal
         incidence is ``specular_reflectance`` times it.
-    uncertainty : dict of str to ndarray
-        The standard error (height, width) of each map, by the photographs' noise and what the model
-        leaves of them; of the normal in radians.
-    misfit : ndarray, shape (height, width)
-        What each texel leaves of the photographs, in units of the noise: about 1 where the maps
-        explain them.
     size : tuple of float
         The sample's width and height [m].
     smoothness : float
@@ -45,17 +40,24 @@ class Svbrdf(Shown):
         widths, and sines of the normal's angles.
     held_out : dict of float to float
         Smoothness that was tried → RMS relative error of lights that were held out.
-    residual : float
-        RMS relative difference of the maps from all photographs.
-    predicted : dict of str to float
-        Name of each photograph → PSNR [dB] of Mitsuba's picture of the maps under its light.
     notes : tuple of str
         What else one should know, as what the lights leave open.
     seconds : float
         Wall-clock time.
     capture : Capture
         The photographs, smaller where the maps do not need all of their pixels.
-    rendered : ndarray, shape (lights, height, width, 3)
+    uncertainty : dict of str to ndarray
+        The standard error (height, width) of each map, by the photographs' noise and what the model
+        leaves of them; of the normal in radians. Empty where Ctrl-C ended the search.
+    misfit : ndarray, shape (height, width), or None
+        What each texel leaves of the photographs, in units of the noise: about 1 where the maps
+        explain them. None where Ctrl-C ended the search.
+    residual : float
+        RMS relative difference of the maps from all photographs; nan where Ctrl-C came before
+        any picture was rendered; then there are no `predicted` and `rendered` either.
+    predicted : dict of str to float
+        Name of each photograph → PSNR [dB] of Mitsuba's picture of the maps under its light.
+    rendered : ndarray, shape (lights, height, width, 3), or None
         Mitsuba's pictures of the maps, as the photographs.
     """
 
@@ -63,17 +65,17 @@ class Svbrdf(Shown):
     model: str
     maps: dict[str, NDArray[np.float64]]
     fixed: dict[str, float]
-    uncertainty: dict[str, NDArray[np.float64]]
-    misfit: NDArray[np.float64]
     size: tuple[float, float]
     smoothness: float
     held_out: dict[float, float]
-    residual: float
-    predicted: dict[str, float]
     notes: tuple[str, ...]
     seconds: float
     capture: Capture = field(repr=False)
-    rendered: NDArray[np.float32] = field(repr=False)
+    uncertainty: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    misfit: NDArray[np.float64] | None = None
+    residual: float = math.nan
+    predicted: dict[str, float] = field(default_factory=dict)
+    rendered: NDArray[np.float32] | None = field(default=None, repr=False)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -158,22 +160,19 @@ class Svbrdf(Shown):
     def document(self) -> Document:
         """A row for each map, notes, and how well it predicts."""
         rows = tuple(
-            (name, *_summary(name, values), _median(name, self.uncertainty[name]))
+            (name, *_summary(name, values), _median(name, self.uncertainty.get(name)))
             for name, values in self.maps.items()
         )
         height, width = self.shape
         tried = ", ".join(f"{tau:g}: {100 * e:.2g} %" for tau, e in self.held_out.items())
         chosen = f", by lights held out ({tried})" if tried else ""
-        dB = list(self.predicted.values())
+        count = len(self.capture.names)
         return Document(
-            f"{self.name}: {self.model}, {width} × {height} texels from {len(dB)} photographs",
+            f"{self.name}: {self.model}, {width} × {height} texels from {count} photographs",
             (
                 Table(rows, ("map", ">5 %", ">median", ">95 %", ">± median")),
                 *(Paragraph(note) for note in (*_fixed(self.fixed), *self.notes)),
-                Paragraph(
-                    "Mitsuba's pictures of the maps are the photographs but for "
-                    f"{100 * self.residual:.2g} % (RMS); PSNR {min(dB):.1f} to {max(dB):.1f} dB.",
-                ),
+                *_compared(self.residual, self.predicted.values()),
                 Paragraph(
                     f"smoothness {self.smoothness:g}{chosen}; {self.seconds:.1f} s", kind=SOFT
                 ),
@@ -190,6 +189,17 @@ def _fixed(values):
     return (f"{said}{at_normal if 'f0' in values else ''}.",)
 
 
+def _compared(residual, dB):
+    """How near Mitsuba's pictures come to the photographs, where there are any."""
+    if not dB:
+        return ()
+    said = (
+        f"Mitsuba's pictures of the maps are the photographs but for {100 * residual:.2g} % (RMS); "
+        f"PSNR {min(dB):.1f} to {max(dB):.1f} dB."
+    )
+    return (Paragraph(said),)
+
+
 def _summary(name, values):
     """5 %, median and 95 % of a map as texts; of normals the angle to z [degrees]."""
     if name == "normal":
@@ -199,6 +209,8 @@ def _summary(name, values):
 
 
 def _median(name, errors):
-    """The median of standard errors as a text; of normals [degrees]."""
+    """The median of standard errors as a text, if there are any; of normals [degrees]."""
+    if errors is None:
+        return ""
     median = float(np.median(errors))
     return f"{np.degrees(median):.2g}°" if name == "normal" else f"{median:.2g}"

@@ -18,7 +18,7 @@ from brdfkit.photographs.asked import (
 )
 from brdfkit.photographs.capture import Capture
 from brdfkit.photographs.capture_checks import require_shown
-from brdfkit.photographs.fitting_maps import fit_maps, standard_errors, usual_total
+from brdfkit.photographs.fitting_maps import fit_maps, usual_total
 from brdfkit.photographs.flatness import describe_normals
 from brdfkit.photographs.maps import Maps, errors_of
 from brdfkit.photographs.misfit import describe_misfit
@@ -30,14 +30,14 @@ from brdfkit.photographs.result import Svbrdf
 from brdfkit.photographs.shrinking import shrunk
 from brdfkit.photographs.simulated_errors import simulated_errors
 from brdfkit.photographs.through_renderer import (
+    Rendered,
     decibels,
     left_of,
     misfits_of,
     refine_through_renderer,
-    rendered,
 )
 
-INTERRUPTED = "Interrupted: the maps or their standard errors are coarser than they were to be."
+INTERRUPTED = "Interrupted: these are the maps so far, without standard errors."
 
 
 @in_turn
@@ -59,7 +59,7 @@ def svbrdf(
     strongly as lights that were held out are predicted best. Then Mitsuba renders the photographs
     of the maps, and what the real ones show beyond is fitted, until only noise is left. Direct
     light alone is fitted: a flat sample throws hardly any light on itself. Ctrl-C raises
-    `Interrupted`, whose ``best`` has the finest maps so far. Equal photographs give equal maps but
+    `Interrupted`, whose ``best`` has the finest maps so far, without standard errors. Equal photographs give equal maps but
     for rounding, about 1e-8, since Mitsuba adds light up in any order.
 
     Parameters
@@ -113,7 +113,22 @@ def svbrdf(
     require_shown(taken, seen)
     report = _counter(progress, usual_total(len(taken.names), smoothness))
 
-    def conclude(best, errors, *notes):
+    def outcome(fitted, *notes, **known):
+        return Svbrdf(
+            name=name,
+            model=model,
+            maps=Maps.of(numbers, fitted.x, shape, taken.size).maps,
+            fixed=numbers.fixed,
+            size=taken.size,
+            smoothness=float(fitted.tau),
+            held_out=fitted.errors,
+            notes=(*notes, *describe_capture(taken, clipped, seen)),
+            seconds=time.perf_counter() - began,
+            capture=taken,
+            **known,
+        )
+
+    def conclude(best, errors):
         fitted = best.fitted
         maps = Maps.of(numbers, fitted.x, shape, taken.size).maps
         beyond = gathered(taken, taken.pictures - best.pictures, shape)
@@ -122,44 +137,36 @@ def svbrdf(
         left = left_of(taken, best.pictures)
         told_apart = CHANNELS * len(taken.names) > numbers.count
         noise = fitted.noise**0.5 if told_apart else 0.0
-        return Svbrdf(
-            name=name,
-            model=model,
-            maps=maps,
-            fixed=numbers.fixed,
+        return outcome(
+            fitted,
+            *describe_open(numbers, fitted, len(taken.names)),
+            *describe_misfit(misfit, noise, left, float(np.median(diffuse))),
+            *(describe_normals(maps["normal"]) if told_apart else ()),
             uncertainty=errors_of(numbers, errors, fitted.x, shape),
             misfit=misfit.reshape(shape),
-            size=taken.size,
-            smoothness=float(fitted.tau),
-            held_out=fitted.errors,
-            residual=best.left,
-            predicted=decibels(taken, best.pictures),
-            notes=(
-                *notes,
-                *describe_open(numbers, fitted, len(taken.names)),
-                *describe_misfit(misfit, noise, left, float(np.median(diffuse))),
-                *(describe_normals(maps["normal"]) if told_apart else ()),
-                *describe_capture(taken, clipped, seen),
-            ),
-            seconds=time.perf_counter() - began,
-            capture=taken,
-            rendered=best.pictures,
+            **_compared(best, taken),
         )
 
-    fitted = None
+    fitted = best = None
     try:
         fitted = fit_maps(numbers, seen, smoothness, report)
         best, rounds = refine_through_renderer(numbers, fitted, seen, taken, report)
-        fitted = best.fitted
         return conclude(best, simulated_errors(numbers, best, rounds, seen, taken, report))
     except KeyboardInterrupt as stop:
-        so_far = stop.best if isinstance(stop, Stopped) else fitted
+        so_far = (stop.best if isinstance(stop, Stopped) else best) or fitted
         if so_far is None:
             raise
-        best = rendered(numbers, so_far, seen, taken)
-        errors = standard_errors(numbers, so_far, seen)
-        found = conclude(best, errors, INTERRUPTED)
-        raise Interrupted(found, f"{name}: the maps so far leave {found.residual:.3g}") from None
+        if isinstance(so_far, Rendered):
+            found = outcome(so_far.fitted, INTERRUPTED, **_compared(so_far, taken))
+        else:
+            found = outcome(so_far, INTERRUPTED)
+        raise Interrupted(found, f"{name}: there are maps so far") from None
+
+
+def _compared(best, capture):
+    """What an `Svbrdf` knows of the pictures of a `Rendered`."""
+    dB = decibels(capture, best.pictures)
+    return {"residual": best.left, "predicted": dB, "rendered": best.pictures}
 
 
 def _counter(progress, usual):

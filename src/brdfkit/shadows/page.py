@@ -33,9 +33,13 @@ def require_page(path):
 
 
 def write_page(comparison, path, progress=None):
-    """Write the page of a `ShadowComparison`; `progress`: called with (done, total)."""
+    """Write the page of a `ShadowComparison`; `progress`: called with (done, total).
+
+    After Ctrl-C it is the table alone: to draw the pictures takes as long as to score them.
+    """
     require_page(path)
-    order, pictures = list(comparison.means), comparison.pictures
+    order = list(comparison.means)
+    pictures = () if comparison.interrupted else comparison.pictures
     report = progress or (lambda done, total: None)
     flips = np.full((len(pictures), len(order)), np.nan)
     places = []

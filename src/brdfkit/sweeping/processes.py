@@ -21,6 +21,7 @@ from typing import Any
 
 import psutil
 
+from brdfkit.jit.signals import hold_signals
 from brdfkit.jit.threads import use_threads
 from brdfkit.sweeping.tasks import Outcome, Task, fail, fit_models
 
@@ -121,7 +122,7 @@ def _start(threads):
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe()
     process = context.Process(target=_work, args=(theirs, threads), daemon=True)
-    with _surroundings():
+    with hold_signals(), _surroundings():  # half a start leaves a process that finds no task
         process.start()
     theirs.close()
     return Worker(process, ours)

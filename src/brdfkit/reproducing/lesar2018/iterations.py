@@ -4,6 +4,8 @@ from functools import partial
 
 import drjit as dr
 
+from brdfkit.jit.first_error import first_error
+
 
 def iteration(spp=1):
     """A function (scene, seed) → the picture of `mi.render`, with so many samples per pixel.
@@ -22,7 +24,8 @@ def iteration(spp=1):
     def call(state, scene, seed):
         if state["recorded"]:
             try:
-                return recorded(scene, mi.UInt32(seed))
+                with first_error():  # Ctrl-C is no reason to render once more
+                    return recorded(scene, mi.UInt32(seed))
             except RuntimeError:
                 state["recorded"] = False
         return render(scene, seed)
