@@ -273,7 +273,7 @@ def test_the_command_prints_a_line_for_each_technique_into_a_pipe(tmp_path, caps
     main(["shadows", str(file), *words, "--map", "32", "--size", "16"], standalone_mode=False)
     lines = capsys.readouterr().out.splitlines()
     for name in ("focused", "uniform"):
-        (line,) = (line for line in lines if line.startswith(name))
+        (line,) = (line for line in lines if line.split()[:1] == [name])
         assert len(line.split()) > 8
 
 
