@@ -516,6 +516,7 @@ TRAPS = [
     (["fit", "plaster", "ggx"], ["ggx is a model, not a file", "-m ggx"]),
     (["render", "spot.obj"], ["spot.obj is a mesh", "--scene spot.obj"]),
     ([*WARD, "--shadows"], ["--shadows is for --preview"]),
+    ([*WARD, "--up", "z"], ["--up turns a mesh, .obj or .ply; leave it out for ball"]),
     (["render", "missing.xml"], ["missing.xml"]),
     (["render", "nothing"], ["nothing", "ward", "car_paint"]),
     (["render", "bounds.xml", "ward"], ["alone"]),

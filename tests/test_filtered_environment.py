@@ -2,6 +2,7 @@
 
 import math
 from importlib import import_module
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -374,7 +375,7 @@ def test_a_file_is_read_and_prepared_again_when_it_changes(llvm_variant, monkeyp
 def test_a_ball_stands_in_the_shadow_and_the_light_of_its_ground(llvm_variant, monkeypatch):
     """PSNR [dB] to all light, path-traced, with and without shadows."""
     mi, size = llvm_variant, (32, 32)
-    show_by(monkeypatch, mi, shadows="convex")
+    show_by(monkeypatch, mi, shadows="shapes")
     shaded = bk.preview("ggx", size=size, shadows=True)
     assert "approximate shadows" in str(shaded)
 
@@ -387,10 +388,26 @@ def test_a_ball_stands_in_the_shadow_and_the_light_of_its_ground(llvm_variant, m
     assert psnr(truth, shaded.pictures["ggx"]) > psnr(truth, plain) + 4
 
 
+def test_a_changed_or_turned_mesh_casts_its_own_shadows(llvm_variant, monkeypatch, tmp_path):
+    """By its triangles: no convex parts are sought, which takes minutes."""
+    show_by(monkeypatch, llvm_variant, shadows="shapes", resolution=32, samples=9)
+    monkeypatch.setattr("brdfkit.visibility.of_scene.decompose", None)
+    file = tmp_path / "step.obj"
+    step = "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 0 1 0\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+    pictures = []
+    for text, up in ((step, "y"), (step, "x"), (step.replace("v 0 1 0", "v 0 9 0"), "y")):
+        file.write_text(text)
+        shown_now = bk.preview("lambert", size=16, scene=f"{file}#{up}", shadows=True)
+        pictures.append(shown_now.pictures["lambert"])
+    for one, other in pairwise(pictures):
+        assert np.abs(one - other).max() > 0.02
+
+
 @pytest.mark.quick
 @pytest.mark.parametrize(
     ("given", "said"),
     [
+        ({"scene": "ball.obj#w"}, "behind the #, is x, y or z"),
         ({"envmap": "nowhere.exr"}, "nowhere.exr"),
         ({"scene": "cornell_box"}, "A preview shows a shape"),
         ({"scene": "nothing.obj"}, "no such mesh"),

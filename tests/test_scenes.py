@@ -1,5 +1,6 @@
 """Scenes: each renders in every variant, knows where its material shows, and keeps energy."""
 
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -180,6 +181,50 @@ def test_a_mesh_stands_in_the_place_of_the_ball(files):
     # brushed around the vertical axis: level on the sides
     np.testing.assert_allclose(np.array(si.sh_frame.s)[:, :2].T, [[0, 1, 0], [1, 0, 0]], atol=0.02)
     assert bk.render(WHITE, spp=1, size=32, scene="cube.obj").mask.mean() > 0.1
+
+
+def tapered(top, order=(0, 1, 2), signs=(1, 1, 1)):
+    """A frustum 3 high along y on a foot of side 2, with a `top` of another side; its axes turned
+    as to `order`. An OBJ."""
+    corners = [
+        (s * x, y, s * z) for s, y in ((1, 0), (top / 2, 3)) for x in (-1, 1) for z in (-1, 1)
+    ]
+    turned = [[sign * c[k] for k, sign in zip(order, signs, strict=True)] for c in corners]
+    faces = "1 2 4 3", "5 6 8 7", "1 2 6 5", "3 4 8 7", "1 3 7 5", "2 4 8 6"
+    lines = [f"v {x} {y} {z}" for x, y, z in turned] + [f"f {face}" for face in faces]
+    return "\n".join(lines)
+
+
+Z_UP = {"order": (0, 2, 1), "signs": (1, -1, 1)}
+
+
+@pytest.mark.parametrize(
+    ("text", "given", "up"),
+    [
+        (tapered(0.5), "", "y"),
+        (tapered(0.5, **Z_UP), "", "z"),
+        (tapered(0.5, **Z_UP), "#y", "y"),
+        (tapered(0.5, **Z_UP), "#z", "z"),
+        (tapered(0.5, order=(1, 0, 2)), "#x", "x"),
+        (tapered(0.5, order=(1, 0, 2)), "", "y"),  # neither y nor z: the custom
+        (tapered(2), "", "y"),  # a box stands both ways
+        (tapered(2, **Z_UP), "", "y"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "", "y"),  # a sheet stands neither way
+    ],
+)
+def test_the_axis_that_points_up_is_given_or_guessed_where_it_is_obvious(tmp_path, text, given, up):
+    """Upright it is 2 high; a guess that is not y is said."""
+    file = tmp_path / "mesh.obj"
+    file.write_text(text)
+    guessed = pytest.warns(UserWarning, match="its axis z is taken to point up.*--up y")
+    with guessed if (given, up) == ("", "z") else nullcontext():
+        points, *_ = users_mesh.read(file, given[1:])
+    expected = users_mesh.read(file, up)[0]
+    np.testing.assert_array_equal(points, expected)
+    if up == "x" or given == "#z":
+        foot = points[points[:, 2] < 0.01]
+        np.testing.assert_allclose(np.ptp(foot[:, :2], axis=0), 4 / 3, atol=1e-5)
+        np.testing.assert_allclose(np.ptp(points[:, 2]), 2, atol=1e-5)
 
 
 @pytest.mark.parametrize("unit", [1e-12, 1.0, 1e12])

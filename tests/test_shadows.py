@@ -263,6 +263,20 @@ def test_the_command(tmp_path, capsys):
         bk.shadows.compare(file, others=["shadow_volumes"])
 
 
+def test_the_command_prints_a_line_for_each_technique_into_a_pipe(tmp_path, capsys, monkeypatch):
+    from brdfkit.cli import main
+
+    monkeypatch.delenv("COLUMNS", raising=False)
+    file = tmp_path / "scene.xml"
+    file.write_text(SCENE)
+    words = ["--projection", "focused", "--projection", "uniform", "--filter", "depth"]
+    main(["shadows", str(file), *words, "--map", "32", "--size", "16"], standalone_mode=False)
+    lines = capsys.readouterr().out.splitlines()
+    for name in ("focused", "uniform"):
+        (line,) = (line for line in lines if line.split()[:1] == [name])
+        assert len(line.split()) > 8
+
+
 @pytest.mark.quick
 @pytest.mark.parametrize("kind", [bool, np.uint8, np.float16])
 def test_packed_arrays_are_smaller_and_the_same(kind):

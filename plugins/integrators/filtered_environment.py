@@ -19,11 +19,12 @@ ellipse. They see no textures and no mirrors, and run in RGB and mono variants.
 boxes of texels, as graphics hardware has them, by the rule of [Ergun 2015, eq. 8.9]. The scene has
 one environment, of any kind, and no other lights. Light between surfaces is missing.
 
-`shadows` = "convex" dims the light of every lobe, and the irradiance, by the share that is visible:
+`shadows` = "shapes" dims the light of every lobe, and the irradiance, by the share that is visible:
 that of a few directions, each of which counts by the light that comes from it. They are the same
-ones at every point, so that soft shadows have fine steps in place of noise. What casts shadows are
-convex parts of meshes, found once, and other shapes, as in `convex_direct`. A picture takes 5 times
-as long for a box, 20 times for a mesh of many parts. By default, "none", surfaces hide nothing.
+ones at every point, so that soft shadows have fine steps in place of noise. They are 500 rays per
+pixel, and a picture takes 10 to 20 times as long. With "convex", convex parts of meshes cast the
+shadows, found once, and other shapes, as in `convex_direct`: they may move, but take twice the
+time, and minutes for the parts of a mesh that is new. By default, "none", surfaces hide nothing.
 """
 
 import drjit as dr
@@ -50,7 +51,7 @@ PARAMETERS = {
     "lobes": count(32, (1, 1024), "lobes per view, of gmm, kde and elliptic"),
     "filter": text("lobes", "lobes, or mips as of graphics hardware"),
     "resolution": count(512, (32, 1024), "texels across a hemisphere of the light"),
-    "shadows": word(("none", "convex"), "what casts shadows"),
+    "shadows": word(("none", "shapes", "convex"), "what casts shadows"),
     "concavity": plain_number(
         CONCAVITY, (0.01, 1.0), "largest distance of a convex part to its hull"
     ),
@@ -68,14 +69,14 @@ def define(mi):
                     raise no_such(name, getattr(self, name), known, where="filtered_environment")
             self.shading = _shading(mi, self.method, self.samples, self.lobes)
             self.light = FilteredLight(FILTERS[self.filter], self.resolution)
-            self.casters = Casters(self.concavity, RESOLUTION)
+            self.casters = Casters(self.concavity, RESOLUTION, self.shadows == "convex")
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
             environment = _only_environment(mi, scene)
             light = self.light.of(environment)
             si = scene.ray_intersect(mi.Ray3f(ray), active)
             hit = active & si.is_valid()
-            if self.shadows == "convex":
+            if self.shadows != "none":
                 drawn = light.drawn(sampler.sample_count())
                 light = ShadowedLight(light, si, self.visible(scene, si, hit), drawn)
             shown = self.shading.radiance(scene, sampler, si, light, hit)

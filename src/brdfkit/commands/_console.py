@@ -1,6 +1,7 @@
 """Prints the results of commands: tables for people, or JSON; and a progress bar."""
 
 import json
+import os
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,7 +10,7 @@ from brdfkit.commands import _tables
 from brdfkit.json_values import plain
 from brdfkit.progress_bar import progress
 
-NARROWEST = 20  # characters
+NARROWEST, WIDEST = 20, 10_000  # characters
 
 
 @dataclass(frozen=True)
@@ -43,9 +44,12 @@ class Console:
         """Print a table. `columns`: their names; `sections`: lists of rows of texts.
 
         A column whose name begins with ">" is flush right, for numbers. On a terminal that is too
-        narrow each row becomes a block of lines.
+        narrow each row becomes a block of lines; a pipe or a file gets lines as long as they are.
         """
         found = _tables.table(columns, sections, self.out.width, title)
+        if found is None and not self.out.is_terminal and "COLUMNS" not in os.environ:
+            self.out.width = WIDEST
+            found = _tables.table(columns, sections, self.out.width, title)
         if found is not None:
             self.out.print(found, soft_wrap=False)
             return

@@ -223,17 +223,32 @@ def render_options(command, spp=SPP, size="512, or what a scene file has"):
 
 
 def scene_options(command, files=SCENE_FILES):
-    """Adds --scene and --envmap to a command that renders materials; `files`: in words, which of
-    the user's may be scenes."""
+    """Adds --scene, --up and --envmap to a command that renders materials; `files`: in words, which
+    of the user's may be scenes. The command gets `scene`, "FILE.obj#z" of a mesh with --up z."""
     # by the names of their files: to import the scenes takes a second
     folder = Path(brdfkit.__file__).with_name("rendering") / "scenes"
     names = ", ".join(sorted(file.stem for file in folder.glob("[!_]*.py")))
     maps = ", ".join(shipped.environments())
+
+    @functools.wraps(command)
+    def with_scene(*args, scene, up, **kwargs):
+        if up is not None:
+            if not scene.lower().endswith((".obj", ".ply")):
+                raise BrdfkitError(f"--up turns a mesh, .obj or .ply; leave it out for {scene}.")
+            scene = f"{scene}#{up}"
+        return command(*args, scene=scene, **kwargs)
+
     for option in (
         click.option(
             "--envmap",
             metavar="NAME|FILE",
             help=f"Light by an environment map, not by the sky: {maps}; or .exr or .hdr.",
+        ),
+        click.option(
+            "--up",
+            type=click.Choice("xyz"),
+            help="Which axis of a mesh points up. Default: y, or z where it stands that way only, "
+            "which is then said.",
         ),
         click.option(
             "--scene",
@@ -243,8 +258,8 @@ def scene_options(command, files=SCENE_FILES):
             help=f"What shows the material: {names}; {files}.",
         ),
     ):
-        command = option(command)
-    return command
+        with_scene = option(with_scene)
+    return with_scene
 
 
 def tone_options(command):

@@ -59,9 +59,10 @@ def render(
         up (1e-6).
     scene : str, Path or callable, default "ball"
         A scene's name, which `brdfkit render --help` lists; a mesh (.obj, .ply) in the ball's
-        place; a scene file "FILE.xml#ID", with the id of the BSDF that the materials replace, by
-        default "material"; or a function that gives a scene's dictionary for (BSDF's dictionary,
-        (width, height)).
+        place, "FILE.obj#z" where its axis z points up, which is else guessed, with a warning
+        where it is not y; a scene file "FILE.xml#ID", with the id of the BSDF that the materials
+        replace, by default "material"; or a function that gives a scene's dictionary for (BSDF's
+        dictionary, (width, height)).
     progress : callable, optional
         Called with (done, total) after each pass of a picture; with `until`, the total is a guess
         that improves.

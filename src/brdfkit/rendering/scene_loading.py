@@ -24,7 +24,7 @@ def load_scenes(materials, given, size=None, envmap=None):
     """
     import mitsuba as mi
 
-    build, suffix = find_scene(given), "" if callable(given) else _suffix(given)
+    build, suffix = find_scene(given), "" if callable(given) else suffix_of(given)
     if suffix != scene_file.SUFFIX:
         size = size or SIZE
     light = None if envmap is None else environment(envmap)
@@ -57,13 +57,14 @@ def find_scene(given):
     """The function that makes the scene, of (BSDF, size).
 
     `given`: such a function; the name of a scene; a mesh, OBJ or PLY; or a scene file, "FILE.xml"
-    or "FILE.xml#ID". Raises `BrdfkitError` for anything else.
+    or "FILE.xml#ID", as "FILE.obj#z" of a mesh whose axis z points up. Raises
+    `BrdfkitError` for anything else.
     """
     if callable(given):
         return given
     if not isinstance(given, str | Path):
         raise BrdfkitError(f"scene = {given!r} should be a scene's name, a file or a function.")
-    suffix = _suffix(given)
+    suffix = suffix_of(given)
     if suffix == scene_file.SUFFIX:
         return scene_file.file_scene(given)
     if suffix in users_mesh.SUFFIXES:
@@ -89,6 +90,6 @@ def _require_scene(loaded):
         raise BrdfkitError("The scene has no sensor or no integrator; add them to its dictionary.")
 
 
-def _suffix(given):
+def suffix_of(given):
     """The suffix of a scene's file, "" for the name of a scene."""
     return Path(str(given).partition("#")[0]).suffix.lower()

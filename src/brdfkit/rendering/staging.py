@@ -5,9 +5,6 @@ from functools import cached_property
 from brdfkit.errors import BrdfkitError
 from brdfkit.rendering.environment import light_by
 from brdfkit.rendering.scene_loading import find_scene
-from brdfkit.visibility.decomposition import CONCAVITY
-from brdfkit.visibility.occluders import RESOLUTION
-from brdfkit.visibility.of_scene import occluders_of
 
 AROUND = "sensor", "integrator", "sky", "softbox", "ground"  # what a scene has besides its shape
 
@@ -23,12 +20,12 @@ class Shape:
 
     @cached_property
     def casters(self):
-        """What casts shadows, see `occluders_of`; not the ground, which only receives them."""
+        """The `mitsuba.Scene` that casts shadows: without the ground, which only receives them."""
         import mitsuba as mi
 
         built = self.build({"type": "diffuse"})
-        shape = {key: part for key, part in built.items() if key not in AROUND}
-        return occluders_of(mi.load_dict(shape, parallel=False), CONCAVITY, RESOLUTION)
+        shape = {"type": "scene"} | {key: part for key, part in built.items() if key not in AROUND}
+        return mi.load_dict(shape, parallel=False)
 
 
 def stage(scene, light, integrator, spp, ground=False):

@@ -1,5 +1,6 @@
 """A mesh of the user's, OBJ or PLY, as a scene: it stands in the place of the ball."""
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from brdfkit.host.load_by_mitsuba import load_by_mitsuba
 from brdfkit.rendering.relative_indices import counted_from_the_start
 from brdfkit.rendering.scenes._meshes import mesh
 from brdfkit.rendering.scenes._studio import studio
+from brdfkit.rendering.upright import guess_up
 
 SUFFIXES = ".obj", ".ply"
 SIZE = 2.0  # of the longest side of its bounding box, as of the ball's
@@ -16,29 +18,40 @@ SHARP = np.radians(35)  # between a normal at a corner of a face and the face's 
 LEAST = 1e-12  # area of a face, for a mesh of extent 1
 
 
-def mesh_scene(path):
+# Turns of the file's axes (axis, degrees) to those of the scenes, where z is up
+TURNS = {"x": ([0, 1, 0], -90), "y": ([1, 0, 0], 90), "z": ([0, 0, 1], 0)}
+
+
+def mesh_scene(given):
     """A function like those of `brdfkit.rendering.scenes`, which shows the mesh in a file.
 
-    The axis y of the file points up, and z to the camera. The mesh, by the vertices of its faces,
-    is made as large as the ball and stands on the ground. Normals are made where it has none. An
-    anisotropic material is brushed along the u of its texture coordinates, or around its vertical
-    axis where it has none. Raises `BrdfkitError` for a file that is missing or not such a mesh, and
-    for one whose faces lack vertices or an area.
+    `given`: the file, "FILE.obj"; or with the axis that points up, "FILE.obj#z", which is else
+    guessed (`upright.py`). With y up, z points to the camera. The mesh, by the vertices of its
+    faces, is made as large as the ball and stands on the ground. Normals are made where it has
+    none. An anisotropic material is brushed along the u of its texture coordinates, or around its
+    vertical axis where it has none. Raises `BrdfkitError` for a file that is missing or not such a mesh, for
+    one whose faces lack vertices or an area, and for an axis that there is not.
     """
-    path = Path(path)
+    name, _, up = str(given).partition("#")
+    path = Path(name)
+    if up and up not in TURNS:
+        raise BrdfkitError(f"{given}: the axis that points up, behind the #, is x, y or z.")
     if not path.is_file():
         raise BrdfkitError(f"{path}: there is no such mesh; check the path.")
     made = []  # the same mesh serves every material, and is read once
 
     def build(bsdf, size=(512, 512)):
-        made[:] = made or [read(path)]
+        made[:] = made or [read(path, up)]
         return studio(size) | {"mesh": mesh(*made[0], bsdf)}
 
     return build
 
 
-def read(path):
-    """(points, normals, uv, faces) of the mesh in a file, in the ball's place."""
+def read(path, up=""):
+    """(points, normals, uv, faces) of the mesh in a file, in the ball's place.
+
+    `up`: the axis of the file that points up; it is guessed where none is given.
+    """
     import mitsuba as mi
 
     with counted_from_the_start(path) as file:
@@ -50,7 +63,7 @@ def read(path):
         # without normals at first: Mitsuba makes none of faces that are none, or very small
         points, faces = _points_and_faces(load(face_normals=True), path)
         middle, extent = _box(points, faces, path)
-        to_world = mi.ScalarTransform4f().rotate([1, 0, 0], 90)  # y becomes z, and z -y
+        to_world = mi.ScalarTransform4f().rotate(*TURNS[up or _guess(path, points, faces)])
         to_world = to_world.scale([SIZE / extent] * 3).translate((-middle).tolist())
         buffers = load(to_world=to_world)
 
@@ -66,6 +79,18 @@ def read(path):
     uv = uv[faces] if len(uv) else _around(points)
     corners = (x.reshape(-1, x.shape[-1]) for x in (points, _sharpen(normals, points), uv))
     return *corners, np.arange(faces.size).reshape(-1, 3)
+
+
+def _guess(path, points, faces):
+    """The axis that points up, y or z; a warning says where that is not y."""
+    up = guess_up(points[np.unique(faces)])
+    if up != "y":
+        warnings.warn(
+            f"{path}: its axis {up} is taken to point up, for the mesh stands on its foot that "
+            f"way, and would fall over with y up. If not, give --up y, in Python '{path}#y'.",
+            stacklevel=2,
+        )
+    return up
 
 
 def _points_and_faces(buffers, path):

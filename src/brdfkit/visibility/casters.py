@@ -1,4 +1,4 @@
-"""What casts shadows in a scene, found once: convex parts of its meshes, and its other shapes."""
+"""What casts shadows in a scene, found once: its shapes, or convex parts of its meshes."""
 
 from brdfkit.visibility.of_scene import occluders_of
 
@@ -7,16 +7,18 @@ class Casters:
     """The casters of a scene, found when it is first asked for; those of one scene at a time.
 
     concavity, resolution : see `occluders_of`.
+    convex : whether the convex parts of meshes do, not the meshes as they are.
     """
 
-    def __init__(self, concavity, resolution):
-        self.concavity, self.resolution = concavity, resolution
+    def __init__(self, concavity, resolution, convex=True):
+        self.concavity, self.resolution, self.convex = concavity, resolution, convex
         self.found = None, None, None  # the scene's key, and what casts shadows in it
 
     def of(self, scene):
         """(`Occluders`, a `mitsuba.Scene` of the other shapes); each may be None."""
         if self.found[0] != key(scene):
-            self.set(scene, *occluders_of(scene, self.concavity, self.resolution))
+            parts = self.concavity, self.resolution
+            self.set(scene, *(occluders_of(scene, *parts) if self.convex else (None, scene)))
         return self.found[1:]
 
     def set(self, scene, occluders, others):
