@@ -19,7 +19,7 @@ from brdfkit.rendering.tracing import trace
 from brdfkit.rendering.volumes import looks
 from brdfkit.rendering.volumes.scene import RENDERERS, UNLIT, scene
 from brdfkit.volumes import TransferFunction, Volume, load_volume
-from brdfkit.volumes.transfer_function import SHARES
+from brdfkit.volumes.windows import fitted
 
 SPP, UNLIT_SPP = 64, 8  # samples per pixel
 MOST = 16_384  # of them, where a noise floor or a time is asked for
@@ -153,9 +153,9 @@ def _function(volume, transfer, renderer, density):
         transfer = looks.transfer_function(volume, renderer)
     elif not isinstance(transfer, TransferFunction):
         transfer = TransferFunction.load(transfer)
-    low, high = volume.range
-    if transfer.value_unit == SHARES and low < high:  # the camera wants to know what shows
-        transfer = transfer.scaled_to(low, high)
+    transfer = fitted(transfer, volume.values)  # the camera wants to know what shows
+    if volume.unit and transfer.length_unit:
+        transfer = transfer.per(volume.unit)
     return replace(transfer, extinction=density * transfer.extinction)
 
 
