@@ -34,7 +34,7 @@ def render_volume(
     spp: int | None = None,
     size: int | tuple[int, int] = 512,
     seed: int = 0,
-    progress: Callable[[int, int], object] | None = None,
+    progress: Callable[..., object] | None = None,
     until: float | None = None,
     seconds: float | None = None,
     envmap: str | Path = "studio",
@@ -69,7 +69,8 @@ def render_volume(
     seed : int, default 0
         Seed of the samples.
     progress : callable, optional
-        Called with (done, total) after each pass; see `brdfkit.progress`.
+        Called with (done, total) after each pass; see `brdfkit.progress`. One with a parameter
+        `pictures` also gets a function: ``pictures()[volume.name]`` is the picture so far.
     until : float, optional
         Adds samples until the noise floor, the PSNR of the picture to itself with another seed, is
         so high [dB, above 0]; 45 leaves noise that is hardly seen.
