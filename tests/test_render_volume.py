@@ -228,3 +228,19 @@ def test_what_has_no_light_but_its_own_needs_few_samples(renderer):
     assert found.spp == 8
     apart = [np.clip(one.pictures["smoke"], 0, 1) for one in (found, many)]
     assert 10 * np.log10(1 / np.mean((apart[0] - apart[1]) ** 2)) > 45
+
+
+def test_a_callback_sees_the_picture_that_grows():
+    """It asks where it has a parameter for it; the last one is the result."""
+    seen_so_far, numbers = [], []
+
+    def show(done, total, pictures):
+        seen_so_far.append(pictures()["sphere"])
+
+    found = render_volume("sphere", size=16, spp=16, progress=show)
+    assert len(seen_so_far) == 4
+    np.testing.assert_array_equal(seen_so_far[-1], found.pictures["sphere"])
+    errors = [np.abs(p - seen_so_far[-1]).mean() for p in seen_so_far]
+    assert errors[0] > errors[2] > 0
+    render_volume("sphere", size=16, spp=8, progress=lambda *given: numbers.append(given))
+    assert numbers == [(1, 2), (2, 2)]

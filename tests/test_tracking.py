@@ -155,3 +155,21 @@ def test_rays_that_miss_or_are_not_asked(llvm_variant):
         found, *_, lookups = track(lambda p, active: 0 * p.x, *rays)
         np.testing.assert_array_equal(np.array(found), [expected] * 3)
         np.testing.assert_array_equal(np.array(lookups)[1:], 0)
+
+
+def test_what_collides_has_a_place(llvm_variant):
+    """Also by a random number of 1, to which one in millions is rounded: else a pixel is NaN."""
+    mi = llvm_variant
+
+    class HalfAndOne:
+        calls = 0
+
+        def next_1d(self, active=True):
+            self.calls += 1  # the second and fourth draw an optical depth, the third tells
+            return mi.Float(0.5 if self.calls % 2 == 0 else 1.0)
+
+    even = Majorants([[[20.0]]])
+    found = divide(lambda p, active: mi.Float(7), even, along_z(mi), 0, dr.inf, HalfAndOne())
+    _, collided, t, _ = found
+    assert collided[0] > 0
+    assert np.isfinite(t[0])

@@ -139,8 +139,8 @@ def test_presets(name):
     preset = TF.load(name)
     assert preset.name == name
     assert preset.length_unit == "mm"
-    assert preset.value_unit == ("HU" if name.startswith("ct") else "share of the range")
-    assert preset(np.linspace(*preset.range, 50), 1e9)[:, 3].max() > 0.25
+    assert preset.value_unit == ("HU" if name.startswith("ct") else "share of the window")
+    assert preset(np.linspace(*preset.range, 50), preset.gradient_range and 0.2)[:, 3].max() > 0.25
     air = TF.load(name)(-1000 if name.startswith("ct") else 0, 1e9)
     assert air[3] == 0
 

@@ -94,7 +94,7 @@ def test_shares_of_the_range_are_scaled(mi):
         {**volume(mi, RNG.random((4, 4, 4)) * 500 + 7, HILLS), "transfer": "mri_head"}
     )
     low, high = loaded.function.range
-    assert 7 < low < 50 < 400 < high < 507
+    assert 7 < low < 80 < 400 < high < 507
 
 
 @pytest.mark.parametrize("variant", ["llvm_ad_mono", "llvm_ad_spectral"])

@@ -36,9 +36,10 @@ from brdfkit.volumes import stored
 from brdfkit.volumes.block_bounds import block_ranges, largest_between
 from brdfkit.volumes.extinction_bounds import data_of
 from brdfkit.volumes.preintegration import is_thin
-from brdfkit.volumes.transfer_function import SHARES, TransferFunction
+from brdfkit.volumes.transfer_function import TransferFunction
 from brdfkit.volumes.transfer_lookup import TransferLookup
 from brdfkit.volumes.voxel_steps import is_trilinear, typical
+from brdfkit.volumes.windows import fitted
 
 CHANNELS = {1: "values alone", 2: "values and gradient magnitudes"}
 PARAMETERS = {
@@ -171,9 +172,7 @@ def function_of(transfer, values):
             f"the volume's number of channels is {given}; it should be {channels}."
         )
     data = data_of(values)
-    if function.value_unit == SHARES and data is not None and data.min() < data.max():
-        function = function.scaled_to(float(data.min()), float(data.max()))
-    return function
+    return function if data is None else fitted(function, data)
 
 
 def example():

@@ -57,6 +57,10 @@ class Progressive:
         with first_error():
             return rgb(scene.integrator().render(scene, seed=mi.UInt32(int(seed)), spp=spp))
 
+    def pictures(self) -> dict[str, NDArray[np.float32]]:
+        """The pictures (height, width, 3) by the scene's name; none before the first pass."""
+        return {name: a.picture for name, a in self.accumulated.items() if a.passes}
+
     def integrate(self, generated: Mapping[str, NDArray], spp: int) -> None:
         """Add the pictures of a pass, those of all scenes at once."""
         self.accumulated = {

@@ -33,7 +33,7 @@ def render(
     size: int | tuple[int, int] | None = None,
     seed: int = 0,
     scene: SceneLike = "ball",
-    progress: Callable[[int, int], object] | None = None,
+    progress: Callable[..., object] | None = None,
     until: float | None = None,
     envmap: str | Path | None = None,
 ) -> Rendering:
@@ -65,7 +65,8 @@ def render(
         dictionary, (width, height)).
     progress : callable, optional
         Called with (done, total) after each pass of a picture; with `until`, the total is a guess
-        that improves.
+        that improves. One with a parameter `pictures` also gets a function: ``pictures()`` is those
+        so far, by name, linear sRGB, and costs nothing where it is not called.
     until : float, optional
         Adds samples until the noise floor, the PSNR of the reference to itself with another seed,
         is so high [dB, above 0]; 45 leaves noise that is hardly seen.
@@ -112,7 +113,7 @@ def render_scene(
     path: str | Path,
     spp: int | None = None,
     seed: int = 0,
-    progress: Callable[[int, int], object] | None = None,
+    progress: Callable[..., object] | None = None,
     until: float | None = None,
 ) -> Rendering:
     """Path-trace a scene file of Mitsuba's, in which brdfkit's plugins may appear.
@@ -129,7 +130,7 @@ def render_scene(
     seed : int, default 0
         Seed of the samples.
     progress : callable, optional
-        Called with (done, total) after each pass.
+        Called with (done, total) after each pass, and with `pictures`, as in `render`.
     until : float, optional
         The noise floor [dB] to which samples are added, as in `render`.
 

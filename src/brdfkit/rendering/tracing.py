@@ -1,7 +1,9 @@
 """Path-traces several scenes together: each pass renders every picture once."""
 
+import inspect
 import sys
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from math import isqrt
 
@@ -37,7 +39,8 @@ def trace(loaded, spp, seed, progress, until=None, mask=None, limit=None, most=N
     there are at least two, for the noise. Where a noise floor `until` [dB] is given, over the
     `mask`, they end as soon as it is reached; `spp` is then the most; with a `limit` [s] after the
     pass in which it is over. Ctrl-C ends after the last pass that all pictures have; it is raised
-    where there is none. `progress`: called with (done, total) after each picture of a pass.
+    where there is none. `progress`: called with (done, total) after each picture of a pass; one with
+    a parameter `pictures` gets the function to ask for the pictures so far, too.
     """
     if seed >= 2**31:
         raise BrdfkitError(f"The seed {seed} is out of bounds; give one from 0 to 2³¹ - 1.")
@@ -45,7 +48,7 @@ def trace(loaded, spp, seed, progress, until=None, mask=None, limit=None, most=N
     pixels = max(int(np.prod(s.sensors()[0].film().crop_size())) for s in loaded.values())
     passes = list(passes_of(spp, max(1, min(most or PASS, RAYS // pixels, (spp + 1) // 2))))
     growing, reference = Progressive(loaded, seed), next(iter(loaded))
-    expected = len(passes)
+    expected, more = len(passes), _of_pictures(progress, growing)
     try:
         for number, count in enumerate(passes):
             generated = {}
@@ -59,16 +62,26 @@ def trace(loaded, spp, seed, progress, until=None, mask=None, limit=None, most=N
                         _passes_within(limit, time.perf_counter() - start, number + 1),
                     )
                 if progress:
-                    progress(number * len(loaded) + len(generated), expected * len(loaded))
+                    done = number * len(loaded) + len(generated)
+                    progress(done, expected * len(loaded), **more)
             if number + 1 == expected:
                 break
     except KeyboardInterrupt:
         if not growing.accumulated[reference].passes:
             raise
 
-    pictures = {name: found.picture for name, found in growing.accumulated.items()}
+    pictures = growing.pictures()
     first, asked = growing.accumulated[reference], sum(passes[:expected])
     return Traced(pictures, first, first.spp, asked, time.perf_counter() - start)
+
+
+def _of_pictures(progress, growing):
+    """The keywords of a `progress`: the function of the pictures so far, where it has a parameter
+    for it. Nothing is summed up for one that does not ask."""
+    with suppress(TypeError, ValueError):  # of no function that tells its parameters
+        if "pictures" in inspect.signature(progress).parameters:
+            return {"pictures": growing.pictures}
+    return {}
 
 
 def _passes_needed(passes, done, halves, until, mask):

@@ -5,6 +5,7 @@ from typing import Any, Self
 
 from numpy.typing import ArrayLike
 
+from brdfkit.volumes import boundaries as boundaries_of_values
 from brdfkit.volumes import colour_maps, stored
 from brdfkit.volumes import opacity as opacities
 
@@ -94,6 +95,52 @@ class Conversions:
         0.34657359027997264
         """
         return opacities.function(cls, values, rgba, unit_distance, colour)
+
+    @classmethod
+    def from_boundaries(
+        cls,
+        boundaries: ArrayLike,
+        thickness: float,
+        values: tuple[float, float],
+        extinction: float = 1.0,
+        colour: str = "albedo",
+    ) -> Self:
+        """A transfer function that shows the boundaries between materials as thin shells.
+
+        Each is a triangle over values and gradient magnitudes, and no product of two ramps: it
+        shows a boundary, and not a steeper one, such as skin to air, through the same values.
+
+        Parameters
+        ----------
+        boundaries : array (k, 6)
+            Rows (value, steepest gradient magnitude, R, G, B, A): the value is the mean of those on
+            both sides; R, G, B, linear sRGB, and A are 0 to 1.
+        thickness : float
+            To either side of the surface [unit of length], above 0.
+        values : (float, float)
+            Between which the function changes.
+        extinction : float, default 1.0
+            σ_t where A is 1 [1/unit of length]; 3 / thickness hides what is behind.
+        colour : str, default "albedo"
+            What RGB means: "albedo" or "emission".
+
+        Returns
+        -------
+        TransferFunction
+            Of values and gradient magnitudes.
+
+        Raises
+        ------
+        BrdfkitError
+            For rows of other than six numbers, and numbers out of range.
+
+        Examples
+        --------
+        >>> white_matter = [[190, 40, 0.97, 0.93, 0.85, 1]]
+        >>> TransferFunction.from_boundaries(white_matter, 1, (0, 255), 3).gradient_range
+        (0.0, 50.0)
+        """
+        return boundaries_of_values.function(cls, boundaries, thickness, values, extinction, colour)
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> Self:

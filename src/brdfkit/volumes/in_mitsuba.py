@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from brdfkit.jit.llvm import use_variant
-from brdfkit.volumes.transfer_function import SHARES, TransferFunction
+from brdfkit.volumes.transfer_function import TransferFunction
+from brdfkit.volumes.windows import fitted
 
 
 def scene_dict(volume, transfer):
@@ -17,9 +18,7 @@ def scene_dict(volume, transfer):
         transfer = TransferFunction.load(transfer)
     if volume.unit and transfer.length_unit:
         transfer = transfer.per(volume.unit)
-    low, high = volume.range
-    if transfer.value_unit == SHARES and low < high:
-        transfer = transfer.scaled_to(low, high)
+    transfer = fitted(transfer, volume.values)
     if volume.labels and transfer.gradients is None:
         volume, transfer = numbered(volume, transfer)
     channels = [volume.values]

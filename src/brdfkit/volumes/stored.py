@@ -3,11 +3,13 @@
 The JSON has the fields of `TransferFunction`. One over values alone has ``"points"``, rows (value,
 R, G, B, A); one over gradient magnitudes, too, has ``"values"``, ``"gradients"`` and ``"rgba"``.
 Instead of these, ``"points"`` may stand with ``"gradient_ramp"``, rows (gradient magnitude,
-factor), which is shorter to write by hand.
+factor), which is shorter to write by hand. So may ``"boundaries"``, rows (value, steepest gradient,
+R, G, B, A), with their ``"thickness"`` and ``"range"``, the two values of `from_boundaries`.
 """
 
 import json
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +21,7 @@ from brdfkit.volumes import slicer_presets
 KIND = "brdfkit transfer function"
 WORDS = "colour", "value_unit", "length_unit", "name"  # fields that are text
 ALLOWED = {"kind", "extinction", "points", "gradient_ramp", "values", "gradients", "rgba", *WORDS}
+ALLOWED |= {"boundaries", "thickness", "range"}
 
 
 def presets():
@@ -92,6 +95,11 @@ def from_json(cls, text, where):
 def _from_record(cls, record):
     settings = {word: str(record[word]) for word in WORDS if word in record}
     settings["extinction"] = record.get("extinction", 1.0)
+    if "boundaries" in record:
+        given = [record.get(key) for key in ("boundaries", "thickness", "range")]
+        colour = settings.pop("colour", "albedo")
+        found = cls.from_boundaries(*given, settings.pop("extinction"), colour)
+        return replace(found, **settings)
     if "points" not in record:
         fields = "values", "rgba", "gradients"
         return cls(**{field: record.get(field) for field in fields}, **settings)

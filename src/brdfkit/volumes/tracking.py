@@ -167,7 +167,9 @@ def divide(
         collided, distance = found
         here = dr.select(tested, dr.maximum(through, FAINT) * dr.minimum(share, 1), 0)
         collided = collided + here
-        told = sampler.next_1d(tested) * collided < here
+        # The first one always, also by a random number that is rounded up to 1
+        first = dr.isinf(distance)
+        told = (here > 0) & (first | (sampler.next_1d(tested) * collided < here))
         return through * dr.maximum(1 - share, 0), [collided, dr.select(told, t, distance)]
 
     rays, found = (ray, t_min, t_max, active), [mi.Float(0), mi.Float(dr.inf)]

@@ -27,7 +27,8 @@ from brdfkit.volumes.length_units import METRES, ratio
 from brdfkit.volumes.piecewise import places, require_order
 
 COLOURS = "albedo", "emission"  # what RGB means
-SHARES = "share of the range"  # a unit of values, of functions for any data
+# Units of values, of functions for any data
+WINDOW_SHARES, RANGE_SHARES = "share of the window", "share of the range"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -169,7 +170,7 @@ class TransferFunction(Conversions):
     def scaled_to(self, low: float, high: float) -> "TransferFunction":
         """The function with its values mapped to the range `low` to `high`, and gradients likewise.
 
-        MRI has no unit: ``TransferFunction.load("mri_head").scaled_to(*volume.range)``.
+        MRI has no unit: ``TransferFunction.load("mri_head").scaled_to(*volume.window)``.
         """
         low, high = to_pair("range", (low, high))
         first, last = self.range

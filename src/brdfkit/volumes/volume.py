@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.arguments import to_whole_number
 from brdfkit.errors import BrdfkitError
-from brdfkit.volumes import in_mitsuba, reconstruction, reducing
+from brdfkit.volumes import in_mitsuba, reconstruction, reducing, windows
 from brdfkit.volumes.transfer_function import TransferFunction
 
 MOST = 1e30  # of values, and the inverse of their span: renderers have 32 bits
@@ -92,6 +92,13 @@ class Volume:
     def range(self) -> tuple[float, float]:
         """The least and the largest value."""
         return float(self.values.min()), float(self.values.max())
+
+    @cached_property
+    def window(self) -> tuple[float, float]:
+        """(low, high), by the histogram: the background, such as air, is below, and only few bright
+        voxels are above. It is what `TransferFunction.scaled_to` wants.
+        """
+        return windows.window(self.values)
 
     @cached_property
     def gradient_magnitude(self) -> NDArray[np.float32]:

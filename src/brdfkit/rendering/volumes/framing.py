@@ -25,8 +25,8 @@ def direction(volume, azimuth, elevation):
 def origin_and_target(volume, shows, towards, aspect):
     """Where the camera stands, and what it looks at: the middle of the box about what shows.
 
-    `shows`: the function (values) → whether they do; `towards`: the unit vector to the camera;
-    `aspect`: width over height.
+    `shows`: the function (volume, k) → which of every k-th voxel do; `towards`: the unit vector
+    to the camera; `aspect`: width over height.
     """
     points = _shown(volume, shows)
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
@@ -46,7 +46,7 @@ def _shown(volume, shows):
     """Corners (n, 3), in the world, of the cells about voxels that show; of every k-th voxel along
     each axis, where they are many. Those of the box where none shows."""
     k = int(np.ceil((volume.values.size / MOST) ** (1 / 3)))
-    kji = k * np.argwhere(shows(volume.values[::k, ::k, ::k]))
+    kji = k * np.argwhere(shows(volume, k))
     if not len(kji):
         kji, k = np.array([[0, 0, 0], volume.values.shape]), 0
     # interpolation reaches to the next voxel, but not out of the box

@@ -19,7 +19,7 @@ from brdfkit.rendering.tracing import trace
 from brdfkit.rendering.volumes import looks
 from brdfkit.rendering.volumes.scene import RENDERERS, UNLIT, scene
 from brdfkit.volumes import TransferFunction, Volume, load_volume
-from brdfkit.volumes.transfer_function import SHARES
+from brdfkit.volumes.windows import fitted
 
 SPP, UNLIT_SPP = 64, 8  # samples per pixel
 MOST = 16_384  # of them, where a noise floor or a time is asked for
@@ -34,7 +34,7 @@ def render_volume(
     spp: int | None = None,
     size: int | tuple[int, int] = 512,
     seed: int = 0,
-    progress: Callable[[int, int], object] | None = None,
+    progress: Callable[..., object] | None = None,
     until: float | None = None,
     seconds: float | None = None,
     envmap: str | Path = "studio",
@@ -69,7 +69,8 @@ def render_volume(
     seed : int, default 0
         Seed of the samples.
     progress : callable, optional
-        Called with (done, total) after each pass; see `brdfkit.progress`.
+        Called with (done, total) after each pass; see `brdfkit.progress`. One with a parameter
+        `pictures` also gets a function: ``pictures()[volume.name]`` is the picture so far.
     until : float, optional
         Adds samples until the noise floor, the PSNR of the picture to itself with another seed, is
         so high [dB, above 0]; 45 leaves noise that is hardly seen.
@@ -153,9 +154,9 @@ def _function(volume, transfer, renderer, density):
         transfer = looks.transfer_function(volume, renderer)
     elif not isinstance(transfer, TransferFunction):
         transfer = TransferFunction.load(transfer)
-    low, high = volume.range
-    if transfer.value_unit == SHARES and low < high:  # the camera wants to know what shows
-        transfer = transfer.scaled_to(low, high)
+    transfer = fitted(transfer, volume.values)  # the camera wants to know what shows
+    if volume.unit and transfer.length_unit:
+        transfer = transfer.per(volume.unit)
     return replace(transfer, extinction=density * transfer.extinction)
 
 

@@ -12,6 +12,15 @@ FROG = "volumes/frog_tissues.vti"
 PHANTOM = 96  # voxels along an edge
 DENSE = 40.0  # optical depth of the longest edge, where A is 1
 SKELETON = 13  # the frog's label of it
+# Of the head: share of the range, R, G, B, A
+HEAD = (
+    (0.0, 0.5, 0.25, 0.2, 0.0),
+    (0.12, 0.6, 0.3, 0.24, 0.0),
+    (0.3, 0.78, 0.5, 0.42, 0.25),
+    (0.6, 0.85, 0.68, 0.58, 0.7),
+    (0.8, 0.92, 0.86, 0.8, 1.0),
+    (1.0, 0.95, 0.92, 0.88, 1.0),
+)
 
 
 @dataclass(frozen=True)
@@ -46,7 +55,8 @@ def scans(sources, fewer=1):
 def mri(path, fewer):
     """A head without its skull."""
     head = within_cube(load_volume(path, downsample=fewer))
-    function = TransferFunction.load("mri_head").scaled_to(*head.range)
+    function = TransferFunction([row[0] for row in HEAD], [row[1:] for row in HEAD])
+    function = function.scaled_to(*head.range)
     return Scan("MRI", head, head, dense(function), 110, (150, 255), (1.3, 1.6, 0.9), (0, 0, 1))
 
 
