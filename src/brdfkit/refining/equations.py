@@ -91,10 +91,10 @@ class Equations:
     power: np.ndarray
 
     @classmethod
-    def at(cls, views, here, seed):
-        """About `Residuals`."""
+    def at(cls, views, here, seed, share=SHARE):
+        """About `Residuals`; `share`: of their cost, what the derivatives may cost."""
         pictures = len(list(tangents(views)))
-        spp = max(1, round(here.spp * min(1, SHARE / (DERIVATIVE_COST * pictures))))
+        spp = max(1, round(here.spp * min(1, share / (DERIVATIVE_COST * pictures))))
         a, b = (derivatives(views, here.x, spp, seed + 1000 * half) for half in (0, 1))
         _require_finite(views, a + b)
         weighed = views.weights * a

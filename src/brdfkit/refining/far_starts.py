@@ -13,7 +13,7 @@ from brdfkit.refining.equations import Residuals
 from brdfkit.refining.gauss_newton import Search, few_samples, search
 
 BEST = 3  # points that go on
-FEW = 4  # steps that they take
+FEW = 2  # steps that they take
 MORE = 2  # times as many samples judge where they came to
 PER_NUMBER = 8  # points for each number in which pictures are not linear
 

@@ -27,7 +27,8 @@ BETTER, WORSE = 0.1, 8  # factors of the damping
 class Search:
     """Where a search is: `here`, its `Residuals`; `about`, the `Equations` there; how many `steps`
     it took; the `history` of (samples per pixel, E²); `converged`, whether no step would gain more
-    than the noise; `stuck`, whether one should, but none, however short, is a gain."""
+    than the noise; `stuck`, whether one should, but none, however short, is a gain; `worse`, whether
+    these are the scene's own values, than which all that was found is worse."""
 
     here: Residuals
     about: Equations | None = None
@@ -35,6 +36,7 @@ class Search:
     history: list = field(default_factory=list)
     converged: bool = False
     stuck: bool = False
+    worse: bool = False
 
 
 def few_samples(views):

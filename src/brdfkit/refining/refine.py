@@ -22,6 +22,7 @@ from brdfkit.refining.far_starts import BEST, start, usual_count
 from brdfkit.refining.gauss_newton import search
 from brdfkit.refining.hidden import nothing_seen
 from brdfkit.refining.refinement import Refinement
+from brdfkit.refining.second_look import look_again
 from brdfkit.refining.subject import integrator_of, load_subject
 from brdfkit.refining.targets import read_targets
 from brdfkit.refining.unknowns import MOST, choose
@@ -139,16 +140,33 @@ def refine(
     try:
         with quiet_samplers():
             x = start(views, count, seed, report)
-            found = search(views, x, steps, samples, seed + 100, report=report)
+            found, second_look = _search_twice(views, x, steps, samples // 2, seed + 100, report)
     except Stopped as stop:
         best = conclude_search(views, stop.best, time.perf_counter() - began, interrupted=True)
         raise Interrupted(best, f"refine: the best so far leaves {best.loss:.3g}") from None
+    seconds = time.perf_counter() - began
+    return conclude_search(views, found, seconds, second_look=second_look)
+
+
+def _search_twice(views, x, steps, samples, seed, report):
+    """(the `Search` from `x` or, where that ends worse than the scene's own values, from these; its
+    `SecondLook`)."""
+
+    def again():
+        return _search_without_unseen(views, views.start, steps, samples, seed, report)
+
+    found = _search_without_unseen(views, x, steps, samples, seed, report)
+    return look_again(views, found, None if np.array_equal(x, views.start) else again, seed)
+
+
+def _search_without_unseen(views, x, steps, samples, seed, report):
+    """The `Search` from `x`; where nothing is known, its own start means nothing."""
+    found = search(views, x, steps, samples, seed, report)
     unseen = found.about.unseen(views, found.here.x)
     if unseen.all():
         raise nothing_seen(views)
-    # where nothing is known, the search's own starts mean nothing
     found.here = replace(found.here, x=np.where(unseen, views.start, found.here.x))
-    return conclude_search(views, found, time.perf_counter() - began)
+    return found
 
 
 def _by_descent(views, smoothing, steps, samples, seed, progress, began):
