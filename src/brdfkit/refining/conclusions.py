@@ -21,8 +21,8 @@ def conclude_search(views, found, seconds, interrupted=False, notes=(), second_l
     `notes` come before those of its own, and before those those of a `SecondLook`.
     """
     here, rest = found.here, Rest.of(views, found.here)
-    certainty = _certify(views, found, rest)
-    x = second_look.mean(views, here.x, certainty) if second_look else here.x
+    certainty = certify(views, found, rest)
+    x = second_look.mean(views, here.x) if second_look else here.x
     views.put(x)
     values = {
         unknown.name: _value(unknown, part)
@@ -45,7 +45,7 @@ def conclude_search(views, found, seconds, interrupted=False, notes=(), second_l
         at_bounds=bounds,
         notes=(
             *notes,
-            *(second_look.notes(certainty) if second_look else ()),
+            *(second_look.notes() if second_look else ()),
             *certainty.undetermined,
             *certainty.trades,
             *notes_on_weights(views, certainty),
@@ -68,7 +68,7 @@ def _value(unknown, part):
     return tuple(map(float, part)) if len(part) > 1 else float(part[0])
 
 
-def _certify(views, found, rest):
+def certify(views, found, rest):
     """The `Certainty` of the values, by blocks of pixels as samples; with the `Rest` that is no
     noise, and with the way that was still to go."""
     slopes = views.slopes(found.here.x)

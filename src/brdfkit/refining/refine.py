@@ -140,7 +140,7 @@ def refine(
     try:
         with quiet_samplers():
             x = start(views, count, seed, report)
-            found, second_look = _search_twice(views, x, steps, samples // 2, seed + 100, report)
+            found, second_look = _search_and_check(views, x, steps, samples, seed + 100, report)
     except Stopped as stop:
         best = conclude_search(views, stop.best, time.perf_counter() - began, interrupted=True)
         raise Interrupted(best, f"refine: the best so far leaves {best.loss:.3g}") from None
@@ -148,15 +148,20 @@ def refine(
     return conclude_search(views, found, seconds, second_look=second_look)
 
 
-def _search_twice(views, x, steps, samples, seed, report):
-    """(the `Search` from `x` or, where that ends worse than the scene's own values, from these; its
-    `SecondLook`)."""
-
-    def again():
-        return _search_without_unseen(views, views.start, steps, samples, seed, report)
-
-    found = _search_without_unseen(views, x, steps, samples, seed, report)
-    return look_again(views, found, None if np.array_equal(x, views.start) else again, seed)
+def _search_and_check(views, x, steps, samples, seed, report):
+    """(the `Search` from `x`, its `SecondLook`): of half of the samples, held against all of them;
+    where these say otherwise, it goes on with all, and is held against twice as many."""
+    found = _search_without_unseen(views, x, steps - steps // 2, samples // 2, seed, report)
+    found, second_look = look_again(views, found, seed)
+    agreed = found.converged and not second_look.notes()
+    if agreed or found.steps == steps:
+        return found, second_look
+    more = _search_without_unseen(
+        views, found.here.x, steps - found.steps, samples, seed + 200, report
+    )
+    more.steps += found.steps
+    more.history[:0] = found.history
+    return look_again(views, more, seed + 200)
 
 
 def _search_without_unseen(views, x, steps, samples, seed, report):

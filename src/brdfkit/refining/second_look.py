@@ -5,8 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from brdfkit.refining.conclusions import certify
 from brdfkit.refining.equations import SHARE, SURE, Equations, Residuals
 from brdfkit.refining.gauss_newton import Search, few_samples, step_in_bounds
+from brdfkit.refining.rest import Rest
 
 TWICE = 2  # times the samples of the search's end
 FAR = 4  # standard errors, farther than which other samples move no number by chance
@@ -16,67 +18,69 @@ SEED = 7_000  # beyond the search's own
 
 @dataclass(frozen=True)
 class SecondLook:
-    """What twice the samples say of the end of a search: the `step` that they would take from there,
-    {name: in the values}; how far E² is `apart`, in standard deviations; of the power of the
-    derivatives, {name: the `share`} that two renderings agree on."""
+    """What twice the samples say of the end of a search: the `step` (n,) that they would take from
+    there, in coordinates, 0 for what is not certain; {name: how far that `moves` a number, in
+    standard errors}; how far E² is `apart`, in standard deviations; and of which numbers `few` paths
+    tell."""
 
-    step: dict[str, float]
+    step: np.ndarray
+    moves: dict[str, float]
     apart: float
-    share: dict[str, float]
+    few: tuple[str, ...]
 
-    def moves(self, certainty):
-        """{name: how far it would move, in standard errors of a `Certainty`}."""
-        errors = certainty.standard_errors().items()
-        return {name: abs(self.step[name]) / max(error, 1e-300) for name, error in errors}
-
-    def mean(self, views, x, certainty):
-        """The coordinates (n,) of both, each by its samples; `x`, those of the search, for what is
-        not certain, and where both differ by more than chance."""
-        moves = self.moves(certainty)
-        if max(moves.values(), default=0) > FAR:
+    def mean(self, views, x):
+        """The coordinates (n,) of both, each by its samples; `x`, those of the search, where they
+        differ by more than chance."""
+        if max(self.moves.values(), default=0) > FAR:
             return x
-        step = np.array([self.step[name] if name in moves else 0 for name in views.names])
-        moved = x + TWICE / (1 + TWICE) * step / views.slopes(x)
-        return np.clip(moved, views.least, views.most)
+        return np.clip(x + TWICE / (1 + TWICE) * self.step, views.least, views.most)
 
-    def notes(self, certainty):
+    def notes(self):
         """What one should know: numbers that move, an E² that differs, and derivatives that few
-        paths carry."""
-        moves = self.moves(certainty)
-        said = [f"{name} moves by {far:.2g} standard errors" for name, far in moves.items() if far > FAR]
+        paths carry; nothing where twice the samples say the same."""
+        said = [
+            f"{name} moves by {far:.2g} standard errors"
+            for name, far in self.moves.items()
+            if far > FAR
+        ]
         if self.apart > FAR:
             said.append(f"what is left differs by {self.apart:.2g} standard deviations")
-        few = [name for name in moves if self.share[name] < CARRIED]
-        if few:
-            said.append(f"few paths tell of {', '.join(few)}")
+        if self.few:
+            said.append(f"few paths tell of {', '.join(self.few)}")
         how = "at twice the samples, {}: take more samples, or other starts"
         return (how.format("; ".join(said)),) if said else ()
 
 
-def look_again(views, found, again, seed):
-    """(`found` or, where it is worse than the scene's own values, the `Search` of `again()`, which
-    begins there, if it is not None, with pictures and equations of twice the samples; its
-    `SecondLook`). Where that is worse, too, the scene's own values, not converged, and None."""
+def look_again(views, found, seed):
+    """(the `Search` with pictures and equations of twice the samples, its `SecondLook`); where it is
+    worse than the scene's own values, (these, not converged; None)."""
     spp = 2 * TWICE * found.here.spp
-    for search in filter(None, (lambda: found, again)):
-        found = search()
-        there = Residuals.at(views, found.here.x, spp, seed + SEED)
-        if not _is_worse(views, there, seed):
-            return _compare(views, found, there, seed)
-    own = Residuals.at(views, views.start, spp, seed + SEED)
-    return Search(own, None, found.steps, found.history, worse=True), None
-
-
-def _compare(views, found, there, seed):
-    """(the `Search` with the `Residuals` of other samples at its end; its `SecondLook`)."""
+    there = Residuals.at(views, found.here.x, spp, seed + SEED)
+    if _is_worse(views, there, seed):
+        own = Residuals.at(views, views.start, spp, seed + SEED)
+        return Search(own, None, found.steps, found.history, worse=True), None
     about = Equations.at(views, there, seed + SEED, SHARE / TWICE)
     end = replace(found, here=there, about=about)
-    step = views.slopes(there.x) * step_in_bounds(views, end, damping=0)
-    deviation = np.hypot(there.deviation, found.here.deviation)
-    apart = abs(there.error - found.here.error) / max(deviation, 1e-300)
-    share = np.diagonal(about.hessian) / np.maximum(about.power, 1e-300)
-    by_name = (dict(zip(views.names, row.tolist(), strict=True)) for row in (step, share))
-    return end, SecondLook(next(by_name), float(apart), next(by_name))
+    return end, _compare(views, found, end)
+
+
+def _compare(views, found, end):
+    """The `SecondLook` of two `Search`es with one end, `found` and of other samples."""
+    errors = certify(views, end, Rest.of(views, end.here)).standard_errors()
+    certain = np.array([name in errors for name in views.names])
+    step = step_in_bounds(views, end, damping=0)
+    moved = dict(zip(views.names, np.abs(views.slopes(end.here.x) * step), strict=True))
+    # the search's E² is the least of its own samples: what the step gains is no difference
+    apart = abs(end.here.error - found.here.error) - max(end.about.gain(step), 0)
+    deviation = np.hypot(end.here.deviation, found.here.deviation)
+    share = np.diagonal(end.about.hessian) / np.maximum(end.about.power, 1e-300)
+    few = [name for name, part in zip(views.names, share, strict=True) if part < CARRIED]
+    return SecondLook(
+        np.where(certain, step, 0),
+        {name: float(moved[name] / max(error, 1e-300)) for name, error in errors.items()},
+        float(apart / max(deviation, 1e-300)),
+        tuple(name for name in few if name in errors),
+    )
 
 
 def _is_worse(views, there, seed):
