@@ -487,7 +487,7 @@ def test_what_is_left_is_noise_or_not(mi, kind):
     def judged(left):
         left[3, 5] *= 50
         halves = [(left + 0.3 * rng.standard_normal(left.shape)).reshape(-1, 3) for _ in range(2)]
-        return Rest.of(found, Residuals(found.start, *halves, 4, np.ones(1)))
+        return Rest.of(found, Residuals(found.start, *halves, 4, np.ones(1), 0.0))
 
     def noise():
         plain = rng.standard_normal((40, 40, 3))

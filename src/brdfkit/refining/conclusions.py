@@ -14,28 +14,28 @@ from brdfkit.refining.rest import Rest
 from brdfkit.version import versions
 
 
-def conclude_search(views, found, seconds, interrupted=False, notes=()):
+def conclude_search(views, found, seconds, interrupted=False, notes=(), second_look=None):
     """The `Refinement` of a `Search` on `Views`, after so many `seconds`; the scene is left at its
     end.
 
-    `notes` come before those of its own.
+    `notes` come before those of its own, and before those those of a `SecondLook`.
     """
-    views.put(found.here.x)
-    x, parts = found.here.x, views.values(found.here.x)
+    here, rest = found.here, Rest.of(views, found.here)
+    certainty = certify(views, found, rest)
+    x = second_look.mean(views, here.x) if second_look else here.x
+    views.put(x)
     values = {
         unknown.name: _value(unknown, part)
-        for unknown, part in zip(views.unknowns, parts, strict=True)
+        for unknown, part in zip(views.unknowns, views.values(x), strict=True)
     }
-    rest = Rest.of(views, found.here)
-    certainty = _certify(views, found, rest)
     bounds = _on_bounds(views, x)
-    left = float(np.sqrt(max(found.here.error, 0)))
+    left = float(np.sqrt(max(here.error, 0)))
     message = _message(found, interrupted)
     result = Refinement(
         values=values,
         loss=left,
-        noise=float(np.sqrt(found.here.noise(views))),
-        samples=2 * found.here.spp,
+        noise=float(np.sqrt(here.noise(views))),
+        samples=2 * here.spp,
         steps=found.steps,
         cost=views.renders,
         seconds=seconds,
@@ -45,17 +45,18 @@ def conclude_search(views, found, seconds, interrupted=False, notes=()):
         at_bounds=bounds,
         notes=(
             *notes,
+            *(second_look.notes() if second_look else ()),
             *certainty.undetermined,
             *certainty.trades,
             *notes_on_weights(views, certainty),
             *_notes_on_pictures(views),
-            *_notes_on_noise(views, found.here),
+            *_notes_on_noise(views, here),
             *_notes_on_rest(views, found, rest),
         ),
         certainty=certainty,
         fits={},
         reached=tuple(np.where(t.seen[..., None], t.pixels, np.nan) for t in views.targets),
-        pictures=tuple(views.as_pictures((found.here.a + found.here.b) / 2 + views.reached)),
+        pictures=tuple(views.as_pictures((here.a + here.b) / 2 + views.reached)),
     )
     return replace(result, fits=_fits(views, result))
 
@@ -67,7 +68,7 @@ def _value(unknown, part):
     return tuple(map(float, part)) if len(part) > 1 else float(part[0])
 
 
-def _certify(views, found, rest):
+def certify(views, found, rest):
     """The `Certainty` of the values, by blocks of pixels as samples; with the `Rest` that is no
     noise, and with the way that was still to go."""
     slopes = views.slopes(found.here.x)
@@ -117,6 +118,8 @@ def _message(found, interrupted):
         return "interrupted: the best so far"
     if found.converged:
         return "no step gains more than the noise"
+    if found.worse:
+        return "all that was found is worse than the scene's own values, which these are"
     if found.stuck:
         return "no step, however short, is a gain: other starts or more samples may find better"
     return f"stopped after {found.steps} steps: more of them may gain"

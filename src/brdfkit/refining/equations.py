@@ -9,6 +9,13 @@ picture J to reach:
     H = ½ Σ w (∂I_A ∂I_Bᵀ + ∂I_B ∂I_Aᵀ)
 
 are right in the mean, however few the samples; w goes with the picture to reach alone.
+
+A highlight that single samples hit is bright in one half and dark in the other: E² is then far below 0,
+and the least of many. It is compared by what it hardly exceeds, E² and twice its deviation
+
+    ½ √Σ (w (I_A - J)² - w (I_B - J)²)²
+
+which is right in the mean, too, and for a highlight hit once larger than what E² is below 0.
 """
 
 from dataclasses import dataclass
@@ -22,26 +29,31 @@ from brdfkit.refining.leverage import sum_by_block, without_leverage
 SHARE = 2.0  # of the cost of a step's pictures, what its derivatives may cost
 ROUNDING = 1e-6  # of white, of pictures in single precision
 QUIETEST = 0.1  # of the power of derivatives, what may be left of it without their noise
+SURE = 2  # deviations, beyond which a difference is no chance
 SMALLEST = 1e-5  # eigenvalue of H, of unit diagonal, below which there is noise
 
 
 @dataclass(frozen=True)
 class Residuals:
     """Two halves `a`, `b` (pixels, channels) of rendered less reached pixels, at coordinates `x`,
-    by `spp` samples each; weighed, the `terms` of the pixels that count add up to E²."""
+    by `spp` samples each; weighed, the `terms` of the pixels that count add up to E², whose standard
+    deviation by the noise of rendering is `deviation`."""
 
     x: np.ndarray
     a: np.ndarray
     b: np.ndarray
     spp: int
     terms: np.ndarray
+    deviation: float
 
     @classmethod
     def at(cls, views, x, spp, seed):
         """Of the `Views` at `x`, by half of `spp` samples each."""
         half = max(1, spp // 2)
         a, b = views.residuals(x, half, seed), views.residuals(x, half, seed + 1000)
-        return cls(x, a, b, half, (views.weights * a * b).sum(axis=1)[views.seen])
+        terms, apart = ((views.weights * t).sum(axis=1) for t in (a * b, (a - b) * (a + b)))
+        deviation = float(np.sqrt((apart[views.seen] ** 2).sum()) / 2)
+        return cls(x, a, b, half, terms[views.seen], deviation)
 
     @property
     def error(self):
@@ -49,6 +61,11 @@ class Residuals:
         where a picture is not finite, as of light that multiplies from one bounce to the next."""
         total = self.terms.sum()
         return total if np.isfinite(total) else np.inf
+
+    @property
+    def bound(self):
+        """What E² exceeds by chance alone."""
+        return self.error + SURE * self.deviation if np.isfinite(self.error) else np.inf
 
     def less(self, other):
         """(how much less E² is in `other`, of the same samples; its standard error)."""
@@ -74,10 +91,10 @@ class Equations:
     power: np.ndarray
 
     @classmethod
-    def at(cls, views, here, seed):
-        """About `Residuals`."""
+    def at(cls, views, here, seed, share=SHARE):
+        """About `Residuals`; `share`: of their cost, what the derivatives may cost."""
         pictures = len(list(tangents(views)))
-        spp = max(1, round(here.spp * min(1, SHARE / (DERIVATIVE_COST * pictures))))
+        spp = max(1, round(here.spp * min(1, share / (DERIVATIVE_COST * pictures))))
         a, b = (derivatives(views, here.x, spp, seed + 1000 * half) for half in (0, 1))
         _require_finite(views, a + b)
         weighed = views.weights * a

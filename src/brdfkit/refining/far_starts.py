@@ -13,7 +13,8 @@ from brdfkit.refining.equations import Residuals
 from brdfkit.refining.gauss_newton import Search, few_samples, search
 
 BEST = 3  # points that go on
-FEW = 4  # steps that they take
+FEW = 2  # steps that they take
+MORE = 2  # times as many samples judge where they came to
 PER_NUMBER = 8  # points for each number in which pictures are not linear
 
 
@@ -34,7 +35,7 @@ def start(views, count, seed, report):
             point[curved] = coordinates
             tried.append(_solve_linear(views, point, spp // 2, seed))
             report()
-        tried.sort(key=lambda residuals: residuals.error)
+        tried.sort(key=lambda residuals: residuals.bound)
         for residuals in tried[:BEST]:
             ends.append(search(views, residuals.x, FEW, spp, seed).here)
             report()
@@ -42,12 +43,17 @@ def start(views, count, seed, report):
         if not tried:
             raise
         raise Stopped(Search(_best(ends or tried))) from None
-    return _best(ends).x
+    return _best(_judge(views, [views.start, *(end.x for end in ends)], spp, seed)).x
+
+
+def _judge(views, points, spp, seed):
+    """The `Residuals` at several points, by more samples, which chose none of them."""
+    return [Residuals.at(views, x, MORE * spp, seed + 50) for x in points]
 
 
 def _best(several):
-    """The `Residuals` of the least error."""
-    return min(several, key=lambda residuals: residuals.error)
+    """The `Residuals` that are least for sure."""
+    return min(several, key=lambda residuals: residuals.bound)
 
 
 def _solve_linear(views, x, spp, seed):

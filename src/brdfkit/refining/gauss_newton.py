@@ -8,7 +8,7 @@ import numpy as np
 from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.box_quadratic import minimise_in_box
 from brdfkit.fitting.stopped import Stopped
-from brdfkit.refining.equations import Equations, Residuals
+from brdfkit.refining.equations import SURE, Equations, Residuals
 
 RAYS = 2**18  # of the first pictures: rays are cheap beside beginning one
 FEW_SAMPLES = 8, 128  # per pixel, the least and the most that they have
@@ -18,7 +18,7 @@ QUIET = 0.25  # of the error that is left: noise of rendering that is less adds 
 REACH = 0.25  # of the way between bounds: farther off no derivative speaks of what is not linear
 STRETCH = 10  # times a model's weight, or 1, how far it goes at once: hidden ones knew no end
 FRESH = 3  # times that other samples are tried where none of a step's is a gain
-SURE = 2  # times its noise, a gain is no chance
+NOISIER = 2  # times as noisy, E² may be less by chance, with highlights that single samples hit
 DAMPING = 1e-2, 1e-6, 1e4  # the first, the least and the most
 BETTER, WORSE = 0.1, 8  # factors of the damping
 
@@ -27,7 +27,8 @@ BETTER, WORSE = 0.1, 8  # factors of the damping
 class Search:
     """Where a search is: `here`, its `Residuals`; `about`, the `Equations` there; how many `steps`
     it took; the `history` of (samples per pixel, E²); `converged`, whether no step would gain more
-    than the noise; `stuck`, whether one should, but none, however short, is a gain."""
+    than the noise; `stuck`, whether one should, but none, however short, is a gain; `worse`, whether
+    these are the scene's own values, than which all that was found is worse."""
 
     here: Residuals
     about: Equations | None = None
@@ -35,6 +36,7 @@ class Search:
     history: list = field(default_factory=list)
     converged: bool = False
     stuck: bool = False
+    worse: bool = False
 
 
 def few_samples(views):
@@ -94,6 +96,8 @@ def _find_step(views, found, damping, seed, last):
         step = step_in_bounds(views, found, damping)
         trial = Residuals.at(views, found.here.x + step, 2 * found.here.spp, seed)
         won, noise = found.here.less(trial)
+        if _is_luck(found.here, trial):
+            won = -np.inf
         gain = found.about.gain(step)
         hidden = gain < SURE * noise and won > -SURE * noise
         if won > 0 or hidden or damping >= DAMPING[2]:
@@ -101,6 +105,11 @@ def _find_step(views, found, damping, seed, last):
             damping = max(damping * (BETTER if well else 1), DAMPING[1])
             return trial if won > 0 or (last and hidden) else None, damping
         damping *= WORSE
+
+
+def _is_luck(here, trial):
+    """Whether noise that grew may be all that a trial gains."""
+    return trial.deviation > NOISIER * here.deviation and trial.bound > here.bound
 
 
 def step_in_bounds(views, found, damping):

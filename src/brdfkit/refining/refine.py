@@ -22,6 +22,7 @@ from brdfkit.refining.far_starts import BEST, start, usual_count
 from brdfkit.refining.gauss_newton import search
 from brdfkit.refining.hidden import nothing_seen
 from brdfkit.refining.refinement import Refinement
+from brdfkit.refining.second_look import look_again
 from brdfkit.refining.subject import integrator_of, load_subject
 from brdfkit.refining.targets import read_targets
 from brdfkit.refining.unknowns import MOST, choose
@@ -139,16 +140,38 @@ def refine(
     try:
         with quiet_samplers():
             x = start(views, count, seed, report)
-            found = search(views, x, steps, samples, seed + 100, report=report)
+            found, second_look = _search_and_check(views, x, steps, samples, seed + 100, report)
     except Stopped as stop:
         best = conclude_search(views, stop.best, time.perf_counter() - began, interrupted=True)
         raise Interrupted(best, f"refine: the best so far leaves {best.loss:.3g}") from None
+    seconds = time.perf_counter() - began
+    return conclude_search(views, found, seconds, second_look=second_look)
+
+
+def _search_and_check(views, x, steps, samples, seed, report):
+    """(the `Search` from `x`, its `SecondLook`): of half of the samples, held against all of them;
+    where these say otherwise, it goes on with all, and is held against twice as many."""
+    found = _search_without_unseen(views, x, steps - steps // 2, samples // 2, seed, report)
+    found, second_look = look_again(views, found, seed)
+    agreed = found.converged and not second_look.notes()
+    if agreed or found.steps == steps:
+        return found, second_look
+    more = _search_without_unseen(
+        views, found.here.x, steps - found.steps, samples, seed + 200, report
+    )
+    more.steps += found.steps
+    more.history[:0] = found.history
+    return look_again(views, more, seed + 200)
+
+
+def _search_without_unseen(views, x, steps, samples, seed, report):
+    """The `Search` from `x`; where nothing is known, its own start means nothing."""
+    found = search(views, x, steps, samples, seed, report)
     unseen = found.about.unseen(views, found.here.x)
     if unseen.all():
         raise nothing_seen(views)
-    # where nothing is known, the search's own starts mean nothing
     found.here = replace(found.here, x=np.where(unseen, views.start, found.here.x))
-    return conclude_search(views, found, time.perf_counter() - began)
+    return found
 
 
 def _by_descent(views, smoothing, steps, samples, seed, progress, began):
