@@ -52,11 +52,11 @@ class HalfVectorTable:
         self.edges = Rows(_versines(cells[0]))
 
     def sample(self, wi, u):
-        """A direction, possibly below the surface, for a point `u`; its x and y are used."""
+        """A direction, possibly below the surface, for a point `u` (x, y, z)."""
         n_h, n_p = self.cells
-        incidence, x, y = self._choose_incidence(wi, u)
-        row, x = _draw_cell(self.rows, incidence * n_h, n_h, x)
-        column, y = _draw_cell(self.columns, (incidence * n_h + row) * n_p, n_p, y)
+        incidence = self._choose_incidence(wi, u.z)
+        row, x = _draw_cell(self.rows, incidence * n_h, n_h, u.x)
+        column, y = _draw_cell(self.columns, (incidence * n_h + row) * n_p, n_p, u.y)
         # By 1 - cosθ_h, which keeps its digits near the normal
         versine = dr.lerp(self.edges.at(row), self.edges.at(row + 1), x)
         sine = dr.safe_sqrt(versine * (2 - versine))
@@ -89,18 +89,20 @@ class HalfVectorTable:
         phi = periodic_bracket(azimuth(wi) / (2 * dr.pi) * self.azimuths, self.azimuths)
         return [phi, theta]
 
-    def _choose_incidence(self, wi, u):
-        """The index of one of `incidences`, by its share, and two new random numbers.
+    def _choose_incidence(self, wi, z):
+        """The index of one of `incidences`, by its share, for a random number `z`.
 
-        A random number that has chosen between two nodes is stretched to [0, 1) again.
+        It leaves x and y as they are. So equal numbers draw nearly equal half vectors at
+        neighbouring incidences, and a picture that takes the same ones everywhere has no rings.
         """
-        incidence, left = 0, [u.x, u.y]
-        for k, (lower, upper, t) in enumerate(self._brackets(wi)):
-            up = left[k] < t
-            # One division, by the chosen number: a scalar variant would raise where the other is 0
-            left[k] = dr.select(up, left[k], left[k] - t) / dr.select(up, t, 1 - t)
+        incidence = 0
+        for lower, upper, t in self._brackets(wi):
+            up = z < t
+            # What the choice leaves of z chooses next. One division, by the chosen number: a scalar
+            # variant would raise where the other is 0
+            z = dr.select(up, z, z - t) / dr.select(up, t, 1 - t)
             incidence = incidence * self.angles + dr.select(up, upper, lower)
-        return incidence, *left
+        return incidence
 
 
 def _cell_light(f, theta_i, phi_i, cells, points):

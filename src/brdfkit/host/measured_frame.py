@@ -53,9 +53,11 @@ class Point:
         """An outgoing direction, and the number of the only component."""
         import drjit as dr
 
-        by_cosine = COSINE.sample(self.wi, sample2)
-        by_itself = self.bsdf.sampling.sample(self.wi, sample2)
-        wo = dr.select(sample1 < self.bsdf.cosine_share, by_cosine, by_itself)
+        share = self.bsdf.cosine_share
+        # What the choice leaves of sample1 is a third random number, as even as sample2
+        u = self.mi.Point3f(sample2.x, sample2.y, dr.maximum(sample1 - share, 0) / (1 - share))
+        by_cosine, by_itself = COSINE.sample(self.wi, u), self.bsdf.sampling.sample(self.wi, u)
+        wo = dr.select(sample1 < share, by_cosine, by_itself)
         return wo, self.mi.UInt32(0)
 
     def pdf(self, wo):

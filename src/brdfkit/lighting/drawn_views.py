@@ -15,6 +15,7 @@ from brdfkit.lighting.drawn_directions import constant_and_rest
 from brdfkit.lighting.scene_bsdfs import has_matte_part, is_isotropic
 
 ISOTROPIC, ANISOTROPIC = (256, 1), (96, 64)  # polar angles and azimuths of the views
+ADJACENT = 5  # polar angles over which the median of a direction's weights is taken
 
 
 class DrawnViews:
@@ -34,7 +35,18 @@ class DrawnViews:
         wo, kappa, weight = directions.draw(place, bsdf, si, *rest)
         self.constants = Rows(_columns(c, 0, len(place))[:: directions.count])
         self.lobes = Rows(_columns(dr.normalize(si.wi + wo), kappa, len(place)))
-        self.weights = Rows(_columns(weight, 0, len(place)))
+        self.weights = Rows(self._without_outliers(_columns(weight, 0, len(place))))
+
+    def _without_outliers(self, weights):
+        """`weights` (views · directions, 4), each the median of its direction's in adjacent views.
+
+        A direction moves little from view to view, and so does its weight, unless it lies in a cell
+        of a table that is drawn too rarely: then a view alone would be bright, and show as a ring.
+        """
+        from scipy.ndimage import median_filter
+
+        views = weights.reshape(-1, self.angles, self.azimuths, self.directions.count, 4)
+        return median_filter(views, (1, ADJACENT, 1, 1, 1)).reshape(weights.shape)
 
     def grid(self):
         """Unit vectors (views, 3): the azimuth fastest, then the polar angle, then the side."""
