@@ -42,6 +42,7 @@ def render_volume(
     azimuth: float = 30.0,
     elevation: float = 20.0,
     density: float = 1.0,
+    all_around: bool = False,
     **settings: Any,
 ) -> Rendering:
     """Render a volume: CT, MRI, microscopy or simulation data in the light of an environment.
@@ -87,6 +88,8 @@ def render_volume(
         How high the camera stands [degrees, -90 to 90].
     density : float, default 1
         By which the transfer function's extinction is multiplied, above 0.
+    all_around : bool, default False
+        Whether the camera stands so far away that nothing is cut off from any azimuth, as in films.
     **settings : number, str, bool or dict
         Further parameters of the integrator, which `brdfkit plugins RENDERER` lists, such as
         ``max_depth=8``, ``phase="rayleigh"``, ``level=110``, ``bsdf="dusty_gold"``.
@@ -112,7 +115,7 @@ def render_volume(
     most = (UNLIT_SPP if renderer in UNLIT else SPP) if until is None and limit is None else MOST
     spp = to_whole_number("spp", most if spp is None else spp, least=1)
     seed, size = to_whole_number("seed", seed, least=0), to_size(size)
-    view = to_number("azimuth", azimuth), to_number("elevation", elevation)
+    view = to_number("azimuth", azimuth), to_number("elevation", elevation), all_around
     light = envmap, _to_background(background)
     if renderer not in RENDERERS:
         raise no_such("renderer", renderer, RENDERERS)
