@@ -5,6 +5,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from brdfkit.arguments import to_number, to_positive, to_whole_number
 from brdfkit.rendering.film import Film
 from brdfkit.rendering.volumes.render_volume import render_volume
@@ -66,31 +69,36 @@ def render_orbit(
     azimuth = to_number("azimuth", azimuth)
     each = None if seconds is None else to_positive("seconds", seconds) / frames
     volume = volume if isinstance(volume, Volume) else load_volume(volume)
-    start, found, spp = time.perf_counter(), [], 0
-    for number in range(frames):
-
-        def show(done, total, before=number):
-            progress(before * total + done, frames * total)
-
+    start, spp = time.perf_counter(), 0
+    found: list[NDArray[np.float32]] = []
+    told = _Told(progress, frames)
+    how |= {"size": size, "seconds": each, "progress": told, "all_around": True}
+    while len(found) < frames and not told.stopped:
+        turned = azimuth + 360 * len(found) / frames
         try:
-            shown = render_volume(
-                volume,
-                transfer,
-                size=size,
-                azimuth=azimuth + 360 * number / frames,
-                seconds=each,
-                progress=progress and show,
-                all_around=True,
-                **how,
-            )
+            shown = render_volume(volume, transfer, azimuth=turned, **how)
         except KeyboardInterrupt:
             if not found:
                 raise
             break
-        if shown.spp < shown.asked and found:  # Ctrl-C within the frame
-            break
-        found.append(shown.pictures[shown.reference])
-        spp = shown.spp
-        if shown.spp < shown.asked:
-            break
+        unfinished = shown.spp < (shown.asked or 0)
+        told.stopped |= unfinished
+        if not (unfinished and found):
+            found.append(shown.pictures[shown.reference])
+            spp, told.frame = shown.spp, len(found)
     return Film(found, frames, spp, time.perf_counter() - start)
+
+
+class _Told:
+    """A callback for one frame after the other, which remembers that it was interrupted."""
+
+    def __init__(self, progress, frames):
+        self.progress, self.frames, self.frame, self.stopped = progress, frames, 0, False
+
+    def __call__(self, done, total):
+        try:
+            if self.progress:
+                self.progress(self.frame * total + done, self.frames * total)
+        except KeyboardInterrupt:
+            self.stopped = True
+            raise
