@@ -26,11 +26,11 @@ def origin_and_target(volume, shows, sides, aspect):
     """Where the camera stands, and what it looks at: the middle of the box about what shows.
 
     `shows`: the function (volume, k) → which of every k-th voxel do; `sides`: the unit vector to
-    the camera, and those to others that should be as far away; `aspect`: width over height.
+    the camera, and those of a turn, which tell the distance; `aspect`: width over height.
     """
     points = _shown(volume, shows)
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
-    distance = max(_distance(points - middle, side, aspect) for side in sides)
+    distance = max(_distance(points - middle, side, aspect) for side in sides[1:] or sides)
     return middle + distance * sides[0], middle
 
 

@@ -48,7 +48,7 @@ def render_orbit(
         Adds samples for so long [s, above 0], all frames together.
     progress : callable, optional
         Called with (done, total) after each pass.
-    **how
+    **how : any
         What `render_volume` takes besides, such as ``renderer="maximum_intensity"``, ``spp=16``.
 
     Returns

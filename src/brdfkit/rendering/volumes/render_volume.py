@@ -56,8 +56,8 @@ def render_volume(
         The volume; or the file, folder or name that `load_volume` takes.
     transfer : TransferFunction, str or Path, optional
         What its values look like: colours and extinction; or the name of a preset, or a file. By
-        default a colour for each label; of scans in HU "ct_bone", of others of patients
-        "mri_head"; else a colour map.
+        default a colour for each label; of scans in HU "ct_bone", or "ct_skin" without bone; of
+        others of patients "mri_head" over the volume's `window`; else a colour map over it.
     renderer : str, default "single_scattering"
         "single_scattering": light of the environment, scattered once; "emission_absorption": what
         glows and dims; "maximum_intensity": the largest value along each ray; "isosurface": the
@@ -115,7 +115,7 @@ def render_volume(
     most = (UNLIT_SPP if renderer in UNLIT else SPP) if until is None and limit is None else MOST
     spp = to_whole_number("spp", most if spp is None else spp, least=1)
     seed, size = to_whole_number("seed", seed, least=0), to_size(size)
-    view = to_number("azimuth", azimuth), to_number("elevation", elevation), all_around
+    view = to_number("azimuth", azimuth), to_number("elevation", elevation)
     light = envmap, _to_background(background)
     if renderer not in RENDERERS:
         raise no_such("renderer", renderer, RENDERERS)
@@ -127,7 +127,7 @@ def render_volume(
     function = _function(volume, transfer, renderer, to_positive("density", density))
     if function is None and "level" in settings:
         _require_surface(volume, to_number("level", settings["level"]))
-    described = volume, function, renderer, size, view, light, settings
+    described = volume, function, renderer, size, view, light, settings, all_around
     how = {"progress": progress, "until": until, "limit": limit, "most": PASS}
     traced = _load_and_trace(described, spp=spp, seed=seed, **how)
     words = {name: value if _is_plain(value) else str(value) for name, value in settings.items()}
