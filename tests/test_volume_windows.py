@@ -98,6 +98,7 @@ def test_a_boundary_is_a_shell_of_one_thickness():
         a = function(100 + slope * x, slope)[:, 3]
         np.testing.assert_allclose(a, np.clip(1 - np.abs(x) / 2, 0, 1), atol=0.04)
     np.testing.assert_allclose(function(100, 37.5)[:3], [0.2, 0.4, 0.6], atol=1e-3)
+    assert function(400, 56.25)[3] == 0  # beyond the ends
     assert function(100, 80)[3] == 0  # steeper: another boundary through the same value
     assert (function(np.linspace(-100, 300, 99), 0)[:, 3] == 0).all()  # even matter
 
