@@ -6,7 +6,8 @@ import pytest
 from brdfkit import BrdfkitError, TransferFunction, Volume
 from brdfkit.colours import to_srgb
 from brdfkit.rendering.volumes import looks
-from brdfkit.volumes.windows import window
+from brdfkit.volumes.summary import summarise
+from brdfkit.volumes.windows import fitted, window
 
 pytestmark = pytest.mark.quick
 RNG = np.random.default_rng(29)
@@ -97,6 +98,7 @@ def test_a_boundary_is_a_shell_of_one_thickness():
         a = function(100 + slope * x, slope)[:, 3]
         np.testing.assert_allclose(a, np.clip(1 - np.abs(x) / 2, 0, 1), atol=0.04)
     np.testing.assert_allclose(function(100, 37.5)[:3], [0.2, 0.4, 0.6], atol=1e-3)
+    assert function(400, 56.25)[3] == 0  # beyond the ends
     assert function(100, 80)[3] == 0  # steeper: another boundary through the same value
     assert (function(np.linspace(-100, 300, 99), 0)[:, 3] == 0).all()  # even matter
 
@@ -135,3 +137,22 @@ def test_files_of_boundaries(tmp_path):
     path.write_text('{"kind": "brdfkit transfer function", "boundaries": [[1, 2]]}')
     with pytest.raises(BrdfkitError, match=r"edges\.json: thickness = None"):
         TransferFunction.load(path)
+
+
+# Drawn over the histograms
+
+
+@pytest.mark.parametrize("name", ["mri_edges", "mri_head", "ct_bone"])
+def test_functions_are_drawn_over_histograms(name):
+    volume = Volume(np.where(BALL, TISSUE, NOISE), axes="RAS", unit="µm")
+    preset = TransferFunction.load(name)
+    figure = summarise(volume).picture(preset)
+    joint = next(a for a in figure.axes if a.get_ylabel().startswith("gradient"))
+    veil = joint.images[-1].get_array()
+    low, high, _, steepest = joint.images[-1].get_extent()
+    whole = fitted(preset, volume.values).per("µm")
+    at = low + (high - low) * 300 / 399, steepest * 120 / 399
+    a = whole(*(at if whole.gradients is not None else at[:1]))[3]
+    assert veil[120, 300, 3] == pytest.approx(0.85 * a, abs=1e-6)
+    curves = [line for axes in figure.axes if axes.get_ylabel() == "A" for line in axes.lines]
+    assert len(curves) == (whole.gradients is None)

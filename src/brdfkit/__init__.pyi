@@ -38,12 +38,14 @@ from .ranking import Ranking as Ranking
 from .ranking import rank as rank
 from .refining import Refinement as Refinement
 from .refining import refine as refine
+from .rendering import Film as Film
 from .rendering import Gallery as Gallery
 from .rendering import Rendering as Rendering
 from .rendering import ToneMapping as ToneMapping
 from .rendering import gallery as gallery
 from .rendering import preview as preview
 from .rendering import render as render
+from .rendering import render_orbit as render_orbit
 from .rendering import render_scene as render_scene
 from .rendering import render_volume as render_volume
 from .reporting.report import report as report

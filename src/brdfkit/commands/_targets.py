@@ -7,6 +7,7 @@ from brdfkit import materials
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import make_folder, require_writable, write_safely
 from brdfkit.model import labels
+from brdfkit.rendering.film import film_suffix
 from brdfkit.rendering.montage import picture_suffix
 
 FIGURES = ".png", ".pdf", ".svg"
@@ -84,6 +85,14 @@ def picture_file(name):
     picture_suffix(path)
     require_writable(path)
     require_writable(path.with_suffix(".png"))
+    return path
+
+
+def film_file(name):
+    """The path of a film; an error, before the long rendering, where it cannot be written."""
+    path = Path(name)
+    film_suffix(path)
+    require_writable(path)
     return path
 
 

@@ -29,6 +29,11 @@ OPTIONS = {
     "--elevation": NUMBER | {"help": "How high the camera stands [degrees]. Default: 20."},
     "--background": NUMBER | {"help": "Radiance of the background, 0 is black. Default: 0.02."},
     "--seconds": NUMBER | {"help": "Add samples for so long [s]."},
+    "--orbit": {
+        "type": click.IntRange(min=2),
+        "metavar": "FRAMES",
+        "help": "Make a film once around it, .gif, .png or .webp. Default size: 320.",
+    },
     "--labels": {"is_flag": True, "help": "The values are labels, not densities."},
     "--downsample": {
         "type": click.IntRange(min=1),
@@ -83,11 +88,11 @@ def _refuse_nearly_made(word):
 
 
 def render_volume(name, of_volume, values, console, **how):
-    """The `Rendering` of the volume of this name or file.
+    """The `Rendering`, or with --orbit the `Film`, of the volume of this name or file.
 
     `of_volume`: options of volumes; `values`: of --set; `how`: what `brdfkit.render_volume` takes.
     """
-    from brdfkit.rendering.volumes import render_volume
+    from brdfkit.rendering.volumes import render_orbit, render_volume
     from brdfkit.volumes import load_volume
     from brdfkit.volumes.report import may_be_labels
 
@@ -100,7 +105,11 @@ def render_volume(name, of_volume, values, console, **how):
     _warn_of_units(volume, of_volume.get("transfer"))
     with console.progress("render") as progress:
         given = {key: value for key, value in how.items() if value is not None}
-        return render_volume(volume, progress=progress, **given, **of_volume, **settings)
+        given |= of_volume | settings | {"progress": progress}
+        frames = given.pop("orbit", None)
+        if frames:
+            return render_orbit(volume, frames=frames, **given)
+        return render_volume(volume, **given)
 
 
 def _warn_of_units(volume, transfer):

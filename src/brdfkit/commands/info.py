@@ -24,10 +24,15 @@ from brdfkit.errors import BrdfkitError
     metavar="N",
     help="Make one voxel of N×N×N of a volume while it is read.",
 )
+@click.option(
+    "--transfer",
+    metavar="NAME|FILE",
+    help="Transfer function to draw over the histograms of a volume.",
+)
 @click.option("--labels", is_flag=True, help="The values of a volume are labels, not densities.")
 @mend_options
 @writing_options
-def info(file, output, downsample, labels, mends, console):
+def info(file, output, downsample, transfer, labels, mends, console):
     """Audit a measurement, an environment map or a volume.
 
     Prints what FILE holds (angles, coverage, reciprocity, noise, albedo and more; of a map, its
@@ -38,6 +43,8 @@ def info(file, output, downsample, labels, mends, console):
     """
     from brdfkit.catalogue import shipped
     from brdfkit.commands._targets import figure_file, write_figure
+    from brdfkit.volumes import TransferFunction
+    from brdfkit.volumes.loading import looks_like_volume
 
     if file is None and output:
         raise BrdfkitError("--output draws a measurement, a map or a volume: name a FILE.")
@@ -46,6 +53,9 @@ def info(file, output, downsample, labels, mends, console):
     if file is None:
         _print_shipped(shipped.materials(), shipped.environments(), console)
         return
+    if transfer and not (output and looks_like_volume(file)):
+        raise BrdfkitError("--transfer is drawn over a volume: name a VOLUME, and an --output.")
+    function = TransferFunction.load(transfer) if transfer else None
     output = output and figure_file(output)
     read, audit = _ways(file, downsample, labels, mends)
     with console.progress(f"read {file}"):
@@ -54,7 +64,7 @@ def info(file, output, downsample, labels, mends, console):
         found = audit(thing)
     if output:
         with console.progress("draw"):
-            write_figure(found.picture(), output)
+            write_figure(found.picture(*([function] if function else [])), output)
     print_audit(found, [output] if output else [], console)
 
 

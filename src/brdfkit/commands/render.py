@@ -82,7 +82,7 @@ def render(
     gives parameters of its renderer, which `brdfkit plugins RENDERER` lists. Ctrl-C keeps the
     samples that all pictures have.
     """
-    from brdfkit.commands._targets import material, picture_file
+    from brdfkit.commands._targets import film_file, material, picture_file
     from brdfkit.distance_fields import load as load_field
     from brdfkit.distance_fields.stored import is_field
     from brdfkit.environments.map_files import looks_like_map
@@ -134,9 +134,15 @@ def render(
     elif volume := the_volume(things, of_volume):
         if scene != "ball" or quickly:
             raise BrdfkitError(f"{volume} is a volume: leave --scene and --preview out.")
-        output = picture_file(output or f"{slug(Path(volume).name.partition('.')[0])}.png")
+        turns = "orbit" in of_volume
+        name = slug(Path(volume).name.partition(".")[0])
+        output = output or Path(f"{name}.gif" if turns else f"{name}.png")
+        output = film_file(output) if turns else picture_file(output)
         how = {"spp": spp, "until": until, "size": size, "seed": seed, "envmap": envmap}
         picture = render_volume(volume, of_volume, values, console, **how)
+        if turns:
+            _end_with_film(picture, output, tone, console)
+            return
         _write(picture, output, tone)
     else:
         found = [material(thing, values) for thing in things]
@@ -188,6 +194,22 @@ def _preview(things, output, spp, until, shadows, tone, scene, envmap, size, see
     picture = preview(things, envmap or STUDIO, size, scene, spp=spp, shadows=shadows)
     _write(picture, output, tone)
     return picture
+
+
+def _end_with_film(film, output, tone, console):
+    """Write a `Film` and print what it is; ends the command where it was interrupted."""
+    replace(film, tone_mapping=tone).write(output)
+    shown, asked = len(film.frames), film.asked
+    if shown < asked:
+        say(f"interrupted; the film has {shown} of {asked} frames.")
+    if console.as_json:
+        counts = {"frames": shown, "asked": asked, "spp": film.spp, "seconds": film.seconds}
+        console.json(counts | {"written": [output]})
+    else:
+        console.out.print(str(film))
+        console.list_written([output])
+    if shown < asked:
+        click.get_current_context().exit(status())
 
 
 def _write(picture, output, tone):

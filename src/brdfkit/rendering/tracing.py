@@ -39,8 +39,8 @@ def trace(loaded, spp, seed, progress, until=None, mask=None, limit=None, most=N
     there are at least two, for the noise. Where a noise floor `until` [dB] is given, over the
     `mask`, they end as soon as it is reached; `spp` is then the most; with a `limit` [s] after the
     pass in which it is over. Ctrl-C ends after the last pass that all pictures have; it is raised
-    where there is none. `progress`: called with (done, total) after each picture of a pass; one with
-    a parameter `pictures` gets the function to ask for the pictures so far, too.
+    where there is none. `progress`: called with (done, total) after each picture of a pass; one
+    with a parameter `pictures` gets the function to ask for the pictures so far, too.
     """
     if seed >= 2**31:
         raise BrdfkitError(f"The seed {seed} is out of bounds; give one from 0 to 2³¹ - 1.")

@@ -27,6 +27,7 @@ def function(cls, rows, thickness, values, extinction, colour):
         ends = (1 + FADE - g / steepest) / FADE
         shares.append(a * np.clip(near, 0, 1) * np.clip(ends, 0, 1) * (g > 0))
     shares = np.array(shares)  # (k, m, n)
+    shares[..., [0, -1]] = 0  # beyond its ends a function stays as it is there
     # Where none shows, the colours still go from one to the next: textures are interpolated
     weights = shares + 1e-6 / (1e-3 + np.abs(v - rows[:, 0, None, None]) / (high - low))
     rgb = np.einsum("kmn,kc->mnc", weights / weights.sum(axis=0), rows[:, 2:5])

@@ -5,24 +5,27 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from brdfkit.volumes.histograms import PARTS
+from brdfkit.volumes.picture_of_function import draw_curve, draw_function, for_volume
 
 SIZE = 10.4, 7.2  # inches
 COLOUR = "#0072b2"
 PLANES = (("x", "y", "z"), ("x", "z", "y"), ("y", "z", "x"))  # across, up, and through
 
 
-def picture(summary):
-    """The picture of a `VolumeSummary` as a matplotlib `Figure`."""
+def picture(summary, transfer=None):
+    """The picture of a `VolumeSummary` as a matplotlib `Figure`, with a `TransferFunction`."""
+    if transfer is not None:
+        transfer = for_volume(transfer, summary.data)
     figure = Figure(figsize=SIZE, layout="constrained")
     above, below = figure.subfigures(2, 1, height_ratios=(1.3, 1))
     for axes, (across, up, through) in zip(above.subplots(1, 3), PLANES, strict=True):
         _draw_slice(axes, summary, "xyz".index(across), "xyz".index(up), "xyz".index(through))
     if summary.labels:
-        _draw_values(below.subplots(), summary)
+        draw_values(below.subplots(), summary, transfer)
         return figure
     left, right = below.subplots(1, 2)
-    _draw_values(left, summary)
-    _draw_gradients(right, summary)
+    draw_values(left, summary, transfer)
+    draw_gradients(right, summary, transfer)
     return figure
 
 
@@ -47,15 +50,19 @@ def _draw_slice(axes, summary, across, up, through):
     axes.set_title(f"slice {middle} along {'xyz'[through]}", fontsize=10)
 
 
-def _draw_values(axes, summary):
+def draw_values(axes, summary, transfer=None):
+    """Draw the histogram of values, over it σ_t of a function of values, below it the colours."""
     edges = np.linspace(summary.least, max(summary.largest, summary.least + 1e-9), PARTS + 1)
     axes.stairs(summary.counts, edges, fill=True, color=COLOUR)
     axes.set(yscale="log", xlabel="value", ylabel="voxels")
     axes.set_title(f"{summary.name}".replace("$", r"\$"), fontsize=10)
     axes.spines[["top", "right"]].set_visible(False)
+    if transfer is not None and transfer.gradients is None:
+        draw_curve(axes, transfer, (edges[0], edges[-1]))
 
 
-def _draw_gradients(axes, summary):
+def draw_gradients(axes, summary, transfer=None):
+    """Draw the joint histogram, over it what a function shows in its colours, with lines of A."""
     unit = f" per {summary.unit}" if summary.unit else ""
     axes.set(xlabel="value", ylabel=f"gradient magnitude{unit}")
     if not summary.joint.max() > 0 or summary.least == summary.largest:
@@ -70,3 +77,5 @@ def _draw_gradients(axes, summary):
         cmap="viridis",
     )
     axes.figure.colorbar(drawn, ax=axes, label="voxels")
+    if transfer is not None:
+        draw_function(axes, transfer, reach)

@@ -11,6 +11,7 @@ from brdfkit.documents import Document, Paragraph, Picture, Shown, Table
 from brdfkit.documents.parts import BAD
 from brdfkit.figures import to_png
 from brdfkit.volumes import histograms, report
+from brdfkit.volumes.transfer_function import TransferFunction
 from brdfkit.volumes.volume import Volume
 
 if TYPE_CHECKING:
@@ -87,14 +88,15 @@ class VolumeSummary(Shown):
         """Sentences on what is doubtful."""
         return report.findings(self)
 
-    def picture(self) -> "Figure":
-        """Three slices through the middle, and the histograms of value, and of value × gradient.
+    def picture(self, transfer: TransferFunction | None = None) -> "Figure":
+        """Three slices through the middle, and the histograms of value, and of value × gradient,
+        over which a transfer function is drawn.
 
         >>> summarise(load_volume("smoke")).picture().savefig("smoke.png")    # doctest: +SKIP
         """
         from brdfkit.volumes.picture import picture  # only here: matplotlib is slow to load
 
-        return picture(self)
+        return picture(self, transfer)
 
     def document(self) -> Document:
         """What is in the volume, which way it lies, and what is doubtful."""

@@ -22,14 +22,20 @@ def direction(volume, azimuth, elevation):
     return np.array([-front * level * np.sin(turn), front * level * np.cos(turn), np.sin(lift)])
 
 
-def origin_and_target(volume, shows, towards, aspect):
+def origin_and_target(volume, shows, sides, aspect):
     """Where the camera stands, and what it looks at: the middle of the box about what shows.
 
-    `shows`: the function (volume, k) → which of every k-th voxel do; `towards`: the unit vector
-    to the camera; `aspect`: width over height.
+    `shows`: the function (volume, k) → which of every k-th voxel do; `sides`: the unit vector to
+    the camera, and those of a turn, which tell the distance; `aspect`: width over height.
     """
     points = _shown(volume, shows)
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    distance = max(_distance(points - middle, side, aspect) for side in sides[1:] or sides)
+    return middle + distance * sides[0], middle
+
+
+def _distance(from_middle, towards, aspect):
+    """How far away a camera sees all points (n, 3)."""
     right = np.cross([0, 0, 1], towards)
     right /= np.linalg.norm(right)
     up = np.cross(towards, right)
@@ -37,9 +43,8 @@ def origin_and_target(volume, shows, towards, aspect):
     # A point p is in the picture of a camera at a distance d if |p · right| ≤ t (d - p · towards)
     t = np.tan(np.radians(FOV / 2)) / MARGIN
     across = np.stack([right / max(aspect, 1), up * min(aspect, 1)])
-    from_middle = points - middle
     needed = np.abs(from_middle @ across.T).max(axis=1) / t + from_middle @ towards
-    return middle + needed.max() * towards, middle
+    return needed.max()
 
 
 def _shown(volume, shows):

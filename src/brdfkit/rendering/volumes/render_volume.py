@@ -42,6 +42,7 @@ def render_volume(
     azimuth: float = 30.0,
     elevation: float = 20.0,
     density: float = 1.0,
+    all_around: bool = False,
     **settings: Any,
 ) -> Rendering:
     """Render a volume: CT, MRI, microscopy or simulation data in the light of an environment.
@@ -55,8 +56,8 @@ def render_volume(
         The volume; or the file, folder or name that `load_volume` takes.
     transfer : TransferFunction, str or Path, optional
         What its values look like: colours and extinction; or the name of a preset, or a file. By
-        default a colour for each label; of scans in HU "ct_bone", of others of patients
-        "mri_head"; else a colour map.
+        default a colour for each label; of scans in HU "ct_bone", or "ct_skin" without bone; of
+        others of patients "mri_head" over the volume's `window`; else a colour map over it.
     renderer : str, default "single_scattering"
         "single_scattering": light of the environment, scattered once; "emission_absorption": what
         glows and dims; "maximum_intensity": the largest value along each ray; "isosurface": the
@@ -87,6 +88,8 @@ def render_volume(
         How high the camera stands [degrees, -90 to 90].
     density : float, default 1
         By which the transfer function's extinction is multiplied, above 0.
+    all_around : bool, default False
+        Whether the camera stands so far away that nothing is cut off from any azimuth, as in films.
     **settings : number, str, bool or dict
         Further parameters of the integrator, which `brdfkit plugins RENDERER` lists, such as
         ``max_depth=8``, ``phase="rayleigh"``, ``level=110``, ``bsdf="dusty_gold"``.
@@ -124,7 +127,7 @@ def render_volume(
     function = _function(volume, transfer, renderer, to_positive("density", density))
     if function is None and "level" in settings:
         _require_surface(volume, to_number("level", settings["level"]))
-    described = volume, function, renderer, size, view, light, settings
+    described = volume, function, renderer, size, view, light, settings, all_around
     how = {"progress": progress, "until": until, "limit": limit, "most": PASS}
     traced = _load_and_trace(described, spp=spp, seed=seed, **how)
     words = {name: value if _is_plain(value) else str(value) for name, value in settings.items()}

@@ -21,13 +21,14 @@ UNLIT = "emission_absorption", "maximum_intensity"  # by themselves alone
 # surface, and should look as bright
 LIGHT = {"single_scattering": 10.0, "isosurface": 3.0}
 LEAST_STEPS = 64  # of a ray
+AROUND = range(0, 360, 15)  # azimuths from which a camera that turns should see all
 
 
-def scene(volume, transfer, renderer, size, view, light, settings):
+def scene(volume, transfer, renderer, size, view, light, settings, all_around=False):
     """The dictionary of the scene.
 
     transfer : a `TransferFunction`, or None for the surface of a level
-    view : (azimuth, elevation) [degrees]
+    view : (azimuth, elevation) [degrees]; all_around : see `render_volume`
     light : (envmap, background)
     settings : further parameters of the integrator
     """
@@ -35,7 +36,9 @@ def scene(volume, transfer, renderer, size, view, light, settings):
     envmap, background = light
     entries = integrator(volume, transfer, renderer, settings)
     shows = looks.shows(transfer, entries.get("level", 0))
-    origin, target = origin_and_target(volume, shows, towards, width / height)
+    others = AROUND if all_around else ()
+    sides = [towards, *(direction(volume, azimuth, view[1]) for azimuth in others)]
+    origin, target = origin_and_target(volume, shows, sides, width / height)
     if renderer in UNLIT:
         emitter = background_light(0.0 if background is None else background)
     else:
