@@ -761,6 +761,26 @@ def test_a_table_is_one_or_a_block_for_each_row(monkeypatch, capsys, columns):
     assert max(map(cell_len, shown.splitlines())) <= max(columns, len(f"    {LONG}"))
 
 
+@pytest.mark.quick
+@pytest.mark.parametrize(("columns", "is_table"), [(80, True), (60, True), (40, False)])
+def test_a_long_name_does_not_undo_a_table(monkeypatch, capsys, columns, is_table):
+    """It goes on below; every other row stays one line, and nothing is lost."""
+    from brdfkit.commands._console import Console
+
+    monkeypatch.setenv("COLUMNS", str(columns))
+    name = "measured-on-a-day-in-" * 5
+    rows = [(name, "1.234", "37.1 dB", "take it"), ("ggx", "2.345", "36.2 dB", "tied")]
+    Console().table(("model", ">error", ">PSNR [dB]", "verdict"), rows)
+    shown = capsys.readouterr().out
+    assert ("───" in shown) == is_table
+    if is_table:
+        assert max(map(cell_len, shown.splitlines())) <= columns
+        assert name in re.sub(r"\s|1\.234|37\.1 dB|take it", "", shown)
+        assert any({"ggx", "2.345", "tied"} <= set(line.split()) for line in shown.splitlines())
+    else:
+        assert name in shown
+
+
 # The bar
 
 

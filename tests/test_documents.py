@@ -281,3 +281,10 @@ def test_pictures_are_legible_on_light_and_dark_grounds(kind):
     grey = np.median(written[np.ptp(written[:, :3].astype(int), axis=1) < 6])
     assert contrast(grey, 255) > 3.5
     assert contrast(grey, 17) > 3.5
+
+
+def test_a_long_name_has_a_line_of_its_own():
+    rows = (("long-name-" * 8, "1"), ("ggx", "22"))
+    shown = to_text(Document("errors", (Table(tuple((*r, "") for r in rows), ("m", ">e", "x")),)))
+    assert rows[0][0] in shown
+    assert [len(line) < 50 for line in shown.splitlines()].count(False) == 1

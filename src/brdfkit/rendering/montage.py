@@ -16,9 +16,10 @@ from brdfkit.version import __version__
 COLUMNS = 4
 TILE = 320  # narrower pictures are enlarged to this width [pixels], so that captions fit
 GAP = 20
-INK, FAINT, PAPER = (26, 26, 26), (105, 105, 105), (255, 255, 255)
+# The mode of a page, the colour of its paper, and those of names and of what is said of them
+WHITE_GROUND = "RGB", (255, 255, 255), (26, 26, 26), (105, 105, 105)
 # In notebooks, light or dark: a middle grey, on a ground that is transparent
-ANY_INK, ANY_PAPER = (125, 125, 125, 255), (125, 125, 125, 0)
+ANY_GROUND = "RGBA", (125, 125, 125, 0), (125, 125, 125, 255), (125, 125, 125, 255)
 MOST = 20  # ΔE of the brightest false colour; fixed, so that montages can be compared
 
 

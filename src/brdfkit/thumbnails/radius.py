@@ -11,8 +11,9 @@ MARGIN = 0.2
 
 
 class Radius:
-    """Maps BRDF values to radii by their logarithm: a power of ten below them to 0, the largest to nearly 1.
+    """Maps BRDF values to radii by their logarithm.
 
+    A power of ten below them is 0, the largest nearly 1.
     `curves`: the values (n,) of each lobe that is drawn. At most `MOST_DECADES` are shown.
     """
 
