@@ -85,10 +85,8 @@ def montage(rendering, on_any_ground=False):
     columns, rows = min(len(names), COLUMNS), ceil(len(names) / COLUMNS)
 
     extent = GAP + columns * (width + GAP), GAP + rows * row
-    page = (
-        Image.new("RGBA", extent, ANY_PAPER) if on_any_ground else Image.new("RGB", extent, PAPER)
-    )
-    inks = (ANY_INK, ANY_INK) if on_any_ground else (INK, FAINT)
+    mode, paper, *inks = ANY_GROUND if on_any_ground else WHITE_GROUND
+    page = Image.new(mode, extent, paper)
     draw = ImageDraw.Draw(page)
     for i, name in enumerate(names):
         x, y = GAP + i % COLUMNS * (width + GAP), GAP + i // COLUMNS * row
