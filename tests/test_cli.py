@@ -16,6 +16,7 @@ import numpy as np
 import OpenEXR
 import pytest
 from click.testing import CliRunner
+from PIL import Image
 from rich.cells import cell_len
 from small_files import merl
 
@@ -694,6 +695,28 @@ def test_after_a_command_a_signal_does_what_it_did_before(cli):
     before = signal.getsignal(signal.SIGTERM)
     assert_fine(cli("models"))
     assert signal.getsignal(signal.SIGTERM) is before
+
+
+# The picture of a folder
+
+
+def test_a_gallery_shows_a_ball_of_each_and_names_the_others(cli):
+    folder = Path("folder")
+    folder.mkdir()
+    for name in ("b.npz", "a.npz"):
+        bk.save(bk.Measured.from_table(np.full((2, 2, 2, 3), 0.1), name=name[0]), folder / name)
+    (folder / "notes.txt").write_text("none")
+    shown = cli("gallery", folder, "ggx", "-o", "sheet.png", "--size", "32", "--json")
+    assert shown.exit_code == 0, shown.output
+    said = json.loads(shown.stdout)
+    assert said["materials"] == ["a", "b", "ggx"]
+    assert list(said["skipped"]) == [str(folder / "notes.txt")]
+    assert "notes.txt" in shown.stderr
+    with Image.open("sheet.png") as sheet:
+        assert sheet.width > 3 * 32
+    alone = cli("gallery", folder / "notes.txt", "-o", "none.png")
+    assert alone.exit_code == 2
+    assert not Path("none.png").exists()
 
 
 # Tables at all widths

@@ -90,19 +90,19 @@ def montage(rendering, on_any_ground=False):
     draw = ImageDraw.Draw(page)
     for i, name in enumerate(names):
         x, y = GAP + i % COLUMNS * (width + GAP), GAP + i // COLUMNS * row
-        _draw_caption(draw, (x, y), name, captions[name], width, text, inks)
+        draw_caption(draw, (x, y), name, captions[name], width, text, inks)
         shown = tone(rendering.pictures[name], brightest)
-        page.paste(_image(_srgb(shown), zoom), (x, y + caption))
+        page.paste(tile(displayed(shown), zoom), (x, y + caption))
         y += caption + height + GAP
         if name in differences:
-            page.paste(_image(_false_colour(differences[name]), zoom), (x, y))
+            page.paste(tile(_false_colour(differences[name]), zoom), (x, y))
             draw.rectangle((x, y, x + width - 1, y + height - 1), outline=(200, 200, 200))
         elif differences:
             _draw_legend(page, draw, (x, y, width, height), text, inks)
     return page
 
 
-def _image(rgb, zoom):
+def tile(rgb, zoom):
     """A `PIL.Image` of values (height, width, 3) in 0..1, each pixel `zoom` × `zoom` large."""
     from PIL import Image
 
@@ -110,7 +110,7 @@ def _image(rgb, zoom):
     return image.resize((image.width * zoom, image.height * zoom), Image.Resampling.NEAREST)
 
 
-def _srgb(linear):
+def displayed(linear):
     """sRGB in 0..1 of linear values; magenta, which stands out, where they are not finite."""
     finite = np.isfinite(linear).all(axis=-1, keepdims=True)
     return np.where(finite, to_srgb(linear), (1, 0, 1))
@@ -127,7 +127,7 @@ def _false_colour(difference):
     """sRGB (height, width, 3) in 0..1 of differences ΔE (height, width)."""
     import matplotlib as mpl
 
-    colours = mpl.colormaps["magma"].with_extremes(bad="magenta")  # not finite: as in `_srgb`
+    colours = mpl.colormaps["magma"].with_extremes(bad="magenta")  # not finite: as in `displayed`
     return colours(difference / MOST)[..., :3]
 
 
@@ -139,7 +139,7 @@ def _font(size, bold=False):
     return ImageFont.truetype(str(Path(mpl.get_data_path(), file)), size)
 
 
-def _draw_caption(draw, corner, name, below, width, size, inks):
+def draw_caption(draw, corner, name, below, width, size, inks):
     """Draw the name, shortened in its middle where it is too long, and the line `below` it."""
     x, y = corner
     bold = _font(size, bold=True)
@@ -160,7 +160,7 @@ def _draw_legend(page, draw, box, size, inks):
     draw.text((x, middle - 3 * size), "difference in colour ΔE", inks[0], font)
     draw.text((x, middle - round(1.6 * size)), "CIEDE2000; 1 is just seen", inks[1], small)
     bar = np.broadcast_to(np.linspace(0, MOST, width), (size, width))
-    page.paste(_image(_false_colour(bar), 1), (x, middle))
+    page.paste(tile(_false_colour(bar), 1), (x, middle))
     draw.rectangle((x, middle, x + width - 1, middle + size - 1), outline=(200, 200, 200))
     below = middle + round(1.35 * size)
     for place, anchor, label in (
