@@ -19,7 +19,8 @@ from brdfkit.plugins.pages import page as plugin_page
 FOLDER = Path(__file__).with_name("models")
 SIZE, SPP = 320, 128
 INDEX = """A model is a file in [`plugins/bsdfs/`](../../plugins/bsdfs), of which
-`docs/make_models.py` makes its page here. The balls show the defaults, all in the same light. A
+`docs/make_models.py` makes its page here. The balls show what each is for, by the
+values that its file names, all in the same light; lobes are those of the defaults. A
 form of a model is named with its option, `koenderink:order=8`, a sum of models with a plus,
 `oren_nayar+ward`: see [mixture](mixture.md). In Mitsuba every parameter may be a texture, and one
 that is "per channel" takes a number or one per colour."""
@@ -51,7 +52,7 @@ def pages():
     for name, model in models().items():
         options = "<br>".join(f"`{n}`: {choices(o)}" for n, o in model.options.items())
         rows.append((f"[{name}]({name}.md)", docstring(model)[1], options, ball(model, SIZE // 2)))
-    index = paragraphs("# The models", INDEX, table("model, what it is, options, defaults", rows))
+    index = paragraphs("# The models", INDEX, table("model, what it is, options, ball", rows))
     return {"README.md": index} | {f"{name}.md": page(m) for name, m in models().items()}
 
 
@@ -65,10 +66,11 @@ def page(model):
     """The text of a model's page."""
     name, (title, sentence, text), shown = model.type_name(), docstring(model), forms(model)
     balls = table(", ".join(f"`{f.label()}`" for f in shown), [[ball(f, SIZE) for f in shown]])
+    values = ", ".join(f"`{n}` = {v}" for n, v in shown_values(model).items())
     parameters = [parameter(*item) for item in model.parameters.items()]
     options = [(f"`{n}`", o.default, choices(o), o.meaning) for n, o in model.options.items()]
     return paragraphs(
-        *(f"# {title}", sentence, balls, text),
+        *(f"# {title}", sentence, balls, f"The ball has {values or 'the defaults'}.", text),
         table("parameter, default, bounds, meaning, per channel", parameters),
         EXPOSED,
         options and table("option, default, choices, meaning", options),
@@ -120,6 +122,12 @@ def ball(form, width):
     return f'<img src="{picture(form)}" width="{width}" alt="A ball of {form.label()}">'
 
 
+def shown_values(form):
+    """The values of a form's ball: those of `PICTURE` in its file, else the defaults."""
+    chosen = getattr(sys.modules[form.__module__], "PICTURE", {})
+    return {name: value for name, value in chosen.items() if name in form.parameters}
+
+
 def picture(form):
     return "_".join([form.type_name(), *form.chosen().values()]) + ".png"
 
@@ -153,7 +161,8 @@ def draw(model):
     import mitsuba as mi
 
     shown = [form() for form in forms(model)]
-    balls = bk.render(shown, spp=SPP, size=SIZE).pictures.values()
+    posed = [form(**shown_values(form)) for form in forms(model)]
+    balls = bk.render(posed, spp=SPP, size=SIZE).pictures.values()
     for form, linear in zip(shown, balls, strict=True):
         bitmap = np.array(mi.util.convert_to_bitmap(linear))
         write(Image.fromarray(bitmap), FOLDER / picture(form))

@@ -16,6 +16,7 @@ import numpy as np
 import OpenEXR
 import pytest
 from click.testing import CliRunner
+from PIL import Image
 from rich.cells import cell_len
 from small_files import merl
 
@@ -697,6 +698,28 @@ def test_after_a_command_a_signal_does_what_it_did_before(cli):
     assert signal.getsignal(signal.SIGTERM) is before
 
 
+# The picture of a folder
+
+
+def test_a_gallery_shows_a_ball_of_each_and_names_the_others(cli):
+    folder = Path("folder")
+    folder.mkdir()
+    for name in ("b.npz", "a.npz"):
+        bk.save(bk.Measured.from_table(np.full((2, 2, 2, 3), 0.1), name=name[0]), folder / name)
+    (folder / "notes.txt").write_text("none")
+    shown = cli("gallery", folder, "ggx", "-o", "sheet.png", "--size", "32", "--json")
+    assert shown.exit_code == 0, shown.output
+    said = json.loads(shown.stdout)
+    assert said["materials"] == ["a", "b", "ggx"]
+    assert list(said["skipped"]) == [str(folder / "notes.txt")]
+    assert "notes.txt" in shown.stderr
+    with Image.open("sheet.png") as sheet:
+        assert sheet.width > 3 * 32
+    alone = cli("gallery", folder / "notes.txt", "-o", "none.png")
+    assert alone.exit_code == 2
+    assert not Path("none.png").exists()
+
+
 # Tables at all widths
 
 TABLES = [
@@ -760,6 +783,26 @@ def test_a_table_is_one_or_a_block_for_each_row(monkeypatch, capsys, columns):
     assert ("───" in shown) == (columns >= 83)
     assert columns != 30 or BLOCK in shown
     assert max(map(cell_len, shown.splitlines())) <= max(columns, len(f"    {LONG}"))
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(("columns", "is_table"), [(80, True), (60, True), (40, False)])
+def test_a_long_name_does_not_undo_a_table(monkeypatch, capsys, columns, is_table):
+    """It goes on below; every other row stays one line, and nothing is lost."""
+    from brdfkit.commands._console import Console
+
+    monkeypatch.setenv("COLUMNS", str(columns))
+    name = "measured-on-a-day-in-" * 5
+    rows = [(name, "1.234", "37.1 dB", "take it"), ("ggx", "2.345", "36.2 dB", "tied")]
+    Console().table(("model", ">error", ">PSNR [dB]", "verdict"), rows)
+    shown = capsys.readouterr().out
+    assert ("───" in shown) == is_table
+    if is_table:
+        assert max(map(cell_len, shown.splitlines())) <= columns
+        assert name in re.sub(r"\s|1\.234|37\.1 dB|take it", "", shown)
+        assert any({"ggx", "2.345", "tied"} <= set(line.split()) for line in shown.splitlines())
+    else:
+        assert name in shown
 
 
 # The bar

@@ -1,10 +1,13 @@
 """What objects tell of themselves: the same words as text and as HTML, which notebooks show."""
 
+import io
 import re
 from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
+from PIL import Image
 
 import brdfkit as bk
 from brdfkit.colours import to_srgb
@@ -12,6 +15,7 @@ from brdfkit.documents import Cell, Document, Folded, Paragraph, Picture, Shown,
 from brdfkit.documents.html import to_html
 from brdfkit.documents.parts import BAD
 from brdfkit.documents.text import to_text
+from brdfkit.figures import to_png
 from brdfkit.fitting.certainty import Certainty
 from brdfkit.geometry.directions import from_angles
 from brdfkit.pictures.ball import WHITE, ball
@@ -249,3 +253,38 @@ def test_the_ball_is_a_picture_of_the_material(monkeypatch):
     cosines = np.maximum(facing(x, y) @ light.T, 0)
     ratios = white[cover == 1, 0] / (cosines @ studio(light))
     assert ratios.std() < 0.02 * ratios.mean()
+
+
+# Pictures in light and in dark notebooks
+
+
+def contrast(grey, other):
+    """WCAG's contrast of two greys 0..255 of sRGB."""
+    linear = [((c / 255 + 0.055) / 1.055) ** 2.4 + 0.05 for c in (grey, other)]
+    return max(linear) / min(linear)
+
+
+@pytest.mark.parametrize("kind", ["figure", "rendering"])
+def test_pictures_are_legible_on_light_and_dark_grounds(kind):
+    """The ground is transparent, and what is written on it stands out from white and from black."""
+    if kind == "figure":
+        figure = bk.plot("ggx", [45])
+        black = [text.get_color() for text in figure.findobj(Text)]
+        png = to_png(figure)
+        assert [text.get_color() for text in figure.findobj(Text)] == black
+    else:
+        pictures = {"ggx": np.full((8, 8, 3), 0.2)}
+        png = bk.Rendering(pictures, 1, 0.0, 0, {}).drawn()
+    pixels = np.array(Image.open(io.BytesIO(png)).convert("RGBA"))
+    assert pixels[0, 0, 3] == 0
+    written = pixels[:60][pixels[:60, :, 3] == 255]
+    grey = np.median(written[np.ptp(written[:, :3].astype(int), axis=1) < 6])
+    assert contrast(grey, 255) > 3.5
+    assert contrast(grey, 17) > 3.5
+
+
+def test_a_long_name_has_a_line_of_its_own():
+    rows = (("long-name-" * 8, "1"), ("ggx", "22"))
+    shown = to_text(Document("errors", (Table(tuple((*r, "") for r in rows), ("m", ">e", "x")),)))
+    assert rows[0][0] in shown
+    assert [len(line) < 50 for line in shown.splitlines()].count(False) == 1

@@ -150,6 +150,14 @@ def test_nothing_overlaps(peak, theta_i):
     assert not any(axes.get_window_extent().overlaps(legend) for axes in figure.axes)
 
 
+@pytest.mark.parametrize("darkest", [0.0101, 0.014, 0.02, 0.099])
+@pytest.mark.parametrize("decades", [0.1, 1, 2, 4])
+def test_what_is_darkest_stays_off_the_centre(darkest, decades):
+    """A lobe whose dark side is at the centre is a wedge: both sides of its line meet."""
+    values = np.geomspace(darkest, darkest * 10**decades, 1000)
+    assert Radius([values])(darkest) > 0.15
+
+
 @pytest.mark.parametrize("peak", [1e-3, 0.32, 1, 2e3, 1e9])
 def test_the_scale_holds_the_largest_and_its_ticks(peak):
     values = np.geomspace(peak / 1e3, peak, 1000)

@@ -28,6 +28,18 @@ def world(volume, indices):
 
 
 @pytest.mark.quick
+def test_slices_lie_where_the_box_does():
+    """Their axes show the world's coordinates, also where an axis of the grid runs downwards."""
+    to_world = np.diag([-1.0, 1.0, 2.0, 1.0])
+    to_world[:3, 3] = 3.0, -98.5, -7.0
+    found = summarise(bk.Volume(np.arange(24.0).reshape(2, 3, 4), to_world))
+    box = list(zip(found.low, found.high, strict=True))
+    axes = found.picture().axes[:3]
+    for one, (across, up) in zip(axes, ((0, 1), (0, 2), (1, 2)), strict=True):
+        for limits, axis in ((one.get_xlim(), across), (one.get_ylim(), up)):
+            assert sorted(limits) == pytest.approx(box[axis])
+
+
 def test_spacing_box_and_cube():
     np.testing.assert_allclose(OBLIQUE.spacing, small.SPACING)
     assert OBLIQUE.size == (6, 5, 4)

@@ -67,6 +67,15 @@ def fresnel(ior, cos_theta):
     return 0.5 * a * a * (1 + b * b)
 
 
+# The ball of its page: a polished surface that scatters a little everywhere
+PICTURE = {
+    "diffuse_reflectance": [0.1, 0.02, 0.14],
+    "specular_reflectance": 300.0,
+    "b": 20000.0,
+    "c": 0.9,
+}
+
+
 class ABC(Model):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(60.0, "A: height of the highlight")

@@ -20,6 +20,15 @@ from brdfkit.model.fresnel import FresnelModel
 from brdfkit.model.lobes import Cosine, HalfVector, Lobe, lambertian
 from brdfkit.model.microfacet import CosinePower, Visible, fifth_power
 
+# The ball of its page: brushed copper
+PICTURE = {
+    "diffuse_reflectance": 0.02,
+    "specular_reflectance": [0.95, 0.64, 0.54],
+    "exponent_u": 15.0,
+    "exponent_v": 400.0,
+    "f0": 0.9,
+}
+
 
 class AshikhminShirley(FresnelModel):
     diffuse = option("lambert", ("lambert", "coupled"), "form of the diffuse term")

@@ -18,6 +18,13 @@ from brdfkit.model import Model, follows, option, shape, weight
 from brdfkit.model.lobes import HalfVector, factored, lambertian
 from brdfkit.model.microfacet import CosinePower, Visible
 
+# The ball of its page: blue lacquer
+PICTURE = {
+    "diffuse_reflectance": [0.03, 0.08, 0.4],
+    "specular_reflectance": 0.3,
+    "exponent": 200.0,
+}
+
 
 class BlinnPhong(Model):
     normalisation = option("printed", ("printed", "exact"), "the constant c")

@@ -17,6 +17,12 @@ from brdfkit.model import Model, shape, weight
 from brdfkit.model.lobes import Cosine, Lobe
 from brdfkit.model.microfacet import fifth_power
 
+# The ball of its page: felt, brighter at its rim
+PICTURE = {
+    "diffuse_reflectance": [0.12, 0.35, 0.2],
+    "roughness": 1.0,
+}
+
 
 class Burley(Model):
     diffuse_reflectance = weight(0.5, "k_d: albedo of the ground, about")

@@ -13,6 +13,14 @@ from brdfkit.model.fresnel import FresnelModel
 from brdfkit.model.lobes import HalfVector, lambertian
 from brdfkit.model.microfacet import Beckmann, Visible, v_groove
 
+# The ball of its page: cast bronze
+PICTURE = {
+    "diffuse_reflectance": [0.06, 0.04, 0.02],
+    "specular_reflectance": [0.35, 0.22, 0.1],
+    "alpha": 0.3,
+    "f0": 0.6,
+}
+
 
 class CookTorrance(FresnelModel):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")

@@ -26,6 +26,13 @@ from brdfkit.model.lobes import Cosine, Lobe
 C1, C2 = 1 / 2 - 2 / (3 * math.pi), 2 / 3 - 28 / (15 * math.pi)
 
 
+# The ball of its page: rough plaster, whose light between facets is more saturated
+PICTURE = {
+    "diffuse_reflectance": [0.8, 0.62, 0.3],
+    "roughness": 1.0,
+}
+
+
 class EON(Model):
     diffuse_reflectance = weight(0.5, "ρ: albedo of a facet")
     roughness = shape(0.5, (0.0, 1.0), "r: roughness of the facets")

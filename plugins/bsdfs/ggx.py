@@ -11,6 +11,14 @@ from brdfkit.model.fresnel import FresnelModel
 from brdfkit.model.lobes import HalfVector, lambertian
 from brdfkit.model.microfacet import TrowbridgeReitz
 
+# The ball of its page: polished gold, with a haze about its highlights
+PICTURE = {
+    "diffuse_reflectance": 0.0,
+    "specular_reflectance": [1.0, 0.77, 0.34],
+    "alpha_u": 0.12,
+    "f0": 0.9,
+}
+
 
 class GGX(FresnelModel):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")

@@ -17,6 +17,15 @@ from brdfkit.model import Model, follows, option, shape, weight
 from brdfkit.model.lobes import Lobe, PowerLobe, lambertian
 from brdfkit.model.numerics import cosine_power
 
+# The ball of its page: reflective tape, which sends light back
+PICTURE = {
+    "diffuse_reflectance": [0.3, 0.22, 0.02],
+    "specular_reflectance": 0.6,
+    "c_x": 0.7,
+    "c_z": 0.7,
+    "exponent": 12.0,
+}
+
 
 class Lafortune(Model):
     lobe_count = option(1, (1, 2, 3), "S: the number of lobes")

@@ -8,6 +8,11 @@
 from brdfkit.model import Model, weight
 from brdfkit.model.lobes import lambertian
 
+# The ball of its page: chalk
+PICTURE = {
+    "diffuse_reflectance": [0.75, 0.73, 0.68],
+}
+
 
 class Lambert(Model):
     diffuse_reflectance = weight(0.5, "k_d: albedo")

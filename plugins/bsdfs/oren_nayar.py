@@ -19,6 +19,12 @@ import drjit as dr
 from brdfkit.model import Model, option, shape, weight
 from brdfkit.model.lobes import Cosine, Lobe
 
+# The ball of its page: fired clay, as bright at its rim as in its middle
+PICTURE = {
+    "diffuse_reflectance": [0.62, 0.3, 0.18],
+    "sigma": 0.8,
+}
+
 
 class OrenNayar(Model):
     form = option("qualitative", ("qualitative", "full"), "the short form, or all its terms")

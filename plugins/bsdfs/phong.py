@@ -15,6 +15,13 @@ from brdfkit.model import Model, shape, weight
 from brdfkit.model.lobes import Lobe, PowerLobe, lambertian
 from brdfkit.model.numerics import cosine_power
 
+# The ball of its page: red plastic
+PICTURE = {
+    "diffuse_reflectance": [0.45, 0.03, 0.03],
+    "specular_reflectance": 0.15,
+    "exponent": 80.0,
+}
+
 
 class Phong(Model):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")

@@ -106,6 +106,16 @@ def _slope_squared(w):
     return (w.x * w.x + w.y * w.y) / (w.z * w.z)
 
 
+# The ball of its page: green car paint
+PICTURE = {
+    "diffuse_reflectance": [0.02, 0.1, 0.04],
+    "specular_reflectance": [0.3, 0.6, 0.35],
+    "alpha": 0.004,
+    "p": 0.9,
+    "f0": 0.3,
+}
+
+
 class SGD(FresnelModel):
     diffuse_reflectance = weight(0.4, "ρ_d: albedo of the diffuse term")
     specular_reflectance = weight(0.4, "ρ_s: strength of the highlight")

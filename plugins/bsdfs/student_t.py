@@ -85,6 +85,16 @@ class StudentSlopes:
         return self.D(h) * h.z
 
 
+# The ball of its page: a coat with tails longer than GGX's
+PICTURE = {
+    "diffuse_reflectance": [0.02, 0.02, 0.03],
+    "specular_reflectance": [0.8, 0.85, 0.95],
+    "alpha_u": 0.05,
+    "gamma": 1.6,
+    "f0": 0.9,
+}
+
+
 class StudentT(FresnelModel):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.5, "k_s: strength of the highlight")

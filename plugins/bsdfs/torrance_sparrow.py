@@ -56,6 +56,15 @@ def _angle(h):
     return dr.atan2(_sine(h), h.z)
 
 
+# The ball of its page: glazed porcelain
+PICTURE = {
+    "diffuse_reflectance": [0.7, 0.7, 0.72],
+    "specular_reflectance": 1.0,
+    "alpha": 0.08,
+    "f0": 0.05,
+}
+
+
 class TorranceSparrow(FresnelModel):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.5, "k_s: strength of the highlight")

@@ -14,6 +14,14 @@ from brdfkit.model import Model, follows, shape, weight
 from brdfkit.model.lobes import HalfVector, factored, lambertian
 from brdfkit.model.microfacet import Beckmann, Visible
 
+# The ball of its page: brushed steel
+PICTURE = {
+    "diffuse_reflectance": 0.03,
+    "specular_reflectance": [0.5, 0.5, 0.52],
+    "alpha_u": 0.35,
+    "alpha_v": 0.08,
+}
+
 
 class Ward(Model):
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")

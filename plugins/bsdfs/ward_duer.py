@@ -16,6 +16,13 @@ from brdfkit.model import Model, follows, option, shape, weight
 from brdfkit.model.lobes import HalfVector, factored, lambertian
 from brdfkit.model.microfacet import Beckmann, Visible
 
+# The ball of its page: satin paint
+PICTURE = {
+    "diffuse_reflectance": [0.08, 0.3, 0.28],
+    "specular_reflectance": 0.08,
+    "alpha_u": 0.18,
+}
+
 
 class WardDuer(Model):
     form = option("printed", ("printed", "bounded"), "Dür's of 2006, or that of 2010")

@@ -48,6 +48,9 @@ class Audit(Shown):
         used by a fit as it comes (both angles below 80°).
     negative, zero : int
         Number of valid values below 0 and equal to 0, each channel counted.
+    negative_to : float
+        The angle to the normal, of light or view, whichever is larger, below which 9 of 10 negative
+        values are [degrees], and ``negative_from`` that above which; nan where there are none.
     theta_i, theta_o : tuple of float
         The measured angles to the normal [degrees], or their ends where they are many.
     smallest, median, largest : float
@@ -79,6 +82,8 @@ class Audit(Shown):
     used: int
     negative: int
     zero: int
+    negative_from: float
+    negative_to: float
     theta_i: tuple[float, ...]
     theta_o: tuple[float, ...]
     smallest: float
@@ -165,6 +170,7 @@ def audit(data: MaterialLike) -> Audit:
     above = (samples.wi[:, 2] > 0) & (samples.wo[:, 2] > 0)
     values = samples.values[samples.valid]
     positive = values[values > 0]
+    negative_from, negative_to = _where_negative(samples)
     theta_i, theta_o = _angles(data, samples.wi), _angles(data, samples.wo)
     seen = rgb_or_mean(data)
     return Audit(
@@ -177,6 +183,8 @@ def audit(data: MaterialLike) -> Audit:
         used=int(samples.within(MAX_ANGLE).sum()),
         negative=int((values < 0).sum()),
         zero=int((values == 0).sum()),
+        negative_from=negative_from,
+        negative_to=negative_to,
         theta_i=theta_i,
         theta_o=theta_o,
         smallest=float(positive.min()) if positive.size else np.nan,
@@ -195,6 +203,16 @@ def audit(data: MaterialLike) -> Audit:
         spikes=spikes(data),
         data=data,
     )
+
+
+def _where_negative(samples):
+    """The larger angles to the normal [degrees] above and below which 9 of 10 negative values are;
+    nan without any."""
+    below = samples.valid[:, None] & (samples.values < 0)
+    cosines = np.minimum(samples.wi[:, 2], samples.wo[:, 2])
+    angles = np.degrees(np.arccos(np.clip(cosines, -1, 1)))
+    found = np.repeat(angles, below.sum(axis=1))
+    return np.percentile(found, (10, 90)).tolist() if found.size else (np.nan, np.nan)
 
 
 def _angles(data, w):

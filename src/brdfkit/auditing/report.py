@@ -22,7 +22,7 @@ def rows(audit):
         "kind": audit.kind,
         "channels": _channels(audit.channels),
         "valid": f"{audit.valid:,} of {audit.above:,} {unit}, {missing:,} not measured{beneath}",
-        "negative": f"{audit.negative:,} of {values:,} values; exactly 0: {audit.zero:,}",
+        "negative": f"{_negative(audit, values)}; exactly 0: {audit.zero:,}",
         "BRDF": _range(audit),
         "angles": f"θi {_angles(audit.theta_i)}; θo {_angles(audit.theta_o)}",
         "coverage": _coverage(audit.coverage, audit.data.is_table),
@@ -45,6 +45,17 @@ def findings(audit):
             "cbrt treat them as 0"
         )
     return (*found, *data_findings(audit.data))
+
+
+def _negative(audit, values):
+    """How many of the `values` are below 0, and where."""
+    count = f"{audit.negative:,} of {values:,} values"
+    if not audit.negative:
+        return count
+    return (
+        f"{count}, {percent(audit.negative / values)}, most of them at {audit.negative_from:.0f}° "
+        f"to {audit.negative_to:.0f}° to the normal, the larger of θi and θo"
+    )
 
 
 def _channels(names):

@@ -55,6 +55,7 @@ def _record(found, comparison, psnr):
         "aic": found.aic,
         "bic": found.bic,
         "loss": found.loss_name,
+        "loss_label": found.loss_label,
         "error": found.loss,
         "errors": comparison.errors[found.name],
         "albedos": comparison.albedos[found.name],

@@ -2,12 +2,15 @@
 
 import textwrap
 
+NAME = 24  # characters of a name beyond which it goes on below, where the table were too wide
+
 
 def table(columns, sections, width, title=None):
     """A Rich table at most `width` characters wide; None where it would have to cut a word.
 
     `columns`: their names; `sections`: lists of rows of texts. A column whose name begins with ">"
-    is flush right, for numbers. Such a column and the first, which holds names, are not folded.
+    is flush right, for numbers. Such a column and the first, which holds names, are not folded, but
+    for names of more than `NAME` characters.
     """
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
@@ -27,7 +30,9 @@ def table(columns, sections, width, title=None):
     found = Table(box=SIMPLE_HEAD, title=title, title_justify="left", pad_edge=False)
     found.show_header = any(columns)
     for column, header, w in zip(columns, headers, widths, strict=True):
-        found.add_column(Text(header), justify="right" if column[:1] == ">" else "left", width=w)
+        found.add_column(
+            Text(header), justify="right" if column[:1] == ">" else "left", width=w, overflow="fold"
+        )
     for section in sections:
         for row in section:
             found.add_row(*map(Text, row))
@@ -63,6 +68,7 @@ def _widths(cells, whole, room):
     most = [max(cell_len(line) for c in column for line in c.split("\n")) for column in cells]
     words = [max((cell_len(w) for c in column for w in c.split()), default=0) for column in cells]
     least = [m if w else longest for m, w, longest in zip(most, whole, words, strict=True)]
+    least[0] = max(min(least[0], NAME), least[0] - max(sum(least) - room, 0))
     wanted = [m - n for m, n in zip(most, least, strict=True)]
     spare = min(room - sum(least), sum(wanted))
     if spare < 0:

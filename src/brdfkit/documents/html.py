@@ -118,7 +118,7 @@ def _picture(picture):
         return _paragraph(Paragraph(said, SOFT))
     if isinstance(content, str):
         return content
-    kind = "png" if content.startswith(b"\x89PNG") else "jpeg"
+    kind = next(kind for start, kind in KINDS.items() if content.startswith(start))
     data = base64.b64encode(content).decode()
     return (
         f'<img src="data:image/{kind};base64,{data}" alt="{_text(picture.says)}" '
@@ -136,4 +136,5 @@ def _text(text):
     return escape(printable(text))
 
 
+KINDS = {b"\x89PNG": "png", b"RIFF": "webp", b"\xff\xd8": "jpeg"}  # of pictures' first bytes
 MAKERS = {Table: _table, Paragraph: _paragraph, Picture: _picture, Folded: _folded}

@@ -50,8 +50,8 @@ class Paragraph:
 class Picture:
     """A picture, which HTML alone shows.
 
-    `draw`: gives, when it is shown, the bytes of a PNG or JPEG, or the text of an SVG; `says`: what
-    it shows, for those who do not see it; `width`: in pixels of a screen.
+    `draw`: gives, when it is shown, the bytes of a PNG, WebP or JPEG, or the text of an SVG;
+    `says`: what it shows, for those who do not see it; `width`: in pixels of a screen.
     """
 
     draw: Callable[[], bytes | str]

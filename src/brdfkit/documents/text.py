@@ -5,6 +5,7 @@ from brdfkit.names import printable
 
 INDENT, BETWEEN = "  ", "  "
 MARK = "! "  # of what is bad
+NAME = 32  # characters of a name beyond which it has a line of its own
 
 
 def to_text(document):
@@ -33,10 +34,20 @@ def _table(table):
     rows = [[printable(plain(cell)) for cell in line] for line in lines]
     if not rows:
         return []
+    if len(table.columns) > 2:
+        rows = [line for row in rows for line in _apart(row)]
     widths = [max(map(len, texts)) for texts in zip(*rows, strict=True)]
+    if len(table.columns) > 2:
+        widths[0] = min(widths[0], NAME)
     names = table.columns or [""] * len(widths)
     sides = [">" if name.startswith(">") else "<" for name in names]
     return [
         BETWEEN.join(f"{t:{s}{w}}" for t, s, w in zip(row, sides, widths, strict=True)).rstrip()
         for row in rows
     ]
+
+
+def _apart(row):
+    """A row of texts; two where its name is long: the name, and below it the numbers."""
+    name, *others = row
+    return [[name, *("" for _ in others)], ["", *others]] if len(name) > NAME else [row]

@@ -16,6 +16,8 @@ from brdfkit.model import double_precision
 
 # The least τ², as a share of the mean σ²: a σ of 0 is not trusted beyond it
 LEAST = 0.01
+# How the note begins that says it, by which a fit is known again
+BY_ERRORS = "samples count by their standard errors"
 # Weights within this share of each other are alike
 ALIKE = 0.05
 
@@ -28,7 +30,7 @@ def regress_noisy(model, samples, loss, **how):
         return found
     found = regress(model, replace(samples, weight=samples.weight * shares), loss, **how)
     least = shares.min() / shares.max()
-    note = f"samples count by their standard errors, the noisiest {least:.0%}; so in the loss"
+    note = f"{BY_ERRORS}, the noisiest {least:.0%}; so in the loss"
     return replace(found, notes=(*found.notes, note))
 
 

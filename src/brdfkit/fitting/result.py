@@ -12,6 +12,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.fitting.albedo_cells import albedo_line
 from brdfkit.fitting.certainty import Certainty, intervals
 from brdfkit.fitting.light import Albedo
+from brdfkit.fitting.measurement_noise import BY_ERRORS
 from brdfkit.model import Model
 from brdfkit.model.value_table import value_table
 from brdfkit.plugins.pages import page
@@ -180,6 +181,15 @@ class Fit(Shown):
         """The certainty of a fit whose criteria mean something: by samples, not by pictures."""
         return None if self.loss_name in ("picture", "rendered") else self.certainty
 
+    @property
+    def loss_label(self) -> str:
+        """The loss in words: its name, and whether standard errors weigh the samples in it.
+
+        The error of `compare` by the same name weighs no samples, and is another number.
+        """
+        weighed = any(note.startswith(BY_ERRORS) for note in self.notes)
+        return f"{self.loss_name} loss{', weighed by standard errors' if weighed else ''}"
+
     def eval(self, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
         """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3)."""
         return self.model.eval(wi, wo)
@@ -226,7 +236,7 @@ class Fit(Shown):
         """What the fit tells of itself: its values, its light, notes, and how they were found."""
         old = ("no standard errors: saved by an earlier version",) * (self.certainty is None)
         return Document(
-            f"{self.name} fitted to {self.data}: {self.loss_name} loss {self.loss:.6g}",
+            f"{self.name} fitted to {self.data}: {self.loss_label} {self.loss:.6g}",
             (
                 *thumbnails(self.name, self.rgb.eval),
                 value_table(self.model, self.standard_errors, self.at_bounds),

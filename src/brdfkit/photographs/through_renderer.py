@@ -22,6 +22,7 @@ from brdfkit.photographs.observations import DARK, gathered
 from brdfkit.photographs.prediction import radiances
 from brdfkit.photographs.search import equations, search_together
 from brdfkit.photographs.strengths import units_of
+from brdfkit.picture_errors.psnr import psnr
 
 SAMPLES = 16  # per pixel, evenly spread
 EVENLY = {"sampler": {"type": "multijitter", "sample_count": SAMPLES}}
@@ -126,11 +127,6 @@ def left_of(capture, pictures):
 
 
 def decibels(capture, pictures):
-    """Name of each photograph → PSNR [dB] of its picture; its brightest hundredth is white."""
-    found = {}
+    """Name of each photograph → `psnr` [dB] of its picture, over the pixels that count."""
     parts = zip(capture.names, capture.pictures, pictures, capture.counted, strict=True)
-    for name, photograph, picture, counts in parts:
-        white = np.quantile(photograph[counts], 0.99)
-        error = ((picture - photograph)[counts] ** 2).mean()
-        found[name] = float(10 * np.log10(max(white, 1e-150) ** 2 / max(error, 1e-300)))
-    return found
+    return {name: psnr(photograph, picture, counts) for name, photograph, picture, counts in parts}

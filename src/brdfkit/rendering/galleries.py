@@ -1,6 +1,5 @@
 """`gallery`: materials by models in one picture, as a grid to look at."""
 
-import io
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,6 +8,7 @@ from brdfkit.colours import to_srgb
 from brdfkit.documents import Document, Paragraph, Picture, Shown, Table
 from brdfkit.documents.parts import SOFT
 from brdfkit.errors import BrdfkitError
+from brdfkit.figures import to_png
 from brdfkit.files import write_safely
 from brdfkit.names import make_unique, printable
 from brdfkit.rendering.inputs import Renderable, as_list, identify
@@ -54,7 +54,7 @@ class Gallery(Shown):
         if path.suffix.lower() != ".png":
             raise BrdfkitError(f"{path}: a gallery is written as .png; choose that.")
         with write_safely(path) as beside:
-            beside.write_bytes(self._draw())
+            draw_grid(self.rows).savefig(beside, format="png", dpi=DPI)
 
     def document(self) -> Document:
         """The grid, and how far each picture is from that of its material."""
@@ -72,10 +72,8 @@ class Gallery(Shown):
         return Document(title, (picture, Table(tuple(rows), columns), *peak))
 
     def _draw(self):
-        """The grid as a PNG."""
-        stream = io.BytesIO()
-        draw_grid(self.rows).savefig(stream, dpi=DPI)
-        return stream.getvalue()
+        """The grid as a PNG for notebooks."""
+        return to_png(draw_grid(self.rows), DPI)
 
 
 def gallery(

@@ -16,7 +16,10 @@ from brdfkit.version import __version__
 COLUMNS = 4
 TILE = 320  # narrower pictures are enlarged to this width [pixels], so that captions fit
 GAP = 20
-INK, FAINT, PAPER = (26, 26, 26), (105, 105, 105), (255, 255, 255)
+# The mode of a page, the colour of its paper, and those of names and of what is said of them
+WHITE_GROUND = "RGB", (255, 255, 255), (26, 26, 26), (105, 105, 105)
+# In notebooks, light or dark: a middle grey, on a ground that is transparent
+ANY_GROUND = "RGBA", (125, 125, 125, 0), (125, 125, 125, 255), (125, 125, 125, 255)
 MOST = 20  # ΔE of the brightest false colour; fixed, so that montages can be compared
 
 
@@ -58,8 +61,10 @@ def write_exr(rendering, path):
         raise OSError(str(error)) from error
 
 
-def montage(rendering):
+def montage(rendering, on_any_ground=False):
     """A `PIL.Image` of the pictures with captions, up to four in a row.
+
+    On white; or `on_any_ground`, for notebooks, with transparency.
 
     Below each picture is its colour difference to the reference (CIEDE2000), in false colours that
     a legend explains.
@@ -79,23 +84,25 @@ def montage(rendering):
     row = caption + height + GAP + (height + GAP if differences else 0)
     columns, rows = min(len(names), COLUMNS), ceil(len(names) / COLUMNS)
 
-    page = Image.new("RGB", (GAP + columns * (width + GAP), GAP + rows * row), PAPER)
+    extent = GAP + columns * (width + GAP), GAP + rows * row
+    mode, paper, *inks = ANY_GROUND if on_any_ground else WHITE_GROUND
+    page = Image.new(mode, extent, paper)
     draw = ImageDraw.Draw(page)
     for i, name in enumerate(names):
         x, y = GAP + i % COLUMNS * (width + GAP), GAP + i // COLUMNS * row
-        _draw_caption(draw, (x, y), name, captions[name], width, text)
+        draw_caption(draw, (x, y), name, captions[name], width, text, inks)
         shown = tone(rendering.pictures[name], brightest)
-        page.paste(_image(_srgb(shown), zoom), (x, y + caption))
+        page.paste(tile(displayed(shown), zoom), (x, y + caption))
         y += caption + height + GAP
         if name in differences:
-            page.paste(_image(_false_colour(differences[name]), zoom), (x, y))
+            page.paste(tile(_false_colour(differences[name]), zoom), (x, y))
             draw.rectangle((x, y, x + width - 1, y + height - 1), outline=(200, 200, 200))
         elif differences:
-            _draw_legend(page, draw, (x, y, width, height), text)
+            _draw_legend(page, draw, (x, y, width, height), text, inks)
     return page
 
 
-def _image(rgb, zoom):
+def tile(rgb, zoom):
     """A `PIL.Image` of values (height, width, 3) in 0..1, each pixel `zoom` × `zoom` large."""
     from PIL import Image
 
@@ -103,7 +110,7 @@ def _image(rgb, zoom):
     return image.resize((image.width * zoom, image.height * zoom), Image.Resampling.NEAREST)
 
 
-def _srgb(linear):
+def displayed(linear):
     """sRGB in 0..1 of linear values; magenta, which stands out, where they are not finite."""
     finite = np.isfinite(linear).all(axis=-1, keepdims=True)
     return np.where(finite, to_srgb(linear), (1, 0, 1))
@@ -120,7 +127,7 @@ def _false_colour(difference):
     """sRGB (height, width, 3) in 0..1 of differences ΔE (height, width)."""
     import matplotlib as mpl
 
-    colours = mpl.colormaps["magma"].with_extremes(bad="magenta")  # not finite: as in `_srgb`
+    colours = mpl.colormaps["magma"].with_extremes(bad="magenta")  # not finite: as in `displayed`
     return colours(difference / MOST)[..., :3]
 
 
@@ -132,7 +139,7 @@ def _font(size, bold=False):
     return ImageFont.truetype(str(Path(mpl.get_data_path(), file)), size)
 
 
-def _draw_caption(draw, corner, name, below, width, size):
+def draw_caption(draw, corner, name, below, width, size, inks):
     """Draw the name, shortened in its middle where it is too long, and the line `below` it."""
     x, y = corner
     bold = _font(size, bold=True)
@@ -141,19 +148,19 @@ def _draw_caption(draw, corner, name, below, width, size):
     while bold.getlength(shown) > width and keep > 2:
         keep -= 1
         shown = f"{name[: ceil(keep / 2)]}…{name[-(keep // 2) :]}"
-    draw.text((x, y), shown, INK, bold)
-    draw.text((x, y + round(1.4 * size)), below, FAINT, _font(size))
+    draw.text((x, y), shown, inks[0], bold)
+    draw.text((x, y + round(1.4 * size)), below, inks[1], _font(size))
 
 
-def _draw_legend(page, draw, box, size):
+def _draw_legend(page, draw, box, size, inks):
     """Draw the scale of the false colours, in the empty place below the reference."""
     x, y, width, height = box
     font, small = _font(size), _font(round(0.85 * size))
     middle = y + height // 2
-    draw.text((x, middle - 3 * size), "difference in colour ΔE", INK, font)
-    draw.text((x, middle - round(1.6 * size)), "CIEDE2000; 1 is just seen", FAINT, small)
+    draw.text((x, middle - 3 * size), "difference in colour ΔE", inks[0], font)
+    draw.text((x, middle - round(1.6 * size)), "CIEDE2000; 1 is just seen", inks[1], small)
     bar = np.broadcast_to(np.linspace(0, MOST, width), (size, width))
-    page.paste(_image(_false_colour(bar), 1), (x, middle))
+    page.paste(tile(_false_colour(bar), 1), (x, middle))
     draw.rectangle((x, middle, x + width - 1, middle + size - 1), outline=(200, 200, 200))
     below = middle + round(1.35 * size)
     for place, anchor, label in (
@@ -161,4 +168,4 @@ def _draw_legend(page, draw, box, size):
         (width / 2, "ma", f"{MOST / 2:g}"),
         (width, "ra", f"{MOST} and more"),
     ):
-        draw.text((x + place, below), label, INK, small, anchor=anchor)
+        draw.text((x + place, below), label, inks[0], small, anchor=anchor)

@@ -228,9 +228,9 @@ class Rendering(Shown):
         return Document(self.head, (picture, Table(tuple(self.captions.items())), *short))
 
     def drawn(self) -> bytes:
-        """The pictures side by side, with captions, over their differences: a JPEG, small enough
-        for a notebook."""
-        stream, page = io.BytesIO(), montage(self)
+        """The pictures side by side, with captions, over their differences: a WebP, small enough
+        for a notebook, on a transparent ground."""
+        stream, page = io.BytesIO(), montage(self, on_any_ground=True)
         page.thumbnail((WIDEST, 4 * WIDEST))
-        page.save(stream, "JPEG", quality=88)
+        page.save(stream, "WEBP", quality=90)
         return stream.getvalue()

@@ -21,7 +21,7 @@ def describe(fit, told=()):
         "json": json.dumps(rounded(_record(fit), DIGITS), indent=2, ensure_ascii=False),
         "samples": f"{fit.samples:,}",
         "evaluations": fit.evaluations,
-        "loss": f"{fit.loss_name} {fit.loss:.5g}",
+        "loss": f"{fit.loss_label} {fit.loss:.5g}",
         "has_errors": any(np.isfinite(np.ravel(e)).any() for e in fit.standard_errors.values()),
     }
 
@@ -67,6 +67,7 @@ def _record(fit):
             "standard_errors": fit.standard_errors,
             "at_bounds": fit.at_bounds,
             "loss": fit.loss_name,
+            "loss_label": fit.loss_label,
             "error": fit.loss,
             "samples": fit.samples,
             "settings": fit.settings,

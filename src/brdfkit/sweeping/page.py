@@ -50,6 +50,11 @@ ALBEDOS = (
     "light from that angle to the normal that it reflects, the mean over the channels; below it "
     "that of the measurement."
 )
+BY_FITTED = (
+    "Errors are by the very samples that the models were fitted to, and the more numbers a model "
+    "has, the more they flatter it; rank(...) and fit -m best tell errors at directions that were "
+    "held out, and of pictures."
+)
 FAR = 4.0  # times the error of the best: from there a cell has no tint
 
 
@@ -71,7 +76,8 @@ def page(sweep, folder):
         f'<p class="soft">{_text(sweep.summary)}</p>',
         "<h2>Errors</h2>",
         f'<p class="soft">Loss {loss}: {_text(losses[loss].meaning)}. The best of a row is bold, '
-        f"the others have the more colour the nearer they come to it.{_explain_marks(sweep)}</p>",
+        f"the others have the more colour the nearer they come to it; colours "
+        f"compare within a row only. {BY_FITTED}{_explain_marks(sweep)}</p>",
         _errors(sweep, materials, models, folder),
     ]
     if sweep.problems:

@@ -31,7 +31,7 @@ def errors(sweep):
     wins = Counter(best.values())
     foot = [
         ("median", *(format_error(m) for m in medians(sweep, models)), ""),
-        ("times best", *(str(wins[model]) for model in models), ""),
+        ("times best, by the samples fitted", *(str(wins[model]) for model in models), ""),
     ]
     if sweep.warned:
         wrong = Counter(row.model for row in sweep.warned)

@@ -5,11 +5,15 @@ import math
 import numpy as np
 
 MOST_DECADES = 5
+# The darkest is this share of the range from the centre: nearer, both sides of a line meet there,
+# and a dark lobe is a wedge
+MARGIN = 0.2
 
 
 class Radius:
-    """Maps BRDF values to radii by their logarithm: a power of ten to 0, the largest to nearly 1.
+    """Maps BRDF values to radii by their logarithm.
 
+    A power of ten below them is 0, the largest nearly 1.
     `curves`: the values (n,) of each lobe that is drawn. At most `MOST_DECADES` are shown.
     """
 
@@ -18,6 +22,7 @@ class Radius:
         shown = [values for values in shown if values.size] or [np.ones(1)]
         highest = np.log10(max(values.max() for values in shown))
         lowest = np.log10(min(np.percentile(values, 2) for values in shown))
+        lowest -= MARGIN * (highest - lowest)
         self.lowest = math.floor(min(max(lowest, highest - MOST_DECADES), highest - 0.5))
         self.decades = 1.03 * (highest - self.lowest)
 

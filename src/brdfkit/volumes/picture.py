@@ -33,7 +33,6 @@ def _draw_slice(axes, summary, across, up, through):
     """Draw the middle slice, with the two axes of the grid and where they go."""
     middle = summary.size[through] // 2
     voxels = np.take(summary.data.values, middle, axis=2 - through)  # (up, across): z is slowest
-    lengths = np.array(summary.size) * summary.spacing
     colours = "tab20" if summary.labels else "gray"
     axes.imshow(
         voxels,
@@ -41,13 +40,22 @@ def _draw_slice(axes, summary, across, up, through):
         vmin=summary.least,
         vmax=summary.largest,
         origin="lower",
-        extent=(0, lengths[across], 0, lengths[up]),
+        extent=(*reach(summary.data, across), *reach(summary.data, up)),
         interpolation="nearest",
     )
     unit = f" [{summary.unit}]" if summary.unit else ""
     axes.set_xlabel(f"{'xyz'[across]}{unit} → {summary.directions[across]}")
     axes.set_ylabel(f"{'xyz'[up]}{unit} → {summary.directions[up]}")
     axes.set_title(f"slice {middle} along {'xyz'[through]}", fontsize=10)
+
+
+def reach(volume, axis):
+    """Where the grid's `axis` begins and ends in the world, along it; it may run downwards."""
+    start, along = volume.cube_to_world[:3, 3], volume.cube_to_world[:3, axis]
+    length = np.linalg.norm(along)
+    one_way = np.sign(along[np.abs(along).argmax()])
+    begin = one_way * (start @ along) / length
+    return begin, begin + one_way * length
 
 
 def draw_values(axes, summary, transfer=None):
