@@ -15,6 +15,7 @@ from brdfkit.files import watch_writing
 from brdfkit.names import printable
 
 NO_ROOM = errno.ENOSPC, errno.EDQUOT, errno.EIO  # writing to standard output, a file, failed
+LONGEST = 2000  # characters of a sentence
 
 
 class Group(click.Group):
@@ -111,8 +112,11 @@ def _drop_output():
 
 
 def say(message):
-    """Print one sentence for people on standard error."""
-    click.echo(f"brdfkit: {printable(' '.join(str(message).split()))}", err=True)
+    """Print one sentence for people on standard error; what a file makes too long is cut."""
+    text = printable(" ".join(str(message).split()))
+    if len(text) > LONGEST:
+        text = f"{text[: LONGEST // 2]} … {text[-LONGEST // 4 :]}"
+    click.echo(f"brdfkit: {text}", err=True)
 
 
 def _say_warning(message, *_args, **_kwargs):

@@ -55,7 +55,7 @@ def from_json(text: str, where: str = "the field") -> Any:
 def save(node, path):
     """Write a node to the file `path`, as JSON."""
     with write_safely(path) as beside:
-        beside.write_text(to_json(node))
+        beside.write_text(to_json(node), encoding="utf-8")
 
 
 def load(path: str | PathLike[str]) -> Any:

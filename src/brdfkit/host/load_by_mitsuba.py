@@ -19,10 +19,15 @@ def load_by_mitsuba(function, source, name):
         raise BrdfkitError(
             f"{name}: Mitsuba cannot load it: it states a size for which there is no memory."
         ) from error
-    except (RuntimeError, TypeError) as error:
-        if "KeyboardInterrupt" in str(error):  # Ctrl-C in a plugin that is written in Python
+    except BrdfkitError:
+        raise
+    except (RuntimeError, TypeError, ValueError) as error:
+        said = str(error)
+        if isinstance(error, UnicodeDecodeError):  # a damaged file's bytes are in the message
+            said = error.object.decode(errors="replace")
+        if "KeyboardInterrupt" in said:  # Ctrl-C in a plugin that is written in Python
             raise KeyboardInterrupt from None
-        lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+        lines = [line.strip() for line in said.splitlines() if line.strip()]
         # a plugin written in Python reports its whole traceback: people need its last line only
         reason = lines[-1] if any("Traceback" in line for line in lines) else " ".join(lines)
         if OURS in reason:
