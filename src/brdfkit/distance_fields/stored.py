@@ -109,7 +109,7 @@ def _to_data(value):
 
 def _to_node(data, where):
     if not isinstance(data, dict) or "kind" not in data:
-        raise BrdfkitError(f'{where}: {str(data)[:40]} should be an object with a "kind".')
+        raise BrdfkitError(f'{where}: {str(data)[:40]!r} should be an object with a "kind".')
     cls = kind(data["kind"], where)
     known = {f.name: f for f in _stored(cls)}
     given = {name: value for name, value in data.items() if name != "kind"}

@@ -1,6 +1,7 @@
 """Loads scenes and plugins by Mitsuba; what it refuses becomes one sentence."""
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.files import is_utf8
 from brdfkit.jit.threads import two_threads
 
 OURS = "BrdfkitError: "
@@ -12,6 +13,8 @@ def load_by_mitsuba(function, source, name):
     Raises `BrdfkitError`, which names it `name`, where Mitsuba cannot; a sentence of a plugin of
     ours stands for itself.
     """
+    if isinstance(source, str) and not is_utf8(source):
+        raise BrdfkitError(f"{name}: its path is no UTF-8, as Mitsuba needs it; rename the file.")
     try:
         with two_threads():
             return function(source, parallel=False)

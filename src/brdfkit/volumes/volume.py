@@ -174,11 +174,12 @@ def require_transform(to_world, name):
     fine = to_world.shape == (4, 4) and np.isfinite(to_world).all()
     fine = fine and (to_world[3] == (0, 0, 0, 1)).all()
     fine = fine and np.abs(to_world).max() < LARGEST
+    fine = fine and np.abs(to_world[:3, :3]).max(axis=0).min() > 1 / LARGEST
     if not fine or not abs(np.linalg.det(to_world[:3, :3])) > 0:
         raise BrdfkitError(
-            f"{name}: its transform from voxels to the world is no invertible 4×4 matrix below "
-            "1e15: the spacing or an axis is 0, not finite or too large; mend the header or give "
-            "the spacing."
+            f"{name}: its transform from voxels to the world is no invertible 4×4 matrix of "
+            "numbers below 1e15: the spacing or an axis is 0, not finite, too small or too large; "
+            "mend the header or give the spacing."
         )
     return to_world
 
