@@ -288,7 +288,10 @@ def test_render_a_volume(cli):
     assert "ct_bone is for HU" in by_scan.stderr
     for words, said in (
         (["smoke", "--renderer", "isosurfac"], "did you mean isosurface?"),
-        (["smoke", "--set", "level"], "'level' should read PARAMETER=VALUE."),
+        (
+            ["smoke", "--set", "level"],
+            "--set 'level' should read NAME=VALUE; repeat --set for more.",
+        ),
         (["smoke", "--density", "0"], "density = 0.0 should be a number above 0."),
         (["smoke", "ward"], "smoke is a volume, which is rendered alone"),
         (["smok"], "did you mean smoke?"),
@@ -956,6 +959,10 @@ def test_shape_parameters_are_fixed_bounded_and_tied(cli):
     assert found["parameters"]["f0"] == 0.04
     assert 0.3 <= found["parameters"]["alpha_u"] == found["parameters"]["alpha_v"] <= 0.4
     assert "Nothing was saved; -o FOLDER keeps the fits." in cli(*words).stdout
+    for given in (["--fix", "f0=0.04"], ["--tie"]):
+        result = cli("render", "ggx", *given)
+        assert (result.exit_code, result.stderr.count("\n")) == (2, 1)
+        assert f"{given[0]} is for brdfkit fit and report, and render fits nothing" in result.stderr
     for wrong in (["--fix", "f0"], ["--bound", "f0=1"], ["--fix", "f0=x"], ["--bound", "a=1,2,3"]):
         result = cli("fit", "paint.binary", "-m", "ggx", *wrong)
         assert (result.exit_code, result.stderr.count("\n")) == (2, 1)

@@ -332,6 +332,9 @@ SIZES = {
     "overflow.hdr": "-Y 4294967299 +X 18446744073709551617",
 }
 
+WIDTH = one_pixel(0.5).shape[1]
+PACKED = bytes((2, 2, WIDTH >> 8, WIDTH & 255))  # how a row begins; Mitsuba crashed without
+
 
 @pytest.fixture
 def bad(tmp_path, monkeypatch):
@@ -343,6 +346,11 @@ def bad(tmp_path, monkeypatch):
     mi.Bitmap(good).write("whole.hdr")
     whole = (tmp_path / "whole.hdr").read_bytes()
     (tmp_path / "cut.hdr").write_bytes(whole[: len(whole) // 2])
+    begins = whole.index(PACKED) + 4  # the first row's colours
+    unpacked = whole[begins : whole.index(PACKED, begins)] + bytes(1000)
+    (tmp_path / "half_packed.hdr").write_bytes(whole[:begins] + unpacked)
+    (tmp_path / "wide_run.hdr").write_bytes(whole[:begins] + b"\xff\0" + whole[begins + 2 :])
+    (tmp_path / "words.hdr").write_bytes(whole.replace(b"+X", b"+X x"))
     for name, size in SIZES.items():
         head = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n{size}\n"
         (tmp_path / name).write_bytes(head.encode() + whole[-20:])
@@ -363,6 +371,9 @@ def test_bad_files(bad, module_in_llvm):
         "cut.exr": "fetch it again",
         "cut.hdr": "fetch it again",
         **dict.fromkeys(SIZES, "states a size for which there is no memory"),
+        "half_packed.hdr": "its row 2 is damaged",
+        "wide_run.hdr": "its row 1 is damaged",
+        "words.hdr": "Mitsuba cannot load it",
         "text.exr": "fetch it again",
         "empty.exr": "fetch it again",
         "one.exr": "1×1 pixels; it needs 2×2",

@@ -391,6 +391,9 @@ FILES = {
     "a picture that is named twice": (f"P\n{LIGHT}\n{LIGHT}", "a.exr is named twice"),
     "a camera that looks along up": (f"P\nup = [0, 1e-9, 1]\n{LIGHT}", "looks along up"),
     "a file of Notepad's": (f"\ufeffP\n{LIGHT}\npower = 1", "[[light]] 1 has 'power'"),
+    "a number of 400 digits": (f"[sample]\nwidth = 1{400 * '0'}", "should be a number below 1e30"),
+    "a number of 5000 digits": (f"[sample]\nwidth = 1{5000 * '0'}", "it is no TOML"),
+    "a place far away": (f"{NO_PLACE}\norigin = [0, 1e308, 1]\n{LIGHT}", "3 numbers below 1e30"),
     "a place that is none": ('P\n[[light]]\npicture = "a.jpg"\nposition = [0, 1]', "position"),
 }
 

@@ -82,6 +82,9 @@ def test_resizing_keeps_means_places_and_labels():
         (np.ones((2, 2, 2), complex), {}, "complex128, where real numbers"),
         (np.full((2, 2, 2), 0.5), {"labels": True}, "no whole numbers, and so no labels"),
         (np.ones((2, 2, 2)), {"to_world": np.zeros((4, 4))}, "no invertible 4×4 matrix"),
+        (np.ones((2, 2, 2)), {"to_world": np.diag([1e200, 1, 1, 1])}, "no invertible 4×4 matrix"),
+        (np.ones((2, 2, 2)), {"to_world": np.diag([1e-200, 1, 1, 1])}, "no invertible 4×4 matrix"),
+        (np.full((2, 2, 2), 3e9, np.float32), {"labels": True}, "no whole numbers"),
         (np.ones((2, 2, 2)), {"to_world": np.eye(3)}, "no invertible 4×4 matrix"),
         (np.ones((2, 2, 2)), {"to_world": np.diag([1, 1, 1, 2])}, "no invertible 4×4 matrix"),
         (np.full((2, 2, 2), 1e60), {}, "8 of 8 voxels are not finite"),
@@ -176,6 +179,13 @@ def test_gradients_converge_to_those_of_marschner_and_lobb():
     for i in range(3):
         ahead, behind = (marschner_lobb.value(*(points + sign * step[i]).T) for sign in (1, -1))
         np.testing.assert_allclose((ahead - behind) / 2e-6, true[:, i], atol=1e-7)
+
+
+def test_gradient_magnitudes_of_large_values():
+    """Their squares have no room in 32 bits."""
+    values = np.random.default_rng(0).random((3, 4, 5), np.float32)
+    large = bk.Volume(values * np.float32(2.0**90)).gradient_magnitude
+    assert (large == bk.Volume(values).gradient_magnitude * np.float32(2.0**90)).all()
 
 
 def test_gradient_magnitudes_of_many_layers_are_those_of_one_piece():

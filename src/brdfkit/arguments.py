@@ -1,10 +1,13 @@
 """Checks arguments of public verbs: a wrong one is an error that names it."""
 
+import sys
 from collections.abc import Mapping
 
 import numpy as np
 
 from brdfkit.errors import BrdfkitError
+
+LARGEST = sys.float_info.max  # that an int may exceed
 
 
 def to_whole_number(what, value, least):
@@ -32,13 +35,13 @@ def to_pair(what, given):
 
 def to_number(what, value):
     """`value` as a finite float."""
-    if not isinstance(value, int | float | np.number) or not np.isfinite(value):
+    if not isinstance(value, int | float | np.number) or not abs(value) <= LARGEST:
         raise BrdfkitError(f"{what} = {value!r} should be a number.")
     return float(value)
 
 
 def to_positive(what, value):
     """`value` as a float above 0 and finite."""
-    if not isinstance(value, int | float | np.number) or not 0 < value < np.inf:
+    if not isinstance(value, int | float | np.number) or not 0 < value <= LARGEST:
         raise BrdfkitError(f"{what} = {value!r} should be a number above 0.")
     return float(value)

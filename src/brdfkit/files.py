@@ -30,20 +30,44 @@ def write_safely(path):
     ...     beside.write_text("{}")
     """
     target = require_writable(path)
-    beside = target.with_name(f".brdfkit-{os.urandom(4).hex()}{target.suffix}")
+    with _in_utf8(target.parent) as folder:
+        beside = folder / f".brdfkit-{os.urandom(4).hex()}{target.suffix}"
+        try:
+            beside.touch(exist_ok=False)
+            yield beside
+            os.replace(beside, target)
+            for _, after in _watchers.get():
+                after(target)
+        except OSError as error:
+            raise BrdfkitError(
+                f"{path}: cannot be written ({_reason(error)}); choose another folder or make room."
+            ) from error
+        finally:
+            with suppress(OSError):
+                beside.unlink()
+
+
+@contextmanager
+def _in_utf8(folder):
+    """The path of a folder in UTF-8, as native libraries take it: where it is not, of a link."""
+    if is_utf8(folder):
+        yield folder
+        return
+    from tempfile import TemporaryDirectory  # only here: `--help` should be instant
+
+    with TemporaryDirectory(prefix="brdfkit-") as place:
+        link = Path(place) / "folder"
+        link.symlink_to(folder, target_is_directory=True)
+        yield link
+
+
+def is_utf8(path):
+    """Whether the bytes of a path are UTF-8: else Python has lone surrogates in their place."""
     try:
-        beside.touch(exist_ok=False)
-        yield beside
-        os.replace(beside, target)
-        for _, after in _watchers.get():
-            after(target)
-    except OSError as error:
-        raise BrdfkitError(
-            f"{path}: cannot be written ({_reason(error)}); choose another folder or make room."
-        ) from error
-    finally:
-        with suppress(OSError):
-            beside.unlink()
+        str(path).encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def make_folder(path):

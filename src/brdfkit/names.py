@@ -32,12 +32,14 @@ def format_percent(percent):
 def printable(text, keep=""):
     """`text` without control characters, by which a file could steer the terminal.
 
-    The control characters in `keep` stay.
+    The control characters in `keep` stay. Bytes of a file's name that are no UTF-8, which Python
+    has as lone surrogates, become question marks.
 
     >>> printable("gold\\x1b[2J")
     'gold[2J'
     """
-    return "".join(c for c in str(text) if c in keep or c not in CONTROL)
+    shown = "".join(c for c in str(text) if c in keep or c not in CONTROL)
+    return shown.encode(errors="replace").decode()
 
 
 def listed(words):

@@ -15,6 +15,8 @@ from brdfkit.files import watch_writing
 from brdfkit.names import printable
 
 NO_ROOM = errno.ENOSPC, errno.EDQUOT, errno.EIO  # writing to standard output, a file, failed
+OF_FITS = "--fix", "--bound", "--tie"
+LONGEST = 2000  # characters of a sentence
 
 
 class Group(click.Group):
@@ -92,6 +94,11 @@ def _describe_misuse(error):
     message = error.format_message()
     if isinstance(error, click.NoSuchCommand):
         message = str(no_such("command", error.command_name, error.ctx.command.commands))
+    elif isinstance(error, click.NoSuchOption) and error.option_name in OF_FITS:
+        message = (
+            f"{error.option_name} is for brdfkit fit and report, and {error.ctx.info_name} fits "
+            "nothing: name a fit that they saved, or set a model's parameters by --set"
+        )
     elif isinstance(error, click.NoSuchOption):
         parameters = error.ctx.command.get_params(error.ctx)
         options = [p.opts[-1] for p in parameters if isinstance(p, click.Option)]
@@ -111,8 +118,11 @@ def _drop_output():
 
 
 def say(message):
-    """Print one sentence for people on standard error."""
-    click.echo(f"brdfkit: {printable(' '.join(str(message).split()))}", err=True)
+    """Print one sentence for people on standard error; what a file makes too long is cut."""
+    text = printable(" ".join(str(message).split()))
+    if len(text) > LONGEST:
+        text = f"{text[: LONGEST // 2]} … {text[-LONGEST // 4 :]}"
+    click.echo(f"brdfkit: {text}", err=True)
 
 
 def _say_warning(message, *_args, **_kwargs):

@@ -8,6 +8,7 @@ import click
 
 import brdfkit
 from brdfkit.catalogue import shipped
+from brdfkit.commands._settings import parse_settings
 from brdfkit.errors import BrdfkitError
 
 SPP = 64  # samples per pixel
@@ -49,8 +50,8 @@ def fit_options(default, others="FILE.py with one, or best"):
 
             _require_one_each(kwargs["names"])
             how = {"loss": loss, "robust": robust, "solver": solver, "max_angle": max_angle}
-            how |= {"fixed": _to_numbers(fixed, "--fix", 1), "anisotropic": False if tie else None}
-            how["bounds"] = _to_numbers(bounds, "--bound", 2)
+            how |= {"fixed": parse_settings(fixed, "--fix"), "anisotropic": False if tie else None}
+            how["bounds"] = parse_settings(bounds, "--bound", "LOW,HIGH")
             how["constraints"] = () if albedo_at_most is None else AlbedoAtMost(albedo_at_most)
             return command(*args, how=how, **kwargs)
 
@@ -59,22 +60,6 @@ def fit_options(default, others="FILE.py with one, or best"):
         return with_settings
 
     return add
-
-
-def _to_numbers(words, option, count):
-    """Name → number, or a tuple of `count` of them, of words NAME=NUMBER,... behind an `option`."""
-    found = {}
-    for word in words:
-        name, _, text = word.partition("=")
-        try:
-            numbers = tuple(map(float, text.split(",")))
-        except ValueError:
-            numbers = ()
-        if not name or len(numbers) != count:
-            form = "NAME=VALUE" if count == 1 else "NAME=LOW,HIGH"
-            raise BrdfkitError(f"{option} {word!r} should read {form}; repeat {option} for more.")
-        found[name] = numbers[0] if count == 1 else numbers
-    return found
 
 
 def _require_one_each(names):

@@ -4,6 +4,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from brdfkit import materials
+from brdfkit.commands._settings import parse_settings
 from brdfkit.errors import BrdfkitError
 from brdfkit.files import make_folder, require_writable, write_safely
 from brdfkit.model import labels
@@ -39,28 +40,10 @@ def refuse_mends(name, what, mends):
 
 def model_values(label, settings):
     """The values by name of ``PARAMETER=VALUE`` settings; an error where the model lacks one."""
-    values = parse_settings(settings)
+    values = parse_settings(settings, "--set", "VALUE", "R,G,B")
     for parameter in values:
         labels.model(label).parameter(parameter)
     return values
-
-
-def parse_settings(settings):
-    """The values by name of ``PARAMETER=VALUE`` settings; VALUE is a number or R,G,B."""
-    parsed = {}
-    for setting in settings:
-        parameter, equals, text = setting.partition("=")
-        try:
-            parts = [float(part) for part in text.split(",")]
-        except ValueError:
-            parts = []
-        if not equals or len(parts) not in (1, 3):
-            should = f"{setting!r} should read {parameter}=VALUE or {parameter}=R,G,B."
-            if len(parts) == 2 and "." not in text:
-                should += f" Decimals take a point: {setting.replace(',', '.')}."
-            raise BrdfkitError(should)
-        parsed[parameter] = parts[0] if len(parts) == 1 else parts
-    return parsed
 
 
 @contextmanager

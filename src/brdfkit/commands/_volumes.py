@@ -7,6 +7,7 @@ import click
 
 import brdfkit
 from brdfkit.commands._errors import say
+from brdfkit.commands._settings import parse_settings
 from brdfkit.errors import BrdfkitError, nearest, no_such
 
 # by the names of their files: to import them takes a second
@@ -97,7 +98,7 @@ def render_volume(name, of_volume, values, console, **how):
     from brdfkit.volumes.report import may_be_labels
 
     loading = {key: of_volume.pop(key) for key in ("labels", "downsample") if key in of_volume}
-    settings = dict(map(_setting, values))
+    settings = parse_settings(values, "--set", free=True)
     with console.progress(f"read {name}"):
         volume = load_volume(name, **loading)
     if may_be_labels(volume) and "labels" not in loading:
@@ -122,17 +123,3 @@ def _warn_of_units(volume, transfer):
             f"{transfer} is for HU, in which air is -1000; {volume.name} has {low:.6g} to "
             f"{high:.6g}: if these are no HU, leave --transfer out."
         )
-
-
-def _setting(text):
-    """(name, value) of a NAME=VALUE: a number, R,G,B, true, false or a word."""
-    name, equals, value = text.partition("=")
-    if not (name and equals and value):
-        raise BrdfkitError(f"{text!r} should read PARAMETER=VALUE.")
-    if value in ("true", "false"):
-        return name, value == "true"
-    try:
-        numbers = [float(part) for part in value.split(",")]
-    except ValueError:
-        return name, value
-    return name, numbers[0] if len(numbers) == 1 else numbers

@@ -3,6 +3,7 @@
 import click
 
 from brdfkit.commands._options import output_options, values_option
+from brdfkit.commands._settings import parse_settings
 
 
 @click.command()
@@ -29,13 +30,13 @@ def check(things, values, console):
 def _find_subject(name, settings):
     """The material of a name, or the dictionary of a plugin that is no model, with `settings`."""
     from brdfkit.checks.plugin_subject import example, is_no_model, require_declared
-    from brdfkit.commands._targets import material, parse_settings
+    from brdfkit.commands._targets import material
     from brdfkit.host.users_plugins import load_plugins
 
     if name.endswith(".py"):
         (name,) = load_plugins(name)
     if is_no_model(name):
-        values = parse_settings(settings)
+        values = parse_settings(settings, "--set", "VALUE", "R,G,B")
         require_declared(name, values)
         return example(name, **values)
     return material(name, settings) if settings else name

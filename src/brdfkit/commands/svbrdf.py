@@ -6,6 +6,7 @@ import click
 
 from brdfkit.commands._errors import say
 from brdfkit.commands._options import writing_options
+from brdfkit.commands._settings import parse_settings
 from brdfkit.commands._stopping import status
 from brdfkit.errors import Interrupted
 
@@ -61,7 +62,7 @@ def svbrdf(folder, model, resolution, anisotropic, fixed, smoothness, linearise,
     from brdfkit.photographs import svbrdf as fit_maps
     from brdfkit.photographs.writing import require_files
 
-    values, output = dict(map(_to_value, fixed)), output or folder / "maps"
+    values, output = parse_settings(fixed, "--fixed"), output or folder / "maps"
     interrupted = False
     with results_folder(output), console.progress("fit maps") as progress:
         require_files(labels.model(labels.read_files(model)), output)
@@ -89,14 +90,3 @@ def svbrdf(folder, model, resolution, anisotropic, fixed, smoothness, linearise,
     if interrupted:
         say("interrupted; these are the maps so far, without standard errors.")
         click.get_current_context().exit(status())
-
-
-def _to_value(text):
-    """(name, value) of a text NAME=VALUE."""
-    name, _, value = text.partition("=")
-    try:
-        return name, float(value)
-    except ValueError:
-        raise click.BadParameter(
-            f"{text!r} should read NAME=VALUE; repeat --fixed for more.", param_hint="--fixed"
-        ) from None

@@ -55,7 +55,7 @@ def from_json(text: str, where: str = "the field") -> Any:
 def save(node, path):
     """Write a node to the file `path`, as JSON."""
     with write_safely(path) as beside:
-        beside.write_text(to_json(node))
+        beside.write_text(to_json(node), encoding="utf-8")
 
 
 def load(path: str | PathLike[str]) -> Any:
@@ -109,7 +109,7 @@ def _to_data(value):
 
 def _to_node(data, where):
     if not isinstance(data, dict) or "kind" not in data:
-        raise BrdfkitError(f'{where}: {str(data)[:40]} should be an object with a "kind".')
+        raise BrdfkitError(f'{where}: {str(data)[:40]!r} should be an object with a "kind".')
     cls = kind(data["kind"], where)
     known = {f.name: f for f in _stored(cls)}
     given = {name: value for name, value in data.items() if name != "kind"}

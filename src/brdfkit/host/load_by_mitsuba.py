@@ -1,6 +1,7 @@
 """Loads scenes and plugins by Mitsuba; what it refuses becomes one sentence."""
 
 from brdfkit.errors import BrdfkitError
+from brdfkit.files import is_utf8
 from brdfkit.jit.threads import two_threads
 
 OURS = "BrdfkitError: "
@@ -12,6 +13,8 @@ def load_by_mitsuba(function, source, name):
     Raises `BrdfkitError`, which names it `name`, where Mitsuba cannot; a sentence of a plugin of
     ours stands for itself.
     """
+    if isinstance(source, str) and not is_utf8(source):
+        raise BrdfkitError(f"{name}: its path is no UTF-8, as Mitsuba needs it; rename the file.")
     try:
         with two_threads():
             return function(source, parallel=False)
@@ -19,10 +22,15 @@ def load_by_mitsuba(function, source, name):
         raise BrdfkitError(
             f"{name}: Mitsuba cannot load it: it states a size for which there is no memory."
         ) from error
-    except (RuntimeError, TypeError) as error:
-        if "KeyboardInterrupt" in str(error):  # Ctrl-C in a plugin that is written in Python
+    except BrdfkitError:
+        raise
+    except (RuntimeError, TypeError, ValueError) as error:
+        said = str(error)
+        if isinstance(error, UnicodeDecodeError):  # a damaged file's bytes are in the message
+            said = error.object.decode(errors="replace")
+        if "KeyboardInterrupt" in said:  # Ctrl-C in a plugin that is written in Python
             raise KeyboardInterrupt from None
-        lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+        lines = [line.strip() for line in said.splitlines() if line.strip()]
         # a plugin written in Python reports its whole traceback: people need its last line only
         reason = lines[-1] if any("Traceback" in line for line in lines) else " ".join(lines)
         if OURS in reason:

@@ -6,6 +6,7 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 from brdfkit.host.load_by_mitsuba import load_by_mitsuba
+from brdfkit.host.radiance_rows import require_rows
 
 LINEAR = ".exr", ".hdr", ".pfm", ".rgbe"  # files without a curve for screens
 
@@ -33,6 +34,8 @@ def read_pixels(path, name):
     """
     import mitsuba as mi
 
+    if Path(path).is_file():
+        require_rows(path, name)
     return load_by_mitsuba(lambda file, parallel: pixels_of(mi.Bitmap(file)), str(path), name)
 
 

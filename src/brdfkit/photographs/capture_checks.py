@@ -56,7 +56,7 @@ def _require_pictures(capture):
         if not np.isfinite(picture).all():
             bad = int((~np.isfinite(picture)).any(axis=2).sum())
             raise BrdfkitError(f"{name}: {bad:,} of its pixels are not finite.")
-        if not picture.mean() > 0:
+        if not picture.mean(dtype=float) > 0:
             raise BrdfkitError(f"{name}: it is black; leave it out, or check its exposure.")
 
 

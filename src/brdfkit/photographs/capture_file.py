@@ -49,7 +49,7 @@ def _tables(folder, path):
         raise BrdfkitError(f"{folder}: there is no {NAME} in it, which says where the lights are.")
     try:
         said = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except ValueError as error:  # that it is no TOML, no UTF-8, or has a number too long
         raise BrdfkitError(f"{path}: it is no TOML ({error}).") from error
     require_known(path, said, ("sample", "camera", "light"), "the file")
     return said

@@ -59,8 +59,9 @@ def svbrdf(
     strongly as lights that were held out are predicted best. Then Mitsuba renders the photographs
     of the maps, and what the real ones show beyond is fitted, until only noise is left. Direct
     light alone is fitted: a flat sample throws hardly any light on itself. Ctrl-C raises
-    `Interrupted`, whose ``best`` has the finest maps so far, without standard errors. Equal photographs give equal maps but
-    for rounding, about 1e-8, since Mitsuba adds light up in any order.
+    `Interrupted`, whose ``best`` has the finest maps so far, without standard errors. Equal
+    photographs give equal maps but for rounding, about 1e-8, since Mitsuba adds light up in any
+    order.
 
     Parameters
     ----------

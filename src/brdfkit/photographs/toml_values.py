@@ -4,12 +4,14 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError
 
+LARGEST = 1e30  # of a number: squares of lengths, and their sums, stay finite
+
 
 def to_number(path, table, name, where):
     """The number `name` of a table."""
     value = table.get(name)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
-        raise BrdfkitError(f"{path}: {where} {name} = {value!r} should be a number.")
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < LARGEST:
+        raise BrdfkitError(f"{path}: {where} {name} = {value!r} should be a number below 1e30.")
     return float(value)
 
 
@@ -20,9 +22,10 @@ def to_numbers(path, value, what, shape):
         found = np.array(value)
     except ValueError:
         found = np.array("lists of different lengths")
-    if found.shape != shape or found.dtype.kind not in "if" or not np.isfinite(found).all():
+    numbers = found.shape == shape and found.dtype.kind in "if"
+    if not numbers or not (np.abs(found.astype(float)) < LARGEST).all():
         count = " × ".join(map(str, shape))
-        raise BrdfkitError(f"{path}: {what} = {value!r} should be {count} numbers.")
+        raise BrdfkitError(f"{path}: {what} = {value!r} should be {count} numbers below 1e30.")
     return found.astype(float)
 
 

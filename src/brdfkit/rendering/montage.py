@@ -54,7 +54,7 @@ def write_exr(rendering, path):
         if isfinite(rendering.noise_floor):
             header["noise_floor"] = rendering.noise_floor
         channels = {c: np.ascontiguousarray(picture[..., i]) for i, c in enumerate("RGB")}
-        parts.append(OpenEXR.Part(header, channels, title))
+        parts.append(OpenEXR.Part(header, channels, printable(title)))
     try:
         OpenEXR.File(parts).write(str(path))
     except RuntimeError as error:  # a full disk, for instance

@@ -56,9 +56,9 @@ def medians(sweep, models):
 
 
 def write_csv(sweep, path):
-    """Write all rows as comma-separated values."""
-    columns = _columns(sweep)
-    with write_safely(path) as beside, beside.open("w", encoding="utf-8", newline="") as stream:
+    """Write all rows as comma-separated values; bytes of names that are no UTF-8 become "?"."""
+    columns, how = _columns(sweep), {"encoding": "utf-8", "errors": "replace", "newline": ""}
+    with write_safely(path) as beside, beside.open("w", **how) as stream:
         writer = csv.writer(stream)
         writer.writerow(columns)
         writer.writerows(zip(*columns.values(), strict=True))

@@ -4,6 +4,8 @@ The reference for what renderers do, in NumPy and double precision. Voxels of in
 their centres at whole numbers; from -½ to n - ½ is the box of the volume.
 """
 
+import math
+
 import numpy as np
 
 from brdfkit.geometry.multilinear import bracket, corners
@@ -29,11 +31,14 @@ def gradient_magnitude(values, to_world):
     result = np.empty(values.shape, np.float32)
     to_indices = np.linalg.inv(to_world[:3, :3])
     metric = to_indices @ to_indices.T  # diagonal, unless the axes are oblique to each other
+    # A power of two, by which division is exact: squares of large values have no room in 32 bits
+    largest = max(1.0, float(values.max()), -float(values.min()))
+    unit = np.float32(2.0 ** math.floor(math.log2(largest)))
     for k in range(0, len(values), LAYERS):
         before, behind = min(k, 1), k + LAYERS + 1
-        slab = values[k - before : behind].astype(np.float32)
+        slab = values[k - before : behind].astype(np.float32) / unit
         square = _square(slab, metric)[before : before + LAYERS]
-        result[k : k + LAYERS] = np.sqrt(np.maximum(square, 0))
+        result[k : k + LAYERS] = unit * np.sqrt(np.maximum(square, 0))
     return result
 
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from brdfkit.errors import BrdfkitError, no_such
 from brdfkit.files import contents, write_safely
+from brdfkit.names import printable
 from brdfkit.volumes import slicer_presets
 
 KIND = "brdfkit transfer function"
@@ -93,7 +94,7 @@ def from_json(cls, text, where):
 
 
 def _from_record(cls, record):
-    settings = {word: str(record[word]) for word in WORDS if word in record}
+    settings = {word: printable(record[word]) for word in WORDS if word in record}
     settings["extinction"] = record.get("extinction", 1.0)
     if "boundaries" in record:
         given = [record.get(key) for key in ("boundaries", "thickness", "range")]
@@ -105,7 +106,7 @@ def _from_record(cls, record):
         return cls(**{field: record.get(field) for field in fields}, **settings)
     try:
         points = np.array(record["points"], float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         points = np.empty(0)
     if points.ndim != 2 or points.shape[1] != 5:
         raise BrdfkitError('"points" should be rows of five numbers: value, R, G, B, A.')

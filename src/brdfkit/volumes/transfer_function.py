@@ -139,7 +139,10 @@ class TransferFunction(Conversions):
 
         It shows where the value changes, and hides what is even: ``[(0, 0), (50, 1)]``.
         """
-        points = np.asarray(ramp, float)
+        try:
+            points = np.asarray(ramp, float)
+        except (TypeError, ValueError, OverflowError):
+            points = np.empty(0)
         if points.ndim != 2 or points.shape[1] != 2 or self.gradients is not None:
             raise BrdfkitError(
                 f"{self.name}: a ramp is points (gradient magnitude, factor), (m, 2), and the "

@@ -13,6 +13,7 @@ from brdfkit.errors import BrdfkitError
 from brdfkit.volumes import in_mitsuba, reconstruction, reducing, windows
 from brdfkit.volumes.transfer_function import TransferFunction
 
+LARGEST = 1e15  # of a transform's numbers, whose squares are multiplied with 32 bits
 MOST = 1e30  # of values, and the inverse of their span: renderers have 32 bits
 
 
@@ -179,10 +180,13 @@ def require_transform(to_world, name):
     to_world = np.asarray(to_world, float)
     fine = to_world.shape == (4, 4) and np.isfinite(to_world).all()
     fine = fine and (to_world[3] == (0, 0, 0, 1)).all()
+    fine = fine and np.abs(to_world).max() < LARGEST
+    fine = fine and np.abs(to_world[:3, :3]).max(axis=0).min() > 1 / LARGEST
     if not fine or not abs(np.linalg.det(to_world[:3, :3])) > 0:
         raise BrdfkitError(
-            f"{name}: its transform from voxels to the world is no invertible 4×4 matrix: the "
-            "spacing or an axis is 0 or not finite; mend the header or give the spacing."
+            f"{name}: its transform from voxels to the world is no invertible 4×4 matrix of "
+            "numbers below 1e15: the spacing or an axis is 0, not finite, too small or too large; "
+            "mend the header or give the spacing."
         )
     return to_world
 
@@ -222,7 +226,8 @@ def _checked(values, name, labels):
 
 
 def _whole_numbers(values, name):
-    whole = values.astype(np.int32)
+    with np.errstate(invalid="ignore"):  # beyond 32 bits they become others
+        whole = values.astype(np.int32)
     if not (whole == values).all():
         raise BrdfkitError(
             f"{name}: its values are no whole numbers, and so no labels; leave labels=True away."
