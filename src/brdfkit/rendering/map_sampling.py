@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -63,22 +64,22 @@ class SamplerComparison(Shown):
     @property
     def rounds(self) -> int:
         """Rounds that were finished."""
-        return len(self.noise[self.best])
+        return len(self.noise["envmap"])
 
-    @property
+    @cached_property
     def costs(self) -> dict[str, float]:
         """Noise times time over that of Mitsuba's `envmap`, by sampler, the least first."""
-        logs = self._logs()
-        means = {name: np.mean(logs[name] - logs["envmap"]) for name in logs}
-        return {name: float(np.exp(means[name])) for name in sorted(means, key=means.__getitem__)}
+        found = {n: float(self.noise[n].mean() * self.seconds[n].mean()) for n in self.noise}
+        return {
+            name: found[name] / found["envmap"] for name in sorted(found, key=found.__getitem__)
+        }
 
     @property
     def best(self) -> str:
         """The sampler of the least cost."""
-        logs = self._logs()
-        return min(logs, key=lambda name: logs[name].mean())
+        return next(iter(self.costs))
 
-    @property
+    @cached_property
     def p_values(self) -> dict[str, float]:
         """How probable a difference to the best as large as this one is if there is none.
 
@@ -87,27 +88,25 @@ class SamplerComparison(Shown):
         """
         from scipy.stats import studentized_range
 
-        names, logs = list(self.noise), self._logs()
-        x = np.array([logs[name] for name in names])
-        k, rounds = x.shape
-        freedom = (k - 1) * (rounds - 1)
-        spread = max(self._spread(), 1e-12)
-        distance = {name: logs[name].mean() - logs[self.best].mean() for name in names}
-        return {n: float(studentized_range.sf(d / spread, k, freedom)) for n, d in distance.items()}
+        logs = {name: np.log(self.noise[name] * self.seconds[name]) for name in self.noise}
+        freedom = (len(logs) - 1) * (self.rounds - 1)
+        found = {}
+        for name, costs in logs.items():
+            apart = abs(costs.mean() - logs[self.best].mean()) / max(self._spread, 1e-12)
+            found[name] = float(studentized_range.sf(apart, len(logs), freedom)) if apart else 1.0
+        return found
 
     def significant(self, name: str) -> bool:
         """Whether a sampler costs more than the best, beyond chance at 5 %."""
         return self.p_values[name] < LEVEL
 
-    def _logs(self):
-        return {name: np.log(self.noise[name] * self.seconds[name]) for name in self.noise}
-
+    @property
     def _spread(self):
         """The standard error of the mean logarithm of a cost, pooled over samplers."""
-        x = np.array(list(self._logs().values()))
+        x = np.log([self.noise[name] * self.seconds[name] for name in self.noise])
         rest = x - x.mean(axis=0) - x.mean(axis=1, keepdims=True) + x.mean()
-        k, rounds = x.shape
-        return float(np.sqrt((rest**2).sum() / ((k - 1) * (rounds - 1)) / rounds))
+        freedom = (x.shape[0] - 1) * (x.shape[1] - 1)
+        return float(np.sqrt((rest**2).sum() / freedom / x.shape[1]))
 
     @property
     def verdict(self) -> str:
@@ -124,14 +123,15 @@ class SamplerComparison(Shown):
 
     def table(self) -> list[tuple[str, ...]]:
         """A row of texts for each sampler, under `COLUMNS`; noise and cost over envmap's."""
-        noise, p, rows = self.noise, self.p_values, []
+        noise, p = self.noise, self.p_values
+        rows: list[tuple[str, ...]] = []
         for name, cost in self.costs.items():
-            ratio = float(np.exp(np.mean(np.log(noise[name] / noise["envmap"]))))
+            ratio = float(noise[name].mean() / noise["envmap"].mean())
             said = "worse" if p[name] < LEVEL else "no clear difference"
             chance = "p < 0.001" if p[name] < 1e-3 else f"p = {p[name]:.2g}"
             beside = "best" if name == self.best else f"{said}, {chance}"
-            time_of = 1e3 * float(np.median(self.seconds[name]))
-            error = 100 * np.sqrt(2) * self._spread()
+            time_of = 1e3 * float(self.seconds[name].mean())
+            error = 100 * np.sqrt(2) * self._spread
             shown = f"{ratio:.2f}", f"{time_of:.0f}", f"{cost:.2f}", f"{error:.0f}", beside
             rows.append((name, *shown))
         return rows
