@@ -60,6 +60,9 @@ look-up of the radiance, so that they differ in the sampler alone.
   making the sampler anew, as an update of the map does. **Gradient's sum** is that of the
   derivatives of the mean over all texels, over `envmap`'s: 1 where they agree.
 
+`brdfkit samplers MAP --scene MESH.obj --material NAME` compares them on a map, mesh and material of
+yours.
+
 `python benchmarks/environment_samplers.py MAP ...` makes this page anew; these maps were {maps}.
 Pictures have {size} × {size} pixels of {spp} samples. Everything was measured {repeats} times:
 {pictures} pictures a time for noise, the least of {rounds} times for pictures and gradients. A

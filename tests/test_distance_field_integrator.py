@@ -6,8 +6,9 @@ import drjit as dr
 import numpy as np
 import pytest
 
+import brdfkit as bk
 from brdfkit import BrdfkitError
-from brdfkit.distance_fields import box, kinds, plane, sphere, torus
+from brdfkit.distance_fields import box, from_function, kinds, plane, sphere, torus
 from brdfkit.distance_fields.shading.direct_light import DirectLight
 from brdfkit.rendering.progressive import Progressive
 
@@ -409,3 +410,31 @@ def test_what_is_raised_within_a_loop_arrives_as_it_is(mi, monkeypatch, error):
     with pytest.raises(type(error)) as found:
         Progressive({"plane": loaded}).generate("plane", 1)
     assert found.value is error
+
+
+def test_a_plain_function_is_shown_as_the_same_solid_is(mi):
+    """In the same picture, by rays, and by a grid of it; what is too steep is refused."""
+    cube = (-1,) * 3, (1,) * 3
+    ball, far, around, steep = (
+        bk.render(thing, spp=4, size=(24, 18)).pictures["field"]
+        for thing in (
+            sphere(1),
+            lambda p: dr.sqrt(p.x * p.x + p.y * p.y + p.z * p.z) - 1,
+            from_function(lambda p: np.linalg.norm(p, axis=-1) - 1, bounds=cube),
+            from_function(lambda p: 3 * dr.sqrt(p.x**2 + p.y**2 + p.z**2) - 3, 3, cube),
+        )
+    )
+    assert ball.max() > 0.1
+    np.testing.assert_allclose(far, ball, atol=0.02)
+    np.testing.assert_allclose(steep, ball, atol=0.02)
+    assert np.median(np.abs(around - ball)) < 0.01
+    with pytest.raises(BrdfkitError, match="steeper than its bound 1; divide it by its slope, or"):
+        bk.render(lambda p: 9 * (p.x * p.x + p.y * p.y + p.z * p.z - 1), spp=1, size=8)
+
+
+def test_a_function_carries_the_derivatives_of_what_it_holds(mi):
+    radius = mi.Float(1)
+    dr.enable_grad(radius)
+    field = from_function(lambda p: dr.sqrt(p.x * p.x + p.y * p.y + p.z * p.z) - radius)
+    dr.backward(dr.sum(field.distance(mi.Point3f(0, 0, [2, 3]))))
+    assert dr.grad(radius)[0] == -2

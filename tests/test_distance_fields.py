@@ -2,7 +2,9 @@
 
 import re
 import sys
+from dataclasses import dataclass
 
+import drjit as dr
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -643,3 +645,62 @@ def test_a_library_that_is_missing_is_named(library, monkeypatch):
     call = df.from_mesh if library == "igl" else df.to_mesh
     with pytest.raises(BrdfkitError, match=r'pip install "brdfkit\[distance_fields\]"'):
         call(df.sphere(1))
+
+
+# Python of the user's
+
+
+def ball(p):
+    return dr.sqrt(p.x * p.x + p.y * p.y + p.z * p.z) - 1
+
+
+def numpy_ball(points):
+    return np.linalg.norm(points, axis=-1) - 1
+
+
+BOX = (-1.5, -1.5, -1.5), (1.5, 1.5, 1.5)
+
+
+@pytest.mark.parametrize(("f", "near"), [(ball, 1e-12), (numpy_ball, 0.01)])
+def test_a_function_of_points_is_a_field(f, near, tmp_path):
+    field = df.from_function(f, bounds=BOX, resolution=64)
+    points = np.random.default_rng(0).uniform(-1.4, 1.4, (100, 3))
+    np.testing.assert_allclose(field(points), df.sphere(1)(points), atol=near)
+    again = df.from_json((field.at(1, 0, 0) | df.sphere(0.1)).to_json())  # as for the integrator
+    np.testing.assert_array_equal(again.children[0](points), field.at(1, 0, 0)(points))
+    if f is numpy_ball:
+        field.save(tmp_path / "ball.json")
+        np.testing.assert_allclose(df.load(tmp_path / "ball.json")(points), field(points))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class my_ball(df.Node):
+    def distance(self, p):
+        return ball(p)
+
+
+@pytest.mark.parametrize("part", [my_ball(), df.from_function(ball)])
+def test_python_of_the_users_is_not_saved_but_a_grid_of_it_is(part, tmp_path):
+    file = tmp_path / "field.json"
+    field = df.sphere(0.5) | part.at(0.1, 0, 0).k(0.1)
+    with pytest.raises(BrdfkitError, match=r"field.json: the field holds .* Python of yours"):
+        field.save(file)
+    assert not list(tmp_path.iterdir())
+    field.to_grid(8, BOX).save(file)
+    df.load(file)
+
+
+@pytest.mark.parametrize(
+    ("f", "how", "said"),
+    [
+        (numpy_ball, {}, "numpy_ball works on NumPy's arrays.*from_function.*bounds="),
+        (lambda p: "x", {}, r"is no function of points .*; it should take points p with p\.x"),
+        (lambda p: np.ones((3, 3)), {}, r"gives \(3, 3\) for 2 points"),
+        (3, {}, "3 is no function; it should take"),
+        (ball, {"lipschitz": 0}, "lipschitz = 0 should be a number above 0"),
+        (ball, {"bounds": 3}, "bounds = 3 should be two corners"),
+    ],
+)
+def test_what_is_no_function_of_points_is_said(f, how, said):
+    with pytest.raises(BrdfkitError, match=said):
+        df.from_function(f, **how)

@@ -48,6 +48,8 @@ from .rendering import render as render
 from .rendering import render_orbit as render_orbit
 from .rendering import render_scene as render_scene
 from .rendering import render_volume as render_volume
+from .rendering.map_sampling import SamplerComparison as SamplerComparison
+from .rendering.map_sampling import compare_samplers as compare_samplers
 from .reporting.report import report as report
 from .reproducing import Reproduction as Reproduction
 from .reproducing import reproduce as reproduce

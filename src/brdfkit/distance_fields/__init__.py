@@ -10,9 +10,10 @@ array([2.])
 `operators.py`; `materials.py`: what it is made of. They are the nodes (`node.py`) of a tree, whose
 formulas, made of `functions.py`, run on Dr.Jit's arrays of any backend, on NumPy's points
 (`evaluation.py`), and on symbols (`symbols.py`), which make GLSL (`glsl.py`) of them. `stored.py`:
-files; `sampling.py`, `meshing.py`, `mesh_distances.py`: grids and meshes; `checking.py`: whether a
-distance is one; `intersecting.py`, `sphere_tracing.py`, `cone_tracing.py`, `raymarching.py`: where
-rays meet it (`hits.py`), and how that moves; `normals.py`. `shadows/`: soft shadows; `shading/`:
+files; `users_functions.py`: plain functions of points; `sampling.py`, `meshing.py`,
+`mesh_distances.py`: grids and meshes; `checking.py`: whether a distance is one; `intersecting.py`,
+`sphere_tracing.py`, `cone_tracing.py`, `raymarching.py`: where rays meet it (`hits.py`), and how
+that moves; `normals.py`. `shadows/`: soft shadows; `shading/`:
 pictures, for the integrator `distance_field`.
 """
 
@@ -52,3 +53,4 @@ from brdfkit.distance_fields.solids import torus as torus
 from brdfkit.distance_fields.sphere_tracing import sphere_trace as sphere_trace
 from brdfkit.distance_fields.stored import from_json as from_json
 from brdfkit.distance_fields.stored import load as load
+from brdfkit.distance_fields.users_functions import from_function as from_function

@@ -112,7 +112,7 @@ def check_steps(node: Any, walks: int = 500, steps: int = 8, seed: int = 0) -> N
             raise BrdfkitError(
                 f"the field is {f[i]:.3g} at {_place(a[i])}, yet its surface is within "
                 f"{np.linalg.norm(b[i] - a[i]):.3g} of that: it is steeper than its bound "
-                f"{node.lipschitz:g}; divide it by its slope."
+                f"{node.lipschitz:g}; divide it by its slope, or state a larger lipschitz."
             )
         a, f = b, g
 

@@ -14,7 +14,7 @@ class Conversions:
         return to_json(self)
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write the field to a file as JSON, which `load` reads."""
+        """Write the field to a file as JSON, which `load` reads; not nodes of the user's own."""
         from brdfkit.distance_fields.stored import save
 
         save(self, path)

@@ -53,9 +53,22 @@ def from_json(text: str, where: str = "the field") -> Any:
 
 
 def save(node, path):
-    """Write a node to the file `path`, as JSON."""
+    """Write a node to the file `path`, as JSON; `BrdfkitError` where it is of the user's Python."""
+    _require_known(node, path)
     with write_safely(path) as beside:
         beside.write_text(to_json(node), encoding="utf-8")
+
+
+def _require_known(node, path):
+    """Raise `BrdfkitError` for a kind of node that brdfkit does not have, or a function."""
+    if not type(node).__module__.startswith("brdfkit.") or node.kind == "function":
+        raise BrdfkitError(
+            f"{path}: the field holds {node!r:.60}, which is Python of yours, and no file can hold "
+            "that. Save a grid of the field, field.to_grid(128, bounds=(low, high)).save(path), or "
+            "a mesh, field.to_mesh(128, bounds=(low, high)).write(path)."
+        )
+    for child in node.children:
+        _require_known(child, path)
 
 
 def load(path: str | PathLike[str]) -> Any:

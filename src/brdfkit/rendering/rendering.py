@@ -6,12 +6,13 @@ picture once, so that after Ctrl-C all pictures have equally many samples.
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from types import FunctionType
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from brdfkit.arguments import to_positive, to_whole_number
-from brdfkit.distance_fields import Node
+from brdfkit.distance_fields import Node, from_function
 from brdfkit.errors import BrdfkitError
 from brdfkit.jit.threads import in_turn
 from brdfkit.rendering import field
@@ -28,7 +29,7 @@ SceneLike: TypeAlias = str | Path | Callable[[dict[str, Any], tuple[int, int]], 
 
 
 def render(
-    things: Renderable | Iterable[Renderable] | Node,
+    things: Renderable | Iterable[Renderable] | Node | Callable[[Any], Any],
     spp: int | None = None,
     size: int | tuple[int, int] | None = None,
     seed: int = 0,
@@ -49,7 +50,8 @@ def render(
         The materials, the reference first: objects, names or paths, BSDFs' dictionaries, which may
         hold a "name", or pairs of a name and one of these. Or a field of
         `brdfkit.distance_fields`, which is shown alone, under lamps with soft shadows; its parts
-        may have materials' names, `field.made_of("car_paint")`.
+        may have materials' names, `field.made_of("car_paint")`. A function of points is
+        such a field, too: see `brdfkit.distance_fields.from_function`.
     spp : int, optional
         Samples per pixel, by default 256; with `until`, the most of them, by default 16,384.
     size : int or (int, int), optional
@@ -92,6 +94,8 @@ def render(
     >>> print(render(["car_paint", "ggx"], until=45).errors())    # doctest: +SKIP
     """
     until = _to_decibels(until)
+    if isinstance(things, FunctionType):
+        things = from_function(things)
     default = field.SPP if isinstance(things, Node) else SPP
     spp, seed = _to_samples(spp, default, until), to_whole_number("seed", seed, least=0)
     size = None if size is None else to_size(size)

@@ -29,8 +29,8 @@ def mesh_scene(given):
     guessed (`upright.py`). With y up, z points to the camera. The mesh, by the vertices of its
     faces, is made as large as the ball and stands on the ground. Normals are made where it has
     none. An anisotropic material is brushed along the u of its texture coordinates, or around its
-    vertical axis where it has none. Raises `BrdfkitError` for a file that is missing or not such a mesh, for
-    one whose faces lack vertices or an area, and for an axis that there is not.
+    vertical axis where it has none. Raises `BrdfkitError` for a file that is missing or not such a
+    mesh, for one whose faces lack vertices or an area, and for an axis that there is not.
     """
     name, _, up = str(given).partition("#")
     path = Path(name)
