@@ -24,8 +24,7 @@ def test_the_least_of_many_errors_is_luck_and_the_least_bound_is_not(mi, picture
     found = views(mi, picture, knot(mi, 0.18, 0.3), [ALPHA])
     narrow = found.unknowns[0].coordinates(np.array([0.004]))
     right, wrong = (
-        [Residuals.at(found, x, SAMPLES, seed) for seed in range(20)]
-        for x in (found.start, narrow)
+        [Residuals.at(found, x, SAMPLES, seed) for seed in range(20)] for x in (found.start, narrow)
     )
     assert min(one.error for one in wrong) < min(one.error for one in right)
     assert min(one.bound for one in wrong) > max(one.bound for one in right)

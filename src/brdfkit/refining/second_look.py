@@ -57,7 +57,7 @@ class SecondLook:
 def look_again(views, found, seed):
     """(`found`, a `Search`, with pictures and equations of twice the samples; its `SecondLook`).
 
-    Where it is worse than the scene's own values: (a `Search` that did not converge, at these; None).
+    Where it is worse than the scene's own values: (a `Search` at these, not converged; None).
     """
     spp = 2 * TWICE * found.here.spp
     there = Residuals.at(views, found.here.x, spp, seed + SEED)
