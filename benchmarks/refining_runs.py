@@ -3,10 +3,10 @@ runs against known truths, some 20 minutes.
 
     python benchmarks/refining_runs.py [SCENE ...] [--samples N] [--seeds 0 1 ...] [-o runs.json]
 
-Five scenes, four guesses of the width of a lobe, five seeds; pictures of 24 × 24 pixels with noise of
-1 %. A run is right if every number is within 3 of its own standard errors of the truth, and warned if
-it did not converge, ended on a bound, or a note says that something is wrong. Each run is a line; the
-last lines are a table, which `docs/make_refining.py` puts on its page from `refining_runs.json`.
+Five scenes, four guesses of the width of a lobe, five seeds; pictures of 24 × 24 pixels have noise
+of 1 %. A run is right if every number is within 3 of its own standard errors of the truth, and
+warned if it did not converge, ended on a bound, or a note says that something is wrong. Each run is
+a line; the last lines are the table that `docs/make_refining.py` puts on its page.
 """
 
 import argparse
@@ -29,7 +29,7 @@ WARNINGS = "is no noise", "not determined", "twice the samples"
 RED, GREY, GREEN = (0.5, 0.15, 0.1), (0.3, 0.3, 0.3), (0.15, 0.4, 0.2)
 WIDTHS = 0.5, 0.9, 0.05, 0.01  # guesses of a roughness
 
-# Name → what is seen, its light, its model, the truth of what is searched, what is known, the guesses
+# Name → shape, light, model, the truth of what is searched, what else is known, the guesses
 SCENES = {
     "plastic knot, small lamp": (
         "knot",

@@ -6,6 +6,8 @@ from brdfkit.refining.subject import integrator_of, load_subject
 from brdfkit.refining.targets import read_targets
 from brdfkit.refining.unknowns import choose
 from brdfkit.refining.views import Views
+from brdfkit.rendering.scenes._meshes import mesh_of_grid
+from brdfkit.rendering.scenes.knot import tube
 
 SIZE = 20
 TRUTH = {
@@ -100,3 +102,17 @@ def views(mi, picture, scene, parameters=None):
     names = mi.traverse(loaded)
     chosen = choose(names, parameters)
     return Views(loaded, integrator_of(loaded), read_targets(picture), names, chosen)
+
+
+def knot(mi, alpha, diffuse, size=16):
+    """A mesh of plastic under a small lamp, whose highlights single samples hit or miss."""
+    entries = corner(mi, TRUTH, size=size)
+    del entries["wall"], entries["floor"]
+    values = {"f0": 0.04, "specular_reflectance": (1.0,) * 3}
+    bsdf = bsdf_of("ggx", {"alpha_u": alpha, "diffuse_reflectance": (diffuse,) * 3, **values})
+    lamp = {"type": "area", "radiance": 3000.0}
+    return {
+        **entries,
+        "ball": mesh_of_grid(*tube(), bsdf),
+        "lamp": {"type": "sphere", "center": [1.5, -3, 4], "radius": 0.05, "emitter": lamp},
+    }

@@ -6,7 +6,8 @@ their pixels count, `unknowns.py` says what is searched, of the `entries.py` of 
 derivatives, `equations.py` makes of them E² to second order, and `leverage.py` how certain that is.
 On it `gauss_newton.py` steps, from the best of the `far_starts.py`. Of thousands of numbers
 (`tensors.py`) `backwards.py` has the derivatives; `descent.py` goes along them, with some
-`roughness.py` less. `refine.py` runs these one after the other; `refinement.py` is what it returns,
+`roughness.py` less. `second_look.py` holds the end against the start and twice the samples.
+`refine.py` runs these one after the other; `refinement.py` is what it returns,
 `conclusions.py` makes it, `hidden.py` says what no picture shows, and `rest.py` whether what is
 left is noise.
 """

@@ -10,12 +10,13 @@ picture J to reach:
 
 are right in the mean, however few the samples; w goes with the picture to reach alone.
 
-A highlight that single samples hit is bright in one half and dark in the other: E² is then far below 0,
-and the least of many. It is compared by what it hardly exceeds, E² and twice its deviation
+Where single samples hit a highlight, it is bright in one half and missing in the other, and E² far
+below 0: of many points, the one with most luck has the least. So points are compared by a bound, E²
+and twice its standard deviation
 
     ½ √Σ (w (I_A - J)² - w (I_B - J)²)²
 
-which is right in the mean, too, and for a highlight hit once larger than what E² is below 0.
+whose square is right in the mean. For a highlight that was hit once it is more than E² is below 0.
 """
 
 from dataclasses import dataclass
@@ -36,8 +37,8 @@ SMALLEST = 1e-5  # eigenvalue of H, of unit diagonal, below which there is noise
 @dataclass(frozen=True)
 class Residuals:
     """Two halves `a`, `b` (pixels, channels) of rendered less reached pixels, at coordinates `x`,
-    by `spp` samples each; weighed, the `terms` of the pixels that count add up to E², whose standard
-    deviation by the noise of rendering is `deviation`."""
+    by `spp` samples each; weighed, the `terms` of the pixels that count add up to E², which has the
+    standard `deviation` by the noise of rendering."""
 
     x: np.ndarray
     a: np.ndarray
@@ -64,7 +65,7 @@ class Residuals:
 
     @property
     def bound(self):
-        """What E² exceeds by chance alone."""
+        """What E² of more samples exceeds by chance alone."""
         return self.error + SURE * self.deviation if np.isfinite(self.error) else np.inf
 
     def less(self, other):

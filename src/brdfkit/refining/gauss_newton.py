@@ -18,7 +18,7 @@ QUIET = 0.25  # of the error that is left: noise of rendering that is less adds 
 REACH = 0.25  # of the way between bounds: farther off no derivative speaks of what is not linear
 STRETCH = 10  # times a model's weight, or 1, how far it goes at once: hidden ones knew no end
 FRESH = 3  # times that other samples are tried where none of a step's is a gain
-NOISIER = 2  # times as noisy, E² may be less by chance, with highlights that single samples hit
+NOISIER = 2  # times as noisy, a trial may have less E² by luck: single samples hit its highlights
 DAMPING = 1e-2, 1e-6, 1e4  # the first, the least and the most
 BETTER, WORSE = 0.1, 8  # factors of the damping
 
@@ -27,8 +27,8 @@ BETTER, WORSE = 0.1, 8  # factors of the damping
 class Search:
     """Where a search is: `here`, its `Residuals`; `about`, the `Equations` there; how many `steps`
     it took; the `history` of (samples per pixel, E²); `converged`, whether no step would gain more
-    than the noise; `stuck`, whether one should, but none, however short, is a gain; `worse`, whether
-    these are the scene's own values, than which all that was found is worse."""
+    than the noise; `stuck`, whether one should, but none, however short, is a gain; `worse`,
+    whether all that was found is worse than the scene's own values, which these are."""
 
     here: Residuals
     about: Equations | None = None

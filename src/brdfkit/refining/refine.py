@@ -88,7 +88,9 @@ def refine(
         held out.
     samples : int, default 1024
         Samples per pixel, at most, at least 4. The last steps take most of the time, which grows
-        with these and the pixels: 128 or 256 are a good beginning.
+        with these and the pixels: 128 or 256 are a good beginning. A search takes half of them,
+        and all for a second look at its end; where that says otherwise it goes on with all, and
+        takes the second look with twice as many.
     mask : ndarray or path, or several, optional
         The pixels that count, of each picture: booleans, or weights ≥ 0 (height, width), or a
         picture's file, white where they do; None for a picture all of which does. Pixels at 0 may

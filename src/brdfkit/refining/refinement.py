@@ -71,6 +71,10 @@ class Refinement(Shown):
     says by how many standard errors, with the least χ² per degree of freedom, and as many blocks
     as are alike count as one, which makes the standard errors larger by the root of their number.
     A camera or a light that is off moves the values by more than that, if it looks like them.
+
+    The end of a search is looked at with twice its samples, other ones. Where both agree, the
+    values are the mean of both; where they do not, a note says so. If the end is worse than the
+    scene's own values, these are returned, and the message says so.
     """
 
     values: dict[str, Value]

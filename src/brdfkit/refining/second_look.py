@@ -18,10 +18,13 @@ SEED = 7_000  # beyond the search's own
 
 @dataclass(frozen=True)
 class SecondLook:
-    """What twice the samples say of the end of a search: the `step` (n,) that they would take from
-    there, in coordinates, 0 for what is not certain; {name: how far that `moves` a number, in
-    standard errors}; how far E² is `apart`, in standard deviations; and of which numbers `few` paths
-    tell."""
+    """What twice the samples say of the end of a search.
+
+    step : where they would go from there, in coordinates (n,); 0 for what is not certain.
+    moves : by name, how far that moves a number, in standard errors.
+    apart : how far E² is from that of the search, in standard deviations.
+    few : the numbers whose derivatives few paths carry.
+    """
 
     step: np.ndarray
     moves: dict[str, float]
@@ -52,8 +55,10 @@ class SecondLook:
 
 
 def look_again(views, found, seed):
-    """(the `Search` with pictures and equations of twice the samples, its `SecondLook`); where it is
-    worse than the scene's own values, (these, not converged; None)."""
+    """(`found`, a `Search`, with pictures and equations of twice the samples; its `SecondLook`).
+
+    Where it is worse than the scene's own values: (a `Search` at these, not converged; None).
+    """
     spp = 2 * TWICE * found.here.spp
     there = Residuals.at(views, found.here.x, spp, seed + SEED)
     if _is_worse(views, there, seed):
