@@ -40,7 +40,7 @@ def _draw_slice(axes, summary, across, up, through):
         vmin=summary.least,
         vmax=summary.largest,
         origin="lower",
-        extent=(*reach(summary.data, across), *reach(summary.data, up)),
+        extent=(*span(summary.data, across), *span(summary.data, up)),
         interpolation="nearest",
     )
     unit = f" [{summary.unit}]" if summary.unit else ""
@@ -49,7 +49,7 @@ def _draw_slice(axes, summary, across, up, through):
     axes.set_title(f"slice {middle} along {'xyz'[through]}", fontsize=10)
 
 
-def reach(volume, axis):
+def span(volume, axis):
     """Where the grid's `axis` begins and ends in the world, along it; it may run downwards."""
     start, along = volume.cube_to_world[:3, 3], volume.cube_to_world[:3, axis]
     length = np.linalg.norm(along)
