@@ -21,7 +21,7 @@ from brdfkit.model.microfacet import CosinePower, Visible
 # The ball of its page: blue lacquer
 PICTURE = {
     "diffuse_reflectance": [0.03, 0.08, 0.4],
-    "specular_reflectance": 0.3,
+    "specular_reflectance": 0.12,
     "exponent": 200.0,
 }
 
