@@ -23,7 +23,7 @@ from brdfkit.rendering.scenes.knot import tube
 
 FILE = Path(__file__).with_suffix(".json")
 SIZE, NOISE = 24, 0.01
-RIGHT, FAR = 3, 10  # standard errors
+RIGHT = 3  # standard errors
 SEEDS = range(5)
 WARNINGS = "is no noise", "not determined", "twice the samples"
 RED, GREY, GREEN = (0.5, 0.15, 0.1), (0.3, 0.3, 0.3), (0.15, 0.4, 0.2)
@@ -151,15 +151,15 @@ def begin(name, guess, size=SIZE):
 
 
 def judge(name, found):
-    """{by how many of its standard errors the worst number is off; whether it was warned; ...}."""
+    """(by how many of its standard errors the worst number is off; right, warned or silent)."""
     away = []
     for key, true in SCENES[name][3].items():
         error = np.asarray(found.standard_errors[f"ball.bsdf.{key}"])
         off = np.abs(np.asarray(found.values[f"ball.bsdf.{key}"]) - true)
         away.append(np.where(np.isfinite(error), off / np.where(error > 0, error, 1e-30), np.inf))
-    said = " ".join(found.notes)
+    off, said = float(np.max(np.hstack(away))), " ".join(found.notes)
     warned = not found.converged or found.at_bounds or any(words in said for words in WARNINGS)
-    return {"off": float(np.max(np.hstack(away))), "warned": bool(warned)}
+    return off, "right" if off < RIGHT else "warned" if warned else "silent"
 
 
 def run(names, seeds, samples):
@@ -173,38 +173,27 @@ def run(names, seeds, samples):
                 start, searched = begin(name, guess)
                 picture = with_noise(clean, number, seed)
                 found = bk.refine(start, picture, searched, seed=seed, **how)
-                row = {"scene": name, "guess": guess, "seed": seed, **judge(name, found)}
-                row |= {"seconds": found.seconds, "cost": found.cost, "loss": found.loss}
-                row["width"] = found.values[searched[0]]
-                rows.append(row)
-                bad = "" if row["off"] < RIGHT else "  warned" if row["warned"] else "  SILENT"
+                off, verdict = judge(name, found)
+                row = {"scene": name, "guess": guess, "seed": seed, "off": off, "ends": verdict}
+                rows.append(row | {"width": found.values[searched[0]], "cost": found.cost})
                 print(
-                    f"{name:28} {guess:7g} {seed}  {row['width']:10.5g}  off {row['off']:6.2f}  "
-                    f"{found.seconds:5.1f} s {found.cost:7.0f}  loss {found.loss:.4f}{bad}",
+                    f"{name:28} {guess:7g} {seed}  {found.values[searched[0]]:10.5g}  "
+                    f"off {off:6.2f}  {found.seconds:5.1f} s {found.cost:7.0f}  "
+                    f"loss {found.loss:.4f}  {verdict}",
                     flush=True,
                 )
     return rows
 
 
-def table(rows):
-    """Lines of figures for each scene, and for all."""
-    names = list(dict.fromkeys(row["scene"] for row in rows))
+def count(rows):
+    """Cells of a table: for each scene, and for all, how many runs end how."""
     cells = []
-    for name in (*names, "all"):
+    for name in (*dict.fromkeys(row["scene"] for row in rows), "all"):
         own = [row for row in rows if name in (row["scene"], "all")]
-        off, warned = (np.array([row[key] for row in own]) for key in ("off", "warned"))
-        cells.append(
-            (
-                name,
-                str(len(own)),
-                str(np.sum(off < RIGHT)),
-                str(np.sum((off >= RIGHT) & warned)),
-                str(np.sum((off >= RIGHT) & ~warned)),
-                str(np.sum((off >= FAR) & ~warned)),
-                str(np.sum((off < RIGHT) & warned)),
-                f"{np.median([row['seconds'] for row in own]):.1f} s",
-            )
-        )
+        ends = [sum(row["ends"] == end for row in own) for end in ("right", "warned", "silent")]
+        far = max(row["off"] for row in own)
+        cost = np.median([row["cost"] for row in own])
+        cells.append((name, str(len(own)), *map(str, ends), f"{far:.1f}", f"{cost:.0f}"))
     return cells
 
 
@@ -217,7 +206,7 @@ if __name__ == "__main__":
     given = parser.parse_args()
     use_variant()
     rows = run(given.scenes or list(SCENES), given.seeds, given.samples)
-    for cells in table(rows):
+    for cells in count(rows):
         print(" | ".join(cells))
     given.output.write_text(json.dumps(rows, indent=0), encoding="utf-8")
     sys.exit(0)

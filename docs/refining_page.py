@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from runpy import run_path
 
 import numpy as np
 from leaderboard_page import made_with
@@ -121,12 +122,14 @@ against the scene's own values and against twice the samples: *at twice the samp
 note where these say otherwise. Five scenes, four guesses and five seeds, all defaults, in pictures
 of 24 × 24 pixels with noise of 1 %; right is a run whose numbers are all within 3 of their own
 standard errors of the truth, warned one that did not converge, ended on a bound or has a note that
-something is wrong. The last column is how many standard errors the worst number is off.
+something is wrong. *Off* is the worst number, in standard errors; the median cost is in samples per
+pixel, derivatives counted by their time.
 
 {table}
 
 Before this, {before}. Made by `python benchmarks/refining_runs.py`."""
-BEFORE = "BEFORE"
+BEFORE = """of 88 of these runs 71 were right, 8 warned and 9 silent, up to 8.9 standard errors off,
+and they cost 1.18 times as much"""
 TRADES = """Some numbers do the same to a picture. `f0` and the specular weight do, unless light
 grazes; a lamp's strength and all reflectances do, unless one is known; a wide lobe and the diffuse
 weight nearly do. `refine` says so in its notes, and its standard errors are as large as that makes
@@ -215,14 +218,8 @@ def times(timings):
 def right_and_wrong():
     """How many runs of `benchmarks/refining_runs.py` are right, as a table with its words."""
     rows = json.loads(RUNS.read_text(encoding="utf-8"))
-    cells = []
-    for name in (*dict.fromkeys(row["scene"] for row in rows), "all"):
-        own = [row for row in rows if name in (row["scene"], "all")]
-        off, warned = (np.array([row[key] for row in own]) for key in ("off", "warned"))
-        wrong = off >= 3
-        counts = (~wrong).sum(), (wrong & warned).sum(), (wrong & ~warned).sum()
-        cells.append((name, str(len(own)), *map(str, counts), f"{np.max(off):.1f}"))
-    head = "scene, runs, right, warned, silent, off"
+    cells = run_path(str(RUNS.with_suffix(".py")))["count"](rows)
+    head = "scene, runs, right, warned, silent, off, cost"
     return RIGHT.format(table=table(head, cells), before=BEFORE)
 
 
