@@ -62,8 +62,8 @@ the lamp's radius over its distance is at most half of α, the roughness of GGX.
 BECOMES = """A file: `load` reads it again, `brdfkit render cup.json` shows it. Scene files name it:
 `<integrator type="distance_field"><string name="filename" value="cup.json"/> ...`. A mesh, for
 Mitsuba and modellers, also of what is endless, within bounds. GLSL, one function without loops.
-A function of points is a field, too: `from_function(lambda p: ...)`. A node or a function of yours is
-not saved, as no file can hold Python; a grid of it is: `field.to_grid(128, bounds=...).save(...)`.
+A function of points is a field, too: `from_function(lambda p: ...)`. A node or a function of yours
+is not saved, as no file can hold Python; a grid of it is: `field.to_grid(128, bounds=...)`.
 
 ```python
 cup.save("cup.json")

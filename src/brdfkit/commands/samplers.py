@@ -9,7 +9,13 @@ from brdfkit.commands._stopping import status
 
 @click.command()
 @click.argument("envmap", metavar="NAME|MAP")
-@click.option("--material", default="plaster", show_default=True, metavar="NAME|FILE")
+@click.option(
+    "--material",
+    default="plaster",
+    show_default=True,
+    metavar="NAME|FILE",
+    help="What is lit: a material, a fit or a model.",
+)
 @click.option(
     "--scene",
     default="ball",
@@ -32,8 +38,9 @@ def samplers(envmap, material, scene, rounds, seed, console):
 
     Each sampler path-traces the same pictures; what counts is noise × time: what an equally good
     picture costs. The table says whether a difference to the best is more than chance (Tukey's
-    test, 5 % for all samplers together). Times are of the processor, so that a busy machine
-    disturbs them little. Ctrl-C keeps the finished rounds.
+    test, 5 % for all samplers together). Times are of the processor, and a busy machine still
+    blurs them: other work should rest. Compensated samplers suit path tracing only, which samples
+    surfaces as well. Ctrl-C keeps the finished rounds.
     """
     from brdfkit.rendering.map_sampling import COLUMNS, compare_samplers
 

@@ -49,7 +49,7 @@ class SamplerComparison(Shown):
     noise : dict of str to ndarray, shape (rounds,)
         The variance of a pixel over the square of its mean, in the mean over the picture.
     seconds : dict of str to ndarray, shape (rounds,)
-        Processor time of a picture.
+        Processor time of a picture, the lesser of the two of a round.
     asked : int
         Rounds that were asked for; Ctrl-C leaves fewer.
     """
@@ -69,10 +69,8 @@ class SamplerComparison(Shown):
     @cached_property
     def costs(self) -> dict[str, float]:
         """Noise times time over that of Mitsuba's `envmap`, by sampler, the least first."""
-        found = {n: float(self.noise[n].mean() * self.seconds[n].mean()) for n in self.noise}
-        return {
-            name: found[name] / found["envmap"] for name in sorted(found, key=found.__getitem__)
-        }
+        each = {n: float(v.mean() * np.median(self.seconds[n])) for n, v in self.noise.items()}
+        return {name: each[name] / each["envmap"] for name in sorted(each, key=each.__getitem__)}
 
     @property
     def best(self) -> str:
@@ -113,11 +111,13 @@ class SamplerComparison(Shown):
         """Which sampler to take, how much it saves, and whether that is more than chance."""
         p, costs = self.p_values, self.costs
         alike = [name for name in costs if name != self.best and not p[name] < LEVEL]
+        chance = "envmap" in alike
+        alike = [name for name in alike if name != "envmap"]
         tied = f"; {', '.join(alike)} may be as good (5 %)" if alike else ""
         if self.best == "envmap":
             return f"Take envmap, Mitsuba's own{tied}."
         saved = f"{self.best} costs {costs[self.best]:.2f} times what Mitsuba's envmap does"
-        if "envmap" in alike:
+        if chance:
             return f"{saved}, which may be chance: take either{tied}."
         return f"Take {self.best}: it costs {saved.partition(' costs ')[2]}{tied}."
 
@@ -130,7 +130,7 @@ class SamplerComparison(Shown):
             said = "worse" if p[name] < LEVEL else "no clear difference"
             chance = "p < 0.001" if p[name] < 1e-3 else f"p = {p[name]:.2g}"
             beside = "best" if name == self.best else f"{said}, {chance}"
-            time_of = 1e3 * float(self.seconds[name].mean())
+            time_of = 1e3 * float(np.median(self.seconds[name]))
             error = 100 * np.sqrt(2) * self._spread
             shown = f"{ratio:.2f}", f"{time_of:.0f}", f"{cost:.2f}", f"{error:.0f}", beside
             rows.append((name, *shown))
@@ -225,9 +225,12 @@ def _measure(envmap, found, scene, rounds, spp, size, seed, progress):
         for r in range(rounds):
             pair, took = {}, {}
             for name in names[r % len(names) :] + names[: r % len(names)]:
-                start = time.process_time()
-                pair[name] = [_render(lights[name], spp, seed + 2 * r + k) for k in (0, 1)]
-                took[name] = (time.process_time() - start) / 2
+                pair[name], each = [], []
+                for k in (0, 1):
+                    start = time.process_time()
+                    pair[name].append(_render(lights[name], spp, seed + 2 * r + k))
+                    each.append(time.process_time() - start)
+                took[name] = min(each)  # the other may have been disturbed
             pairs.append(pair)
             seconds.append(took)
             if progress:
