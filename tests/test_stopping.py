@@ -12,6 +12,7 @@ import pytest
 from click.testing import CliRunner
 from small_files import merl
 
+from brdfkit.cli import main
 from brdfkit.commands._errors import Group, say
 from brdfkit.commands._stopping import is_stopped
 from brdfkit.errors import BrdfkitError
@@ -83,6 +84,15 @@ def test_ctrl_c_within_exec_has_the_status_too():
     words = sys.executable, "-c", WITHIN_EXEC, "work"
     done = subprocess.run(words, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (130, "brdfkit: interrupted.\n")
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("words", [["info"], ["fit"], ["convert"], ["render"]])
+def test_a_name_that_is_too_long_is_a_sentence(words, tmp_path):
+    output = [str(tmp_path / "a.csv")] if words == ["convert"] else []
+    found = CliRunner().invoke(main, [*words, "9" * 400, *output])
+    assert (found.exit_code, found.stderr.count("\n")) == (2, 1)
+    assert "Traceback" not in found.stderr
 
 
 @pytest.mark.quick

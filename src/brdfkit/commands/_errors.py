@@ -54,8 +54,8 @@ class LastWords(click.ClickException):
 def tell_errors():
     """Within the block, what should end the program with a sentence becomes `LastWords`.
 
-    That is: errors for people, errors of click, an output that fails, too little memory, Ctrl-C and
-    SIGTERM, and any error that one of these two became.
+    That is: errors for people, errors of click, a file or an output that fails, too little memory,
+    Ctrl-C and SIGTERM, and any error that one of these two became.
     """
     try:
         with _stops_as_such():
@@ -66,7 +66,9 @@ def tell_errors():
         command = error.ctx.command_path if error.ctx else "brdfkit"
         raise LastWords(f"{_describe_misuse(error)}; see {command} --help.") from error
     except OSError as error:
-        if error.errno not in NO_ROOM or error.filename:
+        if error.filename is not None:  # a name that is too long, for one
+            raise LastWords(f"{error.filename!s:.200}: {error.strerror}; name another.") from error
+        if error.errno not in NO_ROOM:
             raise
         _drop_output()
         raise LastWords(f"the output cannot be written ({error.strerror}); make room.") from error

@@ -33,16 +33,22 @@ def write_all(svbrdf, folder):
         # upright, as programs show and use them; normals as colours, green along the sample's y
         shown = (values + 1) / 2 if name == "normal" else values
         written.append(_write(folder / files[name], shown))
-        if name in svbrdf.uncertainty:
-            written.append(_write(folder / f"{name}{ERROR}.exr", svbrdf.uncertainty[name]))
-    if svbrdf.misfit is not None:
-        written.append(_write(folder / MISFIT, svbrdf.misfit))
+        written += _write_known(folder / f"{name}{ERROR}.exr", svbrdf.uncertainty.get(name))
+    written += _write_known(folder / MISFIT, svbrdf.misfit)
     scene = folder / SCENE
     with write_safely(scene) as beside:
         Path(beside).write_text(scene_xml(svbrdf, files), encoding="utf-8")
     report = folder / REPORT
     write_report(svbrdf, report)
     return [*written, scene, report]
+
+
+def _write_known(path, values):
+    """The paths written: none where there are no values, and that of other maps goes, too."""
+    if values is None:
+        path.unlink(missing_ok=True)
+        return []
+    return [_write(path, values)]
 
 
 def _write(path, values):
