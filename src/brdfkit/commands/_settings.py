@@ -22,7 +22,7 @@ def parse_settings(words, option, *forms, free=False):
         elif name and (len(numbers) in counts or (free and numbers)):
             found[name] = numbers[0] if len(numbers) == 1 else numbers
         else:
-            should = " or ".join(f"NAME={form}" for form in forms)
+            should = " or ".join(f"{name or 'NAME'}={form}" for form in forms)
             decimals = len(numbers) == 2 and "." not in text and 1 in counts
             hint = f" Decimals take a point: {word.replace(',', '.')}." if decimals else ""
             raise BrdfkitError(
