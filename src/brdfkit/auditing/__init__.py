@@ -48,9 +48,9 @@ class Audit(Shown):
         used by a fit as it comes (both angles below 80°).
     negative, zero : int
         Number of valid values below 0 and equal to 0, each channel counted.
-    negative_to : float
-        The angle to the normal, of light or view, whichever is larger, below which 9 of 10 negative
-        values are [degrees], and ``negative_from`` that above which; nan where there are none.
+    negative_from, negative_to : float
+        Angles to the normal [degrees], of light or view, whichever is larger: 9 of 10 negative
+        values are above the first, 9 of 10 below the second; nan where there are none.
     theta_i, theta_o : tuple of float
         The measured angles to the normal [degrees], or their ends where they are many.
     smallest, median, largest : float
