@@ -23,6 +23,7 @@ SMALL = {  # command: what makes it answer at once
     "--render": SMALL_PICTURE,
     "render": SMALL_PICTURE,
     "report": SMALL_PICTURE,
+    "gallery": ("--size", "32"),
     "measure": ("--spp", "128", "--cells", "3,2,4"),
 }
 
@@ -66,6 +67,7 @@ def here(tmp_path, monkeypatch, llvm_variant):
                 "copper/ggx+ggx.json",
                 "copper-report.html",
                 "ggx.png",
+                "sheet.png",
                 "cayman.binary",
                 "au.npz",
                 "brain.png",

@@ -117,7 +117,7 @@ def _pixels(mi, name, filename, bitmap):
         raise BrdfkitError(f"{name} needs a filename, or a bitmap in its place.")
     what = f"{name}: {filename or 'the bitmap'}"
     if bitmap is None:
-        pixels = read_pixels(mi.file_resolver().resolve(filename), what)
+        pixels = read_pixels(str(mi.file_resolver().resolve(filename)), what)
     else:
         pixels = pixels_of(bitmap)
     if pixels.min(initial=0) < 0:
