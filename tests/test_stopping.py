@@ -12,6 +12,7 @@ import pytest
 from click.testing import CliRunner
 from small_files import merl
 
+import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.commands._errors import Group, say
 from brdfkit.commands._stopping import is_stopped
@@ -143,6 +144,21 @@ for words in (
     for file in files:
         if file.suffix in text:
             file.read_bytes().decode("utf-8")
+
+
+@pytest.mark.quick
+def test_ctrl_c_within_a_check_is_no_failure_of_it(llvm_variant, monkeypatch):
+    from brdfkit.checks.registry import checks
+
+    def stopped(_subject):
+        try:
+            raise KeyboardInterrupt
+        except KeyboardInterrupt as stop:
+            raise RuntimeError("see above") from stop  # as Dr.Jit does
+
+    monkeypatch.setitem(checks["bsdfs"], next(iter(checks["bsdfs"])), stopped)
+    with pytest.raises(KeyboardInterrupt):
+        bk.check("lambert")
 
 
 @pytest.mark.quick

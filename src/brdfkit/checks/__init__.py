@@ -20,7 +20,7 @@ from brdfkit.documents.parts import BAD, GOOD
 from brdfkit.errors import BrdfkitError, nearest, no_such
 from brdfkit.host.load_by_mitsuba import load_by_mitsuba
 from brdfkit.jit import llvm
-from brdfkit.jit.first_error import first_error
+from brdfkit.jit.first_error import is_interrupt
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike, material
 from brdfkit.plugins import discovery
@@ -154,11 +154,12 @@ def _loads(subject):
 def _run(kind, name, subject):
     """(passed, figure) of one check; it has failed where a plugin's own code raises an error."""
     try:
-        with first_error():  # Ctrl-C, for one
-            return checks[kind][name](subject)
+        return checks[kind][name](subject)
     except BrdfkitError:
         raise
     except Exception as error:
+        if is_interrupt(error):
+            raise KeyboardInterrupt from None
         if subject.source is None:
             raise
         return False, describe(error, subject.source)

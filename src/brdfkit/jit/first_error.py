@@ -18,3 +18,10 @@ def first_error() -> Iterator[None]:
         while isinstance(first, RuntimeError) and first.__cause__:
             first = first.__cause__
         raise first from None
+
+
+def is_interrupt(error: BaseException | None) -> bool:
+    """Whether Ctrl-C is the error, or caused it."""
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__
+    return error is not None
