@@ -73,8 +73,22 @@ def textures():
     """An `Svbrdf` of four texels."""
     values = {"alpha_u": np.full((2, 2), 0.2), "normal": np.tile([0.0, 0.0, 1.0], (2, 2, 1))}
     errors = {name: np.full((2, 2), 0.01) for name in values}
-    said = ((0.1, 0.1), 0.1, {0.1: 0.02}, 0.01, {NASTY: 40.0}, (NASTY,), 1.5, None, None)
-    return bk.Svbrdf(NASTY, "ggx", values, {}, errors, np.ones((2, 2)), *said)
+    return bk.Svbrdf(
+        name=NASTY,
+        model="ggx",
+        maps=values,
+        fixed={},
+        size=(0.1, 0.1),
+        smoothness=0.1,
+        held_out={0.1: 0.02},
+        notes=(NASTY,),
+        seconds=1.5,
+        capture=None,
+        uncertainty=errors,
+        misfit=np.ones((2, 2)),
+        residual=0.01,
+        predicted={NASTY: 40.0},
+    )
 
 
 @pytest.fixture(scope="module")
@@ -105,6 +119,9 @@ def shown():
         rendering.errors(),
         bk.gallery([[(NASTY, named), fit]], spp=2, size=32),
         summarise(bk.load_volume("slab", size=8)),
+        bk.SamplerComparison(
+            NASTY, NASTY, "ball", {"envmap": np.ones(2)}, {"envmap": np.ones(2)}, 2
+        ),
         bk.shadows.ShadowComparison({NASTY: (bk.shadows.Scores(psnr=30.0),)}, 1, 1, ()),
     ]
     return {type(thing).__name__: thing for thing in objects}

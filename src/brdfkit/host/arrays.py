@@ -4,6 +4,8 @@ import numpy as np
 
 from brdfkit.jit.padding import pad
 
+BELOW_ONE = 1 - 2**-24  # the largest number below 1 in single precision
+
 
 class Rows:
     """Rows of numbers (n, columns), or plain numbers (n,), in the current variant's memory.

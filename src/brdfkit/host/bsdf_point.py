@@ -7,6 +7,7 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.host import frame
+from brdfkit.host.arrays import BELOW_ONE
 from brdfkit.model.lobes import Lobe
 
 
@@ -51,8 +52,10 @@ class Point:
             if share is None:
                 continue
             hit = (sample1 >= chosen_up_to) & (sample1 < chosen_up_to + share)
-            # What the choice leaves of sample1 is a third random number, as even as sample2
-            u = self.mi.Point3f(sample2.x, sample2.y, (sample1 - chosen_up_to) / share)
+            # What the choice leaves of sample1 is a third random number, as even as sample2. It is
+            # used where this component was chosen, but must stay in [0, 1) elsewhere, too
+            left = dr.clip((sample1 - chosen_up_to) / share, 0, BELOW_ONE)
+            u = self.mi.Point3f(sample2.x, sample2.y, left)
             chosen_up_to += share
             wo = dr.select(hit, self.samplings[k].sample(self.wi, u), wo)
             component = dr.select(hit, k, component)

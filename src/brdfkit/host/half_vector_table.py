@@ -14,9 +14,7 @@ import numpy as np
 from brdfkit.geometry.directions import from_angles
 from brdfkit.geometry.multilinear import corners, flat_index
 from brdfkit.geometry.vectors import angle, azimuth, cos_theta_d, half_vector, reflect
-from brdfkit.host.arrays import Rows, bracket, periodic_bracket
-
-BELOW_1 = 1 - 2**-24  # the largest number below 1 in single precision
+from brdfkit.host.arrays import BELOW_ONE, Rows, bracket, periodic_bracket
 
 
 class HalfVectorTable:
@@ -165,7 +163,7 @@ def _draw_cell(sums, start, n, x):
 
     The cumulative shares of the `n` cells stand in `sums` from `start` on.
     """
-    x = dr.minimum(x, BELOW_1)  # at 1 it would fall into an empty last cell, 0 wide
+    x = dr.minimum(x, BELOW_ONE)  # at 1 it would fall into an empty last cell, 0 wide
     cell, low, high = 0, 0, 1  # cumulative shares before the cell and including it
     for step in 2 ** np.arange(int(n - 1).bit_length())[::-1]:
         there = dr.minimum(cell + int(step), n)
