@@ -6,6 +6,7 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+from made_capture import CAMERA, SIDE
 from matplotlib.text import Text
 from PIL import Image
 
@@ -73,17 +74,19 @@ def textures():
     """An `Svbrdf` of four texels."""
     values = {"alpha_u": np.full((2, 2), 0.2), "normal": np.tile([0.0, 0.0, 1.0], (2, 2, 1))}
     errors = {name: np.full((2, 2), 0.01) for name in values}
+    pictures = np.full((1, 24, 24, 3), 0.5)
+    capture = bk.Capture(pictures, [[0, 0, 1]], [[1, 1, 1]], CAMERA, (SIDE, SIDE), (NASTY,))
     return bk.Svbrdf(
         name=NASTY,
         model="ggx",
         maps=values,
         fixed={},
-        size=(0.1, 0.1),
+        size=(SIDE, SIDE),
         smoothness=0.1,
         held_out={0.1: 0.02},
         notes=(NASTY,),
         seconds=1.5,
-        capture=None,
+        capture=capture,
         uncertainty=errors,
         misfit=np.ones((2, 2)),
         residual=0.01,
