@@ -94,6 +94,13 @@ def textures():
     )
 
 
+def samplers():
+    """A `SamplerComparison` of two samplers and three rounds."""
+    noise = {"envmap": np.array([1.0, 1.1, 0.9]), NASTY: np.array([0.5, 0.6, 0.5])}
+    seconds = {"envmap": np.ones(3), NASTY: np.array([1.0, 1.0, 1.1])}
+    return bk.SamplerComparison(NASTY, NASTY, "ball", noise, seconds, 3)
+
+
 @pytest.fixture(scope="module")
 def shown():
     """One object of every class that derives from `Shown`, by the class's name."""
@@ -122,9 +129,7 @@ def shown():
         rendering.errors(),
         bk.gallery([[(NASTY, named), fit]], spp=2, size=32),
         summarise(bk.load_volume("slab", size=8)),
-        bk.SamplerComparison(
-            NASTY, NASTY, "ball", {"envmap": np.ones(2)}, {"envmap": np.ones(2)}, 2
-        ),
+        samplers(),
         bk.shadows.ShadowComparison({NASTY: (bk.shadows.Scores(psnr=30.0),)}, 1, 1, ()),
     ]
     return {type(thing).__name__: thing for thing in objects}
