@@ -1,5 +1,7 @@
 """Lesar (2018) reproduced: its parts at tiny sizes, values computed apart, and its verdicts."""
 
+import gc
+
 import numpy as np
 import pytest
 
@@ -25,6 +27,7 @@ from brdfkit.reproducing.lesar2018 import (
     transfer_functions,
     two_lobes,
 )
+from brdfkit.reproducing.lesar2018.iterations import iteration
 
 
 def verdicts(*parts, **settings):
@@ -122,6 +125,20 @@ def test_convergence_at_a_small_size(monkeypatch):
     change(monkeypatch, {convergence: {"ITERATIONS": {32: 100, 36: 20, 40: 20}, "VOXELS": 12}})
     change(monkeypatch, {convergence: {"SHOWN": (10, 30, 80)}})
     assert verdicts("convergence")[:3] == ["confirmed", "confirmed", "not stated"]
+
+
+def test_nothing_is_freed_while_a_picture_is_recorded(llvm_variant, monkeypatch):
+    """An abort of the process that cannot be caught, where garbage holds a scene of Mitsuba's."""
+    mi, enabled = llvm_variant, []
+
+    def draw(_scene, **_how):
+        enabled.append(gc.isenabled())
+        return mi.Float(1)
+
+    monkeypatch.setattr(mi, "render", draw)
+    iteration()(mi.load_dict({"type": "scene"}), 0)
+    assert enabled == [False]
+    assert gc.isenabled()
 
 
 def test_the_end_of_a_run_as_its_reference():

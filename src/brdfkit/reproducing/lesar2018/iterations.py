@@ -1,5 +1,7 @@
 """Iterations of a scene: what is left of them is the rendering, not how it is prepared."""
 
+import gc
+from contextlib import contextmanager
 from functools import partial
 
 import drjit as dr
@@ -24,10 +26,24 @@ def iteration(spp=1):
     def call(state, scene, seed):
         if state["recorded"]:
             try:
-                with first_error():  # Ctrl-C is no reason to render once more
+                # Ctrl-C is no reason to render once more
+                with first_error(), without_collection():
                     return recorded(scene, mi.UInt32(seed))
             except RuntimeError:
                 state["recorded"] = False
         return render(scene, seed)
 
     return partial(call, {"recorded": True})
+
+
+@contextmanager
+def without_collection():
+    """Collects no garbage within the block: Dr.Jit ends the process where a scene is freed while
+    it records."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
