@@ -98,6 +98,31 @@ def test_rows_and_the_best(here, fitted):
     assert str(found).splitlines()[-1].startswith("  6 of 6 fits; ")
 
 
+def test_fits_are_judged_where_they_were_not_fitted_and_by_pictures(here, fitted):
+    models = ["lambert", "ward"]
+    found = bk.sweep(["chalk.npz", "paint.npz"], models, judge=True, output="out")
+    judged = {(r.material, r.model): (r.held_out, r.psnr) for r in found.rows}
+    for material, truth in ("chalk", "lambert"), ("paint", "ward"):  # which predict themselves
+        assert judged[material, truth][0] < 1e-4
+    assert judged["chalk", "lambert"][1] > 80
+    assert judged["paint", "ward"][1] > judged["paint", "lambert"][1] + 5
+    error, psnr = judged["paint", "lambert"]
+    assert 0.5 < error / found.rows[2].error < 5
+    ranking = bk.rank("paint.npz", models, "cbrt")
+    assert abs(psnr - {row.model: row.psnr for row in ranking.rows}["lambert"]) < 1
+    text = Path("out/index.html").read_text(encoding="utf-8")
+    assert "<h2>Errors where they were not fitted</h2>" in text
+    assert f"{psnr:.1f}" in text
+    assert "--judge" not in text
+
+    # They are kept with the fits; what was not judged is done anew
+    again = bk.sweep(["chalk.npz", "paint.npz"], models, judge=True, output="out")
+    assert again.found == 4
+    assert {(r.material, r.model): (r.held_out, r.psnr) for r in again.rows} == judged
+    bk.sweep(["chalk.npz"], models, output="other")
+    assert bk.sweep(["chalk.npz"], models, judge=True, output="other").found == 0
+
+
 @pytest.mark.quick
 def test_fits_whose_light_is_wrong_are_marked_and_counted(here, fitted):
     found = bk.sweep(["plaster", "red_plastic"], ["lambert", "ggx"], output="out")
@@ -251,7 +276,7 @@ def test_what_has_changed_is_fitted_again(here, fitted, monkeypatch):
     assert changed(max_angle=70) == ["chalk", "paint"]
     bk.save(bk.fit("lambert", "chalk.npz", max_angle=70), "out/chalk/lambert.json")
     assert changed(max_angle=70) == ["chalk"]  # of which nobody knows that it is this one
-    monkeypatch.setattr("brdfkit.sweeping.tasks.Task.__init__.__defaults__", ("", "0.0.9"))
+    monkeypatch.setattr("brdfkit.sweeping.tasks.Task.__init__.__defaults__", (False, "", "0.0.9"))
     assert changed(max_angle=70) == ["chalk", "copper", "paint"]
 
 
@@ -382,7 +407,7 @@ class Page(HTMLParser):
 def test_the_page(swept):
     text = Path("out/index.html").read_text(encoding="utf-8")
     page = Page(text)
-    assert not {"script", "i", "img", "link"} & set(page.tags)
+    assert not {"i", "img", "link"} & set(page.tags)
     assert "prefers-color-scheme: dark" in text
     assert "http" not in text
     assert swept.problems[0] in page.text

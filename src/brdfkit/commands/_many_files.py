@@ -6,16 +6,17 @@ from brdfkit.commands._errors import say
 from brdfkit.commands._stopping import status
 
 
-def fit_many(files, names, settings, output, jobs, console):
+def fit_many(files, names, settings, output, jobs, judge, console):
     """Fit the models of these `names` to all `files`, and print their errors.
 
-    `output`: the folder for the fits, or None; `jobs`: how many processes, or None. What fails is
+    `output`: the folder for the fits, or None; `jobs`: how many processes, or None; `judge`:
+    whether to tell errors that were held out and pictures, too. What fails is
     said in one sentence each; the exit status is then 2.
     """
     from brdfkit.commands._targets import results_folder
     from brdfkit.sweeping import sweep
 
-    options = {"output": output, "workers": jobs}
+    options = {"output": output, "workers": jobs, "judge": judge}
     what = f"fit {len(names)} models to {len(files)} materials"
     with results_folder(output), console.progress(what) as progress:
         found = sweep(files, names, settings, **options, progress=progress)
@@ -33,7 +34,7 @@ def fit_many(files, names, settings, output, jobs, console):
 def _print_sweep(found, output, console):
     """Print the table of errors; of a sweep without any fit nothing, but as JSON."""
     from brdfkit.sweeping.sweeping import PAGE, TABLE
-    from brdfkit.sweeping.tables import errors
+    from brdfkit.sweeping.tables import compare, quantities
 
     made = [output / PAGE, output / TABLE] if output and found.fits else []
     if console.as_json:
@@ -45,8 +46,10 @@ def _print_sweep(found, output, console):
         saved = [row.saved for row in found.rows if row.saved]
         console.json({"fits": fits, "failed": failed, "written": [*made, *saved]})
     elif found.fits:
-        columns, *sections = errors(found)
-        console.table(columns, *sections, title=f"errors ({found.rows[0].loss})")
+        for quantity in quantities(found):
+            columns, *sections = compare(found, quantity)
+            unit = "" if quantity.decibels else f" ({found.rows[0].loss})"
+            console.table(columns, *sections, title=f"{quantity.title}{unit}")
         console.out.print(found.summary)
         console.list_written(made)
         if made:
@@ -62,6 +65,8 @@ def _record(row):
         "parameters": row.fit.values,
         "loss": row.loss,
         "error": row.error,
+        "held_out": row.held_out,
+        "psnr": row.psnr,
         "albedo": row.fit.albedo,
         "at_bounds": row.at_bounds,
         "notes": row.fit.notes,

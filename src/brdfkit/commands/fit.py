@@ -36,6 +36,12 @@ from brdfkit.errors import BrdfkitError, Interrupted
     metavar="N",
     help="Processes, for several FILEs. Default: one for each core.",
 )
+@click.option(
+    "--judge",
+    is_flag=True,
+    help="Of several FILEs, tell each fit's error in directions held out and its picture, too; "
+    "takes about as long again.",
+)
 @click.option("--render", "rendered", is_flag=True, help="Path-trace the measurement and the fits.")
 @click.option("--spectral", is_flag=True, help="Fit a weight for each measured wavelength.")
 @scene_options
@@ -48,6 +54,7 @@ def fit(
     mends,
     output,
     jobs,
+    judge,
     rendered,
     spectral,
     scene,
@@ -92,8 +99,10 @@ def fit(
         _refuse_to_mend(mends)
         if rendered:
             raise BrdfkitError("--render shows one material; name one FILE, or leave it out.")
-        fit_many(files, names, how, output, jobs, console)
+        fit_many(files, names, how, output, jobs, judge, console)
         return
+    if judge:
+        raise BrdfkitError("--judge is for several FILEs; -m best judges all models of one FILE.")
     (file,) = files
     with console.progress(f"read {file}"):
         material = measured_material(file, mends)

@@ -15,6 +15,7 @@ from brdfkit.colours import LUMINANCE, to_srgb
 from brdfkit.fitting.light import ONE, albedo_pixels
 from brdfkit.measured import Measured
 from brdfkit.picture_errors.colour_difference import ciede2000
+from brdfkit.picture_errors.psnr import peak
 from brdfkit.pictures import LIGHTS, draw_pixels
 from brdfkit.samples import Samples
 
@@ -29,6 +30,7 @@ DIRECTIONS = 16
 # So far from all mixtures with grey, of so many for each colour, a colour is another [ΔE2000]: fits
 # that look right have up to 3.9, those with a coloured rim 5.8 to 18
 OTHER, MIXTURES = 5.0, 21
+DARKEST = 1 / 255  # the least brightness of a picture, where a material is black
 GAIN = 1.05  # times the light that arrives: fits of bright metals, whose measurements reach 1
 
 
@@ -50,10 +52,11 @@ class Appearance:
 
     def picture_error(self, brdf: Brdf) -> float:
         """RMS difference of the pixels of a BRDF from the measured ones, by sRGB's curve from 0 to
-        1."""
-        pixels = self.pixels
-        apart = to_srgb(np.nan_to_num(pixels.look(brdf))) - to_srgb(pixels.values)
-        return math.sqrt(np.average((apart**2).mean(axis=1), weights=pixels.weights))
+        1, over the brightest of the measured ones."""
+        pixels, shown = self.pixels, to_srgb(self.pixels.values)
+        apart = to_srgb(np.nan_to_num(pixels.look(brdf))) - shown
+        error = math.sqrt(np.average((apart**2).mean(axis=1), weights=pixels.weights))
+        return error / max(peak(shown[None]), DARKEST)
 
     def find_doubt(self, brdf: Brdf) -> str:
         """A clause on what a BRDF does at 85° that the material hardly does; or nothing."""

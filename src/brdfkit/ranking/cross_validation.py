@@ -40,16 +40,11 @@ def cross_validate(model, held_out, appearance, light, anisotropic, seed, report
     seconds = time.perf_counter() - began
     report(1)
 
-    errors = np.empty(len(held_out.folds))
-    for fold in range(held_out.folds.max() + 1):
-        out = held_out.folds == fold
-        part = held_out.regress(model, ~out, starts=STARTS, first=whole.shapes, **how)
-        errors[out] = held_out.squares(model, part, out)
-        report(2 + fold)
+    errors = errors_held_out(model, held_out, whole.shapes, how, lambda done: report(1 + done))
     brdf, certainty = with_weights(model, whole.shapes, whole.weights).eval, whole.certainty
     albedo = light.judge(brdf)
     return Validated(
-        held_out.sum_by_block(errors),
+        errors,
         albedo,
         appearance.picture_error(brdf),
         appearance.find_doubt(brdf) or next(iter(albedo.warnings()), ""),
@@ -57,3 +52,18 @@ def cross_validate(model, held_out, appearance, light, anisotropic, seed, report
         certainty.bic(whole.loss),
         seconds,
     )
+
+
+def errors_held_out(model, held_out, first, how, report=lambda done: None):
+    """The squared errors (blocks,) of a model class where it was not fitted, in the units of E².
+
+    `first`: the shape parameters at which the fits begin; `how`: settings of `regress`; `report`:
+    called with how many of the fits are done.
+    """
+    errors = np.empty(len(held_out.folds))
+    for fold in range(held_out.folds.max() + 1):
+        out = held_out.folds == fold
+        part = held_out.regress(model, ~out, starts=STARTS, first=first, **how)
+        errors[out] = held_out.squares(model, part, out)
+        report(1 + fold)
+    return held_out.sum_by_block(errors)

@@ -35,7 +35,8 @@ class Ranked:
         The light that the fit to all samples that were drawn reflects, beside the data's.
     picture : float
         RMS difference of pictures of a ball, of the fit to all samples that were drawn and of the
-        measurement, as a screen shows them, 1 being white; nan where there is no fit.
+        measurement, as a screen shows them, over the brightest of the measurement's, as in
+        `Rendering.psnr`; nan where there is no fit.
     pareto : bool
         Whether no other model has a better picture and an error that is less by more than the
         noise.
@@ -73,8 +74,17 @@ class Ranked:
 
     @property
     def psnr(self) -> float:
-        """The picture's peak signal-to-noise ratio [dB], at most 120; white is the peak."""
-        return -20 * math.log10(max(self.picture, LEAST))
+        """The picture's peak signal-to-noise ratio [dB], at most 120."""
+        return to_decibels(self.picture)
+
+
+def to_decibels(error: float) -> float:
+    """The PSNR [dB] of the error of a picture, over the peak; at most 120.
+
+    >>> to_decibels(0.1)
+    20.0
+    """
+    return -20 * math.log10(max(error, LEAST))
 
 
 def rows_of(results: Mapping[str, Any], shares: NDArray[np.float64]) -> tuple[Ranked, ...]:

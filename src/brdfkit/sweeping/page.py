@@ -1,4 +1,4 @@
-"""The page of a sweep: one HTML file without scripts, for a light and for a dark screen."""
+"""The page of a sweep: one HTML file that needs no other, for a light and for a dark screen."""
 
 import math
 import os
@@ -13,7 +13,6 @@ from brdfkit.fitting.light import WRONG
 from brdfkit.measured.albedos import ANGLES
 from brdfkit.names import listed, printable
 from brdfkit.sweeping import tables
-from brdfkit.verbs.compare import format_error
 from brdfkit.version import __version__
 
 STYLE = """
@@ -32,6 +31,8 @@ table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .25rem .7rem; text-align: left; border-bottom: 1px solid var(--line);
   white-space: nowrap; vertical-align: top; }
 th { font-weight: 600; }
+thead th { cursor: pointer; }
+th[aria-sort=ascending]::after { content: " ▲"; } th[aria-sort=descending]::after { content: " ▼"; }
 .number, .failed { text-align: right; }
 .errors th:first-child { position: sticky; left: 0; background: var(--paper); }
 tfoot, tfoot th { color: var(--soft); font-weight: 400; }
@@ -50,12 +51,46 @@ ALBEDOS = (
     "light from that angle to the normal that it reflects, the mean over the channels; below it "
     "that of the measurement."
 )
+FAR = 4.0  # times the error of the best: from there a cell has no tint
+
+# What is told under the head of each quantity
 BY_FITTED = (
     "Errors are by the very samples that the models were fitted to, and the more numbers a model "
-    "has, the more they flatter it; rank(...) and fit -m best tell errors at directions that were "
-    "held out, and of pictures."
+    "has, the more they flatter it"
 )
-FAR = 4.0  # times the error of the best: from there a cell has no tint
+UNTOLD = (
+    "; fit --judge, or sweep(..., judge=True), tells errors in directions held out, and pictures"
+)
+TOLD = {
+    "held_out": "The error of fits by the loss alone, in directions that they did not see: all in "
+    "turn, a fifth at a time.",
+    "psnr": "The peak signal-to-noise ratio of a ball's picture beside the measurement's, under "
+    "several lights, as a screen shows it: the more the better.",
+}
+
+# Sorts a table by the column whose head is clicked, or has Enter pressed on it: numbers first, and
+# failures last; a second time the other way round
+SORT = """
+for (const head of document.querySelectorAll("thead th")) {
+  const column = head.cellIndex, body = head.closest("table").tBodies[0];
+  head.tabIndex = 0;
+  head.title = "sort by this column";
+  const sort = () => {
+    const down = head.getAttribute("aria-sort") === "ascending";
+    for (const other of head.parentNode.cells) other.removeAttribute("aria-sort");
+    head.setAttribute("aria-sort", down ? "descending" : "ascending");
+    const key = row => row.cells[column].dataset.value ?? row.cells[column].textContent;
+    const compare = (a, b) => {
+      const [x, y] = [key(a), key(b)], [u, v] = [parseFloat(x), parseFloat(y)];
+      if (isNaN(u) !== isNaN(v)) return isNaN(u) ? 1 : -1;
+      return (isNaN(u) ? x.localeCompare(y) : u - v) * (down ? -1 : 1);
+    };
+    body.append(...[...body.rows].sort(compare));
+  };
+  head.onclick = sort;
+  head.onkeydown = event => { if (event.key === "Enter") sort(); };
+}
+"""
 
 
 def write(sweep, path):
@@ -70,16 +105,11 @@ def page(sweep, folder):
     materials = tables.by_material(sweep)
     models = list(dict.fromkeys(row.model for row in sweep.rows))
     title = f"{_count(models, 'model')} fitted to {_count(materials, 'material')}"
-    loss = sweep.rows[0].loss
-    parts = [
-        f"<h1>{title}</h1>",
-        f'<p class="soft">{_text(sweep.summary)}</p>',
-        "<h2>Errors</h2>",
-        f'<p class="soft">Loss {loss}: {_text(losses[loss].meaning)}. The best of a row is bold, '
-        f"the others have the more colour the nearer they come to it; colours "
-        f"compare within a row only. {BY_FITTED}{_explain_marks(sweep)}</p>",
-        _errors(sweep, materials, models, folder),
-    ]
+    parts = [f"<h1>{title}</h1>", f'<p class="soft">{_text(sweep.summary)}</p>']
+    for quantity in tables.quantities(sweep):
+        told = _text(_tell(sweep, quantity))
+        parts += [f"<h2>{quantity.title}</h2>", f'<p class="soft">{told}</p>']
+        parts.append(_comparison(sweep, materials, models, quantity, folder))
     if sweep.problems:
         items = "".join(f"<li>{_text(problem)}</li>" for problem in sweep.problems)
         parts += ["<h2>Failures</h2>", f"<ul>{items}</ul>"]
@@ -90,41 +120,60 @@ def page(sweep, folder):
         '<meta name="viewport" content="width=device-width">'
         f"<title>{title}</title><style>{STYLE}</style></head>\n<body>\n"
         + "\n".join(parts)
-        + f"\n<footer>Made by brdfkit {__version__}.</footer>\n</body></html>\n"
+        + f"\n<footer>Made by brdfkit {__version__}.</footer>\n"
+        + f"<script>{SORT}</script></body></html>\n"
     )
 
 
-def _errors(sweep, materials, models, folder):
-    """The errors, materials by models."""
-    columns, _, foot = tables.errors(sweep)
+def _tell(sweep, quantity):
+    """What to know of a quantity's table, in sentences."""
+    told = TOLD.get(quantity.name)
+    if told is None:
+        loss = losses[sweep.rows[0].loss]
+        judged = len(tables.quantities(sweep)) > 1
+        told = (
+            f"Loss {loss.name}: {loss.meaning}. The best of a row is bold, the others have the "
+            "more colour the nearer they come to it; colours compare within a row only. "
+            f"{BY_FITTED}{'' if judged else UNTOLD}.{_explain_marks(sweep)}"
+        )
+    return told
+
+
+def _comparison(sweep, materials, models, quantity, folder):
+    """The table of a quantity, materials by models."""
+    columns, rows, foot = tables.compare(sweep, quantity)
     body = []
-    for material, found in materials.items():
-        least = min((row.error for row in found.values() if row.fit), default=math.nan)
-        cells = "".join(_error(found.get(model), least, folder) for model in models)
-        best = sweep.best[material].name if material in sweep.best else ""
+    for (material, found), row in zip(materials.items(), rows, strict=True):
+        best = quantity.best(found.values())
+        cells = "".join(_number(found.get(model), best, quantity, folder) for model in models)
         file = _text(next(iter(found.values())).file)
         name = f'<th scope="row" title="{file}">{_text(material)}</th>'
-        body.append(f"<tr>{name}{cells}{_cells([best])}</tr>")
+        body.append(f"<tr>{name}{cells}{_cells([row[-1]])}</tr>")
     sums = [f'<tr><th scope="row">{name}</th>{_cells(texts, NUMBER)}</tr>' for name, *texts in foot]
     return _table("errors", columns, body, sums)
 
 
-def _error(row, least, folder):
-    """The cell of one fit; `least`: the error of the best fit to the same material."""
+def _number(row, best, quantity, folder):
+    """The cell of one fit; `best`: the row of the best number of the same material."""
     if row is None:
         return "<td></td>"
     if not row.fit:
         return f'<td class="failed" title="{_text(row.message)}">failed</td>'
-    ratio = row.error / least if least else math.inf if row.error else 1.0
-    near = round(100 * max(0.0, 1 - math.log(ratio) / math.log(FAR)))
-    kind = f"{NUMBER} near best" if row.error == least else f"{NUMBER} near"
+    number = quantity.of(row)
+    if math.isnan(number):
+        return f'<td class="{NUMBER}">–</td>'
+    near = round(100 * max(0.0, 1 - math.log(quantity.ratio(row, best)) / math.log(FAR)))
+    kind = f"{NUMBER} near best" if number == quantity.of(best) else f"{NUMBER} near"
     kind += " bad" if row.fit.warnings else ""
-    text = format_error(row.error)
+    text = quantity.format(number)
     if row.saved:
         link = quote(Path(os.path.relpath(row.saved, folder)).as_posix())
         text = f'<a href="{link}">{text}</a>'
-    hint = _text("; ".join([f"{row.error:.9g}", *row.fit.warnings]))
-    return f'<td class="{kind}" style="--near: {near}" title="{hint}">{text}</td>'
+    hint = _text("; ".join([f"{number:.9g}", *row.fit.warnings]))
+    return (
+        f'<td class="{kind}" style="--near: {near}" title="{hint}" '
+        f'data-value="{number:.9g}">{text}</td>'
+    )
 
 
 def _explain_marks(sweep):
@@ -138,10 +187,12 @@ def _explain_marks(sweep):
 
 
 def _fits(sweep):
-    """Every fit with its albedos, over those of the measurement, and its values."""
+    """Every fit with its numbers, its albedos, over those of the measurement, and its values."""
     angles = [f">{angle:g}°" for angle in ANGLES]
     numbers = ">parameters", ">samples", ">time [s]"
-    columns = "material", "model", ">error", *angles, *numbers, "remarks", ""
+    quantities = tables.quantities(sweep)
+    judged = [f">{quantity.head}" for quantity in quantities[1:]]
+    columns = "material", "model", ">error", *judged, *angles, *numbers, "remarks", ""
     body = []
     for row in sweep.rows:
         if row.fit:
@@ -152,7 +203,7 @@ def _fits(sweep):
             values = "<br>".join(_text(f"{n} = {_short(v)}") for n, v in row.fit.values.items())
             body.append(
                 f"<tr>{_cells([row.material, row.model])}"
-                f"{_cells([format_error(row.error)], NUMBER)}{''.join(albedos)}"
+                f"{_cells([q.format(q.of(row)) for q in quantities], NUMBER)}{''.join(albedos)}"
                 f"{_cells(numbers, NUMBER)}{_cells([remarks], 'remarks')}"
                 f"<td><details><summary>values</summary>{values}</details></td></tr>"
             )

@@ -40,6 +40,12 @@ class Row:
         The fit; None where it failed.
     saved : Path or None
         Its file, where it was saved.
+    held_out : float
+        E of the loss in directions that were held out of the fit, all in turn; nan where the sweep
+        does not judge, and where there are too few.
+    psnr : float
+        PSNR [dB] of a picture of a ball of the fit beside the measurement's, as in `Ranked`; nan
+        where the sweep does not judge.
     """
 
     material: str
@@ -54,6 +60,8 @@ class Row:
     message: str = ""
     fit: Fit | None = field(default=None, repr=False)
     saved: Path | None = field(default=None, repr=False, compare=False)
+    held_out: float = math.nan
+    psnr: float = math.nan
 
 
 @dataclass(frozen=True, repr=False)
@@ -155,7 +163,7 @@ class Sweep(Shown):
         tables.write_parquet(self, path)
 
     def to_html(self, path: str | Path) -> None:
-        """Write a page with the errors, the failures and all fits; it has no scripts.
+        """Write a page with the errors, the failures and all fits; its tables can be sorted.
 
         Parameters
         ----------
@@ -174,8 +182,12 @@ class Sweep(Shown):
         page.write(self, path)
 
     def document(self) -> Document:
-        """The errors, materials by models, what failed, and how many fits there are."""
-        columns, rows, foot = tables.errors(self)
+        """The errors, materials by models, and how they were judged; what failed, and how many fits
+        there are."""
+        shown: list[Table | Paragraph] = []
+        for quantity in tables.quantities(self):
+            columns, rows, foot = tables.compare(self, quantity)
+            table = Table(tuple(map(tuple, rows)), tuple(columns), tuple(map(tuple, foot)))
+            shown += [*([Paragraph(quantity.title)] if shown else []), table]
         failed = [Paragraph(problem, BAD) for problem in self.problems]
-        shown = Table(tuple(map(tuple, rows)), tuple(columns), tuple(map(tuple, foot)))
-        return Document("Errors of the fits", (shown, *failed, Paragraph(self.summary, SOFT)))
+        return Document(tables.ERROR.title, (*shown, *failed, Paragraph(self.summary, SOFT)))

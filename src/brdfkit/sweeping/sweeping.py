@@ -30,6 +30,7 @@ def sweep(
     settings: Mapping[str, Any] | None = None,
     *,
     output: str | Path | None = None,
+    judge: bool = False,
     workers: int | None = None,
     client: Any = None,
     progress: Callable[[int, int], object] | None = None,
@@ -51,6 +52,9 @@ def sweep(
         A folder, to which each fit is saved as soon as it is finished; at the end the table
         ``table.csv`` and the page ``index.html``. Fits that an earlier sweep saved there are read
         and not repeated, unless their file, their settings or brdfkit's version changed.
+    judge : bool, default False
+        Whether to tell of each fit, too, its error in directions that were held out and the PSNR of
+        its picture, as `rank` does. This takes about as long again.
     workers : int, optional
         How many processes; by default one for each core, as far as the memory goes.
     client : distributed.Client, optional
@@ -79,7 +83,7 @@ def sweep(
     settings = check_settings(to_dictionary("settings", settings))
     require_plain(settings["solver"], settings["constraints"])
     slots = _count_slots(workers, client)
-    tasks = plan(files, models, settings)
+    tasks = [replace(task, judge=bool(judge)) for task in plan(files, models, settings)]
     folder = None if output is None else Path(output)
     if folder:
         make_folder(folder)
@@ -156,11 +160,14 @@ def _finish(task: Task, outcome: Outcome, folder: Path | None) -> Row:
         loss = task.settings["loss"]
         return Row(task.material, task.file, outcome.model, loss, message=outcome.failure)
     saved = saved_fits.keep(folder, task, outcome) if folder else None
-    return _make_row(task, outcome.model, fit, saved)
+    judged = {"held_out": outcome.held_out, "psnr": outcome.psnr}
+    return _make_row(task, outcome.model, fit, saved, judged)
 
 
-def _make_row(task: Task, label: str, fit: Fit, saved: Path | None) -> Row:
-    """The row of a fit."""
+def _make_row(
+    task: Task, label: str, fit: Fit, saved: Path | None, judged: Mapping[str, float]
+) -> Row:
+    """The row of a fit that was `judged`, numbers by their names, or not."""
     values = fit.model.free_values.items()
     sought = [v for n, v in values if n not in task.settings["fixed"]]
     return Row(
@@ -176,4 +183,5 @@ def _make_row(task: Task, label: str, fit: Fit, saved: Path | None) -> Row:
         message=fit.message,
         fit=fit,
         saved=saved,
+        **judged,
     )

@@ -1,10 +1,11 @@
-"""The tables of a sweep: errors by material and model, in words; all rows as CSV or Parquet."""
+"""The tables of a sweep: quantities by material and model, in words; all rows as CSV or Parquet."""
 
 import csv
 import json
 import math
 from collections import Counter
-from dataclasses import fields
+from collections.abc import Callable
+from dataclasses import dataclass, fields
 from statistics import median
 
 from brdfkit.documents.text import MARK
@@ -15,23 +16,72 @@ from brdfkit.measured.albedos import ANGLES
 from brdfkit.verbs.compare import format_error
 
 
-def errors(sweep):
-    """The names of the columns, a row of texts for each material, and rows on all of them.
+@dataclass(frozen=True)
+class Quantity:
+    """A number of each fit that tells models apart: `name`: of the attribute of a `Row`.
 
-    A column of numbers has a name that begins with ">"; an error is marked where the light of the
+    `title`: above its table; `head`: of a column; `by`: what "times best" counts by; `format`: a
+    number as text; `decibels`: whether it is in dB, and more is better.
+    """
+
+    name: str
+    title: str
+    head: str
+    by: str
+    format: Callable[[float], str]
+    decibels: bool = False
+
+    def of(self, row):
+        """The number of a `Row`; nan where it has none."""
+        return getattr(row, self.name) if row.fit else math.nan
+
+    def best(self, rows):
+        """The row of the best number, None where no row has one."""
+        numbers = [row for row in rows if not math.isnan(self.of(row))]
+        return (max if self.decibels else min)(numbers, key=self.of, default=None)
+
+    def ratio(self, row, best):
+        """How many times the error of the `best` row that of a `row` is."""
+        one, least = self.of(row), self.of(best)
+        if self.decibels:
+            return 10 ** ((least - one) / 20)
+        return one / least if least else math.inf if one else 1.0
+
+
+ERROR = Quantity("error", "Errors of the fits", "error", "the samples fitted", format_error)
+HELD_OUT = Quantity(
+    "held_out", "Errors where they were not fitted", "held out", "errors held out", format_error
+)
+PSNR = Quantity(
+    "psnr", "PSNR of their pictures [dB]", "PSNR [dB]", "pictures", "{:.1f}".format, decibels=True
+)
+
+
+def quantities(sweep):
+    """The quantities that the rows of a sweep have: the error, and those that it judged."""
+    judged = [q for q in (HELD_OUT, PSNR) if any(not math.isnan(q.of(row)) for row in sweep.rows)]
+    return [ERROR, *judged]
+
+
+def compare(sweep, quantity=ERROR):
+    """The names of the columns, a row of texts for each material, and rows on all of them, by a
+    quantity.
+
+    A column of numbers has a name that begins with ">"; a number is marked where the light of the
     fit is wrong.
     """
     rows = by_material(sweep)
     models = list(dict.fromkeys(row.model for row in sweep.rows))
-    best = {material: fit.name for material, fit in sweep.best.items()}
+    best = {material: quantity.best(found.values()) for material, found in rows.items()}
+    best = {material: row.fit.name if row else "" for material, row in best.items()}
     body = [
-        (material, *(_cell(found.get(model)) for model in models), best.get(material, ""))
+        (material, *(_cell(found.get(model), quantity) for model in models), best[material])
         for material, found in rows.items()
     ]
     wins = Counter(best.values())
     foot = [
-        ("median", *(format_error(m) for m in medians(sweep, models)), ""),
-        ("times best, by the samples fitted", *(str(wins[model]) for model in models), ""),
+        ("median", *(quantity.format(m) for m in _medians(sweep, models, quantity)), ""),
+        (f"times best, by {quantity.by}", *(str(wins[model]) for model in models), ""),
     ]
     if sweep.warned:
         wrong = Counter(row.model for row in sweep.warned)
@@ -48,11 +98,12 @@ def by_material(sweep):
     return found
 
 
-def medians(sweep, models):
-    """The median error of each model over the materials to which it was fitted."""
+def _medians(sweep, models, quantity):
+    """The median of a quantity of each model over the materials to which it was fitted."""
     for model in models:
-        found = [row.error for row in sweep.rows if row.model == model and row.fit]
-        yield median(found) if found else math.nan
+        numbers = [quantity.of(row) for row in sweep.rows if row.model == model]
+        numbers = [number for number in numbers if not math.isnan(number)]
+        yield median(numbers) if numbers else math.nan
 
 
 def write_csv(sweep, path):
@@ -99,11 +150,11 @@ def _albedos(row):
     return mean_albedos(row.fit.albedo if row.fit else None)
 
 
-def _cell(row):
-    """The error of a row in words, marked where its light is wrong; nothing for a fit that did not
+def _cell(row, quantity):
+    """A number of a row in words, marked where its light is wrong; nothing for a fit that did not
     come about."""
     if row is None:
         return ""
     if not row.fit:
         return "failed"
-    return (MARK if row.fit.warnings else "") + format_error(row.error)
+    return (MARK if row.fit.warnings else "") + quantity.format(quantity.of(row))

@@ -5,6 +5,7 @@ takes and gives can be sent anywhere; only the files must be there, by the same 
 """
 
 import io
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -15,6 +16,7 @@ from brdfkit.formats import fit_json
 from brdfkit.loading import load
 from brdfkit.materials import measured_material
 from brdfkit.model import labels
+from brdfkit.sweeping.judging import Judge
 from brdfkit.verbs.fit import fit
 from brdfkit.version import __version__
 
@@ -26,7 +28,8 @@ class Task:
     `material`: its name in tables, unlike all others; `file`: as the user named it; `path`: what
     `load` takes for it anywhere; `checksums`: the SHA-256 of the file by its path; `models`: the
     same of the user's files that define a model, by its label; `settings`: all those of a fit;
-    `failure`: why the file cannot be read, if so; `version`: of brdfkit.
+    `judge`: whether each fit is judged where it was not fitted and by a picture; `failure`: why the
+    file cannot be read, if so; `version`: of brdfkit.
     """
 
     material: str
@@ -35,24 +38,31 @@ class Task:
     checksums: dict[str, str]
     models: dict[str, dict[str, str]]
     settings: dict[str, Any]
+    judge: bool = False
     failure: str = ""
     version: str = __version__
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one fit: `text`, the fit as brdfkit saves it, or `failure`, a sentence."""
+    """What became of one fit: `text`, the fit as brdfkit saves it, or `failure`, a sentence.
+
+    `held_out`, `psnr`: as in `Row`, of a task that judges.
+    """
 
     material: str
     model: str
     text: str = ""
     failure: str = ""
+    held_out: float = math.nan
+    psnr: float = math.nan
 
 
 def fit_models(task: Task) -> Iterator[Outcome]:
     """Yield the `Outcome` of each model of a task, in their order; no error stops the others."""
     try:
         data = _read(task)
+        judge = Judge(data, task.settings) if task.judge else None
     except Exception as error:
         yield from (fail(task, label, error) for label in task.models)
         return
@@ -62,8 +72,10 @@ def fit_models(task: Task) -> Iterator[Outcome]:
             for path in files:
                 labels.load_models(path)
             stream = io.BytesIO()
-            fit_json.write(fit(label, data, **task.settings), stream)
-            yield Outcome(task.material, label, text=stream.getvalue().decode())
+            found = fit(label, data, **task.settings)
+            fit_json.write(found, stream)
+            judged = (judge.error_of(found), judge.psnr_of(found)) if judge else ()
+            yield Outcome(task.material, label, stream.getvalue().decode(), "", *judged)
         except Exception as error:
             yield fail(task, label, error)
 
