@@ -97,6 +97,17 @@ def test_a_distance_is_about_the_angle(theta_i, theta_o, phi, part, direction):
 # Counts, coverage
 
 
+def test_where_values_are_negative():
+    theta = np.radians(np.arange(1, 80))
+    wi = from_angles(theta, 0.0)
+    values = np.where((theta > np.radians(30.5)) & (theta < np.radians(50.5)), -0.1, 0.2)
+    found = bk.audit(bk.Measured.from_samples(wi, wi, values, channels=("Y",)))
+    assert (found.negative_from, found.negative_to) == pytest.approx((32.9, 48.1))
+    assert "20 of 79 values, 25 %, most of them at 33° to 48° to the normal" in str(found)
+    none = bk.audit(bk.Measured.from_samples(wi, wi, np.abs(values), channels=("Y",)))
+    assert np.isnan([none.negative_from, none.negative_to]).all()
+
+
 def test_counts_are_exact():
     values = tabulated()
     known = np.argwhere(np.isfinite(values[..., 0]))

@@ -365,6 +365,16 @@ def bad(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.parametrize("file", ["half_packed.hdr", "wide_run.hdr"])
+def test_a_damaged_map_of_a_scene_file_ends_no_process(file, bad, module_in_llvm):
+    """Mitsuba leaves its memory as it reads one."""
+    scene = f"""<scene version="3.0.0"><integrator type="path"/><sensor type="perspective"/>
+        <emitter type="envmap"><string name="filename" value="{file}"/></emitter></scene>"""
+    Path("lit.xml").write_text(scene)
+    with pytest.raises(bk.BrdfkitError, match=rf"^lit.xml: {file}: its row \d is damaged"):
+        bk.render_scene("lit.xml", spp=1)
+
+
 def test_bad_files(bad, module_in_llvm):
     """One sentence each, by whichever verb reads them; nothing is written."""
     everywhere = {

@@ -90,6 +90,19 @@ def test_residuals_are_measured_less_modelled():
     assert (left.eval(wi, wo) * turned.eval(wi, wo)).max() == 0
 
 
+def test_a_loss_that_standard_errors_weigh_is_told_from_that_of_compare():
+    data = synthetic(bk.models()["ward"](), n=200)
+    errors = np.linspace(0.01, 0.1, 200)[:, None]
+    wi, wo = data.samples.wi, data.samples.wo
+    noisy = bk.Measured.from_samples(wi, wo, data.samples.values, standard_error=errors)
+    plain, weighed = (bk.fit("lambert", one, "log") for one in (data, noisy))
+    assert plain.loss == pytest.approx(bk.compare(data, plain).errors["lambert"]["log"])
+    assert plain.loss_label == "log loss"
+    assert weighed.loss != pytest.approx(bk.compare(noisy, weighed).errors["lambert"]["log"])
+    assert weighed.loss_label == "log loss, weighed by standard errors"
+    assert f"{weighed.loss_label} {weighed.loss:.6g}" in str(weighed)
+
+
 def test_residuals_keep_what_is_known_of_the_data():
     wi = wo = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.999, 0.0, 0.04]])
     errors = np.full((3, 1), 0.01)

@@ -454,8 +454,17 @@ def test_a_gallery_passes_bad_files_and_models_that_cannot_be_fitted(reports):
     assert [line for line in done.stdout.splitlines() if "written" not in line] == said
 
 
-@pytest.mark.parametrize("when", ["between", "during pictures"])
-def test_ctrl_c_leaves_the_reports_that_are_finished(when, here, written, monkeypatch):
+@pytest.mark.parametrize(
+    ("when", "finished"),
+    [
+        ("between", "1 of 2 reports are finished"),
+        (
+            "during pictures",
+            "0 of 2 reports are finished, and one with fewer samples per pixel is kept",
+        ),
+    ],
+)
+def test_ctrl_c_leaves_the_reports_that_are_finished(when, finished, here, written, monkeypatch):
     def write(material, fits, path, *_, **__):
         if material.name != "paint":
             raise KeyboardInterrupt
@@ -466,7 +475,7 @@ def test_ctrl_c_leaves_the_reports_that_are_finished(when, here, written, monkey
     monkeypatch.setattr(many_files, "write_report", write)
     done = cli("report", "paint.npz", "second paint.npz", "-m", "lambert", "-o", "some")
     assert done.exit_code == 130
-    assert done.stderr == "brdfkit: interrupted; 1 of 2 reports are finished.\n"
+    assert done.stderr == f"brdfkit: interrupted; {finished}.\n"
     assert sorted(p.name for p in Path("some").iterdir()) == ["index.html", "paint.html"]
 
 

@@ -24,6 +24,15 @@ import drjit as dr
 from brdfkit.model import Model, option, weight
 from brdfkit.model.lobes import Cosine, Lobe
 
+# A cloth that reflects some light back and shines at its rim: Burley's, fitted
+PICTURE = {
+    "a_0_0_0": [1.006, 0.179, 0.268],
+    "a_1_1_1": [0.091, 0.016, 0.024],
+    "a_2_0_0": [0.065, 0.012, 0.017],
+    "a_2_2_0": [-0.013, -0.002, -0.003],
+    "a_2_2_2": [-0.0035, -0.0006, -0.0009],
+}
+
 
 def isotropic_term(n, m, l, wi, wo):
     """I_nml. ρ^l cos lΔφ is the real part of a power, smooth at the normal."""

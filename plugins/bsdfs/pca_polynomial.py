@@ -22,6 +22,17 @@ import numpy as np
 from brdfkit.model import Model, option, shape, weight
 from brdfkit.model.lobes import Cosine, Lobe
 
+# A dull metal: GGX of alpha 0.55, fitted
+PICTURE = {
+    "beta_0": [0.141, 0.099, 0.051],
+    "beta_1": [-0.14, -0.096, -0.047],
+    "beta_2": [-0.171, -0.118, -0.057],
+    "beta_3": [0.433, 0.298, 0.144],
+    "beta_4": [0.555, 0.382, 0.185],
+    "beta_5": [-0.592, -0.408, -0.197],
+    "beta_6": [-0.169, -0.117, -0.056],
+    "angle_1_2": 0.492,
+}
 # Number of components → the planes in which the angles rotate them, one after the other
 PLANES = {2: ((0, 1),), 3: ((0, 1), (0, 2), (1, 2))}
 

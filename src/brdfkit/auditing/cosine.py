@@ -61,7 +61,8 @@ def power_by_reciprocity(samples: Samples, anisotropic: bool) -> tuple[float, fl
     rows = known & (np.abs(cosines) > np.log(APART))
     if not rows.any():
         return np.nan, np.nan, 0
-    cosines, ratios = cosines[rows], np.log(values[first[rows]] / values[second[rows]])
+    cosines = cosines[rows]
+    ratios = np.log(values[first[rows]]) - np.log(values[second[rows]])
     power = _weighted_median(ratios / cosines, np.abs(cosines))
     left = np.median(np.abs(ratios - cosines)) / np.median(np.abs(cosines))
     return power, float(left), len(cosines)

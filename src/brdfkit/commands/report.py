@@ -131,6 +131,8 @@ def _report_many(files, names, how, folder, pictures, console):
     for problem in found.problems:
         say(problem)
     if found.interrupted:
-        say(f"interrupted; {len(found.entries)} of {len(files)} reports are finished.")
+        fewer = len(found.entries) - found.finished
+        noisy = ", and one with fewer samples per pixel is kept" if fewer else ""
+        say(f"interrupted; {found.finished} of {len(files)} reports are finished{noisy}.")
     if found.interrupted or found.problems:
         click.get_current_context().exit(status() if found.interrupted else 2)

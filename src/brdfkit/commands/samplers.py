@@ -59,6 +59,6 @@ def samplers(envmap, material, scene, rounds, seed, console):
     else:
         console.table(COLUMNS, found.table(), title=found.head)
         console.out.print(found.verdict)
-    if found.rounds < found.asked:
-        say(f"interrupted; {found.rounds} of {found.asked} rounds are finished.")
+    if found.rounds < found.rounds_requested:
+        say(f"interrupted; {found.rounds} of {found.rounds_requested} rounds are finished.")
         click.get_current_context().exit(status())

@@ -50,8 +50,8 @@ class SamplerComparison(Shown):
         The variance of a pixel over the square of its mean, in the mean over the picture.
     seconds : dict of str to ndarray, shape (rounds,)
         Processor time of a picture, the lesser of the two of a round.
-    asked : int
-        Rounds that were asked for; Ctrl-C leaves fewer.
+    rounds_requested : int
+        Rounds that were requested; Ctrl-C leaves fewer.
     """
 
     envmap: str
@@ -59,7 +59,7 @@ class SamplerComparison(Shown):
     scene: str
     noise: dict[str, np.ndarray] = field(repr=False)
     seconds: dict[str, np.ndarray] = field(repr=False)
-    asked: int
+    rounds_requested: int
 
     @property
     def rounds(self) -> int:

@@ -1,11 +1,15 @@
 """Scene files of Mitsuba's: rendered as they are, or with a material put in."""
 
+import re
+from html import unescape
 from pathlib import Path
 
 from brdfkit.errors import BrdfkitError, nearest
 from brdfkit.host.load_by_mitsuba import load_by_mitsuba
+from brdfkit.host.radiance_rows import require_rows
 
 SUFFIX = ".xml"
+MAP = re.compile(r"""["']([^"'\n]+\.(?:hdr|rgbe))["']""", re.IGNORECASE)  # a Radiance file's name
 PLACE = "material"  # id of the BSDF that a material replaces, where none is named
 
 
@@ -18,6 +22,7 @@ def load_scene_file(path, **how):
     import mitsuba as mi
 
     path = _existing(path)
+    _require_maps(path)
 
     def load(source, parallel):
         return mi.load_file(source, parallel=parallel, **how)
@@ -64,6 +69,14 @@ def _existing(path):
     if not Path(path).is_file():
         raise BrdfkitError(f"{path}: there is no such scene file; check the path.")
     return Path(path)
+
+
+def _require_maps(path):
+    """Raise `BrdfkitError` for a damaged Radiance map to which a scene file refers."""
+    for name in MAP.findall(path.read_text(encoding="utf-8", errors="replace")):
+        file = path.parent / unescape(name)
+        if file.is_file():
+            require_rows(file, f"{path}: {file}")
 
 
 def _no_place(path, place, known):

@@ -35,6 +35,11 @@ class Reports:
     interrupted: bool
 
     @property
+    def finished(self):
+        """How many reports have pictures of all samples that were requested."""
+        return sum(entry.contents.spp >= entry.contents.asked for entry in self.entries)
+
+    @property
     def written(self):
         """The files: the page first, if there is a report."""
         files = [self.folder / f"{entry.name}.html" for entry in self.entries]
