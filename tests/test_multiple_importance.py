@@ -16,7 +16,7 @@ COUNTS = {"BSDF": (1, 0), "emitter": (0, 1), "both": (1, 1)}
 UNEVEN = {"3 to 1": (3, 1), "1 to 3": (1, 3)}
 
 
-def radiance(mi, bsdf, counts, spp=2**15):
+def radiance(mi, bsdf, counts, spp=2**13):
     """Mean radiance (RGB) of a patch under a lamp at its mirror direction, and its error."""
     integrator = {"type": "direct", "bsdf_samples": counts[0], "emitter_samples": counts[1]}
     lamp = mi.ScalarTransform4f().look_at([-2, 0.3, 2], [0, 0, 0], [0, 0, 1])

@@ -421,10 +421,10 @@ def test_a_camera_that_moves_with_its_flash(mi, tmp_path):
     """As phones take them; the places are said by the corners of the sample in the pictures."""
     truth = made_capture.Truth(TEXELS)
     rng = np.random.default_rng(1)
-    positions, intensities = made_capture.lights(12, seed=5)
+    positions, intensities = made_capture.lights(8, seed=5)
     cameras = [bk.Pinhole(place, np.zeros(3), rng.standard_normal(3), 22.0) for place in positions]
     _, capture = made_capture.photographs(
-        TEXELS, 12, truth=truth, lights_at=(positions, intensities), cameras=cameras
+        TEXELS, 8, truth=truth, lights_at=(positions, intensities), cameras=cameras
     )
     made_capture.write_capture(capture, tmp_path, by_corners=True)
     found = bk.svbrdf(tmp_path, resolution=TEXELS)

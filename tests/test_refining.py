@@ -343,7 +343,7 @@ def test_what_is_masked_counts_nowhere(mi, picture):
     name = "ball.bsdf.diffuse_reflectance"
     masked = ball_alone[..., None]
     bad = [np.where(masked, picture, rest) for rest in (0, 99 * picture, np.nan)]
-    how = {"mask": ball_alone, "starts": 1, "samples": 256}
+    how = {"mask": ball_alone, "starts": 1, "samples": 64}
     one, *others = (bk.refine(corner(mi, start), p, [name], **how) for p in bad)
     assert all(other == one for other in others)
     error = np.array(one.standard_errors[name])
@@ -414,7 +414,7 @@ def test_two_cameras_and_what_none_of_them_sees(mi):
     pictures = noisy(mi, scene)
     alpha, hidden = "ball.bsdf.alpha_u", "hidden.bsdf.alpha_u"
     begin = {**scene, "ball": {**scene["ball"], "bsdf": {**TRUTH_BSDF, "alpha_u": 0.2}}}
-    result = bk.refine(begin, pictures, [alpha, f"{hidden}.value"], starts=2, samples=128)
+    result = bk.refine(begin, pictures, [alpha, f"{hidden}.value"], starts=1, samples=64)
     require_back(result, {alpha: TRUTH["alpha_u"]})
     assert result.values[hidden] == pytest.approx(0.2)  # where it began
     assert np.isnan(result.standard_errors[hidden])

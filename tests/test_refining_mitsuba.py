@@ -64,9 +64,9 @@ def test_derivatives_are_those_of_finite_differences(mi, case):
     scene = with_bsdf(mi, bsdf)
     found = views(mi, np.array(mi.render(mi.load_dict(scene), spp=4)), scene, [name])
     x, step = found.start, 0.03
-    along = derivatives(found, x, 1024, 3).sum(axis=0)
+    along = derivatives(found, x, 512, 3).sum(axis=0)
     ends = [
-        [found.residuals(x + sign * step, 2048, seed) for sign in (1, -1)] for seed in (50, 900)
+        [found.residuals(x + sign * step, 1024, seed) for sign in (1, -1)] for seed in (50, 900)
     ]
     one, other = ((high - low) / (2 * step) for high, low in ends)
     # two, lest their noise make their square too large

@@ -179,14 +179,14 @@ def test_the_light_is_that_of_volpath(name, llvm_variant):
     """Three of ten settings."""
     scene = settings()[name]
     kinds = enumerate(("single_scattering", "volpath"))
-    both = [pictures(scene, kind, spp=16, first=16 * i)[0] for i, kind in kinds]
+    both = [pictures(scene, kind, spp=4, first=16 * i)[0] for i, kind in kinds]
     assert np.abs(z_scores(*both)).max() < DEVIATIONS
 
 
 # Derivatives
 
 
-def gradients(mi, scene, names, passes=16, spp=32):
+def gradients(mi, scene, names, passes=16, spp=8):
     """Of a picture's mean by parameters: name → (passes, n)."""
     parameters = mi.traverse(scene)
     leaves = {}

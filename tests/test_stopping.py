@@ -124,7 +124,7 @@ import sys
 from brdfkit.cli import main
 
 name, (paint,) = sys.argv[1], sys.argv[2:]
-small = ["--size", "64", "--spp", "2"]
+small = ["--size", "32", "--spp", "1"]
 for words in (
     ["report", paint, "-m", "lambert", "-o", name + ".html", *small],
     ["fit", paint, "-m", "lambert", "-o", name + "fits", "--render", *small],
