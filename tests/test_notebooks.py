@@ -22,6 +22,7 @@ SMALLER = {  # smaller pictures and shorter searches, of which the notebooks' as
     r"spp=32, size=\d+": "spp=8, size=32",
     r"size=(256|128)\)": "size=32)",
     r"starts=4": "starts=1",
+    r"samples=256": "samples=64",
 }
 # a notebook has as many threads as a test (conftest.py): more would wait for the other tests'
 SHARE_THE_CORES = f"import brdfkit.jit.threads as t; t.use_threads({dr.thread_count()}); del t"

@@ -95,7 +95,7 @@ def test_a_texture_comes_back(mi, picture):
         scene(mi, grey),
         picture,
         [TEXTURE],
-        steps=12,
+        steps=8,
         samples=32,
         smoothing=0.003,
         progress=lambda *at: done.append(at),
