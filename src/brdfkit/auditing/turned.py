@@ -15,7 +15,7 @@ FEWEST, ENOUGH = 12, 1_000
 LARGEST = 85
 TURN = np.array([-1.0, -1.0, 1.0])
 # Where the correlation of logarithms with how far wo lies towards the mirror direction is larger,
-# no fit is needed: of 37 files that were turned by 180°, those that are recognised have -0.1 or less
+# no fit is needed: of 37 files turned by 180°, those that are recognised have -0.1 or less
 FORWARDS = 0.1
 
 
