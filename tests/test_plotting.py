@@ -11,7 +11,8 @@ from brdfkit.colours import luminance
 from brdfkit.errors import BrdfkitError
 from brdfkit.geometry.directions import from_angles
 from brdfkit.measured import Measured
-from brdfkit.plotting import Plot, plot
+from brdfkit.plots import Plot
+from brdfkit.plotting import plot
 from brdfkit.plotting.plane_of_incidence import lobe
 from brdfkit.thumbnails.radius import Radius
 

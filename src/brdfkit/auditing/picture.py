@@ -8,7 +8,7 @@ from brdfkit.auditing.report import percent
 from brdfkit.colours import RGB, luminance
 from brdfkit.measured.coverage import is_near
 from brdfkit.measured.spectrum_to_rgb import rgb_or_mean
-from brdfkit.plotting import Plot
+from brdfkit.plots import Plot
 from brdfkit.plotting.lobe_plots import draw
 from brdfkit.plotting.plane_of_incidence import usual_angles
 

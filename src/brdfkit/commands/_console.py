@@ -56,6 +56,12 @@ class Console:
         lines = _tables.blocks(columns, sections, self.out.width)
         self.out.print(title or "", *lines, "", sep="\n")
 
+    def print_image_errors(self, errors):
+        """Print `ImageErrors` as a table."""
+        *rows, floor = errors.table()
+        self.table(errors.columns, rows, [floor], title=f"{errors.reference}: errors of pictures")
+        self.out.print("\n".join(errors.remarks))
+
     def list_doubts(self, findings):
         """Print a line for each of the `findings` of an audit."""
         for finding in findings:

@@ -9,7 +9,6 @@ def print_fits(material, fits, failed, comparison, pictures, written, ranking, c
     `ranking`, too."""
     from brdfkit.auditing.data_findings import data_findings
     from brdfkit.commands._ranking import record
-    from brdfkit.commands.render import print_errors
 
     if console.as_json:
         psnr = {n: row["psnr"] for n, row in pictures.by_name.items()} if pictures else {}
@@ -28,7 +27,7 @@ def print_fits(material, fits, failed, comparison, pictures, written, ranking, c
         console.out.print(str(shown))
         console.out.print()
     if pictures:
-        print_errors(pictures, console)
+        console.print_image_errors(pictures)
     console.list_written(written)
     if not written:
         console.out.print("Nothing was saved; -o FOLDER keeps the fits.")

@@ -240,14 +240,7 @@ def _print_picture(picture, path, console):
         return
     if picture.differences:
         console.out.print(picture.head)
-        print_errors(picture.errors(), console)
+        console.print_image_errors(picture.errors())
     else:
         console.out.print(str(replace(picture, until=None)))  # `_write` told of the noise floor
     console.list_written(written)
-
-
-def print_errors(errors, console):
-    """Print `ImageErrors` as a table."""
-    *rows, floor = errors.table()
-    console.table(errors.columns, rows, [floor], title=f"{errors.reference}: errors of pictures")
-    console.out.print("\n".join(errors.remarks))

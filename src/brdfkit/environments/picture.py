@@ -7,7 +7,7 @@ from brdfkit.environments.spread import directions, shares, solid_angles
 from brdfkit.lighting import environment_tree
 from brdfkit.lighting.environment_map import cell_power
 from brdfkit.lighting.map_samplers.blocks import LAWS
-from brdfkit.plotting import Plot
+from brdfkit.plots import Plot
 
 SIZE = 10.4, 9.4  # inches
 MIDDLE_GREY = 0.18  # what the geometric mean of the map is shown as

@@ -1,4 +1,3 @@
 """`plot`: the lobes of BRDFs in polar plots, with matplotlib."""
 
-from brdfkit.plotting.lobe_plots import Plot as Plot
 from brdfkit.plotting.lobe_plots import plot as plot

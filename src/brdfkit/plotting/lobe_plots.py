@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from brdfkit.errors import BrdfkitError
-from brdfkit.figures import to_png
 from brdfkit.materials import MaterialLike, materials
 from brdfkit.measured import Measured
 from brdfkit.names import make_unique
+from brdfkit.plots import Plot
 from brdfkit.plotting.half_disc import draw_half_disc, xy
 from brdfkit.plotting.plane_of_incidence import is_scattered, lobe, usual_angles
 from brdfkit.thumbnails.radius import Radius
@@ -60,16 +60,6 @@ def plot(things: MaterialLike | Iterable[MaterialLike], theta_i: ArrayLike | Non
     if angles.ndim != 1 or not angles.size or not np.all((angles >= 0) & (angles < 90)):
         raise BrdfkitError(f"plot: theta_i = {theta_i} should be angles from 0 to below 90°.")
     return _make_figure(found, angles)
-
-
-class Plot(Figure):
-    """A matplotlib `Figure` that is not pyplot's: no window, no global state.
-
-    Notebooks show it, also where pyplot has not told them how.
-    """
-
-    def _repr_png_(self):
-        return to_png(self)
 
 
 def _find_materials(things):

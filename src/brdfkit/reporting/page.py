@@ -8,7 +8,6 @@ from pathlib import Path
 
 from brdfkit.files import write_safely
 from brdfkit.names import printable
-from brdfkit.reporting.charts import fit_class
 
 
 def write(template, path, **said):
@@ -39,7 +38,6 @@ def _environment():
     found.globals |= {
         "source": lambda name: Markup(_source(name)),
         "policy": policy,
-        "fit_class": fit_class,
     }
     return found
 

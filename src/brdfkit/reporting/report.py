@@ -14,6 +14,7 @@ from brdfkit.model import Model
 from brdfkit.names import slug
 from brdfkit.ranking import Ranking
 from brdfkit.reporting import page
+from brdfkit.reporting.charts import fit_class
 from brdfkit.reporting.contents import Contents, describe
 from brdfkit.reporting.defaults import MODELS, SCENE, SIZE
 from brdfkit.reporting.fits import as_list, to_fit
@@ -108,7 +109,7 @@ def write_report(
     """
     rendering = render_pictures(material, fits, scene=scene, envmap=envmap, **pictures)
     contents = describe(material, fits, rendering, file, path, scene, envmap, ranking)
-    page.write("report.html", path, **contents.said)
+    page.write("report.html", path, fit_class=fit_class, **contents.said)
     return contents
 
 

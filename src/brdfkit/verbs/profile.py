@@ -14,7 +14,7 @@ from brdfkit.fitting import Fit
 from brdfkit.fitting.profiling import curvature, follow
 from brdfkit.jit.threads import in_turn
 from brdfkit.materials import MaterialLike
-from brdfkit.plotting import Plot
+from brdfkit.plots import Plot
 from brdfkit.verbs.refit import refit
 
 
