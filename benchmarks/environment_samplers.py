@@ -18,9 +18,9 @@ from rich.console import Console
 
 import brdfkit as bk
 from brdfkit.checks.plugin_subject import example
-from brdfkit.colours import luminance
-from brdfkit.jit import llvm, threads
-from brdfkit.lighting.environment_map import cell_power
+from brdfkit.core.colours import luminance
+from brdfkit.core.jit import llvm, threads
+from brdfkit.lighting.sampling.power_map import cell_power
 
 PAGE = Path(__file__).parents[1] / "docs" / "environment_samplers.md"
 BLOCKS, OTHERS = {"type": "kdtree_envmap"}, {"type": "sampled_envmap"}

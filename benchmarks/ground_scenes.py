@@ -1,8 +1,9 @@
 """Scenes for frames of shadows: what stands on a ground, seen from above, under a light."""
 
+from brdfkit.theses.balint2019 import ground as seen_from_above
+from brdfkit.theses.balint2019 import scenes
+
 from brdfkit.distance_fields import box
-from brdfkit.reproducing.balint2019 import ground as seen_from_above
-from brdfkit.reproducing.balint2019 import scenes
 
 BALL = 0.01  # of the points on the ground, about half a pixel
 LIGHT = 2.0, -1.5, 6.0

@@ -13,14 +13,14 @@ import time
 import numpy as np
 
 import brdfkit as bk
-from brdfkit.jit.llvm import use_variant
+from brdfkit.core.jit.llvm import use_variant
+from brdfkit.inverse.scenes.problem.parameters import choose
+from brdfkit.inverse.scenes.problem.scene import integrator_of, load_subject
+from brdfkit.inverse.scenes.problem.targets import read_targets
+from brdfkit.inverse.scenes.problem.views import Views
+from brdfkit.inverse.scenes.search.forward_derivatives import derivatives, tangents
+from brdfkit.inverse.scenes.search.normal_equations import Equations, Residuals
 from brdfkit.model import labels
-from brdfkit.refining.derivatives import derivatives, tangents
-from brdfkit.refining.equations import Equations, Residuals
-from brdfkit.refining.subject import integrator_of, load_subject
-from brdfkit.refining.targets import read_targets
-from brdfkit.refining.unknowns import choose
-from brdfkit.refining.views import Views
 
 STARTS, SIZE, NOISE = 20, 24, 0.01
 GOLD, GREY = (0.5, 0.35, 0.15), (0.3, 0.3, 0.3)

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 import brdfkit as bk
-from brdfkit.jit.llvm import use_variant
+from brdfkit.core.jit.llvm import use_variant
 from brdfkit.rendering.scenes._meshes import mesh_of_grid
 from brdfkit.rendering.scenes.knot import tube
 

@@ -5,7 +5,7 @@ from drjit.llvm.ad import Array3f64 as P
 from drjit.llvm.ad import Float64 as Float
 
 from brdfkit.distance_fields.shadows import light_cone
-from brdfkit.distance_fields.shadows.linear import linear
+from brdfkit.distance_fields.shadows.marches import linear
 from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
 from brdfkit.distance_fields.shadows.split import split
 

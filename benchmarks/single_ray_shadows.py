@@ -26,12 +26,12 @@ from brdfkit.distance_fields.shadows.base import base
 from brdfkit.distance_fields.shadows.convex import convex
 from brdfkit.distance_fields.shadows.dense import dense
 from brdfkit.distance_fields.shadows.discrete import discrete
-from brdfkit.distance_fields.shadows.linear import linear
+from brdfkit.distance_fields.shadows.marches import linear
 from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
-from brdfkit.distance_fields.shadows.quilez import quilez
+from brdfkit.distance_fields.shadows.rivals import quilez
 from brdfkit.distance_fields.shadows.split import split
 from brdfkit.distance_fields.shadows.tau import tau
-from brdfkit.json_values import rounded
+from brdfkit.core.json_values import rounded
 
 RESULTS = Path(__file__).with_suffix(".json")
 DIGITS = 4  # of numbers in it

@@ -3,11 +3,11 @@
 import ground_scenes
 import numpy as np
 
-from brdfkit.distance_fields.shadows.linear import linear
+from brdfkit.distance_fields.shadows.marches import linear
 from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
-from brdfkit.distance_fields.shadows.quilez import quilez
+from brdfkit.distance_fields.shadows.rivals import quilez
 from brdfkit.distance_fields.shadows.split import split
-from brdfkit.reproducing.drawing import COLOURS, figure, tidy
+from brdfkit.theses.drawing import COLOURS, figure, tidy
 
 FAMILIES = "monte_carlo", "linear", "base", "discrete", "convex", "split", "quilez", "aaltonen"
 SIZE, RADIUS = 200, 1.0

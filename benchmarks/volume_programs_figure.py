@@ -3,8 +3,8 @@
 import numpy as np
 from volume_programs.case import NAMES, Case
 
-from brdfkit.colours import to_srgb
-from brdfkit.reproducing.drawing import figure
+from brdfkit.core.colours import to_srgb
+from brdfkit.theses.drawing import figure
 
 TIMES = 10
 SHOWN = (

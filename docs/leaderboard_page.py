@@ -7,8 +7,8 @@ from statistics import mean, median
 
 from make_models import paragraphs, table
 
-from brdfkit.reproducing.drawing import COLOURS, figure, tidy
-from brdfkit.version import versions
+from brdfkit.core.version import versions
+from brdfkit.theses.drawing import COLOURS, figure, tidy
 
 PAGE = Path(__file__).with_name("leaderboard.md")
 INTRODUCTION = """Every model, fitted to every measurement at hand, and how far it is off. Made by

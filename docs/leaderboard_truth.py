@@ -3,9 +3,9 @@
 import numpy as np
 
 import brdfkit as bk
-from brdfkit.geometry.directions import from_half_difference, to_half_difference
-from brdfkit.measured.selection import select_samples
-from brdfkit.samples.neural import evaluate_network
+from brdfkit.core.geometry.directions import from_half_difference, to_half_difference
+from brdfkit.materials.measured.selection import select_samples
+from brdfkit.model.samples.neural import evaluate_network
 
 MAX_ANGLE, PAIRS = 80.0, 60_000
 

@@ -7,9 +7,9 @@ from statistics import mean, median
 from leaderboard_page import made_with
 from make_models import paragraphs, table
 
-from brdfkit.fitting.named_losses import DEFAULT
-from brdfkit.names import listed
-from brdfkit.reproducing.drawing import COLOURS, figure, tidy
+from brdfkit.core.names import listed
+from brdfkit.regression.losses.named import DEFAULT
+from brdfkit.theses.drawing import COLOURS, figure, tidy
 
 PAGE = Path(__file__).with_name("losses.md")
 # The losses that the figure shows, and the difference that is clear [dB]

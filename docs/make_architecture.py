@@ -30,18 +30,14 @@ the top folder [`plugins/`](plugins/README.md). Made by `make docs` of the first
 """
 GROUPS = {  # what a row of rooms is for, by one of them
     "cli": "what people type",
-    "reproducing": "theses, run again",
-    "sweeping": "many at once",
+    "inverse": "numbers from pictures; reports",
     "checks": "verbs: what people call",
-    "materials": "what a name stands for",
-    "formats": "files",
-    "measured": "a measured material",
-    "fitting": "what a fit and what Mitsuba runs",
+    "materials": "nouns: what people name",
+    "regression": "what a fit and what Mitsuba runs",
     "model": "what a model is made of",
-    "thumbnails": "what a BRDF looks like",
-    "samples": "numbers",
-    "geometry": "directions, and words",
-    "files": "the ground everyone stands on",
+    "images": "pictures; claims of theses",
+    "core": "the ground everyone stands on",
+    "plugins": "the door to plugins/",
 }
 
 

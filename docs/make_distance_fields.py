@@ -20,7 +20,7 @@ from distance_field_scenes import SCENES
 from make_models import paragraphs, table
 from PIL import Image, ImageDraw, ImageFont
 
-from brdfkit.colours import to_srgb
+from brdfkit.core.colours import to_srgb
 
 PAGE = Path(__file__).with_name("distance_fields.md")
 FOLDER = PAGE.with_suffix("")

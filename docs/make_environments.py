@@ -11,13 +11,13 @@ from make_models import paragraphs, table
 from PIL import Image, ImageDraw, ImageFont
 
 import brdfkit as bk
-from brdfkit.catalogue import shipped
-from brdfkit.colours import luminance, to_srgb
-from brdfkit.environments.map_files import read
+from brdfkit.core import catalogue
+from brdfkit.core.colours import luminance, to_srgb
+from brdfkit.lighting.environments.map_files import read
 
 PAGE = Path(__file__).with_name("environments.md")
 COMPASS = PAGE.parent / "how_to" / "compass.jpg"
-SHOWN = [name for name in shipped.environments() if name != "compass"]
+SHOWN = [name for name in catalogue.environments() if name != "compass"]
 BALLS = ("red_plastic", "car_paint", "blasted_gold")
 HEIGHT, SPP, LINE, GAP = 192, 256, 30, 8
 TEXT = """They come with brdfkit, are free to use, and are found by their names where a map is
@@ -37,7 +37,7 @@ def page():
     """The text of the page."""
     rows = []
     for name in SHOWN:
-        map, found = shipped.environments()[name], bk.audit_environment(name)
+        map, found = catalogue.environments()[name], bk.audit_environment(name)
         share, stops = found.brightest_share, np.log2(found.largest / found.median)
         rows.append((f"`{name}`", map.what, f"{share:.0%}".replace("%", " %"), f"{stops:.0f}"))
     figures = table("map, what it is, light in 1 %, stops from median to max", rows)
@@ -52,7 +52,7 @@ def picture():
     for row, name in enumerate(SHOWN):
         top = row * (HEIGHT + GAP + LINE)
         draw.text((4, top + LINE // 2), name, "black", font, anchor="lm")
-        rgb = read(shipped.environment_path(name))
+        rgb = read(catalogue.environment_path(name))
         exposure = 0.18 / np.exp(np.log(luminance(rgb) + 1e-4).mean())
         sheet.paste(image(rgb * exposure).resize((2 * HEIGHT, HEIGHT)), (0, top + LINE))
         balls = bk.render(BALLS, spp=SPP, size=HEIGHT, envmap=name).pictures.values()
@@ -69,5 +69,5 @@ def image(linear):
 if __name__ == "__main__":
     PAGE.write_text(page(), encoding="utf-8")
     picture().save(PAGE.with_suffix(".jpg"), quality=88, optimize=True)
-    compass = image(read(shipped.environment_path("compass")))
+    compass = image(read(catalogue.environment_path("compass")))
     compass.resize((768, 384), Image.Resampling.NEAREST).save(COMPASS, quality=90, optimize=True)

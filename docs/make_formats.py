@@ -14,8 +14,8 @@ from make_models import paragraphs, table
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
-from brdfkit.formats import formats
-from brdfkit.references import works
+from brdfkit.core.references import works
+from brdfkit.materials.formats import formats
 
 FOLDER = Path(__file__).with_name("formats")
 FORMULA = {"alpha_u": 0.3, "diffuse_reflectance": 0.3}
@@ -79,7 +79,7 @@ def page(module, found):
     """The text of a format's page; `found`: the outcomes by material."""
     first, rest = prose(module)
     can = "read and written" if hasattr(module, "write") else "read"
-    folder = "../../src/brdfkit/formats"
+    folder = "../../src/brdfkit/materials/formats"
     source = f"{folder}/rgl/__init__.py" if hasattr(module, "__path__") else None
     source = source or f"{folder}/{file_name(module).replace('.md', '.py')}"
     rows = [(name, words) for name, (_, words) in found.items()]

@@ -20,14 +20,14 @@ from leaderboard_page import write_page
 from leaderboard_truth import MAX_ANGLE, PAIRS, Truth
 
 import brdfkit as bk
-from brdfkit.files import sha256, write_safely
-from brdfkit.fitting import regress
-from brdfkit.fitting.levenberg_marquardt import levenberg_marquardt
-from brdfkit.fitting.parameter_space import Space
-from brdfkit.fitting.problem import Problem
-from brdfkit.measured.selection import select_samples
+from brdfkit.core.files import sha256, write_safely
+from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
-from brdfkit.samples.neural import decode_network
+from brdfkit.model.samples.neural import decode_network
+from brdfkit.regression import regress
+from brdfkit.regression.problem.parameter_space import Space
+from brdfkit.regression.problem.problem import Problem
+from brdfkit.regression.search.levenberg_marquardt import levenberg_marquardt
 
 SEED = 0
 # Cells of the reconstructions that are fitted, of a MERL table, and of one to be searched often

@@ -16,11 +16,11 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 import brdfkit as bk
-from brdfkit.catalogue import shipped
 from brdfkit.checks.material_subject import INCIDENCES, Subject
 from brdfkit.checks.sampling import spread
-from brdfkit.colours import to_srgb
-from brdfkit.geometry.directions import from_angles
+from brdfkit.core import catalogue
+from brdfkit.core.colours import to_srgb
+from brdfkit.core.geometry.directions import from_angles
 from brdfkit.rendering.scenes.ball import ball
 
 PAGE = Path(__file__).with_name("measured.md")
@@ -46,7 +46,7 @@ in units of an analytic Ward's. *doubts*: how many things `brdfkit info` finds t
 
 def files(folder):
     """What `brdfkit.load` takes, of every measurement."""
-    names = list(shipped.materials())
+    names = list(catalogue.materials())
     for path in sorted(p for p in Path(folder).rglob("*") if p.is_file()):
         suffix = path.name.removesuffix(".xz").rpartition(".")[2]
         if path.name == "abrdf.dat":

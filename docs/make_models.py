@@ -12,9 +12,9 @@ import numpy as np
 from PIL import Image
 
 import brdfkit as bk
-from brdfkit.commands.models import choices, example
+from brdfkit.cli.commands.models import choices, example
+from brdfkit.core.discovery.plugin_pages import page as plugin_page
 from brdfkit.model import labels
-from brdfkit.plugins.pages import page as plugin_page
 
 FOLDER = Path(__file__).with_name("models")
 SIZE, SPP = 320, 128

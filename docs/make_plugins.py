@@ -10,9 +10,9 @@ from pathlib import Path
 
 from make_models import docstring, paragraphs, references, table, xml
 
+from brdfkit.core.discovery import plugin_files
+from brdfkit.core.discovery.plugin_files import KINDS, MODELS
 from brdfkit.model.labels import model_in
-from brdfkit.plugins import discovery
-from brdfkit.plugins.discovery import KINDS, MODELS
 
 FOLDER = Path(__file__).with_name("plugins")
 TOP = "../../plugins"
@@ -39,8 +39,8 @@ def pages():
 
 def shipped(kind):
     """brdfkit's own plugins of a kind, without those of a user's that were loaded."""
-    found = discovery.sources(kind).items()
-    return {n: s for n, s in found if discovery.module(s).__name__.startswith(discovery.OWN)}
+    found = plugin_files.sources(kind).items()
+    return {n: s for n, s in found if plugin_files.module(s).__name__.startswith(plugin_files.OWN)}
 
 
 def is_model(kind, source):
@@ -50,7 +50,7 @@ def is_model(kind, source):
 def page(kind, name, source):
     """The text of a plugin's page."""
     title, sentence, text = docstring(source)
-    settings = getattr(discovery.module(source), "PARAMETERS", {})
+    settings = getattr(plugin_files.module(source), "PARAMETERS", {})
     rows = [(f"`{n}`", default(s), *bounds(s), s.meaning) for n, s in settings.items()]
     return paragraphs(
         *(f"# {title}", sentence, text),

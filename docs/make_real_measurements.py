@@ -31,12 +31,12 @@ from real_measurements_files import FILES, read_again
 from real_measurements_invariance import LOSSES, Part, compare_files
 
 import brdfkit as bk
-from brdfkit.catalogue import shipped
-from brdfkit.colours import to_srgb
-from brdfkit.files import write_safely
-from brdfkit.jit.threads import use_threads
-from brdfkit.json_values import rounded
-from brdfkit.samples.neural import decode_network
+from brdfkit.core import catalogue
+from brdfkit.core.colours import to_srgb
+from brdfkit.core.files import write_safely
+from brdfkit.core.jit.threads import use_threads
+from brdfkit.core.json_values import rounded
+from brdfkit.model.samples.neural import decode_network
 
 RESULTS = Path(__file__).with_name("real_measurements.json")
 DIGITS = 4  # of numbers in it
@@ -71,7 +71,7 @@ def measurements(folder):
 
 def materials(folder):
     """The names of what is written as five files."""
-    own = [name for name in shipped.materials() if not bk.load(name).anisotropic]
+    own = [name for name in catalogue.materials() if not bk.load(name).anisotropic]
     return own + list(RECONSTRUCTIONS) * (folder / NETWORKS).is_file()
 
 

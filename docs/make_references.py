@@ -5,13 +5,13 @@ python docs/make_references.py
 
 from pathlib import Path
 
-from brdfkit.references import references
+from brdfkit.core.references import references
 
 PAGE = Path(__file__).with_name("references.md")
 HEAD = """# References
 
 The works that brdfkit cites, by the key that stands in brackets in its texts. A new one is an entry
-of [`references.toml`](../src/brdfkit/references.toml), of which `make docs` makes this page.
+of [`references.toml`](../src/brdfkit/core/references.toml), of which `make docs` makes this page.
 
 """
 

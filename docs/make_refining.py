@@ -19,9 +19,9 @@ import mitsuba as mi
 import numpy as np
 import refining_page as page
 
-from brdfkit.jit.llvm import use_variant
-from brdfkit.picture_errors.flip import flip
-from brdfkit.picture_errors.psnr import psnr
+from brdfkit.core.jit.llvm import use_variant
+from brdfkit.images.errors.flip import flip
+from brdfkit.images.errors.psnr import psnr
 from brdfkit.rendering.scenes._studio import camera
 from brdfkit.rendering.scenes.ball import ball
 from brdfkit.rendering.scenes.cornell_box import cornell_box

@@ -18,10 +18,10 @@ import shadow_gradient_truth as truth
 import shadow_map_gradients_page as page
 from shadow_gradient_scenes import LIGHTS, SCENES, load
 
-from brdfkit.jit.llvm import use_variant
-from brdfkit.shadow_maps.light_shadow import LightShadow
-from brdfkit.shadow_maps.placement import Placement
-from brdfkit.shadow_maps.techniques import FILES
+from brdfkit.core.jit.llvm import use_variant
+from brdfkit.shadows.maps.light_shadow import LightShadow
+from brdfkit.shadows.maps.placement import Placement
+from brdfkit.shadows.maps.techniques import FILES
 
 PROJECTIONS = tuple(FILES["projection"])
 SIDE = 160  # points along a side of the ground that ask a map

@@ -10,7 +10,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 import brdfkit as bk
-from brdfkit.colours import to_srgb
+from brdfkit.core.colours import to_srgb
 from brdfkit.rendering.volumes.scene import RENDERERS
 
 PICTURE = Path(__file__).with_name("volumes.jpg")

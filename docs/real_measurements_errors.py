@@ -6,16 +6,16 @@ from itertools import pairwise
 import numpy as np
 
 import brdfkit as bk
-from brdfkit.catalogue import shipped
-from brdfkit.colours import luminance, to_srgb
-from brdfkit.environments import map_files
-from brdfkit.environments.conventions import convention
-from brdfkit.environments.resampling import look_up, parts_of
-from brdfkit.geometry.directions import from_angles, to_half_difference
-from brdfkit.measured.coverage import largest_angles
-from brdfkit.measured.selection import select_samples
-from brdfkit.pictures import LIGHTS, draw_pixels
-from brdfkit.samples.measures import weigh
+from brdfkit.core import catalogue
+from brdfkit.core.colours import luminance, to_srgb
+from brdfkit.core.geometry.directions import from_angles, to_half_difference
+from brdfkit.images.ball import LIGHTS, draw_pixels
+from brdfkit.lighting.environments import map_files
+from brdfkit.lighting.environments.conventions import convention
+from brdfkit.lighting.environments.resampling import look_up, parts_of
+from brdfkit.materials.measured.coverage import largest_angles
+from brdfkit.materials.measured.selection import select_samples
+from brdfkit.model.samples.measures import weigh
 
 MODELS = "ward_duer", "ggx", "ggx+ggx", "abc+student_t"
 LOSSES = "cosine", "log", "cbrt"
@@ -128,7 +128,7 @@ def draw_picture(name, data):
 def light_of(name):
     """The light of a map that brdfkit brings: a function of directions (n, 3), z up, to grey
     radiances (n,)."""
-    grey = luminance(map_files.read(shipped.environment_path(name)))[..., None]
+    grey = luminance(map_files.read(catalogue.environment_path(name)))[..., None]
     own = convention("mitsuba")
     parts = parts_of(own.layout, *grey.shape[:2])
 

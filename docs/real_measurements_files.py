@@ -3,7 +3,7 @@
 import numpy as np
 
 import brdfkit as bk
-from brdfkit.geometry.directions import from_angles, from_half_difference
+from brdfkit.core.geometry.directions import from_angles, from_half_difference
 
 # Steps of the goniometer's grid [degrees]: both polar angles below 80°, and azimuths that close in
 # on the mirror direction, by the square of their number

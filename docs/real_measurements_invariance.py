@@ -5,11 +5,11 @@ from functools import cache, partial
 import numpy as np
 
 import brdfkit as bk
-from brdfkit.fitting.loss import squares
-from brdfkit.geometry.directions import from_angles
-from brdfkit.geometry.quadrature import directional_albedo
-from brdfkit.measured.selection import select_samples
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.core.geometry.quadrature import directional_albedo
+from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model.evaluation import lobe_values, weight_matrix
+from brdfkit.regression.losses.loss import squares
 
 LOSSES = "cosine", "log", "cbrt", "plain"
 # A parameter is the same within this share of it, or a lobe's albedo within that share of all light

@@ -4,7 +4,7 @@ from collections import Counter
 from itertools import pairwise
 from statistics import median
 
-from brdfkit.names import listed
+from brdfkit.core.names import listed
 
 DEFAULT = "cbrt"
 UNKNOWN = "No reason was found."

@@ -9,7 +9,7 @@ from leaderboard_page import made_with
 from make_models import paragraphs, table
 from PIL import Image, ImageDraw, ImageFont
 
-from brdfkit.colours import to_srgb
+from brdfkit.core.colours import to_srgb
 
 PAGE = Path(__file__).with_name("refining.md")
 RUNS = PAGE.parent.parent / "benchmarks" / "refining_runs.json"

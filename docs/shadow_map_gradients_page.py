@@ -6,7 +6,7 @@ import numpy as np
 from leaderboard_page import made_with
 from make_models import paragraphs, table
 
-from brdfkit.reproducing.drawing import COLOURS, figure, tidy
+from brdfkit.theses.drawing import COLOURS, figure, tidy
 
 PAGE = Path(__file__).with_name("shadow_map_gradients.md")
 RESOLUTION = 512  # texels along a side of a map

@@ -16,9 +16,9 @@ from rich.table import Table as Printed
 import brdfkit as bk
 from brdfkit.checks.material_subject import INCIDENCES, Subject, incidences
 from brdfkit.checks.sampling import spread
-from brdfkit.jit import llvm
-from brdfkit.plugins.pages import page
-from brdfkit.samples import Table
+from brdfkit.core.discovery.plugin_pages import page
+from brdfkit.core.jit import llvm
+from brdfkit.model.samples import Table
 
 MERL = (90, 90, 180)
 ROUNDS = 5

@@ -12,14 +12,14 @@ from pathlib import Path
 import numpy as np
 import psutil
 from benchmark import full_table
+from brdfkit.theses.kurt2007.curet import NUMBERS
+from brdfkit.theses.kurt2007.printed import SEVEN
 from rich.console import Console
 from rich.table import Table as Printed
 from scipy.optimize import minimize
 
 import brdfkit as bk
-from brdfkit.measured.selection import select_samples
-from brdfkit.reproducing.kurt2007.curet import NUMBERS
-from brdfkit.reproducing.kurt2007.printed import SEVEN
+from brdfkit.materials.measured.selection import select_samples
 
 # (model, loss, robust) of a full table
 TABLE = (

@@ -9,8 +9,8 @@ from tempfile import TemporaryDirectory
 import pytest
 
 import brdfkit as bk
+from brdfkit.core.discovery import plugin_files
 from brdfkit.model import labels
-from brdfkit.plugins import discovery
 
 
 def pytest_configure(config):
@@ -96,7 +96,7 @@ def pytest_runtest_setup(item):
 @pytest.fixture
 def no_user_plugins(monkeypatch):
     """No plugin of a user's is known, and what a test adds is forgotten."""
-    monkeypatch.setattr(discovery, "_users", {})
+    monkeypatch.setattr(plugin_files, "_users", {})
 
 
 @pytest.fixture

@@ -19,15 +19,15 @@ from scipy.special import stdtrit
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
-from brdfkit.fitting.certainty import certify
-from brdfkit.fitting.levenberg_marquardt import levenberg_marquardt
-from brdfkit.fitting.named_losses import OFFSET
-from brdfkit.fitting.parameter_space import Space
-from brdfkit.fitting.problem import Problem
-from brdfkit.fitting.robust_search import settle
 from brdfkit.model import labels
-from brdfkit.samples import Samples
-from brdfkit.samples.measures import estimate_extents
+from brdfkit.model.samples import Samples
+from brdfkit.model.samples.measures import estimate_extents
+from brdfkit.regression.certainty import certify
+from brdfkit.regression.losses.named import OFFSET
+from brdfkit.regression.problem.parameter_space import Space
+from brdfkit.regression.problem.problem import Problem
+from brdfkit.regression.robust.search import settle
+from brdfkit.regression.search.levenberg_marquardt import levenberg_marquardt
 
 
 def multiply(rng, values, wi, wo, loss):

@@ -4,9 +4,9 @@ import numpy as np
 from scipy.ndimage import gaussian_filter
 
 import brdfkit as bk
-from brdfkit.jit.threads import two_threads
-from brdfkit.photographs.in_mitsuba import bsdf_dict
-from brdfkit.photographs.pinhole import corners_of
+from brdfkit.core.jit.threads import two_threads
+from brdfkit.inverse.photographs.capture.pinhole import corners_of
+from brdfkit.inverse.photographs.maps.scene import bsdf_dict
 
 SIDE = 0.1  # m
 CAMERA = bk.Pinhole(np.array([0.02, -0.05, 0.35]), np.zeros(3), np.array([0.0, 1.0, 0.0]), 22.0)

@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 
 import brdfkit as bk
-from brdfkit.fitting import regress
-from brdfkit.measured.selection import select_samples
+from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
-from brdfkit.samples.neural import decode_network
+from brdfkit.model.samples.neural import decode_network
+from brdfkit.regression import regress
 
 LIST = Path(__file__).with_name("optima.csv")
 LOSSES = "cbrt", "log", "cosine"

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from brdfkit.projective.body import box
-from brdfkit.projective.camera import Camera
-from brdfkit.projective.homogeneous import axes_about, rigid
-from brdfkit.projective.light import Light
-from brdfkit.shadow_maps.placement import Placement
+from brdfkit.core.projective.body import box
+from brdfkit.core.projective.camera import Camera
+from brdfkit.core.projective.homogeneous import axes_about, rigid
+from brdfkit.core.projective.light import Light
+from brdfkit.shadows.maps.placement import Placement
 
 LOW, HIGH = np.array([-20.0, -20, 0]), np.array([20.0, 20, 3])
 SUN = np.array([-1, 0, 1]) / np.sqrt(2)

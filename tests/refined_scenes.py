@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from brdfkit.refining.subject import integrator_of, load_subject
-from brdfkit.refining.targets import read_targets
-from brdfkit.refining.unknowns import choose
-from brdfkit.refining.views import Views
+from brdfkit.inverse.scenes.problem.parameters import choose
+from brdfkit.inverse.scenes.problem.scene import integrator_of, load_subject
+from brdfkit.inverse.scenes.problem.targets import read_targets
+from brdfkit.inverse.scenes.problem.views import Views
 from brdfkit.rendering.scenes._meshes import mesh_of_grid
 from brdfkit.rendering.scenes.knot import tube
 

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from brdfkit.fitting import losses
+from brdfkit.regression import losses
 
 
 def sample_sum(name):

@@ -4,7 +4,7 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-from brdfkit.shadow_maps.placement import Placement
+from brdfkit.shadows.maps.placement import Placement
 
 LIGHTS = ("directional", "point", "spot")
 

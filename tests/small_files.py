@@ -8,14 +8,14 @@ from unittest import mock
 
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.fitting.result import Fit
-from brdfkit.formats import Source, formats, rgl
-from brdfkit.formats.rgl import encoding
-from brdfkit.geometry.directions import from_angles
-from brdfkit.measured import Measured
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.materials.formats import Source, formats, rgl
+from brdfkit.materials.formats.rgl import encoding
+from brdfkit.materials.measured import Measured
 from brdfkit.model import labels
-from brdfkit.samples import Samples
+from brdfkit.model.samples import Samples
+from brdfkit.regression.result import Fit
 
 MIRROR_PHI = 3.141593
 MERL_SHAPE = (3, 2, 4)

@@ -13,9 +13,10 @@ from scipy.special import roots_legendre
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
-from brdfkit.errors import BrdfkitError
-from brdfkit.geometry.directions import from_angles
-from brdfkit.model import double_precision, labels
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.core.jit import double_precision
+from brdfkit.model import labels
 from brdfkit.model.microfacet import Beckmann
 
 gauss_legendre = cache(roots_legendre)  # NumPy's takes a second for 2,000 nodes

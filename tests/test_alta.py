@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from small_files import alta, place, spectrum
 
-from brdfkit.colours import RGB
-from brdfkit.errors import BrdfkitError
-from brdfkit.loading import load, save
+from brdfkit.core.colours import RGB
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.materials.loading import load, save
 
 pytestmark = pytest.mark.quick
 

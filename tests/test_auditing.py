@@ -13,24 +13,24 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import brdfkit as bk
 from brdfkit import models
-from brdfkit.auditing import symmetries
-from brdfkit.auditing.albedos import Albedo, albedo_of_samples
-from brdfkit.auditing.cosine import suspected_cosine
-from brdfkit.auditing.data_findings import data_findings
-from brdfkit.auditing.grazing_and_retro import backwards, grazing, retroreflection
-from brdfkit.auditing.noise import noise
-from brdfkit.auditing.report import percent
-from brdfkit.auditing.spikes import spikes
-from brdfkit.auditing.spread import some_samples
 from brdfkit.checks.material_subject import random_pairs
-from brdfkit.commands.info import record
-from brdfkit.geometry.directions import from_angles
-from brdfkit.json_values import plain
-from brdfkit.loading import load
-from brdfkit.measured import Measured
-from brdfkit.measured.coverage import coverage, is_near, largest_angles
-from brdfkit.measured.pair_points import points
-from brdfkit.samples import Table
+from brdfkit.cli.commands.info import record
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.core.json_values import plain
+from brdfkit.materials.auditing import symmetries
+from brdfkit.materials.auditing.albedos import Albedo, albedo_of_samples
+from brdfkit.materials.auditing.cosine import suspected_cosine
+from brdfkit.materials.auditing.data_findings import data_findings
+from brdfkit.materials.auditing.grazing_and_retro import backwards, grazing, retroreflection
+from brdfkit.materials.auditing.noise import noise
+from brdfkit.materials.auditing.report import percent
+from brdfkit.materials.auditing.spikes import spikes
+from brdfkit.materials.auditing.spread import some_samples
+from brdfkit.materials.loading import load
+from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.coverage import coverage, is_near, largest_angles
+from brdfkit.materials.measured.pair_points import points
+from brdfkit.model.samples import Table
 
 SHAPE = 45, 23, 36
 GGX = models()["ggx"](alpha_u=0.2, diffuse_reflectance=0.2, specular_reflectance=0.5)
@@ -696,7 +696,7 @@ def test_the_straight_line_of_mini_diff_where_nobody_masks_it(measured_data, tmp
 
 @pytest.mark.parametrize("name", ["retro-3M-jaune", "retro-gray-tape"])
 def test_retroreflective_tapes(measured_data, name):
-    pytest.importorskip("brdfkit.formats.alta")
+    pytest.importorskip("brdfkit.materials.formats.alta")
     audit = load(measured_data / "alta_retro" / f"{name}.dat.xz").audit()
     assert audit.retroreflection > 20
     assert audit.theta_i == (15, 30, 60)
@@ -731,7 +731,7 @@ def test_measured_paints_have_no_cosine_unless_they_are_given_one(measured_data,
     [("cg_sunflower", True), ("cc_iris_purple_gem", True), ("paper_white", False)],
 )
 def test_rgl_colours_out_of_gamut(measured_data, name, negative):
-    pytest.importorskip("brdfkit.formats.rgl")
+    pytest.importorskip("brdfkit.materials.formats.rgl")
     audit = load(measured_data / "rgl" / f"{name}_rgb.bsdf").audit()
     assert (audit.negative > 0) == negative
     told = any("values are negative" in finding for finding in audit.findings())

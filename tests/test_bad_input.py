@@ -5,7 +5,7 @@ import pytest
 from test_fit import Undefined, mirrored, synthetic
 
 import brdfkit as bk
-from brdfkit.errors import BrdfkitError
+from brdfkit.core.errors import BrdfkitError
 
 pytestmark = pytest.mark.quick
 

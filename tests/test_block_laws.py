@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from brdfkit.lighting.block_laws.hyperbolic import Hyperbolic
-from brdfkit.lighting.block_laws.sorted_blocks import SortedBlocks
-from brdfkit.lighting.block_laws.steps import Steps
-from brdfkit.lighting.environment_tree import build
+from brdfkit.lighting.sampling.block_laws.hyperbolic import Hyperbolic
+from brdfkit.lighting.sampling.block_laws.sorted_blocks import SortedBlocks
+from brdfkit.lighting.sampling.block_laws.steps import Steps
+from brdfkit.lighting.sampling.tree import build
 
 pytestmark = pytest.mark.quick
 

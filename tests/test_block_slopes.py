@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from brdfkit.lighting.block_slopes import STEEPEST, draw, line, slopes
-from brdfkit.lighting.environment_map import cell_power
-from brdfkit.lighting.environment_tree import Sums
-from brdfkit.lighting.map_samplers.blocks import Blocks
-from brdfkit.lighting.map_samplers.cdf import Cdf
-from brdfkit.lighting.map_samplers.mip import Mip
+from brdfkit.lighting.sampling.block_slopes import STEEPEST, draw, line, slopes
+from brdfkit.lighting.sampling.map_samplers.blocks import Blocks
+from brdfkit.lighting.sampling.map_samplers.mip import Mip
+from brdfkit.lighting.sampling.map_samplers.tables import Cdf
+from brdfkit.lighting.sampling.power_map import cell_power
+from brdfkit.lighting.sampling.tree import Sums
 
 
 @pytest.mark.quick

@@ -6,7 +6,7 @@ from test_certainty import noisy
 from test_fit import synthetic
 
 import brdfkit as bk
-from brdfkit.errors import BrdfkitError
+from brdfkit.core.errors import BrdfkitError
 
 
 # Of 400 samples one has a leverage of 0.27 on Koenderink's basis, where the bootstrap differs more

@@ -7,21 +7,21 @@ import shutil
 import numpy as np
 import pytest
 
-from brdfkit.catalogue import index, shipped
-from brdfkit.errors import BrdfkitError
-from brdfkit.files import contents
-from brdfkit.geometry.directions import from_angles, to_half_difference
-from brdfkit.loading import load
+from brdfkit.core import catalogue, index
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.files import contents
+from brdfkit.core.geometry.directions import from_angles, to_half_difference
+from brdfkit.materials.loading import load
 
-NAMES = sorted(shipped.materials())
-TABULATED = [n for n in NAMES if shipped.materials()[n].file.endswith(".binary.xz")]
+NAMES = sorted(catalogue.materials())
+TABULATED = [n for n in NAMES if catalogue.materials()[n].file.endswith(".binary.xz")]
 MEASURED = [n for n in NAMES if n not in TABULATED]
 LIMIT = 400_000  # bytes: they are in the repository and in the wheel
 
 
 @pytest.fixture(scope="module")
 def measured():
-    return {name: load(shipped.path(name)) for name in NAMES}
+    return {name: load(catalogue.path(name)) for name in NAMES}
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +78,7 @@ def assert_same(values, errors, others, other_errors):
 @pytest.mark.quick
 def test_index_and_files_are_one_to_one(make):
     files = {file.name for file in index.folder().glob("*.xz")}
-    entries = [material.file for material in shipped.materials().values()]
+    entries = [material.file for material in catalogue.materials().values()]
     assert sorted(entries) == sorted(files)
     assert sorted(make.TABULATED) == TABULATED
     assert sorted(make.MEASURED) == MEASURED
@@ -89,12 +89,12 @@ def test_index_and_files_are_one_to_one(make):
 @pytest.mark.quick
 @pytest.mark.parametrize("name", NAMES)
 def test_entries_say_all_and_checksums_are_right(name):
-    material = shipped.materials()[name]
+    material = catalogue.materials()[name]
     assert material.name == name == material.file.split(".")[0]
     assert material.licence == "BSD-3-Clause"
     assert material.source.endswith(f"make.py {name}")
     assert all(text in str(material) for text in (name, material.title, material.what))
-    file = shipped.path(name)
+    file = catalogue.path(name)
     assert hashlib.sha256(file.read_bytes()).hexdigest() == material.sha256
     assert file.stat().st_size <= LIMIT
 
@@ -102,22 +102,22 @@ def test_entries_say_all_and_checksums_are_right(name):
 @pytest.mark.quick
 def test_a_name_that_is_none():
     with pytest.raises(BrdfkitError, match=r"no material 'gold'; there are .*dusty_gold"):
-        shipped.path("gold")
+        catalogue.path("gold")
 
 
 @pytest.mark.quick
 def test_a_changed_or_missing_file_is_refused(copy):
-    file = shipped.path("car_paint")
+    file = catalogue.path("car_paint")
     assert file.parent == copy
     spoilt = bytearray(file.read_bytes())
     spoilt[len(spoilt) // 2] ^= 1
     file.write_bytes(spoilt)
     with pytest.raises(BrdfkitError, match=r"checksum differs.*install brdfkit again\.$"):
-        shipped.path("car_paint")
+        catalogue.path("car_paint")
     file.unlink()
     with pytest.raises(BrdfkitError, match=r"'car_paint' is missing"):
-        shipped.path("car_paint")
-    assert shipped.path("dusty_gold").exists()
+        catalogue.path("car_paint")
+    assert catalogue.path("dusty_gold").exists()
 
 
 @pytest.mark.quick
@@ -190,7 +190,7 @@ def test_albedo_is_at_most_one(measured, name, theta_i):
 def test_encoded_again_the_content_is_the_same(measured, make, name):
     material = measured[name]
     again = make.packed(material) if name in MEASURED else make.encoded(material.table.values)
-    assert again == contents(shipped.path(name))
+    assert again == contents(catalogue.path(name))
 
 
 @pytest.mark.quick
@@ -204,23 +204,23 @@ def test_rounding_is_as_fine_as_it_says(make):
 
 @pytest.mark.parametrize("name", TABULATED)
 def test_the_program_makes_what_is_shipped(measured, make, module_in_llvm, name):
-    made, shipped = make.tabulate(name), measured[name].table.values
-    assert np.array_equal(np.isnan(made), np.isnan(shipped))
-    assert np.allclose(made, shipped, rtol=1e-4, equal_nan=True)
+    made, catalogue = make.tabulate(name), measured[name].table.values
+    assert np.array_equal(np.isnan(made), np.isnan(catalogue))
+    assert np.allclose(made, catalogue, rtol=1e-4, equal_nan=True)
 
 
 @pytest.mark.parametrize("name", MEASURED)
 def test_measured_again_the_values_agree(measured, make, module_in_llvm, name):
     """Other samples of the same specimen, at every third cell along each axis: of a third as many
     cells, the centres are among the table's."""
-    shipped = measured[name].table
-    third = tuple(slice(1, None, 3) for _ in shipped.shape)
-    cells = ",".join(str(n // 3) for n in shipped.shape)
+    catalogue = measured[name].table
+    third = tuple(slice(1, None, 3) for _ in catalogue.shape)
+    cells = ",".join(str(n // 3) for n in catalogue.shape)
     again = make.measured(name, "--cells", cells, "--seed", "1", "--error", "0.1", "--spp", "1024")
-    assert np.allclose(again.table.directions()[0], shipped.directions()[0][third], atol=1e-12)
-    errors = measured[name].standard_error.reshape(shipped.values.shape)[third]
+    assert np.allclose(again.table.directions()[0], catalogue.directions()[0][third], atol=1e-12)
+    errors = measured[name].standard_error.reshape(catalogue.values.shape)[third]
     other = again.standard_error.reshape(again.table.values.shape)
-    assert_same(shipped.values[third], errors, again.table.values, other)
+    assert_same(catalogue.values[third], errors, again.table.values, other)
 
 
 @pytest.mark.parametrize("name", TABULATED)

@@ -12,13 +12,13 @@ from test_fit import synthetic
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
-from brdfkit.fitting import certainty, losses
-from brdfkit.fitting.parameter_space import Space
-from brdfkit.fitting.problem import Problem
-from brdfkit.geometry.directions import from_angles
-from brdfkit.measured.selection import select_samples
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
 from brdfkit.model.evaluation import lobe_values
+from brdfkit.regression import certainty, losses
+from brdfkit.regression.problem.parameter_space import Space
+from brdfkit.regression.problem.problem import Problem
 
 UP = [[0.0, 0.0, 1.0]]
 

@@ -7,15 +7,15 @@ import pytest
 from random_models import random_model
 
 import brdfkit as bk
-from brdfkit.catalogue import shipped
 from brdfkit.checks.material_subject import INCIDENCES, Subject
 from brdfkit.checks.registry import checks
 from brdfkit.checks.sampling import spread
-from brdfkit.geometry.vectors import half_vector
+from brdfkit.core import catalogue
+from brdfkit.core.discovery.plugin_files import MODELS
+from brdfkit.core.geometry.vectors import half_vector
 from brdfkit.model import Model, follows, labels, shape, weight
 from brdfkit.model.lobes import Cosine, HalfVector, Lobe, lambertian
 from brdfkit.model.microfacet import Beckmann
-from brdfkit.plugins.discovery import MODELS
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 
@@ -68,7 +68,7 @@ def test_every_check_in_other_variants(name, variant):
     import mitsuba as mi
 
     mi.set_variant(variant)
-    measured = name in shipped.materials()
+    measured = name in catalogue.materials()
     channels = None if name == "koenderink" else 3
     thing = bk.load(name) if measured else random_model(labels.model(name), 2, channels)
     # a table is reciprocal where its file is; beyond 80° some measurements gain energy
@@ -201,7 +201,7 @@ def test_coverage_notices_a_missing_lobe(monkeypatch):
             facets = Narrow(HalfVector(Beckmann(self.alpha, self.alpha)))
             return Lobe(lambda wi, wo: 1 / dr.pi, facets), Lobe(self.specular, facets)
 
-    monkeypatch.setattr("brdfkit.host.frame.COSINE_SHARE", 0.0)
+    monkeypatch.setattr("brdfkit.mitsuba_bridge.bsdf.base.COSINE_SHARE", 0.0)
     assert _check(Missing, "chi squared", monkeypatch)
     assert not _check(Missing, "coverage", monkeypatch)
 
@@ -237,7 +237,7 @@ class Mine(Model):
 )
 def test_a_model_that_raises_has_failed(lines, said, tmp_path, monkeypatch):
     """Each check for itself; the figure names the line."""
-    monkeypatch.setattr("brdfkit.plugins.discovery._users", {})
+    monkeypatch.setattr("brdfkit.core.discovery.plugin_files._users", {})
     (tmp_path / "users_mine.py").write_text(MINE + lines)
     mine = bk.load_models(tmp_path)["users_mine"]
     report = bk.check(mine(), only=["plugin is formula", "finite"])
@@ -273,9 +273,9 @@ def _check(model, check, monkeypatch):
     """The report of a model that lies in no file."""
     import mitsuba as mi
 
-    from brdfkit.host import bsdf
+    from brdfkit.mitsuba_bridge.bsdf import adapter
 
-    class Bsdf(bsdf.define(mi, model)):
+    class Bsdf(adapter.define(mi, model)):
         def __init__(self):
             super().__init__(mi.Properties("test"))
 

@@ -21,13 +21,13 @@ from rich.cells import cell_len
 from small_files import merl
 
 import brdfkit as bk
-from brdfkit.catalogue import shipped
 from brdfkit.cli import main
+from brdfkit.core import catalogue
+from brdfkit.core.discovery import plugin_files
 from brdfkit.distance_fields import sphere
-from brdfkit.plugins import discovery
 from brdfkit.rendering.scenes import scene_names
 from brdfkit.rendering.volumes.scene import RENDERERS
-from brdfkit.volumes.stored import presets
+from brdfkit.volumes.transfer.files import presets
 
 SMALL = ("--size", "16", "--spp", "2")
 SHAPE = (6, 4, 8)
@@ -62,7 +62,7 @@ class Felt(Model):
 def here(tmp_path, monkeypatch):
     """An empty current folder with a measured file in it."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(discovery, "_users", {})
+    monkeypatch.setattr(plugin_files, "_users", {})
     Path("paint.binary").write_bytes(merl(SHAPE))
     return tmp_path
 
@@ -112,7 +112,7 @@ def test_page_of_a_model(cli, model):
 def test_info(cli):
     listed = cli("info")
     assert_fine(listed)
-    assert all(name in listed.stdout for name in shipped.materials())
+    assert all(name in listed.stdout for name in catalogue.materials())
     shown = cli("info", "paint.binary")
     assert_fine(shown)
     assert "6×4×8 table" in shown.stdout
@@ -210,7 +210,7 @@ def test_fit_and_render(cli):
 @pytest.mark.quick
 def test_a_folder_may_have_the_name_of_a_material(cli):
     """`fit car_paint --render` makes such a folder; the next `fit car_paint` reads the table."""
-    name = next(iter(shipped.materials()))
+    name = next(iter(catalogue.materials()))
     Path(name).mkdir()
     Path("ward").mkdir()
     assert_fine(cli("info", name))
@@ -383,12 +383,12 @@ def test_a_file_stands_for_the_model_in_it(cli):
     Path("c++/felt.py").write_text(USER_MODEL)
     assert "Felt: dull." in cli("models", "c++/felt.py").stdout
     Path("felt.py").write_text(USER_MODEL.replace("0.3", "0.2"))
-    discovery._users.clear()
+    plugin_files._users.clear()
     assert_fine(cli("fit", "paint.binary", "-m", "felt.py", "-m", "felt.py+ward", "-o", "."))
     assert {"felt.json", "felt+ward.json"} < set(tree(Path()))
     assert_fine(cli("render", "felt.py", "felt.json", "felt+ward.json", *SMALL))
     assert_fine(cli("convert", "felt.py", "felt.bsdf"))
-    discovery._users.clear()
+    plugin_files._users.clear()
     unknown = cli("render", "felt.json", *SMALL)
     assert unknown.exit_code == 2
     assert "'felt', a model of somebody's own; load its file first" in unknown.stderr
@@ -617,7 +617,7 @@ def test_ctrl_c_keeps_the_finished_fits(cli, monkeypatch):
             raise KeyboardInterrupt
         return fitted(name, *args, **options)
 
-    monkeypatch.setattr("brdfkit.verbs.fit.fit", interrupted)
+    monkeypatch.setattr("brdfkit.fitting.fit.fit", interrupted)
     words = "fit", "paint.binary", "-m", "lambert", "-m", "ward", "-o", "out", "--render"
     result = cli(*words)
     assert result.exit_code == 130
@@ -631,7 +631,7 @@ def test_ctrl_c_keeps_the_finished_fits(cli, monkeypatch):
 
 def test_ctrl_c_keeps_the_passes_of_a_picture_and_says_so(cli, monkeypatch):
     monkeypatch.setattr("brdfkit.rendering.tracing.PASS", 1)
-    monkeypatch.setattr("brdfkit.commands._console.Console.progress", interrupting)
+    monkeypatch.setattr("brdfkit.cli.console.Console.progress", interrupting)
     said = "brdfkit: interrupted; rendered with 2 of 5 samples per pixel.\n"
     Path("room.xml").write_text(SCENE.format(alpha=0.3))
     for words in (["ward", "--size", "8"], ["room.xml"]):
@@ -774,7 +774,7 @@ model: ward
 @pytest.mark.quick
 @pytest.mark.parametrize("columns", [30, 40, 80, 81, 82, 83, 84, 120])
 def test_a_table_is_one_or_a_block_for_each_row(monkeypatch, capsys, columns):
-    from brdfkit.commands._console import Console
+    from brdfkit.cli.console import Console
 
     monkeypatch.setenv("COLUMNS", str(columns))
     Console().table(COLUMNS, ROWS[:2], ROWS[2:], title="an [important] table")
@@ -792,7 +792,7 @@ def test_a_table_is_one_or_a_block_for_each_row(monkeypatch, capsys, columns):
 @pytest.mark.parametrize(("columns", "is_table"), [(80, True), (60, True), (40, False)])
 def test_a_long_name_does_not_undo_a_table(monkeypatch, capsys, columns, is_table):
     """It goes on below; every other row stays one line, and nothing is lost."""
-    from brdfkit.commands._console import Console
+    from brdfkit.cli.console import Console
 
     monkeypatch.setenv("COLUMNS", str(columns))
     name = "measured-on-a-day-in-" * 5
@@ -832,12 +832,12 @@ class Terminal:
 @pytest.mark.quick
 @pytest.mark.parametrize(("patience", "quiet"), [(0.01, False), (0.01, True), (60, False)])
 def test_progress_shows_after_a_second_and_goes_away(monkeypatch, patience, quiet):
-    from brdfkit.commands._console import Console
+    from brdfkit.cli.console import Console
 
     terminal = Terminal()
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setattr("sys.stderr", terminal)
-    monkeypatch.setattr("brdfkit.progress_bar.PATIENCE", patience)
+    monkeypatch.setattr("brdfkit.core.progress_bar.PATIENCE", patience)
     with Console(quiet=quiet).progress("fit [ward]") as report:
         time.sleep(0.1)
         report(1, 4)
@@ -890,7 +890,7 @@ def _used(function):
 
 @pytest.mark.quick
 def test_a_command_is_a_file():
-    files = {file.stem for file in Path(bk.__file__).parent.glob("commands/[!_]*.py")}
+    files = {file.stem for file in Path(bk.__file__).parent.glob("cli/commands/[!_]*.py")}
     assert set(main.commands) == files == {command.name for command in main.commands.values()}
 
 

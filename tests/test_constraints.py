@@ -9,14 +9,14 @@ from scipy.optimize import minimize_scalar, nnls
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.cli import main
-from brdfkit.fitting import losses
-from brdfkit.fitting.parameter_space import Space
-from brdfkit.fitting.problem import Problem
-from brdfkit.fitting.solvers.constraints import Constraints
-from brdfkit.geometry.directions import from_angles
-from brdfkit.geometry.quadrature import ring_rule
-from brdfkit.measured.selection import select_samples
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.core.geometry.quadrature import ring_rule
+from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
+from brdfkit.regression import losses
+from brdfkit.regression.problem.parameter_space import Space
+from brdfkit.regression.problem.problem import Problem
+from brdfkit.regression.solvers.constraints import Constraints
 
 ANGLES = 0, 30, 60, 80
 

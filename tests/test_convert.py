@@ -23,14 +23,14 @@ from small_files import (
 
 import brdfkit as bk
 from brdfkit.cli import main
-from brdfkit.errors import BrdfkitError
-from brdfkit.formats import HEAD, formats
-from brdfkit.formats.rgl import encoding
-from brdfkit.geometry.directions import from_angles
-from brdfkit.loading import load, save
-from brdfkit.measured import Measured
-from brdfkit.verbs.convert import convert
-from brdfkit.verbs.evaluate import albedo
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.materials.converting import convert
+from brdfkit.materials.evaluating import albedo
+from brdfkit.materials.formats import HEAD, formats
+from brdfkit.materials.formats.rgl import encoding
+from brdfkit.materials.loading import load, save
+from brdfkit.materials.measured import Measured
 
 pytestmark = pytest.mark.usefixtures("small_tables")
 WRITERS = {m.__name__.rpartition(".")[2]: m for m in formats() if hasattr(m, "write")}

@@ -13,9 +13,9 @@ from scipy.spatial import cKDTree
 
 from brdfkit import BrdfkitError
 from brdfkit import distance_fields as df
+from brdfkit.core.jit import double_precision
+from brdfkit.core.jit.double_precision import Vector
 from brdfkit.distance_fields import kinds
-from brdfkit.model import double_precision
-from brdfkit.model.double_precision import Vector
 
 # Random trees
 

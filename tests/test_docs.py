@@ -11,10 +11,10 @@ from click.testing import CliRunner
 from PIL import Image, ImageDraw, ImageFont
 
 import brdfkit as bk
-from brdfkit.catalogue import shipped
 from brdfkit.cli import main
-from brdfkit.formats import formats
-from brdfkit.references import citations, references
+from brdfkit.core import catalogue
+from brdfkit.core.references import citations, references
+from brdfkit.materials.formats import formats
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [
@@ -70,7 +70,7 @@ def test_the_pages_of_materials_are_what_the_index_says():
     """Otherwise: python docs/make_materials.py"""
     make = import_module("make_materials")
     assert (make.FOLDER / "README.md").read_text(encoding="utf-8") == make.index()
-    for name, material in shipped.materials().items():
+    for name, material in catalogue.materials().items():
         text = (make.FOLDER / f"{name}.md").read_text(encoding="utf-8")
         assert text.startswith(make.head(material)), name
 

@@ -11,18 +11,18 @@ from matplotlib.text import Text
 from PIL import Image
 
 import brdfkit as bk
-from brdfkit.colours import to_srgb
-from brdfkit.documents import Cell, Document, Folded, Paragraph, Picture, Shown, Table
-from brdfkit.documents.html import to_html
-from brdfkit.documents.parts import BAD
-from brdfkit.documents.text import to_text
-from brdfkit.figures import to_png
-from brdfkit.fitting.certainty import Certainty
-from brdfkit.geometry.directions import from_angles
-from brdfkit.pictures.ball import WHITE, ball
-from brdfkit.pictures.lights import studio
-from brdfkit.pictures.normals import facing
-from brdfkit.volumes.summary import summarise
+from brdfkit.core.colours import to_srgb
+from brdfkit.core.documents import Cell, Document, Folded, Paragraph, Picture, Shown, Table
+from brdfkit.core.documents.html import to_html
+from brdfkit.core.documents.parts import BAD
+from brdfkit.core.documents.text import to_text
+from brdfkit.core.figures import to_png
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.images.ball.ball import WHITE, ball
+from brdfkit.images.ball.lights import studio
+from brdfkit.images.ball.normals import facing
+from brdfkit.regression.certainty import Certainty
+from brdfkit.volumes.summary.summary import summarise
 
 NASTY = "a<b> & \"c\" 'd'"
 VOID = {"img", "br", "path"}
@@ -269,7 +269,7 @@ def test_the_ball_is_a_picture_of_the_material(monkeypatch):
     half, _ = ball(lambda wi, wo: 0.5 * matt(wi, wo), 24)
     np.testing.assert_allclose(half, 0.5 * white)
     # with many directions, against the sum over all of the light, but for a common factor
-    monkeypatch.setattr("brdfkit.pictures.ball.DIRECTIONS", 1000)
+    monkeypatch.setattr("brdfkit.images.ball.ball.DIRECTIONS", 1000)
     white, _ = ball(matt, 24)
     heights, azimuths = np.meshgrid(np.linspace(-0.9975, 0.9975, 400), np.arange(800) * np.pi / 400)
     light = from_angles(np.arccos(heights), azimuths).reshape(-1, 3)

@@ -13,12 +13,13 @@ import pytest
 from click.testing import CliRunner
 from small_files import curet, curet_table, merl
 
-from brdfkit.catalogue import index, public
-from brdfkit.catalogue.downloading import get
 from brdfkit.cli import main
-from brdfkit.errors import BrdfkitError
-from brdfkit.files import sha256
-from brdfkit.loading import load
+from brdfkit.core import index
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.files import sha256
+from brdfkit.materials.collections import public
+from brdfkit.materials.collections.downloading import get
+from brdfkit.materials.loading import load
 
 pytestmark = pytest.mark.quick
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from brdfkit.lighting.environment_tree import CRITERIA, Sums, block_sums, build
+from brdfkit.lighting.sampling.tree import CRITERIA, Sums, block_sums, build
 
 pytestmark = pytest.mark.quick
 

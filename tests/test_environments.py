@@ -10,23 +10,23 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.catalogue import index, public_maps, shipped
 from brdfkit.cli import main
-from brdfkit.colours import luminance
-from brdfkit.environments.compass import COLOURS
-from brdfkit.environments.conventions import LAYOUTS, NAMED, convention
-from brdfkit.environments.map_files import read, write
-from brdfkit.environments.resampling import look_up, resample
-from brdfkit.environments.spread import solid_angles
+from brdfkit.core import catalogue, index, public_maps
+from brdfkit.core.colours import luminance
+from brdfkit.lighting.environments.compass import COLOURS
+from brdfkit.lighting.environments.conventions import LAYOUTS, NAMED, convention
+from brdfkit.lighting.environments.map_files import read, write
+from brdfkit.lighting.environments.resampling import look_up, resample
+from brdfkit.lighting.environments.spread import solid_angles
 
-MAPS = sorted(shipped.environments())
+MAPS = sorted(catalogue.environments())
 RANDOM = np.random.default_rng(5).normal(size=(400, 3))
 DIRECTIONS = RANDOM / np.linalg.norm(RANDOM, axis=1, keepdims=True)
 
 
 @pytest.fixture(scope="module")
 def maps():
-    return {name: read(shipped.environment_path(name)) for name in MAPS}
+    return {name: read(catalogue.environment_path(name)) for name in MAPS}
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +59,7 @@ def map_of(radiance, name, height):
 @pytest.mark.parametrize("name", MAPS)
 def test_shipped(maps, name):
     """Small, clean, and bright enough; no pixel is a firefly, far above all around it."""
-    entry, file = shipped.environments()[name], shipped.environment_path(name)
+    entry, file = catalogue.environments()[name], catalogue.environment_path(name)
     assert file.stat().st_size <= 200_000
     assert (entry.name, entry.file, entry.licence) == (name, f"{name}.exr", "BSD-3-Clause")
     rgb = maps[name]
@@ -75,7 +75,7 @@ def test_shipped(maps, name):
 
 def test_the_folder_holds_what_the_index_names():
     files = {file.name for file in index.folder(index.ENVIRONMENTS).glob("*.exr")}
-    assert files == {entry.file for entry in shipped.environments().values()}
+    assert files == {entry.file for entry in catalogue.environments().values()}
 
 
 def test_the_program_makes_what_is_shipped(maps, make, module_in_llvm):
@@ -426,7 +426,7 @@ def test_eight_bit_pictures_are_said_to_be(tmp_path):
 
 def test_a_name_lights_a_picture(module_in_llvm):
     by_name = bk.render("lambert", 4, 16, envmap="sky").pictures["lambert"]
-    file = shipped.environment_path("sky")
+    file = catalogue.environment_path("sky")
     assert np.allclose(by_name, bk.render("lambert", 4, 16, envmap=file).pictures["lambert"], 1e-4)
 
 

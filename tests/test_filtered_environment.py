@@ -11,20 +11,20 @@ from click.testing import CliRunner
 import brdfkit as bk
 from brdfkit.checks.plugin_subject import example
 from brdfkit.cli import main
-from brdfkit.geometry.directions import from_angles
-from brdfkit.geometry.latitude_rows import solid_angles
-from brdfkit.lighting import paraboloid_levels as levels
-from brdfkit.lighting.filtered_map import FilteredMap, LobeMaps, Mips, picture
-from brdfkit.lighting.irradiance import irradiance
-from brdfkit.lighting.lobe_light import LobeLight
-from brdfkit.lighting.scene_bsdfs import has_matte_part, is_isotropic, is_same_everywhere
-from brdfkit.lighting.sphere_filter import azimuths, convolve, row_angles
-from brdfkit.picture_errors.psnr import psnr
-from brdfkit.rendering.environment import environment
-from brdfkit.rendering.kept_materials import _measured_bsdf
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.core.geometry.latitude_rows import solid_angles
+from brdfkit.images.errors.psnr import psnr
+from brdfkit.lighting.filtering import paraboloid_levels as levels
+from brdfkit.lighting.filtering.filtered_map import FilteredMap, LobeMaps, Mips, picture
+from brdfkit.lighting.filtering.irradiance import irradiance
+from brdfkit.lighting.filtering.lobe_light import LobeLight
+from brdfkit.lighting.filtering.scene_bsdfs import has_matte_part, is_isotropic, is_same_everywhere
+from brdfkit.lighting.filtering.sphere_filter import azimuths, convolve, row_angles
+from brdfkit.rendering.previewing.cache import _measured_bsdf
+from brdfkit.rendering.previewing.staging import stage
+from brdfkit.rendering.scene_input.environment import environment
+from brdfkit.rendering.scene_input.shown_material import load_material
 from brdfkit.rendering.scenes.ball import ball
-from brdfkit.rendering.shown_material import load_material
-from brdfkit.rendering.staging import stage
 
 SIDE = 128
 
@@ -262,7 +262,7 @@ def test_what_it_cannot_light_is_said(llvm_variant, light, more, settings, varia
 )
 def test_directions_of_views_are_those_of_points(llvm_variant, monkeypatch, bsdf, alike):
     """Pictures by directions that are drawn once for a grid of views, and at each point; PSNR."""
-    mi, module = llvm_variant, import_module("brdfkit.lighting.filtered_sampling")
+    mi, module = llvm_variant, import_module("brdfkit.lighting.filtering.filtered_sampling")
     light = example("kdtree_envmap")
     by_views = shown(scene(mi, ours(), bsdf, light), 4)
     monkeypatch.setattr(module, "is_same_everywhere", lambda bsdf: False)
@@ -378,7 +378,7 @@ def test_a_preview_is_the_same_each_time_and_has_no_shadows(llvm_variant, tmp_pa
 
 def show_by(monkeypatch, mi, **settings):
     """Let previews use an integrator of other settings, which is quicker."""
-    module = import_module("brdfkit.rendering.preview")
+    module = import_module("brdfkit.rendering.previewing.preview")
     monkeypatch.setattr(module, "_integrator", lambda *_: mi.load_dict(ours(**settings)))
 
 
@@ -414,7 +414,7 @@ def test_a_ball_stands_in_the_shadow_and_the_light_of_its_ground(llvm_variant, m
 def test_a_changed_or_turned_mesh_casts_its_own_shadows(llvm_variant, monkeypatch, tmp_path):
     """By its triangles: no convex parts are sought, which takes minutes."""
     show_by(monkeypatch, llvm_variant, shadows="shapes", resolution=32, samples=9)
-    monkeypatch.setattr("brdfkit.visibility.of_scene.decompose", None)
+    monkeypatch.setattr("brdfkit.lighting.visibility.of_scene.decompose", None)
     file = tmp_path / "step.obj"
     step = "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 0 1 0\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
     pictures = []

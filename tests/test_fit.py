@@ -11,15 +11,15 @@ from random_models import random_model
 from sample_sums import sample_sum
 
 import brdfkit as bk
-from brdfkit.errors import BrdfkitError
-from brdfkit.fitting import regress
-from brdfkit.fitting.box_quadratic import minimise_in_box
-from brdfkit.geometry.directions import from_angles
-from brdfkit.geometry.vectors import half_vector
-from brdfkit.measured.selection import select_samples
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.core.geometry.vectors import half_vector
+from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import Model, shape, weight
 from brdfkit.model.lobes import Cosine, Lobe, lambertian
-from brdfkit.samples import Table
+from brdfkit.model.samples import Table
+from brdfkit.regression import regress
+from brdfkit.regression.problem.box_quadratic import minimise_in_box
 
 
 def synthetic(model, n=3000, seed=0):
@@ -309,7 +309,7 @@ def test_without_derivatives_the_fit_is_the_same(monkeypatch):
     """The fallback without LLVM: scalar arrays and finite differences."""
     import drjit as dr
 
-    from brdfkit.model import double_precision
+    from brdfkit.core.jit import double_precision
 
     data = synthetic(bk.models()["cook_torrance"](alpha=0.3, f0=0.2), n=500)
     exact = bk.fit("cook_torrance", data)

@@ -10,8 +10,8 @@ from sample_sums import sample_sum
 from test_fit import synthetic
 
 import brdfkit as bk
-from brdfkit.errors import BrdfkitError
-from brdfkit.measured.selection import select_samples
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.materials.measured.selection import select_samples
 
 pytestmark = pytest.mark.quick
 

@@ -10,13 +10,13 @@ from click.testing import CliRunner
 
 import brdfkit as bk
 from brdfkit.cli import main
-from brdfkit.geometry.directions import from_angles
-from brdfkit.measured import Measured
-from brdfkit.measured.selection import select_samples
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.fitting.lobe_notes import list_lobe_notes
+from brdfkit.fitting.lobe_widths import half_angle_step, half_widths
+from brdfkit.materials.extrapolation import describe_extrapolation, note_on_extrapolation
+from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.selection import select_samples
 from brdfkit.reporting.parameters import describe
-from brdfkit.verbs.extrapolation import describe_extrapolation, note_on_extrapolation
-from brdfkit.verbs.lobe_notes import list_lobe_notes
-from brdfkit.verbs.lobe_widths import half_angle_step, half_widths
 
 pytestmark = pytest.mark.quick
 
@@ -228,7 +228,7 @@ def test_all_that_show_a_fit_show_its_notes(tmp_path):
 
 def test_the_note_on_azimuths_comes_with_pictures_too():
     """Pixels have no error at one azimuth, by which a least one could be told."""
-    from brdfkit.samples import Table
+    from brdfkit.model.samples import Table
 
     brushed = model("ggx", alpha_u=0.1, alpha_v=0.5)
     wi, wo = Table(np.full((6, 8, 4, 8, 1), np.nan)).directions()
@@ -270,15 +270,15 @@ def test_a_table_of_few_samples_is_extrapolated():
 
 
 NOTES = {  # the files that make notes, and in which of their functions or names; None: in all
-    "verbs/fit_notes.py": None,
-    "verbs/azimuth.py": ("note_on_azimuth",),
-    "verbs/lobe_notes.py": None,
-    "verbs/lobe_widths.py": None,
-    "verbs/lobe_colours.py": None,
-    "verbs/extrapolation.py": ("note_on_extrapolation",),
-    "fitting/light.py": ("warnings",),
-    "fitting/light_search.py": ("_explain_light",),
-    "auditing/data_findings.py": (
+    "fitting/notes.py": None,
+    "fitting/uncertainty/isotropic_limit.py": ("note_on_azimuth",),
+    "fitting/lobe_notes.py": None,
+    "fitting/lobe_widths.py": None,
+    "fitting/lobe_colours.py": None,
+    "materials/extrapolation.py": ("note_on_extrapolation",),
+    "regression/light.py": ("warnings",),
+    "regression/search/light_search.py": ("_explain_light",),
+    "materials/auditing/data_findings.py": (
         "_say_direction",
         "_say_cosine",
         "_say_reciprocity",
@@ -287,11 +287,11 @@ NOTES = {  # the files that make notes, and in which of their functions or names
         "_say_incidence",
         "_say_zero",
     ),
-    "fitting/certainty.py": ("_describe_open", "_describe_trade", "_describe_trades"),
-    "fitting/measurement_noise.py": ("regress_noisy",),
-    "fitting/robust_search.py": ("note",),
-    "fitting/solvers/constraints.py": ("notes",),
-    "fitting/result.py": ("old",),
+    "regression/certainty.py": ("_describe_open", "_describe_trade", "_describe_trades"),
+    "regression/measurement_noise.py": ("regress_noisy",),
+    "regression/robust/search.py": ("note",),
+    "regression/solvers/constraints.py": ("notes",),
+    "regression/result.py": ("old",),
 }
 
 

@@ -7,16 +7,16 @@ from sample_sums import sample_sum
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
-from brdfkit.fitting import losses
-from brdfkit.fitting.folding import fold
-from brdfkit.fitting.parameter_space import Space
-from brdfkit.fitting.part import draw_part
-from brdfkit.fitting.problem import Problem
-from brdfkit.fitting.robust import WEIGHTS, leverages, sample_weights
-from brdfkit.measured.selection import select_samples
+from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
 from brdfkit.model.evaluation import lobe_values
-from brdfkit.samples import Samples
+from brdfkit.model.samples import Samples
+from brdfkit.regression import losses
+from brdfkit.regression.problem.folding import fold
+from brdfkit.regression.problem.parameter_space import Space
+from brdfkit.regression.problem.problem import Problem
+from brdfkit.regression.problem.subset import draw_part
+from brdfkit.regression.robust.reweighting import WEIGHTS, leverages, sample_weights
 
 MODELS_WITHOUT_SUMS = [name for name in bk.models() if name != "mixture"]
 

@@ -26,13 +26,13 @@ from small_files import (
 )
 
 import brdfkit as bk
-from brdfkit import files
-from brdfkit.colours import RGB, colour_science
-from brdfkit.errors import BrdfkitError
-from brdfkit.formats import formats
-from brdfkit.geometry.directions import from_angles
-from brdfkit.loading import load, save
-from brdfkit.measured import Measured
+from brdfkit.core import files
+from brdfkit.core.colours import RGB, colour_science
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.materials.formats import formats
+from brdfkit.materials.loading import load, save
+from brdfkit.materials.measured import Measured
 
 pytestmark = pytest.mark.quick
 PACKED = {"": bytes, ".gz": gzip.compress, ".xz": lzma.compress}

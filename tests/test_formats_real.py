@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from brdfkit.colours import RGB
-from brdfkit.files import contents
-from brdfkit.formats import HEAD, formats
-from brdfkit.geometry.directions import from_angles
-from brdfkit.loading import load, save
+from brdfkit.core.colours import RGB
+from brdfkit.core.files import contents
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.materials.formats import HEAD, formats
+from brdfkit.materials.loading import load, save
 
 DATA = Path(os.environ.get("BRDFKIT_DATA", "unset"))
 pytestmark = pytest.mark.skipif(not DATA.is_dir(), reason="BRDFKIT_DATA names no folder")

@@ -5,7 +5,7 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
-from brdfkit.errors import BrdfkitError
+from brdfkit.core.errors import BrdfkitError
 from brdfkit.model import labels
 from brdfkit.model.fresnel import FresnelModel
 

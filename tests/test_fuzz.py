@@ -15,11 +15,11 @@ from hypothesis import strategies as st
 from mutations import EVERY, NUMBERS, WORDS
 from small_files import FILES, curet_table, place, written
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.fitting.result import Fit
-from brdfkit.formats import formats
-from brdfkit.loading import load
-from brdfkit.measured import Measured
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.materials.formats import formats
+from brdfkit.materials.loading import load
+from brdfkit.materials.measured import Measured
+from brdfkit.regression.result import Fit
 
 CORPUS = {**FILES, **written(), "curet table": ("table.txt", curet_table())}
 LEAST_CASES = 20_000

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from brdfkit.geometry.dual_paraboloid import from_disc, solid_angle, to_disc
-from brdfkit.geometry.latitude_rows import projected_solid_angles, solid_angles
+from brdfkit.core.geometry.dual_paraboloid import from_disc, solid_angle, to_disc
+from brdfkit.core.geometry.latitude_rows import projected_solid_angles, solid_angles
 
 pytestmark = pytest.mark.quick
 

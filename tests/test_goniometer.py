@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.geometry.directions import from_angles
-from brdfkit.goniometer import measure, measuring, microgeometry
-from brdfkit.goniometer.microgeometry import HeightField, brushed, gaussian, make, woven
-from brdfkit.goniometer.specimen import Specimen
-from brdfkit.goniometer.tally import Tally
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.materials.goniometer import measure, measuring, microgeometry
+from brdfkit.materials.goniometer.microgeometry import HeightField, brushed, gaussian, make, woven
+from brdfkit.materials.goniometer.specimen import Specimen
+from brdfkit.materials.goniometer.tally import Tally
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 
@@ -398,7 +398,7 @@ class Interrupt:
 
 @pytest.mark.quick
 def test_ctrl_c_keeps_what_there_is(monkeypatch):
-    monkeypatch.setattr("brdfkit.goniometer.measuring.BATCH", 5_000)
+    monkeypatch.setattr("brdfkit.materials.goniometer.measuring.BATCH", 5_000)
     options = {"surface": tile("gaussian"), "facets": GREY, "shape": (5, 5, 5), "error": 0.02}
     whole, part = measure(**options), measure(**options, progress=Interrupt(after=30))
     assert "interrupted" in part.info

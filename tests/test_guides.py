@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.measured.tabulation import tabulate
+from brdfkit.materials.measured.tabulation import tabulate
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 PAGES = [DOCS / "five_minutes.md", *sorted(DOCS.glob("how_to/*.md"))]

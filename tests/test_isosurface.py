@@ -6,7 +6,7 @@ import pytest
 from scipy.optimize import brentq
 
 from brdfkit import TransferFunction, Volume
-from brdfkit.volumes.first_crossing import first_above, first_crossing
+from brdfkit.volumes.rays.first_crossing import first_above, first_crossing
 
 SUN = {"type": "directional", "direction": [0, 0, -1], "irradiance": 2.0}
 SKY = {"type": "constant", "radiance": 0.5}

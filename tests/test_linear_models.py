@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.geometry.directions import from_angles
-from brdfkit.measured.selection import select_samples
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
 from brdfkit.model.evaluation import lobe_values
 

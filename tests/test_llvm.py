@@ -14,8 +14,8 @@ from types import SimpleNamespace
 import pytest
 
 from brdfkit.checks import check
-from brdfkit.errors import BrdfkitError
-from brdfkit.jit import llvm
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.jit import llvm
 
 REPLACED = "which is not an LLVM of version 17 or newer"
 
@@ -247,7 +247,7 @@ import importlib.util, sys, types
 package = types.ModuleType("brdfkit")
 package.__path__ = importlib.util.find_spec("brdfkit").submodule_search_locations
 sys.modules["brdfkit"] = package
-from brdfkit.jit import llvm
+from brdfkit.core.jit import llvm
 llvm.find_library = lambda: None
 del sys.modules["brdfkit"]
 import brdfkit as bk

@@ -8,9 +8,9 @@ from click.testing import CliRunner
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.cli import main
-from brdfkit.errors import BrdfkitError
-from brdfkit.measured.selection import select_samples
-from brdfkit.samples import Table
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.materials.measured.selection import select_samples
+from brdfkit.model.samples import Table
 
 N = 400
 

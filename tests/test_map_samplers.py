@@ -9,11 +9,11 @@ import brdfkit as bk
 from brdfkit.checks import directions
 from brdfkit.checks import emitters as checks
 from brdfkit.checks.plugin_subject import example
-from brdfkit.lighting.environment_map import compensated
-from brdfkit.lighting.map_samplers.alias import Alias, alias_table
-from brdfkit.lighting.map_samplers.blocks import DISTRIBUTIONS, LOOKUPS, Blocks
-from brdfkit.lighting.map_samplers.cdf import Cdf
-from brdfkit.lighting.map_samplers.mip import Mip
+from brdfkit.lighting.sampling.map_samplers.alias import Alias, alias_table
+from brdfkit.lighting.sampling.map_samplers.blocks import DISTRIBUTIONS, LOOKUPS, Blocks
+from brdfkit.lighting.sampling.map_samplers.mip import Mip
+from brdfkit.lighting.sampling.map_samplers.tables import Cdf
+from brdfkit.lighting.sampling.power_map import compensated
 
 BY_NAME = {
     "cdf": Cdf,

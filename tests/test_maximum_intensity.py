@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from brdfkit import TransferFunction, Volume
-from brdfkit.volumes.largest_value import largest_along
+from brdfkit.volumes.rays.largest_value import largest_along
 
 
 @pytest.fixture

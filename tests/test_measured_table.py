@@ -9,16 +9,16 @@ import pytest
 from small_files import adaptive, place, rgl_file, written
 
 import brdfkit as bk
-from brdfkit.catalogue import shipped
 from brdfkit.checks.material_subject import INCIDENCES, Subject, incidences, random_pairs
 from brdfkit.checks.registry import checks
 from brdfkit.checks.sampling import spread
-from brdfkit.colours import colour_science
-from brdfkit.geometry.directions import from_angles
-from brdfkit.host.arrays import Rows
-from brdfkit.host.half_vector_table import _draw_cell
+from brdfkit.core import catalogue
+from brdfkit.core.colours import colour_science
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.mitsuba_bridge.arrays import Rows
+from brdfkit.mitsuba_bridge.bsdf.half_vector_table import _draw_cell
 from brdfkit.model import labels
-from brdfkit.samples import Table
+from brdfkit.model.samples import Table
 
 VARIANTS = ("llvm_ad_rgb", "llvm_ad_mono", "llvm_ad_spectral", "scalar_rgb", "scalar_spectral")
 POLARIZED = ("llvm_ad_mono_polarized", "llvm_ad_spectral_polarized", "scalar_spectral_polarized")
@@ -235,7 +235,7 @@ def cosine_spread(material, degrees):
     return weights.std() / weights.mean()
 
 
-@pytest.mark.parametrize("name", [*shipped.materials(), "brushed"])
+@pytest.mark.parametrize("name", [*catalogue.materials(), "brushed"])
 def test_weights_of_samples_vary_little(name, llvm_variant):
     """Standard deviation ≤ 0.5 of the mean at every incidence, and never worse than by cosine."""
     material = MATERIALS.get(name, lambda: bk.load(name))()

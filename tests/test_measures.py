@@ -5,9 +5,9 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
-from brdfkit.geometry.directions import from_angles, to_half_difference
-from brdfkit.measured.selection import select_samples
-from brdfkit.samples.measures import MEASURES, weigh, whole
+from brdfkit.core.geometry.directions import from_angles, to_half_difference
+from brdfkit.materials.measured.selection import select_samples
+from brdfkit.model.samples.measures import MEASURES, weigh, whole
 
 pytestmark = pytest.mark.quick
 

@@ -14,8 +14,8 @@ import pytest
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.checks.sampling import uniform
-from brdfkit.geometry.directions import from_angles, normalize
-from brdfkit.host.signed_sum import tabulate
+from brdfkit.core.geometry.directions import from_angles, normalize
+from brdfkit.mitsuba_bridge.bsdf.signed_sum import tabulate
 from brdfkit.model.lobes import components_of
 
 # All z-scores of this file, some 30: a right renderer exceeds this once in 5,000 files
@@ -117,7 +117,7 @@ def test_gradient_of_a_picture(model, llvm_variant, monkeypatch):
     mi = llvm_variant
     tables = {}  # a table drawn from moves with the weights, and the directions would with it
     monkeypatch.setattr(
-        "brdfkit.host.bsdf.tabulate",
+        "brdfkit.mitsuba_bridge.bsdf.adapter.tabulate",
         lambda model, weights, lobes: tables.setdefault(
             tuple(lobes), tabulate(model, weights, lobes)
         ),

@@ -7,9 +7,9 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
-from brdfkit.errors import BrdfkitError
-from brdfkit.geometry.directions import from_angles
-from brdfkit.measured.selection import select_samples
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
 
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from small_files import MATERIALS, assert_same, brushed, place, spectrum, table
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.formats import npz
-from brdfkit.loading import load, save
-from brdfkit.measured import Measured
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.materials.formats import npz
+from brdfkit.materials.loading import load, save
+from brdfkit.materials.measured import Measured
 
 pytestmark = pytest.mark.quick
 

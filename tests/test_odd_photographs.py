@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.photographs import coarse_to_fine
-from brdfkit.photographs.asked import to_numbers
-from brdfkit.photographs.in_mitsuba import scene_xml
-from brdfkit.photographs.open_numbers import describe_open
+from brdfkit.inverse.photographs.arguments import to_numbers
+from brdfkit.inverse.photographs.maps.scene import scene_xml
+from brdfkit.inverse.photographs.maps.undetermined import describe_open
+from brdfkit.inverse.photographs.search import coarse_to_fine
 
 pytestmark = pytest.mark.filterwarnings("error")
 TEXELS = 16

@@ -7,7 +7,7 @@ from click.testing import CliRunner
 
 import brdfkit as bk
 from brdfkit.cli import main
-from brdfkit.environments import map_files
+from brdfkit.lighting.environments import map_files
 
 pytestmark = pytest.mark.quick
 

@@ -12,10 +12,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from brdfkit.colours import RGB
-from brdfkit.errors import BrdfkitError
-from brdfkit.loading import load, save
-from brdfkit.measured import Measured
+from brdfkit.core.colours import RGB
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.materials.loading import load, save
+from brdfkit.materials.measured import Measured
 
 pytestmark = pytest.mark.quick
 HALF, ROOT = 0.5, np.sqrt(0.75)  # sin and cos of 30°

@@ -60,8 +60,8 @@ def test_contents(wheel):
     expected = plugins | tables | maps | indices | {"brdfkit/__init__.pyi"}
     assert expected <= names
     assert {f"brdfkit/{f.relative_to(ROOT / 'src/brdfkit')}" for f in sources()} <= names
-    templates = {f"brdfkit/reporting/templates/{n}" for n in ("report.html", "page.css", "copy.js")}
-    assert templates <= names
+    pages = "report.html", "page.css", "copy.js"
+    assert {f"brdfkit/core/pages/templates/{name}" for name in pages} <= names
     assert any(name.endswith("licenses/LICENSE") for name in names)
     tops = {name.partition("/")[0] for name in names}
     assert {top for top in tops if not top.endswith(".dist-info")} == {"brdfkit"}
@@ -79,8 +79,8 @@ def test_works_without_the_checkout(installed, tmp_path):
 
     where = """
 import brdfkit
-from brdfkit.catalogue import index
-from brdfkit.plugins import discovery
+from brdfkit.core import index
+from brdfkit.core.discovery import plugin_files as discovery
 folders = map(index.folder, (index.MEASURED, index.ENVIRONMENTS))
 for path in (brdfkit.__file__, *folders, *discovery.sources('bsdfs').values()):
     print(path)

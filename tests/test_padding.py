@@ -8,7 +8,7 @@ import textwrap
 import numpy as np
 import pytest
 
-from brdfkit.jit.padding import ALIGNMENT, PACKET, pad
+from brdfkit.core.jit.padding import ALIGNMENT, PACKET, pad
 
 
 @pytest.mark.quick
@@ -46,7 +46,7 @@ def test_directions_at_the_end_of_memory(n):
     import brdfkit
     import drjit as dr
     import numpy as np
-    from brdfkit.model import double_precision
+    from brdfkit.core.jit import double_precision
 
     size = -(-{n} * 24 // mmap.PAGESIZE) * mmap.PAGESIZE
     memory = mmap.mmap(-1, size + mmap.PAGESIZE)

@@ -5,7 +5,7 @@ import pytest
 from brdfkit.plugins.phase import bsdf_phase, mie_hazy, mie_murky, schlick
 
 from brdfkit.checks import directions
-from brdfkit.host import even_and_forward
+from brdfkit.mitsuba_bridge import even_and_forward
 
 MU, XI = np.linspace(-1, 1, 5), np.array([0.1, 0.25, 0.5, 0.75, 0.9])
 # By a program of its own, in double precision: p(μ) at the MU, and the μ below which XI lies

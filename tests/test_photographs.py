@@ -11,19 +11,19 @@ from scipy.ndimage import minimum_filter
 
 import brdfkit as bk
 from brdfkit.cli import main
-from brdfkit.jit.threads import two_threads
-from brdfkit.photographs import coarse_to_fine
-from brdfkit.photographs.asked import to_numbers
-from brdfkit.photographs.camera_from_corners import camera_from_corners
-from brdfkit.photographs.in_mitsuba import bsdf_dict, scene_xml
-from brdfkit.photographs.maps import Maps, numbers_of
-from brdfkit.photographs.observations import Observations
-from brdfkit.photographs.pinhole import corners_of
-from brdfkit.photographs.prediction import radiances
-from brdfkit.photographs.search import equations
-from brdfkit.photographs.shapes import ANGLE
-from brdfkit.photographs.shrinking import shrunk
-from brdfkit.rendering.scene_file import load_scene_file
+from brdfkit.core.jit.threads import two_threads
+from brdfkit.inverse.photographs.arguments import to_numbers
+from brdfkit.inverse.photographs.capture.camera_from_corners import camera_from_corners
+from brdfkit.inverse.photographs.capture.downsampling import shrunk
+from brdfkit.inverse.photographs.capture.observations import Observations
+from brdfkit.inverse.photographs.capture.pinhole import corners_of
+from brdfkit.inverse.photographs.maps.maps import Maps, numbers_of
+from brdfkit.inverse.photographs.maps.prediction import radiances
+from brdfkit.inverse.photographs.maps.scene import bsdf_dict, scene_xml
+from brdfkit.inverse.photographs.maps.shape_parameters import ANGLE
+from brdfkit.inverse.photographs.search import coarse_to_fine
+from brdfkit.inverse.photographs.search.search import equations
+from brdfkit.mitsuba_bridge.scene_file import load_scene_file
 
 TEXELS, LIGHTS = 32, 16
 

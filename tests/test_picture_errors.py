@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 
-from brdfkit.colours import colour_science, to_srgb
-from brdfkit.picture_errors import image_errors
-from brdfkit.picture_errors.colour_difference import WHITE, ciede2000, delta_e_itp
-from brdfkit.picture_errors.flip import exposures, flip
-from brdfkit.picture_errors.metrics import METRICS
-from brdfkit.picture_errors.noise import Halves, samples_for
-from brdfkit.picture_errors.psnr import psnr
-from brdfkit.picture_errors.ssim import ssim
+from brdfkit.core.colours import colour_science, to_srgb
+from brdfkit.images.errors import image_errors
+from brdfkit.images.errors.colour_difference import WHITE, ciede2000, delta_e_itp
+from brdfkit.images.errors.flip import exposures, flip
+from brdfkit.images.errors.metrics import METRICS
+from brdfkit.images.errors.noise import Halves, samples_for
+from brdfkit.images.errors.psnr import psnr
+from brdfkit.images.errors.ssim import ssim
 from brdfkit.rendering import render
 
 pytestmark = pytest.mark.quick

@@ -5,16 +5,16 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
-from brdfkit.errors import BrdfkitError
-from brdfkit.fitting.parameter_space import Space
-from brdfkit.fitting.picture_problem import PictureProblem
-from brdfkit.geometry.directions import from_angles
-from brdfkit.measured.selection import select_samples
-from brdfkit.pictures import LIGHTS, draw_pixels
-from brdfkit.pictures.half_vectors import HalfVectors
-from brdfkit.pictures.lights import sampling_of
-from brdfkit.pictures.normals import VIEW, draw_normals
-from brdfkit.pictures.pixels import BRIGHTER
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.images.ball import LIGHTS, draw_pixels
+from brdfkit.images.ball.half_vectors import HalfVectors
+from brdfkit.images.ball.lights import sampling_of
+from brdfkit.images.ball.normals import VIEW, draw_normals
+from brdfkit.images.ball.pixels import BRIGHTER
+from brdfkit.materials.measured.selection import select_samples
+from brdfkit.regression.problem.parameter_space import Space
+from brdfkit.regression.problem.picture_problem import PictureProblem
 
 GLOSSY = {"diffuse_reflectance": (0.3, 0.1, 0.05), "specular_reflectance": 0.8, "f0": 0.3}
 

@@ -7,14 +7,14 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from brdfkit import models
-from brdfkit.colours import luminance
-from brdfkit.errors import BrdfkitError
-from brdfkit.geometry.directions import from_angles
-from brdfkit.measured import Measured
-from brdfkit.plots import Plot
-from brdfkit.plotting import plot
-from brdfkit.plotting.plane_of_incidence import lobe
-from brdfkit.thumbnails.radius import Radius
+from brdfkit.core.colours import luminance
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.core.plots import Plot
+from brdfkit.images.thumbnails.radius import Radius
+from brdfkit.materials.measured import Measured
+from brdfkit.materials.plotting import plot
+from brdfkit.materials.plotting.plane_of_incidence import lobe
 
 pytestmark = pytest.mark.quick
 

@@ -12,9 +12,9 @@ import pytest
 import brdfkit as bk
 from brdfkit.checks.plugin_subject import example
 from brdfkit.checks.registry import checks
-from brdfkit.plugins import discovery
-from brdfkit.plugins.discovery import KINDS, MODELS, sources
-from brdfkit.plugins.pages import page
+from brdfkit.core.discovery import plugin_files
+from brdfkit.core.discovery.plugin_files import KINDS, MODELS, sources
+from brdfkit.core.discovery.plugin_pages import page
 
 quick = functools.partial(pytest.param, marks=pytest.mark.quick)
 VARIANTS = (quick("llvm_ad_rgb"), "llvm_ad_mono", "llvm_ad_spectral_polarized", "scalar_rgb")
@@ -59,7 +59,7 @@ def test_passes_the_checks(name, check, chosen, variant):
 
 def settings(name):
     """The declared parameters of a plugin."""
-    return discovery.module(sources(OTHERS[name])[name]).PARAMETERS
+    return plugin_files.module(sources(OTHERS[name])[name]).PARAMETERS
 
 
 BOUNDED = [(n, p) for n in OTHERS for p, setting in settings(n).items() if setting.bounds]
@@ -232,7 +232,7 @@ def test_what_is_no_plugin_is_refused(tmp_path, no_user_plugins, path, text, sai
     other.write_text(FILES["phase"])
     with pytest.raises(bk.BrdfkitError, match=said):
         bk.load_plugins(tmp_path)
-    assert not discovery._users  # nor any of the others
+    assert not plugin_files._users  # nor any of the others
 
 
 @pytest.mark.quick

@@ -5,7 +5,7 @@ import pytest
 from test_fit import synthetic
 
 import brdfkit as bk
-from brdfkit.errors import BrdfkitError
+from brdfkit.core.errors import BrdfkitError
 from brdfkit.model.evaluation import lobe_values
 
 

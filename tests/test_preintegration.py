@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from brdfkit import TransferFunction, Volume
-from brdfkit.volumes.transfer_lookup import TransferLookup
-from brdfkit.volumes.voxel_steps import typical
+from brdfkit.volumes.rays.voxel_steps import typical
+from brdfkit.volumes.transfer.lookup import TransferLookup
 
 RNG = np.random.default_rng(8)
 HILLS = TransferFunction([-1, 0.5, 2, 2.1, 2.2, 4], RNG.random((6, 4)))

@@ -11,7 +11,7 @@ def test_the_bar_of_a_notebook_moves_and_goes():
     source = """
 from time import sleep
 import brdfkit as bk
-from brdfkit import progress_bar
+from brdfkit.core import progress_bar
 progress_bar.PATIENCE = progress_bar.INTERVAL = 0
 with bk.progress("a < b") as bar:
     for done in range(3):

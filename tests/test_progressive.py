@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from brdfkit import TransferFunction, Volume
-from brdfkit.picture_errors.noise import Accumulated
+from brdfkit.images.errors.noise import Accumulated
 from brdfkit.rendering.progressive import Progressive
 from brdfkit.rendering.volumes.scene import scene as volume_scene
 

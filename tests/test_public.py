@@ -8,7 +8,7 @@ import pytest
 from docstring_parser import DocstringStyle, parse
 
 import brdfkit as bk
-from brdfkit.colours import RGB
+from brdfkit.core.colours import RGB
 
 pytestmark = pytest.mark.quick
 

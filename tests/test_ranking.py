@@ -14,18 +14,18 @@ from sample_sums import sample_sum
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.cli import main
-from brdfkit.errors import BrdfkitError
-from brdfkit.geometry.directions import to_half_difference
-from brdfkit.measured.selection import select_samples
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import to_half_difference
+from brdfkit.fitting.ranking import Ranked, Ranking, ranking
+from brdfkit.fitting.ranking.appearance import Appearance
+from brdfkit.fitting.ranking.cross_validation import Validated
+from brdfkit.fitting.ranking.held_out import PART, HeldOut, number_blocks, number_regions
+from brdfkit.fitting.ranking.ranked import rows_of
+from brdfkit.fitting.ranking.ties import beside, is_tied, paired_standard_error
+from brdfkit.images.ball import draw_pixels
+from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import Model, labels, weight
 from brdfkit.model.lobes import Cosine, Lobe
-from brdfkit.pictures import draw_pixels
-from brdfkit.ranking import Ranked, Ranking, ranking
-from brdfkit.ranking.appearance import Appearance
-from brdfkit.ranking.cross_validation import Validated
-from brdfkit.ranking.held_out import PART, HeldOut, number_blocks, number_regions
-from brdfkit.ranking.ranked import rows_of
-from brdfkit.ranking.ties import beside, is_tied, paired_standard_error
 
 TRUTHS = {
     "ward": {"alpha_u": 0.15, "diffuse_reflectance": 0.1},

@@ -14,8 +14,8 @@ from test_cli import USER_MODEL
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.cli import main
-from brdfkit.measured import Measured
-from brdfkit.plugins import discovery
+from brdfkit.core.discovery import plugin_files
+from brdfkit.materials.measured import Measured
 
 ROOT = Path(__file__).resolve().parents[1]
 SMALL_PICTURE = ("--spp", "1", "--size", "16")
@@ -43,7 +43,7 @@ def block(page, before):
 def here(tmp_path, monkeypatch, llvm_variant):
     """A current folder with small files of the names that the pages use."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(discovery, "_users", {})
+    monkeypatch.setattr(plugin_files, "_users", {})
     wi, wo = random_pairs(300, seed=0, max_degrees=75)
     copper = bk.models()["ggx"](alpha_u=0.3, specular_reflectance=(0.9, 0.6, 0.4))
     bk.save(Measured.from_samples(wi, wo, copper.eval(wi, wo)), "copper.astm")

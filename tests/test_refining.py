@@ -19,17 +19,17 @@ from refined_scenes import (
 from scipy.ndimage import gaussian_filter
 
 import brdfkit as bk
-from brdfkit.jit.threads import two_threads
-from brdfkit.refining import gauss_newton
-from brdfkit.refining.derivatives import derivatives
-from brdfkit.refining.equations import Equations, Residuals
-from brdfkit.refining.gauss_newton import Search, step_in_bounds
-from brdfkit.refining.leverage import LEAST, sum_by_block, without_leverage
-from brdfkit.refining.rest import Rest
-from brdfkit.refining.subject import integrator_of, load_subject
-from brdfkit.refining.targets import read_targets
-from brdfkit.refining.unknowns import choose
-from brdfkit.refining.views import Views
+from brdfkit.core.jit.threads import two_threads
+from brdfkit.inverse.scenes.problem.leverage import LEAST, sum_by_block, without_leverage
+from brdfkit.inverse.scenes.problem.parameters import choose
+from brdfkit.inverse.scenes.problem.scene import integrator_of, load_subject
+from brdfkit.inverse.scenes.problem.targets import read_targets
+from brdfkit.inverse.scenes.problem.views import Views
+from brdfkit.inverse.scenes.result.residual_noise import Rest
+from brdfkit.inverse.scenes.search import gauss_newton
+from brdfkit.inverse.scenes.search.forward_derivatives import derivatives
+from brdfkit.inverse.scenes.search.gauss_newton import Search, step_in_bounds
+from brdfkit.inverse.scenes.search.normal_equations import Equations, Residuals
 from brdfkit.rendering.scenes.ball import ball
 
 

@@ -5,10 +5,10 @@ import pytest
 from refined_scenes import TRUTH, alone, bsdf_of, knot, noisy, require_back, views
 
 import brdfkit as bk
-from brdfkit.refining.conclusions import conclude_search
-from brdfkit.refining.equations import Residuals
-from brdfkit.refining.gauss_newton import Search
-from brdfkit.refining.second_look import look_again
+from brdfkit.inverse.scenes.result.conclusions import conclude_search
+from brdfkit.inverse.scenes.result.second_look import look_again
+from brdfkit.inverse.scenes.search.gauss_newton import Search
+from brdfkit.inverse.scenes.search.normal_equations import Residuals
 
 ALPHA, DIFFUSE = "ball.bsdf.alpha_u", "ball.bsdf.diffuse_reflectance"
 SAMPLES = 64

@@ -6,10 +6,10 @@ import pytest
 from refined_scenes import TRUTH, alone, corner, noisy, require_back, views
 
 import brdfkit as bk
-from brdfkit.refining import derivatives as module
-from brdfkit.refining.derivatives import derivatives
-from brdfkit.refining.mitsuba_numbers import ROUGH, SHARE
-from brdfkit.refining.unknowns import choose
+from brdfkit.inverse.scenes.problem.parameter_facts import ROUGH, SHARE
+from brdfkit.inverse.scenes.problem.parameters import choose
+from brdfkit.inverse.scenes.search import forward_derivatives as module
+from brdfkit.inverse.scenes.search.forward_derivatives import derivatives
 
 GREY = {"type": "rgb", "value": [0.4, 0.3, 0.2]}
 PLASTIC = {"type": "roughplastic", "alpha": 0.2, "diffuse_reflectance": GREY}

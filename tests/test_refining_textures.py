@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.refining import descent
-from brdfkit.refining.backwards import error_and_slopes
-from brdfkit.refining.descent import _hold_out
-from brdfkit.refining.roughness import roughness
-from brdfkit.refining.subject import integrator_of, load_subject
-from brdfkit.refining.targets import read_targets
-from brdfkit.refining.unknowns import choose
-from brdfkit.refining.views import Views
+from brdfkit.inverse.scenes.problem.parameters import choose
+from brdfkit.inverse.scenes.problem.roughness import roughness
+from brdfkit.inverse.scenes.problem.scene import integrator_of, load_subject
+from brdfkit.inverse.scenes.problem.targets import read_targets
+from brdfkit.inverse.scenes.problem.views import Views
+from brdfkit.inverse.scenes.search import descent
+from brdfkit.inverse.scenes.search.backward_derivatives import error_and_slopes
+from brdfkit.inverse.scenes.search.descent import _hold_out
 
 SIZE = 16
 TEXTURE = "floor.bsdf.diffuse_reflectance.data"

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.jit import llvm
-from brdfkit.plugins import discovery
+from brdfkit.core.discovery import plugin_files
+from brdfkit.core.jit import llvm
 
 QUICK = (pytest.param(name, marks=pytest.mark.quick) for name in ("llvm_ad_rgb", "scalar_rgb"))
 VARIANTS = (*QUICK, "llvm_ad_mono", "llvm_ad_spectral", "scalar_spectral")
@@ -106,7 +106,8 @@ def test_no_name_is_a_built_in_plugin():
 
     built_in = {file.stem for file in Path(mi.__file__).with_name("plugins").iterdir()}
     assert {"diffuse", "roughconductor", "path"} < built_in
-    assert not built_in & {name for kind in discovery.KINDS for name in discovery.sources(kind)}
+    kinds = plugin_files.KINDS
+    assert not built_in & {name for kind in kinds for name in plugin_files.sources(kind)}
 
 
 # Parameters
@@ -199,7 +200,7 @@ def test_errors_name_the_parameter(model, variant, name):
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    monkeypatch.setattr(discovery, "_users", {})
+    monkeypatch.setattr(plugin_files, "_users", {})
     return tmp_path
 
 
@@ -237,7 +238,7 @@ def test_a_taken_name_is_refused(folder, name):
     (folder / f"{name}.py").write_text(FELT)
     with pytest.raises(bk.BrdfkitError, match=f"plugin '{name}'; rename the file"):
         bk.load_models(folder)
-    assert not discovery._users
+    assert not plugin_files._users
 
 
 @pytest.mark.quick
@@ -264,7 +265,7 @@ def test_a_file_that_holds_no_model_is_refused(folder, text, said):
     (folder / "users_wrong.py").write_text(text)
     with pytest.raises(bk.BrdfkitError, match=rf"users_wrong\.py.*{said}"):
         bk.load_models(folder)
-    assert not discovery._users
+    assert not plugin_files._users
     with pytest.raises(bk.BrdfkitError, match="no Python file"):
         bk.load_models(folder / "nowhere.py")
 

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.colours import luminance
+from brdfkit.core import memory
+from brdfkit.core.colours import luminance
+from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields import plane, sphere
-from brdfkit.errors import BrdfkitError
-from brdfkit.picture_errors.metrics import METRICS
-from brdfkit.rendering import Rendering, memory, render, render_scene
+from brdfkit.images.errors.metrics import METRICS
+from brdfkit.rendering import Rendering, render, render_scene
 from brdfkit.rendering.montage import montage
-from brdfkit.rendering.scene_loading import load_scenes
+from brdfkit.rendering.scene_input.loading import load_scenes
 from brdfkit.rendering.scenes.ball import ball
 from brdfkit.rendering.tracing import passes_of
 

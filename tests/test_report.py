@@ -22,18 +22,21 @@ from PIL import Image
 
 import brdfkit as bk
 from brdfkit.cli import main
-from brdfkit.fitting.robust import WEIGHTS
-from brdfkit.jit.threads import two_threads
-from brdfkit.picture_errors.metrics import METRICS
-from brdfkit.reporting import charts, many_files, origin, pixels, report, standing
-from brdfkit.reporting.defaults import MODELS
-from brdfkit.reporting.defaults import SIZE as SIZE_OF_REPORTS
-from brdfkit.reporting.errors_table import errors_table
-from brdfkit.reporting.picture_errors import PictureError
-from brdfkit.reporting.picture_verdict import visibility
-from brdfkit.reporting.pictures import render_pictures
-from brdfkit.reporting.verdict import in_words, verdict
-from brdfkit.samples import Table
+from brdfkit.core.jit.threads import two_threads
+from brdfkit.images.errors.metrics import METRICS
+from brdfkit.model.samples import Table
+from brdfkit.regression.robust.reweighting import WEIGHTS
+from brdfkit.reporting import many_files, origin, report
+from brdfkit.reporting.charts import svg
+from brdfkit.reporting.charts.errors_table import errors_table
+from brdfkit.reporting.pictures import pixels
+from brdfkit.reporting.pictures.defaults import MODELS
+from brdfkit.reporting.pictures.defaults import SIZE as SIZE_OF_REPORTS
+from brdfkit.reporting.pictures.picture_errors import PictureError
+from brdfkit.reporting.pictures.pictures import render_pictures
+from brdfkit.reporting.verdict import fit_errors
+from brdfkit.reporting.verdict.picture_verdict import visibility
+from brdfkit.reporting.verdict.verdict import in_words, verdict
 
 NAME = 'a<b>&"c"</script>'
 SIZE, SPP = 48, 16
@@ -219,14 +222,14 @@ def test_the_light_is_shown_beside_the_measured_and_marked_where_it_is_wrong(
 def test_equal_fits_are_tied_and_worse_ones_are_not(material, fits):
     lambert, ward = fits
     near = bk.fit("ward", material, max_angle=79)
-    tied = [one.tied for one in standing.standings(material, [ward, near, lambert], "log")]
+    tied = [one.tied for one in fit_errors.standings(material, [ward, near, lambert], "log")]
     assert tied == [True, True, False]
 
 
 def stood(error, numbers, tied):
     """A `Standing` by log and cbrt, of which cbrt likes few numbers."""
     errors = {"log": error, "cbrt": numbers / 10}
-    return standing.Standing(errors, (0.2, 0.3, 1.1), 1.1, 1.4, 1.2, (75, 90), numbers, tied)
+    return fit_errors.Standing(errors, (0.2, 0.3, 1.1), 1.1, 1.4, 1.2, (75, 90), numbers, tied)
 
 
 def psnr_and_delta(psnr, floor=50.0, delta=0.1, noise=0.1):
@@ -238,7 +241,7 @@ def psnr_and_delta(psnr, floor=50.0, delta=0.1, noise=0.1):
 
 def test_of_tied_fits_the_one_with_the_fewest_numbers_is_taken():
     found = [stood(0.30, 13, True), stood(0.31, 8, True), stood(0.5, 7, False)]
-    order = standing.in_order(found, "log")
+    order = fit_errors.in_order(found, "log")
     assert order == [1, 0, 2]
     names, found = ["ggx", "ggx+ggx", "ward"], [found[k] for k in order]
     head, more = verdict(names, found, psnr_and_delta((40.0, 40.8, 20.0)), "log")
@@ -348,7 +351,7 @@ def test_settings_that_no_option_tells_are_named(material):
 
 
 def test_the_page_says_which_model_was_chosen_and_why(here, monkeypatch):
-    monkeypatch.setattr("brdfkit.ranking.ranking.candidates", lambda: ["lambert", "ward"])
+    monkeypatch.setattr("brdfkit.fitting.ranking.ranking.candidates", lambda: ["lambert", "ward"])
     done = cli("report", "paint.npz", "--spp", SPP, "--size", SIZE, "-m", "best")
     assert done.exit_code == 0, done.stderr
     best = "no other model has a lesser error or a better picture"
@@ -411,8 +414,8 @@ def test_in_python_models_and_the_file_have_defaults(here):
 
 
 def test_lines_that_lie_on_each_other_are_all_seen():
-    assert len({charts.fit_class(number) for number in range(18)}) == 18
-    chart = charts.Chart("", *[charts.linear("", 0, 1, ())] * 2)
+    assert len({svg.fit_class(number) for number in range(18)}) == 18
+    chart = svg.Chart("", *[svg.linear("", 0, 1, ())] * 2)
     chart.fits([([0, 1], [0, 1])] * 5)
     drawn = [line.split() for line in re.findall(r'class="line (fit-[^"]*)"', chart.svg)]
     solid, broken = ([k[0] for k in drawn if len(k) == n] for n in (1, 2))
@@ -480,7 +483,7 @@ def test_ctrl_c_leaves_the_reports_that_are_finished(when, finished, here, writt
 
 
 def test_ctrl_c_during_the_pictures_keeps_their_samples(here, monkeypatch):
-    monkeypatch.setattr("brdfkit.commands._console.Console.progress", stop_after_two_passes)
+    monkeypatch.setattr("brdfkit.cli.console.Console.progress", stop_after_two_passes)
     done = cli("report", "paint.npz", "-m", "lambert", "--spp", 64, "--size", 16)
     said = "brdfkit: interrupted; rendered with 32 of 64 samples per pixel.\n"
     assert (done.exit_code, done.stderr) == (130, said)

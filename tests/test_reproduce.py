@@ -1,19 +1,19 @@
 """Theses reproduced: the page of claims, what is said where data are missing, and some claims."""
 
 import pytest
+from brdfkit.theses.kurt2007 import NEEDS, PARTS
+from brdfkit.theses.kurt2007.appendix_3 import read_rows
+from brdfkit.theses.kurt2007.printed import SEVEN, printed
 from click.testing import CliRunner
 from PIL import Image
 
 import brdfkit as bk
 from brdfkit.cli import main
-from brdfkit.reproducing import Claim, theses
-from brdfkit.reproducing.claims import count
-from brdfkit.reproducing.drawing import draw_curves, figure
-from brdfkit.reproducing.kurt2007 import NEEDS, PARTS
-from brdfkit.reproducing.kurt2007.appendix_3 import read_rows
-from brdfkit.reproducing.kurt2007.printed import SEVEN, printed
-from brdfkit.reproducing.page import Picture, Section, Table, write_page
-from brdfkit.reproducing.sources import find_sources
+from brdfkit.theses import Claim, theses
+from brdfkit.theses.claims import count
+from brdfkit.theses.drawing import draw_curves, figure
+from brdfkit.theses.page import Picture, Section, Table, write_page
+from brdfkit.theses.sources import find_sources
 
 CLAIMS = [
     Claim("Water is wet.", "Table 1", "1.00", "0.99", "confirmed", "Tolerance 2 %."),
@@ -86,7 +86,7 @@ def test_without_the_appendix_its_claims_are_not_run(empty_files):
 
 @pytest.mark.quick
 def test_ctrl_c_keeps_what_is_finished(empty_files, tmp_path, monkeypatch):
-    from brdfkit.reproducing.kurt2007 import figure_9_4
+    from brdfkit.theses.kurt2007 import figure_9_4
 
     def stop(sources, report):
         raise KeyboardInterrupt

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.jit import llvm
+from brdfkit.core.jit import llvm
 
 if llvm.loaded_version() < llvm.OLDEST:
     pytest.skip("needs LLVM", allow_module_level=True)
 
-from brdfkit.reproducing.balint2019 import (
+from brdfkit.theses.balint2019 import (
     against_rays,
     bands,
     error_bound,
@@ -21,7 +21,7 @@ from brdfkit.reproducing.balint2019 import (
     scenes,
     variants,
 )
-from brdfkit.reproducing.balint2019.view import View
+from brdfkit.theses.balint2019.view import View
 
 
 def verdicts(*parts, **settings):

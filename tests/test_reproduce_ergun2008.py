@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.jit import llvm
+from brdfkit.core.jit import llvm
 
 if llvm.loaded_version() < llvm.OLDEST:
     pytest.skip("needs LLVM", allow_module_level=True)
 
-from brdfkit.reproducing.ergun2008 import by_volumes, printed, stencil, table_1, trapezoid, views
+from brdfkit.theses.ergun2008 import by_volumes, printed, stencil, table_1, trapezoid, views
 
 
 def verdicts(*parts):

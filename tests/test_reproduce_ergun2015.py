@@ -4,9 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-
-import brdfkit as bk
-from brdfkit.reproducing.ergun2015 import (
+from brdfkit.theses.ergun2015 import (
     convex_rays,
     convex_settings,
     convex_study,
@@ -15,9 +13,11 @@ from brdfkit.reproducing.ergun2015 import (
     moving_parts,
     shapes,
 )
-from brdfkit.reproducing.ergun2015.lit_balls import FILTERS, METHODS, ROUGHNESSES
-from brdfkit.reproducing.ergun2015.unshadowed import unshadowed
-from brdfkit.visibility.hull import hull
+from brdfkit.theses.ergun2015.lit_balls import FILTERS, METHODS, ROUGHNESSES
+from brdfkit.theses.ergun2015.unshadowed import unshadowed
+
+import brdfkit as bk
+from brdfkit.lighting.visibility.hull import hull
 
 CONVEX = ["convex_reads", "convex_pictures", "convex_settings", "moving_parts"]
 

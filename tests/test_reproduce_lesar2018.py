@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.jit import llvm
+from brdfkit.core.jit import llvm
 
 if llvm.loaded_version() < llvm.OLDEST:
     pytest.skip("needs LLVM", allow_module_level=True)
 
-from brdfkit.reproducing.lesar2018 import (
+from brdfkit.theses.lesar2018 import (
     against_volpath,
     convergence,
     four_renderers,
@@ -27,7 +27,7 @@ from brdfkit.reproducing.lesar2018 import (
     transfer_functions,
     two_lobes,
 )
-from brdfkit.reproducing.lesar2018.iterations import iteration
+from brdfkit.theses.lesar2018.iterations import iteration
 
 
 def verdicts(*parts, **settings):
@@ -187,7 +187,7 @@ def test_a_missing_package_is_asked_for_before_the_work(tmp_path, monkeypatch):
     (tmp_path / "measured").mkdir()
     (tmp_path / "volumes").mkdir()
     (tmp_path / "volumes" / "mni152_t1_1mm.nii.gz").write_bytes(b"")
-    monkeypatch.setattr("brdfkit.reproducing.reproducing.find_spec", lambda name: None)
-    monkeypatch.setattr("brdfkit.reproducing.lesar2018.PARTS", ())
+    monkeypatch.setattr("brdfkit.theses.reproducing.find_spec", lambda name: None)
+    monkeypatch.setattr("brdfkit.theses.lesar2018.PARTS", ())
     with pytest.raises(bk.BrdfkitError, match=r"needs the package nibabel; pip install .*volumes"):
         bk.reproduce("lesar2018", data=tmp_path / "measured")

@@ -12,15 +12,15 @@ import brdfkit as bk
 from brdfkit import checks
 from brdfkit.checks.material_subject import INCIDENCES, Subject, incidences, random_pairs
 from brdfkit.checks.sampling import spread, uniform
-from brdfkit.errors import BrdfkitError
-from brdfkit.fitting import Fit
-from brdfkit.formats.rgl import encoding, tensor_file
-from brdfkit.formats.rgl.encoding import Resolution
-from brdfkit.formats.rgl.normals import Hemisphere, power_iteration
-from brdfkit.formats.rgl.warp import Warp, even_grid, find_slices
-from brdfkit.geometry.directions import from_angles
-from brdfkit.loading import load, save
-from brdfkit.measured import Measured
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.materials.formats.rgl import encoding, tensor_file
+from brdfkit.materials.formats.rgl.encoding import Resolution
+from brdfkit.materials.formats.rgl.normals import Hemisphere, power_iteration
+from brdfkit.materials.formats.rgl.warp import Warp, even_grid, find_slices
+from brdfkit.materials.loading import load, save
+from brdfkit.materials.measured import Measured
+from brdfkit.regression import Fit
 
 DATABASE = (
     "acrylic_felt_green",

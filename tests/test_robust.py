@@ -6,10 +6,10 @@ from sample_sums import sample_sum
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
-from brdfkit.fitting import losses
-from brdfkit.fitting.robust import WEIGHTS, robust_least_squares
-from brdfkit.measured.selection import select_samples
+from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model.evaluation import lobe_values
+from brdfkit.regression import losses
+from brdfkit.regression.robust.reweighting import WEIGHTS, robust_least_squares
 
 # y = 10 - 2x + e with the last one set to 0; MATLAB's robustfit (Kurt 2007, digest 6.5)
 NOISE = [0.5377, 1.8339, -2.2588, 0.8622, 0.3188, -1.3077, -0.4336, 0.3426, 3.5784, 2.7694]

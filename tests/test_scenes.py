@@ -8,11 +8,11 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 import brdfkit as bk
-from brdfkit.colours import luminance
-from brdfkit.errors import BrdfkitError
-from brdfkit.jit.threads import two_threads
-from brdfkit.rendering import environment, users_mesh
+from brdfkit.core.colours import luminance
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.jit.threads import two_threads
 from brdfkit.rendering.galleries import draw_grid
+from brdfkit.rendering.scene_input import environment, mesh_file
 from brdfkit.rendering.scenes import _meshes, _studio, knot, material_ball, scene, scene_names, vase
 
 pytestmark = pytest.mark.usefixtures("module_in_llvm")
@@ -167,7 +167,7 @@ def files(tmp_path, monkeypatch):
 
 def test_a_mesh_stands_in_the_place_of_the_ball(files):
     """A box twice as high as wide, y up and without normals: 2 high, with sharp edges."""
-    build = users_mesh.mesh_scene("cube.obj")
+    build = mesh_file.mesh_scene("cube.obj")
     made = build({"type": "diffuse"})["mesh"]
     low, high = (np.array(corner).ravel() for corner in (made.bbox().min, made.bbox().max))
     np.testing.assert_allclose(low, [-0.5, -0.5, 0], atol=1e-6)
@@ -218,8 +218,8 @@ def test_the_axis_that_points_up_is_given_or_guessed_where_it_is_obvious(tmp_pat
     file.write_text(text)
     guessed = pytest.warns(UserWarning, match="its axis z is taken to point up.*--up y")
     with guessed if (given, up) == ("", "z") else nullcontext():
-        points, *_ = users_mesh.read(file, given[1:])
-    expected = users_mesh.read(file, up)[0]
+        points, *_ = mesh_file.read(file, given[1:])
+    expected = mesh_file.read(file, up)[0]
     np.testing.assert_array_equal(points, expected)
     if up == "x" or given == "#z":
         foot = points[points[:, 2] < 0.01]
@@ -235,10 +235,10 @@ def test_a_mesh_is_the_same_in_every_unit_and_way_to_write_it(files, unit):
     vertices = [f"v {x!r} {y!r} {z!r}" for x, y, z in points]
     relative = [f"f {' '.join(str(int(i) - 9) for i in f.split()[1:])}" for f in lines[8:]]
     far = f"v {unit * 1e3!r} 0 0"
-    expected = users_mesh.mesh_scene("cube.obj")({"type": "diffuse"})["mesh"]
+    expected = mesh_file.mesh_scene("cube.obj")({"type": "diffuse"})["mesh"]
     for text in ([*vertices, far, *lines[8:]], [far, *vertices, *relative, far]):
         Path("same.obj").write_text("\n".join(text))
-        found = users_mesh.mesh_scene("same.obj")({"type": "diffuse"})["mesh"]
+        found = mesh_file.mesh_scene("same.obj")({"type": "diffuse"})["mesh"]
         for name in ("vertex_positions_buffer", "vertex_normals_buffer", "faces_buffer"):
             there, here = (np.array(getattr(m, name)()) for m in (expected, found))
             np.testing.assert_allclose(here, there, atol=1e-5)

@@ -3,8 +3,8 @@
 import numpy as np
 
 import brdfkit as bk
-from brdfkit.fitting.levenberg_marquardt import _correct
-from brdfkit.samples.neural import decode_network
+from brdfkit.model.samples.neural import decode_network
+from brdfkit.regression.search.levenberg_marquardt import _correct
 
 
 def test_an_end_is_found_to_which_one_start_in_seventeen_leads(measured_data):

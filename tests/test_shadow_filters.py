@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shadow_scenes import half_plane, objects_on_a_ground, placement_of, seen_from
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.shadow_maps.bias import AUTOMATIC, Bias
-from brdfkit.shadow_maps.bias_errors import acne, peter_panning
-from brdfkit.shadow_maps.filters import (
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.shadows.maps.bias import AUTOMATIC, Bias
+from brdfkit.shadows.maps.bias_errors import acne, peter_panning
+from brdfkit.shadows.maps.filters import (
     bilinear_percentage_closer,
     exponential_variance,
     moment,
@@ -19,11 +19,11 @@ from brdfkit.shadow_maps.filters import (
     poisson_disk,
     variance,
 )
-from brdfkit.shadow_maps.light_shadow import LightShadow
-from brdfkit.shadow_maps.map_point import MapPoint
-from brdfkit.shadow_maps.moments import chebyshev, hamburger
-from brdfkit.shadow_maps.moments.moving_depths import MovingDepths
-from brdfkit.shadow_maps.techniques import FILES, settings_of
+from brdfkit.shadows.maps.light_shadow import LightShadow
+from brdfkit.shadows.maps.map_point import MapPoint
+from brdfkit.shadows.maps.moments import bounds, chebyshev
+from brdfkit.shadows.maps.moments.moving_depths import MovingDepths
+from brdfkit.shadows.maps.techniques import FILES, settings_of
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 
@@ -144,7 +144,7 @@ def test_four_moments_know_two_depths_and_three_with_the_receiver(depths, anywhe
     weights = generator.dirichlet(np.ones(depths), 2000).T
     t = generator.uniform(-1, 1, 2000) if anywhere else z[-1]
     b = [dr.llvm.Float64(x) for x in moments(z, weights, range(1, 5))]
-    found = np.array(hamburger.most_lit(b, dr.llvm.Float64(t), 1e-13))
+    found = np.array(bounds.most_lit(b, dr.llvm.Float64(t), 1e-13))
     close = np.abs(z - t).min(axis=0) < 1e-3  # where the bound may jump
     wrong = np.abs(found - (weights * (z >= t)).sum(axis=0)) > 1e-4
     assert wrong[~close | (not anywhere)].mean() < 0.005  # depths that nearly coincide
@@ -161,7 +161,7 @@ def test_no_bound_is_darker_than_what_it_bounds(distribution, t):
     T = dr.scalar.ArrayXf64
     b = [T(m) for m in moments(z, weights, range(1, 5))]
     assert chebyshev.most_lit(b[0], b[1], T(t), 1e-14)[0] > lit - 1e-6
-    assert hamburger.most_lit(b, T(t), 1e-7)[0] > lit - 1e-3
+    assert bounds.most_lit(b, T(t), 1e-7)[0] > lit - 1e-3
     for warped in (np.exp(5 * z), -np.exp(-5 * z)):
         m, s = (T(x) for x in moments(warped, weights, (1, 2)))
         own = np.exp(5 * t) if warped[0] > 0 else -np.exp(-5 * t)

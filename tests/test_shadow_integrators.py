@@ -10,8 +10,8 @@ import pytest
 from shadow_scenes import light
 
 import brdfkit as bk
-from brdfkit.errors import BrdfkitError
-from brdfkit.shadow_maps.shadow_map import ShadowMap
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.shadows.maps.shadow_map import ShadowMap
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 INTEGRATORS = "shadow_map", "shadow_volume", "hybrid_shadow"

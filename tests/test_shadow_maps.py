@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 from shadow_scenes import LIGHTS, light, objects_on_a_ground, placement_of, seen_from
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.projective.camera import Camera
-from brdfkit.shadow_maps.light_shadow import DEPTHS, LightShadow
-from brdfkit.shadow_maps.techniques import FILES
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.projective.camera import Camera
+from brdfkit.shadows.maps.light_shadow import DEPTHS, LightShadow
+from brdfkit.shadows.maps.techniques import FILES
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 

@@ -12,16 +12,16 @@ import numpy as np
 import pytest
 from shadow_scenes import LIGHTS, objects_on_a_ground, seen_from
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.projective.camera import Camera
-from brdfkit.shadow_maps.light_shadow import LightShadow
-from brdfkit.shadow_maps.partitions import adaptive, tiled
-from brdfkit.shadow_maps.partitions.stable_cascades import snapped
-from brdfkit.shadow_maps.placement import Placement
-from brdfkit.shadow_maps.scenes import LIGHTS as SUNS
-from brdfkit.shadow_maps.scenes import SCENES, VIEWS
-from brdfkit.shadow_maps.split_planes import split_planes
-from brdfkit.shadow_maps.techniques import FILES
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.projective.camera import Camera
+from brdfkit.shadows.maps.light_shadow import LightShadow
+from brdfkit.shadows.maps.partitions import adaptive, tiled
+from brdfkit.shadows.maps.partitions.stable_cascades import snapped
+from brdfkit.shadows.maps.placement import Placement
+from brdfkit.shadows.maps.scenes import LIGHTS as SUNS
+from brdfkit.shadows.maps.scenes import SCENES, VIEWS
+from brdfkit.shadows.maps.split_planes import split_planes
+from brdfkit.shadows.maps.techniques import FILES
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 ONLY = {"cube": ("point", "spot"), "stable_cascades": ("directional",)}  # the lights of a partition

@@ -8,16 +8,16 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from placements import LIGHTS, SUN, VIEWS, camera, placement
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.projective.homogeneous import axes_about, project_all
-from brdfkit.projective.light import Light
-from brdfkit.shadow_maps.aliasing import aliasing
-from brdfkit.shadow_maps.depth_curve import depth_curve, unevenness
-from brdfkit.shadow_maps.light_depth import LightDepth
-from brdfkit.shadow_maps.light_shadow import LightShadow
-from brdfkit.shadow_maps.projection import Projection
-from brdfkit.shadow_maps.sight import Sight
-from brdfkit.shadow_maps.techniques import FILES, techniques
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.projective.homogeneous import axes_about, project_all
+from brdfkit.core.projective.light import Light
+from brdfkit.shadows.maps.aliasing import aliasing
+from brdfkit.shadows.maps.depth_curve import depth_curve, unevenness
+from brdfkit.shadows.maps.light_depth import LightDepth
+from brdfkit.shadows.maps.light_shadow import LightShadow
+from brdfkit.shadows.maps.projection import Projection
+from brdfkit.shadows.maps.sight import Sight
+from brdfkit.shadows.maps.techniques import FILES, techniques
 
 PROJECTIONS = FILES["projection"]
 

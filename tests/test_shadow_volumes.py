@@ -7,19 +7,19 @@ import pytest
 from scipy.spatial import ConvexHull
 from shadow_scenes import LIGHTS, light
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.hybrid_shadow import hybrid_shadow
-from brdfkit.projective.camera import Camera
-from brdfkit.projective.light import Light
-from brdfkit.shadow_volumes.casters import CASTERS
-from brdfkit.shadow_volumes.extrusion import extruded
-from brdfkit.shadow_volumes.light_volumes import METHODS, LightVolumes
-from brdfkit.shadow_volumes.mesh import Mesh
-from brdfkit.shadow_volumes.seen_faces import picture_matrix, seen_faces
-from brdfkit.shadow_volumes.silhouettes import SILHOUETTES
-from brdfkit.shadow_volumes.stencil import Stencil
-from brdfkit.shadow_volumes.volume import BACK_CAPS, Faces, shadow_volume
-from brdfkit.shadows.seen import Seen
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.projective.camera import Camera
+from brdfkit.core.projective.light import Light
+from brdfkit.shadows.comparison.exact_shadow import Seen
+from brdfkit.shadows.hybrid import hybrid_shadow
+from brdfkit.shadows.volumes.casters import CASTERS
+from brdfkit.shadows.volumes.extrusion import extruded
+from brdfkit.shadows.volumes.light_volumes import METHODS, LightVolumes
+from brdfkit.shadows.volumes.mesh import Mesh
+from brdfkit.shadows.volumes.seen_faces import picture_matrix, seen_faces
+from brdfkit.shadows.volumes.silhouettes import SILHOUETTES
+from brdfkit.shadows.volumes.stencil import Stencil
+from brdfkit.shadows.volumes.volume import BACK_CAPS, Faces, shadow_volume
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 SIZE = 96

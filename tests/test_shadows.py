@@ -14,16 +14,16 @@ from PIL import Image
 from shadow_scenes import LIGHTS, objects_on_a_ground, placement_of
 
 import brdfkit as bk
-from brdfkit.shadow_maps.scenes import SCENES
-from brdfkit.shadows.aliasing_error import aliasing_error
-from brdfkit.shadows.drawing import draw_errors
-from brdfkit.shadows.light_path import TURN, arrives, path
-from brdfkit.shadows.map_pictures import CHECKS, OUTSIDE, MapPictures
-from brdfkit.shadows.packed import Packed
-from brdfkit.shadows.scores import Scores, between_lights, mean
-from brdfkit.shadows.seen import Seen
-from brdfkit.shadows.texture_use import share_used
-from brdfkit.shadows.watched import Watched
+from brdfkit.shadows.comparison.exact_shadow import Seen
+from brdfkit.shadows.comparison.map_pictures import CHECKS, OUTSIDE, MapPictures
+from brdfkit.shadows.comparison.packed import Packed
+from brdfkit.shadows.comparison.page_pictures import draw_errors
+from brdfkit.shadows.comparison.paths import TURN, arrives, path
+from brdfkit.shadows.comparison.quality import aliasing_error
+from brdfkit.shadows.comparison.scores import Scores, between_lights, mean
+from brdfkit.shadows.comparison.texture_use import share_used
+from brdfkit.shadows.comparison.tracked_points import Watched
+from brdfkit.shadows.maps.scenes import SCENES
 
 SCENE = """<scene version="3.0.0">
     <integrator type="direct"/>

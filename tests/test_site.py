@@ -10,10 +10,10 @@ from urllib.parse import unquote, urlparse
 import pytest
 
 import brdfkit as bk
-from brdfkit.catalogue import shipped
 from brdfkit.cli import main
-from brdfkit.formats import formats
-from brdfkit.plugins import discovery
+from brdfkit.core import catalogue
+from brdfkit.core.discovery import plugin_files
+from brdfkit.materials.formats import formats
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 # The list of all pages beside each page takes a third of the time, and is the same on all
@@ -72,8 +72,8 @@ def own_plugins():
 
 def test_there_is_a_page_of_everything(site):
     wanted = {
-        "models": {n for n, m in bk.models().items() if m.__module__.startswith(discovery.OWN)},
-        "materials": set(shipped.materials()),
+        "models": {n for n, m in bk.models().items() if m.__module__.startswith(plugin_files.OWN)},
+        "materials": set(catalogue.materials()),
         "formats": {module.__name__.rpartition(".")[2] for module in formats()},
         "plugins": {page.removesuffix(".md") for page in own_plugins()},
         "commands": set(main.commands),

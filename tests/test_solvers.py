@@ -10,9 +10,9 @@ from scipy.optimize import minimize
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
-from brdfkit.errors import BrdfkitError
-from brdfkit.fitting import solvers
-from brdfkit.fitting.solvers.settings import SOLVERS, to_plain, to_solver
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.regression import solvers
+from brdfkit.regression.solvers.settings import SOLVERS, to_plain, to_solver
 
 N = 300
 # The solvers other than the default, with less effort than usual

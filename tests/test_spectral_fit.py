@@ -7,9 +7,9 @@ import pytest
 from test_fit import assert_same_parameters, synthetic
 
 import brdfkit as bk
-from brdfkit.errors import BrdfkitError
-from brdfkit.geometry.directions import from_angles
-from brdfkit.verbs.convert import evaluate_on_grid
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.materials.converting import evaluate_on_grid
 
 WAVELENGTHS = (400.0, 460.0, 500.0, 530.0, 570.0, 600.0, 640.0, 655.5, 660.0, 700.0)
 UP = np.array([[0.0, 0.0, 1.0]])

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.geometry.directions import from_angles, normalize
-from brdfkit.geometry.quadrature import directional_albedo, ring_rule
+from brdfkit.core.geometry.directions import from_angles, normalize
+from brdfkit.core.geometry.quadrature import directional_albedo, ring_rule
 from brdfkit.lighting.spherical_gaussians import (
     LobeTable,
     anisotropic,

@@ -14,9 +14,9 @@ from small_files import merl
 
 import brdfkit as bk
 from brdfkit.cli import main
-from brdfkit.commands._errors import Group, say
-from brdfkit.commands._stopping import is_stopped
-from brdfkit.errors import BrdfkitError
+from brdfkit.cli.errors import Group, say
+from brdfkit.cli.stopping import is_stopped
+from brdfkit.core.errors import BrdfkitError
 
 SHAPE = (6, 4, 8)
 
@@ -66,7 +66,7 @@ def test_each_command_begins_unstopped():
 
 WITHIN_EXEC = """
 import click
-from brdfkit.commands._errors import Group
+from brdfkit.cli.errors import Group
 
 @click.group(cls=Group)
 def group():
@@ -164,7 +164,7 @@ def test_ctrl_c_within_a_check_is_no_failure_of_it(llvm_variant, monkeypatch):
 @pytest.mark.quick
 def test_ctrl_c_within_a_recorded_picture_is_no_reason_to_render_again(llvm_variant, monkeypatch):
     """A claim of a thesis went on for minutes: Dr.Jit makes a RuntimeError of Ctrl-C."""
-    from brdfkit.reproducing.lesar2018.iterations import iteration
+    from brdfkit.theses.lesar2018.iterations import iteration
 
     def stopped(*_args, **_options):
         raise KeyboardInterrupt

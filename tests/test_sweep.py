@@ -24,11 +24,11 @@ from click.testing import CliRunner
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.cli import main
-from brdfkit.plugins import discovery
-from brdfkit.sweeping import sweeping
-from brdfkit.sweeping.planning import plan, split
-from brdfkit.sweeping.tasks import fit_models
-from brdfkit.verbs.fit import check_settings
+from brdfkit.core.discovery import plugin_files
+from brdfkit.fitting.fit import check_settings
+from brdfkit.fitting.sweeping import sweeping
+from brdfkit.fitting.sweeping.planning import plan, split
+from brdfkit.fitting.sweeping.tasks import fit_models
 
 TRUTHS = {
     "chalk": bk.models()["lambert"](diffuse_reflectance=(0.5, 0.4, 0.3)),
@@ -53,7 +53,7 @@ def made(tmp_path_factory):
 def here(made, tmp_path, monkeypatch):
     """A current folder with the files."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(discovery, "_users", {})
+    monkeypatch.setattr(plugin_files, "_users", {})
     for file, data in made.items():
         Path(file).write_bytes(data)
     return tmp_path
@@ -187,7 +187,7 @@ def test_an_error_that_is_not_for_people_fails_one_fit(here, fitted, monkeypatch
     def broken(name, data, **settings):
         return {}[name] if name == "lambert" else bk.fit(name, data, **settings)
 
-    monkeypatch.setattr("brdfkit.sweeping.tasks.fit", broken)
+    monkeypatch.setattr("brdfkit.fitting.sweeping.tasks.fit", broken)
     found = bk.sweep("chalk.npz", LINEAR)
     assert found.problems == ["chalk.npz: lambert fails with KeyError ('lambert')."]
     assert len(found.fits) == 1
@@ -276,7 +276,8 @@ def test_what_has_changed_is_fitted_again(here, fitted, monkeypatch):
     assert changed(max_angle=70) == ["chalk", "paint"]
     bk.save(bk.fit("lambert", "chalk.npz", max_angle=70), "out/chalk/lambert.json")
     assert changed(max_angle=70) == ["chalk"]  # of which nobody knows that it is this one
-    monkeypatch.setattr("brdfkit.sweeping.tasks.Task.__init__.__defaults__", (False, "", "0.0.9"))
+    defaults = "brdfkit.fitting.sweeping.tasks.Task.__init__.__defaults__"
+    monkeypatch.setattr(defaults, (False, "", "0.0.9"))
     assert changed(max_angle=70) == ["chalk", "copper", "paint"]
 
 

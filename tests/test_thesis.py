@@ -11,16 +11,16 @@ from functools import cache
 
 import numpy as np
 import pytest
+from brdfkit.theses.kurt2007.appendix_3 import SHAPES
+from brdfkit.theses.kurt2007.curet import PLAIN, lobes_at
 from random_models import random_model
 
 import brdfkit as bk
-from brdfkit.fitting import losses
-from brdfkit.geometry.directions import from_angles
-from brdfkit.measured.selection import select_samples
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model.lobes import HalfVector
 from brdfkit.model.microfacet import Beckmann
-from brdfkit.reproducing.kurt2007.appendix_3 import SHAPES
-from brdfkit.reproducing.kurt2007.curet import PLAIN, lobes_at
+from brdfkit.regression import losses
 
 TWO_LOBES = sorted(set(SHAPES) - {"oren_nayar"})
 

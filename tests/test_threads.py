@@ -16,9 +16,9 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 import brdfkit as bk
-from brdfkit.jit.signals import hold_signals
-from brdfkit.jit.threads import cached_in_turn, in_turn
-from brdfkit.rendering import render_scene, rendering
+from brdfkit.core.jit.threads import cached_in_turn, in_turn
+from brdfkit.core.signals import hold_signals
+from brdfkit.rendering import render_materials, render_scene
 
 THREADS = 8
 
@@ -69,7 +69,7 @@ def test_mitsuba_itself_may_be_imported_by_many_threads():
 def inside(monkeypatch, llvm_variant):
     """The threads that trace: at each time they are noted by how many there are."""
     counts, now = [], []
-    trace = rendering.trace
+    trace = render_materials.trace
 
     def traced(*args):
         now.append(threading.get_ident())
@@ -80,7 +80,7 @@ def inside(monkeypatch, llvm_variant):
         finally:
             now.remove(threading.get_ident())
 
-    monkeypatch.setattr(rendering, "trace", traced)
+    monkeypatch.setattr(render_materials, "trace", traced)
     return counts
 
 
@@ -102,7 +102,7 @@ def test_renders_of_several_threads_run_one_after_the_other(inside, tmp_path):
 def test_a_scene_ends_in_its_turn(monkeypatch, llvm_variant):
     """Mitsuba traces through the BSDFs of every scene, also of one that another thread frees."""
     seen = []
-    load_and_trace, trace = rendering._load_and_trace, rendering.trace
+    load_and_trace, trace = render_materials._load_and_trace, render_materials.trace
 
     def noted(loaded, *others):
         for scene in loaded.values():
@@ -114,8 +114,8 @@ def test_a_scene_ends_in_its_turn(monkeypatch, llvm_variant):
         assert [plugin() for plugin in seen] == [None, None]
         return result
 
-    monkeypatch.setattr(rendering, "trace", noted)
-    monkeypatch.setattr(rendering, "_load_and_trace", counted)
+    monkeypatch.setattr(render_materials, "trace", noted)
+    monkeypatch.setattr(render_materials, "_load_and_trace", counted)
     bk.render(["ward", "ggx"], size=4, spp=1)
 
 
@@ -183,8 +183,9 @@ def test_a_signal_waits_until_a_library_is_loaded(received):
 
 def test_every_module_can_be_imported_first():
     """The one that imports Mitsuba at its beginning could not."""
-    command = [sys.executable, "-c", "import brdfkit.host.registration, brdfkit.host.bsdf"]
-    subprocess.run(command, check=True)
+    modules = "registration.registering", "bsdf.adapter"
+    code = "; ".join(f"import brdfkit.mitsuba_bridge.{name}" for name in modules)
+    subprocess.run([sys.executable, "-c", code], check=True)
 
 
 def test_environment_maps_load_in_one_thread(tmp_path, monkeypatch):

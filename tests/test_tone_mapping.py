@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.rendering.tone_mapping import CURVES, ToneMapping
+from brdfkit.images.tone_mapping import CURVES, ToneMapping
 
 pytestmark = pytest.mark.quick
 LIGHT = np.linspace(0, 20, 2001)

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from scipy.ndimage import map_coordinates
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.volumes.majorants import Majorants
-from brdfkit.volumes.tracking import FAINT, collide, divide, transmittance
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.volumes.light.majorants import Majorants
+from brdfkit.volumes.light.tracking import FAINT, collide, divide, transmittance
 
 N = 1 << 17
 DEVIATIONS = 4.5  # of a mean: one in 150 000 is farther

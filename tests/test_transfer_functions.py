@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.colours import from_srgb, to_srgb
-from brdfkit.errors import BrdfkitError
-from brdfkit.volumes import opacity
-from brdfkit.volumes.stored import presets
+from brdfkit.core.colours import from_srgb, to_srgb
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.volumes.transfer import opacity
+from brdfkit.volumes.transfer.files import presets
 
 TF = bk.TransferFunction
 pytestmark = pytest.mark.quick

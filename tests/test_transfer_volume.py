@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from brdfkit import TransferFunction, Volume
-from brdfkit.volumes.block_bounds import block_ranges, largest_between
-from brdfkit.volumes.transfer_lookup import TransferLookup
+from brdfkit.volumes.transfer.block_bounds import block_ranges, largest_between
+from brdfkit.volumes.transfer.lookup import TransferLookup
 
 RNG = np.random.default_rng(6)
 HILLS = TransferFunction(

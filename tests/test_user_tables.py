@@ -10,8 +10,8 @@ from click.testing import CliRunner
 
 import brdfkit as bk
 from brdfkit.cli import main
-from brdfkit.errors import BrdfkitError
-from brdfkit.geometry.directions import from_angles
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import from_angles
 
 pytestmark = pytest.mark.quick
 

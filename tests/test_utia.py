@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from small_files import place, spectrum, table, utia
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.geometry.directions import from_angles
-from brdfkit.loading import load, save
-from brdfkit.measured import Measured
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.materials.loading import load, save
+from brdfkit.materials.measured import Measured
 
 pytestmark = pytest.mark.quick
 

@@ -16,17 +16,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull, Delaunay
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.visibility import decomposition
-from brdfkit.visibility.convex_ray import enter
-from brdfkit.visibility.decomposition import decompose
-from brdfkit.visibility.height_fields import HeightFields
-from brdfkit.visibility.hierarchy import Hierarchy
-from brdfkit.visibility.hull import LEAST_THICKNESS, hull
-from brdfkit.visibility.lobes import visible_share
-from brdfkit.visibility.occluders import Occluders
-from brdfkit.visibility.pieces import is_closed, solids
-from brdfkit.visibility.plane_map import ExactPlaneMap, RasterisedPlaneMap
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.lighting.visibility import decomposition
+from brdfkit.lighting.visibility.convex_ray import enter
+from brdfkit.lighting.visibility.decomposition import decompose
+from brdfkit.lighting.visibility.height_fields import HeightFields
+from brdfkit.lighting.visibility.hierarchy import Hierarchy
+from brdfkit.lighting.visibility.hull import LEAST_THICKNESS, hull
+from brdfkit.lighting.visibility.lobes import visible_share
+from brdfkit.lighting.visibility.occluders import Occluders
+from brdfkit.lighting.visibility.pieces import is_closed, solids
+from brdfkit.lighting.visibility.plane_map import ExactPlaneMap, RasterisedPlaneMap
 
 RAYS = 20_000
 

@@ -15,10 +15,10 @@ import tifffile
 from small_volumes import ORIGIN, SHAPE, SPACING, TO_WORLD, values
 
 import brdfkit as bk
-from brdfkit.errors import BrdfkitError
+from brdfkit.core.errors import BrdfkitError
 from brdfkit.volumes import made
 from brdfkit.volumes.formats import formats
-from brdfkit.volumes.stored import presets
+from brdfkit.volumes.transfer.files import presets
 
 LPS = np.diag([-1, -1, 1, 1])
 

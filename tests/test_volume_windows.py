@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from brdfkit import BrdfkitError, TransferFunction, Volume
-from brdfkit.colours import to_srgb
+from brdfkit.core.colours import to_srgb
 from brdfkit.rendering.volumes import looks
-from brdfkit.volumes.summary import summarise
-from brdfkit.volumes.windows import fitted, window
+from brdfkit.volumes.summary.summary import summarise
+from brdfkit.volumes.transfer.windows import fitted, window
 
 pytestmark = pytest.mark.quick
 RNG = np.random.default_rng(29)

@@ -10,10 +10,10 @@ from small_volumes import TO_WORLD, values
 
 import brdfkit as bk
 from brdfkit.cli import main
-from brdfkit.errors import BrdfkitError
+from brdfkit.core.errors import BrdfkitError
 from brdfkit.volumes import made
 from brdfkit.volumes.made import marschner_lobb, shepp_logan, slab, smoke, sphere
-from brdfkit.volumes.summary import summarise
+from brdfkit.volumes.summary.summary import summarise
 
 OBLIQUE = bk.Volume(values(np.float32) ** 2, TO_WORLD, "oblique", unit="mm")
 SHEARED = TO_WORLD @ np.array([[1, 0.3, 0, 0], [0, 1, 0.2, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 import brdfkit as bk
 from brdfkit.checks import Report
-from brdfkit.goniometer.microgeometry import gaussian
+from brdfkit.materials.goniometer.microgeometry import gaussian
 
 Floats = NDArray[np.float64]
 Values = dict[str, float | tuple[float, ...]]

@@ -4,8 +4,8 @@
     python data/environments/make.py studio    # one
 
 `sky` is Mitsuba's `sunsky` above grey ground. `studio` and `room` are path-traced from a point
-within, into all directions. `compass` is drawn: see `brdfkit/environments/compass.py`. To add one,
-write a function like those below, and an entry in `index.toml`.
+within, into all directions. `compass` is drawn: see `brdfkit/lighting/environments/compass.py`. To
+add one, write a function like those below, and an entry in `index.toml`.
 
 Rows and columns are those of Mitsuba's `envmap`. Every texel has the mean over its cell, so that
 the sun, which is smaller, has its power. Seeds are fixed; values are rounded to half floats, and
@@ -18,10 +18,10 @@ from pathlib import Path
 
 import numpy as np
 
-from brdfkit.colours import luminance
-from brdfkit.environments.compass import compass
-from brdfkit.environments.map_files import write
-from brdfkit.environments.spread import directions, solid_angles
+from brdfkit.core.colours import luminance
+from brdfkit.lighting.environments.compass import compass
+from brdfkit.lighting.environments.map_files import write
+from brdfkit.lighting.environments.spread import directions, solid_angles
 
 HEIGHT = 128
 PASSES = 128, 16  # of a path-traced map, and the samples of every texel in each

@@ -26,12 +26,12 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from brdfkit.cli import main
-from brdfkit.files import write_safely
-from brdfkit.formats import npz
-from brdfkit.formats.merl import NOT_MEASURED, SCALE
-from brdfkit.loading import load
-from brdfkit.measured import Measured
-from brdfkit.samples import Table
+from brdfkit.core.files import write_safely
+from brdfkit.materials.formats import npz
+from brdfkit.materials.formats.merl import NOT_MEASURED, SCALE
+from brdfkit.materials.loading import load
+from brdfkit.materials.measured import Measured
+from brdfkit.model.samples import Table
 
 # Twice as many phi_d as theta_d cells: MERL's way to say that phi_d spans half a circle
 SHAPE = (72, 36, 72)

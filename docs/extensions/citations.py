@@ -9,7 +9,7 @@ from docutils import nodes
 from sphinx.transforms import SphinxTransform
 from sphinx.util.osutil import relative_uri
 
-from brdfkit.references import CITATION, references
+from brdfkit.core.references import CITATION, references
 
 PAGE = "references"
 FOUND = re.compile(rf"{CITATION.pattern}|(?P<address>https?://[^\s)]*[\w/])")

@@ -8,7 +8,7 @@ from make_models import models, picture
 from sphinx.util.docutils import SphinxDirective
 from sphinx.util.osutil import relative_uri
 
-from brdfkit.catalogue import shipped
+from brdfkit.core import catalogue
 
 
 class Gallery(SphinxDirective):
@@ -38,7 +38,7 @@ def model_balls():
 
 def material_balls():
     """The same of every material: the measured ball and a fit's."""
-    for name, material in shipped.materials().items():
+    for name, material in catalogue.materials().items():
         pictures = {f"{material.title}, measured": f"{name}.jpg"}
         yield name, material.title, pictures | {f"{material.title}, fitted": f"{name}_fit.jpg"}
 

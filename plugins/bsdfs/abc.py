@@ -15,7 +15,7 @@ from typing import Any
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import half_vector
+from brdfkit.core.geometry.vectors import half_vector
 from brdfkit.model import Model, shape, weight
 from brdfkit.model.lobes import HalfVector, factored, lambertian
 from brdfkit.model.microfacet import Visible, v_groove

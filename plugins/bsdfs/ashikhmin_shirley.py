@@ -14,7 +14,7 @@ measurements determine only the product k_s F₀.
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import cos_theta_d
+from brdfkit.core.geometry.vectors import cos_theta_d
 from brdfkit.model import follows, option, shape, weight
 from brdfkit.model.fresnel import FresnelModel
 from brdfkit.model.lobes import Cosine, HalfVector, Lobe, lambertian

@@ -12,7 +12,7 @@ plastics, paints and cloth; no gloss: "burley+ggx" has one.
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import cos_theta_d
+from brdfkit.core.geometry.vectors import cos_theta_d
 from brdfkit.model import Model, shape, weight
 from brdfkit.model.lobes import Cosine, Lobe
 from brdfkit.model.microfacet import fifth_power

@@ -7,7 +7,7 @@ is four times today's D G F / 4(N·L)(N·V): energy is conserved only for about 
 metals and plastics of one roughness; no anisotropy.
 """
 
-from brdfkit.geometry.vectors import half_vector
+from brdfkit.core.geometry.vectors import half_vector
 from brdfkit.model import shape, weight
 from brdfkit.model.fresnel import FresnelModel
 from brdfkit.model.lobes import HalfVector, lambertian

@@ -19,7 +19,7 @@ import math
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import dot
+from brdfkit.core.geometry.vectors import dot
 from brdfkit.model import Model, shape, weight
 from brdfkit.model.lobes import Cosine, Lobe
 

@@ -12,7 +12,7 @@ surfaces; highlights are round, never elliptic, and there is no Fresnel effect.
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import dot
+from brdfkit.core.geometry.vectors import dot
 from brdfkit.model import Model, follows, option, shape, weight
 from brdfkit.model.lobes import Lobe, PowerLobe, lambertian
 from brdfkit.model.numerics import cosine_power

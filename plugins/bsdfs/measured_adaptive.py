@@ -18,11 +18,11 @@ a measurement is diffuse.
 
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.host.adaptive_lookup import AdaptiveLookup
-from brdfkit.host.channels import channels
-from brdfkit.host.measured_frame import measured_frame
-from brdfkit.host.properties import resolve_file
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.mitsuba_bridge.bsdf.adaptive_lookup import AdaptiveLookup
+from brdfkit.mitsuba_bridge.bsdf.measured_base import measured_frame
+from brdfkit.mitsuba_bridge.channels import channels
+from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
 
 ARRAYS = "phi_i", "theta_i", "ndf", "sigma", "vndf", "density"
 FLAGS = "isotropic", "parts", "divided"
@@ -61,7 +61,7 @@ def define(mi):
 def _read(props):
     """The arrays and flags of an RGL file: `props`, or those of the file that they name."""
     if "filename" in props:
-        from brdfkit.loading import load  # only here: listing the plugins should be quick
+        from brdfkit.materials.loading import load  # only here: listing the plugins should be quick
 
         name, props = props["filename"], load(resolve_file(props["filename"])).scene_dict()
         if "density" not in props:

@@ -15,13 +15,13 @@ tell which part of a measurement is diffuse.
 
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.host.channels import channels
-from brdfkit.host.half_vector_table import HalfVectorTable
-from brdfkit.host.measured_frame import measured_frame
-from brdfkit.host.properties import resolve_file
-from brdfkit.host.table_lookup import corners
-from brdfkit.samples import Table
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.mitsuba_bridge.bsdf.half_vector_table import HalfVectorTable
+from brdfkit.mitsuba_bridge.bsdf.measured_base import measured_frame
+from brdfkit.mitsuba_bridge.bsdf.table_lookup import corners
+from brdfkit.mitsuba_bridge.channels import channels
+from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
+from brdfkit.model.samples import Table
 
 # The size of the table of half vectors; a larger one would take seconds
 ANISOTROPIC = {"azimuths": 24, "angles": 16, "cells": (60, 32), "points": 1}
@@ -59,15 +59,15 @@ def define(mi):
 
 def example():
     """A table of brdfkit's own, for the checks."""
-    from brdfkit.catalogue import shipped  # only here: listing the plugins should be quick
+    from brdfkit.core import catalogue  # only here: listing the plugins should be quick
 
-    return {"type": "measured_table", "filename": str(shipped.path("plaster"))}
+    return {"type": "measured_table", "filename": str(catalogue.path("plaster"))}
 
 
 def _table(props):
     """The `Table`, and its wavelengths [nm], None where the channels are colours."""
     if "filename" in props:
-        from brdfkit.loading import load  # only here: listing the plugins should be quick
+        from brdfkit.materials.loading import load  # only here: listing the plugins should be quick
 
         measured = load(resolve_file(props["filename"]))
         props = getattr(measured, "tabulated", measured).scene_dict()

@@ -11,7 +11,7 @@ better than by one; measurements seldom tell three apart. [Ngan et al. 2005]; [K
 
 from dataclasses import replace
 
-from brdfkit.errors import BrdfkitError
+from brdfkit.core.errors import BrdfkitError
 from brdfkit.model import Model, labels, option
 
 # Each further lobe of the same model begins narrower by this factor: equal lobes would be a saddle

@@ -10,7 +10,7 @@ retro-reflection.
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import one_minus_dot
+from brdfkit.core.geometry.vectors import one_minus_dot
 from brdfkit.model import Model, shape, weight
 from brdfkit.model.lobes import Lobe, PowerLobe, lambertian
 from brdfkit.model.numerics import cosine_power

@@ -6,7 +6,7 @@ The material may be any of Mitsuba's or brdfkit's; `alpha_u` is along the turned
 `normalmap` the normal is the map's.
 """
 
-from brdfkit.host.declared import bsdf, declared, texture
+from brdfkit.mitsuba_bridge.properties.declarations import bsdf, declared, texture
 
 PARAMETERS = {
     "angle": texture(0.0, "of the material's u from the surface's, counterclockwise [radians]"),

@@ -14,7 +14,7 @@ from typing import Any
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import half_vector
+from brdfkit.core.geometry.vectors import half_vector
 from brdfkit.model import shape, weight
 from brdfkit.model.fresnel import FresnelModel
 from brdfkit.model.lobes import HalfVector, lambertian

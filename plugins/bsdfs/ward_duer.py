@@ -11,7 +11,7 @@ form stays below 1.
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import cos_theta_d
+from brdfkit.core.geometry.vectors import cos_theta_d
 from brdfkit.model import Model, follows, option, shape, weight
 from brdfkit.model.lobes import HalfVector, factored, lambertian
 from brdfkit.model.microfacet import Beckmann, Visible

@@ -25,10 +25,10 @@ are drawn with, `independent` does not; `exact` keeps the strata, the closed for
 D65 [Mallett & Yuksel 2019], linear in the colour.
 """
 
-from brdfkit.host.declared import count, word
-from brdfkit.lighting.environment_emitter import MAP, environment_emitter, small_sky
-from brdfkit.lighting.environment_tree import CRITERIA
-from brdfkit.lighting.map_samplers.blocks import DISTRIBUTIONS, LOOKUPS, Blocks
+from brdfkit.lighting.sampling.emitter import MAP, environment_emitter, small_sky
+from brdfkit.lighting.sampling.map_samplers.blocks import DISTRIBUTIONS, LOOKUPS, Blocks
+from brdfkit.lighting.sampling.tree import CRITERIA
+from brdfkit.mitsuba_bridge.properties.declarations import count, word
 
 PARAMETERS = MAP | {
     "blocks": count(4096, (1, 1_000_000), "blocks that the map is cut into at most"),

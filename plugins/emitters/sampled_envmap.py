@@ -9,11 +9,11 @@ row [Vose 1991]. `compensated`: only for integrators that also sample surfaces, 
 out what is below the map's mean [Karlík et al. 2019].
 """
 
-from brdfkit.host.declared import word
-from brdfkit.lighting.environment_emitter import MAP, environment_emitter, small_sky
-from brdfkit.lighting.map_samplers.alias import Alias
-from brdfkit.lighting.map_samplers.cdf import Cdf
-from brdfkit.lighting.map_samplers.mip import Mip
+from brdfkit.lighting.sampling.emitter import MAP, environment_emitter, small_sky
+from brdfkit.lighting.sampling.map_samplers.alias import Alias
+from brdfkit.lighting.sampling.map_samplers.mip import Mip
+from brdfkit.lighting.sampling.map_samplers.tables import Cdf
+from brdfkit.mitsuba_bridge.properties.declarations import word
 
 SAMPLERS = {"cdf": Cdf, "mip": Mip, "alias": Alias}
 PARAMETERS = MAP | {"sampler": word(SAMPLERS, "how points of the map are drawn")}

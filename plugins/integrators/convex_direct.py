@@ -27,11 +27,11 @@ import math
 import drjit as dr
 import numpy as np
 
-from brdfkit.host.declared import count, declared, plain_number
-from brdfkit.host.reference_camera import reference_film
-from brdfkit.visibility.casters import Casters
-from brdfkit.visibility.decomposition import CONCAVITY
-from brdfkit.visibility.occluders import RESOLUTION
+from brdfkit.lighting.visibility.casters import Casters
+from brdfkit.lighting.visibility.decomposition import CONCAVITY
+from brdfkit.lighting.visibility.occluders import RESOLUTION
+from brdfkit.mitsuba_bridge.properties.declarations import count, declared, plain_number
+from brdfkit.mitsuba_bridge.reference_camera import reference_film
 
 PARAMETERS = {
     "concavity": plain_number(CONCAVITY, (0.01, 1.0), "largest distance of a part to its hull"),

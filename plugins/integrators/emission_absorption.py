@@ -28,12 +28,12 @@ derivatives by both volumes are exact derivatives of the sum over the parts.
 import drjit as dr
 import numpy as np
 
-from brdfkit.host.channels import emission_of_rgb, white
-from brdfkit.host.declared import count, declared, flag, volume
-from brdfkit.host.reference_camera import through_unit_cube
-from brdfkit.jit.recorded import recorded
+from brdfkit.core.jit.loops import recorded
+from brdfkit.mitsuba_bridge.channels import emission_of_rgb, white
+from brdfkit.mitsuba_bridge.properties.declarations import count, declared, flag, volume
+from brdfkit.mitsuba_bridge.reference_camera import through_unit_cube
 from brdfkit.model.numerics import expm1
-from brdfkit.volumes.along_ray import light_behind, within
+from brdfkit.volumes.rays.along_ray import light_behind, within
 
 OPAQUE = 1e-4  # transmittance
 

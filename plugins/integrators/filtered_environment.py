@@ -29,18 +29,18 @@ time, and minutes for the parts of a mesh that is new. By default, "none", surfa
 
 import drjit as dr
 
-from brdfkit.errors import BrdfkitError, no_such
-from brdfkit.host.declared import count, declared, plain_number, text, word
-from brdfkit.host.reference_camera import reference_film
-from brdfkit.host.variants import refuse_scalar
-from brdfkit.lighting.filtered_light import FILTERS, FilteredLight
-from brdfkit.lighting.filtered_sampling import FilteredSampling
-from brdfkit.lighting.lobe_light import LobeLight
+from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.lighting.filtering.filtered_light import FILTERS, FilteredLight
+from brdfkit.lighting.filtering.filtered_sampling import FilteredSampling
+from brdfkit.lighting.filtering.lobe_light import LobeLight
 from brdfkit.lighting.spherical_gaussians.lobes_of_material import METHODS as LOBES
-from brdfkit.visibility.casters import Casters
-from brdfkit.visibility.decomposition import CONCAVITY
-from brdfkit.visibility.occluders import RESOLUTION
-from brdfkit.visibility.shadowed_light import ShadowedLight
+from brdfkit.lighting.visibility.casters import Casters
+from brdfkit.lighting.visibility.decomposition import CONCAVITY
+from brdfkit.lighting.visibility.occluders import RESOLUTION
+from brdfkit.lighting.visibility.shadowed_light import ShadowedLight
+from brdfkit.mitsuba_bridge.properties.declarations import count, declared, plain_number, text, word
+from brdfkit.mitsuba_bridge.reference_camera import reference_film
+from brdfkit.mitsuba_bridge.registration.variants import refuse_scalar
 
 METHODS = "filtered_sampling", *LOBES
 PARAMETERS = {

@@ -16,10 +16,10 @@ three are refused, and cameras that are not perspective.
 
 from functools import partial
 
-from brdfkit.host.declared import count, plain_number
-from brdfkit.host.direct_light import shadowed
-from brdfkit.host.reference_shadow import beside_a_shadow
-from brdfkit.hybrid_shadow import hybrid_shadow
+from brdfkit.mitsuba_bridge.check_scenes import beside_a_shadow
+from brdfkit.mitsuba_bridge.direct_light import shadowed
+from brdfkit.mitsuba_bridge.properties.declarations import count, plain_number
+from brdfkit.shadows.hybrid import hybrid_shadow
 
 PARAMETERS = {
     "resolution": count(256, (2, 4096), "texels along a side of each map"),

@@ -23,14 +23,21 @@ missing in them.
 import drjit as dr
 import numpy as np
 
-from brdfkit.host.declared import bsdf, count, declared, flag, number, volume
-from brdfkit.host.reference_camera import through_unit_cube
-from brdfkit.host.surface_point import interaction
-from brdfkit.host.variants import refuse_scalar
-from brdfkit.volumes.along_ray import light_behind, within
-from brdfkit.volumes.first_crossing import first_above, first_crossing, reattach
-from brdfkit.volumes.normals import face_normal, facing, gradient, per_voxel
-from brdfkit.volumes.surface_light import direct_light
+from brdfkit.mitsuba_bridge.properties.declarations import (
+    bsdf,
+    count,
+    declared,
+    flag,
+    number,
+    volume,
+)
+from brdfkit.mitsuba_bridge.reference_camera import through_unit_cube
+from brdfkit.mitsuba_bridge.registration.variants import refuse_scalar
+from brdfkit.mitsuba_bridge.surface_point import interaction
+from brdfkit.volumes.light.surface_light import direct_light
+from brdfkit.volumes.rays.along_ray import light_behind, within
+from brdfkit.volumes.rays.first_crossing import first_above, first_crossing, reattach
+from brdfkit.volumes.rays.normals import face_normal, facing, gradient, per_voxel
 
 PARAMETERS = {
     "volume": volume(1.0, "the values, or of the type transfer_function", False, least=-np.inf),

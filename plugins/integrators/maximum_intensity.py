@@ -19,12 +19,12 @@ values about it.
 import drjit as dr
 import numpy as np
 
-from brdfkit.host.channels import emission_of_rgb
-from brdfkit.host.declared import count, declared, flag, volume
-from brdfkit.host.reference_camera import through_unit_cube
-from brdfkit.volumes.along_ray import light_behind, within
-from brdfkit.volumes.largest_value import largest_along
-from brdfkit.volumes.transfer_function import TransferFunction
+from brdfkit.mitsuba_bridge.channels import emission_of_rgb
+from brdfkit.mitsuba_bridge.properties.declarations import count, declared, flag, volume
+from brdfkit.mitsuba_bridge.reference_camera import through_unit_cube
+from brdfkit.volumes.rays.along_ray import light_behind, within
+from brdfkit.volumes.rays.largest_value import largest_along
+from brdfkit.volumes.transfer.transfer_function import TransferFunction
 
 PARAMETERS = {
     "volume": volume(0.0, "of the type transfer_function, or one that is shown in grey", False),

@@ -7,8 +7,8 @@ part of a `partition` of the scene. V is what the `filter` reads there. So the p
 faults of the technique, and no others: compare it with `direct`, whose V is a ray to the light.
 
 The techniques are those of [Ergun 2008, section 2.2], and some that came later; each is a file of
-`src/brdfkit/shadow_maps/`, in the folder of its kind, which has its formula and what it is good and
-bad at. Their settings are parameters here, of which those of other techniques are not asked.
+`src/brdfkit/shadows/maps/`, in the folder of its kind, which has its formula and what it is good
+and bad at. Their settings are parameters here, of which those of other techniques are not asked.
 
 A bias keeps lit surfaces out of their own shadow. By default each texel is compared with the depth
 of the surface's own plane in its middle (`plane_bias`), less `bias` of the light's way through the
@@ -23,13 +23,13 @@ than these three are refused.
 
 from functools import partial
 
-from brdfkit.host.declared import count, flag, plain_number, word
-from brdfkit.host.direct_light import shadowed
-from brdfkit.host.reference_shadow import beside_a_shadow
-from brdfkit.shadow_maps.bias import AUTOMATIC, Bias
-from brdfkit.shadow_maps.light_shadow import DEPTHS, LightShadow
-from brdfkit.shadow_maps.placement import Placement
-from brdfkit.shadow_maps.techniques import FILES, all_settings, settings_of
+from brdfkit.mitsuba_bridge.check_scenes import beside_a_shadow
+from brdfkit.mitsuba_bridge.direct_light import shadowed
+from brdfkit.mitsuba_bridge.properties.declarations import count, flag, plain_number, word
+from brdfkit.shadows.maps.bias import AUTOMATIC, Bias
+from brdfkit.shadows.maps.light_shadow import DEPTHS, LightShadow
+from brdfkit.shadows.maps.placement import Placement
+from brdfkit.shadows.maps.techniques import FILES, all_settings, settings_of
 
 PARAMETERS = {
     "projection": word(FILES["projection"], "how a map sees the scene", "focused"),

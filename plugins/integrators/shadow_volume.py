@@ -27,16 +27,16 @@ lights than these three are refused, and cameras that are not perspective.
 
 from functools import partial
 
-from brdfkit.host.declared import flag, plain_number, word
-from brdfkit.host.direct_light import shadowed
-from brdfkit.host.reference_shadow import beside_a_shadow
-from brdfkit.projective.light import Light
-from brdfkit.shadow_volumes.casters import CASTERS
-from brdfkit.shadow_volumes.light_volumes import FAR_PLANES, METHODS, LightVolumes
-from brdfkit.shadow_volumes.mesh import Mesh
-from brdfkit.shadow_volumes.pinhole import pinhole
-from brdfkit.shadow_volumes.silhouettes import SILHOUETTES
-from brdfkit.shadow_volumes.volume import BACK_CAPS
+from brdfkit.core.projective.light import Light
+from brdfkit.mitsuba_bridge.check_scenes import beside_a_shadow
+from brdfkit.mitsuba_bridge.direct_light import shadowed
+from brdfkit.mitsuba_bridge.properties.declarations import flag, plain_number, word
+from brdfkit.shadows.volumes.casters import CASTERS
+from brdfkit.shadows.volumes.light_volumes import FAR_PLANES, METHODS, LightVolumes
+from brdfkit.shadows.volumes.mesh import Mesh
+from brdfkit.shadows.volumes.pinhole import pinhole
+from brdfkit.shadows.volumes.silhouettes import SILHOUETTES
+from brdfkit.shadows.volumes.volume import BACK_CAPS
 
 PARAMETERS = {
     "method": word(METHODS, "which faces count"),

@@ -39,12 +39,19 @@ import math
 import drjit as dr
 import numpy as np
 
-from brdfkit.host.declared import count, declared, number, phase, volume, word
-from brdfkit.host.reference_camera import through_unit_cube
-from brdfkit.host.variants import refuse_scalar
-from brdfkit.volumes import emitters
-from brdfkit.volumes.medium import Medium
-from brdfkit.volumes.vertex import Vertex, medium_interaction
+from brdfkit.mitsuba_bridge.properties.declarations import (
+    count,
+    declared,
+    number,
+    phase,
+    volume,
+    word,
+)
+from brdfkit.mitsuba_bridge.reference_camera import through_unit_cube
+from brdfkit.mitsuba_bridge.registration.variants import refuse_scalar
+from brdfkit.volumes.light import emitters
+from brdfkit.volumes.light.medium import Medium
+from brdfkit.volumes.light.vertex import Vertex, medium_interaction
 
 ROULETTE = 5  # scatterings after which faint paths end at random
 LEAST_CHANCE = 0.05  # of going on then, and of being one of two

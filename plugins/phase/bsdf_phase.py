@@ -18,8 +18,8 @@ refused.
 
 import drjit as dr
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.host.declared import bsdf, declared, volume
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.mitsuba_bridge.properties.declarations import bsdf, declared, volume
 
 PARAMETERS = {
     "bsdf": bsdf("f, by default white and matte; in a scene file name it so"),

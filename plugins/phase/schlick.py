@@ -15,8 +15,8 @@ Use it where Henyey-Greenstein's power costs too much; Mitsuba's own `hg` is the
 
 import drjit as dr
 
-from brdfkit.host.declared import number
-from brdfkit.host.deflection import deflection
+from brdfkit.mitsuba_bridge.phase_functions import deflection
+from brdfkit.mitsuba_bridge.properties.declarations import number
 
 PARAMETERS = {
     "k": number(0.5, (-0.999, 0.999), "asymmetry: above 0 forward, below 0 back"),

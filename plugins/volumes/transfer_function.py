@@ -27,19 +27,19 @@ from functools import cached_property
 import drjit as dr
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.host.channels import emission_of_rgb, spectrum_of_rgb
-from brdfkit.host.declared import declared, text, volume, word
-from brdfkit.host.properties import resolve_file
-from brdfkit.host.variants import refuse_scalar
-from brdfkit.volumes import stored
-from brdfkit.volumes.block_bounds import block_ranges, largest_between
-from brdfkit.volumes.extinction_bounds import data_of
-from brdfkit.volumes.preintegration import is_thin
-from brdfkit.volumes.transfer_function import TransferFunction
-from brdfkit.volumes.transfer_lookup import TransferLookup
-from brdfkit.volumes.voxel_steps import is_trilinear, typical
-from brdfkit.volumes.windows import fitted
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.mitsuba_bridge.channels import emission_of_rgb, spectrum_of_rgb
+from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
+from brdfkit.mitsuba_bridge.properties.declarations import declared, text, volume, word
+from brdfkit.mitsuba_bridge.registration.variants import refuse_scalar
+from brdfkit.volumes.light.extinction_bounds import data_of
+from brdfkit.volumes.rays.voxel_steps import is_trilinear, typical
+from brdfkit.volumes.transfer import files
+from brdfkit.volumes.transfer.block_bounds import block_ranges, largest_between
+from brdfkit.volumes.transfer.lookup import TransferLookup
+from brdfkit.volumes.transfer.preintegration import is_thin
+from brdfkit.volumes.transfer.transfer_function import TransferFunction
+from brdfkit.volumes.transfer.windows import fitted
 
 CHANNELS = {1: "values alone", 2: "values and gradient magnitudes"}
 PARAMETERS = {
@@ -161,7 +161,7 @@ def function_of(transfer, values):
     Raises `BrdfkitError` where there is none, and for values without their gradient magnitudes.
     """
     if transfer.lstrip().startswith("{"):
-        function = stored.from_json(TransferFunction, transfer, "transfer_function: transfer")
+        function = files.from_json(TransferFunction, transfer, "transfer_function: transfer")
     else:
         function = TransferFunction.load(resolve_file(transfer))
     channels = 1 if function.gradients is None else 2

@@ -9,14 +9,14 @@
 >>> bk.report(paint, fits, "paint.html")    # all of it on one page    # doctest: +SKIP
 
 Importing brdfkit is light and sets no Mitsuba variant. It makes the models known to Mitsuba as
-BSDF plugins in every variant, and chooses the LLVM that Dr.Jit loads (`brdfkit.jit.llvm`).
+BSDF plugins in every variant, and chooses the LLVM that Dr.Jit loads (`brdfkit.core.jit.llvm`).
 """
 
 import lazy_loader
 
-from brdfkit.host import hook
-from brdfkit.jit import llvm
-from brdfkit.version import __version__ as __version__
+from brdfkit.core.jit import llvm
+from brdfkit.core.version import __version__ as __version__
+from brdfkit.mitsuba_bridge.registration import hook
 
 # The public names are listed in __init__.pyi alone, and imported when used
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -15,16 +15,16 @@ from brdfkit.checks.failure import describe
 from brdfkit.checks.material_subject import Subject
 from brdfkit.checks.plugin_subject import PluginSubject, example, is_no_model
 from brdfkit.checks.registry import Finding, checks
-from brdfkit.documents import Cell, Document, Shown, Table
-from brdfkit.documents.parts import BAD, GOOD
-from brdfkit.errors import BrdfkitError, nearest, no_such
-from brdfkit.host.load_by_mitsuba import load_by_mitsuba
-from brdfkit.jit import llvm
-from brdfkit.jit.first_error import is_interrupt
-from brdfkit.jit.threads import in_turn
-from brdfkit.materials import MaterialLike, material
-from brdfkit.plugins import discovery
-from brdfkit.plugins.discovery import KINDS, MODELS
+from brdfkit.core.discovery import plugin_files
+from brdfkit.core.discovery.plugin_files import KINDS, MODELS
+from brdfkit.core.documents import Cell, Document, Shown, Table
+from brdfkit.core.documents.parts import BAD, GOOD
+from brdfkit.core.errors import BrdfkitError, nearest, no_such
+from brdfkit.core.jit import llvm
+from brdfkit.core.jit.first_error import is_interrupt
+from brdfkit.core.jit.threads import in_turn
+from brdfkit.materials.resolve import MaterialLike, material
+from brdfkit.mitsuba_bridge.properties.load_by_mitsuba import load_by_mitsuba
 
 for _module in pkgutil.iter_modules(__path__):
     importlib.import_module(f"{__name__}.{_module.name}")
@@ -121,7 +121,7 @@ def _subject(thing):
     if isinstance(thing, str) and is_no_model(thing):
         thing = example(thing)
     name = thing.get("type") if isinstance(thing, dict) else None
-    kind = discovery.kind_of(name) if isinstance(name, str) else None
+    kind = plugin_files.kind_of(name) if isinstance(name, str) else None
     if kind not in (None, MODELS):
         return PluginSubject(kind, thing), kind, name
     found = _material(thing)
@@ -137,7 +137,7 @@ def _material(thing):
     try:
         return material(thing)
     except BrdfkitError:
-        others = [n for kind in KINDS if kind != MODELS for n in discovery.sources(kind)]
+        others = [n for kind in KINDS if kind != MODELS for n in plugin_files.sources(kind)]
         if isinstance(thing, str) and nearest(thing, others):
             raise no_such("plugin", thing, others) from None
         raise

@@ -15,8 +15,8 @@ from brdfkit.checks.model_derivatives import (
 )
 from brdfkit.checks.registry import check_of
 from brdfkit.checks.sampling import sample_weights, uniform
+from brdfkit.core.discovery.plugin_files import MODELS
 from brdfkit.model.evaluation import weight_matrix
-from brdfkit.plugins.discovery import MODELS
 
 NO_SHAPES = "nothing to check: no shape parameters"
 

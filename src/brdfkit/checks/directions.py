@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 
-from brdfkit.jit.padding import pad
+from brdfkit.core.jit.padding import pad
 
 SIGNIFICANCE = 0.01
 SAMPLES = 400_000

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from brdfkit.checks.variants import WAVELENGTHS, columns, in_variant, weights_of
-from brdfkit.geometry.directions import from_angles
-from brdfkit.host.bsdf_material import BsdfMaterial
-from brdfkit.measured import Measured
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.materials.measured import Measured
+from brdfkit.mitsuba_bridge.bsdf.from_dictionary import BsdfMaterial
 from brdfkit.model import Model
 from brdfkit.model.evaluation import lobe_values
 

@@ -4,7 +4,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.checks.material_subject import random_pairs
-from brdfkit.model import double_precision
+from brdfkit.core.jit import double_precision
 from brdfkit.model.evaluation import lobe_values
 
 

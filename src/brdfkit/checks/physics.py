@@ -4,13 +4,13 @@ import numpy as np
 
 from brdfkit.checks.material_subject import AZIMUTH, incidences, random_pairs
 from brdfkit.checks.registry import check_of
-from brdfkit.errors import BrdfkitError
-from brdfkit.fitting.not_finite import require_finite, require_finite_slopes
-from brdfkit.geometry.directions import from_angles
-from brdfkit.geometry.quadrature import TOLERANCE, directional_albedo
-from brdfkit.model import double_precision
+from brdfkit.core.discovery.plugin_files import MODELS
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.core.geometry.quadrature import TOLERANCE, directional_albedo
+from brdfkit.core.jit import double_precision
 from brdfkit.model.evaluation import lobe_values
-from brdfkit.plugins.discovery import MODELS
+from brdfkit.regression.problem.not_finite import require_finite, require_finite_slopes
 
 
 @check_of(MODELS)

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from brdfkit.checks.registry import check_of
-from brdfkit.errors import no_such
+from brdfkit.core.discovery import plugin_files
+from brdfkit.core.discovery.plugin_files import KINDS, MODELS
+from brdfkit.core.errors import no_such
 from brdfkit.model import labels
-from brdfkit.plugins import discovery
-from brdfkit.plugins.discovery import KINDS, MODELS
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +25,7 @@ class PluginSubject:
     @property
     def source(self):
         """The file of the plugin."""
-        return discovery.sources(self.kind)[self.name]
+        return plugin_files.sources(self.kind)[self.name]
 
     @property
     def module(self):
@@ -42,9 +42,9 @@ class PluginSubject:
 
 def is_no_model(name):
     """Whether `name` is that of a plugin which is no `Model`, but may be another BSDF."""
-    kind = discovery.kind_of(name)
+    kind = plugin_files.kind_of(name)
     return kind is not None and (
-        kind != MODELS or labels.model_in(discovery.sources(MODELS)[name]) is None
+        kind != MODELS or labels.model_in(plugin_files.sources(MODELS)[name]) is None
     )
 
 
@@ -64,7 +64,7 @@ def example(name, **values):
 
 
 def _module(name):
-    return discovery.module(discovery.sources(discovery.kind_of(name))[name])
+    return plugin_files.module(plugin_files.sources(plugin_files.kind_of(name))[name])
 
 
 @check_of(*(kind for kind in KINDS if kind != MODELS))

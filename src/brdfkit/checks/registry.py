@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from brdfkit.plugins.discovery import KINDS
+from brdfkit.core.discovery.plugin_files import KINDS
 
 checks: dict[str, dict[str, Callable]] = {kind: {} for kind in KINDS}
 

@@ -6,9 +6,9 @@ from brdfkit.checks.figures import larger
 from brdfkit.checks.material_subject import INCIDENCES, incidences
 from brdfkit.checks.registry import check_of
 from brdfkit.checks.variants import columns
-from brdfkit.geometry.quadrature import TOLERANCE, directional_albedo
-from brdfkit.jit.padding import pad
-from brdfkit.plugins.discovery import MODELS
+from brdfkit.core.discovery.plugin_files import MODELS
+from brdfkit.core.geometry.quadrature import TOLERANCE, directional_albedo
+from brdfkit.core.jit.padding import pad
 
 # All tests of one check together reject a correct sampler once in a hundred runs. Seeds are fixed:
 # a check that has passed will pass again.

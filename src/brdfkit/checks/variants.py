@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from brdfkit.colours import LUMINANCE, RGB, colour_science
-from brdfkit.measured.spectrum_to_rgb import wavelengths
+from brdfkit.core.colours import LUMINANCE, RGB, colour_science
+from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
 
 WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)  # nm, at which spectral variants are checked
 

@@ -5,52 +5,54 @@
 >>> field([[0, 0, 3]])    # the distance at (0, 0, 3)
 array([2.])
 
-`solids.py`, `rods.py`, `fractals.py`, `grids.py`: what there is; `combinations.py`, `offsets.py`,
-`motions.py`, `repetition.py`, `circular_arrays.py`: what becomes of it, by the operators of
-`operators.py`; `materials.py`: what it is made of. They are the nodes (`node.py`) of a tree, whose
-formulas, made of `functions.py`, run on Dr.Jit's arrays of any backend, on NumPy's points
-(`evaluation.py`), and on symbols (`symbols.py`), which make GLSL (`glsl.py`) of them. `stored.py`:
-files; `users_functions.py`: plain functions of points; `sampling.py`, `meshing.py`,
-`mesh_distances.py`: grids and meshes; `checking.py`: whether a distance is one; `intersecting.py`,
-`sphere_tracing.py`, `cone_tracing.py`, `raymarching.py`: where rays meet it (`hits.py`), and how
-that moves; `normals.py`. `shadows/`: soft shadows; `shading/`:
-pictures, for the integrator `distance_field`.
+`shapes/solids.py`, `shapes/rods.py`, `shapes/fractals.py`, `shapes/grids.py`: what there is;
+`shapes/combinations.py`, `shapes/offsets.py`, `shapes/motions.py`, `shapes/repetition.py`,
+`shapes/circular_arrays.py`: what becomes of it, by the operators of `operators.py`; `materials.py`:
+what it is made of. They are the nodes (`node.py`) of a tree, whose formulas, made of
+`functions.py`, run on Dr.Jit's arrays of any backend, on NumPy's points (`evaluation.py`), and on
+symbols (`symbols.py`), which make GLSL (`export/glsl.py`) of them. `export/json_files.py`: files;
+`shapes/users_functions.py`: plain functions of points; `export/sampling.py`, `export/mesh.py`,
+`shapes/mesh_distances.py`: grids and meshes; `checking.py`: whether a distance is one;
+`tracing/intersecting.py`, `tracing/sphere_tracing.py`, `tracing/cone_tracing.py`,
+`tracing/raymarching.py`: where rays meet it (`tracing/hits.py`), and how that moves;
+`tracing/normals.py`. `shadows/`: soft shadows; `shading/`: pictures, for the integrator
+`distance_field`.
 """
 
 from brdfkit.distance_fields.checking import check as check
-from brdfkit.distance_fields.circular_arrays import circular_array as circular_array
-from brdfkit.distance_fields.combinations import difference as difference
-from brdfkit.distance_fields.combinations import intersection as intersection
-from brdfkit.distance_fields.combinations import union as union
-from brdfkit.distance_fields.cone_tracing import cone_trace as cone_trace
-from brdfkit.distance_fields.cone_tracing import pixel_tangent as pixel_tangent
-from brdfkit.distance_fields.fractals import mandelbulb as mandelbulb
-from brdfkit.distance_fields.grids import grid as grid
-from brdfkit.distance_fields.hits import Hit as Hit
-from brdfkit.distance_fields.hits import reattach as reattach
-from brdfkit.distance_fields.intersecting import intersect as intersect
+from brdfkit.distance_fields.export.json_files import from_json as from_json
+from brdfkit.distance_fields.export.json_files import load as load
+from brdfkit.distance_fields.export.mesh import Mesh as Mesh
+from brdfkit.distance_fields.export.mesh import to_mesh as to_mesh
 from brdfkit.distance_fields.materials import made_of as made_of
-from brdfkit.distance_fields.mesh_distances import from_mesh as from_mesh
-from brdfkit.distance_fields.meshing import Mesh as Mesh
-from brdfkit.distance_fields.meshing import to_mesh as to_mesh
-from brdfkit.distance_fields.motions import rotate as rotate
-from brdfkit.distance_fields.motions import scale as scale
-from brdfkit.distance_fields.motions import translate as translate
 from brdfkit.distance_fields.node import Node as Node
-from brdfkit.distance_fields.normals import normal as normal
-from brdfkit.distance_fields.offsets import dilate as dilate
-from brdfkit.distance_fields.offsets import shell as shell
-from brdfkit.distance_fields.raymarching import raymarch as raymarch
-from brdfkit.distance_fields.repetition import repeat as repeat
-from brdfkit.distance_fields.rods import capped_cone as capped_cone
-from brdfkit.distance_fields.rods import capped_cylinder as capped_cylinder
-from brdfkit.distance_fields.rods import capsule as capsule
-from brdfkit.distance_fields.solids import box as box
-from brdfkit.distance_fields.solids import plane as plane
-from brdfkit.distance_fields.solids import rounded_box as rounded_box
-from brdfkit.distance_fields.solids import sphere as sphere
-from brdfkit.distance_fields.solids import torus as torus
-from brdfkit.distance_fields.sphere_tracing import sphere_trace as sphere_trace
-from brdfkit.distance_fields.stored import from_json as from_json
-from brdfkit.distance_fields.stored import load as load
-from brdfkit.distance_fields.users_functions import from_function as from_function
+from brdfkit.distance_fields.shapes.circular_arrays import circular_array as circular_array
+from brdfkit.distance_fields.shapes.combinations import difference as difference
+from brdfkit.distance_fields.shapes.combinations import intersection as intersection
+from brdfkit.distance_fields.shapes.combinations import union as union
+from brdfkit.distance_fields.shapes.fractals import mandelbulb as mandelbulb
+from brdfkit.distance_fields.shapes.grids import grid as grid
+from brdfkit.distance_fields.shapes.mesh_distances import from_mesh as from_mesh
+from brdfkit.distance_fields.shapes.motions import rotate as rotate
+from brdfkit.distance_fields.shapes.motions import scale as scale
+from brdfkit.distance_fields.shapes.motions import translate as translate
+from brdfkit.distance_fields.shapes.offsets import dilate as dilate
+from brdfkit.distance_fields.shapes.offsets import shell as shell
+from brdfkit.distance_fields.shapes.repetition import repeat as repeat
+from brdfkit.distance_fields.shapes.rods import capped_cone as capped_cone
+from brdfkit.distance_fields.shapes.rods import capped_cylinder as capped_cylinder
+from brdfkit.distance_fields.shapes.rods import capsule as capsule
+from brdfkit.distance_fields.shapes.solids import box as box
+from brdfkit.distance_fields.shapes.solids import plane as plane
+from brdfkit.distance_fields.shapes.solids import rounded_box as rounded_box
+from brdfkit.distance_fields.shapes.solids import sphere as sphere
+from brdfkit.distance_fields.shapes.solids import torus as torus
+from brdfkit.distance_fields.shapes.users_functions import from_function as from_function
+from brdfkit.distance_fields.tracing.cone_tracing import cone_trace as cone_trace
+from brdfkit.distance_fields.tracing.cone_tracing import pixel_tangent as pixel_tangent
+from brdfkit.distance_fields.tracing.hits import Hit as Hit
+from brdfkit.distance_fields.tracing.hits import reattach as reattach
+from brdfkit.distance_fields.tracing.intersecting import intersect as intersect
+from brdfkit.distance_fields.tracing.normals import normal as normal
+from brdfkit.distance_fields.tracing.raymarching import raymarch as raymarch
+from brdfkit.distance_fields.tracing.sphere_tracing import sphere_trace as sphere_trace

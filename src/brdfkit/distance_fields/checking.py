@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields.boxes import join
 from brdfkit.distance_fields.evaluation import evaluate
-from brdfkit.errors import BrdfkitError
 
 ROUNDING = 1e-9
 WITHIN = 0.999  # of the ball that should hold no surface
@@ -48,7 +48,7 @@ def check(
     Examples
     --------
     >>> check(lambda p: 3 * p.x, (0, 0, 0), (1, 1, 1))
-    brdfkit.errors.BrdfkitError: the field changes by 3 per unit near (0.6, 0.2, 0.04), more ...
+    brdfkit.core.errors.BrdfkitError: the field changes by 3 per unit near (0.6, 0.2, 0.04), ...
     """
     rng, low, high = np.random.default_rng(seed), np.asarray(low, float), np.asarray(high, float)
     if lipschitz is None:

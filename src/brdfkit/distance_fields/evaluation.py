@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.jit.threads import in_turn
-from brdfkit.model import double_precision
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.jit import double_precision
+from brdfkit.core.jit.threads import in_turn
 
 
 @in_turn

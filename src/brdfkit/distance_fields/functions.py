@@ -1,7 +1,7 @@
 """The functions of which distances are made: on Dr.Jit's arrays, on numbers, and on GLSL's names.
 
 A formula is written once, with these and with + - * / and <. Given arrays it computes; given the
-`Symbol`s of `glsl.py` it writes the same formula as GLSL.
+`Symbol`s of `export/glsl.py` it writes the same formula as GLSL.
 """
 
 from typing import Any, NamedTuple

@@ -1,6 +1,6 @@
 """The kinds of nodes by their names, which operators and files know them by."""
 
-from brdfkit.errors import no_such
+from brdfkit.core.errors import no_such
 
 _KINDS: dict[str, type] = {}
 

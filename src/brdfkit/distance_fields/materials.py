@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, replace
 
 import drjit as dr
 
+from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields.boxes import plain
-from brdfkit.distance_fields.motions import Motion
 from brdfkit.distance_fields.node import Node
-from brdfkit.distance_fields.offsets import dilate
-from brdfkit.errors import BrdfkitError
+from brdfkit.distance_fields.shapes.motions import Motion
+from brdfkit.distance_fields.shapes.offsets import dilate
 
 
 def _name(what, value, rules):

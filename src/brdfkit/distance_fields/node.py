@@ -6,13 +6,13 @@ from typing import Any
 
 from numpy.typing import ArrayLike, NDArray
 
+from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.distance_fields import kinds
 from brdfkit.distance_fields.boxes import EVERYWHERE
-from brdfkit.distance_fields.conversions import Conversions
+from brdfkit.distance_fields.export.conversions import Conversions
+from brdfkit.distance_fields.export.python_code import written
 from brdfkit.distance_fields.operators import Operators
 from brdfkit.distance_fields.parameters import checked
-from brdfkit.distance_fields.writing import written
-from brdfkit.errors import BrdfkitError, no_such
 
 
 class Node(Operators, Conversions):

@@ -2,8 +2,8 @@
 
 from typing import Any, NamedTuple
 
+from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields.kinds import kind
-from brdfkit.errors import BrdfkitError
 
 
 class Operators:

@@ -5,7 +5,7 @@ from dataclasses import field
 import drjit as dr
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
+from brdfkit.core.errors import BrdfkitError
 
 LARGEST = 1e300
 

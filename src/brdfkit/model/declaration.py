@@ -3,9 +3,9 @@
 import re
 from functools import cache
 
-from brdfkit.errors import BrdfkitError, no_such
+from brdfkit.core.discovery import plugin_files
+from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.model.parameters import Option, Parameter
-from brdfkit.plugins import discovery
 
 
 class Declaration:
@@ -59,7 +59,7 @@ class Declaration:
     @classmethod
     def in_plugin_file(cls):
         """Whether the class was read from a plugin file, brdfkit's or a user's."""
-        return cls.__module__.rpartition(".")[0] in discovery.PACKAGES_OF_MODELS
+        return cls.__module__.rpartition(".")[0] in plugin_files.PACKAGES_OF_MODELS
 
     @classmethod
     def make_known(cls):
@@ -69,7 +69,7 @@ class Declaration:
         """
         model, name = cls.unconfigured(), cls.type_name()
         if not cls.in_plugin_file() and _find_source(name) is not model:
-            discovery.add(discovery.MODELS, {name: model})
+            plugin_files.add(plugin_files.MODELS, {name: model})
 
     @classmethod
     def type_name(cls):
@@ -133,7 +133,7 @@ class Declaration:
 
 def _find_source(name):
     """The file or class of the model of that name, None where there is none."""
-    return discovery.sources(discovery.MODELS).get(name)
+    return plugin_files.sources(plugin_files.MODELS).get(name)
 
 
 @cache

@@ -3,8 +3,8 @@
 import drjit as dr
 import numpy as np
 
-from brdfkit.jit.threads import in_turn
-from brdfkit.model import double_precision
+from brdfkit.core.jit import double_precision
+from brdfkit.core.jit.threads import in_turn
 
 
 def evaluate_model(model, wi, wo):

@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import cos_theta_d, half_vector, one_minus_dot, reflect
+from brdfkit.core.geometry.vectors import cos_theta_d, half_vector, one_minus_dot, reflect
 from brdfkit.model.microfacet import CosinePower
 from brdfkit.model.numerics import cosine_power
 

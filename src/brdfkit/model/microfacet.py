@@ -11,7 +11,7 @@ from typing import Any
 
 import drjit as dr
 
-from brdfkit.geometry.vectors import cos_theta_d, dot
+from brdfkit.core.geometry.vectors import cos_theta_d, dot
 from brdfkit.model.numerics import cosine_power, expm1
 
 

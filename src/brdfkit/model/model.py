@@ -19,22 +19,16 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from brdfkit.documents import Document, Folded, Shown
-from brdfkit.errors import BrdfkitError
+from brdfkit.core.discovery.plugin_pages import page
+from brdfkit.core.documents import Document, Folded, Shown
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.images.thumbnails import thumbnails
 from brdfkit.model.declaration import Declaration
 from brdfkit.model.evaluation import evaluate_model
 from brdfkit.model.lobes import Lobe
 from brdfkit.model.pickling import reduce_model
 from brdfkit.model.value_table import value_table
-from brdfkit.model.weights import (
-    check_wavelengths,
-    mitsuba_entries,
-    read_value,
-    rgb_values,
-    short,
-)
-from brdfkit.plugins.pages import page
-from brdfkit.thumbnails import thumbnails
+from brdfkit.model.weights import check_wavelengths, mitsuba_entries, read_value, rgb_values, short
 
 
 class Model(Shown, Declaration):

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
+from brdfkit.core.errors import BrdfkitError
 
 NOT_NEGATIVE, SIGNED = (0.0, math.inf), (-math.inf, math.inf)
 # Weights beyond this have squares that are no numbers

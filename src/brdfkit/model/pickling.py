@@ -10,9 +10,9 @@ import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.files import sha256
-from brdfkit.plugins import discovery
+from brdfkit.core.discovery import plugin_files
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.files import sha256
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class UsersClass:
         Warns where the file has changed since, raises `BrdfkitError` where it is missing.
         """
         path = Path(self.path)
-        file = discovery.sources(discovery.MODELS).get(path.stem, path)
+        file = plugin_files.sources(plugin_files.MODELS).get(path.stem, path)
         if not file.is_file():
             raise BrdfkitError(
                 f"{path}: the file of the model {path.stem!r} is missing; load it from where it "
@@ -41,8 +41,8 @@ class UsersClass:
                 "mean something else now.",
                 stacklevel=4,
             )
-        discovery.add(discovery.MODELS, {path.stem: file})
-        return getattr(discovery.module(file), self.name)
+        plugin_files.add(plugin_files.MODELS, {path.stem: file})
+        return getattr(plugin_files.module(file), self.name)
 
 
 def reduce_model(model):
@@ -60,7 +60,7 @@ def restored(classes, options, values):
 
 def _portable(cls):
     """What stands for a class in a pickle: `UsersClass` for one of a user's file, else itself."""
-    if cls.__module__.rpartition(".")[0] != discovery.USERS:
+    if cls.__module__.rpartition(".")[0] != plugin_files.USERS:
         return cls
     file = Path(sys.modules[cls.__module__].__file__)
     return UsersClass(cls.__name__, str(file), sha256(file))

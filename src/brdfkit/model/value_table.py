@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from brdfkit.documents import Cell, Table
-from brdfkit.documents.parts import BAD
+from brdfkit.core.documents import Cell, Table
+from brdfkit.core.documents.parts import BAD
 
 MOST = 3  # numbers of a weight that are shown; of more the least and the most
 

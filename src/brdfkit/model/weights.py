@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from brdfkit.colours import rgb_of_wavelengths
-from brdfkit.errors import BrdfkitError
+from brdfkit.core.colours import rgb_of_wavelengths
+from brdfkit.core.errors import BrdfkitError
 
 CHANNELS = 1, 3  # how many a weight may have without wavelengths: achromatic, linear sRGB
 VISIBLE = 360.0, 830.0  # nm, where Mitsuba's spectral variants look

@@ -2,14 +2,7 @@
 
 from math import ceil
 
-from brdfkit.rendering.montage import (
-    COLUMNS,
-    GAP,
-    WHITE_GROUND,
-    displayed,
-    draw_caption,
-    tile,
-)
+from brdfkit.rendering.montage import COLUMNS, GAP, WHITE_GROUND, displayed, draw_caption, tile
 
 ACROSS = 6  # balls in a row; COLUMNS where there are fewer materials than two such rows
 

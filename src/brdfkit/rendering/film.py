@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.colours import to_srgb
-from brdfkit.errors import BrdfkitError
-from brdfkit.files import write_safely
-from brdfkit.rendering.tone_mapping import ToneMapping
+from brdfkit.core.colours import to_srgb
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.files import write_safely
+from brdfkit.images.tone_mapping import ToneMapping
 
 SUFFIXES = {".gif": "GIF", ".png": "PNG", ".webp": "WEBP"}  # and what Pillow calls them
 TURN = 4.0  # seconds of a whole film

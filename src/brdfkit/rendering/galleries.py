@@ -4,16 +4,16 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from brdfkit.colours import to_srgb
-from brdfkit.documents import Document, Paragraph, Picture, Shown, Table
-from brdfkit.documents.parts import SOFT
-from brdfkit.errors import BrdfkitError
-from brdfkit.figures import to_png
-from brdfkit.files import write_safely
-from brdfkit.names import make_unique, printable
-from brdfkit.rendering.inputs import Renderable, as_list, identify
-from brdfkit.rendering.rendering import SceneLike, render
+from brdfkit.core.colours import to_srgb
+from brdfkit.core.documents import Document, Paragraph, Picture, Shown, Table
+from brdfkit.core.documents.parts import SOFT
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.figures import to_png
+from brdfkit.core.files import write_safely
+from brdfkit.core.names import make_unique, printable
+from brdfkit.rendering.render_materials import SceneLike, render
 from brdfkit.rendering.result import Rendering
+from brdfkit.rendering.scene_input.arguments import Renderable, as_list, identify
 
 HEAD, SIDE, BELOW, GAP = 26, 26, 22, 6  # of the grid: names above, at the left, captions [pixels]
 DPI = 100

@@ -9,18 +9,18 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit import materials
-from brdfkit.arguments import to_whole_number
-from brdfkit.colours import luminance
-from brdfkit.documents import Document, Paragraph, Shown, Table
-from brdfkit.errors import BrdfkitError
-from brdfkit.host.load_by_mitsuba import load_by_mitsuba
-from brdfkit.jit.threads import in_turn
-from brdfkit.rendering.environment import environment, light_by
-from brdfkit.rendering.inputs import mitsuba
+from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.colours import luminance
+from brdfkit.core.documents import Document, Paragraph, Shown, Table
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.jit.threads import in_turn
+from brdfkit.materials import resolve
+from brdfkit.mitsuba_bridge.properties.load_by_mitsuba import load_by_mitsuba
 from brdfkit.rendering.progressive import rgb
-from brdfkit.rendering.scene_loading import find_scene, suffix_of
-from brdfkit.rendering.shown_material import load_material
+from brdfkit.rendering.scene_input.arguments import mitsuba
+from brdfkit.rendering.scene_input.environment import environment, light_by
+from brdfkit.rendering.scene_input.loading import find_scene, suffix_of
+from brdfkit.rendering.scene_input.shown_material import load_material
 
 SAMPLERS: dict[str, dict[str, Any]] = {
     "envmap": {"type": "envmap"},
@@ -152,7 +152,7 @@ class SamplerComparison(Shown):
 
 def compare_samplers(
     envmap: str | Path,
-    material: materials.MaterialLike = "plaster",
+    material: resolve.MaterialLike = "plaster",
     scene: str | Path = "ball",
     rounds: int = ROUNDS,
     spp: int = SPP,
@@ -207,7 +207,7 @@ def compare_samplers(
     if not isinstance(scene, str | Path):
         raise BrdfkitError(f"scene = {scene!r:.60} should be a scene's name or a mesh's file.")
     mitsuba()
-    found = materials.material(material)
+    found = resolve.material(material)
     noise, seconds = _measure(envmap, found, scene, rounds, spp, size, seed, progress)
     where = str(Path(str(envmap)).name), found.name, Path(str(scene)).name
     return SamplerComparison(*where, noise, seconds, rounds)

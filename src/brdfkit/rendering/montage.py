@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from brdfkit.colours import to_srgb
-from brdfkit.errors import BrdfkitError
-from brdfkit.json_values import plain
-from brdfkit.names import printable
-from brdfkit.picture_errors.colour_difference import ciede2000
-from brdfkit.version import __version__
+from brdfkit.core.colours import to_srgb
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.json_values import plain
+from brdfkit.core.names import printable
+from brdfkit.core.version import __version__
+from brdfkit.images.errors.colour_difference import ciede2000
 
 COLUMNS = 4
 TILE = 320  # narrower pictures are enlarged to this width [pixels], so that captions fit

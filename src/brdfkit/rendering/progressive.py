@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.jit.first_error import first_error
-from brdfkit.picture_errors.noise import Accumulated
+from brdfkit.core.jit.first_error import first_error
+from brdfkit.images.errors.noise import Accumulated
 
 
 class Progressive:

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from brdfkit.documents import Document, Paragraph, Picture, Shown, Table
-from brdfkit.documents.parts import BAD
-from brdfkit.files import write_safely
-from brdfkit.picture_errors import ImageErrors, image_errors
-from brdfkit.picture_errors.noise import samples_for
-from brdfkit.picture_errors.psnr import psnr
+from brdfkit.core.documents import Document, Paragraph, Picture, Shown, Table
+from brdfkit.core.documents.parts import BAD
+from brdfkit.core.files import write_safely
+from brdfkit.images.errors import ImageErrors, image_errors
+from brdfkit.images.errors.noise import samples_for
+from brdfkit.images.errors.psnr import psnr
+from brdfkit.images.tone_mapping import ToneMapping
 from brdfkit.rendering.montage import COLUMNS, TILE, montage, picture_suffix, write_exr
-from brdfkit.rendering.tone_mapping import ToneMapping
 
 BILLION = 1e9  # samples per pixel: a larger number tells nothing more
 WIDEST = 1100  # pixels of the pictures in a notebook

@@ -9,13 +9,13 @@ from math import isqrt
 
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.picture_errors.noise import Accumulated, samples_for
-from brdfkit.picture_errors.psnr import psnr
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.images.errors.noise import Accumulated, samples_for
+from brdfkit.images.errors.psnr import psnr
 from brdfkit.rendering.progressive import Progressive
 
 # Samples per pixel in one pass, at most; progress is reported after each. A power of two, so that a
-# block of one thread holds all samples of a pixel: see `brdfkit.reporting.pictures`
+# block of one thread holds all samples of a pixel: see `brdfkit.reporting.pictures.pictures`
 PASS = 16
 RAYS = 2**22  # camera rays in one pass, at most; bounds the memory, and how long Ctrl-C waits
 

@@ -7,22 +7,22 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.auditing import audit
-from brdfkit.fitting import losses
-from brdfkit.names import make_unique
-from brdfkit.ranking.result import COLUMNS
+from brdfkit.core.names import make_unique
+from brdfkit.core.pages.images import halved, jpeg
+from brdfkit.core.version import __version__
+from brdfkit.fitting.ranking.result import COLUMNS
+from brdfkit.materials.auditing import audit
+from brdfkit.regression import losses
 from brdfkit.rendering.montage import colour_differences
 from brdfkit.reporting import origin, parameters
-from brdfkit.reporting.albedos import albedo_chart, is_guessed
-from brdfkit.reporting.errors_table import errors_table
-from brdfkit.reporting.images import halved, jpeg
-from brdfkit.reporting.lobes import lobe_charts
-from brdfkit.reporting.picture_errors import PictureError, picture_errors
-from brdfkit.reporting.pixels import for_script
-from brdfkit.reporting.slices import slice_charts
-from brdfkit.reporting.standing import in_order, ranked_by, standings
-from brdfkit.reporting.verdict import verdict
-from brdfkit.version import __version__
+from brdfkit.reporting.charts.albedos import albedo_chart, is_guessed
+from brdfkit.reporting.charts.errors_table import errors_table
+from brdfkit.reporting.charts.lobes import lobe_charts
+from brdfkit.reporting.charts.slices import slice_charts
+from brdfkit.reporting.pictures.picture_errors import PictureError, picture_errors
+from brdfkit.reporting.pictures.pixels import for_script
+from brdfkit.reporting.verdict.fit_errors import in_order, ranked_by, standings
+from brdfkit.reporting.verdict.verdict import verdict
 
 
 @dataclass(frozen=True, eq=False)

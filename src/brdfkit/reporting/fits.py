@@ -3,10 +3,10 @@
 from contextlib import nullcontext
 from pathlib import Path
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.fitting import Fit
-from brdfkit.loading import load
-from brdfkit.verbs.fit import fit
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.fitting.fit import fit
+from brdfkit.materials.loading import load
+from brdfkit.regression import Fit
 
 
 def as_list(things):

@@ -3,16 +3,16 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.files import make_folder, require_writable
-from brdfkit.materials import measured_material
-from brdfkit.names import make_unique, printable, slug
-from brdfkit.reporting import page
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.files import make_folder, require_writable
+from brdfkit.core.names import make_unique, printable, slug
+from brdfkit.core.pages import page
+from brdfkit.core.version import __version__
+from brdfkit.fitting.compare import format_error
+from brdfkit.materials.resolve import measured_material
 from brdfkit.reporting.contents import Contents
 from brdfkit.reporting.fits import fit_each
 from brdfkit.reporting.report import write_report
-from brdfkit.verbs.compare import format_error
-from brdfkit.version import __version__
 
 PAGE = "index.html"
 

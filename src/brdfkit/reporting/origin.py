@@ -3,13 +3,13 @@
 import shlex
 from pathlib import Path
 
-from brdfkit.files import sha256
-from brdfkit.fitting.solvers import AlbedoAtMost
-from brdfkit.fitting.solvers.settings import to_plain, to_solver
-from brdfkit.loading import locate
-from brdfkit.reporting.defaults import SCENE
-from brdfkit.verbs.fit import SETTINGS
-from brdfkit.version import versions
+from brdfkit.core.files import sha256
+from brdfkit.core.version import versions
+from brdfkit.fitting.fit import SETTINGS
+from brdfkit.materials.loading import locate
+from brdfkit.regression.solvers import AlbedoAtMost
+from brdfkit.regression.solvers.settings import to_plain, to_solver
+from brdfkit.reporting.pictures.defaults import SCENE
 
 
 def facts(material, file, spp, size, seed, scene, envmap):

@@ -4,8 +4,8 @@ import json
 
 import numpy as np
 
-from brdfkit.colours import RGB
-from brdfkit.json_values import plain, rounded
+from brdfkit.core.colours import RGB
+from brdfkit.core.json_values import plain, rounded
 from brdfkit.model.value_table import MOST
 
 DIGITS = 9  # of numbers in JSON: enough to build the model, and the same on every machine

@@ -4,22 +4,22 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from brdfkit.arguments import to_dictionary
-from brdfkit.errors import BrdfkitError
-from brdfkit.files import require_writable
-from brdfkit.fitting import Fit
-from brdfkit.materials import MaterialLike, measured_material
-from brdfkit.measured import Measured
+from brdfkit.core.arguments import to_dictionary
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.files import require_writable
+from brdfkit.core.names import slug
+from brdfkit.core.pages import page
+from brdfkit.fitting.fit import check_settings
+from brdfkit.fitting.ranking import Ranking
+from brdfkit.materials.measured import Measured
+from brdfkit.materials.resolve import MaterialLike, measured_material
 from brdfkit.model import Model
-from brdfkit.names import slug
-from brdfkit.ranking import Ranking
-from brdfkit.reporting import page
-from brdfkit.reporting.charts import fit_class
+from brdfkit.regression import Fit
+from brdfkit.reporting.charts.svg import fit_class
 from brdfkit.reporting.contents import Contents, describe
-from brdfkit.reporting.defaults import MODELS, SCENE, SIZE
 from brdfkit.reporting.fits import as_list, to_fit
-from brdfkit.reporting.pictures import render_pictures, require_pictures
-from brdfkit.verbs.fit import check_settings
+from brdfkit.reporting.pictures.defaults import MODELS, SCENE, SIZE
+from brdfkit.reporting.pictures.pictures import render_pictures, require_pictures
 
 
 def report(

@@ -1,5 +1,5 @@
-"""A laboratory of shadows: techniques on a user's scene, scored against exact shadows."""
+"""Shadows by maps, by volumes and by both, and their comparison by `compare`."""
 
-from brdfkit.shadows.comparing import compare as compare
-from brdfkit.shadows.comparison import ShadowComparison as ShadowComparison
-from brdfkit.shadows.scores import Scores as Scores
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,18 +1,20 @@
 """Volumes: values on a grid of voxels, from files or made, and what they mean to light.
 
-`volume.py` is one, `reconstruction.py` what it is between its voxels, `reducing.py` fewer voxels of
-it; `loading.py` finds it in a file (`formats/`) or makes it (`made/`). `transfer_function.py`:
-colour and extinction of its values, with `piecewise.py`, `opacity.py`, `colour_maps.py`, and in
-files `stored.py`, `slicer_presets.py`, `presets/`. `summary.py` is what `brdfkit info VOLUME`
-tells, by `histograms.py`, `report.py` and `picture.py`. For renderers `transfer_lookup.py` is the
-function's texture, `preintegration.py` its means between two values, for steps that would jump over
-what it has (`voxel_steps.py`), and `block_bounds.py` bounds of it; `majorants.py` bounds the
-extinction, and `tracking.py` finds where light collides. Rays are helped by `along_ray.py`,
-`largest_value.py` and `first_crossing.py`, level sets by `normals.py` and `surface_light.py`. Paths
-of light go through a `medium.py`, whose bounds are those of `extinction_bounds.py`, turn at a
-`vertex.py`, and come from `emitters.py`.
+`volume.py` is one, `rays/reconstruction.py` what it is between its voxels, `reducing.py` fewer
+voxels of it; `loading.py` finds it in a file (`formats/`) or makes it (`made/`).
+`transfer/transfer_function.py`: colour and extinction of its values, with `transfer/piecewise.py`,
+`transfer/opacity.py`, `transfer/colour_maps.py`, and in files `transfer/files.py`,
+`transfer/slicer_presets.py`, `presets/`. `summary/summary.py` is what `brdfkit info VOLUME` tells,
+by `summary/histograms.py`, `summary/report.py` and `summary/picture.py`. For renderers
+`transfer/lookup.py` is the function's texture, `transfer/preintegration.py` its means between two
+values, for steps that would jump over what it has (`rays/voxel_steps.py`), and
+`transfer/block_bounds.py` bounds of it; `light/majorants.py` bounds the extinction, and
+`light/tracking.py` finds where light collides. Rays are helped by `rays/along_ray.py`,
+`rays/largest_value.py` and `rays/first_crossing.py`, level sets by `rays/normals.py` and
+`light/surface_light.py`. Paths of light go through a `light/medium.py`, whose bounds are those of
+`light/extinction_bounds.py`, turn at a `light/vertex.py`, and come from `light/emitters.py`.
 """
 
 from brdfkit.volumes.loading import load_volume as load_volume
-from brdfkit.volumes.transfer_function import TransferFunction as TransferFunction
+from brdfkit.volumes.transfer.transfer_function import TransferFunction as TransferFunction
 from brdfkit.volumes.volume import Volume as Volume

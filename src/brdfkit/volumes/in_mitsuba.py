@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from brdfkit.jit.llvm import use_variant
-from brdfkit.volumes.transfer_function import TransferFunction
-from brdfkit.volumes.windows import fitted
+from brdfkit.core.jit.llvm import use_variant
+from brdfkit.volumes.transfer.transfer_function import TransferFunction
+from brdfkit.volumes.transfer.windows import fitted
 
 
 def scene_dict(volume, transfer):

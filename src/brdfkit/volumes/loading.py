@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import psutil
 
-from brdfkit.arguments import to_whole_number
-from brdfkit.errors import BrdfkitError, nearest, no_such
+from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.errors import BrdfkitError, nearest, no_such
 from brdfkit.volumes import formats, made, reducing
 from brdfkit.volumes.formats import VolumeFile
-from brdfkit.volumes.histograms import FEW
+from brdfkit.volumes.summary.histograms import FEW
 from brdfkit.volumes.volume import Volume, require_transform
 
 # Values whose rounding is more than this share of their range are told of

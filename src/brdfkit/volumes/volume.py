@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from brdfkit.arguments import to_whole_number
-from brdfkit.errors import BrdfkitError
-from brdfkit.volumes import in_mitsuba, reconstruction, reducing, windows
-from brdfkit.volumes.transfer_function import TransferFunction
+from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.volumes import in_mitsuba, reducing
+from brdfkit.volumes.rays import reconstruction
+from brdfkit.volumes.transfer import windows
+from brdfkit.volumes.transfer.transfer_function import TransferFunction
 
 LARGEST = 1e15  # of a transform's numbers, whose squares are multiplied with 32 bits
 MOST = 1e30  # of values, and the inverse of their span: renderers have 32 bits

@@ -15,11 +15,11 @@ from dataclasses import dataclass
 
 import drjit as dr
 
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.jit.loops import recorded
 from brdfkit.distance_fields.shadows import edge, light_cone
 from brdfkit.distance_fields.shadows.by_name import METHODS, SOFT, by_name
-from brdfkit.distance_fields.sphere_tracing import sphere_trace
-from brdfkit.errors import BrdfkitError
-from brdfkit.jit.recorded import recorded
+from brdfkit.distance_fields.tracing.sphere_tracing import sphere_trace
 
 SHADINGS = "split", "estimated", "exact"
 SHADOWS = [*METHODS, "none"]

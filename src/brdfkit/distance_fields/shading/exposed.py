@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from brdfkit.jit.padding import pad
+from brdfkit.core.jit.padding import pad
 
 
 def exposed(node):

@@ -8,7 +8,7 @@ from typing import Any
 
 import drjit as dr
 
-from brdfkit.errors import BrdfkitError
+from brdfkit.core.errors import BrdfkitError
 
 # Mitsuba's shapes that may be lamps: points of their edges, and the sample that gives their middle
 SHAPES = {

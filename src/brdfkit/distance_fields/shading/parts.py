@@ -4,8 +4,8 @@ import warnings
 
 import drjit as dr
 
+from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields.materials import grown, material_names, share
-from brdfkit.errors import BrdfkitError
 
 
 class Parts:

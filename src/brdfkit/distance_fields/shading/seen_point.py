@@ -15,12 +15,12 @@ from typing import Any
 
 import drjit as dr
 
-from brdfkit.distance_fields.cone_tracing import cone_trace
-from brdfkit.distance_fields.hits import reattach
-from brdfkit.distance_fields.normals import normal
-from brdfkit.distance_fields.sphere_tracing import sphere_trace
-from brdfkit.host.surface_point import interaction
-from brdfkit.jit.recorded import recorded
+from brdfkit.core.jit.loops import recorded
+from brdfkit.distance_fields.tracing.cone_tracing import cone_trace
+from brdfkit.distance_fields.tracing.hits import reattach
+from brdfkit.distance_fields.tracing.normals import normal
+from brdfkit.distance_fields.tracing.sphere_tracing import sphere_trace
+from brdfkit.mitsuba_bridge.surface_point import interaction
 
 FINEST = 10.0  # over `precision`: half of the differences of normals; less than all details
 CLOSE = 1 / 8  # the smaller ball over the first

@@ -18,10 +18,10 @@ from typing import Any
 
 import drjit as dr
 
-from brdfkit.distance_fields.normals import normal
+from brdfkit.core.jit.loops import recorded
 from brdfkit.distance_fields.shading.seen_point import FINEST, SeenPoint, cone_of
-from brdfkit.host.surface_point import interaction
-from brdfkit.jit.recorded import recorded
+from brdfkit.distance_fields.tracing.normals import normal
+from brdfkit.mitsuba_bridge.surface_point import interaction
 
 BAND = 4.0  # ε over ρ
 STEPS = 512  # of a march, as of `cone_trace`

@@ -7,7 +7,7 @@ Two balls about successive points of the ray meet in a circle, near which the ob
 
 import drjit as dr
 
-from brdfkit.distance_fields.shadows.quilez import nearest_passing
+from brdfkit.distance_fields.shadows.rivals import nearest_passing
 
 
 def aaltonen(field, cone):

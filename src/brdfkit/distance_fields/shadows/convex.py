@@ -14,7 +14,7 @@ and where R_C < 0: the signed distance is convex there, too.
 import drjit as dr
 
 from brdfkit.distance_fields.shadows.field import distance_of, lipschitz_of, pieces_of
-from brdfkit.distance_fields.shadows.linear import linear_rule
+from brdfkit.distance_fields.shadows.marches import linear_rule
 from brdfkit.distance_fields.shadows.shadow import single_ray
 
 

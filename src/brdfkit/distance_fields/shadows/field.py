@@ -6,7 +6,7 @@ and `is_convex`. One of the `kind` "union" that `is_sharp` has its pieces as `ch
 
 from dataclasses import replace
 
-from brdfkit.distance_fields.motions import Motion
+from brdfkit.distance_fields.shapes.motions import Motion
 
 
 def distance_of(field):

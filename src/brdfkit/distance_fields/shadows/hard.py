@@ -3,7 +3,7 @@
 [Bálint et al. 2019, section 4.1]
 """
 
-from brdfkit.distance_fields.shadows.linear import linear
+from brdfkit.distance_fields.shadows.marches import linear
 
 
 def hard(field, cone, epsilon=1 / 20, direction="A"):

@@ -9,9 +9,9 @@ at the surface point to that at the light, through the apex of the cone.
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.jit.padding import pad
 from brdfkit.distance_fields.shadows.field import distance_of, lipschitz_of
 from brdfkit.distance_fields.shadows.shadow import Shadow
-from brdfkit.jit.padding import pad
 
 MOST = 512  # steps of a ray
 

@@ -6,11 +6,11 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from brdfkit.arguments import to_whole_number
+from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.distance_fields.shadows.by_name import METHODS, by_name
 from brdfkit.distance_fields.shadows.cone import light_cone
 from brdfkit.distance_fields.shadows.shadow import DIRECTIONS, Shadow
-from brdfkit.errors import BrdfkitError, no_such
 
 
 def soft_shadow(

@@ -15,7 +15,7 @@ import drjit as dr
 from brdfkit.distance_fields.shadows.cone import LightCone
 from brdfkit.distance_fields.shadows.convex import convex_pace
 from brdfkit.distance_fields.shadows.edge import gradient_across
-from brdfkit.distance_fields.shadows.linear import linear_rule
+from brdfkit.distance_fields.shadows.marches import linear_rule
 from brdfkit.distance_fields.shadows.shadow import Shadow, single_ray
 from brdfkit.distance_fields.shadows.tau import tau
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.geometry.directions import normalize
+from brdfkit.core.geometry.directions import normalize
 from brdfkit.lighting.spherical_gaussians.von_mises_fisher import tangents
 
 

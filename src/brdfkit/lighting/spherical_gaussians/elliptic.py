@@ -7,7 +7,7 @@ lobes, narrower than it is across: their sum has its second moments, from 3 lobe
 
 import numpy as np
 
-from brdfkit.geometry.directions import normalize
+from brdfkit.core.geometry.directions import normalize
 from brdfkit.lighting.spherical_gaussians import anisotropic
 from brdfkit.lighting.spherical_gaussians.single import one_lobe
 from brdfkit.lighting.spherical_gaussians.von_mises_fisher import tangents

@@ -9,7 +9,7 @@ between two views it lies between its places there. [Ergun 2015, section 8.3]
 
 import numpy as np
 
-from brdfkit.geometry.directions import rotate_z
+from brdfkit.core.geometry.directions import rotate_z
 from brdfkit.lighting.spherical_gaussians import mixture, warp
 from brdfkit.lighting.spherical_gaussians.initial_guess import best_mixture
 from brdfkit.lighting.spherical_gaussians.mixture import Mixture

@@ -5,7 +5,7 @@ Expectation maximisation ends at the local maximum above its start; the best of 
 
 import numpy as np
 
-from brdfkit.geometry.directions import to_angles
+from brdfkit.core.geometry.directions import to_angles
 from brdfkit.lighting.spherical_gaussians import mixture
 
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.geometry.directions import normalize, rotate_z, to_angles
-from brdfkit.geometry.multilinear import bracket, corners, flat_index, periodic_bracket
+from brdfkit.core.geometry.directions import normalize, rotate_z, to_angles
+from brdfkit.core.geometry.multilinear import bracket, corners, flat_index, periodic_bracket
 from brdfkit.lighting.spherical_gaussians.von_mises_fisher import density
 
 Floats = NDArray[np.float64]

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from brdfkit.arguments import to_whole_number
-from brdfkit.errors import no_such
+from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.errors import no_such
 from brdfkit.lighting.spherical_gaussians.elliptic import elliptic
 from brdfkit.lighting.spherical_gaussians.gmm import gmm
 from brdfkit.lighting.spherical_gaussians.lobe_table import Floats, LobeTable

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.geometry.directions import from_angles, rotate_z
-from brdfkit.geometry.quadrature import ring_rule
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import from_angles, rotate_z
+from brdfkit.core.geometry.quadrature import ring_rule
 
 RINGS = 48  # half their number: lobes of 0.01 rad are resolved up to 80°
 ABOVE = 1e-3  # how much of the reflected light the floor may add where f is lower

@@ -9,7 +9,7 @@ the error of the warp, above all at grazing angles. [Wang et al. 2009]
 
 import numpy as np
 
-from brdfkit.geometry.directions import normalize
+from brdfkit.core.geometry.directions import normalize
 
 LEAST = 0.01  # |o·h| of a lobe that is hardly seen: κ stays finite
 

@@ -15,8 +15,8 @@ file whose name begins with an underscore is no scene: it holds what several sce
 
 import importlib
 
-from brdfkit.errors import no_such
-from brdfkit.modules import names_in
+from brdfkit.core.discovery.modules import names_in
+from brdfkit.core.errors import no_such
 
 
 def scene_names():

@@ -6,7 +6,7 @@ normal between them: a fine grid gives the tangents of the surface itself.
 
 import numpy as np
 
-from brdfkit.jit.padding import pad
+from brdfkit.core.jit.padding import pad
 
 AROUND = 192  # columns of a surface of revolution
 

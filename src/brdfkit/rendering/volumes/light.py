@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from brdfkit.environments.spread import directions
-from brdfkit.rendering.environment import environment
+from brdfkit.lighting.environments.spread import directions
+from brdfkit.rendering.scene_input.environment import environment
 from brdfkit.rendering.volumes.framing import FOV
 
 EDGE = 2.0  # about what the camera sees of an environment [degrees]: its pixels are interpolated

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from brdfkit.colours import from_srgb
-from brdfkit.volumes import windows
-from brdfkit.volumes.transfer_function import TransferFunction
+from brdfkit.core.colours import from_srgb
+from brdfkit.volumes.transfer import windows
+from brdfkit.volumes.transfer.transfer_function import TransferFunction
 
 AIR, TISSUE = -900, 200  # HU: a scan of computed tomography reaches below and above them
 BODY, BONE, BONY = -500, 250, 0.002  # HU, and the share of a body that is bone, at least

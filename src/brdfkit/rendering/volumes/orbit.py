@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.arguments import to_number, to_positive, to_whole_number
+from brdfkit.core.arguments import to_number, to_positive, to_whole_number
 from brdfkit.rendering.film import Film
 from brdfkit.rendering.volumes.render_volume import render_volume
 from brdfkit.volumes import TransferFunction, Volume, load_volume

@@ -7,19 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.arguments import to_number, to_positive, to_whole_number
-from brdfkit.errors import BrdfkitError, no_such
-from brdfkit.host.load_by_mitsuba import load_by_mitsuba
-from brdfkit.jit.threads import in_turn
-from brdfkit.rendering.inputs import mitsuba
-from brdfkit.rendering.memory import require_memory
-from brdfkit.rendering.rendering import rendering_of, to_size
+from brdfkit.core.arguments import to_number, to_positive, to_whole_number
+from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.jit.threads import in_turn
+from brdfkit.core.memory import require_memory
+from brdfkit.mitsuba_bridge.properties.load_by_mitsuba import load_by_mitsuba
+from brdfkit.rendering.render_materials import rendering_of, to_size
 from brdfkit.rendering.result import Rendering
+from brdfkit.rendering.scene_input.arguments import mitsuba
 from brdfkit.rendering.tracing import trace
 from brdfkit.rendering.volumes import looks
 from brdfkit.rendering.volumes.scene import RENDERERS, UNLIT, scene
 from brdfkit.volumes import TransferFunction, Volume, load_volume
-from brdfkit.volumes.windows import fitted
+from brdfkit.volumes.transfer.windows import fitted
 
 SPP, UNLIT_SPP = 64, 8  # samples per pixel
 MOST = 16_384  # of them, where a noise floor or a time is asked for

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from brdfkit.errors import no_such
-from brdfkit.materials import material
+from brdfkit.core.errors import no_such
+from brdfkit.materials.resolve import material
 from brdfkit.rendering.scenes._studio import camera
 from brdfkit.rendering.volumes import looks
 from brdfkit.rendering.volumes.framing import FOV, direction, origin_and_target

@@ -15,8 +15,8 @@ import gzip
 import zlib
 from functools import cache
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.modules import modules_in
+from brdfkit.core.discovery.modules import modules_in
+from brdfkit.core.errors import BrdfkitError
 from brdfkit.volumes.formats import _folders
 from brdfkit.volumes.formats._stored import Stored as Stored
 from brdfkit.volumes.formats._stored import VolumeFile as VolumeFile

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
+from brdfkit.core.errors import BrdfkitError
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.errors import BrdfkitError
-from brdfkit.names import printable
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.names import printable
 
 
 @dataclass(frozen=True)

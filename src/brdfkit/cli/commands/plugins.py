@@ -1,0 +1,78 @@
+"""`brdfkit plugins`: lists the plugins of every kind, or shows the page of one."""
+
+import math
+
+import click
+
+from brdfkit.cli.options import output_options
+
+
+@click.command()
+@click.argument("word", required=False, metavar="[KIND|NAME|FILE.py]")
+@output_options
+def plugins(word, console):
+    """List the plugins, or show one's page.
+
+    With a KIND, lists the plugins of that kind. FILE.py is a plugin of yours.
+    """
+    from brdfkit.core.discovery.plugin_files import KINDS, kind_of, sources
+    from brdfkit.core.errors import no_such
+    from brdfkit.mitsuba_bridge.registration.users_plugins import load_plugins
+
+    if word and word.endswith(".py"):
+        (word,) = load_plugins(word)
+    names = [name for kind in KINDS for name in sources(kind)]
+    if word is None or word in KINDS:
+        _print_list([word] if word else KINDS, console)
+    elif word in names:
+        _print_page(kind_of(word), word, console)
+    else:
+        raise no_such("plugin or kind of plugins", word, [*KINDS, *names])
+
+
+def _print_list(kinds, console):
+    from brdfkit.core.discovery.plugin_files import sources
+    from brdfkit.core.discovery.plugin_pages import page
+
+    found = {kind: {n: page(s).sentence for n, s in sources(kind).items()} for kind in kinds}
+    if console.as_json:
+        console.json(found)
+        return
+    rows = [
+        (kind, name, sentence)
+        for kind, named in found.items()
+        for name, sentence in named.items() or [("", "none yet")]
+    ]
+    console.table(["kind", "plugin", "what it is"], rows)
+    console.out.print("One plugin's page: brdfkit plugins NAME")
+
+
+def _print_page(kind, name, console):
+    from brdfkit.cli.commands.models import print_model, print_references
+    from brdfkit.core.discovery.plugin_files import MODELS, module, sources
+    from brdfkit.core.discovery.plugin_pages import page
+    from brdfkit.model.labels import model_in
+
+    source = sources(kind)[name]
+    if kind == MODELS and (model := model_in(source)):
+        print_model(model, console)
+        return
+    parameters = getattr(module(source), "PARAMETERS", {})
+    if console.as_json:
+        records = {
+            n: {"default": p.default, "bounds": p.bounds, "meaning": p.meaning}
+            for n, p in parameters.items()
+        }
+        console.json({name: {"kind": kind, "parameters": records}})
+        return
+    console.out.print(str(page(source)))
+    if parameters:
+        rows = []
+        for n, p in parameters.items():
+            low, high = ("" if math.isinf(v) else f"{v:g}" for v in p.bounds or (math.inf,) * 2)
+            rows.append(
+                (n, "" if p.default in (None, "") else f"{p.default}", low, high, p.meaning)
+            )
+        console.table(["parameter", ">default", ">from", ">to", "meaning"], rows)
+    console.out.print(f'Mitsuba: {{"type": "{name}", ...}}')
+    print_references(page(source), console)

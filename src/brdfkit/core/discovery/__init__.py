@@ -1,0 +1,1 @@
+"""Finds plugins, one file each, and reads what their pages say."""

@@ -1,0 +1,166 @@
+"""Finds the plugin files: ``plugins/KIND/NAME.py`` is a plugin of that kind, and NAME its type.
+
+No list names the plugins: brdfkit's own files are found in their folders, and a user adds files.
+What the files of a kind contain is left to the code that uses the kind.
+"""
+
+import importlib
+import importlib.util
+import sys
+from collections.abc import Callable
+from functools import cache
+from importlib.machinery import SourceFileLoader
+from pathlib import Path
+
+from brdfkit import plugins
+from brdfkit.core.errors import BrdfkitError
+
+# Kind, the name of its folder → (Mitsuba's class, the function of `mitsuba` that registers it)
+KINDS = {
+    "bsdfs": ("BSDF", "register_bsdf"),
+    "emitters": ("Emitter", "register_emitter"),
+    "integrators": ("Integrator", "register_integrator"),
+    "phase": ("PhaseFunction", "register_phase"),
+    "sensors": ("Sensor", "register_sensor"),
+    "shapes": ("Shape", "register_shape"),
+    "textures": ("Texture", "register_texture"),
+    "volumes": ("Volume", "register_texture"),  # Mitsuba 3.9 has no register_volume
+}
+MODELS = "bsdfs"  # the kind of every model
+OWN, USERS = "brdfkit.plugins", "brdfkit.user_plugins"  # packages of the plugin files' modules
+PACKAGES_OF_MODELS = f"{OWN}.{MODELS}", USERS
+
+_users: dict[str, tuple[str, Path | type]] = {}
+_listeners: list[Callable[[], None]] = []
+
+
+def sources(kind):
+    """Name → source of every plugin of a kind: its file, or its class if defined in a notebook.
+
+    >>> sources("bsdfs")["ward"].name
+    'ward.py'
+    """
+    return _own_files(kind) | {name: s for name, (k, s) in _users.items() if k == kind}
+
+
+def kind_of(name):
+    """The kind of the plugin `name`, None where there is no such plugin."""
+    return next((kind for kind in KINDS if name in sources(kind)), None)
+
+
+def add(kind, added):
+    """Add a user's plugins of a kind; `added`: name → file or class.
+
+    A file that is added again, and a class of the same name, replaces the earlier one. Raises
+    `BrdfkitError`, and adds none, where a name is taken by another plugin.
+    """
+    for name, source in added.items():
+        require_free(name, source)
+    if not added:
+        return
+    _users.update({name: (kind, source) for name, source in added.items()})
+    for listener in _listeners:
+        listener()
+
+
+def on_added(listener):
+    """Call `listener()` each time that plugins have been added."""
+    _listeners.append(listener)
+
+
+def files_in(path):
+    """The Python files at `path`: a file itself, or the files of a folder without a leading "_".
+
+    Raises `BrdfkitError` where there are none.
+    """
+    path = Path(path).absolute()
+    files = sorted(path.glob("[!_]*.py")) if path.is_dir() else [path]
+    if not path.exists() or not files:
+        raise BrdfkitError(f"{path} is no Python file and no folder with any.")
+    return files
+
+
+def module(file):
+    """The module of a plugin file; a user's file is imported again when it has changed.
+
+    Raises `BrdfkitError` where it cannot be imported.
+    """
+    for kind in KINDS:
+        if _own_files(kind).get(file.stem) == file:
+            return importlib.import_module(f"{OWN}.{kind}.{file.stem}")
+    if not file.exists():
+        raise BrdfkitError(f"{file} does not exist any more; write it again.")
+    if not file.is_file():
+        raise BrdfkitError(f"{file} is not a Python file.")
+    return _import_file(file, file.stat().st_mtime_ns)
+
+
+@cache
+def _own_files(kind):
+    """Name → file of brdfkit's own plugins of a kind."""
+    files = [f for folder in plugins.__path__ for f in Path(folder, kind).glob("[!_]*.py")]
+    return {file.stem: file for file in sorted(files)}
+
+
+@cache
+def _import_file(file, _modified):
+    """The module of a user's file; the time of its last change makes the cache import it anew."""
+    name = f"{USERS}.{file.stem}"
+    if file.suffix != ".py":
+        raise BrdfkitError(f"{file} is not a Python file.")
+    spec = importlib.util.spec_from_file_location(name, file, loader=_Loader(name, str(file)))
+    imported = importlib.util.module_from_spec(spec)
+    sys.modules[name] = imported
+    try:
+        spec.loader.exec_module(imported)
+    except BaseException as error:  # a file may raise anything; but Ctrl-C is no error of it
+        del sys.modules[name]
+        if isinstance(error, KeyboardInterrupt):
+            raise
+        reason = str(error).rstrip(".") or type(error).__name__
+        if isinstance(error, SystemExit):
+            reason = "it ends the program, by sys.exit"
+        raise BrdfkitError(f"{file} cannot be imported: {reason}.") from error
+    return imported
+
+
+class _Loader(SourceFileLoader):
+    """Compiles a file whenever it is imported.
+
+    Python's cache of compiled files takes an edit of the same length within a second for none.
+    """
+
+    def get_code(self, fullname):
+        return self.source_to_code(self.get_data(self.path), self.path)
+
+
+def require_free(name, source):
+    """Raise `BrdfkitError` where another plugin, of any kind, has the name of `source`.
+
+    Mitsuba would go on using the other one.
+    """
+    _, known = _users.get(name, (None, source))
+    if any(name in _own_files(kind) for kind in KINDS):
+        owner = "brdfkit has a plugin"
+    elif name in _mitsuba_names():
+        owner = "Mitsuba has a plugin"
+    elif isinstance(known, Path) and not _is_same_file(known, source):
+        owner = f"{known} is loaded as"
+    else:
+        return
+    what, remedy = (source, "file") if isinstance(source, Path) else (source.__name__, "class")
+    raise BrdfkitError(f"{what}: {owner} {name!r}; rename the {remedy}.")
+
+
+def _is_same_file(known, source):
+    """Whether a new `source` is the file `known`, perhaps by another path."""
+    return known == source or (
+        isinstance(source, Path) and known.exists() and source.exists() and known.samefile(source)
+    )
+
+
+@cache
+def _mitsuba_names():
+    """Names of Mitsuba's own plugins."""
+    package = Path(importlib.util.find_spec("mitsuba").origin).parent
+    return {file.stem for file in (package / "plugins").iterdir()}

@@ -1,0 +1,140 @@
+"""A document as HTML for notebooks: no scripts, nothing from elsewhere.
+
+Its colours come from the text's own, so that they are right in light and dark themes; where a
+viewer removes the style sheet, plain tables remain.
+"""
+
+import base64
+from html import escape
+from itertools import groupby
+
+import numpy as np
+
+from brdfkit.core.colours import to_srgb
+from brdfkit.core.documents.parts import SOFT, Cell, Folded, Paragraph, Picture, Table
+from brdfkit.core.names import printable
+
+STYLE = """
+.brdfkit { font: 13px/1.45 system-ui, sans-serif; color: inherit; max-width: 62rem; }
+.brdfkit .title { font-weight: 600; margin: 0 0 .35em; }
+.brdfkit p { margin: .25em 0; }
+.brdfkit .wide { overflow-x: auto; }
+.brdfkit table { border-collapse: collapse; margin: .35em 0; border: 0;
+  font-variant-numeric: tabular-nums; }
+.brdfkit.brdfkit tr, .brdfkit tbody tr:nth-child(n):hover { background: none; }
+.brdfkit.brdfkit th, .brdfkit.brdfkit td { padding: .15em .9em .15em 0; text-align: left;
+  vertical-align: top; border: 0;
+  border-bottom: 1px solid color-mix(in srgb, currentColor 16%, transparent);
+  max-width: 40rem; white-space: pre-wrap; color: inherit; }
+.brdfkit th { font-weight: 600; }
+.brdfkit.brdfkit .number { text-align: right; white-space: nowrap; }
+.brdfkit tfoot td, .brdfkit .soft { opacity: .68; }
+.brdfkit .strong { font-weight: 600; }
+.brdfkit .good::before { content: "✓ "; color: #2e9e4f; }
+.brdfkit .bad::before { content: "! "; color: #e5484d; font-weight: 700; }
+.brdfkit .pictures { display: flex; flex-wrap: wrap; gap: 14px; align-items: flex-end; }
+.brdfkit .pictures img, .brdfkit .pictures svg { display: block; margin: .2em 0; max-width: 100%;
+  height: auto; }
+.brdfkit .chip { display: inline-block; width: .8em; height: .8em; margin-right: .45em;
+  border-radius: 2px; vertical-align: -.06em;
+  box-shadow: 0 0 0 1px color-mix(in srgb, currentColor 30%, transparent); }
+.brdfkit .bar { display: inline-block; position: relative; width: 56px; height: 4px;
+  border-radius: 2px; background: color-mix(in srgb, currentColor 18%, transparent);
+  vertical-align: .2em; margin-left: .6em; }
+.brdfkit .bar i { position: absolute; top: -3px; width: 3px; height: 10px; margin-left: -1px;
+  background: currentColor; }
+.brdfkit summary { cursor: pointer; opacity: .68; }
+.brdfkit pre { white-space: pre-wrap; font-size: 12px; margin: .3em 0 .3em 1em; color: inherit;
+  background: none; }
+"""
+
+
+def to_html(document):
+    """The HTML of a `Document`, to stand in a notebook's page."""
+    parts = []
+    for kind, group in groupby(document.parts, type):
+        made = [MAKERS[kind](part) for part in group]
+        parts += [f'<div class="pictures">{"".join(made)}</div>'] if kind is Picture else made
+    title = f'<p class="title">{_text(document.title)}</p>'
+    return f'<div class="brdfkit jp-toc-ignore"><style>{STYLE}</style>{title}{"".join(parts)}</div>'
+
+
+def _table(table):
+    sides = [' class="number"' if name.startswith(">") else "" for name in table.columns]
+    heads = "".join(
+        f"<th{side}>{_text(name.removeprefix('>'))}</th>"
+        for name, side in zip(table.columns, sides, strict=True)
+    )
+    head = f"<thead><tr>{heads}</tr></thead>" if any(table.columns) else ""
+    body = f"<tbody>{_rows(table.rows, table.columns)}</tbody>"
+    foot = f"<tfoot>{_rows(table.foot, table.columns)}</tfoot>" if table.foot else ""
+    return f'<div class="wide"><table>{head}{body}{foot}</table></div>'
+
+
+def _rows(rows, columns):
+    numeric = [name.startswith(">") for name in columns]
+    found = []
+    for row in rows:
+        sides = numeric or [False] * len(row)
+        found.append("".join(map(_cell, row, sides)))
+    return "".join(f"<tr>{cells}</tr>" for cells in found)
+
+
+def _cell(cell, is_number):
+    if not isinstance(cell, Cell):
+        cell = Cell(cell)
+    kinds = " ".join(filter(None, ["number" if is_number else "", cell.kind]))
+    attributes = f' class="{kinds}"' if kinds else ""
+    attributes += f' title="{_text(cell.hint)}"' if cell.hint else ""
+    return f"<td{attributes}>{_chip(cell.colour)}{_text(cell.text)}{_bar(cell.place)}</td>"
+
+
+def _chip(colour):
+    """A square of a linear colour, as bright as it can be: its hue, where it is above 1."""
+    if len(colour) != 3:
+        return ""
+    rgb = np.maximum(colour, 0)
+    red, green, blue = np.round(255 * to_srgb(rgb / max(rgb.max(), 1))).astype(int)
+    return f'<span class="chip" style="background:rgb({red},{green},{blue})"></span>'
+
+
+def _bar(place):
+    """A bar with a mark at `place`, 0 to 1."""
+    if place is None:
+        return ""
+    return f'<span class="bar"><i style="left:{100 * place:.0f}%"></i></span>'
+
+
+def _paragraph(paragraph):
+    kind = f' class="{paragraph.kind}"' if paragraph.kind else ""
+    return f"<p{kind}>{'<br>'.join(map(_text, paragraph.text.splitlines()))}</p>"
+
+
+def _picture(picture):
+    try:
+        content = picture.draw()
+    except Exception as error:  # what a user's model raises: the rest is shown all the same
+        said = f"Not shown: {picture.says} ({type(error).__name__}: {error})."
+        return _paragraph(Paragraph(said, SOFT))
+    if isinstance(content, str):
+        return content
+    kind = next(kind for start, kind in KINDS.items() if content.startswith(start))
+    data = base64.b64encode(content).decode()
+    return (
+        f'<img src="data:image/{kind};base64,{data}" alt="{_text(picture.says)}" '
+        f'width="{picture.width}">'
+    )
+
+
+def _folded(folded):
+    text = "\n".join(map(_text, folded.text.splitlines()))
+    return f"<details><summary>{_text(folded.heading)}</summary><pre>{text}</pre></details>"
+
+
+def _text(text):
+    """Any text, escaped for HTML."""
+    return escape(printable(text))
+
+
+KINDS = {b"\x89PNG": "png", b"RIFF": "webp", b"\xff\xd8": "jpeg"}  # of pictures' first bytes
+MAKERS = {Table: _table, Paragraph: _paragraph, Picture: _picture, Folded: _folded}

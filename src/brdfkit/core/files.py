@@ -1,0 +1,234 @@
+"""Files, safely: written whole or not at all, read within a limit, compressed or not."""
+
+import os
+from collections.abc import Callable
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
+from pathlib import Path
+
+from brdfkit.core.errors import BrdfkitError, nearest
+
+LIMIT = 2**30  # bytes, decompressed; the largest MERL table has 70 MB
+CHUNK = 2**20  # bytes
+GZIP, XZ = ".gz", ".xz"
+# What is called with the path of a file before it is written, and after: see `watch_writing`
+Watcher = Callable[[Path], object]
+_watchers: ContextVar[tuple[tuple[Watcher, Watcher], ...]] = ContextVar("watchers", default=())
+COMPRESSED = {GZIP: b"\x1f\x8b", XZ: b"\xfd7zXZ\x00"}  # suffix: first bytes
+
+
+@contextmanager
+def write_safely(path):
+    """A temporary path beside `path` to write to, renamed to `path` when the block has succeeded.
+
+    Where the block is interrupted, by Ctrl-C too, an older file at `path` stays as it was and no
+    other file is left. The temporary path has the suffix of `path`, for libraries that choose a
+    format by it. Raises `BrdfkitError` where the file cannot be written, and for an `OSError`
+    inside the block.
+
+    >>> with write_safely("copper.json") as beside:  # doctest: +SKIP
+    ...     beside.write_text("{}")
+    """
+    target = require_writable(path)
+    with _in_utf8(target.parent) as folder:
+        beside = folder / f".brdfkit-{os.urandom(4).hex()}{target.suffix}"
+        try:
+            beside.touch(exist_ok=False)
+            yield beside
+            os.replace(beside, target)
+            for _, after in _watchers.get():
+                after(target)
+        except OSError as error:
+            raise BrdfkitError(
+                f"{path}: cannot be written ({_reason(error)}); choose another folder or make room."
+            ) from error
+        finally:
+            with suppress(OSError):
+                beside.unlink()
+
+
+@contextmanager
+def _in_utf8(folder):
+    """The path of a folder in UTF-8, as native libraries take it: where it is not, of a link."""
+    if is_utf8(folder):
+        yield folder
+        return
+    from tempfile import TemporaryDirectory  # only here: `--help` should be instant
+
+    with TemporaryDirectory(prefix="brdfkit-") as place:
+        link = Path(place) / "folder"
+        link.symlink_to(folder, target_is_directory=True)
+        yield link
+
+
+def is_utf8(path):
+    """Whether the bytes of a path are UTF-8: else Python has lone surrogates in their place."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+def make_folder(path):
+    """Make the folder `path` for results, unless it exists.
+
+    Raises `BrdfkitError` where no file can be written to it.
+
+    >>> make_folder("results")
+    """
+    try:
+        Path(path).mkdir(parents=True, exist_ok=True)
+        if not os.access(path, os.W_OK):
+            raise PermissionError("it is write-protected")
+    except OSError as error:
+        raise BrdfkitError(
+            f"{path}: cannot be made a folder for results ({_reason(error)}); name another."
+        ) from error
+
+
+def require_writable(path):
+    """The `Path` of the file that `write_safely` will write: of a link, the file it leads to.
+
+    Raises, before the work, the `BrdfkitError` that `write_safely` would raise after it, as far as
+    that can be known.
+    """
+    try:
+        os.fsencode(path)
+        target = Path(os.path.realpath(path))
+        if target.is_symlink():
+            raise BrdfkitError(f"{path}: is a link that leads to itself; choose another name.")
+        if not target.parent.is_dir():
+            raise BrdfkitError(f"{path}: there is no folder {target.parent}; create it first.")
+        if target.exists() and not target.is_file():
+            raise BrdfkitError(f"{path}: is no regular file; choose another name.")
+        if target.exists() and not os.access(target, os.W_OK):
+            raise BrdfkitError(f"{path}: is write-protected; choose another name.")
+        if not os.access(target.parent, os.W_OK | os.X_OK):
+            raise BrdfkitError(f"{path}: the folder is write-protected; choose another one.")
+        for before, _ in _watchers.get():
+            before(target)
+    except OSError as error:
+        raise BrdfkitError(
+            f"{path}: cannot be written ({_reason(error)}); choose another folder or name."
+        ) from error
+    except UnicodeEncodeError:
+        raise BrdfkitError(
+            f"{str(path)!a}: this system's locale has no such file names; choose one of plain "
+            "letters, or set LC_ALL=C.UTF-8."
+        ) from None
+    return target
+
+
+@contextmanager
+def watch_writing(before, after):
+    """Within the block `before(path)` is called before a file is written, and as soon as it is
+    known that it will be, and `after(path)` when it was written.
+
+    `before` may raise a `BrdfkitError`: then the file stays as it is.
+    """
+    token = _watchers.set((*_watchers.get(), (before, after)))
+    try:
+        yield
+    finally:
+        _watchers.reset(token)
+
+
+def contents(path):
+    """The bytes of a file, decompressed where it is gzip or xz by its name or its first bytes.
+
+    Raises `BrdfkitError` when it is missing, no regular file, unreadable, empty, damaged, or larger
+    than `LIMIT` bytes. A plain file that is too large is not read at all; decompression stops at
+    the limit.
+
+    >>> contents("gold.binary.xz")[:4]  # doctest: +SKIP
+    b'Z\\x00\\x00\\x00'
+    """
+    path = Path(path)
+    with _reading(path):
+        data = _read(path)
+    if not data:
+        raise BrdfkitError(f"{path}: the file is empty; fetch it again.")
+    return data
+
+
+def sha256(path):
+    """The SHA-256 of a file, in hexadecimal.
+
+    Raises `BrdfkitError` when it is missing, no regular file or unreadable.
+    """
+    import hashlib  # only here: `--help` should be instant
+
+    path = Path(path)
+    with _reading(path), path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+@contextmanager
+def _reading(path):
+    """Within the block the file at `path` is read; what then fails is a `BrdfkitError`."""
+    try:
+        _require_file(path)
+        yield
+    except OSError as error:
+        raise BrdfkitError(
+            f"{path}: cannot be read ({_reason(error)}); check its permissions."
+        ) from error
+
+
+def _require_file(path):
+    """Raise `BrdfkitError` unless `path` is a regular file; propose a similar name beside it."""
+    if path.is_dir():
+        raise BrdfkitError(f"{path}: is a folder; name a file in it.")
+    if path.is_file():
+        return
+    if path.exists():
+        raise BrdfkitError(f"{path}: is no regular file; name one.")
+    beside = {file.name for file in path.parent.glob("*")} if path.parent.is_dir() else set()
+    near = nearest(path.name, sorted(beside - {path.name}))
+    remedy = f"did you mean {path.with_name(near)}? Else check" if near else "check"
+    raise BrdfkitError(f"{path}: there is no such file; {remedy} the path.")
+
+
+def _read(path):
+    """The bytes of a file, decompressed, `LIMIT` at most."""
+    with path.open("rb") as stream:
+        first = stream.read(8)
+    for suffix, magic in COMPRESSED.items():
+        if first and (path.suffix.lower() == suffix or first.startswith(magic)):
+            return _decompress(path, suffix)
+    if path.stat().st_size > LIMIT:
+        raise _too_large(path)
+    return path.read_bytes()
+
+
+def _decompress(path, suffix):
+    """All bytes of a compressed file, `LIMIT` at most: a small file may unpack to terabytes."""
+    import gzip  # only here: `--help` should be instant
+    import lzma
+    import zlib
+
+    data = bytearray()
+    try:
+        with (gzip.open if suffix == GZIP else lzma.open)(path) as stream:
+            while chunk := stream.read(CHUNK):
+                data += chunk
+                if len(data) > LIMIT:
+                    raise _too_large(path)
+    except (gzip.BadGzipFile, zlib.error, lzma.LZMAError, EOFError) as error:
+        raise BrdfkitError(
+            f"{path}: the compressed data are damaged or cut short ({_reason(error)}); "
+            "fetch the file again."
+        ) from error
+    return bytes(data)
+
+
+def _too_large(path):
+    return BrdfkitError(
+        f"{path}: holds more than {LIMIT:,} bytes, which no BRDF file needs; "
+        "check that it is the right file."
+    )
+
+
+def _reason(error):
+    return getattr(error, "strerror", None) or str(error).strip().rstrip(".") or "unknown cause"

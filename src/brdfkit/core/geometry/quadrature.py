@@ -1,0 +1,83 @@
+"""Integrals over the hemisphere, to the precision that narrow lobes need."""
+
+from functools import cache
+
+import numpy as np
+
+from brdfkit.core.geometry.directions import from_angles, normalize
+
+# Points per ring, increased until the sum changes by less than TOLERANCE of itself; the rings about
+# the mirror direction are twice as many
+POINTS = (64, 128, 256, 512, 1024)
+TOLERANCE = 2e-4
+
+
+def directional_albedo(f, wi):
+    """The directional albedo ∫ f cosθ_o dω_o (channels,) at one incidence `wi` (3,).
+
+    `f(wi, wo)` takes direction pairs (n, 3) and returns BRDF values (n, channels) in sr⁻¹; `wi` is
+    a unit vector above the surface.
+
+    The points lie on rings about the mirror direction. Rings are denser near the mirror direction,
+    which resolves lobes from a thousandth of a radian to the whole hemisphere. Points on a ring are
+    denser near the plane of incidence and across it, which resolves elongated lobes. Rings and
+    points are doubled until the sum changes by less than 2e-4 of itself, at most to 2048 rings of
+    1024 points: the albedo of a `ward` a hundred times narrower along one axis is then known to
+    2e-5.
+    """
+    coarse = _sum(f, wi, POINTS[0])
+    for points in POINTS[1:]:
+        fine = _sum(f, wi, points)
+        if abs(fine.sum() - coarse.sum()) <= TOLERANCE * abs(fine.sum()):
+            break
+        coarse = fine
+    return fine
+
+
+def _sum(f, wi, points):
+    """The integral (channels,) by 2 `points` rings of `points` points."""
+    wo, weight = ring_rule(wi, points)
+    return weight @ f(np.broadcast_to(wi, wo.shape), wo)
+
+
+def ring_rule(wi, points):
+    """The directions wo (n, 3) of 2 `points` rings of `points` points, for light from `wi` (3,),
+    and their solid angles times cosθ_o (n,)."""
+    mirror = wi * [-1, -1, 1]
+    cos_theta, sin_theta = mirror[2], np.hypot(mirror[0], mirror[1])
+    # Angle gamma of each ring to the mirror direction: as many rings lie wholly above the horizon
+    # (gamma < whole) as cross it
+    t, weight = _gauss(points)
+    whole = np.arctan2(cos_theta, sin_theta)
+    gamma = np.concatenate([whole * t**3, whole + (np.pi - 2 * whole) * t**2])
+    width = np.concatenate([whole * 3 * t**2, (np.pi - 2 * whole) * 2 * t]) * np.tile(weight, 2)
+    # Half the angle of each ring's arc above the horizon, measured from the ring's highest point
+    highest = np.maximum(np.sin(gamma) * sin_theta, 1e-12)
+    half = np.arccos(np.clip(-np.cos(gamma) * cos_theta / highest, -1, 1))
+
+    # Azimuth psi of each point on its ring, from the highest point, and the point's direction wo
+    t, weight = _gauss(points, pieces=4)
+    psi = np.outer(half, 2 * t - 1)
+    up = normalize(np.cross(mirror, [-mirror[1], mirror[0], 0]) if sin_theta else [1.0, 0, 0])
+    ring = np.cos(psi)[..., None] * up + np.sin(psi)[..., None] * np.cross(mirror, up)
+    wo = np.cos(gamma)[:, None, None] * mirror + np.sin(gamma)[:, None, None] * ring
+    # Sum over the points above the horizon
+    solid_angle = np.outer(np.sin(gamma) * width * 2 * half, weight)
+    above = (wo[..., 2] > 0) & (solid_angle > 0)
+    wo, solid_angle = wo[above], solid_angle[above]
+    return wo, wo[:, 2] * solid_angle
+
+
+@cache
+def _gauss(points, pieces=1):
+    """Gauss-Legendre nodes and weights, each (points,), of the unit interval in equal `pieces`."""
+    nodes, weights = np.polynomial.legendre.leggauss(points // pieces)
+    nodes = np.arange(pieces)[:, None] + (nodes + 1) / 2
+    return nodes.ravel() / pieces, np.tile(weights / 2 / pieces, pieces)
+
+
+def cosine_directions(n):
+    """Unit vectors (n, 3), distributed as the cosine: π f averages over them to the albedo of f."""
+    square = (np.arange(n) + 0.5) / n
+    golden = (np.sqrt(5) - 1) / 2  # of a turn between neighbours: fills the circle most evenly
+    return from_angles(np.arcsin(np.sqrt(square)), 2 * np.pi * golden * np.arange(n))

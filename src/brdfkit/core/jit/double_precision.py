@@ -1,0 +1,81 @@
+"""Double precision with Dr.Jit: the arrays in which models are evaluated and fitted.
+
+With LLVM (or CUDA) a kernel runs over all directions at once and has derivatives. Without either,
+Dr.Jit's scalar arrays do the same more slowly, and a fit takes finite differences.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from brdfkit.core.jit import llvm
+from brdfkit.core.jit.padding import pad
+
+
+@dataclass(frozen=True)
+class Vector:
+    """Directions in a model's formula: x, y and z are arrays (n,) over all directions."""
+
+    x: Any
+    y: Any
+    z: Any
+
+    def __add__(self, other):
+        return Vector(self.x + other.x, self.y + other.y, self.z + other.z)
+
+    def __sub__(self, other):
+        return Vector(self.x - other.x, self.y - other.y, self.z - other.z)
+
+    def __neg__(self):
+        return Vector(-self.x, -self.y, -self.z)
+
+    def __mul__(self, factor):
+        return Vector(self.x * factor, self.y * factor, self.z * factor)
+
+    __rmul__ = __mul__
+
+
+@cache
+def float64():
+    """The array type: Dr.Jit's `Float64` of the LLVM or CUDA backend, else `ArrayXf64`."""
+    import drjit as dr
+
+    if llvm.loaded_version() >= llvm.OLDEST:
+        return dr.llvm.ad.Float64
+    if dr.has_backend(dr.JitBackend.CUDA):
+        return dr.cuda.ad.Float64
+    return dr.scalar.ArrayXf64
+
+
+def differentiable():
+    """True where `float64()` has derivatives."""
+    import drjit as dr
+
+    return bool(dr.is_diff_v(float64()))
+
+
+def array(values):
+    """The NumPy array `values` (n,) as `float64()`."""
+    return float64()(pad(np.asarray(values, float)))
+
+
+def vector(w):
+    """A `Vector` of NumPy directions (n, 3)."""
+    return Vector(*(array(w[:, k]) for k in range(3)))
+
+
+def scalar(value):
+    """A number as an array of size 1, opaque: a kernel does not contain it as a constant."""
+    import drjit as dr
+
+    number = float64()(float(value))
+    dr.make_opaque(number)
+    return number
+
+
+def shapes(model):
+    """The free shape parameters of a model with values, by name, each a `scalar`."""
+    linear = model.weights()
+    return {name: scalar(v) for name, v in model.free_values.items() if name not in linear}

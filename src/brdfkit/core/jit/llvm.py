@@ -1,0 +1,139 @@
+"""Finds an LLVM that works with Dr.Jit, before Dr.Jit is loaded; chooses Mitsuba's variant.
+
+Dr.Jit looks for libLLVM when it is imported and takes the newest of the system. With LLVM 15 or 16
+all works until the first kernel that contains a `minimum`: then LLVM aborts the process. So brdfkit
+chooses the library, through the environment variable DRJIT_LIBLLVM_PATH:
+
+1. the one that the user named there, if it is LLVM 17 or newer;
+2. the one that the package karellen-llvm-core brought into this environment;
+3. the newest of the system, if it is LLVM 17 or newer;
+4. none: Mitsuba's scalar variants remain.
+"""
+
+import os
+import re
+import site
+import sys
+import warnings
+from pathlib import Path
+
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.jit.threads import in_turn
+from brdfkit.core.signals import hold_signals
+
+VARIABLE = "DRJIT_LIBLLVM_PATH"
+OLDEST = 17
+SYSTEM_FOLDERS = ("/usr/lib/*-linux-gnu*", "/usr/lib64", "/usr/lib", "/usr/local/lib")
+VARIANTS = ("cuda_ad_rgb", "llvm_ad_rgb", "scalar_rgb")
+# A path that cannot be loaded turns Dr.Jit's LLVM backend off
+NO_LIBRARY = "no-LLVM-17-or-newer-found"
+
+
+def prepare():
+    """Point Dr.Jit to a usable libLLVM; called when brdfkit is imported.
+
+    Where Dr.Jit was imported before, its choice stands; a warning says so if it is a bad one.
+    """
+    if "drjit" in sys.modules:
+        _warn_of_bad_choice()
+    elif sys.platform == "linux":
+        chosen = find_library()
+        named = os.environ.get(VARIABLE)
+        if named and named not in (chosen, NO_LIBRARY):
+            instead = f"{chosen} is used instead" if chosen else "the scalar variants remain"
+            warnings.warn(
+                f"{VARIABLE} names {named}, which is not an LLVM of version {OLDEST} or newer; "
+                f"{instead}.",
+                stacklevel=3,
+            )
+        os.environ[VARIABLE] = str(chosen or NO_LIBRARY)
+
+
+def find_library():
+    """Path of the libLLVM to use, None where none of version 17 or newer is found."""
+    named = os.environ.get(VARIABLE)
+    if named and library_version(named) >= OLDEST:
+        return named
+    for prefix in (sys.prefix, site.getuserbase()):
+        bundled = Path(prefix, "lib", "libLLVM.so")
+        if library_version(bundled) >= OLDEST:
+            return str(bundled)
+    found = [p for folder in SYSTEM_FOLDERS for p in Path("/").glob(f"{folder[1:]}/libLLVM*.so*")]
+    newest = max(found, key=library_version, default=None)
+    return str(newest) if newest and library_version(newest) >= OLDEST else None
+
+
+def library_version(path):
+    """Major version of a libLLVM, from its name or else from the library; 0 if it does not load."""
+    by_name = re.search(r"libLLVM(?:-|\.so\.)(\d+)", os.path.realpath(path))
+    if by_name and Path(path).exists():
+        return int(by_name[1])
+    import ctypes  # only here: `--help` should be instant
+
+    try:
+        library = ctypes.CDLL(str(path))
+        major = ctypes.c_uint()
+        library.LLVMGetVersion(ctypes.byref(major), None, None)
+        return major.value
+    except (OSError, AttributeError):  # no such library; LLVM before 16 has no LLVMGetVersion
+        return 0
+
+
+def remedy():
+    """What to do where Dr.Jit has no usable LLVM, as the end of a sentence.
+
+    Where the machine has a usable one, it was not set or not installed when Dr.Jit was imported.
+    """
+    if find_library():
+        return "start Python anew and import brdfkit before mitsuba and drjit"
+    return (
+        "install karellen-llvm-core (Linux x86-64) or set DRJIT_LIBLLVM_PATH to a libLLVM of "
+        f"version {OLDEST} or newer"
+    )
+
+
+def loaded_version():
+    """Major version of the LLVM that Dr.Jit has loaded, -1 where it has none."""
+    import drjit as dr
+
+    return dr.detail.llvm_version()[0]
+
+
+def refuse_bad_choice(variant):
+    """Raise `BrdfkitError` where kernels of this `variant` would abort the process."""
+    if variant and variant.startswith("llvm") and 0 < loaded_version() < OLDEST:
+        raise BrdfkitError(_bad_choice())
+
+
+@in_turn
+def use_variant():
+    """The name of the current Mitsuba variant; where none is set, the best that works is set first.
+
+    A warning says so where that is only `scalar_rgb`, which is many times slower.
+    """
+    import mitsuba as mi
+
+    if mi.variant() is None:
+        usable = loaded_version() >= OLDEST
+        with hold_signals():
+            mi.set_variant(*(v for v in VARIANTS if usable or not v.startswith("llvm")))
+        if mi.variant() == "scalar_rgb":
+            warnings.warn(
+                f"Mitsuba has no CUDA device and no LLVM {OLDEST} or newer: its slow variant "
+                f"scalar_rgb is used; to mend it, {remedy()}.",
+                stacklevel=3,  # the caller of use_variant, above the wrapper of `in_turn`
+            )
+    refuse_bad_choice(mi.variant())
+    return mi.variant()
+
+
+def _warn_of_bad_choice():
+    if 0 < loaded_version() < OLDEST:
+        warnings.warn(_bad_choice(), stacklevel=4)
+
+
+def _bad_choice():
+    return (
+        f"Dr.Jit was imported before brdfkit and took LLVM {loaded_version()}, which aborts the "
+        f"process in Mitsuba's llvm variants: {remedy()}."
+    )

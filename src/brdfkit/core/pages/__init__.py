@@ -1,0 +1,1 @@
+"""Writes HTML pages from templates, with their style, scripts and pictures inside."""

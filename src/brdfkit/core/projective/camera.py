@@ -1,0 +1,122 @@
+"""A perspective camera as matrices, in OpenGL's convention: it looks along -z, x points right."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.projective.body import Empty
+from brdfkit.core.projective.homogeneous import project_all, transform
+
+FROM_MITSUBA = np.diag([-1.0, 1, -1, 1])  # Mitsuba's cameras look along z, x points left
+CUBE = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], float)
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Where a picture is taken from.
+
+    view : (4, 4), from the world to the camera, which looks along -z.
+    slope_x, slope_y : tangent of half the field of view, across and upwards.
+    near, far : distances of the planes along the view that bound what it sees.
+    """
+
+    view: np.ndarray
+    slope_x: float
+    slope_y: float
+    near: float
+    far: float
+
+    @classmethod
+    def of_sensor(cls, sensor):
+        """Of one of Mitsuba's `perspective` or `thinlens` cameras."""
+        import mitsuba as mi
+
+        parameters = mi.traverse(sensor)
+        if "x_fov" not in parameters:
+            raise BrdfkitError(
+                f"the camera is a {sensor.class_name()}; shadows by projection need a "
+                "perspective one."
+            )
+        offsets = [f"principal_point_offset_{axis}" for axis in "xy"]  # a thin lens has none
+        if any(_number(parameters, name) for name in offsets if name in parameters):
+            raise BrdfkitError("the camera's principal point is off the middle; move it there.")
+        slope = math.tan(math.radians(_number(parameters, "x_fov")) / 2)
+        width, height = sensor.film().size()
+        to_world = np.array(sensor.world_transform().matrix, float).reshape(4, 4)
+        to_world[:3, :3] /= np.linalg.norm(to_world[:3, :3], axis=0)
+        return cls(
+            view=FROM_MITSUBA @ np.linalg.inv(to_world),
+            slope_x=slope,
+            slope_y=slope * height / width,
+            near=sensor.near_clip(),
+            far=sensor.far_clip(),
+        )
+
+    @property
+    def projection(self):
+        """P (4, 4), from the camera to the cube [-1, 1]³, -1 near [Ergun 2008, 2.1.7]."""
+        n, f = self.near, self.far
+        return self._projection(-(f + n) / (f - n), -2 * f * n / (f - n))
+
+    @property
+    def infinite_projection(self):
+        """P∞ (4, 4), its limit for a far plane at infinity: points there have depth 1."""
+        return self._projection(-1, -2 * self.near)
+
+    def _projection(self, along, shift):
+        matrix = np.diag([1 / self.slope_x, 1 / self.slope_y, along, 0])
+        matrix[2, 3], matrix[3, 2] = shift, -1
+        return matrix
+
+    @property
+    def matrix(self):
+        """From the world to the cube [-1, 1]³."""
+        return self.projection @ self.view
+
+    @property
+    def position(self):
+        """The eye (3,)."""
+        return -self.view[:3, :3].T @ self.view[:3, 3]
+
+    @property
+    def direction(self):
+        """Where it looks: a unit vector (3,)."""
+        return -self.view[2, :3]
+
+    def corners(self):
+        """The corners (8, 3) of what it sees; the first four are on the near plane."""
+        return project_all(np.linalg.inv(self.matrix), CUBE)
+
+    def depths(self, points):
+        """The distances (n,) of points (n, 3) along the view."""
+        return -transform(self.view, *np.asarray(points, float).T)[2]
+
+    def between(self, near, far):
+        """The same camera with other planes."""
+        return replace(self, near=near, far=far)
+
+    def moved_back(self, points):
+        """The same camera, so far back that `points` (n, 3) are before its near plane, and opened
+        until it sees all of them."""
+        view = self.view.copy()
+        view[2, 3] -= max(0, self.near - self.depths(points).min())
+        x, y, z, _ = transform(view, *np.asarray(points, float).T)
+        near, far = -z.max(), max(-z.min(), -1.001 * z.max())  # with room for points in a plane
+        return Camera(view, np.abs(x / z).max(), np.abs(y / z).max(), near, far)
+
+    def fitted(self, points):
+        """The same camera, its planes drawn in to `points` (n, 3), such as the corners of a scene.
+
+        Raises `Empty` where all of them are behind its near plane or beyond its far one.
+        """
+        depths = self.depths(points)
+        near, far = max(self.near, depths.min()), min(self.far, depths.max())
+        if far <= near:
+            raise Empty("the camera does not see the scene: turn it, or move its planes.")
+        return self.between(near, far)
+
+
+def _number(parameters, name):
+    return float(np.ravel(parameters[name])[0])

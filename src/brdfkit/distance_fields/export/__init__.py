@@ -1,0 +1,1 @@
+"""Writes distance fields as meshes, grids, JSON, Python and GLSL."""

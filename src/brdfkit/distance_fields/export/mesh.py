@@ -1,0 +1,77 @@
+"""Triangle meshes of distance fields."""
+
+from os import PathLike
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.files import write_safely
+from brdfkit.distance_fields.export.sampling import to_grid
+
+HEAD = """ply
+format binary_little_endian 1.0
+element vertex {vertices}
+property float x
+property float y
+property float z
+element face {faces}
+property list uchar int vertex_indices
+end_header
+"""
+INSTALL = 'is not installed; pip install "brdfkit[distance_fields]".'
+
+
+class Mesh(NamedTuple):
+    """Triangles: `vertices` (n, 3), and `faces` (m, 3) that count them, seen from outside."""
+
+    vertices: NDArray
+    faces: NDArray
+
+    def write(self, path: str | PathLike[str]) -> None:
+        """Write a binary PLY file, which Mitsuba and modellers read."""
+        rows = np.empty(len(self.faces), [("count", "u1"), ("corners", "<i4", 3)])
+        rows["count"], rows["corners"] = 3, self.faces
+        head = HEAD.format(vertices=len(self.vertices), faces=len(rows))
+        data = np.asarray(self.vertices, "<f4").tobytes() + rows.tobytes()
+        with write_safely(path) as beside:
+            beside.write_bytes(head.encode() + data)
+
+
+def to_mesh(node: Any, resolution: int = 64, bounds: Any = None) -> Mesh:
+    """The surface of a field as triangles, by marching cubes on the grid that `to_grid` makes.
+
+    Parameters
+    ----------
+    node : distance field
+        Has the surface.
+    resolution : integer, default 64
+        Cells along the longest edge of the box.
+    bounds : (low, high), optional
+        The corners of the box; without them that of the surface and a margin.
+
+    Returns
+    -------
+    Mesh
+        Triangles whose vertices are within L times half a cell of the surface.
+
+    Raises
+    ------
+    BrdfkitError
+        Where there is no surface in the box, or scikit-image is not installed.
+
+    Examples
+    --------
+    >>> vertices, faces = to_mesh(sphere(1) - box(1))
+    >>> to_mesh(sphere(1) - box(1)).write("cut.ply")    # doctest: +SKIP
+    """
+    try:
+        from skimage.measure import marching_cubes
+    except ImportError as error:
+        raise BrdfkitError(f"scikit-image, which makes meshes, {INSTALL}") from error
+
+    sampled = to_grid(node, resolution, bounds)
+    values = sampled.values.transpose(2, 1, 0)
+    vertices, faces, _, _ = marching_cubes(values, 0.0, spacing=tuple(sampled.spacing))
+    return Mesh(vertices + np.array(sampled.low), faces)

@@ -1,0 +1,1 @@
+"""The kinds of distance fields: solids, rods, fractals, grids, and what combines and moves them."""

@@ -1,0 +1,149 @@
+"""Solids about the origin: plane, sphere, box, rounded box, torus. Their distances are exact.
+
+[Bálint et al. 2019, chapter 2]
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.distance_fields.boxes import around, plain
+from brdfkit.distance_fields.functions import absolute, dot, length, maximum, minimum, normalized
+from brdfkit.distance_fields.node import Node
+from brdfkit.distance_fields.parameters import number, vector
+
+
+class Exact(Node):
+    """A solid whose f is its distance, inside and outside."""
+
+    exact_outside = exact_inside = True
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class plane(Exact):
+    """The half-space below a plane through the origin.
+
+    Parameters
+    ----------
+    normal : three numbers, default (0, 0, 1)
+        Points out of the half-space; of any length.
+    """
+
+    normal: Any = vector((0.0, 0.0, 1.0))
+    is_convex = True
+
+    def __post_init__(self):
+        super().__post_init__()
+        if not np.any(plain(self.normal)):
+            raise BrdfkitError("plane.normal = (0, 0, 0) has no direction; give another.")
+
+    def distance(self, p):
+        return dot((p.x, p.y, p.z), normalized(self.normal))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class sphere(Exact):
+    """A ball.
+
+    Parameters
+    ----------
+    radius : number > 0, default 1
+        Its radius.
+    """
+
+    radius: Any = number(1.0, above=0)
+    is_convex = True
+
+    def distance(self, p):
+        return length(p.x, p.y, p.z) - self.radius
+
+    def bounds(self, level=0.0):
+        return around(np.zeros(3), reach=plain(self.radius) + level)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class box(Exact):
+    """A box along the axes.
+
+    Parameters
+    ----------
+    size : three numbers > 0, or one for a cube, default 1
+        Lengths of its edges.
+    """
+
+    size: Any = vector((1.0, 1.0, 1.0), above=0, spread=True)
+    is_convex = True
+
+    def distance(self, p):
+        return box_distance(p, self.size)
+
+    def bounds(self, level=0.0):
+        half = plain(self.size) / 2
+        return around(half, -half, reach=level)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class rounded_box(Exact):
+    """A box along the axes whose edges are round.
+
+    Parameters
+    ----------
+    size : three numbers > 0, or one for a cube, default 1
+        Lengths of its edges.
+    radius : number ≥ 0, default 0.1
+        Radius of the edges, at most half of the shortest.
+    """
+
+    size: Any = vector((1.0, 1.0, 1.0), above=0, spread=True)
+    radius: Any = number(0.1, least=0)
+    is_convex = True
+
+    def __post_init__(self):
+        super().__post_init__()
+        if 2 * plain(self.radius) > min(plain(self.size)):
+            raise BrdfkitError(
+                f"rounded_box.radius = {plain(self.radius):g} should be at most half of the "
+                f"shortest edge, {min(plain(self.size)) / 2:g}."
+            )
+
+    def distance(self, p):
+        inner = [edge - 2 * self.radius for edge in self.size]
+        return box_distance(p, inner) - self.radius
+
+    def bounds(self, level=0.0):
+        half = plain(self.size) / 2
+        return around(half, -half, reach=level)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class torus(Exact):
+    """A ring about the z axis.
+
+    Parameters
+    ----------
+    radius : number > 0, default 1
+        From the origin to the middle of the tube.
+    tube : number > 0, default 0.25
+        Radius of the tube.
+    """
+
+    radius: Any = number(1.0, above=0)
+    tube: Any = number(0.25, above=0)
+
+    def distance(self, p):
+        return length(length(p.x, p.y) - self.radius, p.z) - self.tube
+
+    def bounds(self, level=0.0):
+        tube = plain(self.tube) + level
+        wide = plain(self.radius) + tube
+        reach = np.array([wide, wide, tube])
+        return -reach, reach
+
+
+def box_distance(p, size):
+    """The distance to a box along the axes: ‖max(q, 0)‖ + min(max(qx, qy, qz), 0), q = |p| - h."""
+    x, y, z = (absolute(c) - 0.5 * edge for c, edge in zip((p.x, p.y, p.z), size, strict=True))
+    outside = length(maximum(x, 0.0), maximum(y, 0.0), maximum(z, 0.0))
+    return outside + minimum(maximum(x, maximum(y, z)), 0.0)

@@ -1,0 +1,1 @@
+"""Finds where rays meet a distance field, and the normal there."""

@@ -1,0 +1,173 @@
+"""`compare`: how well models describe a measured material, and its light, as a table."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from brdfkit.core.documents import Cell, Document, Shown, Table
+from brdfkit.core.documents.parts import STRONG
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.names import make_unique
+from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.albedos import ANGLES
+from brdfkit.materials.measured.selection import select_samples
+from brdfkit.materials.resolve import MaterialLike, materials, measured_material
+from brdfkit.regression import Fit, losses
+from brdfkit.regression.albedo_cells import albedo_cell
+from brdfkit.regression.light import FOUR, ONE, albedo_pixels
+from brdfkit.regression.losses.loss import squares
+from brdfkit.regression.losses.named import DEFAULT
+
+# The losses by which errors are told, beside those that were minimised
+USUAL = "cosine", "log", "cbrt", "plain"
+
+
+@dataclass(frozen=True, repr=False)
+class Comparison(Shown):
+    """Errors of several BRDFs against one measured material, under every loss, and the light that
+    they reflect; prints as a table.
+
+    Attributes
+    ----------
+    material : str
+        Name of the measured material.
+    errors : dict
+        Name → loss → E, in the units of `brdfkit.losses`, the best by the cbrt loss first; nan
+        where a loss weighs no sample.
+    albedos : dict
+        Name → the directional albedo at 5°, 45° and 75° of incidence, the mean over the channels.
+    measured_albedo : tuple of float
+        That of the measured material; nan where its samples do not tell it.
+    shown : tuple of str
+        The losses of the table: the usual ones, and those that the compared fits made small.
+    """
+
+    material: str
+    errors: dict[str, dict[str, float]]
+    albedos: dict[str, tuple[float, ...]]
+    measured_albedo: tuple[float, ...]
+    shown: tuple[str, ...]
+
+    @property
+    def best(self) -> str:
+        """Name of the BRDF with the least cbrt loss."""
+        return next(iter(self.errors))
+
+    def document(self) -> Document:
+        """The errors and albedos, the measurement's first, and a row for each BRDF; the least error
+        by each loss is strong, and an albedo that is wrong is marked."""
+        table = np.array([[row[loss] for loss in self.shown] for row in self.errors.values()])
+        is_least = table == np.nanmin(np.vstack([table, np.full(len(self.shown), np.inf)]), axis=0)
+        kinds = np.where(is_least, STRONG, "").tolist()
+        hints = [losses[loss].meaning for loss in self.shown]
+        measured = "measured", *"-" * len(hints), *map(albedo_cell, self.measured_albedo)
+        rows = tuple(
+            (
+                Cell(name),
+                *map(Cell, map(format_error, errors), kind, hints),
+                *map(albedo_cell, self.albedos[name], self.measured_albedo),
+            )
+            for name, errors, kind in zip(self.errors, table, kinds, strict=True)
+        )
+        angles = [f"{angle:g}°" for angle in ANGLES]
+        columns = ("", *(f">{name}" for name in (*self.shown, *angles)))
+        title = f"{self.material}: errors by loss, and albedo at {', '.join(angles)}"
+        return Document(title, (Table((measured, *rows), columns),))
+
+
+def told(*minimised):
+    """The names of the losses by which the errors of fits are told, in the order of `losses`.
+
+    >>> told("relative")
+    ['cosine', 'log', 'cbrt', 'plain', 'relative']
+    """
+    return [name for name in losses.by_sample if name in {*USUAL, *minimised}]
+
+
+def format_error(error):
+    """An error as text; a dash for nan."""
+    return "-" if math.isnan(error) else f"{error:.5f}"
+
+
+def compare(
+    data: MaterialLike,
+    things: MaterialLike | Iterable[MaterialLike],
+    max_angle: float = 80.0,
+    spectral: bool = False,
+) -> Comparison:
+    """Compare fits, models or other materials to a measured one, by every loss and by their light.
+
+    Parameters
+    ----------
+    data : Measured, str or Path
+        The measured material, or the name or path of one.
+    things : Measured, Fit, Model, str, Path or dict, or several
+        What is compared to it; equal names are numbered.
+    max_angle : float, default 80
+        Samples with an angle to the normal at or beyond it [degrees, above 0 to 90] are left out,
+        as in `fit`.
+    spectral : bool, default False
+        Whether to compare at the measured wavelengths, which `things` should have, too, or else in
+        linear sRGB.
+
+    Returns
+    -------
+    Comparison
+        The errors, in the order of the cbrt loss, the best first, and the albedos; prints as a
+        table.
+
+    Raises
+    ------
+    BrdfkitError
+        Where `data` was not measured, one of `things` is no material or has other channels, or no
+        sample is left.
+
+    Examples
+    --------
+    >>> print(compare("car_paint", ["ward", fit("ggx", "car_paint")]))    # doctest: +SKIP
+    """
+    data, found = measured_material(data), materials(things)
+    samples = select_samples(data, max_angle, spectral=spectral)
+    light = (data if spectral else data.rgb).albedo
+    pixels = albedo_pixels(ANGLES, FOUR if data.anisotropic else ONE)
+    errors: dict[str, dict[str, float]] = {}
+    albedos: dict[str, tuple[float, ...]] = {}
+    for thing in found:
+        name, brdf = make_unique(thing.name, errors), thing if spectral else _in_rgb(thing)
+        values = _evaluate(brdf, data, samples)
+        errors[name] = {loss: _error(losses[loss], values, samples) for loss in losses.by_sample}
+        albedos[name] = _reflect(brdf, pixels)
+    errors = dict(sorted(errors.items(), key=lambda item: item[1][DEFAULT]))
+    shown = told(*(thing.loss_name for thing in found if isinstance(thing, Fit)))
+    return Comparison(data.name, errors, albedos, light.means, tuple(shown))
+
+
+def _in_rgb(thing):
+    """A material in linear sRGB, or as it is where it has no other channels."""
+    return getattr(thing, "rgb", thing)
+
+
+def _reflect(brdf, pixels):
+    """The mean albedos at `ANGLES` of a BRDF, by the quadrature of `pixels`."""
+    if isinstance(brdf, Measured):
+        return brdf.albedo.means
+    return tuple(pixels.look(brdf.eval).mean(axis=1).tolist())
+
+
+def _evaluate(brdf, data, samples):
+    """The values (n, channels) of a BRDF at `Samples` of a `Measured`."""
+    values = brdf.eval(samples.wi, samples.wo)
+    if values.shape[1] not in (1, samples.values.shape[1]):
+        raise BrdfkitError(
+            f"{brdf.name} has {values.shape[1]} channels and {data.name} "
+            f"{samples.values.shape[1]}; compare what has the same ones."
+        )
+    return np.broadcast_to(values, samples.values.shape)
+
+
+def _error(loss, values, samples):
+    """E of a `Loss` for `values` (n, channels) at `Samples`; nan where it weighs none of them."""
+    importance = loss.importance(samples)
+    return math.sqrt(importance @ squares(loss, values, samples)) if importance.any() else math.nan

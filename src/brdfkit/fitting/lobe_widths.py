@@ -1,0 +1,80 @@
+"""Which lobes are narrower than the samples tell, and which parameters they have."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from brdfkit.core.geometry.directions import cos_theta_h, from_half_difference
+from brdfkit.model import Model
+from brdfkit.model.evaluation import lobe_values, weight_matrix
+from brdfkit.model.samples import Samples
+
+# Half angles at which a lobe is evaluated [rad], at this difference angle
+HALF_ANGLES = np.concatenate([[0.0], np.geomspace(1e-5, 1.2, 400)])
+THETA_D = np.radians(20)
+# Half angles nearer than this are one [degrees]: a goniometer's angles are rounded
+SAME = 0.01
+# So many samples nearest to the mirror direction are looked at
+NEAREST = 1_000
+
+
+def notes_on_widths(samples: Samples, fitted: Model) -> dict[str, str]:
+    """A sentence on each lobe of a model with values whose highlight lies between the `Samples`, by
+    the parameter that makes it so narrow."""
+    widths = [n for n in fitted.shapes(anisotropic=True) if width_power(fitted, n)]
+    step = half_angle_step(samples) if widths else 0.0
+    notes = {}
+    for k, half_width in enumerate(half_widths(fitted) if step else ()):
+        own = [n for n in widths if half_width < step / 2 and k in lobes_of(fitted, n)]
+        if not own or not weight_matrix(fitted)[k].any():
+            continue
+        name = min(own, key=lambda n: getattr(fitted, n) ** width_power(fitted, n))
+        notes[name] = (
+            f"{name} = {getattr(fitted, name):.3g} makes a lobe of the half width "
+            f"{half_width:.2g}°, where the half vectors of the samples are {step:.2g}° apart: its "
+            "width is a guess; measure nearer to the mirror direction, or fix it"
+        )
+    return notes
+
+
+def width_power(model: Model, name: str) -> float:
+    """p in: lobe width ∝ parameter^p, of a shape parameter; 0 for one that is no width."""
+    parameter = model.parameters[name]
+    return model.parameters[parameter.follows or name].width
+
+
+def half_angle_step(samples: Samples) -> float:
+    """The second smallest half angle theta_h of `Samples` [degrees]: below it lies at most one, and
+    no width of a highlight can be told."""
+    cosine = cos_theta_h(samples.wi, samples.wo)
+    few = np.partition(cosine, -NEAREST)[-NEAREST:] if len(cosine) > NEAREST else cosine
+    different = np.unique(np.round(np.degrees(np.arccos(np.minimum(few, 1))) / SAME)) * SAME
+    return float(different[min(1, len(different) - 1)])
+
+
+def half_widths(model: Model) -> NDArray[np.float64]:
+    """The half width at half maximum (lobes,) of every lobe over theta_h [degrees], along the
+    narrower axis; infinite where it does not peak in the mirror direction."""
+    found = []
+    for phi_h in (0.0, np.pi / 2):
+        wi, wo = from_half_difference(HALF_ANGLES, THETA_D, np.pi / 2, phi_h)
+        above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
+        values = lobe_values(model, wi[above], wo[above])[0]
+        low = values < values[0] / 2
+        half = np.degrees(HALF_ANGLES[above][low.argmax(axis=0)])
+        peaked = low.any(axis=0) & (values.max(axis=0) <= values[0] * (1 + 1e-9))
+        found.append(np.where(peaked, half, np.inf))
+    return np.minimum(*found)
+
+
+def lobes_of(model: Model, name: str) -> NDArray[np.intp]:
+    """The numbers of the lobes that the shape parameter `name` of a model with values changes."""
+    low, high = model.parameters[name].bounds
+    value = getattr(model, name)
+    other = value + 0.05 * ((high if value < (low + high) / 2 else low) - value)
+    wi, wo = from_half_difference(HALF_ANGLES, THETA_D, 1.0, 0.5)
+    above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
+    before, after = (
+        np.concatenate(lobe_values(m, wi[above], wo[above]))
+        for m in (model, model.changed(**{name: other}))
+    )
+    return np.flatnonzero((np.abs(after - before) > 1e-9 * np.abs(before)).any(axis=0))

@@ -1,0 +1,77 @@
+"""How a fit looks beside the measured material: its picture, and its colour at grazing angles.
+
+Measurements end some degrees above the horizon, where a fit goes on by its formula. There light is
+reflected at the surface more and more, without a colour: what is seen lies between a colour of the
+material and grey, in the eye's measure. A fit that is elsewhere has a coloured rim.
+"""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from brdfkit.core.colours import LUMINANCE, to_srgb
+from brdfkit.images.ball import LIGHTS, draw_pixels
+from brdfkit.images.errors.colour_difference import ciede2000
+from brdfkit.images.errors.psnr import peak
+from brdfkit.materials.measured import Measured
+from brdfkit.model.samples import Samples
+from brdfkit.regression.light import ONE, albedo_pixels
+
+Array = NDArray[np.float64]
+Brdf = Callable[[Array, Array], Array]  # (wi, wo) → (n, channels)
+
+# Angles of incidence of the material's colours, as far as it was measured; and of a fit's that is
+# compared to them [degrees]
+ANGLES, GRAZING = (15.0, 30.0, 45.0, 60.0, 75.0), 85.0
+# Of each pixel, by the light and as many by the material: more of them tell models apart no better
+DIRECTIONS = 16
+# So far from all mixtures with grey, of so many for each colour, a colour is another [ΔE2000]: fits
+# that look right have up to 3.9, those with a coloured rim 5.8 to 18
+OTHER, MIXTURES = 5.0, 21
+DARKEST = 1 / 255  # the least brightness of a picture, where a material is black
+GAIN = 1.05  # times the light that arrives: fits of bright metals, whose measurements reach 1
+
+
+class Appearance:
+    """What fits are held to: the pixels of a measured material, drawn once, and its colours.
+
+    `data`: the `Measured`; `samples`: those of it that are fitted; directions at or beyond
+    `max_angle` [degrees] to the normal are not in the picture. `seed`: not that of the pixels to
+    which a `Picture` fits.
+    """
+
+    def __init__(self, data: Measured, samples: Samples, max_angle: float, seed: int):
+        brdf = data.rgb.eval
+        self.pixels = draw_pixels(tuple(LIGHTS), brdf, max_angle, seed, directions=DIRECTIONS)
+        self.azimuths = (0.0, np.pi / 2) if data.anisotropic else ONE
+        end = samples.largest_angle
+        angles = [angle for angle in ANGLES if angle <= end] or [end]
+        self.albedos = albedo_pixels(tuple(angles), self.azimuths).look(brdf)
+
+    def picture_error(self, brdf: Brdf) -> float:
+        """RMS difference of the pixels of a BRDF from the measured ones, by sRGB's curve from 0 to
+        1, over the brightest of the measured ones."""
+        pixels, shown = self.pixels, to_srgb(self.pixels.values)
+        apart = to_srgb(np.nan_to_num(pixels.look(brdf))) - shown
+        error = math.sqrt(np.average((apart**2).mean(axis=1), weights=pixels.weights))
+        return error / max(peak(shown[None]), DARKEST)
+
+    def find_doubt(self, brdf: Brdf) -> str:
+        """A clause on what a BRDF does at 85° that the material hardly does; or nothing."""
+        (albedo,) = albedo_pixels((GRAZING,), self.azimuths).look(brdf)
+        if (albedo > GAIN * np.maximum(self.albedos.max(axis=0), 1)).any():
+            return f"more light is reflected at {GRAZING:g}° than arrives"
+        if len(albedo) == 3 and self._difference(albedo) > OTHER:
+            return f"the colour at {GRAZING:g}° is not the material's"
+        return ""
+
+    def _difference(self, colour: Array) -> float:
+        """ΔE2000 of a colour (3,) from the nearest mixture of one of the material's with grey."""
+        luminance = colour @ LUMINANCE
+        own = np.maximum(self.albedos, 0)
+        own = own / np.maximum(own @ LUMINANCE, 1e-9)[:, None]
+        grey = np.linspace(0, 1, MIXTURES)[:, None, None]
+        mixtures = luminance * ((1 - grey) * own + grey)
+        return float(ciede2000(mixtures, colour).min())

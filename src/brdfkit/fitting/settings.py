@@ -1,0 +1,45 @@
+"""Checks the settings of a fit: what is wrong with them for any model and any material."""
+
+from brdfkit.core.arguments import to_dictionary, to_pair, to_whole_number
+from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.materials.measured.selection import require_max_angle
+from brdfkit.regression import as_loss
+from brdfkit.regression.robust.reweighting import WEIGHTS
+from brdfkit.regression.solvers.settings import require_suitable, to_constraints, to_solver
+
+
+def to_settings(settings, where):
+    """The settings of a fit by name, checked, in the types that a fit takes; see `check_settings`
+    of `brdfkit.fitting.fit`."""
+    settings = dict(settings)
+    loss, robust = settings["loss"], settings["robust"]
+    if not isinstance(loss, str):
+        raise BrdfkitError(
+            f"loss = {loss!r} is no name; where other processes fit, it should be one of "
+            "brdfkit.losses."
+        )
+    as_loss(loss)
+    if robust not in (None, *WEIGHTS):
+        raise no_such("robust weight", robust, WEIGHTS)
+    settings["solver"] = to_solver(settings["solver"])
+    settings["constraints"] = to_constraints(settings["constraints"])
+    require_suitable(settings["solver"], settings["constraints"], robust)
+    if settings["starts"] is not None:
+        settings["starts"] = to_whole_number("starts", settings["starts"], least=1)
+    settings["seed"] = to_whole_number("seed", settings["seed"], least=0)
+    bounds = to_dictionary("bounds", settings["bounds"])
+    settings["bounds"] = {n: to_pair(f"{where}the bounds of {n}", v) for n, v in bounds.items()}
+    settings["fixed"] = to_dictionary("fixed", settings["fixed"])
+    require_max_angle(settings["max_angle"])
+    return settings
+
+
+def require_plain(**given):
+    """Raise `BrdfkitError` for arguments that look at samples or wavelengths one by one, many of
+    which a picture shows in one pixel."""
+    for name, value in given.items():
+        if value is not None and value is not False:
+            raise BrdfkitError(
+                f"{name} looks at samples one by one, and the loss picture at pixels, which mix "
+                f"many; leave {name} out, or choose another loss."
+            )

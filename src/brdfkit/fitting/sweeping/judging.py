@@ -1,0 +1,57 @@
+"""Judges the fits to a material where they were not fitted, and by a picture."""
+
+import math
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.fitting.ranking.appearance import Appearance
+from brdfkit.fitting.ranking.cross_validation import errors_held_out
+from brdfkit.fitting.ranking.held_out import HeldOut
+from brdfkit.fitting.ranking.ranked import to_decibels
+from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.selection import select_samples
+from brdfkit.regression import Fit, Picture, as_loss
+
+FOLDS = 5
+# Settings of a sweep's fit that its fits without a fold share; they begin where it ended
+SHARED = "robust", "solver", "constraints", "bounds", "fixed", "seed"
+
+
+class Judge:
+    """What tells how good the fits to a measured material are, beside their own error.
+
+    `settings`: all those of the fits, whose seed draws what is held out, too.
+    """
+
+    def __init__(self, data: Measured, settings: dict[str, Any]):
+        self.settings, self.anisotropic = settings, data.anisotropic
+        angle, seed = settings["max_angle"], settings["seed"]
+        samples = select_samples(data, angle, None, False, settings["spectral"])
+        self.appearance = Appearance(data, select_samples(data, angle), angle, seed + 1)
+        self.held_out, loss = None, as_loss(settings["loss"])
+        if not isinstance(loss, Picture):
+            rng = np.random.default_rng(seed)
+            with suppress(BrdfkitError):  # fewer blocks of directions than folds
+                self.held_out = HeldOut.draw(samples, loss, data.anisotropic, FOLDS, rng)
+
+    def error_of(self, fit: Fit) -> float:
+        """E of the fit's loss in directions that a fit did not see; nan under a `Picture`, and
+        where there are too few samples."""
+        if self.held_out is None:
+            return math.nan
+        how = {name: self.settings[name] for name in SHARED}
+        given = self.settings["anisotropic"]
+        how["anisotropic"] = self.anisotropic if given is None else given
+        model = type(fit.model)
+        first = {name: fit.values[name] for name in model.shapes(how["anisotropic"])}
+        try:
+            return math.sqrt(errors_held_out(model, self.held_out, first, how).sum())
+        except BrdfkitError:
+            return math.nan
+
+    def psnr_of(self, fit: Fit) -> float:
+        """The PSNR [dB] of a picture of a ball beside the measurement's, as `rank` tells it."""
+        return to_decibels(self.appearance.picture_error(fit.model.rgb.eval))

@@ -1,0 +1,128 @@
+"""`bootstrap`: how certain a fit's parameters are, by fits of samples that are drawn anew."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from numbers import Real
+
+import numpy as np
+from numpy.typing import NDArray
+
+from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.documents import Document, Paragraph, Shown, Table
+from brdfkit.core.documents.parts import SOFT
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.jit.threads import in_turn
+from brdfkit.fitting.refit import refit
+from brdfkit.materials.resolve import MaterialLike
+from brdfkit.regression import Fit
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Bootstrap(Shown):
+    """The values that fits of redrawn samples have; prints as a table.
+
+    Attributes
+    ----------
+    fit : Fit
+        The fit in question.
+    estimates : dict of str to ndarray
+        By parameter the values (count,) of all fits; of a weight (count, channels).
+    """
+
+    fit: Fit
+    estimates: dict[str, NDArray[np.float64]]
+
+    @property
+    def standard_errors(self) -> dict[str, NDArray[np.float64]]:
+        """The standard deviation of each estimate, a number or one per channel."""
+        return {name: values.std(axis=0, ddof=1) for name, values in self.estimates.items()}
+
+    def intervals(self, level: float = 0.95) -> dict[str, NDArray[np.float64]]:
+        """The percentiles (low, high) between which the share `level` of the estimates lies.
+
+        >>> bootstrap(fit("ward", "plaster"), "plaster").intervals(0.9)    # doctest: +SKIP
+        """
+        if not isinstance(level, Real) or not 0 < level < 1:
+            raise BrdfkitError(f"level = {level!r} should be a share, between 0 and 1.")
+        ends = [(1 - level) / 2, (1 + level) / 2]
+        return {
+            name: np.quantile(values, ends, axis=0).T for name, values in self.estimates.items()
+        }
+
+    def document(self) -> Document:
+        """The values, with standard errors and intervals."""
+        rows = []
+        intervals, errors = self.intervals(), self.standard_errors
+        for name, value in self.fit.values.items():
+            texts = [
+                f"{v:.6g} ± {e:.2g} ({low:.5g} to {high:.5g})"
+                for v, e, (low, high) in zip(
+                    np.atleast_1d(value),
+                    np.atleast_1d(errors[name]),
+                    np.reshape(intervals[name], (-1, 2)),
+                    strict=True,
+                )
+            ]
+            rows.append((name, "  ".join(texts)))
+        count = len(next(iter(self.estimates.values())))
+        title = f"{self.fit.name} fitted to {self.fit.data}: standard errors and 95 % intervals"
+        return Document(
+            title, (Table(tuple(rows)), Paragraph(f"of {count} fits to samples drawn anew", SOFT))
+        )
+
+
+@in_turn
+def bootstrap(
+    fit: Fit,
+    data: MaterialLike,
+    count: int = 200,
+    seed: int = 0,
+    progress: Callable[[int, int], object] | None = None,
+) -> Bootstrap:
+    """Standard errors and intervals of a fit by the bootstrap: no formula, only more fits.
+
+    As many samples are drawn as there are, some of them several times, with all their channels, and
+    fitted again from the end of the fit. [Efron & Tibshirani 1993]. It supposes, as the formulas of
+    `Fit.standard_errors`, that samples are independent, not that the model is nearly linear.
+
+    Parameters
+    ----------
+    fit : Fit
+        The fit, without ``weights`` or standard errors of the measurement.
+    data : Measured, str or Path
+        The material that was fitted, or the name or path of it.
+    count : int, default 200
+        How many fits, at least 2.
+    seed : int, default 0
+        Seed of what is drawn.
+    progress : callable, optional
+        Called with (fits done, fits in all).
+
+    Returns
+    -------
+    Bootstrap
+        The values of all fits; prints as a table.
+
+    Raises
+    ------
+    BrdfkitError
+        Where `data` was not measured or no sample is left, and for a fit by standard errors.
+
+    Examples
+    --------
+    >>> print(bootstrap(fit("ward", "plaster"), "plaster"))    # doctest: +SKIP
+    """
+    count, seed = to_whole_number("count", count, least=2), to_whole_number("seed", seed, least=0)
+    again = refit(fit, data)
+    problem, samples, rng = again.problem(), again.samples, np.random.default_rng(seed)
+    found = []
+    for number in range(1, count + 1):
+        times = np.bincount(rng.integers(len(samples.wi), size=len(samples.wi)))
+        (rows,) = np.nonzero(times)
+        drawn = samples.at(rows)
+        drawn = replace(drawn, weight=drawn.weight * times[rows])
+        *end, _ = again.descend(problem.on(drawn), fit.values, again.weights, rng)
+        found.append(again.values(*end))
+        if progress:
+            progress(number, count)
+    return Bootstrap(fit, {name: np.array([f[name] for f in found]) for name in found[0]})

@@ -1,0 +1,150 @@
+"""`prediction_error`: how far a linear model is from the truth, by noise and by bias."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.jit.threads import in_turn
+from brdfkit.fitting.refit import fitted_samples
+from brdfkit.materials.resolve import MaterialLike, material
+from brdfkit.model.evaluation import lobe_values
+from brdfkit.regression import Fit
+from brdfkit.regression.losses.loss import squares
+from brdfkit.regression.losses.named import as_loss
+from brdfkit.regression.refitting import Refit
+
+
+@dataclass(frozen=True, eq=False)
+class PredictionError:
+    """The expected error of a linear model's prediction at each fitted sample [Kurt 2007, eq. 7.8].
+
+    Attributes
+    ----------
+    variance : ndarray, shape (n, channels)
+        What noise brings, the variance z (Z'Z)⁻¹ z' σ² of the prediction [sr⁻²].
+    bias : ndarray, shape (n, channels)
+        What no repetition lessens, z (Z'Z)⁻¹ Z'η - η(z): the model lacks it [sr⁻¹].
+    """
+
+    variance: NDArray[np.float64]
+    bias: NDArray[np.float64]
+
+    @property
+    def mean_square(self) -> NDArray[np.float64]:
+        """The mean squared error (n, channels) in sr⁻²: variance + bias²."""
+        return self.variance + self.bias**2
+
+    @property
+    def largest(self) -> NDArray[np.float64]:
+        """δ_max, the largest squared bias of each channel [Kurt 2007, eq. 7.10] in sr⁻²."""
+        return (self.bias**2).max(axis=0)
+
+    def __str__(self) -> str:
+        noise, bias = (np.sqrt(np.mean(part)) for part in (self.variance, self.bias**2))
+        most = np.sqrt(self.largest.max())
+        return f"by noise {noise:.3g} sr⁻¹ (rms), by bias {bias:.3g} (rms), {most:.3g} at most"
+
+
+@in_turn
+def prediction_error(
+    fit: Fit,
+    data: MaterialLike,
+    truth: MaterialLike | None = None,
+    sigma: ArrayLike | None = None,
+) -> PredictionError:
+    """The expected error of a fit's prediction: variance and bias, at the samples fitted.
+
+    It is known where the fit is linear in the data: a model without searched shapes, as
+    ``koenderink`` and ``pca_polynomial``, a linear loss and no robust weight. A prediction that is
+    clamped at 0, or a weight on its bound, is not linear; here it counts as if it were.
+
+    Parameters
+    ----------
+    fit : Fit
+        The fit.
+    data : Measured, str or Path
+        The material that was fitted, or the name or path of it.
+    truth : Measured, Fit, Model, str or Path, optional
+        The true BRDF η. By default the measured values: then the bias is minus the residuals.
+    sigma : float or array_like, shape (channels,), optional
+        Standard deviation of the noise [sr⁻¹], equal at all samples. By default it follows from the
+        residuals.
+
+    Returns
+    -------
+    PredictionError
+        Variance and bias; prints as a line.
+
+    Raises
+    ------
+    BrdfkitError
+        For a fit that is not linear, and where `data` was not measured or `truth` is no material.
+
+    Examples
+    --------
+    >>> print(prediction_error(fit("koenderink", "plaster", "plain"), "plaster"))  # doctest: +SKIP
+    """
+    samples = fitted_samples(fit, data)
+    _require_linear(fit, samples)
+    # raises for weights, constraints and standard errors, not known here
+    Refit(fit, samples).require_least()
+    Z = lobe_values(fit.model, samples.wi, samples.wo)[0]
+    # (Z'WZ)⁻¹ Z'W, of the weights W of the loss
+    root = _root_weights(as_loss(fit.loss_name), samples)
+    solve = np.linalg.pinv(root[:, None] * Z) * root
+    values = samples.values if truth is None else material(truth).eval(samples.wi, samples.wo)
+    if values.shape != samples.values.shape:
+        raise BrdfkitError(
+            f"truth has {values.shape[1]} channels and the measurement {samples.values.shape[1]}; "
+            "give a truth with the same."
+        )
+    bias = Z @ (solve @ values) - values
+    if sigma is None:
+        left = Z @ (solve @ samples.values) - samples.values
+        sigma = np.sqrt((left**2).sum(axis=0) / max(len(Z) - Z.shape[1], 1))
+    sigma = _to_numbers(sigma, values.shape[1])
+    spread = ((Z @ (solve @ solve.T)) * Z).sum(axis=1, keepdims=True)
+    return PredictionError(spread * np.broadcast_to(sigma, values.shape[1:]) ** 2, bias)
+
+
+def _to_numbers(sigma, channels):
+    """`sigma` as an array, of one number or one for each channel."""
+    try:
+        numbers = np.asarray(sigma, float)
+    except (TypeError, ValueError):
+        numbers = np.array(np.nan)
+    if numbers.shape not in ((), (channels,)) or not np.all(np.isfinite(numbers)):
+        raise BrdfkitError(
+            f"sigma = {sigma!r} should be a number, or one for each of {channels} channels."
+        )
+    return numbers
+
+
+def _require_linear(fit, samples):
+    """Raise `BrdfkitError` unless the values of a fit are linear in the measured ones."""
+    model, settings = type(fit.model), fit.settings
+    given = {*model.determined(samples), *settings.get("fixed", ())}
+    sought = [name for name in model.shapes(settings.get("anisotropic")) if name not in given]
+    reason = None
+    if sought:
+        reason = f"it was searched for {', '.join(sought)}"
+    elif any(lobe.quadratic for lobe in fit.model.lobes()):
+        reason = "it holds squares of weights"
+    elif not as_loss(fit.loss_name).linear:
+        reason = f"the {fit.loss_name} loss is not linear"
+    elif settings.get("robust"):
+        reason = f"{settings['robust']} weighs samples by their values"
+    if reason:
+        raise BrdfkitError(
+            f"{fit.name}: its prediction is not linear in the data ({reason}); fit a linear model, "
+            "such as koenderink, by a linear loss, such as plain."
+        )
+
+
+def _root_weights(loss, samples):
+    """√W (n,) of a linear loss, whose squared differences are W (model - measured)²."""
+    ones = np.ones((len(samples.wi), 1))
+    black = replace(samples, values=0 * ones)
+    return np.sqrt(loss.importance(samples) * squares(loss, ones, black))

@@ -1,0 +1,137 @@
+"""`profile`: the loss over one parameter, the others being the best for each of its values."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.documents import Document, Picture, Shown
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.figures import to_png
+from brdfkit.core.jit.threads import in_turn
+from brdfkit.core.plots import Plot
+from brdfkit.fitting.refit import refit
+from brdfkit.materials.resolve import MaterialLike
+from brdfkit.regression import Fit
+from brdfkit.regression.profiling import curvature, follow
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Profile(Shown):
+    """The least loss at each value of a parameter; prints as a line.
+
+    Attributes
+    ----------
+    fit : Fit
+        The fit in question.
+    parameter : str
+        Name of the shape parameter.
+    values : ndarray, shape (points,)
+        Its values, that of the fit among them.
+    losses : ndarray, shape (points,)
+        The least E at each.
+    level : float
+        E up to which values are in the 95 % interval.
+    interval : tuple of float
+        Where E crosses the level (low, high), or a bound that it does not cross before.
+    """
+
+    fit: Fit
+    parameter: str
+    values: NDArray[np.float64]
+    losses: NDArray[np.float64]
+    level: float
+    interval: tuple[float, float]
+
+    @property
+    def value(self) -> float:
+        """The parameter's value in the fit."""
+        return float(np.ravel(self.fit.values[self.parameter])[0])
+
+    def plot(self) -> Figure:
+        """The loss over the parameter, with the level and the interval."""
+        figure = Plot(figsize=(5, 3.2), layout="constrained")
+        axes = figure.add_subplot(xlabel=self.parameter, ylabel=f"{self.fit.loss_name} loss")
+        axes.plot(self.values, self.losses, color="#0072b2")
+        axes.axhline(self.level, color="0.45", linestyle="--", linewidth=1)
+        axes.axvspan(*self.interval, color="#0072b2", alpha=0.15, linewidth=0)
+        axes.axvline(self.value, color="black", linewidth=1)
+        axes.set_title(f"{self.fit.name} fitted to {self.fit.data}: 95 % by the profile", size=10)
+        return figure
+
+    def document(self) -> Document:
+        """The value with its interval, and the plot."""
+        low, high = self.interval
+        line = f"{self.parameter} = {self.value:.6g}, 95 %: {low:.6g} to {high:.6g}, by its profile"
+        says = f"the {self.fit.loss_name} loss over {self.parameter}"
+        return Document(line, (Picture(lambda: to_png(self.plot()), says, 500),))
+
+
+@in_turn
+def profile(fit: Fit, data: MaterialLike, parameter: str, points: int = 25) -> Profile:
+    """The profile of the loss over a shape parameter, and the 95 % interval that it gives.
+
+    At each value of the parameter the loss is minimised over all others. The interval is where E²
+    is not above a level [Bates & Watts 1988]: that which the parabola of the same curvature reaches
+    at the ends of `Fit.intervals`. So it supposes of the noise what these do, and not that the
+    model is nearly linear.
+
+    Parameters
+    ----------
+    fit : Fit
+        The fit, without a robust weight, ``weights`` or standard errors of the measurement.
+    data : Measured, str or Path
+        The material that was fitted, or the name or path of it.
+    parameter : str
+        A shape parameter that was searched, as ``"alpha_u"``.
+    points : int, default 25
+        How many values of the parameter, at least 5.
+
+    Returns
+    -------
+    Profile
+        The losses and the interval; prints as a line, and plots.
+
+    Raises
+    ------
+    BrdfkitError
+        For a parameter that was not searched, a robust fit, one by standard errors or one that was
+        searched again for its light, where `data` was not measured, and where no number is left
+        beyond the parameters.
+
+    Examples
+    --------
+    >>> profile(fit("ward", "plaster"), "plaster", "alpha_u").interval    # doctest: +SKIP
+    (0.23, 0.25)
+    """
+    from scipy.special import stdtrit
+
+    points = to_whole_number("points", points, least=5)
+    again = refit(fit, data)
+    again.require_least()
+    space = again.problem().space
+    if parameter not in space.names:
+        raise BrdfkitError(
+            f"{fit.name}: {parameter} was not searched, so it has no profile; searched were "
+            f"{', '.join(space.names) or 'none'}."
+        )
+    freedom = fit.degrees_of_freedom or 0
+    if fit.settings.get("robust") or freedom < 1:
+        why = "is robust, and minimises no loss" if freedom >= 1 else "has no number to spare"
+        raise BrdfkitError(f"{fit.name}: the fit {why}, so it has no profile; try bootstrap.")
+    middle = fit.values[parameter]
+    k = space.names.index(parameter)
+    rise = curvature(again, parameter, float(space.low[k]), float(space.high[k]))
+    low, high = np.ravel(fit.intervals[parameter]).tolist()
+    if rise is None:  # on a bound, where no interval is known
+        level = fit.loss * np.sqrt(1 + stdtrit(freedom, 0.975) ** 2 / freedom)
+    else:
+        level = np.sqrt(fit.loss**2 + rise * ((high - low) / 2) ** 2)
+    (low, below), (high, above) = (
+        follow(again, parameter, middle, bound, level, points // 2)
+        for bound in (float(space.low[k]), float(space.high[k]))
+    )
+    values, losses = np.array(sorted([*below, (middle, fit.loss), *above])).T
+    return Profile(fit, parameter, values, losses, float(level), (low, high))

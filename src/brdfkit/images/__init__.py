@@ -1,0 +1,1 @@
+"""Pictures in memory: errors between them, tone mapping, and small pictures of materials."""

@@ -1,0 +1,106 @@
+"""The lights of pictures: the grey radiance that comes from each direction, by formulas.
+
+World: z up; the ball is seen from the south (-y). Pictures are exposed each for itself, so that
+only ratios within a light matter.
+"""
+
+from functools import cache
+
+import numpy as np
+
+from brdfkit.core.geometry.directions import from_angles
+
+# Cells of a tabulated light over the polar angle, and over the azimuth; points along a cell's side
+CELLS, POINTS = (96, 192), 4
+# The least density of a direction, as a share of the mean one
+FLOOR = 0.02
+
+
+def court(w):
+    """A court: bright sky above, walls that are darker the higher they are, and the ground."""
+    walls = np.where(w[:, 2] < 0, 0.3, 0.5 - 0.25 * w[:, 2])
+    return walls + 6 * (w[:, 2] > 0.75)
+
+
+def hall(w):
+    """A dim hall with seven small lamps."""
+    lamps = (  # azimuth and elevation [degrees], and radiance
+        ((180, 40), 500),
+        ((140, 30), 200),
+        ((230, 50), 500),
+        ((260, 15), 200),
+        ((100, 20), 500),
+        ((20, 60), 200),
+        ((320, 30), 500),
+    )
+    return 0.1 * (1 + np.maximum(w[:, 2], 0)) + sum(
+        radiance * _disc(w, *place, radius=1.2) for place, radiance in lamps
+    )
+
+
+def sky(w):
+    """A clear sky, brightest about a low sun that stands behind the ball to the right."""
+    sun = 56, 27
+    glow = 3 * np.exp(6 * (w @ _towards(*sun) - 1))
+    above = 0.25 + 0.5 * (1 - np.maximum(w[:, 2], 0)) ** 2 + glow + 150 * _disc(w, *sun, radius=2.5)
+    return np.where(w[:, 2] < 0, 0.25, above)
+
+
+def studio(w):
+    """A dim room with a softbox at the upper left in front, and a smaller one at the right."""
+    grey = np.where(w[:, 2] < 0, 0.15, 0.05 + 0.25 * w[:, 2])
+    softbox, other = (234, 38), (117, 13)
+    return grey + 3.3 * _disc(w, *softbox, radius=22) + 2 * _disc(w, *other, radius=12)
+
+
+LIGHTS = {light.__name__: light for light in (court, hall, sky, studio)}
+
+
+def _towards(azimuth, elevation):
+    """The unit vector (3,) to an `azimuth`, from north (+y) to east (+x), and `elevation`."""
+    return from_angles(np.radians(90 - elevation), np.radians(90 - azimuth))
+
+
+def _disc(w, azimuth, elevation, radius):
+    """1 where a direction is nearer than `radius` to the disc's centre, else 0; [degrees]."""
+    return 1.0 * (w @ _towards(azimuth, elevation) > np.cos(np.radians(radius)))
+
+
+class LightSampling:
+    """Draws directions by the radiance of a light, tabulated over polar angle and azimuth."""
+
+    def __init__(self, light):
+        heights, widths = CELLS
+        # Cells are even in polar angle, and uniform in the directions within
+        self.z = np.cos(np.arange(heights + 1) / heights * np.pi)
+        inside = (np.arange(POINTS) + 0.5) / POINTS
+        z = (self.z[:-1, None] + np.diff(self.z)[:, None] * inside).ravel()
+        phi = (np.arange(widths * POINTS) + 0.5) / (widths * POINTS) * 2 * np.pi
+        w = from_angles(np.arccos(z)[:, None], phi).reshape(-1, 3)
+        means = light(w).reshape(heights, POINTS, widths, POINTS).mean(axis=(1, 3))
+        areas = np.broadcast_to(-np.diff(self.z)[:, None] * 2 * np.pi / widths, CELLS)
+        masses = (means + FLOOR * np.average(means, weights=areas)) * areas
+        self.sums = np.cumsum(masses / masses.sum())
+        self.densities = masses / masses.sum() / areas
+
+    def sample(self, u):
+        """Directions (n, 3) for points `u` (n, 3) of the unit cube."""
+        heights, widths = CELLS
+        cell = np.minimum(np.searchsorted(self.sums, u[:, 0]), heights * widths - 1)
+        row, column = np.divmod(cell, widths)
+        z = self.z[row] + np.diff(self.z)[row] * u[:, 1]
+        return from_angles(np.arccos(z), (column + u[:, 2]) / widths * 2 * np.pi)
+
+    def pdf(self, w):
+        """Densities (n,) per solid angle of directions `w` (n, 3)."""
+        heights, widths = CELLS
+        row = np.arccos(np.clip(w[:, 2], -1, 1)) / np.pi * heights
+        column = np.arctan2(w[:, 1], w[:, 0]) / (2 * np.pi) % 1 * widths
+        cells = (x.astype(int).clip(0, n - 1) for x, n in zip((row, column), CELLS, strict=True))
+        return self.densities[tuple(cells)]
+
+
+@cache
+def sampling_of(name):
+    """The `LightSampling` of the light called `name`, made once."""
+    return LightSampling(LIGHTS[name])

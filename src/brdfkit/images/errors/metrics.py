@@ -1,0 +1,50 @@
+"""The metrics of pictures: what they are called, and which way is better."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from brdfkit.images.errors.colour_difference import ciede2000, delta_e_itp
+from brdfkit.images.errors.flip import flip
+from brdfkit.images.errors.psnr import psnr
+from brdfkit.images.errors.ssim import ssim
+
+
+@dataclass(frozen=True)
+class Metric:
+    """A metric: its column's `title`, the `function` (reference, picture, mask), the `digits` that
+    are shown, whether `more` is better, and the `package` that it needs, if any."""
+
+    title: str
+    function: Callable[[np.ndarray, np.ndarray, np.ndarray], float]
+    digits: int
+    more: bool = False
+    package: str = ""
+
+    def text(self, value):
+        """A value of the metric as text; a dash for nan."""
+        return "-" if np.isnan(value) else f"{value:.{self.digits}f}"
+
+    def exceeds(self, value, floor):
+        """Whether an error is more than the noise floor's; also where either is unknown."""
+        return not (value >= floor if self.more else value <= floor)
+
+
+def _percentile(differences, share):
+    """The metric that takes a percentile of per-pixel `differences`."""
+
+    def of(reference, picture, mask):
+        return float(np.percentile(differences(reference[mask], picture[mask]), share))
+
+    return of
+
+
+METRICS = {
+    "psnr": Metric("PSNR [dB]", psnr, 1, more=True),
+    "delta_e_2000": Metric("ΔE2000 [median]", _percentile(ciede2000, 50), 2),
+    "delta_e_2000_95": Metric("ΔE2000 [95 %]", _percentile(ciede2000, 95), 2),
+    "delta_e_itp_95": Metric("ΔE ITP [95 %]", _percentile(delta_e_itp, 95), 2),
+    "flip": Metric("FLIP", flip, 4, package="flip-evaluator"),
+    "ssim": Metric("SSIM", ssim, 4, more=True, package="scikit-image"),
+}

@@ -1,0 +1,108 @@
+"""What must hold of a `Capture`; what does not is one sentence."""
+
+import numpy as np
+
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.to_arrays import to_array
+from brdfkit.inverse.photographs.capture.pinhole import Pinhole, corners_of
+
+SMALLEST = 8  # pixels along the longer side of the sample
+
+
+def require_right(capture):
+    """Make arrays of what a `Capture` holds; raise `BrdfkitError` for what cannot be."""
+    _set(capture, "pictures", to_array("pictures", capture.pictures))
+    shape, count = capture.pictures.shape, len(np.atleast_1d(capture.pictures))
+    if len(shape) != 4 or shape[3] != 3 or not capture.pictures.size:
+        raise BrdfkitError(f"pictures: their shape {shape} should be (lights, height, width, 3).")
+    for name in ("positions", "intensities"):
+        _set(capture, name, to_array(name, getattr(capture, name), (count, 3)))
+    size = to_array("size", capture.size, (2,))
+    if not (size > 0).all():
+        raise BrdfkitError("size: the sample's width and height should be above 0 [m].")
+    _set(capture, "size", tuple(size.tolist()))
+    _set(capture, "names", tuple(map(str, capture.names)))
+    if len(capture.names) != count or len(set(capture.names)) != count:
+        raise BrdfkitError(f"names: there should be {count}, one for each picture, all different.")
+    if capture.lost is not None:
+        _set(capture, "lost", np.asarray(capture.lost, bool))
+        if capture.lost.shape != shape:
+            raise BrdfkitError(
+                f"lost: its shape {capture.lost.shape} should be that of the pictures, {shape}."
+            )
+    _require_pictures(capture)
+    _require_lights(capture)
+    _require_cameras(capture, count)
+
+
+def require_shown(capture, seen):
+    """Raise `BrdfkitError` unless each picture shows some of the sample in numbers that count."""
+    shown = (seen.weights * seen.irradiance > 0).any(axis=(1, 2))
+    shown &= capture.counted.any(axis=(1, 2, 3))
+    for name, is_shown in zip(capture.names, shown, strict=True):
+        if not is_shown:
+            raise BrdfkitError(
+                f"{name}: nothing of the sample counts in it, as all is clipped, lost, within a "
+                "pixel of the edge, or under a light that grazes; leave this picture out."
+            )
+
+
+def _set(capture, name, value):
+    object.__setattr__(capture, name, value)  # it is frozen
+
+
+def _require_pictures(capture):
+    for name, picture in zip(capture.names, capture.pictures, strict=True):
+        if not np.isfinite(picture).all():
+            bad = int((~np.isfinite(picture)).any(axis=2).sum())
+            raise BrdfkitError(f"{name}: {bad:,} of its pixels are not finite.")
+        if not picture.mean(dtype=float) > 0:
+            raise BrdfkitError(f"{name}: it is black; leave it out, or check its exposure.")
+
+
+def _require_lights(capture):
+    for name, position in zip(capture.names, capture.positions, strict=True):
+        if not position[2] > 0:
+            raise BrdfkitError(
+                f"{name}: its light is at z = {position[2]:g} m, behind the sample; z should be "
+                "above 0."
+            )
+    if (capture.intensities < 0).any() or not (capture.intensities > 0).any(axis=1).all():
+        raise BrdfkitError("intensities: each light needs one above 0, and none below.")
+
+
+def _require_cameras(capture, count):
+    given = capture.camera
+    if not isinstance(given, Pinhole | tuple | list) or not all(
+        isinstance(camera, Pinhole) for camera in capture.cameras
+    ):
+        raise BrdfkitError("camera: it should be a Pinhole, or a tuple of them.")
+    if len(capture.cameras) != count:
+        raise BrdfkitError(
+            f"camera: there are {len(capture.cameras)} for {count} pictures; give one for all, or "
+            "one for each."
+        )
+    for name, camera in zip(capture.names, capture.cameras, strict=True):
+        if not camera.origin[2] > 0:
+            raise BrdfkitError(
+                f"{name}: its camera is at z = {camera.origin[2]:g} m, behind the sample; z should "
+                "be above 0."
+            )
+        _require_seen(capture, name, camera)
+
+
+def _require_seen(capture, name, camera):
+    """Raise `BrdfkitError` unless the sample's corners are in the picture of a camera."""
+    width, height = capture.picture_size
+    places = camera.project(corners_of(capture.size), (width, height))
+    inside = (places >= -1) & (places <= np.array([width, height]) + 1)
+    if inside.all() and np.ptp(places, axis=0).max() < SMALLEST:
+        raise BrdfkitError(
+            f"{name}: the sample is smaller than {SMALLEST} pixels; check that its size and the "
+            "place of the camera are both in metres."
+        )
+    if not inside.all():
+        raise BrdfkitError(
+            f"{name}: its camera does not see all four corners of the sample; check its place, its "
+            "target, its fov, and the sample's width and height in metres."
+        )

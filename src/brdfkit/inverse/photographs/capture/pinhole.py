@@ -1,0 +1,122 @@
+"""A pinhole camera: where in its picture a point is seen."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.to_arrays import to_array
+
+NEAREST, FARTHEST = 1e-2, 1e4  # what Mitsuba shows, in heights of the camera above the sample
+PARALLEL = 1e-5  # the sine of an angle in which Mitsuba sees none
+
+
+@dataclass(frozen=True, eq=False)
+class Pinhole:
+    """A pinhole camera; no lens distorts its pictures.
+
+    Attributes
+    ----------
+    origin : ndarray, shape (3,)
+        Where it is [m].
+    target : ndarray, shape (3,)
+        Where it looks [m].
+    up : ndarray, shape (3,)
+        A direction that is up in its pictures.
+    fov : float
+        The angle across the width of its pictures, above 0, below 180 [degrees].
+
+    Raises
+    ------
+    BrdfkitError
+        For what are no three numbers, another fov, and a camera that looks along up.
+    """
+
+    origin: np.ndarray
+    target: np.ndarray
+    up: np.ndarray
+    fov: float
+
+    def __post_init__(self) -> None:
+        for name in ("origin", "target", "up"):
+            object.__setattr__(self, name, to_array(name, getattr(self, name), (3,)))
+        object.__setattr__(self, "fov", float(to_array("fov", self.fov, ())))
+        require_fov(self.fov)
+        away = self.target - self.origin
+        along = np.linalg.norm(away) * np.linalg.norm(self.up)
+        if not np.linalg.norm(np.cross(away, self.up)) > PARALLEL * along:
+            raise BrdfkitError("camera: it looks along up, or at where it is.")
+
+    @property
+    def axes(self):
+        """Unit vectors (right, up, forward) of the picture."""
+        forward = self.target - self.origin
+        forward = forward / np.linalg.norm(forward)
+        right = np.cross(forward, self.up)
+        right = right / np.linalg.norm(right)
+        return right, np.cross(right, forward), forward
+
+    def project(self, points, size):
+        """The places (n, 2) of `points` (n, 3) in a picture of `size` (width, height) [pixels]:
+        columns from its left, rows from its top edge; nan of points behind the camera."""
+        width, height = size
+        right, up, forward = self.axes
+        away = points - self.origin
+        depth = away @ forward
+        depth = np.where(depth > 0, depth, np.nan)
+        scale = width / 2 / np.tan(np.radians(self.fov) / 2)
+        column = width / 2 + scale * (away @ right) / depth
+        row = height / 2 - scale * (away @ up) / depth
+        return np.stack([column, row], axis=1)
+
+    def on_sample(self, size):
+        """Where the middle of each pixel of a picture of `size` (width, height) [pixels] is in the
+        plane z = 0, x and y (height, width, 2) [m]; inf where it looks beside."""
+        width, height = size
+        right, up, forward = self.axes
+        scale = 2 / width * np.tan(np.radians(self.fov) / 2)
+        column, row = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
+        across, down = scale * (column - width / 2), scale * (row - height / 2)
+        ray = forward + across[..., None] * right - down[..., None] * up
+        steps = np.where(ray[..., 2] < 0, -self.origin[2] / np.minimum(ray[..., 2], -1e-12), np.inf)
+        with np.errstate(invalid="ignore"):
+            return np.nan_to_num((self.origin + steps[..., None] * ray)[..., :2], nan=np.inf)
+
+    def clips(self):
+        """The depths [m] between which Mitsuba's sensor sees; by default not within 1 cm."""
+        height = abs(float(self.origin[2])) or 1.0
+        return {"near_clip": NEAREST * height, "far_clip": FARTHEST * height}
+
+    def scene_dict(self, size):
+        """The dictionary of Mitsuba's sensor of this camera."""
+        import mitsuba as mi
+
+        at = mi.ScalarTransform4f()
+        look = [list(map(float, v)) for v in (self.origin, self.target, self.up)]
+        return {
+            "type": "perspective",
+            "fov": float(self.fov),
+            "fov_axis": "x",
+            **self.clips(),
+            "to_world": at.look_at(*look),
+            "film": {
+                "type": "hdrfilm",
+                "width": int(size[0]),
+                "height": int(size[1]),
+                "pixel_format": "rgb",
+                "component_format": "float32",
+                "rfilter": {"type": "box"},
+            },
+        }
+
+
+def require_fov(fov):
+    """Raise `BrdfkitError` for what is no angle of a camera."""
+    if not 0 < fov < 180:
+        raise BrdfkitError(f"fov = {fov:g} should be between 0 and 180 degrees.")
+
+
+def corners_of(size):
+    """The corners (4, 3) of a sample of `size` [m], clockwise from the upper left."""
+    w, h = np.array(size) / 2
+    return np.array([[-w, h, 0], [w, h, 0], [w, -h, 0], [-w, -h, 0]])

@@ -1,0 +1,1 @@
+"""The numbers of each texel that `svbrdf` searches, and how they become light."""

@@ -1,0 +1,1 @@
+"""What `svbrdf` returns, and what it writes."""

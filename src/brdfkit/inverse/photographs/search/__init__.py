@@ -1,0 +1,1 @@
+"""Searches the maps that explain the photographs."""

@@ -1,0 +1,1 @@
+"""What `refine` minimises: parameters of a scene, its views and their targets."""

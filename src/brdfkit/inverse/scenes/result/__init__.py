@@ -1,0 +1,1 @@
+"""What `refine` returns, and what it says of how certain the numbers are."""

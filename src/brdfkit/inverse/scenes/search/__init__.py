@@ -1,0 +1,1 @@
+"""Searches the parameters of a scene: starts, steps and the look at the end."""

@@ -1,0 +1,96 @@
+"""Filtered maps in Mitsuba: the mean radiance over a lobe, by one trilinear look-up.
+
+`LobeMaps` and `Mips` are made of the light of all directions, as a function (n, 3) → (n, 3) and as
+its `picture`, and give its mean over a von Mises-Fisher lobe: `at(axis, kappa)`.
+"""
+
+import math
+
+import numpy as np
+
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.core.geometry.dual_paraboloid import to_disc
+from brdfkit.lighting.filtering import paraboloid_levels as levels
+from brdfkit.lighting.filtering.sphere_filter import azimuths, row_angles
+from brdfkit.mitsuba_bridge.arrays import Rows
+
+
+class FilteredMap:
+    """The `levels`, each of (2, side, side, 3), for any direction and number of a level."""
+
+    def __init__(self, levels):
+        sides = np.array([level.shape[1] for level in levels])
+        starts = np.cumsum(2 * sides**2) - 2 * sides**2
+        texels = np.concatenate([level.reshape(-1, 3) for level in levels])
+        # a fourth channel: a texel is then read in one piece
+        self.texels = Rows(np.pad(texels, ((0, 0), (0, 1))))
+        self.places = Rows(np.stack([starts, sides], axis=1))
+        self.count = len(levels)
+
+    def trilinear(self, direction, level):
+        """Radiance at a `level` between two whole numbers."""
+        import drjit as dr
+        import mitsuba as mi
+
+        level = dr.clip(level, 0, self.count - 1)
+        lower = dr.minimum(mi.UInt32(level), max(self.count - 2, 0))
+        upper = dr.minimum(lower + 1, self.count - 1)
+        values = (self.bilinear(direction, whole) for whole in (lower, upper))
+        return dr.lerp(*values, level - mi.Float(lower))
+
+    def bilinear(self, direction, level):
+        """Radiance at a whole `level`."""
+        import drjit as dr
+        import mitsuba as mi
+
+        place = self.places.at(level, mi.Vector2f)
+        start, side = mi.UInt32(place.x), place.y
+        s, t = to_disc(direction.x, direction.y, direction.z)
+        start += dr.select(direction.z < 0, mi.UInt32(side * side), 0)
+        x, y = ((c / levels.BORDER + 1) * (0.5 * side) - 0.5 for c in (s, t))
+        x0, y0 = dr.floor(x), dr.floor(y)
+        first, side = start + mi.UInt32(y0 * side + x0), mi.UInt32(side)
+        corners = (first, first + 1, first + side, first + side + 1)
+        a, b, c, d = (self.texels.at(corner, mi.Vector4f) for corner in corners)
+        value = dr.lerp(dr.lerp(a, b, x - x0), dr.lerp(c, d, x - x0), y - y0)
+        return mi.Color3f(value.x, value.y, value.z)
+
+
+class Mips(FilteredMap):
+    """The levels of graphics hardware, the level by the rule of [Ergun 2015, eq. 8.9]."""
+
+    def __init__(self, radiance, picture):
+        self.side = len(picture)
+        super().__init__(levels.mips(base(radiance, self.side)))
+
+    def at(self, axis, kappa):
+        return self.trilinear(axis, levels.mip_level(kappa, axis.z, self.side))
+
+
+class LobeMaps(FilteredMap):
+    """The map itself, and below it levels that are convolved with ever wider lobes."""
+
+    def __init__(self, radiance, picture):
+        self.sharpest = levels.sharpest(len(picture))
+        super().__init__([base(radiance, len(picture)), *levels.lobe_maps(picture, len(picture))])
+
+    def at(self, axis, kappa):
+        import drjit as dr
+
+        # Level 1 has the sharpest lobe, further ones wider by equal ratios. Level 0 has no width:
+        # before level 1, the variance 1/κ is interpolated
+        variance = self.sharpest / kappa
+        level = dr.select(variance < 1, variance, 1 + dr.log2(variance) / math.log2(levels.STEP))
+        return self.trilinear(axis, level)
+
+
+def base(radiance, side):
+    """The radiance (2, side, side, 3) in the directions of the texels."""
+    directions = levels.texel_directions(side)
+    return radiance(directions.reshape(-1, 3)).reshape(directions.shape)
+
+
+def picture(radiance, height):
+    """The radiance (height, 2 height, 3) by latitude and longitude, z up."""
+    theta, phi = np.meshgrid(row_angles(height), azimuths(2 * height), indexing="ij")
+    return radiance(from_angles(theta, phi).reshape(-1, 3)).reshape(height, 2 * height, 3)

@@ -1,0 +1,1 @@
+"""How emitters draw directions from an environment map."""

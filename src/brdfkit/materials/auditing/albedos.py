@@ -1,0 +1,104 @@
+"""The albedo of a material over the angle of incidence: of its lookup, and of its samples alone."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from brdfkit.core.geometry.directions import from_angles, to_angles
+from brdfkit.materials.measured.albedos import albedo_at
+
+DEGREES = np.arange(0, 90, 5)  # angles of incidence
+AZIMUTHS = 8  # azimuths of incidence of an anisotropic material
+LEAST_AREA = 0.75  # share of the disc of directions that samples must cover for their albedo
+
+
+@dataclass(frozen=True)
+class Albedo:
+    """Reflected over incident light, per angle of incidence and channel.
+
+    `theta_i`: angles of incidence [degrees], (n,); `values`: (n, channels), the mean over the
+    azimuth of incidence; `measured_to`: the largest measured angle of incidence [degrees], beyond
+    which the values are extrapolated; `brightest`: (n, channels), at the azimuth of incidence that
+    reflects most.
+    """
+
+    channels: tuple[str, ...]
+    theta_i: np.ndarray
+    values: np.ndarray
+    measured_to: float
+    brightest: np.ndarray
+
+
+def albedo(data, measured_to):
+    """The `Albedo` of a `Measured`, ∫ f cos θo dωo, whose largest measured θi is `measured_to`."""
+    azimuths = np.arange(AZIMUTHS) / AZIMUTHS * 2 * np.pi if data.anisotropic else (0.0,)
+    values = np.array(
+        [
+            [albedo_at(data, from_angles(theta, phi)) for phi in azimuths]
+            for theta in np.radians(DEGREES)
+        ]
+    )
+    return Albedo(data.channels, DEGREES, values.mean(axis=1), measured_to, values.max(axis=1))
+
+
+def albedo_of_samples(data):
+    """The `Albedo` of scattered samples alone, at the angles of incidence that have enough of them.
+
+    Directions are projected onto the unit disc (sin θo cos φo, sin θo sin φo), where an area is
+    cos θo dωo. There the BRDF is taken as linear between the samples, and as constant from the
+    outermost samples to the horizon. None for a table, for an anisotropic material, and where there
+    are too few samples.
+    """
+    if data.is_table or data.anisotropic:
+        return None
+    samples = data.samples.at(data.samples.valid)
+    degrees = np.degrees(to_angles(samples.wi)[0]).round(1)
+    found = {}
+    for angle in np.unique(degrees):
+        value = _integrate_over_disc(samples.at(degrees == angle))
+        if value is not None:
+            found[float(angle)] = value
+    if not found:
+        return None
+    values = np.array(list(found.values()))
+    return Albedo(data.channels, np.array(list(found)), values, max(found), values)
+
+
+def _integrate_over_disc(samples):
+    """∫ f over the unit disc (channels,), of samples at one incidence; None for too few."""
+    from scipy.spatial import ConvexHull, Delaunay
+
+    # too few where they lie on a line, or cover too little of the disc
+    places, values = _project_to_disc(samples)
+    if len(places) < 4 or np.linalg.matrix_rank(places - places[0], tol=1e-3) < 2:
+        return None
+    hull = ConvexHull(places)  # its volume is an area
+    if hull.volume < LEAST_AREA * np.pi:
+        return None
+
+    # the outermost samples once more at the horizon
+    outermost = places[hull.vertices]
+    rim = outermost / np.linalg.norm(outermost, axis=1, keepdims=True)
+    places = np.concatenate([places, rim])
+    values = np.concatenate([values, values[hull.vertices]])
+
+    # linear on triangles between the samples; the polygon's area is scaled to the disc's
+    corners = Delaunay(places).simplices
+    (ax, ay), (bx, by) = (places[corners[:, k]].T - places[corners[:, 0]].T for k in (1, 2))
+    area = np.abs(ax * by - ay * bx)
+    return area @ values[corners].mean(axis=1) * np.pi / area.sum()
+
+
+def _project_to_disc(samples):
+    """Places (n, 2) on the disc and values (n, channels) of the samples and their mirror images.
+
+    Samples at the same place are averaged.
+    """
+    radius = np.sin(to_angles(samples.wo)[0])
+    azimuth = to_angles(samples.wo)[1] - to_angles(samples.wi)[1]
+    x, y = radius * np.cos(azimuth), radius * np.sin(azimuth)
+    places = np.concatenate([np.stack([x, y], axis=1), np.stack([x, -y], axis=1)]).round(6)
+    places, same = np.unique(places, axis=0, return_inverse=True)
+    columns = np.concatenate([samples.values, samples.values]).T
+    sums = [np.bincount(same, column) for column in columns]
+    return places, np.stack(sums, axis=1) / np.bincount(same)[:, None]

@@ -1,0 +1,149 @@
+"""An `Audit` as a picture: a slice of the table, the lobes, the albedo."""
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from brdfkit.core.colours import RGB, luminance
+from brdfkit.core.plots import Plot
+from brdfkit.materials.auditing.report import percent
+from brdfkit.materials.measured.coverage import is_near
+from brdfkit.materials.measured.spectrum_to_rgb import rgb_or_mean
+from brdfkit.materials.plotting.lobe_plots import draw
+from brdfkit.materials.plotting.plane_of_incidence import usual_angles
+
+SIZE = 12.6, 6.8  # inches
+GREY = "0.45"  # legend entries that stand for all channels
+COLOURS = {"R": "#d55e00", "G": "#009e73", "B": "#0072b2"}  # of the channels; others are black
+TICKS = np.array([0, 1, 5, 10, 20, 40, 60, 90])  # degrees of theta_h
+MOST = 4  # an albedo of samples above so many times the looked-up albedo is out of range
+FAINT = 0.35  # opacity of cells that were not measured
+
+
+def picture(audit):
+    """The picture of an `Audit` as a matplotlib `Figure`."""
+    data = rgb_or_mean(audit.data)
+    figure = Plot(figsize=SIZE, layout="constrained")
+    figure.get_layout_engine().set(w_pad=0.1, h_pad=0.1)
+    above, below = figure.subfigures(2, 1, height_ratios=(1, 1.06))
+    _draw_title(figure, audit)
+    slice_axes, albedo_axes = above.subplots(1, 2, width_ratios=(1.25, 1))
+    _draw_slice(above, slice_axes, data)
+    _draw_albedo(albedo_axes, audit)
+    things = [data]
+    if not data.is_table:
+        things.append(SimpleNamespace(name="interpolated", eval=data.eval))
+    draw(below, things, usual_angles(things))
+    return figure
+
+
+def _draw_title(figure, audit):
+    how = "in valid cells" if audit.data.is_table else "measured"
+    covered = f"{percent(audit.coverage.measured)} of the direction pairs {how}"
+    text = f"{audit.name}: {audit.kind}, {audit.valid:,} valid, {covered}"
+    figure.suptitle(text.replace("$", r"\$"), fontsize=12)  # $ begins a formula
+
+
+def _draw_slice(figure, axes, data):
+    """Draw the luminance over theta_h and theta_d; hatched and faint where it was not measured."""
+    # the cells at phi_d ≈ 90°
+    table = data.table
+    across = int(np.argmin(np.abs(table.centres[-1] - np.pi / 2)))
+    cells = (0,) * table.anisotropic + (slice(None), slice(None), across)
+    values = luminance(table.filled_values[cells])
+    known = is_measured(data, table, cells)
+
+    # the picture; theta_h as in a table, by its square root
+    axes.patch.set(facecolor="0.92", hatch="////", edgecolor="0.75", linewidth=0)
+    norm = scale_of(values[known] if known.any() else values)
+    shown = axes.imshow(
+        np.maximum(values, 0.99 * norm.vmin).T,  # 0 gets the colour of values below the scale, too
+        norm=norm,
+        alpha=np.where(known, 1, FAINT).T,
+        extent=(0, 1, 0, 90),
+        origin="lower",
+        aspect="auto",
+        interpolation="nearest",
+    )
+    axes.set_xticks(np.sqrt(TICKS / 90), [f"{t}°" for t in TICKS])
+    axes.set_yticks(range(0, 91, 30), [f"{t}°" for t in range(0, 91, 30)])
+    axes.set_xlabel(r"$\theta_h$")
+    axes.set_ylabel(r"$\theta_d$")
+
+    # title and colour bar
+    phi_d = np.degrees(table.centres[-1][across])
+    hatched = "" if known.all() else "; hatched: not measured"
+    what = "luminance" if data.channels in (RGB, ("Y",)) else "mean"
+    axes.set_title(rf"{what} of the BRDF [sr⁻¹] at $\phi_d$ = {phi_d:.0f}°{hatched}", fontsize=10)
+    bar = figure.colorbar(shown, ax=axes, pad=0.02, extend="both")
+    bar.ax.yaxis.set_major_formatter("{x:g}")
+    if shown.norm.vmax < 10 * shown.norm.vmin:
+        bar.ax.yaxis.set_minor_formatter("{x:.2g}")
+
+
+def is_measured(data, table, cells):
+    """Which cells of a slice were measured, or are near a sample."""
+    if data.is_table:
+        return np.isfinite(table.values[cells]).all(axis=-1)
+    wi, wo = (w[cells].reshape(-1, 3) for w in table.directions())
+    return is_near(data, wi, wo).reshape(table.values[cells].shape[:-1])
+
+
+def scale_of(values):
+    """Matplotlib's logarithmic scale for `values`, without the outermost 1 % on either side."""
+    from matplotlib.colors import LogNorm
+
+    positive = values[values > 0]
+    if not positive.size:
+        return LogNorm(0.1, 1)
+    lowest, highest = np.percentile(positive, (1, 99))
+    return LogNorm(min(lowest, highest / 2), highest)
+
+
+def _draw_albedo(axes, audit):
+    """Draw the albedo over the angle of incidence: of the lookup, and of the samples alone."""
+    # lines of the lookup, dotted where it is extrapolated
+    albedo, samples = audit.albedo, audit.albedo_of_samples
+    measured = albedo.theta_i <= albedo.measured_to + 1
+    last = int(np.flatnonzero(measured)[-1])
+    for channel, values in zip(albedo.channels, albedo.values.T, strict=True):
+        style = {"color": COLOURS.get(channel, "black"), "linewidth": 1.8}
+        label = channel if len(albedo.channels) > 1 else None
+        axes.plot(albedo.theta_i[measured], values[measured], label=label, **style)
+        axes.plot(albedo.theta_i[last:], values[last:], linestyle=":", **style)
+    if not measured.all():
+        axes.plot([], ":", color=GREY, linewidth=1.8, label="extrapolated")
+
+    # circles of the samples
+    top = 1.12 * albedo.values.max() or 1.0
+    if samples:
+        top = max(top, 1.12 * min(samples.values.max(), MOST * albedo.values.max()))
+        _draw_sample_albedo(axes, samples, top)
+    if top > 0.9:
+        axes.axhline(1, color="0.6", linewidth=0.8, zorder=0)
+
+    axes.set(xlim=(0, 90), ylim=(0, top))
+    axes.set_xticks(range(0, 91, 15), [f"{t}°" for t in range(0, 91, 15)])
+    axes.set_xlabel(r"$\theta_i$")
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.set_title("albedo", fontsize=10)
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(loc="upper left", bbox_to_anchor=(1, 1), frameon=False, handlelength=1.2)
+
+
+def _draw_sample_albedo(axes, samples, top):
+    """Draw circles at the albedos of the samples, and triangles at the edge for those out of range.
+
+    The triangles of the channels stand side by side, as they may be out of range together.
+    """
+    beside = 2.0 * (np.arange(len(samples.channels)) - (len(samples.channels) - 1) / 2)  # degrees
+    for channel, values, aside in zip(samples.channels, samples.values.T, beside, strict=True):
+        style = {"linestyle": "", "color": COLOURS.get(channel, "black")}
+        for marker, shown in (("^", values > top), ("v", values < 0)):
+            edge = np.full(shown.sum(), (0.97 if marker == "^" else 0.03) * top)
+            axes.plot(samples.theta_i[shown] + aside, edge, marker=marker, **style)
+        inside = (values >= 0) & (values <= top)
+        axes.plot(samples.theta_i[inside], values[inside], marker="o", mfc="none", **style)
+    axes.plot([], "o", color=GREY, mfc="none", label="samples alone")
+    if np.any((samples.values > top) | (samples.values < 0)):
+        axes.plot([], "^", color=GREY, label="out of range")

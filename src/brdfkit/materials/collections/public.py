@@ -1,0 +1,154 @@
+"""Public collections of measurements: who published them, where, and their files.
+
+brdfkit ships none of these files. The index has their names, checksums and addresses; the files are
+in the user's cache folder, put there by `downloading.py` or by the user.
+"""
+
+import csv
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from brdfkit.core import index
+from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.files import sha256
+from brdfkit.materials import formats
+
+PART = ".part"  # suffix of a file whose download is not complete
+
+
+@dataclass(frozen=True)
+class Listed:
+    """A file of a collection.
+
+    `name`: for `brdfkit.load`, as ``merl/alum-bronze``; `bytes`, `sha256` and `url`: 0 or "" where
+    the index does not have them. After # in the URL stands the file's name in a zip archive.
+    """
+
+    name: str
+    file: str
+    bytes: int = 0
+    sha256: str = ""
+    url: str = ""
+
+    @property
+    def path(self):
+        """Its place in the cache folder."""
+        return cache() / self.name.partition("/")[0] / self.file
+
+
+@dataclass(frozen=True)
+class Collection:
+    """An entry of the index.
+
+    `licence` (a word) and `terms` (a sentence) are those of the owners; `page`: the web page of the
+    files; `note`: what to fetch together with a file; `files`: the `Listed` by name, empty where
+    the index lists none.
+    """
+
+    name: str
+    title: str
+    citation: str
+    licence: str
+    terms: str
+    page: str
+    note: str = ""
+    files: dict[str, Listed] = field(default_factory=dict, repr=False)
+
+    @property
+    def folder(self):
+        """The folder of its files in the user's cache folder."""
+        return cache() / self.name
+
+    def files_on_disk(self):
+        """The paths of the files in `folder` by the names of their materials; with files that the
+        user put there and the index does not list, without those of an unknown suffix."""
+        files = sorted(self.folder.iterdir()) if self.folder.is_dir() else []
+        return {
+            _material_name(self.name, f.name): f for f in files if f.is_file() and _is_material(f)
+        }
+
+    def by_hand(self, file=""):
+        """The end of an error: which file to fetch by hand, from where, and where to put it."""
+        note = f", {self.note}" if self.note else ""
+        return f"fetch {file or 'its file'} from {self.page} and put it into {self.folder}{note}"
+
+    def __str__(self):
+        return f"Terms: {self.terms}\nCite: {self.citation}\nPage: {self.page}"
+
+
+def collections():
+    """The public collections by name.
+
+    >>> collections()["merl"].files["merl/alum-bronze"].file
+    'alum-bronze.binary'
+    """
+    entries = index.entries()["collections"]
+    return {name: _make_collection(name, entry) for name, entry in entries.items()}
+
+
+def collection(name):
+    """The `Collection` of a name, ``merl``, or of a material in it, ``merl/alum-bronze``."""
+    first = name.partition("/")[0]
+    if first not in collections():
+        raise no_such("collection", first, collections(), where=name)
+    return collections()[first]
+
+
+def path(name):
+    """The path of a material's file in a collection, after its checksum was verified.
+
+    Raises `BrdfkitError`, which says how to get the file, where it is missing or was changed.
+    """
+    owner = collection(name)
+    listed = owner.files.get(name)
+    if listed is None:
+        if name in owner.files_on_disk():
+            return owner.files_on_disk()[name]
+        known = f"'brdfkit data list {owner.name}' names what is known, or " if owner.files else ""
+        raise BrdfkitError(f"{name}: is not here; {known}{owner.by_hand()}.")
+    remedy = f"run 'brdfkit data get {name}'" if listed.url else owner.by_hand(listed.file)
+    if not listed.path.is_file():
+        raise BrdfkitError(f"{name}: is not here; {remedy}.")
+    if listed.sha256 and sha256(listed.path) != listed.sha256:
+        raise BrdfkitError(
+            f"{listed.path}: is not the {name} that was published (its checksum differs); "
+            f"delete it and {remedy}."
+        )
+    return listed.path
+
+
+def cache():
+    """The user's cache folder, which has a folder for each collection."""
+    import pooch
+
+    return Path(pooch.os_cache("brdfkit"))
+
+
+def _is_material(file):
+    return formats.has_format(file) and not file.name.startswith(".")
+
+
+def _material_name(collection, file):
+    return f"{collection}/{file.partition('.')[0]}"
+
+
+def _make_collection(name, entry):
+    """The `Collection` of an `entry` of the index; its files are in the entry or in a table."""
+    rows, url = entry.pop("files"), entry.pop("url", "")
+    if isinstance(rows, str):
+        with (index.folder() / rows).open(encoding="utf-8", newline="") as stream:
+            rows = list(csv.DictReader(stream, delimiter="\t"))
+    listed = [_make_listed(name, url=row.get("url", url), row=row) for row in rows]
+    return Collection(name, **entry, files={found.name: found for found in listed})
+
+
+def _make_listed(collection, url, row):
+    """The `Listed` of a `row` of strings; `url` is a pattern with the row's columns in braces."""
+    file = row["file"]
+    return Listed(
+        name=_material_name(collection, file),
+        file=file,
+        bytes=int(row.get("bytes") or 0),
+        sha256=row.get("sha256", ""),
+        url=url.format(**row),
+    )

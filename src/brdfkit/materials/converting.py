@@ -1,0 +1,151 @@
+"""`convert`: writes a material in another file format, and finds out what that changed."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.materials.extrapolation import describe_extrapolation
+from brdfkit.materials.loading import save_and_read
+from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.tabulation import table_shape, tabulate
+from brdfkit.materials.resolve import Material, MaterialLike, material
+
+# Two materials are compared at this many direction pairs, up to this angle from the normal
+PAIRS, STEEPEST = 4000, np.radians(80)
+EQUAL = 5e-4  # relative difference: a smaller one would be printed as 0.0 %
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """The file that `convert` wrote, and what changed; prints as a line.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    changes : tuple of str
+        What it does not hold, or holds otherwise, in words.
+    """
+
+    path: Path
+    changes: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return f"{self.path} ({'; '.join(self.changes) or 'nothing lost'})"
+
+
+def convert(thing: MaterialLike, path: str | Path) -> Conversion:
+    """Write a material in another file format, and find out what that changed.
+
+    The file is read again and compared, so that no format need say what it leaves out. A model or a
+    fit is evaluated where a table would be.
+
+    Parameters
+    ----------
+    thing : Measured, Fit, Model, str, Path or dict
+        The material, or the name or path of one, or a BSDF's dictionary.
+    path : str or Path
+        The file to write; its suffix chooses the format.
+
+    Returns
+    -------
+    Conversion
+        The file's path, and its `changes` in words.
+
+    Raises
+    ------
+    BrdfkitError
+        For what is no material, and where the format cannot hold it: then nothing is written.
+
+    Examples
+    --------
+    >>> print(convert("cayman.brdf", "cayman.npz"))    # doctest: +SKIP
+    cayman.npz (nothing lost)
+    """
+    thing = material(thing)
+    if isinstance(thing, Measured):
+        back = save_and_read(thing, path)
+        changes = (*describe_extrapolation(thing, back), *list_changes(thing, back))
+        return Conversion(Path(path), changes)
+    data = evaluate_on_grid(thing)
+    note = f"{thing.name} evaluated at {len(data.values):,} direction pairs"
+    return Conversion(Path(path), (note, *list_changes(data, save_and_read(data, path))))
+
+
+def evaluate_on_grid(thing: Material) -> Measured:
+    """A fit or a model as a `Measured`, whose samples are the cells of a table, and whose lookup
+    between them is `thing` itself."""
+    model: Any = getattr(thing, "model", thing)
+    free = getattr(model, "free_values", {})
+    anisotropic = any(model.parameters[name].follows for name in free)
+    up = np.array([[0.0, 0.0, 1.0]])
+    channels = thing.eval(up, up).shape[1]
+    table = tabulate(thing.eval, channels, table_shape(anisotropic))
+    wi, wo = (w.reshape(-1, 3) for w in table.directions())
+    values = table.values.reshape(-1, channels)
+    above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
+    names = tuple(f"{nm:g}nm" for nm in getattr(model, "wavelengths", ()))
+    names = names or (("Y",) if channels == 1 else ("R", "G", "B"))
+    return Measured.from_samples(
+        wi[above],
+        wo[above],
+        values[above],
+        channels=names,
+        name=thing.name,
+        info={"model": repr(model)},
+        anisotropic=anisotropic,
+        lookup=thing.eval,
+    )
+
+
+def list_changes(before: Measured, after: Measured) -> tuple[str, ...]:
+    """The differences of `after` from `before`, and the notes that it lacks, in words."""
+    old, new = describe(before), describe(after)
+    changes = [f"{what} {old[what]} → {new[what]}" for what in old if old[what] != new[what]]
+    if difference := compare_lookups(before, after):
+        changes.append(f"between the samples: {difference}")
+    if lost := [key for key in before.info if key not in after.info]:
+        changes.append(f"without {', '.join(lost)}")
+    return tuple(changes)
+
+
+def compare_lookups(before: Measured, after: Measured) -> str:
+    """How far the values of `eval` are apart, in words; "" where they are equal."""
+    if not any(data.is_table or data.has_lookup for data in (before, after)):
+        return ""  # equal samples are interpolated equally
+    if before.channels != after.channels:
+        before, after = before.rgb, after.rgb
+    random = np.random.default_rng(0)
+    theta, phi = random.uniform(0, STEEPEST, (2, PAIRS)), random.uniform(0, 2 * np.pi, (2, PAIRS))
+    pairs = from_angles(theta, phi)
+    old, new = np.broadcast_arrays(before.eval(*pairs), after.eval(*pairs))
+    larger = np.maximum(old, new)
+    apart = np.divide(np.abs(new - old), larger, out=np.zeros(old.shape), where=larger > 0)
+    median, most = np.percentile(apart, (50, 95))
+    return f"{median:.1%} in the median, 95 of 100 within {most:.1%}" if most >= EQUAL else ""
+
+
+def describe(data: Measured) -> dict[str, str]:
+    """The contents of a measured material, without its notes, in words by topic."""
+    samples, channels, errors = data.samples, data.channels, data.standard_error
+    values = samples.values[samples.valid]
+    cosine = min(w[samples.valid, 2].min() for w in (samples.wi, samples.wo))
+    many = f"{len(channels)} wavelengths, {channels[0]} to {channels[-1]}"
+    kind = "×".join(map(str, data.table.shape)) + " table" if data.is_table else "samples"
+    return {
+        "kind": f"{kind}, anisotropic" if data.anisotropic else kind,
+        "channels": many if len(channels) > 5 else " ".join(channels),
+        "valid": f"{samples.valid.sum():,} of {len(samples.valid):,}",
+        "angles": f"to {np.degrees(np.arccos(cosine)):.1f}°",
+        "negative": f"{(values < 0).mean():.2%} of the values",
+        "BRDF": f"{values.min():.4g} to {values.max():.4g}, median {np.median(values):.4g} sr⁻¹",
+        "standard error": "none" if errors is None else _describe_errors(errors[samples.valid]),
+    }
+
+
+def _describe_errors(errors: NDArray[np.float64]) -> str:
+    return f"{np.median(errors):.3g} sr⁻¹ in the median"

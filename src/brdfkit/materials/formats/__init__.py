@@ -1,0 +1,97 @@
+"""The file formats: every file of this folder is one format and is found by itself.
+
+A format's file defines
+
+- ``NAME``: the name for people; ``SUFFIXES``: such as ``(".binary",)``;
+- ``sniff(head)``: whether the first 4 kB (bytes, decompressed) look like this format;
+- ``read(source)``: returns the content of a `Source` (`_source.py`), a `Measured` or a `Fit`;
+- ``write(obj, stream)``, if the format can be written: writes `obj` to a binary stream, or raises a
+  `BrdfkitError` that tells what the format cannot hold; `save` puts the path before the error;
+- ``MANY = True``, if one file holds many samples: ``source.sample`` names one of them.
+
+`_writing.py` and `_notes.py` have the functions that several formats share.
+"""
+
+import gzip
+import lzma
+from contextlib import contextmanager
+from functools import cache
+
+from brdfkit.core.discovery.modules import modules_in
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.files import COMPRESSED, GZIP
+from brdfkit.materials.formats._source import Source as Source
+from brdfkit.materials.formats._source import format_suffix
+
+HEAD = 4096  # bytes that a format's `sniff` sees
+
+
+@cache
+def formats():
+    """The format modules of this folder, in alphabetical order."""
+    return modules_in(__name__, __path__)
+
+
+def has_format(path):
+    """Whether the suffix of a `Path` is that of a format."""
+    return any(format_suffix(path) in module.SUFFIXES for module in formats())
+
+
+def write(obj, path, beside):
+    """Write `obj` in the format of the suffix of `path`, but to the file `beside` (both `Path`)."""
+    writers = [module for module in formats() if hasattr(module, "write")]
+    chosen = [module for module in writers if format_suffix(path) in module.SUFFIXES]
+    if not chosen:
+        raise BrdfkitError(
+            f"{path}: no format with this suffix; written are {_list_names(writers)}."
+        )
+    with _compressing(beside) as stream:
+        try:
+            chosen[0].write(obj, stream)
+        except BrdfkitError as error:
+            raise BrdfkitError(f"{path}: {error}") from error
+
+
+def read(source):
+    """The content of a `Source`, read by the format that recognises it."""
+    chosen = _recognise(source)
+    if source.sample is not None and not getattr(chosen, "MANY", False):
+        raise source.error(f"holds one material; leave '#{source.sample}' off the path")
+    return chosen.read(source)
+
+
+def _recognise(source):
+    """The format of a `Source`: by its content, or by its suffix where several formats, or none,
+    recognise the content."""
+    sniffed = [module for module in formats() if module.sniff(source.data[:HEAD])]
+    named = [m for m in sniffed or formats() if source.suffix in m.SUFFIXES]
+    # Two formats have the suffix .dat: only one of them holds many samples
+    named.sort(key=lambda m: getattr(m, "MANY", False) != (source.sample is not None))
+    if len(sniffed) == 1:
+        return sniffed[0]
+    if named:  # if none recognised the content, the format's reader tells what is wrong
+        return named[0]
+    if sniffed:
+        raise source.error(f"could be {_list_names(sniffed)}; rename it to one of these suffixes")
+    raise source.error(
+        f"is in no known format of materials; read are {_list_names(formats())}, each also as .gz "
+        "or .xz"
+    )
+
+
+def _list_names(modules):
+    return ", ".join(f"{module.NAME} ({' '.join(module.SUFFIXES)})" for module in modules)
+
+
+@contextmanager
+def _compressing(path):
+    """A binary stream into `path`, compressed if the suffix is; equal input gives equal bytes."""
+    with path.open("wb") as raw:
+        if path.suffix.lower() not in COMPRESSED:
+            yield raw
+        elif path.suffix.lower() == GZIP:
+            with gzip.GzipFile(filename="", mode="wb", fileobj=raw, mtime=0) as stream:
+                yield stream
+        else:
+            with lzma.open(raw, "wb", preset=1) as stream:
+                yield stream

@@ -1,0 +1,134 @@
+"""Text in columns under a line of their names, as spreadsheets write it: names and numbers.
+
+Tabs, semicolons, commas or blanks separate the columns; where it is not commas, numbers may have
+decimal commas, as they may in quotes.
+"""
+
+import csv
+import re
+from itertools import takewhile
+
+import numpy as np
+
+from brdfkit.materials.formats._source import Source
+from brdfkit.materials.measured.angles import DEGREES, RADIANS
+from brdfkit.materials.measured.column_names import PER_STERADIAN, are_columns, key_of_rows
+from brdfkit.materials.measured.long_form import channel_number
+
+DELIMITERS = "\t;,"  # the first of them in the line of names; blanks where there is none
+UNITS = {"", *DEGREES, *RADIANS, *PER_STERADIAN, "nm"}
+WHOLE = re.compile(r"[-+]?[0-9]*([eE][-+]?[0-9]+)?")
+MISSING = {"", "na", "n/a", "#n/a", "-"}  # what spreadsheets write where there is no number
+NUMERIC = re.compile(r"[-+0-9.,;eE\s]+")
+
+
+def find_delimiter(head):
+    """What separates the columns in the text that begins with the bytes `head`, by its line of
+    names: one of `DELIMITERS`, " ", or None where no line names samples of a BRDF."""
+    header, _ = _find_header(Source("head", None, head))
+    return None if header is None or not are_columns(split(header)) else _delimiter(header)
+
+
+def read_columns(source):
+    """The names of the columns, the numbers of the lines of the rows, and the columns (n,).
+
+    A column without a name is left out, and so are rows without numbers. An empty field is NaN.
+    Raises `BrdfkitError` for a row with other columns or with text among numbers.
+    """
+    header, rows = _find_header(source)
+    if header is None:
+        line = f"line {rows[0][0]} has numbers" if rows else "it has no line"
+        raise source.error(
+            f"{line} where the names of the columns belong; add them, as in "
+            "'theta_i,phi_i,theta_o,phi_o,BRDF'"
+        )
+    delimiter = _delimiter(header)
+    names = split(header)
+    names, rows = _take_units(names, rows, delimiter)
+    named = [k for k, name in enumerate(names) if name]  # the index that pandas writes has none
+    texts = [k for k in named if key_of_rows(names[k]) == "channel"]
+    lines, data, marks = [], [], {}
+    for n, line in rows:
+        fields = split(line, delimiter)
+        if not any(fields):  # spreadsheets end with rows of delimiters
+            continue
+        _refuse_split_numbers(source, n, fields, names, delimiter)
+        source.require_count(n, fields, len(names))
+        _require_one_mark(source, n, " ".join(fields), marks)
+        for k in texts:
+            fields[k] = str(channel_number(fields[k]))
+        lines.append(n)
+        data.append(source.parse_numbers(n, [_number(fields[k]) for k in named]))
+    if not lines:
+        raise source.error("has no rows behind the names of its columns; fetch the file again")
+    return [names[k] for k in named], lines, list(np.array(data).T)
+
+
+def split(line, delimiter=None):
+    """The fields of a line without blanks and quotes around them."""
+    delimiter = delimiter or _delimiter(line)
+    if delimiter == " ":
+        fields = line.split()
+    elif '"' in line:
+        fields = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))
+    else:
+        fields = line.split(delimiter)
+    return [field.strip(' \t"') for field in fields]
+
+
+def _find_header(source):
+    """The line of names, or None, and the lines behind it, as (number, text).
+
+    It is the first line that names samples, behind titles; else the first line, which is wrong; or,
+    where this has numbers, the last comment that names samples, as NumPy's `savetxt` writes it.
+    """
+    lines = source.whole_lines
+    texts = [line for _, line in takewhile(lambda row: not NUMERIC.fullmatch(row[1]), lines)]
+    if texts:
+        found = next((k for k, text in enumerate(texts) if are_columns(split(text))), 0)
+        return texts[found], lines[found + 1 :]
+    comments = [c for c in source.comments if are_columns(split(c))]
+    return (comments[-1] if comments else None), lines
+
+
+def _delimiter(header):
+    return next((mark for mark in DELIMITERS if mark in header), " ")
+
+
+def _take_units(names, rows, delimiter):
+    """The names with their units behind them, and the rows without that of the units, if any."""
+    units = split(rows[0][1], delimiter) if rows else []
+    if len(units) != len(names) or not any(units) or not UNITS.issuperset(map(str.lower, units)):
+        return names, rows
+    pairs = zip(names, units, strict=True)
+    return [f"{n} [{u}]" if u and n[-1:] not in ")]" else n for n, u in pairs], rows[1:]
+
+
+def _refuse_split_numbers(source, line, fields, names, delimiter):
+    """Raise `BrdfkitError` where decimal commas make two fields of a number."""
+    few = len(names)
+    many = max(count for count, field in enumerate(fields, 1) if field)
+    if delimiter == "," and few < many <= 2 * few and all(map(WHOLE.fullmatch, fields)):
+        raise source.error(
+            f"line {line} has {many} columns where {few} belong, probably because decimal commas "
+            "split numbers in two; save the file with semicolons between the columns, or with "
+            "decimal points"
+        )
+
+
+def _require_one_mark(source, line, text, marks):
+    """Raise `BrdfkitError` where numbers have points and commas: which are of thousands?
+
+    `text`: the fields of line number `line`; `marks`: the mark → the line that had it first.
+    """
+    marks |= {mark: line for mark in ",." if mark in text and mark not in marks}
+    if len(marks) == 2:
+        raise source.error(
+            f"line {marks[',']} has a comma and line {marks['.']} a point in a number; "
+            "write all numbers with one of them, without separators of thousands"
+        )
+
+
+def _number(text):
+    """The text of a number as Python reads it, NaN where nothing was measured."""
+    return "nan" if text.lower() in MISSING else text.replace(",", ".")

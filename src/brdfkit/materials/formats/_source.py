@@ -1,0 +1,184 @@
+"""`Source`: a file for a format's `read`: its bytes, lines and numbers, and errors that name it."""
+
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from brdfkit.core.colours import RGB
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.files import COMPRESSED, contents
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.materials.measured import Measured
+
+SPHERICAL = (np.pi / 2, 2 * np.pi, np.pi / 2, 2 * np.pi)  # limits of theta, phi, theta, phi
+ANGLE_TOLERANCE = 1e-3  # rad: files round 90° to 1.5708
+REMEDY = "mend the line or fetch the file again"
+
+
+@dataclass(frozen=True)
+class Source:
+    """A file to read.
+
+    `path`: for messages; `sample`: the text behind '#' in the path, or None; `data`: the file's
+    bytes, decompressed.
+
+    >>> Source(Path("paint/copper.astm.xz"), None, b"...").name
+    'copper'
+    """
+
+    path: Path
+    sample: str | None
+    data: bytes = field(repr=False)
+
+    @property
+    def suffix(self):
+        """The format's suffix in lower case, without .gz or .xz."""
+        return format_suffix(self.path)
+
+    @property
+    def name(self):
+        """The file's name without its suffixes."""
+        name = _strip_compression(self.path).name
+        return name[: -len(self.suffix)] if self.suffix else name
+
+    @cached_property
+    def lines(self):
+        """The lines that are neither blank nor a '#' comment, as (number from 1, text)."""
+        return [(n, line.strip()) for n, line in self.whole_lines]
+
+    @cached_property
+    def whole_lines(self):
+        """As `lines`, with the blanks and tabs at their ends."""
+        numbered = enumerate(self._text, 1)
+        return [(n, line) for n, line in numbered if line.strip()[:1] not in ("", "#")]
+
+    @cached_property
+    def comments(self):
+        """The texts of the '#' lines."""
+        stripped = (line.strip() for line in self._text)
+        return [line.strip("# ") for line in stripped if line.startswith("#")]
+
+    @property
+    def _text(self):
+        wide = self.data.startswith((BOM_UTF16_LE, BOM_UTF16_BE))  # "Unicode" of spreadsheets
+        text = self.data.decode("utf-16" if wide else "utf-8-sig", errors="replace")
+        return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+    def error(self, problem):
+        """A `BrdfkitError` that names this file; `problem`: what is wrong and what to do, without a
+        full stop."""
+        return BrdfkitError(f"{self.path}: {problem}.")
+
+    def open_sibling(self, name):
+        """The file `name` in the same folder, compressed or not, as a `Source`."""
+        for suffix in ("", *COMPRESSED):
+            path = self.path.with_name(name + suffix)
+            if path.exists():
+                return Source(path, None, contents(path))
+        raise self.error(f"needs {name} beside it; put the two in one folder")
+
+    def parse_numbers(self, line, fields, count=None):
+        """The texts `fields` of line number `line` as floats; there must be `count` of them, unless
+        it is None."""
+        if count is not None:
+            self.require_count(line, fields, count)
+        try:
+            return [_parse_number(text) for text in fields]
+        except ValueError:
+            wrong = next(text for text in fields if not _is_number(text))
+            raise self.error(
+                f"line {line} has {wrong[:40]!r} where a number belongs; {REMEDY}"
+            ) from None
+
+    def require_count(self, line, fields, count):
+        """Raise `BrdfkitError` unless line number `line` has `count` `fields`."""
+        if len(fields) != count:
+            raise self.error(
+                f"line {line} has {len(fields)} columns where {count} belong (cut short?); {REMEDY}"
+            )
+
+    def build_from_angles(self, lines, angles, values, **details):
+        """The `Measured` with `values` (n, channels) at `angles` (n, 4) [rad]: theta_i, phi_i,
+        theta_o, phi_o.
+
+        `lines` (n,): the numbers of the lines where they stand, for errors; `details`: see
+        `build_from_directions`.
+        """
+        angles = np.array(angles, float)
+        self.require_radians(lines, angles, SPHERICAL)
+        wi, wo = from_angles(*angles[:, :2].T), from_angles(*angles[:, 2:].T)
+        return self.build_from_directions(wi, wo, values, **details)
+
+    def build_from_directions(
+        self,
+        wi,
+        wo,
+        values,
+        valid=True,
+        channels=RGB,
+        name=None,
+        info=None,
+        standard_error=None,
+        **details,
+    ):
+        """`Measured.from_samples` with the file's name; a row with a value that is not finite is
+        marked as not measured."""
+        values = np.array(values, float)
+        finite = np.isfinite(values).all(axis=1)
+        if standard_error is not None:
+            finite &= np.isfinite(standard_error).all(axis=1)
+            details["standard_error"] = standard_error
+        info, name = dict(info or {}), name or self.name
+        if (lost := ~finite & valid).any():  # those that the reader did not mask have no note yet
+            info["not finite"] = f"{lost.sum():,} of {len(finite):,} rows, masked"
+        try:
+            return Measured.from_samples(
+                wi, wo, values, finite & valid, channels, name, info, **details
+            )
+        except BrdfkitError:
+            raise self.error(
+                "no row is a valid measurement (masked, not finite or at the horizon); "
+                "fetch the file again"
+            ) from None
+
+    def require_radians(self, lines, angles, limits):
+        """Raise `BrdfkitError` unless `angles` (n, k) [rad], without sign, are at most the `limits`
+        (k,)."""
+        limit = np.array(limits) + ANGLE_TOLERANCE
+        wrong = ~(np.abs(angles) <= limit)  # NaN is wrong, too
+        if wrong.any():
+            row, column = np.argwhere(wrong)[0]
+            raise self.error(
+                f"line {lines[row]} has the angle {angles[row, column]:g} where at most "
+                f"{limit[column]:.3f} rad belongs; convert degrees to radians or mend the line"
+            )
+
+
+def format_suffix(path):
+    """The suffix of the format in lower case, without .gz or .xz.
+
+    >>> format_suffix(Path("copper.astm.xz"))
+    '.astm'
+    """
+    return _strip_compression(path).suffix.lower()
+
+
+def _strip_compression(path):
+    return path.with_suffix("") if path.suffix.lower() in COMPRESSED else path
+
+
+def _parse_number(text):
+    if "_" in text:  # Python reads 1_0 as ten, but in a file it is damage
+        raise ValueError
+    return float(text)
+
+
+def _is_number(text):
+    try:
+        _parse_number(text)
+    except ValueError:
+        return False
+    return True

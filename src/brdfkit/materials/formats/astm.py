@@ -1,0 +1,153 @@
+"""ASTM E1392-like text, `.astm`: a header of keys up to VARS, then comma-separated rows.
+
+VARS names the columns: theta_i, phi_i, theta_s, phi_s [rad] and the channels [sr⁻¹], which are
+R, G, B, or wavelengths such as 465nm, or a single channel. The files of two instruments are known:
+
+- Cornell/Kodak: phi_i is 0; values may be negative and are kept.
+- Light Tec Mini-Diff V2: phi_i is 180°; VARS leaves out phi_s, though the rows have it; the
+  wavelengths 465, 525, 630 nm stand for B, G, R; beyond theta_s = 75° nothing was measured, and the
+  values there, on a straight line down to 0, are masked.
+
+In both, the mirror direction is at Δφ = 180°.
+"""
+
+import re
+
+import numpy as np
+
+from brdfkit.core.colours import RGB
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.materials.formats._notes import note_lone_point
+from brdfkit.materials.formats._writing import require_measured, sample_angles, write_rows
+
+NAME = "ASTM"
+SUFFIXES = (".astm",)
+
+ANGLES = ("theta_i", "phi_i", "theta_s", "phi_s")
+KNOWN = "R,G,B or wavelengths such as 550nm, or a single channel"
+MINI_DIFF = "Mini-Diff"
+MINI_DIFF_CHANNELS = ("630nm", "525nm", "465nm")  # as R, G, B
+MINI_DIFF_LIMIT = np.radians(75) + 1e-6
+
+
+def sniff(head):
+    """Whether a line of `head` begins with VARS."""
+    return re.search(rb"^VARS\s", head, re.MULTILINE) is not None
+
+
+def read(source):
+    """The samples as `Measured`, with the channels R, G, B, or those that VARS names.
+
+    Raises `BrdfkitError` when VARS is missing, the columns do not add up, NUM_POINTS does not
+    match the rows, or text stands among numbers.
+    """
+    # The header, and the names of the columns
+    header, vars_line, rows = _read_header(source)
+    lines = [n for n, _ in rows]
+    names, notes = _read_names(source, header["VARS"], vars_line, rows)
+    data = np.array([source.parse_numbers(n, line.split(","), len(names)) for n, line in rows])
+    named = tuple(name for name in names if name not in ANGLES)
+    known = _find_channels(named)
+    if known is None:
+        raise source.error(
+            f"line {vars_line} names the channels {', '.join(named)[:80]}, but {KNOWN} belong; "
+            "mend the line"
+        )
+    channels, columns, note = known
+    notes.update(note)
+
+    # The columns in our order
+    column = dict(zip(names, data.T, strict=True))
+    angles = np.stack([column[name] for name in ANGLES], axis=1)
+    values = np.stack([column[name] for name in columns], axis=1)
+    valid = np.ones(len(rows), bool)
+    if MINI_DIFF in header.get("SYSTEM_NAME", ""):
+        valid = angles[:, 2] <= MINI_DIFF_LIMIT
+        notes["masked"] = f"{(~valid).sum():,} rows beyond theta_s = 75°, not measured"
+    info = {"format": NAME, **header, **notes}
+    found = source.build_from_angles(
+        lines, angles, values, valid=valid, channels=channels, info=info
+    )
+    found.info.update(note_lone_point(found.samples))
+    return found
+
+
+def write(obj, stream):
+    """Write the valid samples of a `Measured`, in its own channels, to the last digit."""
+    obj = require_measured(obj, NAME)
+    if not _is_writable(obj.channels):
+        raise BrdfkitError(
+            f"the format {NAME} holds {KNOWN}, and {obj.name} has the channels "
+            f"{' '.join(obj.channels)[:80]}; choose another suffix, such as .npz."
+        )
+    samples, valid = obj.samples, obj.samples.valid
+    header = [
+        f"SAMPLE_NAME {' '.join(obj.name.split())}",
+        f"NUM_POINTS {valid.sum()}",
+        f"VARS {','.join((*ANGLES, *obj.channels))}",
+    ]
+    columns = [*sample_angles(samples.at(valid)), *samples.values[valid].T]
+    write_rows(stream, header, columns, ",")
+
+
+def _read_header(source):
+    """The values by key, the number of the line VARS, and the lines of the rows."""
+    header = {}
+    for at, (n, line) in enumerate(source.lines):
+        key, *value = line.split(maxsplit=1)
+        header[key] = "".join(value)
+        if key == "VARS":
+            rows = source.lines[at + 1 :]
+            _require_count(source, header.get("NUM_POINTS"), rows)
+            return header, n, rows
+    raise source.error(
+        f"has no line VARS that names its columns; add it, as in 'VARS {','.join((*ANGLES, *RGB))}'"
+    )
+
+
+def _require_count(source, announced, rows):
+    if not rows:
+        raise source.error("has no rows behind its header; fetch the file again")
+    if announced is not None and announced != str(len(rows)):
+        raise source.error(
+            f"NUM_POINTS announces {announced[:20]} rows, but {len(rows)} follow; "
+            "fetch the file again or mend the number"
+        )
+
+
+def _read_names(source, text, vars_line, rows):
+    """The names of the columns, and a note if phi_s had to be inserted."""
+    names = [name.strip() for name in text.split(",")]
+    notes = {}
+    more = len(rows[0][1].split(",")) - len(names)
+    if "phi_s" not in names and names[:3] == list(ANGLES[:3]) and more == 1:
+        names.insert(3, "phi_s")
+        notes["columns"] = "VARS leaves out phi_s, which is the fourth column"
+    if len(set(names)) != len(names) or not set(ANGLES) < set(names):
+        raise source.error(
+            f"line {vars_line} names the columns {repr(text)[:80]}, but {', '.join(ANGLES)} and at "
+            "least one channel belong, each once; mend the line"
+        )
+    return names, notes
+
+
+def _find_channels(columns):
+    """The names of the channels, the names of their columns, and a note if these differ; None for
+    columns that are no channels."""
+    if set(columns) == set(RGB):
+        return RGB, RGB, {}
+    if set(columns) == set(MINI_DIFF_CHANNELS):
+        note = f"R, G, B are the values at {', '.join(MINI_DIFF_CHANNELS)}"
+        return RGB, MINI_DIFF_CHANNELS, {"channels": note}
+    if all(re.fullmatch(r"\d+(\.\d+)?nm", name) for name in columns):
+        return columns, columns, {}
+    if len(columns) == 1:
+        return ("Y",), columns, {"channels": f"Y is the column {columns[0]}"}
+    return None
+
+
+def _is_writable(channels):
+    """Whether VARS can name `channels` so that `read` finds them."""
+    words = all(re.fullmatch(r"[^\s,]+", name) for name in channels)
+    distinct = len({*ANGLES, *channels}) == len(ANGLES) + len(channels)
+    return words and distinct and _find_channels(channels) is not None

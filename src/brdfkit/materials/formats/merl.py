@@ -1,0 +1,117 @@
+"""MERL BRDF database: `.binary` tables over half/difference angles.
+
+[Matusik et al. 2003]. Little-endian: three int32 (n_theta_h, n_theta_d, n_phi_d), then the planes
+R, G, B of float64. A cell that was not measured is negative. The phi_d cells span half the circle,
+as suffices for a reciprocal BRDF; if there are four times as many as theta_d cells, they span the
+full circle.
+"""
+
+import functools
+import struct
+
+import numpy as np
+
+from brdfkit.core.colours import RGB
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.materials.formats._writing import require_measured
+from brdfkit.materials.measured import Measured
+
+NAME = "MERL"
+SUFFIXES = (".binary",)
+
+HEADER = 12  # bytes
+SCALE = np.array([1.0, 1.15, 1.66]) / 1500  # sr⁻¹ per stored unit of R, G, B
+SHAPE = (90, 90, 180)  # of the database's tables
+MOST_CELLS = 4096  # along one axis
+NOT_MEASURED = -1.0
+
+
+def sniff(head):
+    """Whether `head` begins with the dimensions of a table, in either byte order."""
+    return len(head) >= HEADER and any(map(_is_plausible, _read_dimensions(head)))
+
+
+def read(source):
+    """The table as `Measured` with the channels R, G, B; NaN where a stored value is negative.
+
+    Raises `BrdfkitError` if header and size disagree, a value is not finite, or no cell is valid.
+    """
+    shape = _read_shape(source)
+    raw = np.frombuffer(source.data, "<f8", offset=HEADER).reshape(3, *shape)
+    wrong = [np.flatnonzero(~np.isfinite(plane)) + k * plane.size for k, plane in enumerate(raw)]
+    if wrong := [int(i) for plane in wrong for i in plane]:
+        raise source.error(
+            f"{len(wrong):,} values are not finite, the first at byte {HEADER + 8 * wrong[0]:,}; "
+            "a MERL table holds none, so fetch the file again"
+        )
+    # Before scaling: the stored sign decides
+    unknown = functools.reduce(np.logical_or, (plane < 0 for plane in raw))
+    if unknown.all():
+        raise source.error("every cell is marked as not measured; fetch the file again")
+    values = np.multiply(np.moveaxis(raw, 0, -1), SCALE, order="C")
+    values[unknown] = np.nan
+    info = {"format": NAME, "cells without a value": f"{unknown.sum():,} of {unknown.size:,}"}
+    return Measured.from_table(values, _phi_d_period(shape), RGB, source.name, info)
+
+
+def write(obj, stream):
+    """Write the table of a `Measured`, in linear sRGB; achromatic values are written to each plane.
+
+    Samples are interpolated to the database's 90×90×180 cells, which other programs require.
+    Negative values would mean "not measured" and are written as 0.
+    """
+    obj = require_measured(obj, NAME).rgb
+    table = obj.table if obj.is_table else obj.resampled(SHAPE)
+    if not _is_plausible(table.shape) or not np.isclose(
+        table.phi_d_period, _phi_d_period(table.shape)
+    ):
+        raise BrdfkitError(
+            f"a MERL table cannot say that {table.shape} cells span {table.phi_d_period:.3f} rad "
+            "of phi_d; resample to 2 or, for the full circle, 4 phi_d cells per theta_d cell."
+        )
+    unknown = ~np.isfinite(table.values).all(axis=-1, keepdims=True)
+    raw = np.where(unknown, NOT_MEASURED, np.maximum(table.values, 0) / SCALE)
+    stream.write(struct.pack("<3i", *table.shape))
+    stream.write(np.moveaxis(raw, -1, 0).astype("<f8").tobytes())
+
+
+def _read_shape(source):
+    """The shape of the table; `BrdfkitError` unless the header agrees with the size of the file."""
+    size = len(source.data)
+    if size < HEADER:
+        raise source.error(f"has {size} bytes, fewer than a MERL header; fetch the file again")
+    little, big = _read_dimensions(source.data)
+    if not _is_plausible(little):
+        if _is_plausible(big):
+            raise source.error(
+                f"is big-endian (its header reads {_format_shape(big)} so); swap the byte order to "
+                "little-endian"
+            )
+        raise source.error(
+            f"its header says {_format_shape(little)} cells where 1 to {MOST_CELLS} belong on each "
+            "axis; check that it is a MERL table"
+        )
+    expected = HEADER + 3 * 8 * int(np.prod(little))
+    if size != expected:
+        raise source.error(
+            f"is {'cut short' if size < expected else 'too long'}: {size:,} bytes where its "
+            f"header, {_format_shape(little)} cells, asks for {expected:,}; fetch the file again"
+        )
+    return little
+
+
+def _read_dimensions(data):
+    """The three integers of the header, as little-endian and as big-endian."""
+    return struct.unpack_from("<3i", data), struct.unpack_from(">3i", data)
+
+
+def _is_plausible(dimensions):
+    return all(1 <= n <= MOST_CELLS for n in dimensions)
+
+
+def _phi_d_period(shape):
+    return 2 * np.pi if shape[2] == 4 * shape[1] else np.pi
+
+
+def _format_shape(dimensions):
+    return "×".join(map(str, dimensions))

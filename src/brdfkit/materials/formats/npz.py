@@ -1,0 +1,170 @@
+"""brdfkit's own `.npz`: everything a `Measured` holds, to the last bit; `numpy.load` opens it.
+
+The first member is ``about``: JSON in UTF-8 with brdfkit's version, name, channels, info,
+anisotropic and phi_d_period. A table is the member ``table`` ([n_phi_h,] n_theta_h, n_theta_d,
+n_phi_d, channels); samples are the members ``wi``, ``wo`` (n, 3), ``values`` (n, channels) [sr⁻¹]
+and ``valid`` (n,). ``standard_error`` (n, channels) is there where it is known; for a table, n is
+the number of its cells.
+
+If a format interpolates between its samples in its own way, this is a function, which no file can
+hold. Its values at the centres of a table's cells are stored with the samples, as ``table``, and
+replace the function when the file is read: the samples keep their values, but the values between
+them are as fine as the table, and reciprocal.
+
+The members are not compressed, so that no small file can ask for much memory; ``.npz.xz`` is
+compressed as a whole.
+"""
+
+import io
+import json
+import math
+import re
+import struct
+import zipfile
+from dataclasses import replace
+
+import numpy as np
+
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.version import __version__
+from brdfkit.materials.formats._writing import require_measured
+from brdfkit.materials.measured import Measured
+
+NAME = "brdfkit"
+SUFFIXES = (".npz",)
+
+FIRST = "about"
+SAMPLES = ("wi", "wo", "values", "valid")
+MEMBERS = tuple(f"{name}.npy" for name in (FIRST, "table", *SAMPLES, "standard_error"))
+EPOCH = (1980, 1, 1, 0, 0, 0)  # a fixed date, so that equal content gives equal bytes
+REMEDY = "save it again or fetch it again"
+# The header that numpy.save writes for such arrays. We do not use numpy.load: it evaluates a header
+# as Python, and allocates the memory that the header claims before it checks the data.
+HEADER = re.compile(
+    rb"\x93NUMPY\x01\x00..\{'descr': '(<f4|<f8|\|b1|\|u1)', 'fortran_order': False, "
+    rb"'shape': \(((?:[0-9]{1,18}, ?){1,4}(?:[0-9]{1,18})?)\), \} *\n",
+    re.DOTALL,
+)
+
+
+def sniff(head):
+    """Whether `head` begins a zip archive whose first member is called about."""
+    return head.startswith(b"PK\x03\x04") and head[30:39] == b"about.npy"
+
+
+def read(source):
+    """The `Measured` that `write` wrote; the arrays may also be float32.
+
+    Raises `BrdfkitError` for an archive that is damaged or compressed inside, and for a member
+    that is missing or does not fit the others.
+    """
+    arrays = {
+        name: _parse_array(source, name, data) for name, data in _read_members(source).items()
+    }
+    try:
+        about = json.loads(arrays.pop(FIRST, np.empty(0)).tobytes())
+        return _build(about, arrays)
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        problem = f"lacks {error}" if isinstance(error, KeyError) else str(error)
+        raise source.error(
+            f"is no measured material that brdfkit saved ({problem[:120].strip('.')}); {REMEDY}"
+        ) from error
+
+
+def write(obj, stream):
+    """Write a `Measured`."""
+    obj = require_measured(obj, NAME, anisotropic=True)
+    about = {
+        "brdfkit": __version__,
+        "name": str(obj.name),
+        "channels": [str(channel) for channel in obj.channels],
+        "info": {str(key): str(note) for key, note in obj.info.items()},
+        "anisotropic": bool(obj.anisotropic),
+    }
+    arrays = {}
+    if obj.is_table or obj.has_lookup:
+        about["phi_d_period"] = float(obj.table.phi_d_period)
+        arrays["table"] = obj.table.values
+    if not obj.is_table:
+        arrays |= {name: getattr(obj.samples, name) for name in SAMPLES}
+    if obj.standard_error is not None:
+        arrays["standard_error"] = obj.standard_error
+    text = np.frombuffer(json.dumps(about).encode(), np.uint8)
+    stream.write(_pack({FIRST: text, **arrays}))
+
+
+def _build(about, arrays):
+    """The `Measured`; a `ValueError`, `KeyError` or the like if members are missing or disagree."""
+    details = {key: about[key] for key in ("name", "channels", "info")}
+    words = [about["name"], *about["channels"], *about["info"], *about["info"].values()]
+    if not all(isinstance(word, str) for word in words):
+        raise ValueError("a name, a channel or a note is no text")
+    errors = arrays.get("standard_error")
+    if "values" in arrays:
+        return _build_from_samples(about, arrays, details, errors)
+    if errors is not None:
+        errors = errors.reshape(arrays["table"].shape)
+    return Measured.from_table(
+        arrays["table"], float(about["phi_d_period"]), **details, standard_error=errors
+    )
+
+
+def _build_from_samples(about, arrays, details, errors):
+    """The `Measured` of the members of samples, with their directions to the last bit."""
+    wi, wo, values, valid = (arrays[name] for name in SAMPLES)
+    if not all(((np.abs(w) < 1 + 1e-6) | np.isnan(w)).all() for w in (wi, wo)):
+        raise ValueError("a direction is no unit vector")
+    lookup = None
+    if "table" in arrays:
+        lookup = Measured.from_table(arrays["table"], float(about["phi_d_period"]), **details).table
+    rest = {"anisotropic": about["anisotropic"] is True, "standard_error": errors}
+    found = Measured.from_samples(wi, wo, values, valid, **details, **rest, lookup=lookup)
+    samples = found.samples
+    for given, unit in ((wi, samples.wi), (wo, samples.wo)):
+        if not np.allclose(given[samples.valid], unit[samples.valid], atol=1e-6):
+            raise ValueError("a direction is no unit vector")
+    return replace(found, _samples=replace(samples, wi=wi, wo=wo))
+
+
+def _read_members(source):
+    """The bytes of the members by name."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
+            infos = [i for i in archive.infolist() if i.filename in MEMBERS]
+            if any(i.compress_type != zipfile.ZIP_STORED for i in infos):
+                raise source.error(
+                    "is compressed inside; save it with numpy.savez and compress it as a whole"
+                )
+            return {i.filename.removesuffix(".npy"): archive.read(i) for i in infos}
+    except BrdfkitError:
+        raise
+    # zipfile raises these for passwords, versions, names and numbers that it cannot read
+    except (zipfile.BadZipFile, RuntimeError, ValueError, EOFError, OSError, struct.error) as error:
+        raise source.error(f"is no whole zip archive ({str(error)[:100]}); {REMEDY}") from error
+
+
+def _parse_array(source, name, data):
+    """The array in the bytes of a member."""
+    header = HEADER.match(data)
+    shape = [int(n) for n in header[2].split(b",") if n.strip()] if header else []
+    dtype = np.dtype(header[1].decode()) if header else np.dtype(float)
+    if not header or 0 in shape or math.prod(shape) * dtype.itemsize != len(data) - header.end():
+        raise source.error(f"its member {name} is no whole array as brdfkit saves it; {REMEDY}")
+    array = np.frombuffer(data, dtype, offset=header.end()).reshape(shape)
+    if dtype.kind == "b":
+        return array.view(np.uint8) != 0
+    with np.errstate(invalid="ignore"):  # converting a signalling NaN warns
+        return array if dtype.kind == "u" else array.astype(float)
+
+
+def _pack(arrays):
+    """The bytes of a zip archive of the arrays; equal arrays give equal bytes."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
+        for name, array in arrays.items():
+            member = io.BytesIO()
+            np.lib.format.write_array(member, np.ascontiguousarray(array), version=(1, 0))
+            info = zipfile.ZipInfo(f"{name}.npy", EPOCH)
+            info.create_system = 3  # Unix, on every system
+            archive.writestr(info, member.getvalue())
+    return packed.getvalue()

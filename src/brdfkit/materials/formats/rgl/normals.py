@@ -1,0 +1,82 @@
+"""Computes the distribution of microfacet normals of a BRDF from its retro-reflection.
+
+For wi = wo = w, the BRDF of a surface of microfacets is
+
+    f(w, w) = F(0) D(w) / (4 cosθ σ(w)),    σ(w) = ∫ D(m) max(0, w·m) dm.
+
+So D is an eigenvector of the linear map D → f(w, w) cosθ σ(w): the one without negative entries.
+Applying the map repeatedly converges to it.
+
+[Dupuy et al. 2015]
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from brdfkit.core.geometry.directions import from_angles
+
+MOST_ITERATIONS = 200
+TOLERANCE = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Hemisphere:
+    """A grid of directions on the hemisphere, and integrals over it.
+
+    `theta` (n_theta,) [rad] runs from 0 to π/2; `n_phi` azimuths are evenly spaced from -π on, a
+    single one if nothing depends on the azimuth.
+    """
+
+    theta: np.ndarray
+    n_phi: int
+
+    @property
+    def directions(self):
+        """Unit vectors (n_phi, n_theta, 3)."""
+        phi = -np.pi + 2 * np.pi * np.arange(self.n_phi) / self.n_phi
+        return from_angles(self.theta, phi[:, None])
+
+    @cached_property
+    def solid_angles(self):
+        """The solid angle of the ring at each theta (n_theta,) [sr], by the trapezoidal rule."""
+        steps = np.diff(self.theta, prepend=self.theta[0], append=self.theta[-1])
+        return 2 * np.pi * np.sin(self.theta) * (steps[1:] + steps[:-1]) / 2
+
+    def area(self, D):
+        """The integral ∫ D cosθ dm of D (n_phi, n_theta)."""
+        return D.mean(axis=0) @ (self.solid_angles * np.cos(self.theta))
+
+    def projected_area(self, D):
+        """σ (n_phi, n_theta) of D (n_phi, n_theta)."""
+        # A convolution over the azimuth is a product of Fourier coefficients
+        coefficients = np.fft.rfft(D * self.solid_angles, axis=0)
+        projected = np.einsum("ijk,kj->ki", self._kernel, coefficients)
+        return np.fft.irfft(projected, self.n_phi, axis=0)
+
+    @cached_property
+    def _kernel(self):
+        """Fourier coefficients (n_theta, n_theta', k) over Δφ of max(0, w·m) = max(0, a + b cosΔφ).
+
+        Here a = cosθ cosθ' and b = sinθ sinθ'. The function is 0 beyond φ₀ = arccos(-a/b). Its
+        coefficients are (φ₀/π) (a s_k + b (s_{k-1} + s_{k+1}) / 2), where s_k = sin(k φ₀) / (k φ₀).
+        """
+        a, b = (np.multiply.outer(x, x) for x in (np.cos(self.theta), np.sin(self.theta)))
+        a, b = a[..., None], b[..., None]
+        phi_0 = np.arccos(-np.divide(a, b, out=np.ones_like(a), where=b > a))
+        k = np.arange(self.n_phi // 2 + 1)
+        before, here, after = (np.sinc((k + step) * phi_0 / np.pi) for step in (-1, 0, 1))
+        return phi_0 / np.pi * (a * here + b * (before + after) / 2)
+
+
+def power_iteration(retro, hemisphere):
+    """D (n_phi, n_theta) [sr⁻¹] with ∫ D cosθ dm = 1; `retro` (n_phi, n_theta): f(w, w) ≥ 0."""
+    gain = retro * np.cos(hemisphere.theta)
+    D = np.ones_like(gain)
+    for _ in range(MOST_ITERATIONS):
+        previous, D = D, gain * hemisphere.projected_area(D)
+        D = D / hemisphere.area(D)
+        if np.abs(D - previous).max() < TOLERANCE * D.max():
+            break
+    return D

@@ -1,0 +1,152 @@
+"""Warps the unit square to a tabulated density, and interpolates tables over the unit square.
+
+A table has its values on an even grid over the unit square, with y as the first axis, and is
+bilinear between them. It may depend on parameters: then it has a slice for each combination of
+their nodes, and is linear between the slices. The warp first inverts the marginal distribution of
+y, then that of x for this y.
+
+This is Mitsuba's `MarginalContinuous2D` (W. Jakob et al., Mitsuba 3, `distr_2d.h`) in double
+precision.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from brdfkit.core.geometry.multilinear import bracket, corners, flat_index
+
+
+def even_grid(n):
+    """The n × n points (n², 2), (x, y), of an even grid over the unit square, its edges included;
+    x runs fastest."""
+    x, y = np.meshgrid(*[np.linspace(0, 1, n)] * 2)
+    return np.stack([x.ravel(), y.ravel()], axis=1)
+
+
+def find_slices(nodes, values):
+    """The slices of a table to interpolate between: [(slices (n,), weights (n,)), ...].
+
+    `nodes`: one increasing array per parameter; `values`: an array (n,) per parameter, clamped to
+    the nodes. The slices are numbered with the last parameter running fastest.
+    """
+    brackets, shape = [], []
+    for axis, x in zip(nodes, values, strict=True):
+        if len(axis) > 1:
+            lower = np.clip(np.searchsorted(axis, x) - 1, 0, len(axis) - 2)
+            t = np.clip((x - axis[lower]) / (axis[lower + 1] - axis[lower]), 0, 1)
+            brackets.append((lower, lower + 1, t))
+            shape.append(len(axis))
+    first = np.zeros(np.shape(values[0]), int)
+    return [(first + flat_index(at, shape), weight) for at, weight in corners(brackets)]
+
+
+def interpolate(table, u, slices=((0, 1.0),)):
+    """Values (n, ...) of a `table` (slices, ny, nx, ...) at the points `u` (n, 2), (x, y).
+
+    `slices`: as `find_slices` gives them.
+    """
+    _, ny, nx, *rest = table.shape
+    cells = [_bracket(u[:, 0], nx), _bracket(u[:, 1], ny)]
+    result = 0.0
+    for at, weight in slices:
+        for (x, y), share in corners(cells):
+            result = result + (weight * share).reshape(-1, *[1] * len(rest)) * table[at, y, x]
+    return result
+
+
+@dataclass(frozen=True, eq=False)
+class Warp:
+    """Warps the unit square to each slice of `density` (slices, ny, nx), which need not be
+    normalised.
+
+    >>> Warp(np.ones((1, 2, 2))).sample(0, np.array([[0.25, 0.5]]))
+    array([[0.25, 0.5 ]])
+    """
+
+    density: np.ndarray
+
+    @cached_property
+    def _tables(self):
+        """The density, the cumulative distribution along each row, and that of the rows; all
+        normalised so that the last is 1 at its end, for cells of unit area."""
+        along = _cumulate(self.density)
+        rows = _cumulate(along[..., -1])
+        total = rows[:, -1]
+        return (
+            self.density / total[:, None, None],
+            along / total[:, None, None],
+            rows / total[:, None],
+        )
+
+    def sample(self, at, u):
+        """The points (n, 2) to which the warp of slice `at` takes uniform points `u` (n, 2),
+        (x, y)."""
+        density, along, rows = (table[at] for table in self._tables)
+        # y from the marginal distribution
+        y = np.clip(np.searchsorted(rows, u[:, 1]) - 1, 0, len(rows) - 2)
+        ty = _invert_mass(u[:, 1] - rows[y], along[y, -1], along[y + 1, -1])
+
+        # x from the distribution along the row at this y
+        row = _lerp(along[y], along[y + 1], ty[:, None])
+        share = u[:, 0] * row[:, -1]
+        x = np.clip((row < share[:, None]).sum(axis=1) - 1, 0, row.shape[1] - 2)
+        before = np.take_along_axis(row, x[:, None], axis=1)[:, 0]
+        left = _lerp(density[y, x], density[y + 1, x], ty)
+        right = _lerp(density[y, x + 1], density[y + 1, x + 1], ty)
+        tx = _invert_mass(share - before, left, right)
+        return np.stack([(x + tx) / (row.shape[1] - 1), (y + ty) / (len(rows) - 1)], axis=1)
+
+    def pdf(self, points, slices):
+        """The density (n,) of `sample` at points (n, 2); `slices`: as `find_slices` gives them."""
+        density, _, _ = self._tables
+        _, ny, nx = density.shape
+        return (ny - 1) * (nx - 1) * interpolate(density, points, slices)
+
+    def invert(self, u, slices):
+        """The uniform points (n, 2) that `sample` takes to the points `u` (n, 2); `slices`: as
+        `find_slices` gives them."""
+        density, along, rows = self._tables
+        x, _, tx = _bracket(u[:, 0], density.shape[2])
+        y, _, ty = _bracket(u[:, 1], density.shape[1])
+
+        def at(table, *index):
+            return sum(weight * table[(slice_, *index)] for slice_, weight in slices)
+
+        # The distribution along the row at y, up to x
+        left = _lerp(at(density, y, x), at(density, y + 1, x), ty)
+        right = _lerp(at(density, y, x + 1), at(density, y + 1, x + 1), ty)
+        before = _lerp(at(along, y, x), at(along, y + 1, x), ty)
+        lower, upper = at(along, y, -1), at(along, y + 1, -1)
+        row = _lerp(lower, upper, ty)
+        share = before + _mass(left, right, tx)
+        x = np.divide(share, row, out=np.zeros_like(share), where=row > 0)
+        # The marginal distribution up to y
+        return np.stack([x, at(rows, y) + _mass(lower, upper, ty)], axis=1)
+
+
+def _bracket(u, n):
+    """The bracket (`geometry.multilinear`) of coordinates `u` (m,) of the unit square, among `n`
+    nodes from edge to edge."""
+    return bracket(u * (n - 1), n)
+
+
+def _cumulate(values):
+    """The integrals, along the last axis, of the linear interpolant from the first node to each."""
+    steps = (values[..., 1:] + values[..., :-1]) / 2
+    return np.concatenate([np.zeros_like(values[..., :1]), np.cumsum(steps, axis=-1)], axis=-1)
+
+
+def _lerp(a, b, t):
+    return (1 - t) * a + t * b
+
+
+def _mass(a, b, t):
+    """The integral from 0 to t of the line that is a at 0 and b at 1."""
+    return t * (a + t / 2 * (b - a))
+
+
+def _invert_mass(mass, a, b):
+    """The t at which `_mass` is `mass`, by a formula without cancellation."""
+    divisor = a + np.sqrt(np.maximum(a * a + 2 * mass * (b - a), 0))
+    return np.divide(2 * mass, divisor, out=np.zeros_like(mass), where=divisor > 0)

@@ -1,0 +1,146 @@
+"""`load` and `save`: materials and fits in files of any format, or known by name."""
+
+import os
+from pathlib import Path
+
+from brdfkit.core import catalogue, index
+from brdfkit.core.errors import BrdfkitError, nearest, no_such
+from brdfkit.core.files import contents, write_safely
+from brdfkit.materials import formats
+from brdfkit.materials.collections import public
+from brdfkit.materials.measured import Measured
+from brdfkit.model import Model
+from brdfkit.regression import Fit
+
+
+def load(
+    path: str | Path, *, mirror_azimuth: bool = False, divide_by_cos: bool = False
+) -> Measured | Fit:
+    """The measured material, or the saved fit, in a file of any known format.
+
+    The content decides the format; the suffix decides between formats that all, or none, recognise
+    it. ``.gz`` and ``.xz`` are unpacked.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file. ``abrdf.dat#1`` names a sample of one that holds many. Where there is no such
+        file, the name of a material that comes with brdfkit, ``car_paint``, or of one in a public
+        collection, ``merl/alum-bronze``, once ``brdfkit data get`` has downloaded it.
+    mirror_azimuth : bool, default False
+        Whether 180° is added to every phi_o of samples: where the file has the mirror direction at
+        phi_o = phi_i.
+    divide_by_cos : bool, default False
+        Whether the values of samples are divided by cos theta_o: where they are the BRDF times this
+        cosine, and the file does not say so.
+
+    Returns
+    -------
+    Measured or Fit
+        What the file holds.
+
+    Raises
+    ------
+    BrdfkitError
+        For every file that cannot be read: what is wrong with it, and what to do; and where a fit,
+        a table or a format that states its own convention would be mended.
+
+    Examples
+    --------
+    >>> print(load("gold-metallic-paint.binary.xz"))    # doctest: +SKIP
+    gold-metallic-paint: 90×90×180 table, 1,048,000 of 1,458,000 valid, channels R G B
+    """
+    found = read(*locate(path))
+    if not (mirror_azimuth or divide_by_cos):
+        return found
+    if not isinstance(found, Measured):
+        raise BrdfkitError(f"{path}: is a saved fit, of which there is nothing to mend.")
+    return found.mend(mirror_azimuth, divide_by_cos)
+
+
+def locate(path: str | Path) -> tuple[Path, str | None]:
+    """The file that `load` reads for a path or a name, and the sample named behind '#', if any.
+
+    Raises `BrdfkitError` for a name that is no path and like that of a material; whether there is
+    such a file shows when it is read.
+
+    >>> locate("abrdf.dat#12")
+    (PosixPath('abrdf.dat'), '12')
+    """
+    if not str(path):
+        raise BrdfkitError("The path is empty; name a file, or a material that brdfkit knows.")
+    path, sample = _split(path)
+    if not os.path.isfile(path):  # isfile is False, too, for text that cannot be a path
+        path = _find_known(path.as_posix()) or path
+    return path, sample
+
+
+def read(path: Path, sample: str | None = None) -> Measured | Fit:
+    """What the file at `path` holds; `sample`: which one, of a file that holds many."""
+    return formats.read(formats.Source(path, sample, contents(path)))
+
+
+def save(obj: Measured | Fit | Model, path: str | Path) -> None:
+    """Write a material to a file in the format of its suffix, whole or not at all.
+
+    Parameters
+    ----------
+    obj : Measured, Fit or Model
+        What to write: a measured material in any format that holds it, a fit as ``.json``, and all
+        of them, a model with values too, as ``.bsdf`` for Mitsuba's own `measured`.
+    path : str or Path
+        The file; ``.gz`` or ``.xz`` behind the suffix compress it.
+
+    Raises
+    ------
+    BrdfkitError
+        Where no format writes that suffix or it cannot hold `obj`, and where the folder or the disk
+        does not take the file.
+
+    Examples
+    --------
+    >>> save(load("copper.astm"), "copper.binary.xz")    # doctest: +SKIP
+    """
+    with write_safely(path) as beside:
+        formats.write(obj, Path(path), beside)
+
+
+def save_and_read(obj: Measured, path: str | Path) -> Measured:
+    """`save`, then what `load` makes of the file; nothing is written if it cannot be read again.
+
+    >>> save_and_read(load("copper.astm"), "copper.npz").name  # doctest: +SKIP
+    'copper'
+    """
+    with write_safely(path) as beside:
+        formats.write(obj, Path(path), beside)
+        try:
+            return formats.read(formats.Source(Path(path), None, contents(beside)))
+        except BrdfkitError as error:
+            reason = str(error).removeprefix(f"{beside}: ").removeprefix(f"{path}: ")
+            raise BrdfkitError(
+                f"{path}: the file could not be read again ({reason.rstrip('.')})."
+            ) from error
+
+
+def _find_known(name: str) -> Path | None:
+    """The file of the material that brdfkit knows by `name`, None for another name.
+
+    Raises `BrdfkitError` for a name that is no path and like that of a material.
+    """
+    if name in catalogue.materials():
+        return catalogue.path(name)
+    if name.partition("/")[0] in index.entries()["collections"] and "/" in name:
+        return public.path(name)
+    if not os.path.exists(name) and not Path(name).suffix and nearest(name, catalogue.materials()):
+        raise no_such("file or material", name, catalogue.materials())
+    return None
+
+
+def _split(path: str | Path) -> tuple[Path, str | None]:
+    """The path before its last '#', and the sample named behind it; the whole path and None where
+    there is no '#', or where it belongs to the name of a file."""
+    path = Path(path)
+    name, hash_sign, sample = path.name.rpartition("#")
+    if not hash_sign or not name or os.path.exists(path):
+        return path, None
+    return path.with_name(name), sample

@@ -1,0 +1,35 @@
+"""Subtracts a BRDF from a measured material: what is left has the same samples or cells."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.materials.measured.selection import require_max_angle
+from brdfkit.model.samples import Table
+from brdfkit.model.samples.samples import require_some
+
+
+def subtract(data, brdf, max_angle):
+    """A copy of a `Measured` with values less those of `brdf`, as `Measured.minus` says.
+
+    Samples that are left out are unknown in it, and there is no lookup between the samples.
+    """
+    require_max_angle(max_angle)
+    samples, name = data.samples, f"{data.name} - {brdf.name}"
+    inside = samples.within(max_angle)
+    known = brdf.eval(samples.wi[inside], samples.wo[inside])
+    if known.shape[1] not in (1, len(data.channels)):
+        raise BrdfkitError(
+            f"{name}: {known.shape[1]} channels cannot be subtracted from {len(data.channels)}; "
+            "give BRDFs with the same channels."
+        )
+    values = np.full(samples.values.shape, np.nan)
+    values[inside] = samples.values[inside] - known
+    valid = np.isfinite(values).all(axis=1)
+    require_some(valid, name, values, data.channels)
+    if not data.is_table:
+        left = replace(samples, values=values, valid=valid)
+        return replace(data, name=name, _samples=left, _lookup=None)
+    table = Table(values.reshape(data._table.values.shape), data._table.phi_d_period)
+    return replace(data, name=name, _table=table)

@@ -1,0 +1,126 @@
+"""`plot`: the lobes of BRDFs in the plane of incidence, measured and modelled."""
+
+import math
+from collections.abc import Iterable
+from itertools import cycle
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
+
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.names import make_unique
+from brdfkit.core.plots import Plot
+from brdfkit.images.thumbnails.radius import Radius
+from brdfkit.materials.measured import Measured
+from brdfkit.materials.plotting.half_disc import draw_half_disc, xy
+from brdfkit.materials.plotting.plane_of_incidence import is_scattered, lobe, usual_angles
+from brdfkit.materials.resolve import MaterialLike, materials
+
+BLACK, GREY = "black", "0.45"
+# Okabe and Ito's colours, which the colour-blind tell apart
+COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+DASHES = ("-", "--", "-.", ":")
+MOST_COLUMNS = 3
+
+
+def plot(things: MaterialLike | Iterable[MaterialLike], theta_i: ArrayLike | None = None) -> Figure:
+    """Polar plots of BRDFs in the plane of incidence, one panel per angle of incidence.
+
+    The radius is logarithmic in the BRDF [sr⁻¹], in its luminance where it has colour; what is
+    too dark for the scale lies in the centre. Light comes from the left, along the arrow. The
+    first measured material is black: a table a line, where it was measured, and scattered samples
+    dots, those within 3° of theta_i and 5° of the plane.
+
+    Parameters
+    ----------
+    things : Measured, Fit, Model, str, Path or dict, or several
+        The materials, or the names or paths of them, or BSDFs' dictionaries.
+    theta_i : float or array_like, optional
+        Angles of incidence [degrees], from 0 to below 90. By default 15, 45 and 75, or the nearest
+        ones at which the first scattered material was measured.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Not pyplot's: a notebook shows it, ``savefig`` writes it.
+
+    Raises
+    ------
+    BrdfkitError
+        For angles out of range, for values that are neither achromatic nor RGB, and for what is no
+        material.
+
+    Examples
+    --------
+    >>> plot(["car_paint", "ward"]).savefig("paint.png")    # doctest: +SKIP
+    """
+    found = _find_materials(things)
+    angles = usual_angles(found) if theta_i is None else np.atleast_1d(theta_i).astype(float)
+    if angles.ndim != 1 or not angles.size or not np.all((angles >= 0) & (angles < 90)):
+        raise BrdfkitError(f"plot: theta_i = {theta_i} should be angles from 0 to below 90°.")
+    return _make_figure(found, angles)
+
+
+def _find_materials(things):
+    """The materials of what `plot` was given; those of wavelengths in linear sRGB."""
+    found = materials(things, needed=("name", "eval"))
+    return [getattr(thing, "rgb", thing) for thing in found]
+
+
+def _make_figure(things, angles):
+    rows, columns = _count_panels(angles)
+    figure = Plot(figsize=(max(4.2 * columns, 6), 2.75 * rows + 0.35), layout="constrained")
+    figure.get_layout_engine().set(h_pad=0.08)
+    draw(figure, things, angles)
+    return figure
+
+
+def _count_panels(angles):
+    """The rows and columns of the panels, one panel per angle."""
+    rows = math.ceil(len(angles) / MOST_COLUMNS)
+    return rows, math.ceil(len(angles) / rows)
+
+
+def draw(figure, things, angles):
+    """Draw the panels and their legend into a matplotlib `Figure` or `SubFigure`.
+
+    `things`: achromatic or RGB; `angles`: of incidence [degrees].
+    """
+    rows, columns = _count_panels(angles)
+    styles = _styles(things)
+    for place, theta_i in enumerate(angles, 1):
+        _draw_panel(figure.add_subplot(rows, columns, place), theta_i, things, styles)
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    ncols = min(len(labels), columns + 2)
+    figure.legend(handles, labels, loc="outside lower center", ncols=ncols, frameon=False)
+
+
+def _styles(things):
+    """Keywords of matplotlib's `plot` for each thing; no two have the same look or label."""
+    colours = [{"color": c, "linestyle": dash} for dash in DASHES for c in COLOURS]
+    palette, styles, taken = cycle(colours), [], set()
+    black = next((thing for thing in things if isinstance(thing, Measured)), None)
+    for thing in things:
+        style = {"color": BLACK, "linestyle": "-"} if thing is black else next(palette)
+        style = {**style, "linewidth": 1.4}
+        if isinstance(thing, Measured):  # thick, and under the models' lines
+            style |= {"linewidth": 2.4, "zorder": 1.9}
+        if is_scattered(thing):
+            style |= {"linestyle": "", "marker": "o", "markersize": 3}
+        style["label"] = make_unique(thing.name.replace("$", r"\$"), taken)  # $ begins a formula
+        taken.add(style["label"])
+        styles.append(style)
+    return styles
+
+
+def _draw_panel(axes, theta_i, things, styles):
+    """Draw the half disc of one angle of incidence, with the light's arrow and the lobes."""
+    lobes = [lobe(thing, theta_i) for thing in things]
+    radius = Radius([values for _, values in lobes])
+    draw_half_disc(axes, radius)
+    axes.set_title(rf"$\theta_i$ = {theta_i:g}°", size=11)
+    arrow = {"arrowstyle": "-|>", "color": GREY, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", (0, 0), xy(-theta_i, 1), arrowprops=arrow, zorder=1.5)
+    for (theta_o, values), style in zip(lobes, styles, strict=True):
+        axes.plot(*xy(theta_o, radius(values)), **style)

@@ -1,0 +1,110 @@
+"""What verbs accept as a material: an object, a name, a path or a dictionary.
+
+A material is a measured one, a fit, or a model with values: all have a `name`, `eval(wi, wo)` and
+`scene_dict()`. In its place one can give a name or a path, in Python as on the command line: the
+label of a model, which then has its defaults; a file that `load` reads; or the name of a material
+that brdfkit knows. The dictionary of one of Mitsuba's BSDFs is a material, too.
+"""
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, Protocol, TypeAlias, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from brdfkit.core import catalogue
+from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.materials.loading import load
+from brdfkit.materials.measured import Measured
+from brdfkit.mitsuba_bridge.bsdf.from_dictionary import BsdfMaterial
+from brdfkit.model import labels
+
+
+@runtime_checkable
+class Material(Protocol):
+    """What a `Measured`, a `Fit` and a `Model` with values have in common."""
+
+    @property
+    def name(self) -> str:
+        """The name in pictures and tables."""
+
+    def eval(self, wi: NDArray[np.float64], wo: NDArray[np.float64]) -> NDArray[np.float64]:
+        """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3)."""
+
+    def scene_dict(self) -> dict[str, Any]:
+        """The dictionary for `mitsuba.load_dict`."""
+
+
+MaterialLike: TypeAlias = Material | str | Path | dict[str, Any]
+ATTRIBUTES = "name", "eval", "scene_dict"
+
+
+def material(thing: MaterialLike, needed: Iterable[str] = ATTRIBUTES) -> Material:
+    """The material that `thing` is, or stands for as a name, a path or a dictionary.
+
+    An object with the `needed` attributes is returned as it is. Raises `BrdfkitError`, the same one
+    for every verb, for anything that is no material.
+
+    >>> material("ward").alpha_u
+    0.2
+    """
+    if isinstance(thing, str | Path):
+        return _find(str(thing))
+    if isinstance(thing, dict):
+        return BsdfMaterial.of(thing)
+    if isinstance(thing, type) and hasattr(thing, "lobes"):
+        name = thing.__name__
+        raise BrdfkitError(f"{name} is a model without values; call it: {name}().")
+    if not all(hasattr(thing, attribute) for attribute in needed):
+        raise BrdfkitError(
+            f"{_describe(thing)} is no material; give a measured one, a fit, a model with values, "
+            "a BSDF's dictionary, or the name or path of one."
+        )
+    return thing
+
+
+def materials(
+    things: MaterialLike | Iterable[MaterialLike], needed: Iterable[str] = ATTRIBUTES
+) -> list[Material]:
+    """The `material` of each of `things`, as a list; one thing alone gives a list of one.
+
+    Raises `BrdfkitError` where there is none.
+    """
+    if isinstance(things, str | dict) or not isinstance(things, Iterable):
+        things = [things]
+    found = [material(thing, needed) for thing in things]
+    if not found:
+        raise BrdfkitError("There is no material here; give at least one.")
+    return found
+
+
+def measured_material(thing: MaterialLike) -> Measured:
+    """The `material` of `thing`, which must be a `Measured`: `BrdfkitError` for any other."""
+    found = material(thing)
+    if not isinstance(found, Measured):
+        raise BrdfkitError(
+            f"{found.name} was not measured; give a measured material, or the name or path of one."
+        )
+    return found
+
+
+def _find(name: str) -> Material:
+    """The material of a name: a model of that label, unless a file has the same name; otherwise the
+    file's content or the known material."""
+    label = labels.read_files(name)
+    if labels.is_label(label) and (label != name or not os.path.isfile(name)):
+        return labels.model(label)()
+    try:
+        return load(name)
+    except BrdfkitError:
+        if not name or "/" in name or Path(name).suffix or os.path.exists(name):
+            raise
+    raise no_such("file, model or material", name, [*labels.models(), *catalogue.materials()])
+
+
+def _describe(thing: object) -> str:
+    """Any object in one line: the beginning of its `repr`, and its type."""
+    kind, words = type(thing).__name__, " ".join(repr(thing).split())
+    return f"{words[:40]}{'…' if len(words) > 40 else ''} ({kind})"

@@ -1,0 +1,101 @@
+"""Constant arrays that a plugin reads by index, and brackets, in every variant of Mitsuba."""
+
+import numpy as np
+
+from brdfkit.core.jit.padding import pad
+
+BELOW_ONE = 1 - 2**-24  # the largest number below 1 in single precision
+
+
+class Rows:
+    """Rows of numbers (n, columns), or plain numbers (n,), in the current variant's memory.
+
+    >>> Rows([[0.1, 0.2, 0.3]]).at(0, mi.Color3f)    # doctest: +SKIP
+    [[0.1, 0.2, 0.3]]
+    """
+
+    def __init__(self, values):
+        import mitsuba as mi
+
+        values = np.ascontiguousarray(values, np.float32)
+        self.scalar = mi.variant().startswith("scalar")
+        self.values = values if self.scalar else mi.Float(mi.TensorXf(values).array)
+
+    def at(self, index, kind=None, active=True):
+        """Row `index` as `kind` (a colour), by default `mi.Float`; 0 if not `active`."""
+        import drjit as dr
+        import mitsuba as mi
+
+        kind = kind or mi.Float
+        if not self.scalar:
+            return dr.gather(kind, self.values, index, active)
+        row = self.values[index] if active else np.zeros_like(self.values[0])
+        return kind(*np.atleast_1d(row).tolist())
+
+
+class Integers:
+    """Whole numbers (n,), 0 to 2³² - 1, in the current variant's memory."""
+
+    def __init__(self, values):
+        import mitsuba as mi
+
+        self.scalar = mi.variant().startswith("scalar")
+        self.values = np.ascontiguousarray(values, np.uint32)
+        if not self.scalar:
+            self.values = mi.UInt32(pad(self.values))
+
+    def at(self, index, active=True):
+        """The number of this `index`, a `mi.UInt32`; 0 if not `active`."""
+        import drjit as dr
+        import mitsuba as mi
+
+        if not self.scalar:
+            return dr.gather(mi.UInt32, self.values, index, active)
+        return int(self.values[index]) if active else 0
+
+
+def cell(x, n):
+    """The index of the cell around `x`, of `n` cells of length 1; the first and last beyond."""
+    import drjit as dr
+    import mitsuba as mi
+
+    return mi.UInt32(dr.clip(x, 0, n - 1))
+
+
+def bracket(x, n):
+    """The bracket around `x` on an axis of `n` nodes; see `core/geometry/multilinear.py`."""
+    import drjit as dr
+    import mitsuba as mi
+
+    x = dr.clip(x, 0, n - 1)
+    lower = dr.minimum(mi.UInt32(x), max(n - 2, 0))
+    return lower, dr.minimum(lower + 1, n - 1), x - mi.Float(lower)
+
+
+def periodic_bracket(x, n):
+    """The bracket around `x` on a periodic axis, where node n is node 0."""
+    import drjit as dr
+    import mitsuba as mi
+
+    x = x - n * dr.floor(x / n)
+    lower = dr.minimum(mi.UInt32(x), n - 1)
+    return lower, dr.select(lower + 1 == n, 0, lower + 1), x - mi.Float(lower)
+
+
+class Nodes:
+    """The nodes of an axis: increasing numbers, at any distances."""
+
+    def __init__(self, values):
+        self.count, self.rows = len(values), Rows(values)
+
+    def bracket(self, x):
+        """The bracket around `x`, clamped: (lower node, upper node, share of the upper node)."""
+        import drjit as dr
+        import mitsuba as mi
+
+        above = dr.binary_search(1, self.count - 1, lambda node: self.rows.at(node) <= x)
+        lower = mi.UInt32(above - 1)
+        upper = dr.minimum(lower + 1, self.count - 1)
+        start, end = self.rows.at(lower), self.rows.at(upper)
+        width = dr.select(end > start, end - start, 1)
+        return lower, upper, dr.clip((x - start) / width, 0, 1)

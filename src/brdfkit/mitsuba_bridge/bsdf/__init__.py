@@ -1,0 +1,1 @@
+"""Makes a Mitsuba BSDF of a model or of a measured table."""

@@ -1,0 +1,90 @@
+"""The one adapter from a model to a Mitsuba BSDF.
+
+Written once for all models: a texture for every parameter, and one component per lobe, drawn in
+proportion to its weight and energy. Lobes that share a sampling are one component.
+"""
+
+import functools
+import operator
+
+import drjit as dr
+
+from brdfkit.core.geometry.quadrature import cosine_directions
+from brdfkit.mitsuba_bridge.bsdf.signed_sum import tabulate
+from brdfkit.mitsuba_bridge.bsdf.surface_response import Point
+from brdfkit.mitsuba_bridge.bsdf.textures import textured_frame
+from brdfkit.model.lobes import components_of
+
+# Outgoing directions over which `eval_diffuse_reflectance` averages
+FROM_ABOVE = cosine_directions(64)
+
+
+def define(mi, model):
+    """The class of `mi.BSDF` that evaluates and samples `model` in the current variant."""
+    groups = components_of(model().lobes())
+    signed = signed_components(model, groups)
+    kinds = component_kinds(mi, model, groups)
+    components = component_flags(mi, model, kinds, signed)
+
+    class Plugin(textured_frame(mi, model)):
+        def __init__(self, props):
+            super().__init__(props)
+            self.tables = {}
+            self.parameters_changed()
+            varying = any(t.is_spatially_varying() for t in self.textures.values())
+            extra = mi.BSDFFlags.SpatiallyVarying if varying else mi.BSDFFlags.Empty
+            self.m_components = [component | extra for component in components]
+            self.m_flags = functools.reduce(operator.or_, self.m_components)
+
+        def parameters_changed(self, keys=()):
+            if signed:  # a sum of signed lobes is drawn by a table
+                shapes, weights = self.means()
+                self.tables = {k: tabulate(model(**shapes), weights, groups[k]) for k in signed}
+
+        def at(self, ctx, si, wi, active):
+            weights, lobes = self.terms(si, active)
+            samplings = [
+                self.tables.get(k, lobes[group[0]].sampling) for k, group in enumerate(groups)
+            ]
+            enabled = [ctx.is_enabled(kind, k) for k, kind in enumerate(kinds)]
+            return Point(mi, wi, weights, lobes, model.signed(), groups, samplings, enabled)
+
+        def eval_diffuse_reflectance(self, si, active=True):
+            """Albedo of the diffuse lobes at normal incidence, by quadrature."""
+            normal = self.at(mi.BSDFContext(), si, mi.Vector3f(0, 0, 1), active)
+            diffuse = [i for i, lobe in enumerate(normal.lobes) if lobe.diffuse]
+            total = mi.UnpolarizedSpectrum(0)
+            for direction in FROM_ABOVE:
+                total += dr.pi * normal.sum_of(diffuse, mi.Vector3f(*map(float, direction)))
+            return mi.Spectrum(dr.select(active, total / len(FROM_ABOVE), 0))
+
+    return Plugin
+
+
+def signed_components(model, groups):
+    """The components, as indices of `groups`, in which a weight may be negative."""
+    linear = [model.parameters[name] for name in model.weights()]
+    return [k for k, group in enumerate(groups) if any(linear[i].bounds[0] < 0 for i in group)]
+
+
+def component_kinds(mi, model, groups):
+    """Mitsuba's flag of each component, diffuse or glossy: that of its first lobe."""
+    flags, lobes = mi.BSDFFlags, model().lobes()
+    return [
+        flags.DiffuseReflection if lobes[group[0]].diffuse else flags.GlossyReflection
+        for group in groups
+    ]
+
+
+def component_flags(mi, model, kinds, signed):
+    """All flags of each component except for `SpatiallyVarying`.
+
+    Of an anisotropic model, glossy and signed components are anisotropic.
+    """
+    flags = mi.BSDFFlags
+    anisotropic = flags.Anisotropic if model.anisotropic() else flags.Empty
+    turning = [k for k, kind in enumerate(kinds) if kind == flags.GlossyReflection or k in signed]
+    return [
+        kind | flags.FrontSide | (anisotropic if k in turning else flags.Empty)
+        for k, kind in enumerate(kinds)
+    ]

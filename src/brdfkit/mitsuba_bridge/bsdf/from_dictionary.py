@@ -1,0 +1,76 @@
+"""A BSDF of Mitsuba's, given by its dictionary, as a material that is evaluated like a model."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.jit.llvm import use_variant
+from brdfkit.core.jit.threads import in_turn
+from brdfkit.mitsuba_bridge.properties.load_by_mitsuba import load_by_mitsuba
+
+
+@dataclass(frozen=True, eq=False)
+class BsdfMaterial:
+    """A BSDF as a material: its `name`, and its dictionary for `mitsuba.load_dict`, `entries`.
+
+    >>> BsdfMaterial("grey", {"type": "diffuse"}).eval(up, up)    # doctest: +SKIP
+    array([[0.15915494, 0.15915494, 0.15915494]])
+    """
+
+    name: str
+    entries: dict[str, Any]
+
+    @classmethod
+    def of(cls, entries):
+        """The material of a dictionary; its name is the entry "name", if there is one, else "type".
+
+        Raises `BrdfkitError` for a dictionary without "type".
+        """
+        if "type" not in entries:
+            raise BrdfkitError(f'{entries!r} is the dictionary of no BSDF: it has no "type".')
+        bsdf = dict(entries)
+        return cls(str(bsdf.pop("name", bsdf["type"])), bsdf)
+
+    def scene_dict(self):
+        """The dictionary for `mitsuba.load_dict`."""
+        return dict(self.entries)
+
+    @in_turn
+    def eval(self, wi, wo):
+        """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3), in Mitsuba's single precision.
+
+        Raises `BrdfkitError` in a spectral or scalar variant of Mitsuba.
+        """
+        import mitsuba as mi
+
+        if use_variant().startswith("scalar") or mi.is_spectral:
+            raise BrdfkitError(
+                f"{self.name}: a BSDF of Mitsuba's is not evaluated in the variant {mi.variant()}; "
+                "set llvm_ad_rgb or cuda_ad_rgb."
+            )
+        return eval_bsdf(load_by_mitsuba(mi.load_dict, self.entries, self.name), wi, wo)
+
+
+def eval_bsdf(bsdf, wi, wo, types=None):
+    """BRDF (n, channels) in sr⁻¹ of a `mitsuba.BSDF`, at direction pairs (n, 3).
+
+    `types`: flags of the components that count, by default all. The channels of a spectral variant
+    are wavelengths in the middle of the visible ones.
+    """
+    import drjit as dr
+    import mitsuba as mi
+
+    wi, wo = (np.asarray(w, np.float32) for w in (wi, wo))
+    si = dr.zeros(mi.SurfaceInteraction3f, len(wi))
+    si.wi, si.sh_frame, si.n = mi.Vector3f(wi.T), mi.Frame3f([0, 0, 1]), mi.Normal3f(0, 0, 1)
+    if mi.is_spectral:
+        si.wavelengths = type(si.wavelengths)(*np.linspace(450, 650, len(si.wavelengths)).tolist())
+    context = mi.BSDFContext()
+    if types is not None:
+        context.type_mask = types
+    value = bsdf.eval(context, si, mi.Vector3f(wo.T))
+    value = np.array(mi.unpolarized_spectrum(value)).T
+    above = (wi[:, 2:] > 0) & (wo[:, 2:] > 0)
+    return np.where(above, value / np.where(above, wo[:, 2:], 1), 0).astype(float)

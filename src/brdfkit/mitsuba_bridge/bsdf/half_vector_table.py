@@ -1,0 +1,181 @@
+"""Draws the outgoing direction of any BRDF, from a table of its half vectors.
+
+For a few incidences the table holds the density of half vectors in proportion to f cosθ_o, constant
+within a cell; between the incidences the densities are mixed. At grazing angles a cell of half
+vectors shrinks with the highlight; a cell of outgoing directions would not.
+
+A density p_h of half vectors is the density p_h / (4 wi·h) of the directions to which they reflect
+wi.
+"""
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.core.geometry.multilinear import corners, flat_index
+from brdfkit.core.geometry.vectors import angle, azimuth, cos_theta_d, half_vector, reflect
+from brdfkit.mitsuba_bridge.arrays import BELOW_ONE, Rows, bracket, periodic_bracket
+
+
+class HalfVectorTable:
+    """A `Sampling` of a BRDF in the current variant.
+
+    `f(wi, wo)`: the BRDF (n, channels) in sr⁻¹ of NumPy direction pairs (n, 3);
+    `azimuths`, `angles`: the numbers of azimuths (1: isotropic) and of polar angles of the
+    incidences; `cells`: the numbers of cells in theta_h, square-root spaced, and in phi_h, relative
+    to the azimuth of wi; `points`: the number of points along each side of a cell at which f is
+    evaluated.
+
+    A cell in which f is 0 is never drawn: mix the table with cosine samples. `albedo` is the
+    directional albedo (incidences, channels).
+    """
+
+    def __init__(self, f, azimuths=1, angles=32, cells=(90, 32), points=2):
+        self.azimuths, self.angles, self.cells = azimuths, angles, cells
+        theta_i = (np.arange(angles) + 0.5) / angles * np.pi / 2
+        phi_i = np.arange(azimuths) / azimuths * 2 * np.pi
+        light = np.concatenate([_cell_light(f, theta_i, phi, cells, points) for phi in phi_i])
+        self.albedo = light.sum(axis=(1, 2))
+
+        # Shares by which a row of cells (theta_h) and a cell in it (phi_h) are drawn
+        masses = light.mean(axis=-1)
+        masses[masses.sum(axis=(1, 2)) == 0] = 1  # a black incidence: any direction will do
+        rows = _cumulative_shares(masses.sum(axis=2))
+        columns = _cumulative_shares(masses)
+        self.rows, self.columns = Rows(rows.ravel()), Rows(columns.ravel())
+
+        # Density per solid angle of these shares, which are rounded to single precision
+        shares = _differences(rows)[..., None] * _differences(columns)
+        self.density = Rows((shares / _solid_angles(cells)[:, None]).ravel())
+        self.edges = Rows(_versines(cells[0]))
+
+    def sample(self, wi, u):
+        """A direction, possibly below the surface, for a point `u` (x, y, z)."""
+        n_h, n_p = self.cells
+        incidence = self._choose_incidence(wi, u.z)
+        row, x = _draw_cell(self.rows, incidence * n_h, n_h, u.x)
+        column, y = _draw_cell(self.columns, (incidence * n_h + row) * n_p, n_p, u.y)
+        # By 1 - cosθ_h, which keeps its digits near the normal
+        versine = dr.lerp(self.edges.at(row), self.edges.at(row + 1), x)
+        sine = dr.safe_sqrt(versine * (2 - versine))
+        sin_phi, cos_phi = dr.sincos(azimuth(wi) + (column + y) / n_p * (2 * dr.pi))
+        return reflect(wi, type(wi)(sine * cos_phi, sine * sin_phi, 1 - versine))
+
+    def pdf(self, wi, wo):
+        """Density of `wo` per solid angle."""
+        n_h, n_p = self.cells
+        h = half_vector(wi, wo)
+        row = _cell(dr.sqrt(angle(h) / (dr.pi / 2)), n_h)
+        turn = (azimuth(h) - azimuth(wi)) / (2 * dr.pi)
+        cell = row * n_p + _cell(turn - dr.floor(turn), n_p)
+        density = 0
+        for incidence, share in self.incidences(wi):
+            density += share * self.density.at(incidence * (n_h * n_p) + cell)
+        return density / (4 * cos_theta_d(wi, wo))
+
+    def incidences(self, wi):
+        """(index, share) of the incidences of the table around `wi`; the shares add up to 1."""
+        brackets = self._brackets(wi)
+        shape = (self.azimuths, self.angles)[-len(brackets) :]
+        return [(flat_index(nodes, shape), share) for nodes, share in corners(brackets)]
+
+    def _brackets(self, wi):
+        """The brackets of `wi` among the azimuths, if there are several, and the polar angles."""
+        theta = bracket(angle(wi) / (dr.pi / 2) * self.angles - 0.5, self.angles)
+        if self.azimuths == 1:
+            return [theta]
+        phi = periodic_bracket(azimuth(wi) / (2 * dr.pi) * self.azimuths, self.azimuths)
+        return [phi, theta]
+
+    def _choose_incidence(self, wi, z):
+        """The index of one of `incidences`, by its share, for a random number `z`.
+
+        It leaves x and y as they are. So equal numbers draw nearly equal half vectors at
+        neighbouring incidences, and a picture that takes the same ones everywhere has no rings.
+        """
+        incidence = 0
+        for lower, upper, t in self._brackets(wi):
+            up = z < t
+            # What the choice leaves of z chooses next. One division, by the chosen number: a scalar
+            # variant would raise where the other is 0
+            z = dr.select(up, z, z - t) / dr.select(up, t, 1 - t)
+            incidence = incidence * self.angles + dr.select(up, upper, lower)
+        return incidence
+
+
+def _cell_light(f, theta_i, phi_i, cells, points):
+    """The share of the light that each cell of half vectors reflects: f cosθ_o dω_o.
+
+    It has the shape (incidences, theta_h, phi_h, channels). The incidences have the polar angles
+    `theta_i` (incidences,) and one azimuth `phi_i`.
+    """
+    # Half vectors h on a grid of points in every cell, even in solid angle within the cell
+    n_h, n_p = cells
+    edges = _versines(n_h)
+    inside = (np.arange(points) + 0.5) / points
+    cos_theta = 1 - (edges[:-1, None] + np.diff(edges)[:, None] * inside).ravel()
+    phi = phi_i + (np.arange(n_p * points) + 0.5) / (n_p * points) * 2 * np.pi
+    h = from_angles(np.arccos(cos_theta)[:, None], phi)
+
+    # Outgoing directions: wi reflected about h
+    wi = np.broadcast_to(from_angles(theta_i, phi_i)[:, None, None], (len(theta_i), *h.shape))
+    cos_d = (wi * h).sum(axis=-1)
+    wo = 2 * cos_d[..., None] * h - wi
+    above = (wo[..., 2] > 0) & (cos_d > 0)
+
+    # f cosθ_o dω_o/dω_h, its mean over the points of a cell, times the cell's solid angle
+    values = np.asarray(f(wi[above], wo[above]))
+    light = np.zeros((*above.shape, values.shape[1]))
+    light[above] = values * (wo[above][:, 2] * 4 * cos_d[above])[:, None]
+    means = light.reshape(len(theta_i), n_h, points, n_p, points, -1).mean(axis=(2, 4))
+    return means * _solid_angles(cells)[:, None, None]
+
+
+def _versines(n):
+    """1 - cosθ_h (n + 1,) at the edges of `n` cells, which are even in √θ_h."""
+    return 2 * np.sin((np.arange(n + 1) / n) ** 2 * np.pi / 4) ** 2
+
+
+def _solid_angles(cells):
+    """Solid angle [sr] of a cell of each row (n_h,)."""
+    return np.diff(_versines(cells[0])) * 2 * np.pi / cells[1]
+
+
+def _cumulative_shares(masses):
+    """Cumulative shares of the `masses` along the last axis, in single precision.
+
+    Where all masses are 0, the shares are even.
+    """
+    sums = masses.cumsum(axis=-1)
+    even = np.arange(1, masses.shape[-1] + 1) / masses.shape[-1]
+    total = sums[..., -1:]
+    with np.errstate(invalid="ignore"):
+        return np.where(total > 0, sums / total, even).astype(np.float32)
+
+
+def _differences(sums):
+    """The shares of which `sums` are the cumulative ones."""
+    return np.diff(sums.astype(float), axis=-1, prepend=0)
+
+
+def _draw_cell(sums, start, n, x):
+    """(cell, place in it in [0, 1]) for a random number `x`, by binary search.
+
+    The cumulative shares of the `n` cells stand in `sums` from `start` on.
+    """
+    x = dr.minimum(x, BELOW_ONE)  # at 1 it would fall into an empty last cell, 0 wide
+    cell, low, high = 0, 0, 1  # cumulative shares before the cell and including it
+    for step in 2 ** np.arange(int(n - 1).bit_length())[::-1]:
+        there = dr.minimum(cell + int(step), n)
+        share = sums.at(start + there - 1)
+        beyond = (there < n) & (share <= x)
+        cell = dr.select(beyond, there, cell)
+        low, high = dr.select(beyond, share, low), dr.select(beyond, high, share)
+    return cell, dr.clip((x - low) / (high - low), 0, 1)
+
+
+def _cell(position, n):
+    """The index of the cell at a `position` in [0, 1] among `n` even ones."""
+    import mitsuba as mi
+
+    return dr.minimum(mi.UInt32(position * n), n - 1)

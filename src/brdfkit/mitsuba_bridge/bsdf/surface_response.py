@@ -1,0 +1,86 @@
+"""A model's BSDF at a point of a surface, seen from `wi`: its sampling, density and value."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import drjit as dr
+
+from brdfkit.mitsuba_bridge.arrays import BELOW_ONE
+from brdfkit.mitsuba_bridge.bsdf import base
+from brdfkit.model.lobes import Lobe
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """The lobes of a model with the values of its parameters at a point, seen from `wi`.
+
+    `mi`: Mitsuba; `weights`: one for each of the `lobes`; `signed`: whether the sum is clamped at
+    0; `groups`: the indices of each component's lobes; `samplings`: the `Sampling` of each
+    component; `enabled`: whether the context asks for the component.
+    """
+
+    mi: Any
+    wi: Any
+    weights: list[Any]
+    lobes: tuple[Lobe, ...]
+    signed: bool
+    groups: list[list[int]]
+    samplings: list[Any]
+    enabled: list[bool]
+
+    @cached_property
+    def shares(self):
+        """The probability of drawing each component, by its energy; None if it is not enabled."""
+        energies = []
+        for group, enabled in zip(self.groups, self.enabled, strict=True):
+            parts = (
+                dr.mean(dr.abs(self.weights[i])) * self.lobes[i].energy(self.wi) for i in group
+            )
+            energies.append(dr.detach(sum(parts)) + 1e-8 if enabled else None)
+        total = sum(e for e in energies if e is not None)
+        rest = 1 - base.COSINE_SHARE
+        return [None if e is None else rest * e / total for e in energies]
+
+    def draw(self, sample1, sample2):
+        """An outgoing direction, drawn by the cosine or a component, and the component's number."""
+        wo = base.COSINE.sample(self.wi, sample2)
+        first = next((k for k, enabled in enumerate(self.enabled) if enabled), 0)
+        component = self.mi.UInt32(first)
+        chosen_up_to = self.mi.Float(base.COSINE_SHARE)
+        for k, share in enumerate(self.shares):
+            if share is None:
+                continue
+            hit = (sample1 >= chosen_up_to) & (sample1 < chosen_up_to + share)
+            # What the choice leaves of sample1 is a third random number, as even as sample2. It is
+            # used where this component was chosen, but must stay in [0, 1) elsewhere, too
+            left = dr.clip((sample1 - chosen_up_to) / share, 0, BELOW_ONE)
+            u = self.mi.Point3f(sample2.x, sample2.y, left)
+            chosen_up_to += share
+            wo = dr.select(hit, self.samplings[k].sample(self.wi, u), wo)
+            component = dr.select(hit, k, component)
+        return wo, component
+
+    def pdf(self, wo):
+        """Density of `draw` per solid angle."""
+        cosine = base.COSINE_SHARE * base.COSINE.pdf(self.wi, wo)
+        pdf = self.mi.Float(cosine if any(self.enabled) else 0)
+        for share, sampling in zip(self.shares, self.samplings, strict=True):
+            if share is not None:
+                pdf += share * sampling.pdf(self.wi, wo)
+        return pdf
+
+    def value(self, wo):
+        """BRDF [sr⁻¹] of the enabled components."""
+        groups = zip(self.groups, self.enabled, strict=True)
+        return self.sum_of([i for group, enabled in groups if enabled for i in group], wo)
+
+    def sum_of(self, chosen, wo):
+        """BRDF [sr⁻¹] of the lobes with the indices `chosen`: the sum of weight times lobe."""
+        value = self.mi.UnpolarizedSpectrum(0)
+        for i in chosen:
+            weight, lobe = self.weights[i], self.lobes[i]
+            value += weight * lobe.eval(self.wi, wo)
+            if lobe.quadratic is not None:
+                value += weight * weight * lobe.quadratic(self.wi, wo)
+        return dr.maximum(value, 0) if self.signed else value

@@ -1,0 +1,37 @@
+"""`Table.eval` in the renderer: the cells around a pair of directions, and their shares."""
+
+import drjit as dr
+
+from brdfkit.core.geometry import multilinear
+from brdfkit.core.geometry.vectors import angle, azimuth, half_vector
+from brdfkit.mitsuba_bridge.arrays import bracket, periodic_bracket
+
+
+def corners(table, wi, wo):
+    """(index, share) of the cells of a `brdfkit.model.samples.Table` around a direction pair."""
+    theta_h, theta_d, phi_d, phi_h = half_difference(wi, wo)
+    n_h, n_d, n_p = table.shape[-3:]
+    axes = [
+        bracket(dr.sqrt(theta_h / (dr.pi / 2)) * n_h - 0.5, n_h),
+        bracket(theta_d / (dr.pi / 2) * n_d - 0.5, n_d),
+        periodic_bracket(phi_d / table.phi_d_period * n_p - 0.5, n_p),
+    ]
+    if table.anisotropic:
+        n_a = table.shape[0]
+        axes.insert(0, periodic_bracket(phi_h / (2 * dr.pi) * n_a - 0.5, n_a))
+    for cells, share in multilinear.corners(axes):
+        yield multilinear.flat_index(cells, table.shape), share
+
+
+def half_difference(wi, wo):
+    """(theta_h, theta_d, phi_d, phi_h) of two directions."""
+    h = half_vector(wi, wo)
+    sin_h = dr.safe_sqrt(h.x * h.x + h.y * h.y)
+    # The difference vector: wi in the frame of the half vector; where that is the normal, any
+    # azimuth phi_h will do
+    off = sin_h > 1e-7
+    inverse = 1 / dr.select(off, sin_h, 1)
+    cos_p, sin_p = dr.select(off, h.x * inverse, 1), h.y * inverse
+    x, y = cos_p * wi.x + sin_p * wi.y, cos_p * wi.y - sin_p * wi.x
+    d = type(wi)(h.z * x - sin_h * wi.z, y, sin_h * x + h.z * wi.z)
+    return angle(h), angle(d), azimuth(d), azimuth(h)

@@ -1,0 +1,1 @@
+"""Reads and checks the properties that a scene gives to a plugin."""

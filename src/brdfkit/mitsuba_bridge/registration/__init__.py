@@ -1,0 +1,1 @@
+"""Makes the plugins known to Mitsuba when it is imported."""

@@ -1,0 +1,80 @@
+"""`load_plugins`: plugins of a user's own, of any kind."""
+
+from pathlib import Path
+
+from brdfkit.core.discovery import plugin_files
+from brdfkit.core.discovery.plugin_files import KINDS, MODELS
+from brdfkit.core.errors import BrdfkitError, nearest
+from brdfkit.model import labels
+
+
+def load_plugins(path: str | Path) -> dict[str, str]:
+    """Make plugins of yours, of any kind, known to Mitsuba in every variant.
+
+    Parameters
+    ----------
+    path : str or Path
+        A folder laid out as brdfkit's own, with ``emitters/``, ``phase/`` and the like in it, one
+        of these, or a file in one of them; a file that holds a `Model` may lie anywhere. A file's
+        name is the plugin's type.
+
+    Returns
+    -------
+    dict of str to str
+        The kinds of the plugins that were loaded, by name.
+
+    Raises
+    ------
+    BrdfkitError
+        And loads none, for a name that is taken, a file that cannot be imported or holds no plugin,
+        or that lies in no folder of a kind.
+
+    Examples
+    --------
+    >>> load_plugins("my_plugins/")    # doctest: +SKIP
+    {'softbox': 'emitters', 'velvet': 'bsdfs'}
+    """
+    files = {}
+    if not str(path):
+        raise BrdfkitError("The path is empty; name a folder of plugins, or a file.")
+    for file in _files(Path(path).absolute()):
+        plugin_files.require_free(file.stem, file)
+        files[file] = _kind(file)
+    for kind in KINDS:
+        plugin_files.add(kind, {file.stem: file for file, k in files.items() if k == kind})
+    return {file.stem: kind for file, kind in sorted(files.items())}
+
+
+def _files(path):
+    """The plugin files at `path`: a file, a folder of one kind, or a folder of such folders."""
+    _refuse_misspelt(path)
+    folders = [path / kind for kind in KINDS if (path / kind).is_dir()]
+    if not folders:
+        return plugin_files.files_in(path)
+    return sorted(file for f in (path, *folders) for file in f.glob("[!_]*.py"))
+
+
+def _refuse_misspelt(path):
+    """Raise `BrdfkitError` for a folder in `path` that is nearly named as a kind."""
+    for folder in sorted(path.iterdir()) if path.is_dir() else ():
+        kind = nearest(folder.name.lower(), KINDS)
+        if folder.is_dir() and folder.name not in KINDS and kind and any(folder.glob("*.py")):
+            raise BrdfkitError(f"{folder} is no kind of plugin; rename it {kind}/.")
+
+
+def _kind(file):
+    """The kind of a plugin file: its folder's name, but for a file that defines a `Model`.
+
+    Raises `BrdfkitError` for a file that holds no plugin or lies in no folder of a kind.
+    """
+    module = plugin_files.module(file)
+    if labels.model_in(file) is not None:
+        return MODELS
+    if file.parent.name not in KINDS:
+        raise BrdfkitError(
+            f"{file}: holds no Model, and its folder does not tell what kind of plugin it is; put "
+            f"it into one of {', '.join(f'{kind}/' for kind in KINDS)}."
+        )
+    if not callable(getattr(module, "define", None)):
+        raise BrdfkitError(f"{file}: has no function define(mi) that returns the plugin's class.")
+    return file.parent.name

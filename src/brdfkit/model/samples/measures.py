@@ -1,0 +1,127 @@
+"""Measures of pairs of directions: how much of each a sample stands for.
+
+A loss is an integral over all pairs of directions; a file's samples only estimate it. The integral
+needs a measure, and two are natural for a BRDF. With the half and difference angles of
+[Rusinkiewicz 1998] they are
+
+    angles        dθ_h dθ_d dφ_d,             in which a highlight is large, and
+    solid angle   dω_i dω_o = s dθ_h dθ_d dφ_d · 4 dφ_h,   s = sinθ_h sinθ_d cosθ_d,
+
+in which it is small. A sample's *extents* are the shares of both that it stands for. Between the
+two lies their geometric mean, ``"balanced"``, which has the density √s in the angles.
+
+The extents of scattered samples are estimated: points are spread over all pairs of directions, and
+each point belongs to the sample that is nearest, if one is near. Formats and tables whose grid is
+known state theirs.
+"""
+
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from brdfkit.core.geometry.directions import from_half_difference, to_half_difference
+from brdfkit.model.samples.cells import least_cosine
+from brdfkit.model.samples.coordinates import coordinates, sample_coordinates
+
+# The power of s that is the density of a measure in the angles; without one, each sample counts 1
+MEASURES: dict[str, float | None] = {
+    "samples": None,
+    "angles": 0.0,
+    "balanced": 0.5,
+    "solid_angle": 1.0,
+}
+# A point belongs to no sample that is farther than this in the coordinates of `coordinates.py`:
+# 3.6° in theta_h, or 0.5 in sin theta_d
+REACH = 0.5
+# Points for each sample, and how many there are at least and at most
+POINTS, FEWEST, LARGEST_NUMBER = 16, 2**13, 2**18
+# The least extent in the angles, as a share of the mean one
+LITTLE = 0.01
+# Bins of theta_h, even in its square root, by which half of the points go where the samples are
+BINS = 90
+# Cells along theta_h, theta_d and phi_d by which the measures of all pairs are known to 1e-3
+GRID = 180, 90, 90
+
+
+def weigh(extents: NDArray[np.float64] | None, measure: str) -> NDArray[np.float64] | float:
+    """How much each sample counts by a measure's name; `extents` (n, 2), or None if unknown."""
+    power = MEASURES[measure]
+    if power is None or extents is None:
+        return 1.0
+    angles, solid_angle = extents.T
+    if power in (0.0, 1.0):
+        return solid_angle if power else angles
+    return angles ** (1 - power) * solid_angle**power
+
+
+def density(theta_h: NDArray[np.float64], theta_d: NDArray[np.float64]) -> NDArray[np.float64]:
+    """s = sinθ_h sinθ_d cosθ_d, the density of solid angle in the angles [rad]."""
+    return np.sin(theta_h) * np.sin(theta_d) * np.cos(theta_d)
+
+
+@cache
+def whole(max_angle: float, measure: str) -> float:
+    """A measure of all pairs with both angles below `max_angle` [degrees], φ_d over 2π."""
+    steps = [(np.arange(n) + 0.5) / n for n in GRID]
+    theta_h, theta_d, phi_d = np.meshgrid(*steps, indexing="ij")
+    theta_h, theta_d, phi_d = theta_h * np.pi / 2, theta_d * np.pi / 2, phi_d * 2 * np.pi
+    wi, wo = from_half_difference(theta_h, theta_d, phi_d)
+    least = least_cosine(max_angle)
+    inside = (wi[..., 2] > least) & (wo[..., 2] > least)
+    cell = (np.pi / 2) ** 2 * 2 * np.pi / inside.size
+    return float(cell * np.sum(density(theta_h, theta_d)[inside] ** MEASURES[measure]))
+
+
+def estimate_extents(
+    wi: NDArray[np.float64], wo: NDArray[np.float64], anisotropic: bool, max_angle: float
+) -> NDArray[np.float64]:
+    """The extents (n, 2) of scattered samples at direction pairs (n, 3), all with both angles below
+    `max_angle` [degrees]: how much of both measures is nearest to each."""
+    from scipy.spatial import cKDTree
+
+    points_i, points_o, volumes = _spread_points(wi, wo, anisotropic, max_angle)
+    places = sample_coordinates(wi, wo, anisotropic)
+    places, same = np.unique(places.round(6), axis=0, return_inverse=True)
+    same = same.ravel()
+    distance, nearest = cKDTree(places).query(coordinates(points_i, points_o, anisotropic))
+    near = distance <= REACH
+    sums = np.stack(
+        [np.bincount(nearest[near], volume[near], len(places)) for volume in volumes.T], axis=1
+    )
+    # Samples at one place share what it stands for
+    shares = (sums / np.bincount(same)[:, None])[same]
+    # A pair in both orders is one sample
+    extents = shares.reshape(-1, len(wi), 2).sum(axis=0)
+    # One so near to others that no point reached it stands for little, but for something
+    missed = extents[:, 0] == 0
+    theta_h, theta_d, _ = to_half_difference(wi[missed], wo[missed])
+    extents[missed, 0] = LITTLE * extents[:, 0].mean()
+    extents[missed, 1] = extents[missed, 0] * density(theta_h, theta_d)
+    return extents
+
+
+def _spread_points(wi, wo, anisotropic, max_angle):
+    """Pairs of directions (m, 3) below `max_angle`, even over the angles but denser in θ_h where
+    the samples are, and the volumes (m, 2) by both measures that they stand for."""
+    from scipy.stats import qmc
+
+    count = int(np.clip(POINTS * len(wi), FEWEST, LARGEST_NUMBER))
+    u = qmc.Sobol(4 if anisotropic else 3, rng=0).random_base2(int(np.ceil(np.log2(count))))
+    edges = np.linspace(0, 1, BINS + 1) ** 2
+    h = wi + wo
+    theta = np.arctan2(np.hypot(h[:, 0], h[:, 1]), h[:, 2]) / (np.pi / 2)
+    shares = np.histogram(theta, edges)[0] / len(wi)
+    shares = 0.5 * np.diff(edges) + 0.5 * shares
+    sums = np.concatenate([[0.0], np.cumsum(shares)])
+    bins = np.clip(np.searchsorted(sums, u[:, 0], "right") - 1, 0, BINS - 1)
+    inside = (u[:, 0] - sums[bins]) / shares[bins]
+    theta_h = (edges[bins] + inside * np.diff(edges)[bins]) * np.pi / 2
+    theta_d, phi_d = u[:, 1] * np.pi / 2, u[:, 2] * 2 * np.pi
+    turn = (2 * np.pi * u[:, 3],) if anisotropic else ()
+    pairs = from_half_difference(theta_h, theta_d, phi_d, *turn)
+    least = least_cosine(max_angle)
+    kept = (pairs[0][:, 2] > least) & (pairs[1][:, 2] > least)
+    angles = (np.pi / 2) ** 2 * 2 * np.pi / len(u) * (np.diff(edges) / shares)[bins]
+    volumes = np.stack([angles, angles * density(theta_h, theta_d)], axis=1)
+    return pairs[0][kept], pairs[1][kept], volumes[kept]

@@ -1,0 +1,35 @@
+"""Neural reconstructions of measured materials [Sztrajman et al. 2021], and tables of them."""
+
+import numpy as np
+
+from brdfkit.model.samples.table import Table
+
+WEIGHTS = 675  # of a network 6-21-21-3, with its biases
+
+
+def evaluate_network(weights, theta_h, theta_d, phi_d):
+    """The BRDF (n, 3) in sr⁻¹, R, G, B, of a network at half/difference angles (n,) [rad].
+
+    The network takes the half and the difference vector, has two layers of 21 with ReLU, and its
+    result is ln(1 + f).
+    """
+    half = np.sin(theta_h), 0 * theta_h, np.cos(theta_h)
+    difference = np.sin(theta_d) * np.cos(phi_d), np.sin(theta_d) * np.sin(phi_d), np.cos(theta_d)
+    x = np.stack([*half, *difference], axis=1)
+    k1, b1, k2, b2, k3, b3 = np.split(weights, np.cumsum([126, 21, 441, 21, 63]))
+    x = np.maximum(x @ k1.reshape(6, 21) + b1, 0)
+    x = np.maximum(x @ k2.reshape(21, 21) + b2, 0)
+    return np.maximum(np.expm1(x @ k3.reshape(21, 3) + b3), 0)
+
+
+def decode_network(weights, shape):
+    """The `Table` of a network, at the centres of shape (θ_h, θ_d, φ_d) cells.
+
+    Cells below the surface are NaN.
+    """
+    table = Table(np.full((*shape, 3), np.nan))
+    wi, wo = table.directions()
+    above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
+    angles = (a[above] for a in np.meshgrid(*table.centres, indexing="ij"))
+    table.values[above] = evaluate_network(weights, *angles)
+    return table

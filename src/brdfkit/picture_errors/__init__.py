@@ -1,8 +1,0 @@
-"""How far a picture is from a reference, by several metrics, each beside its noise floor.
-
-Pictures are arrays (height, width, 3) of linear sRGB; a mask (height, width) says which pixels
-count.
-"""
-
-from brdfkit.picture_errors.image_errors import ImageErrors as ImageErrors
-from brdfkit.picture_errors.image_errors import image_errors as image_errors

@@ -1,3 +1,0 @@
-"""`plot`: the lobes of BRDFs in polar plots, with matplotlib."""
-
-from brdfkit.plotting.lobe_plots import plot as plot

@@ -1,0 +1,1 @@
+"""The losses that a fit minimises, and the measures over which they are means."""

@@ -1,0 +1,94 @@
+"""`Picture`: the loss of a fit that looks right, the difference of pictures.
+
+    E² = mean of (t(I_p) - t(J_p))² over pixels p and channels + share · E_log²
+
+I is a picture of the model, J of the measured material: a ball under direct light, one picture for
+each light, exposed so that its brightest hundredth is white. t is sRGB's curve [IEC 1999].
+E_log is the log loss, by which directions that no picture shows keep to the measurement.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import drjit as dr
+
+from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.names import listed
+from brdfkit.images.ball import LIGHTS
+from brdfkit.regression.losses.loss import Loss
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A loss E by which a fit makes a model look like the measured material.
+
+    It compares pictures of a ball under direct light, as a screen shows them. Lights are grey; they
+    are ``"court"``, open to the sky, ``"hall"``, with small lamps, ``"sky"``, with a low sun, and
+    ``"studio"``, with softboxes.
+
+    Parameters
+    ----------
+    lights : tuple of str, default ("court", "hall", "sky", "studio")
+        The lights, one picture for each.
+    share : float, default 0.003
+        How much the square of the log loss counts beside the mean square of pixels, at least 0:
+        more of it keeps to the measurement where the pictures show little.
+
+    Raises
+    ------
+    BrdfkitError
+        For a light that is unknown, none at all, and a share below 0.
+
+    Examples
+    --------
+    >>> Picture(lights=("hall",)).share
+    0.003
+    """
+
+    lights: tuple[str, ...] = tuple(LIGHTS)
+    share: float = 3e-3
+
+    name = "picture"
+    linear = False
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.lights, str | tuple | list):
+            raise BrdfkitError(f"Picture: lights = {self.lights!r} should be names of lights.")
+        named = (self.lights,) if isinstance(self.lights, str) else tuple(self.lights)
+        if not named:
+            raise BrdfkitError(f"Picture: lights is empty; name some of {', '.join(LIGHTS)}.")
+        for light in named:
+            if light not in LIGHTS:
+                raise no_such("light of pictures", light, LIGHTS)
+        object.__setattr__(self, "lights", named)
+        try:
+            share = float(self.share)
+        except (TypeError, ValueError):
+            share = -1.0
+        if not 0 <= share < float("inf"):
+            raise BrdfkitError(f"Picture: share = {self.share!r} should be a number of at least 0.")
+        object.__setattr__(self, "share", share)
+
+    @property
+    def meaning(self) -> str:
+        """The loss in a sentence."""
+        return f"RMS difference of what is seen: {self.describe()}"
+
+    def describe(self) -> str:
+        """What is seen, in words."""
+        return f"pictures of a ball under {listed(self.lights)}"
+
+    @cached_property
+    def of_pixels(self) -> Loss:
+        """The loss of pixels, in place of samples."""
+        return Loss(
+            self.name,
+            self.meaning,
+            lambda model, measured, cos_i, cos_o: _srgb(model) - _srgb(measured),
+        )
+
+
+def _srgb(x):
+    """sRGB's curve, which goes on above 1."""
+    bright = 1.055 * dr.power(dr.maximum(x, 0.0031308), 1 / 2.4) - 0.055
+    return dr.select(x < 0.0031308, 12.92 * x, bright)

@@ -1,0 +1,105 @@
+"""E² about a point of the search, to second order, by Gauss and Newton."""
+
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from brdfkit.regression.problem.box_quadratic import minimise_in_box
+
+
+@dataclass(eq=False)
+class Expansion:
+    """E² about points: E² + 2 gᵀ s + sᵀ H s for a step s, in coordinates, then weights by channel.
+
+    `u` (points, shapes), `weights` (points, channels, lobes): the points; `error` E² (points,);
+    `gradient` g (points, n); `hessian` H (points, n, n), None where no Gram matrix was summed;
+    `gram`, `moment`: as in `Sums`; `columns`, `space`: of the problem.
+    """
+
+    columns: Any
+    space: Any
+    u: np.ndarray
+    weights: np.ndarray
+    error: np.ndarray
+    gradient: np.ndarray
+    hessian: np.ndarray | None
+    gram: np.ndarray | None
+    moment: np.ndarray
+
+    @classmethod
+    def of(cls, columns, space, sums, u, weights):
+        """The expansion that `Sums` at the points give."""
+        points, channels, lobes = weights.shape
+        shapes = len(columns.names)
+        change = combine(columns, weights, space.slopes(u))
+        by_channel = (change @ sums.moment[..., None])[..., 0]
+        gradient = np.zeros((points, shapes + channels * lobes))
+        gradient[:, :shapes] = by_channel[:, :, :shapes].sum(axis=1)
+        gradient[:, shapes:] = by_channel[:, :, shapes:].reshape(points, channels * lobes)
+        given = columns, space, u, weights, sums.error, gradient
+        found = cls(*given, None, sums.gram, sums.moment)
+        return found if sums.gram is None else replace(found, hessian=found._hessian(change))
+
+    def _hessian(self, change):
+        points, channels, lobes = self.weights.shape
+        shapes = self.u.shape[1]
+        products = change @ self.gram @ change.transpose(0, 1, 3, 2)
+        hessian = np.zeros((points, shapes + channels * lobes, shapes + channels * lobes))
+        hessian[:, :shapes, :shapes] = products[:, :, :shapes, :shapes].sum(axis=1)
+        for c in range(channels):
+            own = slice(shapes + c * lobes, shapes + (c + 1) * lobes)
+            hessian[:, own, own] = products[:, c, shapes:, shapes:]
+            hessian[:, :shapes, own] = products[:, c, :shapes, shapes:]
+            hessian[:, own, :shapes] = products[:, c, shapes:, :shapes]
+        return hessian
+
+    def follow(self, u, least):
+        """The best weights (points, channels, lobes), at least `least`, at other coordinates `u`,
+        if the lobes were linear in their parameters and the loss quadratic in the model.
+
+        A lobe's strength and its Fresnel reflectance trade off along a curve: by this, a step goes
+        round it.
+        """
+        columns, count = self.columns, len(self.columns.lobes)
+        by = self.space.table(u) - self.space.table(self.u)
+        # The lobes at `u`, as combinations of the columns at these points
+        lobes = np.zeros((len(u), count, len(columns)))
+        lobes[:, range(count), range(count)] = 1
+        for k, (value, j) in enumerate(columns.slopes, count):
+            lobes[:, value, k] = by[:, j]
+        model = np.zeros((*self.weights.shape[:2], len(columns)))
+        model[:, :, :count] = self.weights
+        target = (self.gram @ model[..., None])[..., 0] - self.moment
+        lobes = lobes[:, None]
+        gram = lobes @ self.gram @ lobes.transpose(0, 1, 3, 2)
+        moment = -(lobes @ target[..., None])[..., 0]
+        return minimise_in_box(
+            gram.reshape(-1, count, count), moment.reshape(-1, count), least, np.inf
+        ).reshape(self.weights.shape)
+
+    def at(self, rows):
+        """The expansion about some of the points."""
+        return replace(self, **{name: getattr(self, name)[rows] for name in ARRAYS})
+
+    def put(self, rows, other):
+        """Replace the points `rows` by those of the expansion `other`."""
+        for name in ARRAYS:
+            getattr(self, name)[rows] = getattr(other, name)
+
+
+ARRAYS = [f.name for f in fields(Expansion) if f.name not in ("columns", "space")]
+
+
+def combine(columns, weights, slopes):
+    """The model's derivatives (points, channels, shapes + lobes, columns), by coordinates, then by
+    weights, as combinations of the columns; `slopes`: of the parameters by coordinates."""
+    points, channels, lobes = weights.shape
+    shapes, values = len(columns.names), len(columns.lobes)
+    change = np.zeros((points, channels, shapes + lobes, len(columns)))
+    for k, (lobe, power) in enumerate(zip(columns.lobes, columns.powers, strict=True)):
+        change[:, :, shapes + lobe, k] = 1 if power == 1 else 2 * weights[:, :, lobe]
+    factors = weights[:, :, columns.lobes] ** columns.powers
+    for k, (value, j) in enumerate(columns.slopes, values):
+        change[:, :, j, k] = factors[:, :, value] * slopes[:, None, j]
+    return change

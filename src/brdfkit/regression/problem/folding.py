@@ -1,0 +1,151 @@
+"""A linear loss folded: sums over the samples that share a half vector, made once for a whole fit.
+
+Where each lobe is a factor S, which holds the shape parameters and depends on the half vector and
+theta_d alone, times a factor A without parameters, the sums of a linear loss,
+
+    Σ w κ² S S A A,   Σ w κ² S A R,   Σ w κ² R²,
+
+are sums over the half vectors of a table, 90 of MERL's, of S S or S times sums that are made once.
+"""
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.core.geometry.vectors import cos_theta_d, half_vector
+from brdfkit.core.jit import double_precision
+from brdfkit.regression.problem.expansion import Expansion
+from brdfkit.regression.problem.sums import Sums, move_weights, solve_weights
+
+# Folding is worth its sums where nodes are so many times fewer than samples
+WORTHWHILE = 20
+# Nodes of so many samples are multiplied one by one
+LONG = 1000
+
+
+def fold(problem):
+    """The `Folded` problem of a `Problem`, or None where it does not fold."""
+    cells = problem.samples.cells
+    few = len(problem.groups) == 1  # a node has the products of all channels
+    if not (problem.linear and few) or cells is None or not double_precision.differentiable():
+        return None
+    pairs = _depend_on_cos_d(problem)
+    if pairs is None:
+        return None
+    numbers = cells[1 if pairs else 0]
+    if not problem.columns.slopes:  # nothing changes: a single node
+        numbers = np.zeros_like(numbers)
+    starts = np.flatnonzero(np.diff(numbers, prepend=-1))
+    return Folded(problem, starts) if len(starts) * WORTHWHILE <= len(numbers) else None
+
+
+def _depend_on_cos_d(problem):
+    """Whether a factor S depends on cosθ_d, beside the half vector; None where a factor A, or a
+    lobe that has no factors, depends on a parameter."""
+    space, up = problem.space, double_precision.vector(np.array([[0.0, 0.0, 1.0]]))
+    shapes = [
+        double_precision.scalar(x) for x in space.table(np.full((1, len(space.names)), 0.5))[0]
+    ]
+    cos_d = double_precision.scalar(1.0)
+    fixed = problem.columns.bind(shapes).lobes()
+    dr.enable_grad(cos_d)
+    depends = any(dr.grad_enabled(l.factors[0](up, cos_d)) for l in fixed if l.factors)
+    for shape in shapes:
+        dr.enable_grad(shape)
+    for lobe in problem.columns.bind(shapes).lobes():
+        constant = lobe.factors[1] if lobe.factors else lobe.eval
+        if dr.grad_enabled(constant(up, up)):
+            return None
+    return depends
+
+
+class Folded:
+    """A `Problem` of a linear loss, as sums over nodes, which begin at the samples `starts`."""
+
+    clamped = False
+
+    def __init__(self, problem, starts):
+        self.problem, self.space, self.least = problem, problem.space, problem.least
+        self.columns, self.channels = problem.columns, problem.channels
+        self.wi, self.wo = (
+            double_precision.vector(np.asarray(w)[starts])
+            for w in (problem.samples.wi, problem.samples.wo)
+        )
+        lobes, channels = len(self.columns.lobes), self.channels
+        sums = np.zeros((len(starts), lobes + channels, lobes + channels))
+        for block in problem.blocks(1):
+            inside = starts[(starts > block.rows.start) & (starts < block.rows.stop)]
+            first = int(np.searchsorted(starts, block.rows.start, "right")) - 1
+            edges = np.concatenate([[block.rows.start], inside]) - block.rows.start
+            sums[first : first + len(edges)] += _multiply(self._constants(block), edges)
+        by_node = sums.transpose(1, 2, 0)
+        values = [*range(lobes), *(value for value, _ in self.columns.slopes)]
+        self.grams = by_node[np.ix_(values, values)]
+        self.moments = by_node[np.ix_(values, range(lobes, lobes + channels))]
+        self.squares = float(np.trace(by_node[lobes:, lobes:].sum(axis=2)))
+
+    def _constants(self, block):
+        """The factors κ A of the lobes, and -κ R by channel, times √w: NumPy's (..., n)."""
+        columns, problem = self.columns, self.problem
+        middle = self.space.table(np.full((1, len(self.space.names)), 0.5))[0]
+        lobes = columns.bind([double_precision.scalar(x) for x in middle]).lobes()
+        root, constants, differences = dr.sqrt(block.importance), [], []
+        for c in range(self.channels):
+            difference, kappa = problem._difference(block, 0.0, c)
+            differences.append(root * difference)
+        for lobe in lobes:
+            constant = lobe.factors[1] if lobe.factors else lobe.eval
+            constants.append(root * kappa * constant(block.wi, block.wo))
+        dr.eval(constants, differences)
+        return np.stack([np.asarray(array) for array in constants + differences])
+
+    def start(self, u):
+        """As `Problem.start`."""
+        return solve_weights(self.columns, self._sums(u), self.least)
+
+    def expand(self, u, weights, curvature=True):
+        """As `Problem.expand`."""
+        sums = self._sums(u)
+        weights = solve_weights(self.columns, sums, self.least)
+        sums = move_weights(self.columns, sums, weights)
+        return Expansion.of(self.columns, self.space, sums, u, weights)
+
+    def expand_here(self, u, weights, curvature=True):
+        """As `Problem.expand_here`; the Hessian costs nothing more."""
+        sums = move_weights(self.columns, self._sums(u), weights)
+        return Expansion.of(self.columns, self.space, sums, u, weights)
+
+    def _sums(self, u):
+        """The `Sums` at weights of 0."""
+        points, nodes = len(u), len(self.wi.x)
+        table = self.space.table(u)
+        shapes = [double_precision.array(np.repeat(x, nodes)) for x in table.T]
+        wi, wo = (
+            double_precision.Vector(*(dr.tile(x, points) for x in (w.x, w.y, w.z)))
+            for w in (self.wi, self.wo)
+        )
+        columns = self.columns.eval(shapes, wi, wo, factor=lambda lobe: _facets(lobe, wi, wo))
+        dr.eval(columns)
+        T = np.stack([np.asarray(column).reshape(points, nodes) for column in columns], axis=1)
+        gram = np.einsum("pai,pbi,abi->pab", T, T, self.grams)[:, None]
+        moment = np.einsum("pai,aci->pca", T, self.moments)
+        error = np.full(points, self.squares)
+        gram = np.repeat(gram, self.channels, axis=1)
+        return Sums(error, moment, gram)
+
+
+def _facets(lobe, wi, wo):
+    """The factor S of a lobe, 1 where its parameters are fixed."""
+    return lobe.factors[0](half_vector(wi, wo), cos_theta_d(wi, wo)) if lobe.factors else 1.0
+
+
+def _multiply(rows, edges):
+    """The products of `rows` (k, n) with each other, summed from edge to edge: (edges, k, k)."""
+    count, n = rows.shape
+    if n > LONG * len(edges):
+        parts = np.split(rows, edges[1:], axis=1)
+        return np.stack([part @ part.T for part in parts])
+    products = np.empty((len(edges), count, count))
+    for a, first in enumerate(rows):
+        for b, second in enumerate(rows[: a + 1]):
+            products[:, a, b] = products[:, b, a] = np.add.reduceat(first * second, edges)
+    return products

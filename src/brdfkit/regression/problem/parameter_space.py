@@ -1,0 +1,99 @@
+"""The search space of a fit: the shape parameters within their bounds.
+
+A coordinate runs from 0 at the lower to 1 at the upper bound of its parameter, logarithmically for
+a parameter that is declared so.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from brdfkit.core.errors import BrdfkitError
+
+
+@dataclass(frozen=True)
+class Space:
+    """The shape parameters that are searched, with bounds (low, high) each, and the fixed ones."""
+
+    names: tuple[str, ...]
+    low: np.ndarray
+    high: np.ndarray
+    log: np.ndarray
+    fixed: dict[str, float]
+
+    @classmethod
+    def of(cls, model, bounds, fixed, anisotropic):
+        """The space of the shape parameters of `model` that are not `fixed`, within its bounds or
+        the narrower `bounds`.
+
+        Raises `BrdfkitError` for a parameter that is not searched, and bounds beyond the model's.
+        """
+        shapes = model.shapes(anisotropic)
+        _check(model, shapes, bounds, fixed)
+        names = tuple(name for name in shapes if name not in fixed)
+        limits = [bounds.get(n, model.parameters[n].bounds) for n in names]
+        low, high = np.array(limits).reshape(-1, 2).T
+        log = np.array([model.parameters[n].log for n in names], bool)
+        return cls(names, low, high, log, {k: float(v) for k, v in fixed.items()})
+
+    @classmethod
+    def on(cls, samples, model, bounds, fixed, anisotropic):
+        """The space of a fit to `Samples`, whose directions determine some parameters, unless these
+        have `bounds` or are `fixed`; see `of`."""
+        determined = {n: v for n, v in model.determined(samples).items() if n not in bounds}
+        return cls.of(model, bounds, determined | fixed, anisotropic)
+
+    def table(self, u):
+        """The parameters (points, shapes) at coordinates `u`, of the same shape."""
+        linear = self.low + u * (self.high - self.low)
+        return np.where(self.log, self._geometric(u), linear)
+
+    def values(self, u):
+        """The parameters by name, with the fixed ones, at the coordinates `u` (shapes,)."""
+        return dict(zip(self.names, map(float, self.table(u)), strict=True)) | self.fixed
+
+    def coordinates(self, values):
+        """The coordinates (shapes,) of parameters by name, clamped to [0, 1]."""
+        x = np.array([values[name] for name in self.names])
+        linear = (x - self.low) / (self.high - self.low)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            log = np.log(x / self.low) / np.log(self.high / self.low)
+        return np.clip(np.where(self.log, log, linear), 0, 1)
+
+    def slopes(self, u):
+        """The derivative of each parameter by its coordinate, at coordinates `u`; as `table`."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            log = self._geometric(u) * np.log(self.high / self.low)
+        return np.where(self.log, log, self.high - self.low)
+
+    def _geometric(self, u):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return self.low * (self.high / self.low) ** u
+
+
+def _check(model, shapes, bounds, fixed):
+    """Raise `BrdfkitError` for bounds or fixed values that the search cannot have."""
+    for name in (*bounds, *fixed):
+        if name not in shapes:
+            model.parameter(name)
+            raise BrdfkitError(
+                f"{model.type_name()}: {name} is not searched, so it can be neither bounded "
+                f"nor fixed; searched are {', '.join(shapes) or 'none'}."
+            )
+    if both := set(bounds) & set(fixed):
+        raise BrdfkitError(f"{model.type_name()}: {both.pop()} is bounded and fixed; choose one.")
+    for name, (low, high) in bounds.items():
+        allowed = model.parameters[name].bounds
+        if low >= high:
+            raise BrdfkitError(
+                f"{model.type_name()}: the bounds of {name}, {low:g} and {high:g}, should be a low "
+                f"and a higher value within {allowed[0]:g}..{allowed[1]:g}."
+            )
+        if not allowed[0] <= low < high <= allowed[1]:
+            raise BrdfkitError(
+                f"{model.type_name()}: the bounds {low:g}..{high:g} of {name} should lie "
+                f"within {allowed[0]:g}..{allowed[1]:g}."
+            )
+    if unknown := [name for name, value in fixed.items() if value is None]:
+        raise BrdfkitError(f"{model.type_name()}: {unknown[0]} is fixed at None; give a number.")
+    model(**fixed)  # raises for values beyond the bounds

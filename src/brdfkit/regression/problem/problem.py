@@ -1,0 +1,239 @@
+"""What a fit minimises: E² of a model on samples, as a function of its shapes and weights.
+
+A point is the coordinates u of the searched shape parameters and the weights of all channels. Many
+points are evaluated together, each with all samples, by one kernel.
+"""
+
+from functools import cached_property
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.jit import double_precision
+from brdfkit.core.jit.derivative import differentiate
+from brdfkit.regression.problem.blocks import GROUP, Blocks
+from brdfkit.regression.problem.columns import Columns
+from brdfkit.regression.problem.expansion import Expansion, combine
+from brdfkit.regression.problem.not_finite import require_finite_columns, require_finite_loss
+from brdfkit.regression.problem.sums import Sums, move_weights, solve_weights
+
+
+class Problem:
+    """E² of a model class on `Samples`, all of them valid.
+
+    Weights that may be negative can make the model negative, where it is clamped at 0; where E² is
+    `extended`, it goes on below 0 with the slope of the loss at 0.
+
+    `space`: the search space of its shape parameters. Arguments: coordinates `u` (points, shapes)
+    and `weights` (points, channels, lobes).
+    """
+
+    def __init__(self, model, samples, loss, space, extended=False):
+        self.model, self.samples, self.loss, self.space = model, samples, loss, space
+        self.columns = Columns.of(model, space.names, space.fixed)
+        self.channels = samples.values.shape[1]
+        numbers = range(self.channels)
+        self.groups = [numbers[k : k + GROUP] for k in numbers[::GROUP]]
+        bounds = [model.parameters[name].bounds for name in model.weights()]
+        self.least = np.array([low for low, _ in bounds])
+        self.clamped = not loss.linear and bool((self.least < 0).any())
+        self.extended = extended
+        self.linear = loss.linear and (self.columns.powers == 1).all()
+        self.factors = None
+
+        importance = loss.importance(samples)
+        if not importance.any():
+            why = "all are seen at normal incidence" if samples.wi[:, 2].min() == 1 else "all are 0"
+            raise BrdfkitError(
+                f"The {loss.name} loss weighs no sample: of its weights {why}; choose another loss."
+            )
+        self.importance, self.blocks = importance, Blocks(samples, importance, loss)
+
+    def on(self, samples):
+        """The same problem on other `Samples`."""
+        return Problem(self.model, samples, self.loss, self.space)
+
+    @cached_property
+    def black(self):
+        """What each sample adds to E² of a black model (n,)."""
+        squares = []
+        for block in self.blocks(1):
+            total = 0
+            for group in self.groups:
+                total += sum(dr.square(self._difference(block, 0.0, c)[0]) for c in group)
+                self._end_group(total)
+            squares.append(np.asarray(block.importance * total))
+        found = np.concatenate(squares)
+        if not np.isfinite(found).all():
+            black = np.zeros((1, self.channels, len(self.least)))
+            self._explain_not_finite(np.full((1, len(self.space.names)), 0.5), black)
+        return found
+
+    def start(self, u, evenly=False):
+        """The weights with the least E² where the loss is linearised at the measured values, or
+        `evenly`, by their differences: exact for a linear one, otherwise where a search begins."""
+        sums = Sums.zeros(len(u), self.channels, len(self.columns))
+        for block in self.blocks(len(u)):
+            columns = self._columns(block, u)
+            moments, weights = [], []
+            for group in self.groups:
+                for c in group:
+                    value = block.measured[c]
+                    value = value if self.loss.linear else dr.maximum(value, 0)
+                    _, slope = self._difference(block, value, c)
+                    slope = 0 * slope + 1 if evenly else slope
+                    weights.append(block.importance * slope * slope)
+                    moments.append(-weights[-1] * value)
+                self._end_group(columns, moments, weights)
+            squares = [0 * block.importance]
+            sums.add(*self._evaluate(block, u, columns, squares, moments, weights))
+        if not sums.finite():
+            self._explain_not_finite(u)
+        return solve_weights(self.columns, sums, self.least)
+
+    def expand(self, u, weights, curvature=True):
+        """The `Expansion` of E² about points, by Gauss and Newton; its Hessian is None without
+        `curvature`. Where E² is quadratic in the weights, the best ones replace `weights`."""
+        solve = self.linear and curvature and self.factors is None
+        if solve:
+            weights = np.zeros_like(weights)
+        sums = self.sums(u, weights, curvature)
+        if solve:
+            weights = solve_weights(self.columns, sums, self.least)
+            sums = move_weights(self.columns, sums, weights)
+        return Expansion.of(self.columns, self.space, sums, u, weights)
+
+    def sums(self, u, weights, curvature=True):
+        """The `Sums` at points."""
+        sums = Sums.zeros(len(u), self.channels, len(self.columns), curvature)
+        for _, evaluated in self._evaluate_blocks(u, weights):
+            sums.add(*evaluated)
+        if not sums.finite():
+            self._explain_not_finite(u, weights)
+        return sums
+
+    def jacobians(self, u, weights):
+        """At one point, by channel: the residuals (n,), where they have a slope, and their
+        derivatives (shapes + lobes, n) by the parameters, not by their coordinates."""
+        _, residuals, jacobians = zip(*self.jacobian_blocks(u, weights), strict=True)
+        return [
+            [np.concatenate(own, axis=-1) for own in zip(*blocks, strict=True)]
+            for blocks in (residuals, jacobians)
+        ]
+
+    def jacobian_blocks(self, u, weights):
+        """The rows of a block, and its `jacobians`, block by block."""
+        change = combine(self.columns, weights, np.ones_like(u))[0]
+        for block, (columns, _, moments, grams) in self._evaluate_blocks(u, weights):
+            roots = [np.sqrt(gram[0]) for gram in grams]
+            residuals = [
+                moment[0] / np.where(root > 0, root, 1)
+                for moment, root in zip(moments, roots, strict=True)
+            ]
+            T = np.stack([column[0] for column in columns])
+            jacobians = [(by @ T) * root for by, root in zip(change, roots, strict=True)]
+            yield block.rows, residuals, jacobians
+
+    def _evaluate_blocks(self, u, weights):
+        """Each block, and what `Sums.add` takes of it."""
+        for block in self.blocks(len(u)):
+            columns = self._columns(block, u)
+            squares, moments, grams = [], [], []
+            for group in self.groups:
+                own = []
+                model = self._mix(block, columns, weights[:, group])
+                for c, value in zip(group, model, strict=True):
+                    difference, slope = self._difference(block, value, c)
+                    importance = block.importance
+                    if self.factors is not None:
+                        factors = double_precision.array(self.factors[c][block.rows])
+                        importance = importance * factors
+                    own.append(importance * dr.square(difference))
+                    moments.append(importance * difference * slope)
+                    grams.append(importance * slope * slope)
+                squares.append(sum(own))
+                self._end_group(columns, squares, moments, grams)
+            yield block, self._evaluate(block, u, columns, squares, moments, grams)
+
+    def expand_here(self, u, weights, curvature=True):
+        """The `Expansion` at these very `weights`."""
+        sums = self.sums(u, weights, curvature)
+        return Expansion.of(self.columns, self.space, sums, u, weights)
+
+    def residuals(self, u, weights):
+        """The residuals at one point, an array (n,) per channel; their squares add up to E²."""
+        parts = []
+        for block in self.blocks(1):
+            columns, root = self._columns(block, u), dr.sqrt(block.importance)
+            parts.append([])
+            for group in self.groups:
+                model = self._mix(block, columns, weights[:, group])
+                pairs = zip(group, model, strict=True)
+                parts[-1] += [root * self._difference(block, m, c)[0] for c, m in pairs]
+                self._end_group(columns, parts[-1])
+            dr.eval(parts[-1])
+        return [np.concatenate([np.asarray(p) for p in part]) for part in zip(*parts, strict=True)]
+
+    def _end_group(self, *arrays):
+        """Evaluate what a group of channels gives, so that the next has a kernel of its own."""
+        if len(self.groups) > 1:
+            dr.eval(*arrays)
+
+    def _columns(self, block, u):
+        return block.columns(self.columns, self.space.table(u))
+
+    def _mix(self, block, columns, weights):
+        """The model at a block's samples, an array per channel."""
+        factors = weights[:, :, self.columns.lobes] ** self.columns.powers
+        points, channels, values = factors.shape
+        spread = block.spread(factors.reshape(points, -1))
+        mixed = []
+        for c in range(channels):
+            own = spread[c * values : (c + 1) * values]
+            mixed.append(sum(f * column for f, column in zip(own, columns, strict=False)))
+        return mixed
+
+    def _difference(self, block, value, c):
+        """The loss's difference, and its derivative by the model's `value`, in channel `c`."""
+
+        def difference(value):
+            return block.loss.difference(value, block.measured[c], block.wi.z, block.wo.z)
+
+        def clamped(value):
+            return difference(dr.select(value < 0, 0, value))
+
+        def extended(value):
+            return clamped(value) + slope * dr.minimum(value, 0)
+
+        value = double_precision.float64()(value) + 0 * block.wi.z
+        if not self.clamped:
+            return differentiate(difference, value)
+        if not self.extended:
+            return differentiate(clamped, value)
+        _, slope = differentiate(difference, 0 * value)
+        return differentiate(extended, value)
+
+    def _explain_not_finite(self, u, weights=None):
+        """Raise `BrdfkitError` for a loss that is not finite somewhere, with the model's `weights`
+        or, by default, where the model meets the measured values."""
+        for block in self.blocks(len(u)):
+            model = block.measured
+            if weights is not None:
+                model = self._mix(block, self._columns(block, u), weights)
+            for c, value in enumerate(model):
+                found = self._difference(block, value, c)
+                require_finite_loss(block.loss, block, value, block.measured[c], *found)
+
+    def _evaluate(self, block, u, columns, squares, moments, weights):
+        """What `Sums.add` takes, of a block, in one kernel."""
+        total = sum(squares)
+        dr.eval(columns, total, moments, weights)
+        values = [block.fold(column) for column in columns]
+        values = require_finite_columns(self.columns, values, block, self.space, u)
+        return (
+            values,
+            block.fold(total),
+            [block.fold(m) for m in moments],
+            [block.fold(w) for w in weights],
+        )

@@ -1,0 +1,1 @@
+"""Fits that give outliers less weight."""

@@ -1,0 +1,1 @@
+"""Searches the parameters with the least error, from many starts."""

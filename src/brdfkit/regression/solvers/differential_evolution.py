@@ -1,0 +1,86 @@
+"""`DifferentialEvolution`: a population of points that explores all bounds, for hard cases.
+
+SciPy's, [Storn & Price 1997], over the shape parameters; the weights follow them.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from brdfkit.core.parameters import check_numbers
+from brdfkit.regression.problem.box_quadratic import minimise_in_box
+from brdfkit.regression.solvers.levenberg_marquardt import LevenbergMarquardt
+from brdfkit.regression.solvers.objective import End, Objective
+
+# Steps by which the weights follow the shape parameters, where the loss is not linear
+STEPS = 4
+# They stop where one lowers no E² by more than this share
+SETTLED = 1e-3
+
+
+@dataclass(frozen=True)
+class DifferentialEvolution:
+    """Differential evolution, a global search by `scipy.optimize.differential_evolution`, ended by
+    `LevenbergMarquardt`. It takes longer, and depends less on where it begins.
+
+    Parameters
+    ----------
+    population : int, default 15
+        How many points there are for each searched shape parameter.
+    iterations : int, default 100
+        The most generations.
+    tolerance : float, default 0.001
+        The search ends where E² varies by less than this share within the population.
+
+    Examples
+    --------
+    >>> fit("ggx+ggx", "paint.binary", solver=DifferentialEvolution())    # doctest: +SKIP
+    """
+
+    population: int = 15
+    iterations: int = 100
+    tolerance: float = 1e-3
+
+    def __post_init__(self) -> None:
+        check_numbers(self)
+
+    def minimise(self, objective: Objective) -> End:
+        """The end of the search."""
+        coordinates = self._explore(objective) if objective.shapes else objective.coordinates
+        return LevenbergMarquardt().find_ends(objective, coordinates)[0]
+
+    def _explore(self, objective):
+        """The coordinates (points, shapes) of the last population, the best first."""
+        from scipy.optimize import differential_evolution
+
+        first = objective.stages()[0]
+        found = differential_evolution(
+            lambda u: _least_error(first, u.T),
+            [(0, 1)] * objective.shapes,
+            popsize=self.population,
+            maxiter=self.iterations,
+            tol=self.tolerance,
+            rng=objective.seed,
+            vectorized=True,
+            updating="deferred",
+            polish=False,
+            x0=objective.coordinates[0],
+        )
+        order = np.argsort(found.population_energies, kind="stable")
+        return found.population[order]
+
+
+def _least_error(objective, u):
+    """E² (points,) at coordinates `u` (points, shapes), nearly the least by the weights."""
+    shapes, problem = objective.shapes, objective.problem
+    low = np.tile(problem.least, problem.channels)
+    z, least = objective.join(u, problem.start(u)), np.full(len(u), np.inf)
+    for _ in range(STEPS):
+        here = objective.expand(z)
+        gained = (least - here.error) > SETTLED * here.error
+        least = np.fmin(least, here.error)
+        if not gained.any():
+            break
+        H, g = here.hessian[:, shapes:, shapes:], here.gradient[:, shapes:]
+        z[:, shapes:] += minimise_in_box(H, g, low - z[:, shapes:], np.inf)
+    return least

@@ -1,0 +1,1 @@
+"""Pictures without paths and without noise: `preview`."""

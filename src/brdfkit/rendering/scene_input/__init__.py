@@ -1,0 +1,1 @@
+"""What a user gives to be rendered: scenes, meshes, fields and maps."""

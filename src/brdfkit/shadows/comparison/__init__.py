@@ -1,0 +1,5 @@
+"""A laboratory of shadows: techniques on a user's scene, scored against exact shadows."""
+
+from brdfkit.shadows.comparison.comparing import compare as compare
+from brdfkit.shadows.comparison.comparison import ShadowComparison as ShadowComparison
+from brdfkit.shadows.comparison.scores import Scores as Scores

@@ -1,0 +1,149 @@
+"""`ShadowComparison`, what `compare` returns: scores by technique; prints as a table."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from brdfkit.core.documents import Cell, Document, Paragraph, Shown, Table
+from brdfkit.core.documents.parts import STRONG
+from brdfkit.shadows.comparison.columns import COLUMNS, to_texts
+from brdfkit.shadows.comparison.pictures import Pictures
+from brdfkit.shadows.comparison.scores import Scores, between_lights, mean
+
+
+@dataclass(frozen=True, repr=False)
+class ShadowComparison(Shown):
+    """Scores of shadow techniques against exact shadows; prints as a table.
+
+    Attributes
+    ----------
+    scores : dict
+        Technique → its `Scores` in each view and light: all lights of the first view, then of the
+        next.
+    lights : int
+        How many lights there are.
+    asked : int
+        How many scores were asked for; more than there are after Ctrl-C.
+    pictures : tuple of Pictures
+        What the page shows of each view and light, in the order of the scores.
+    """
+
+    scores: dict[str, tuple[Scores, ...]]
+    lights: int
+    asked: int
+    pictures: tuple[Pictures, ...] = field(compare=False)
+
+    @property
+    def means(self) -> dict[str, Scores]:
+        """Technique → the means over views and lights, the best PSNR first, unknown ones last."""
+        found = {label: mean(scores) for label, scores in self.scores.items()}
+        return dict(sorted(found.items(), key=lambda item: -np.nan_to_num(item[1].psnr, nan=-99)))
+
+    @property
+    def relative(self) -> dict[str, Scores]:
+        """Technique → the mean differences between the two lights of each view: how much a light
+        that hardly moves changes; in the order of `means`. Empty where there are not two lights, or
+        no view in which both shine.
+        """
+        both = zip(self.pictures[::2], self.pictures[1::2], strict=False)
+        if self.lights != 2 or not any(one.is_lit and other.is_lit for one, other in both):
+            return {}
+        return {label: between_lights(self.scores[label]) for label in self.means}
+
+    @property
+    def best(self) -> str:
+        """The technique with the best PSNR."""
+        return next(iter(self.means))
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The heads of the table."""
+        return ("technique", *(f">{head}" for _, head, *_ in COLUMNS))
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether Ctrl-C ended the comparison."""
+        return self.finished < self.asked
+
+    @property
+    def finished(self) -> int:
+        """How many scores there are."""
+        return sum(map(len, self.scores.values()))
+
+    def table(self) -> list[tuple[str, ...]]:
+        """The means as texts, a row for each technique."""
+        return to_texts(self.means)
+
+    @property
+    def meaning(self) -> str:
+        """What the columns are, in a sentence or two."""
+        places = len(next(iter(self.scores.values())))
+        pairs = "the only pair" if places == 1 else f"{places} pairs"
+        return (
+            f"{self.cut_short}Means over {pairs} of view and light, each against exact shadows. "
+            f"{self.unlit}"
+            "Use is the share of texels that the view needs (Q1), aliasing how fine they are "
+            "beside its pixels (Q2), flicker the change of the error from picture to picture while "
+            "the camera moves, or the light."
+        )
+
+    @property
+    def unlit(self) -> str:
+        """A sentence on the pairs in which nothing is in the light; without any, nothing."""
+        count = sum(not each.is_lit for each in self.pictures)
+        return f"In {count} of them nothing is in the light: they do not count. " if count else ""
+
+    @property
+    def cut_short(self) -> str:
+        """A sentence on how much is finished after Ctrl-C; else nothing."""
+        if not self.interrupted:
+            return ""
+        return f"Interrupted: {self.finished} of {self.asked} scores are finished. "
+
+    def write(self, path: str | Path, progress: Callable[[int, int], object] | None = None) -> None:
+        """Write a page with the table, to sort, and all pictures: of each view in each light the
+        exact shadows, and of each technique the shadows, their errors and where its texels go.
+
+        Parameters
+        ----------
+        path : str or Path
+            The page, .html; it needs no other file.
+        progress : callable, optional
+            Called with (done, total); see `brdfkit.progress`.
+
+        Raises
+        ------
+        BrdfkitError
+            For another suffix, and where the file cannot be written.
+
+        Examples
+        --------
+        >>> bk.shadows.compare("street").write("shadows.html")    # doctest: +SKIP
+        """
+        from brdfkit.shadows.comparison.page import write_page
+
+        write_page(self, path, progress)
+
+    def document(self) -> Document:
+        """The means, a row for each technique, the best of each column strong."""
+        means, texts = list(self.means.values()), self.table()
+        best = []
+        for name, *_, more in COLUMNS:
+            values = [getattr(scores, name) for scores in means]
+            known = [value for value in values if not math.isnan(value)]
+            best.append((max if more else min)(known, default=math.nan))
+        rows = [
+            (
+                Cell(label),
+                *(
+                    Cell(text, STRONG if getattr(scores, name) == least else "")
+                    for text, (name, *_), least in zip(its, COLUMNS, best, strict=True)
+                ),
+            )
+            for (label, *its), scores in zip(texts, means, strict=True)
+        ]
+        parts = Table(tuple(rows), self.columns), Paragraph(self.meaning)
+        return Document("Shadow techniques", parts)

@@ -1,0 +1,99 @@
+"""What a camera sees of a scene in one light, with exact shadows: what techniques are held to."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.mitsuba_bridge.surface_points import ray_off_surface
+from brdfkit.shadows.volumes.mesh import Mesh
+
+
+@dataclass(frozen=True)
+class Seen:
+    """The surfaces in the middle of all pixels, row by row.
+
+    scene : the `mi.Scene`.
+    sensor : one of its cameras.
+    emitter : one of its lights, with a place or a direction.
+    si : the `mi.SurfaceInteraction3f` of each pixel.
+    size : (height, width) of the picture.
+    """
+
+    scene: Any
+    sensor: Any
+    emitter: Any
+    si: Any
+    size: tuple[int, int]
+
+    @classmethod
+    def by(cls, scene, sensor, emitter, size):
+        """Of a `sensor` whose picture has the `size` (height, width)."""
+        import mitsuba as mi
+
+        height, width = size
+        index = dr.arange(mi.UInt32, height * width)
+        pixel = mi.Point2f(index % width, index // width) + 0.5
+        place = pixel / mi.Point2f(width, height)
+        ray, _ = sensor.sample_ray(0.0, 0.5, place, mi.Point2f(0.5))
+        si = scene.ray_intersect(ray)
+        dr.eval(si)
+        return cls(scene, sensor, emitter, si, (height, width))
+
+    def points(self, pixels):
+        """The places and the normals of the surfaces in some `pixels`, by their numbers (n,)."""
+        import mitsuba as mi
+
+        index = mi.UInt32(pixels)
+        return dr.gather(mi.Point3f, self.si.p, index), dr.gather(mi.Normal3f, self.si.n, index)
+
+    @cached_property
+    def meshes(self):
+        """All shapes as `Mesh`es, which bound shadow volumes."""
+        return [Mesh.of_shape(shape) for shape in self.scene.shapes()]
+
+    @cached_property
+    def to_light(self):
+        """The `mi.DirectionSample3f` to the light, and its light there without a shadow."""
+        import mitsuba as mi
+
+        return self.emitter.sample_direction(self.si, mi.Point2f(0.5))
+
+    @cached_property
+    def facing(self):
+        """Whether (pixels,) there is a surface that faces the light, where it shines (a spot does
+        not everywhere): elsewhere all is dark."""
+        import mitsuba as mi
+
+        ds, light = self.to_light
+        towards = dr.dot(self.si.n, ds.d) * dr.dot(self.si.n, self.si.to_world(self.si.wi))
+        shines = dr.max(mi.unpolarized_spectrum(light)) > 0
+        return np.array(self.si.is_valid() & (towards > 0) & shines)
+
+    @cached_property
+    def exact(self):
+        """Whether (pixels,) a shadow ray reaches the light."""
+        import mitsuba as mi
+
+        ds, _ = self.to_light
+        ray = ray_off_surface(self.si.p, self.si.n, self.si.t, ds.d)
+        ray.maxt = ds.dist * (1 - mi.math.ShadowEpsilon)
+        return np.array(~self.scene.ray_test(ray, self.si.is_valid()))
+
+    @cached_property
+    def unshadowed(self):
+        """The radiance (pixels, 3) of each surface by the light, without its shadow."""
+        import mitsuba as mi
+
+        ds, light = self.to_light
+        valid = self.si.is_valid()
+        value = self.si.bsdf().eval(mi.BSDFContext(), self.si, self.si.to_local(ds.d), valid)
+        radiance = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light)
+        rgb = mi.Color3f(radiance) if mi.is_rgb else mi.Color3f(radiance[0])
+        return np.array(dr.select(valid, rgb, 0)).T
+
+    def picture(self, lit):
+        """The picture (height, width, 3) by the shares (pixels,) of the light that arrive."""
+        return (self.unshadowed * np.asarray(lit)[:, None]).reshape(*self.size, 3)

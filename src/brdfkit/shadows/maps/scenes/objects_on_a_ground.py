@@ -1,0 +1,55 @@
+"""Balls, boxes, columns and gates on a ground, as a child leaves its bricks."""
+
+import numpy as np
+
+from brdfkit.shadows.maps.scenes._stage import ball, box, ground, matte, numbered, pole, stage
+
+COLOURS = np.array(
+    [(0.75, 0.2, 0.14), (0.85, 0.55, 0.12), (0.2, 0.42, 0.62), (0.3, 0.5, 0.24), (0.8, 0.76, 0.66)]
+)
+
+
+def objects_on_a_ground(view="V1", light=1, size=(512, 512)):
+    """The scene's dictionary; see `brdfkit.shadows.maps.scenes`.
+
+    >>> objects_on_a_ground()["floor"]["type"]
+    'rectangle'
+    """
+    random = np.random.default_rng(2008)
+    places = [(x, y) for x in range(-4, 5, 2) for y in range(-4, 5, 2)]
+    bricks = [
+        brick(random, place + random.uniform(-0.45, 0.45, 2), COLOURS[i % len(COLOURS)])
+        for i, place in enumerate(np.array(places, float))
+    ]
+
+    def eye(azimuth):
+        return -9 * np.sin(azimuth), -9 * np.cos(azimuth), 5.2
+
+    return (
+        stage(view, light, size, eye, down=28, fov=48)
+        | {"floor": ground(9, (0.62, 0.6, 0.56))}
+        | numbered("brick", [thing for things in bricks for thing in things])
+    )
+
+
+def brick(random, place, colour):
+    """What stands at a place (2,): a list of shapes."""
+    x, y = place.tolist()
+    kind, large, turn = random.integers(4), random.uniform(0.3, 0.6), random.uniform(0, 90)
+    if kind == 0:
+        return [ball([x, y, large], large, colour)]
+    if kind == 1:
+        return [box([x, y, 0], [2 * large, large, large], colour, turn)]
+    if kind == 2:
+        top = 4 * large
+        cap = {"type": "disk", "bsdf": matte(colour), "to_world": _lid([x, y, top], large / 2)}
+        return [pole([x, y, 0], top, large / 2, colour), cap]
+    feet = [x - large, x + large]
+    beam = box([x, y, 3 * large], [2.6 * large, 0.4 * large, 0.4 * large], colour)
+    return [box([f, y, 0], [0.4 * large, 0.4 * large, 3 * large], colour) for f in feet] + [beam]
+
+
+def _lid(centre, radius):
+    import mitsuba as mi
+
+    return mi.ScalarTransform4f().translate(centre).scale([radius, radius, 1])

@@ -1,0 +1,73 @@
+"""Two streets of a small town, from where they cross to 200 m away: a view much deeper than wide.
+
+The eye is 1.7 m above the ground: what is seen begins at 3 m, so far over near is about 70.
+"""
+
+import numpy as np
+
+from brdfkit.shadows.maps.scenes._stage import ball, box, ground, numbered, pole, stage
+
+LENGTH = 200.0  # of a street, each way [m]
+WIDTH = 16.0  # between houses [m]
+HOUSE = 14.0  # along the street [m]
+WALLS = [(0.74, 0.66, 0.54), (0.7, 0.46, 0.34), (0.78, 0.74, 0.68), (0.6, 0.5, 0.42)]
+DARK, GREEN = (0.12, 0.12, 0.13), (0.2, 0.34, 0.13)
+
+
+def street(view="V1", light=1, size=(512, 512)):
+    """The scene's dictionary; see `brdfkit.shadows.maps.scenes`.
+
+    >>> street()["ground"]["type"]
+    'rectangle'
+    """
+    random = np.random.default_rng(16)
+    sides = [(along, way, side) for along in (0, 1) for way in (-1, 1) for side in (-1, 1)]
+    things = [thing for side in sides for thing in one_side(random, *side)]
+    return (
+        stage(view, light, size, lambda azimuth: (0.5, -0.5, 1.7), down=0.5, fov=60)
+        | {"ground": ground(LENGTH + 20, (0.32, 0.32, 0.33))}
+        | numbered("thing", things)
+    )
+
+
+def one_side(random, along, way, side):
+    """The houses, trees, lamps and cars of one side of one arm of the streets.
+
+    along : the axis of the street, 0 or 1.
+    way, side : the direction of the arm, and on which side of it: -1 or 1.
+    """
+
+    def at(distance, aside, height=0.0):
+        across = side * aside
+        x, y = (way * distance, across) if along == 0 else (across, way * distance)
+        return [x, y, height]
+
+    def sized(length, width, height):
+        return [length, width, height] if along == 0 else [width, length, height]
+
+    kerb = (LENGTH - WIDTH / 2, WIDTH / 2 - 6)
+    things = [box(at((LENGTH + WIDTH / 2) / 2, 7), sized(*kerb, 0.15), (0.55, 0.54, 0.52))]
+    for i, distance in enumerate(np.arange(WIDTH / 2 + HOUSE / 2, LENGTH, HOUSE)):
+        tall, wall = random.uniform(6, 15), WALLS[random.integers(len(WALLS))]
+        middle = WIDTH / 2 + HOUSE / 2
+        things += [
+            box(at(distance, middle), sized(HOUSE - 0.6, HOUSE, tall), wall),
+            box(at(distance, middle, tall), sized(HOUSE, HOUSE + 0.8, 0.4), (0.35, 0.2, 0.16)),
+            pole(at(distance + 4, 5.5), 5.5, 0.07, DARK),
+            box(at(distance + 4, 4.9, 5.5), sized(0.2, 1.4, 0.12), DARK),
+        ]
+        if side > 0:
+            things.append(box(at(distance, 0), sized(3, 0.18, 0.02), (0.8, 0.8, 0.78)))
+        if random.random() < 0.75:
+            tree = random.uniform(1.3, 1.9)
+            things += [
+                pole(at(distance - 3, 5.5), 3, 0.15, (0.25, 0.18, 0.12)),
+                ball(at(distance - 3, 5.5, 3 + 0.7 * tree), tree, GREEN),
+            ]
+        if i % 2 == 0:
+            paint = random.uniform(0.1, 0.7, 3)
+            things += [
+                box(at(distance, 3.2, 0.25), sized(4.2, 1.7, 0.6), paint),
+                box(at(distance, 3.2, 0.85), sized(2.2, 1.5, 0.55), DARK),
+            ]
+    return things

@@ -1,0 +1,50 @@
+"""Planes across the view that part what a camera sees, and between which of them a point is.
+
+Of the depths from n to f, plane i of m is at
+
+    C_log = n (f/n)^(i/m),   C_uni = n + i (f - n)/m,   C_mean = (C_log + C_uni)/2
+
+Logarithmic ones make texels equally large in the picture at all depths, yet spend most parts near
+the eye; uniform ones spend most far away; the mean is between [Zhang et al. 2006], [Ergun 2008,
+2.2.3.4].
+"""
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.core.projective.homogeneous import transform
+from brdfkit.mitsuba_bridge.properties.declarations import count, word
+
+SPACINGS = ("logarithmic", "mean", "uniform")
+SETTINGS = {
+    "parts": count(4, (1, 8), "parts along the view"),
+    "spacing": word(SPACINGS, "distances of the planes between parts"),
+}
+
+
+def split_planes(near, far, parts, spacing):
+    """The depths (parts + 1,) of the planes, from `near` to `far`.
+
+    >>> split_planes(1, 100, 2, "logarithmic")
+    array([  1.,  10., 100.])
+    """
+    uniform = np.linspace(near, far, parts + 1)
+    logarithmic = np.geomspace(near, far, parts + 1)
+    mean = (uniform + logarithmic) / 2
+    return {"uniform": uniform, "logarithmic": logarithmic, "mean": mean}[spacing]
+
+
+def by_depth(camera, planes):
+    """The function from points to the numbers, from 0 on, of the spaces between `planes`; what is
+    before the first or behind the last is in the first or last space."""
+    import mitsuba as mi
+
+    view = mi.Matrix4f(camera.view)
+    inner = [dr.opaque(mi.Float, float(plane)) for plane in planes[1:-1]]
+    dr.make_opaque(view)
+
+    def which(p):
+        depth = -transform(view, *p)[2]
+        return sum((dr.select(depth > plane, mi.UInt32(1), 0) for plane in inner), mi.UInt32(0))
+
+    return which

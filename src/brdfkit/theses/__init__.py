@@ -1,0 +1,18 @@
+"""`reproduce`: a thesis as an executable document, its claims run and written as a page.
+
+A folder here is a thesis, and is found by its being there. Its `__init__.py` has TITLE,
+INTRODUCTION, NEEDS (the measured files) and PARTS, the names of its files in the order of the page.
+A part, one table or figure, has SECONDS, about how long it takes, and a function
+`run(sources, report)`, which returns a `Section` of `page.py` with its `Claim`s. `report(done,
+total)` is called as it goes on.
+"""
+
+from pathlib import Path
+
+from brdfkit.theses.claims import Claim as Claim
+from brdfkit.theses.reproducing import Reproduction as Reproduction
+from brdfkit.theses.reproducing import reproduce as reproduce
+from brdfkit.theses.reproducing import theses as theses
+
+# The theses themselves lie beside `plugins/`; the wheel contains a copy of them here
+__path__.append(str(Path(__file__).resolve().parents[3] / "theses"))

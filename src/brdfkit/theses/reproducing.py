@@ -1,0 +1,148 @@
+"""`reproduce`: runs the claims of a thesis and writes a page of them."""
+
+import importlib
+import pkgutil
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from types import ModuleType
+
+from brdfkit.core.documents import Document, Shown, Table
+from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.files import make_folder, require_writable
+from brdfkit.theses.claims import Claim, count
+from brdfkit.theses.page import write_page
+from brdfkit.theses.sources import Sources, find_sources
+
+
+@dataclass(frozen=True, repr=False)
+class Reproduction(Shown):
+    """The claims of a thesis, run; prints as a list of them. Made by `reproduce`.
+
+    Attributes
+    ----------
+    name : str
+        The thesis.
+    claims : tuple of Claim
+        What it says, what is printed, what came out and the verdict, in the order of the page.
+    written : tuple of Path
+        The page, and its figures.
+    unfinished : tuple of str
+        Parts that Ctrl-C left out.
+    """
+
+    name: str
+    claims: tuple[Claim, ...]
+    written: tuple[Path, ...] = ()
+    unfinished: tuple[str, ...] = ()
+
+    def document(self) -> Document:
+        """The claims, each with its verdict, what is printed and what came out."""
+        rows = tuple((c.verdict, f"{c.says} ({c.where})", c.printed, c.ours) for c in self.claims)
+        title = f"{self.name}: {len(self.claims)} claims: {count(self.claims)}"
+        return Document(title, (Table(rows, ("verdict", "claim", "printed", "here")),))
+
+
+def theses() -> dict[str, str]:
+    """The theses that can be reproduced: name → title.
+
+    >>> list(theses())
+    ['balint2019', 'ergun2008', 'ergun2015', 'kurt2007', 'lesar2018']
+    """
+    found = pkgutil.iter_modules(sys.modules[__package__].__path__)
+    return {f.name: _thesis(f.name).TITLE for f in found if f.ispkg}
+
+
+def reproduce(
+    name: str,
+    output: str | Path | None = None,
+    *,
+    data: str | Path | None = None,
+    tables: str | Path | None = None,
+    parts: list[str] | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> Reproduction:
+    """Run the claims of a thesis, and write them as a page.
+
+    The measurements are third-party files, which brdfkit does not ship. Ctrl-C ends with the parts
+    that are finished.
+
+    Parameters
+    ----------
+    name : str
+        The thesis, as ``"kurt2007"``.
+    output : str or Path, optional
+        A folder for the page, ``kurt2007.md``, and its figures; by default none is written.
+    data : str or Path, optional
+        The folder of measurements, by default that which the variable BRDFKIT_DATA names.
+    tables : str or Path, optional
+        The folder of tables transcribed from theses, by default ``thesis`` beside `data`. Claims
+        that need one are not run where it is missing.
+    parts : list of str, optional
+        Only these parts, as ``["table_9_1"]``; by default all.
+    progress : callable, optional
+        Called with (done, total) as the claims are run.
+
+    Returns
+    -------
+    Reproduction
+        The claims with their verdicts; prints as a list.
+
+    Raises
+    ------
+    BrdfkitError
+        For an unknown thesis or part, and for a measured file that is missing.
+
+    Examples
+    --------
+    >>> print(reproduce("kurt2007", "docs/reproduce"))    # doctest: +SKIP
+    """
+    if name not in theses():
+        raise no_such("thesis", name, theses())
+    thesis = _thesis(name)
+    for part in parts or ():
+        if part not in thesis.PARTS:
+            raise no_such("part", part, thesis.PARTS, where=name)
+    sources = find_sources(data, tables, thesis.NEEDS)
+    _require_packages(thesis, sources)
+    if output is not None:
+        make_folder(output)
+        require_writable(Path(output) / f"{name}.md")
+
+    chosen = [part for part in thesis.PARTS if parts is None or part in parts]
+    modules = [importlib.import_module(f"{thesis.__name__}.{part}") for part in chosen]
+    total, sections, written = sum(m.SECONDS for m in modules), [], []
+    report = progress or (lambda done, total: None)
+    try:
+        for number, module in enumerate(modules):
+            before = sum(m.SECONDS for m in modules[:number])
+            report(before, total)
+            sections.append(module.run(sources, _share(report, before, module.SECONDS, total)))
+    except KeyboardInterrupt:
+        if not sections:
+            raise
+    if output is not None:
+        page, left = Path(output) / f"{name}.md", chosen[len(sections) :]
+        written = write_page(page, thesis.TITLE, thesis.INTRODUCTION, sections, left)
+    claims = tuple(claim for section in sections for claim in section.claims)
+    return Reproduction(name, claims, tuple(written), tuple(chosen[len(sections) :]))
+
+
+def _require_packages(thesis: ModuleType, sources: Sources) -> None:
+    """Raise `BrdfkitError`, before the work, where a package is missing that reads a file."""
+    for file, package in getattr(thesis, "PACKAGES", {}).items():
+        if sources.beside(file) and find_spec(package) is None:
+            raise BrdfkitError(
+                f'{file}: needs the package {package}; pip install "brdfkit[volumes]" brings it.'
+            )
+
+
+def _thesis(name: str) -> ModuleType:
+    return importlib.import_module(f"{__package__}.{name}")
+
+
+def _share(report, before, seconds, total):
+    """The progress of a part as that of all: the parts count by how long they take."""
+    return lambda done, of: report(before + seconds * done / of, total)

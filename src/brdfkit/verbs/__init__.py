@@ -1,1 +1,0 @@
-"""The verbs that are one file each: `fit` and what says more of one, `compare`, `convert` ..."""

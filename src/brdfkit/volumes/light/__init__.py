@@ -1,0 +1,1 @@
+"""Light in volumes: media, emission, surfaces, and the bounds that tracking needs."""

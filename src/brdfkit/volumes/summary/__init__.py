@@ -1,0 +1,1 @@
+"""What a volume holds: values, histograms, slices; as text and pictures."""

@@ -1,0 +1,1 @@
+"""Transfer functions: values to colour and opacity, their files, presets and lookups."""

@@ -1,0 +1,215 @@
+"""`TransferFunction`: what a volume's values mean to light: colour, and extinction.
+
+At a point with the value v, and the gradient magnitude g, the function has RGB and A. They mean
+
+    σ_t = extinction · A        extinction [1/unit of length]; A is 0 to 1
+    albedo = RGB                where colour = "albedo": light is scattered, σ_s = σ_t · RGB
+    emission = σ_t · RGB        where colour = "emission": radiance that is added per unit of length
+
+So under "emission" RGB is the radiance of a piece so thick that nothing is seen through it, the
+colour of what is called compositing elsewhere. RGB is linear sRGB. A is no opacity: a layer of
+thickness d that lets 1 - a of the light through has σ_t = -ln(1 - a) / d (`opacity.py`).
+
+[Lesar 2018, chapter 6] leaves the meaning open; value × gradient magnitude is from [Kniss et al.
+2002].
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from brdfkit.core.arguments import to_pair, to_positive, to_whole_number
+from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.volumes.transfer.conversions import Conversions
+from brdfkit.volumes.transfer.length_units import METRES, ratio
+from brdfkit.volumes.transfer.piecewise import places, require_order
+
+COLOURS = "albedo", "emission"  # what RGB means
+# Units of values, of functions for any data
+WINDOW_SHARES, RANGE_SHARES = "share of the window", "share of the range"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TransferFunction(Conversions):
+    """RGBA over a volume's values, or over values × gradient magnitudes; linear in between.
+
+    Beyond the first and the last point it stays as it is there. Two points at one value are a step.
+    Raises `BrdfkitError` for points that are out of order and for numbers out of range.
+
+    Attributes
+    ----------
+    values : ndarray
+        Of the control points (n,), rising, in the data's own unit.
+    rgba : ndarray
+        At each value (n, 4), or at each gradient magnitude and value (m, n, 4). RGB, linear sRGB,
+        is 0 to 1 as an albedo, and 0 or more as an emission; A is 0 to 1.
+    extinction : float
+        σ_t where A is 1 [1/unit of length], the unit being that of the volume.
+    colour : str
+        What RGB means: "albedo" or "emission".
+    gradients : ndarray
+        The gradient magnitudes (m,), rising [value per unit of length]; None if it has only values.
+    value_unit : str
+        Such as "HU"; for people.
+    length_unit : str
+        Such as "mm": a volume in another unit that is known has the function `per` that one. Empty:
+        the unit of whatever volume.
+    name : str
+        What it is called.
+
+    Examples
+    --------
+    >>> glass = TransferFunction([0, 255], [[0.9, 0.9, 1, 0], [0.9, 0.9, 1, 1]], extinction=0.2)
+    >>> glass(127.5)
+    array([0.9, 0.9, 1. , 0.5])
+    """
+
+    values: Any
+    rgba: Any
+    extinction: float = 1.0
+    colour: str = "albedo"
+    gradients: Any = None
+    value_unit: str = ""
+    length_unit: str = ""
+    name: str = "transfer function"
+
+    def __post_init__(self) -> None:
+        if self.colour not in COLOURS:
+            raise no_such("meaning of RGB", self.colour, COLOURS, self.name)
+        values = require_order(self.values, f"{self.name}: values")
+        shape: tuple[int, ...] = (len(values), 4)
+        gradients = self.gradients
+        if gradients is not None:
+            gradients = require_order(gradients, f"{self.name}: gradients")
+            shape = (len(gradients), *shape)
+        extinction = to_positive(f"{self.name}: extinction", self.extinction)
+        checked = {
+            "values": values,
+            "gradients": gradients,
+            "rgba": _checked(self.rgba, shape, self.colour, self.name),
+            "extinction": extinction,
+        }
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """The first and the last value, between which the function changes."""
+        return float(self.values[0]), float(self.values[-1])
+
+    @property
+    def gradient_range(self) -> tuple[float, float] | None:
+        """The first and the last gradient magnitude; None if the function has only values."""
+        if self.gradients is None:
+            return None
+        return float(self.gradients[0]), float(self.gradients[-1])
+
+    def __call__(self, values: ArrayLike, gradients: ArrayLike | None = None) -> NDArray[Any]:
+        """RGBA (..., 4) at `values`, and at `gradients`, magnitudes, if the function has them.
+
+        Raises `BrdfkitError` where they are missing.
+        """
+        values = np.asarray(values, float)
+        low, high, t = places(values, self.values)
+        if self.gradients is None:
+            return (1 - t) * self.rgba[low] + t * self.rgba[high]
+        if gradients is None:
+            raise BrdfkitError(f"{self.name}: is one of gradient magnitudes, too; give them.")
+        below, above, s = places(np.asarray(gradients, float), self.gradients)
+        lower = (1 - t) * self.rgba[below, low] + t * self.rgba[below, high]
+        upper = (1 - t) * self.rgba[above, low] + t * self.rgba[above, high]
+        return (1 - s) * lower + s * upper
+
+    def table(self, n: int = 1024, m: int = 64) -> NDArray[np.float32]:
+        """RGBA (n, 4), or (m, n, 4), at even steps over `range` and `gradient_range`, both ends in.
+
+        A texture of it has its first and last centres at the ends of the range. What is narrower
+        than a step is lost.
+        """
+        values = np.linspace(*self.range, to_whole_number("n", n, 2))
+        if self.gradient_range is None:
+            return self(values).astype(np.float32)
+        gradients = np.linspace(*self.gradient_range, to_whole_number("m", m, 2))
+        return self(values, gradients[:, None]).astype(np.float32)
+
+    def over_gradients(self, ramp: ArrayLike) -> "TransferFunction":
+        """The function with A times a `ramp` (m, 2) of points (gradient magnitude, factor).
+
+        It shows where the value changes, and hides what is even: ``[(0, 0), (50, 1)]``.
+        """
+        try:
+            points = np.asarray(ramp, float)
+        except (TypeError, ValueError, OverflowError):
+            points = np.empty(0)
+        if points.ndim != 2 or points.shape[1] != 2 or self.gradients is not None:
+            raise BrdfkitError(
+                f"{self.name}: a ramp is points (gradient magnitude, factor), (m, 2), and the "
+                "function one of values alone."
+            )
+        rgba = np.repeat(self.rgba[None], len(points), axis=0)
+        rgba[..., 3] *= points[:, 1:]
+        return replace(self, rgba=rgba, gradients=points[:, 0])
+
+    def per(self, unit: str) -> "TransferFunction":
+        """The same function with its extinction, and its gradients, per another unit of length.
+
+        Raises `BrdfkitError` where the function's unit or that one is unknown.
+        """
+        if unit == self.length_unit:
+            return self
+        factor = ratio(unit, self.length_unit)
+        if factor is None:
+            raise BrdfkitError(
+                f"{self.name}: its extinction is per {self.length_unit or 'unit of length'}, which "
+                f"cannot be converted to 1/{unit}: units are {', '.join(METRES)}; set length_unit "
+                "to the volume's unit, and the extinction."
+            )
+        gradients = None if self.gradients is None else self.gradients * factor
+        extinction = self.extinction * factor
+        return replace(self, extinction=extinction, gradients=gradients, length_unit=unit)
+
+    def scaled_to(self, low: float, high: float) -> "TransferFunction":
+        """The function with its values mapped to the range `low` to `high`, and gradients likewise.
+
+        MRI has no unit: ``TransferFunction.load("mri_head").scaled_to(*volume.window)``.
+        """
+        low, high = to_pair("range", (low, high))
+        first, last = self.range
+        if not low < high:
+            raise BrdfkitError(f"{self.name}: the range {low:g} to {high:g} does not rise.")
+        scale = (high - low) / (last - first)
+        gradients = None if self.gradients is None else self.gradients * scale
+        values = low + (self.values - first) * scale
+        return replace(self, values=values, gradients=gradients, value_unit="")
+
+    def __repr__(self) -> str:
+        low, high = self.range
+        unit = f" {self.value_unit}" if self.value_unit else ""
+        per = self.length_unit or "unit of length"
+        gradients = ""
+        if self.gradient_range is not None:
+            gradients = " × gradients {:.4g} to {:.4g}".format(*self.gradient_range)
+        return (
+            f"{self.name}: {low:.6g} to {high:.6g}{unit}{gradients}, RGB is {self.colour}, "
+            f"extinction {self.extinction:.4g} per {per}"
+        )
+
+
+def _checked(rgba, shape, colour, name):
+    """RGBA of this shape as floats; `BrdfkitError` for another, and for what no medium has."""
+    try:
+        rgba = np.array(rgba, float)
+    except (TypeError, ValueError):
+        rgba = np.empty(0)
+    if rgba.shape != shape:
+        raise BrdfkitError(
+            f"{name}: rgba has the shape {rgba.shape}; it should be {shape}, R, G, B and A for "
+            "each point."
+        )
+    most = [1, 1, 1, 1] if colour == "albedo" else [np.inf, np.inf, np.inf, 1]
+    if not (np.isfinite(rgba).all() and (rgba >= 0).all() and (rgba <= most).all()):
+        reach = "0 to 1" if colour == "albedo" else "at least 0, and A at most 1"
+        raise BrdfkitError(f"{name}: rgba has a number out of range; as {colour} they are {reach}.")
+    return rgba

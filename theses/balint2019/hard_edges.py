@@ -1,0 +1,66 @@
+"""Section 4.1 and Figure 1.1: a light of radius 0 gives a hard shadow with a smooth edge."""
+
+import numpy as np
+from brdfkit.theses.balint2019 import scenes
+from brdfkit.theses.balint2019.ground import ground
+from brdfkit.theses.balint2019.measuring import shares
+from brdfkit.theses.balint2019.view import View
+
+from brdfkit.core.jit.threads import in_turn
+from brdfkit.distance_fields.shadows.hard import hard
+from brdfkit.distance_fields.shadows.marches import linear
+from brdfkit.theses.claims import Claim, verdict
+from brdfkit.theses.drawing import figure
+from brdfkit.theses.page import Picture, Section
+
+SECONDS = 3
+SIZE, HALF, EPSILON, RADIUS = 256, 2.5, 1 / 30, 0.5
+PARTLY = 0.02  # a share from which, and up to 1 less which, a pixel is neither lit nor dark
+TEXT = f"""The simple scene. The width of the edge is measured on its ground, seen from above
+through all objects with {SIZE} × {SIZE} pixels, and with empty balls that have half a pixel's edge
+as their radius: the area of the pixels that are neither lit nor dark, over the length of the edge,
+the sum of |∇ share|."""
+
+
+@in_turn
+def run(sources, report):
+    """The edge, and the pictures."""
+    scene = scenes.simple()
+    cone = ground(SIZE, HALF, scene.light, 0.0, HALF / SIZE)
+    share = shares(hard(scene.field, cone, EPSILON)).reshape(SIZE, SIZE)
+    report(1, 2)
+    wide = width(share)
+    claim = Claim(
+        "With a light of radius 0 the shadow is hard, with an edge of a pixel at most.",
+        "4.1, Figure 1.1",
+        "1 pixel",
+        f"{wide:.2f} pixels",
+        verdict(wide <= 1),
+    )
+    caption = "Without shadows, with a hard one, and with those of lights of two radii."
+    return Section("Hard shadows", TEXT, [claim], [], [Picture("hard_edges", draw(), caption)])
+
+
+def width(share):
+    """The width of the edge between light and shadow [pixels] in an image."""
+    partly = (share > PARTLY) & (share < 1 - PARTLY)
+    slope = np.hypot(np.diff(share, axis=0)[:, 1:], np.diff(share, axis=1)[1:])
+    return partly.sum() / slope.sum()
+
+
+def draw():
+    """One scene without, with a hard and with soft shadows."""
+    view = View(scenes.simple(), SIZE)
+    field = view.scene.field
+    shown = {
+        "no shadow": 1.0,
+        "radius 0": shares(hard(field, view.cones(0.0), EPSILON)),
+        f"radius {RADIUS:g}": shares(linear(field, view.cones(RADIUS), EPSILON)),
+        f"radius {2 * RADIUS:g}": shares(linear(field, view.cones(2 * RADIUS), EPSILON)),
+    }
+    drawn = figure(9, 2.5)
+    for axes, (title, visible) in zip(drawn.subplots(1, len(shown)), shown.items(), strict=True):
+        axes.imshow(view.shaded(visible), cmap="gray", vmin=0, vmax=1)
+        axes.set_title(title, size=9)
+        axes.set_axis_off()
+    return drawn

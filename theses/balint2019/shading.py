@@ -1,0 +1,178 @@
+"""Figures 6.15 and 6.16: shading by one march, by samples that a march decides, and by rays."""
+
+import numpy as np
+from brdfkit.theses.balint2019 import scenes
+from brdfkit.theses.balint2019.measuring import rms
+
+from brdfkit.core.jit.llvm import use_variant
+from brdfkit.core.jit.threads import in_turn
+from brdfkit.theses.claims import Claim, verdict
+from brdfkit.theses.drawing import figure
+from brdfkit.theses.page import Picture, Section, Table
+from brdfkit.theses.timing import least_seconds
+
+SECONDS = 25
+SIZE, MANY, FEW, TRUE_SAMPLES, TIMES = 128, 150, 50, 1024, 2
+RADIUS, SIDES = 0.6, (0.9, 0.5)  # of the spherical light, half of the rectangular one's edges
+SPLIT, ESTIMATED, EXACT = ({"shading": s} for s in ("split", "estimated", "exact"))
+# Figure 6.16: light, settings of the integrator, printed time [ms]
+METHODS = {
+    "a, quilez": ("sphere", SPLIT | {"shadow": "quilez"}, 1.17),
+    "b, one march": ("sphere", SPLIT, 1.49),
+    "c, rays for the share": ("sphere", SPLIT | {"shadow": "monte_carlo", "rays": MANY}, 49.7),
+    "d, samples by a march": ("sphere", ESTIMATED | {"samples": MANY}, 41.3),
+    "e, samples by rays": ("sphere", EXACT | {"samples": MANY}, 74.7),
+    "f, samples by a march": ("rectangle", ESTIMATED | {"samples": MANY}, 33.6),
+    "g, fewer by rays": ("rectangle", EXACT | {"samples": FEW}, 27.5),
+    "h, fewer by a march": ("rectangle", ESTIMATED | {"samples": FEW}, 12.6),
+}
+TEXT = f"""A sphere, a cube and a cylinder, of rough plastic on a matte ground, under a sphere of
+radius {RADIUS:g} or a rectangle; {SIZE} × {SIZE} pixels, one ray for each, by the integrator
+`distance_field` with `linear` at ε = 1/20. Times are of whole pictures, as those of the thesis,
+which names no BSDF. Truth: {TRUE_SAMPLES:,} samples by rays."""
+
+
+@in_turn
+def run(sources, report):
+    """The pictures, and the claims on them."""
+    use_variant()
+    truths = {light: render(light, EXACT | {"samples": TRUE_SAMPLES}) for light in lamps()}
+    pictures, seconds = {}, {}
+    for done, (name, (light, settings, _)) in enumerate(METHODS.items()):
+        call = renderer(light, settings)
+        pictures[name[0]] = call()  # compiles
+        seconds[name[0]] = least_seconds(call, times=TIMES)
+        report(done + 1, len(METHODS))
+    rows = [
+        (
+            name,
+            light,
+            f"{seconds[name[0]] / seconds['b']:.2f}",
+            f"{printed / METHODS['b, one march'][2]:.2f}",
+            f"{rms(pictures[name[0]] - truths[light]):.4f}",
+            f"{np.mean(pictures[name[0]] - truths[light]):+.4f}",
+        )
+        for name, (light, _, printed) in METHODS.items()
+    ]
+    heads = "Figure 6.16", "light", "time", "printed", "error", "mean error"
+    table = Table(heads, rows, "Times over those of b; errors of radiance, 1 is white.")
+    errors = {name: pictures[name] - truths["sphere"] for name in "abcde"}
+    claims = [
+        dark_claim(pictures),
+        near_claim(pictures),
+        leak_claim(errors),
+        faster_claim("d", "e", 74.7 / 41.3, seconds, f"{MANY} samples of a sphere"),
+        faster_claim("h", "g", 27.5 / 12.6, seconds, f"{FEW} samples of a rectangle"),
+    ]
+    shown = Picture("shading", draw(pictures), "Figure 6.16, from a to h.")
+    return Section("Shading", TEXT, claims, [table], [shown])
+
+
+def lamps():
+    """Name → Mitsuba's dictionary of a light."""
+    import mitsuba as mi
+
+    scene = scenes.three_solids()
+    centre, to_world = list(scene.light), mi.ScalarTransform4f
+    glow = {"type": "area", "radiance": {"type": "rgb", "value": [72.0] * 3}}
+    place = to_world().look_at(centre, [0, 0, 0.5], [0, 0, 1]).scale([*SIDES, 1])
+    return {
+        "sphere": {"type": "sphere", "center": centre, "radius": RADIUS, "emitter": glow},
+        "rectangle": {"type": "rectangle", "to_world": place, "emitter": glow},
+    }
+
+
+def renderer(light, settings):
+    """A function that renders the scene under a light, by settings of the integrator."""
+    import mitsuba as mi
+
+    scene = scenes.three_solids()
+    camera = mi.ScalarTransform4f().look_at(list(scene.eye), list(scene.target), [0, 0, 1])
+    film = {"type": "hdrfilm", "width": SIZE, "height": SIZE, "rfilter": {"type": "box"}}
+    plastic = {"type": "roughplastic", "alpha": 0.2, "diffuse_reflectance": 0.4}
+    field = scene.field.children
+    solids = field[0] | field[1] | field[2]
+    loaded = mi.load_dict(
+        {
+            "type": "scene",
+            "integrator": {
+                "type": "distance_field",
+                "field": (solids.made_of("plastic") | field[3]).to_json(),
+                "plastic": plastic,
+                "bsdf": {"type": "diffuse", "reflectance": 0.5},
+                "epsilon": 1 / 20,
+                **settings,
+            },
+            "sensor": {"type": "perspective", "fov": scene.fov, "to_world": camera, "film": film},
+            "light": lamps()[light],
+        },
+        parallel=False,
+    )
+    return lambda: np.array(mi.render(loaded, spp=1), float)[..., 0]
+
+
+def render(light, settings):
+    """The radiance of one channel (size, size)."""
+    return renderer(light, settings)()
+
+
+def dark_claim(pictures):
+    """a against c."""
+    a, b = (np.mean(pictures[name] - pictures["c"]) for name in "ab")
+    return Claim(
+        "The shadows of Quílez's and Aaltonen's method are too large.",
+        "Figure 6.16 a",
+        "a picture",
+        f"mean radiance {a:+.4f} against the share by rays; {b:+.4f} of one march",
+        verdict(a < -2 * abs(b)),
+        "Confirmed where it is darker by twice what one march is off.",
+    )
+
+
+def near_claim(pictures):
+    """b against c."""
+    a, b = (rms(pictures[name] - pictures["c"]) for name in "ab")
+    return Claim(
+        "One march is far closer to the share by rays.",
+        "Figure 6.16 a-c",
+        "pictures",
+        f"errors {a:.4f} and {b:.4f}",
+        verdict(b < a / 2),
+        "Confirmed below half.",
+    )
+
+
+def leak_claim(errors):
+    """d against b."""
+    return Claim(
+        "Samples that a march decides have the errors of one march.",
+        "Figure 6.16 d, e",
+        "the same leak",
+        f"errors {rms(errors['d']):.4f} and {rms(errors['b']):.4f}; of rays for the share "
+        f"{rms(errors['c']):.4f}",
+        verdict(0.5 < rms(errors["d"]) / rms(errors["b"]) < 1.5),
+        "Confirmed from 0.5 to 1.5 times. What is left of c is the BSDF, taken at the middle of "
+        "the light.",
+    )
+
+
+def faster_claim(march, rays, printed, seconds, what):
+    """Samples by a march against samples by rays."""
+    ours = seconds[rays] / seconds[march]
+    return Claim(
+        f"{what} by a march take less time than by rays.",
+        f"Figure 6.16 {min(march, rays)}, {max(march, rays)}",
+        f"{printed:.2f} times as fast",
+        f"{ours:.2f} times as fast",
+        verdict(ours >= printed),
+    )
+
+
+def draw(pictures):
+    """All of them."""
+    drawn = figure(9, 4.8)
+    for axes, (name, picture) in zip(drawn.subplots(2, 4).flat, pictures.items(), strict=True):
+        axes.imshow(np.clip(picture, 0, 1) ** (1 / 2.2), cmap="gray", vmin=0, vmax=1)
+        axes.set_title(name, size=10)
+        axes.set_axis_off()
+    return drawn

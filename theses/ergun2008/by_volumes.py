@@ -1,0 +1,83 @@
+"""Shadows by stencil volumes and by rays, and the pixels in which they differ."""
+
+from dataclasses import replace
+
+import numpy as np
+from brdfkit.theses.ergun2008.views import View
+
+from brdfkit.core.projective.camera import Camera
+from brdfkit.core.projective.light import Light
+from brdfkit.shadows.maps.scenes import SCENES
+from brdfkit.shadows.volumes.light_volumes import LightVolumes
+from brdfkit.shadows.volumes.mesh import Mesh
+
+SIZE = 128  # pixels along a side of a picture
+RAYS = 32  # along a side of a pixel, to find the borders of shadows
+
+
+class ByVolumes:
+    """A scene's dictionary, with its shadows by rays and by volumes."""
+
+    def __init__(self, description):
+        self.view = View.by(description)
+        scene = self.view.scene
+        self.camera = Camera.of_sensor(scene.sensors()[0])
+        self.meshes = [Mesh.of_shape(shape) for shape in scene.shapes()]
+        self.exact, self.facing = self.view.seen.exact, self.view.seen.facing
+
+    def lit(self, **how):
+        """Whether (pixels,) the light arrives, by `LightVolumes`."""
+        light = Light.of_emitter(self.view.seen.emitter)
+        volumes = LightVolumes(self.meshes, light, self.camera, pixels=SIZE, **how)
+        si = self.view.seen.si
+        return np.array(volumes.lit(si.p, si.n)) == 1
+
+    def wrong(self, **how):
+        """How many pixels differ from rays, and have no border of a shadow in them."""
+        differ = np.flatnonzero((self.lit(**how) != self.exact) & self.facing)
+        return int((~self.on_border(differ)).sum())
+
+    def on_border(self, pixels):
+        """Whether shadow rays of many places in each of the `pixels` (k,) differ."""
+        import mitsuba as mi
+
+        if not len(pixels):
+            return np.zeros(0, bool)
+        seen, sensor = self.view.seen, self.view.scene.sensors()[0]
+        within = np.stack(np.meshgrid(*[(np.arange(RAYS) + 0.5) / RAYS] * 2), -1).reshape(-1, 2)
+        corner = np.column_stack([pixels % SIZE, pixels // SIZE])
+        places = ((corner[:, None] + within) / SIZE).reshape(-1, 2)
+        ray, _ = sensor.sample_ray(0.0, 0.5, mi.Point2f(places.T), mi.Point2f(0.5))
+        si = self.view.scene.ray_intersect(ray)
+        exact = replace(seen, si=si).exact.reshape(len(pixels), -1)
+        return np.ptp(exact.astype(int), axis=1) > 0
+
+    def share(self, **how):
+        """The share of the pixels that are wrong."""
+        return self.wrong(**how) / self.facing.sum()
+
+
+def bricks(**camera):
+    """The dictionary of the objects in view V1 without the round ones, its camera changed."""
+    found = SCENES["objects_on_a_ground"]("V1", 1, (SIZE, SIZE))
+    found = {
+        name: thing
+        for name, thing in found.items()
+        if name == "type" or thing["type"] not in ("sphere", "cylinder", "disk")
+    }
+    return found | {"camera": found["camera"] | camera}
+
+
+def within_a_shadow():
+    """The same, seen by an eye in the middle of the longest shadow of all that V1 shows."""
+    import drjit as dr
+    import mitsuba as mi
+
+    view = View.by(bricks())
+    si, towards = view.seen.si, view.seen.to_light[0].d
+    hit = view.scene.ray_intersect(si.spawn_ray(towards))
+    length = dr.select(si.is_valid() & (si.p.z < 1e-3) & hit.is_valid(), hit.t, 0)
+    longest = int(np.argmax(np.array(length)))
+    middle = np.array(si.p + length / 2 * towards).T[longest].tolist()
+    eye = mi.ScalarTransform4f().look_at(middle, [0, 0, 0], [0, 0, 1])
+    return bricks(to_world=eye)

@@ -1,0 +1,160 @@
+"""Section 4.1: what volumes and maps cost, by formulas there, and measured."""
+
+import numpy as np
+from brdfkit.theses.ergun2008.views import RESOLUTION, SIZE, View
+
+from brdfkit.core.jit.llvm import use_variant
+from brdfkit.core.jit.threads import in_turn
+from brdfkit.core.projective.camera import Camera
+from brdfkit.shadows.hybrid import hybrid_shadow
+from brdfkit.shadows.maps.scenes import SCENES
+from brdfkit.shadows.volumes.light_volumes import LightVolumes
+from brdfkit.shadows.volumes.mesh import Mesh
+from brdfkit.theses.claims import UNSTATED, Claim, verdict
+from brdfkit.theses.page import Section, Table
+from brdfkit.theses.timing import least_seconds
+
+SECONDS = 15
+COUNTS = 16, 64, 256, 1024  # of boxes
+FIGURES = "prepare", "shade", "memory"
+TEXT = f"""Boxes on the ground of `objects_on_a_ground`, view V1, as many as told, each of E = 18
+edges: volumes by depth-fail, and a focused depth map of {RESOLUTION} × {RESOLUTION} texels of 4
+bytes. The thesis has O(E n) to prepare volumes and for their memory, O(E n k j) to shade k × j
+pixels, and O(E n r s), O(1) a pixel and O(r s t) for maps; no times. Ours are seconds of CPU, not
+of a graphics card: the rays of the picture, which both need, are left out. A map is made by rays of
+light, one a texel, which find their triangle in a tree: its time hardly depends on the scene."""
+
+
+@in_turn
+def run(sources, report):
+    """The times, and the claims on them."""
+    use_variant()
+    found = {"volumes": [], "maps": []}
+    for done, count in enumerate(COUNTS):
+        view = View.by(boxes(count))
+        found["volumes"].append(cost_of_volumes(view))
+        found["maps"].append(cost_of_maps(view))
+        report(done + 1, len(COUNTS) + 1)
+    found = {way: np.array(rows) for way, rows in found.items()}
+    claims = [memory_claim(found), time_claim(found), slower_claim(found), hybrid_claim()]
+    rows = [
+        (
+            str(count),
+            *(
+                f"{1e3 * row[i, 0]:.1f} ms, {1e3 * row[i, 1]:.1f} ms, {row[i, 2] / 1024:.0f} kB"
+                for row in found.values()
+            ),
+        )
+        for i, count in enumerate(COUNTS)
+    ]
+    heads = "boxes", *(f"{way}: {', '.join(FIGURES)}" for way in found)
+    return Section("Costs", TEXT, claims, [Table(heads, rows)])
+
+
+def boxes(count):
+    """The dictionary of a ground with boxes."""
+    import mitsuba as mi
+
+    random = np.random.default_rng(4)
+    found = SCENES["objects_on_a_ground"]("V1", 1, (SIZE, SIZE))
+    found = {name: thing for name, thing in found.items() if not name.startswith("brick")}
+    half = 1 / np.sqrt(count)
+    for i, (x, y) in enumerate(random.uniform(-5, 5, (count, 2)).tolist()):
+        place = mi.ScalarTransform4f().translate([x, y, 2 * half])
+        turned = place.rotate([0, 0, 1], random.uniform(0, 90)).scale([half, half, 2 * half])
+        # of one material, so that Mitsuba makes one mesh of them
+        found[f"box {i}"] = {"type": "cube", "to_world": turned, "bsdf": {"type": "diffuse"}}
+    return found
+
+
+def cost_of_volumes(view):
+    """Seconds to prepare and to shade, and bytes."""
+    sensor, si = view.scene.sensors()[0], view.seen.si
+    meshes = [Mesh.of_shape(shape) for shape in view.scene.shapes()]
+
+    def prepare():
+        camera = Camera.of_sensor(sensor)
+        return LightVolumes(meshes, view.placement.light, camera, pixels=SIZE)
+
+    volumes = prepare()
+    shade = least_seconds(lambda: np.array(volumes.lit(si.p, si.n)))
+    return least_seconds(prepare), shade, volumes.stencil.memory
+
+
+def cost_of_maps(view):
+    """The same of a shadow map."""
+    shadow = view.shadow()
+    shade = least_seconds(lambda: view.lit(shadow))
+    # a map is only made when it is looked up
+    both = least_seconds(lambda: view.lit(view.shadow()))
+    return max(both - shade, 0.0), shade, 4 * RESOLUTION**2
+
+
+def growth(rows, figure):
+    """By which power of the count a figure grows."""
+    return float(np.polyfit(np.log(COUNTS), np.log(rows[:, figure]), 1)[0])
+
+
+def memory_claim(found):
+    power = growth(found["volumes"], 2)
+    most = found["volumes"][-1, 2] / found["maps"][-1, 2]
+    return Claim(
+        "The memory of volumes grows with the scene, that of maps does not.",
+        "4.1, 5",
+        "O(E n) and O(r s t)",
+        f"as n to the power {power:.2f}, up to {most:.1f} times the map's; maps 0",
+        verdict(power > 0.5),
+        "Below 1: a small box has its faces in few tiles of the picture.",
+    )
+
+
+def time_claim(found):
+    powers = [growth(found["volumes"], 1), growth(found["maps"], 1)]
+    return Claim(
+        "The time to shade by volumes grows with the scene, a look-up does not.",
+        "4.1",
+        "O(E n k j) and O(1) a pixel",
+        f"as n to the power {powers[0]:.2f} and {powers[1]:.2f}",
+        verdict(powers[0] > 0.3 and abs(powers[1]) < 0.2),
+        "The printed worst case has each face over all of the picture; boxes that become smaller "
+        "as they become more cover as much in all. Confirmed above 0.3 and below 0.2.",
+    )
+
+
+def slower_claim(found):
+    times = [rows[:, 0] + rows[:, 1] for rows in found.values()]
+    ratios = times[0] / times[1]
+    return Claim(
+        "In complex scenes volumes fall far behind maps in speed.",
+        "5",
+        "no figure",
+        f"{ratios[0]:.1f} times the time of a map with {COUNTS[0]} boxes, {ratios[-1]:.1f} times "
+        f"with {COUNTS[-1]:,}",
+        verdict(ratios[-1] > 2 and ratios[-1] > ratios[0]),
+        "To prepare and shade one picture; confirmed from 2 times.",
+    )
+
+
+def hybrid_claim():
+    view = View.by(boxes(COUNTS[1]))
+    parts = view.scene, view.scene.sensors()[0], view.seen.emitter
+    si, jump = view.seen.si, 8.0
+
+    def by_hybrid():
+        return np.array(hybrid_shadow(*parts, RESOLUTION, jump).lit(si.p, si.n))
+
+    def by_map():
+        return view.lit(view.shadow())
+
+    wrong = [view.wrong(way()) for way in (by_hybrid, by_map)]
+    times = [least_seconds(way, times=1) for way in (by_hybrid, by_map)]
+    return Claim(
+        "Hybrids are weak by speed and by quality.",
+        "2.3",
+        "no figure",
+        f"{100 * wrong[0]:.2f} % wrong light, the map {100 * wrong[1]:.2f} %; "
+        f"{times[0] / times[1]:.0f} times the time",
+        UNSTATED,
+        f"Volumes from the edges of a focused depth map, and that map itself, with {COUNTS[1]} "
+        "boxes.",
+    )

@@ -1,0 +1,40 @@
+"""PSM in the simple way that the thesis describes: a light's view that is opened to the whole cube.
+
+It is symmetric about its axis, and the camera's near plane is nearer than what is seen
+[Ergun 2008, 2.2.2.2].
+"""
+
+import numpy as np
+
+from brdfkit.core.projective.homogeneous import project_all, to_unit_cube
+from brdfkit.shadows.comparison.quality import aliasing_error
+from brdfkit.shadows.comparison.texture_use import share_used
+from brdfkit.shadows.maps.aliasing import aliasing
+from brdfkit.shadows.maps.light_camera import view as light_view
+from brdfkit.shadows.maps.projection import Projection
+
+NEAR = 0.1  # the camera's near plane over the distance of what is nearest
+
+
+def simple_perspective(placement):
+    """The `Projection` of a `Placement`."""
+    corners, middle = placement.body.corners, placement.body.middle
+    z_n, z_f = placement.depths
+    camera = placement.camera.between(NEAR * z_n, z_f).moved_back(corners).matrix
+    cube, (centre,) = project_all(camera, corners), project_all(camera, [middle])
+    matrix = light_view(camera @ placement.light.point, cube, centre) @ camera
+    ends = project_all(matrix, corners)
+    half, depths = np.abs(ends[:, :2]).max(), ends[:, 2]
+    square = to_unit_cube([-half, -half, depths.min()], [half, half, depths.max()])
+    return Projection.by(square @ matrix, placement.light)
+
+
+def simple_scores(view, resolution):
+    """(The unused share, the aliasing [dB]) of it."""
+    projection, seen = simple_perspective(view.placement).opaque(), view.seen
+    camera = Projection.by(view.placement.camera.matrix, view.placement.light).opaque()
+    x, y, _ = projection.to_map(*seen.si.p)
+    picture = camera, seen.size[::-1]
+    e = np.array(aliasing((projection, resolution), picture, seen.si.p, seen.si.n))
+    places = (np.array([x, y]).T[seen.facing] + 1) / 2
+    return 1 - share_used([places]), aliasing_error(e[seen.facing])

@@ -1,0 +1,41 @@
+"""A picture of a mesh's convex parts, each in a colour of its own."""
+
+import colorsys
+
+import numpy as np
+from brdfkit.theses.ergun2015.convex_study import SIZE, SPP
+from scipy.spatial import ConvexHull
+
+from brdfkit.core.colours import to_srgb
+from brdfkit.rendering.scenes._meshes import mesh
+from brdfkit.rendering.scenes._studio import studio
+
+GOLDEN = 0.618034  # of the way around the colours, from a part to the next
+
+
+def coloured(study):
+    """The parts of a `Study` (SIZE, SIZE, 3) in sRGB, in the light of brdfkit's scenes."""
+    import mitsuba as mi
+
+    parts = {f"part_{k}": part(hull, k) for k, hull in enumerate(study.convex.hulls)}
+    scene = mi.load_dict(studio((SIZE, SIZE)) | parts, parallel=False)
+    return to_srgb(np.array(mi.render(scene, spp=SPP, seed=0), float)[..., :3])
+
+
+def part(hull, number):
+    """The mesh of a `Hull` with flat faces, in the colour of its number."""
+    points = hull.vertices
+    corners = points[ConvexHull(points).simplices]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    outwards = np.sign(np.einsum("ni,ni->n", normals, corners[:, 0] - points.mean(axis=0)))
+    normals *= (outwards / np.linalg.norm(normals, axis=1))[:, None]
+    colour = colorsys.hsv_to_rgb(number * GOLDEN % 1, 0.6, 0.8)
+    bsdf = {"type": "diffuse", "reflectance": {"type": "rgb", "value": list(colour)}}
+    faces = np.arange(corners.size // 3).reshape(-1, 3)
+    return mesh(
+        corners.reshape(-1, 3),
+        np.repeat(normals, 3, axis=0),
+        np.zeros((faces.size, 2)),
+        faces,
+        {"type": "twosided", "bsdf": bsdf},
+    )

@@ -1,0 +1,124 @@
+"""Figure 7.1: the polynomial as a surface over its components, and what interactions are worth."""
+
+import numpy as np
+from brdfkit.theses.kurt2007.curet import PLAIN, samples
+
+from brdfkit.fitting.fit import fit
+from brdfkit.materials.loading import load
+from brdfkit.materials.measured.selection import select_samples
+from brdfkit.model.evaluation import weight_matrix
+from brdfkit.theses.claims import NOT_RUN, Claim, verdict
+from brdfkit.theses.drawing import figure
+from brdfkit.theses.page import Picture, Section, Table
+
+SECONDS = 4
+DEGREE = 5
+LIMIT = 0.12  # sr⁻¹: the figure's, below which are most samples
+DEGREES = 2, 3, 4, 7
+TEXT = """Z₁ and Z₂ are the principal components of W₁ = l_x v_x + l_y v_y and W₂ = l_z v_z over
+the measured directions. The thesis shows Mystique lacquer, whose file is not at hand: this is
+**Cayman lacquer**, its green channel, below 80°, by bisquare. The dots are samples, the lines the
+polynomial, f = β₀ + g(Z₁) + h(Z₂)."""
+
+
+def run(sources, report):
+    """The figure, and the claim on interactions."""
+    picture = _draw(load(sources.path("cornell/cayman.brdf")))
+    report(1, 3)
+    shares = _interactions(samples(sources).values())
+    claims = [
+        Claim(
+            "f as a surface over Z₁ and Z₂, of Mystique lacquer.",
+            "Figure 7.1",
+            "a drawing",
+            "Cayman in its place",
+            NOT_RUN,
+            "Cornell's mystique.brdf is not at hand; nothing but the look could be compared.",
+        ),
+        Claim(
+            "Principal components are orthogonal, so that their interactions vanish.",
+            "7, eq. 7.5",
+            "1 at every degree",
+            ", ".join(f"{s:.2f} (p = {p})" for p, s in shares.items()),
+            verdict(all(s > 0.99 for s in shares.values())),
+            "Least E of a full polynomial of Z₁ and Z₂ over that of the sum without interactions, "
+            "median of 52 samples. That two components do not correlate over the directions says "
+            "nothing on the coefficient of their product.",
+        ),
+    ]
+    return Section(
+        "Figure 7.1: the polynomial's surface", TEXT, claims, [_table(shares)], [picture]
+    )
+
+
+def _table(shares):
+    columns = "E with interactions / without", *(f"p = {p}" for p in shares)
+    return Table(columns, [("median of 52", *(f"{s:.3f}" for s in shares.values()))])
+
+
+def _interactions(found):
+    """Degree → median of E with interactions over E without."""
+    ratios = {p: [] for p in DEGREES}
+    for data in found:
+        z = _components(data.wi, data.wo, _angle(data.wi, data.wo))
+        z = z / np.abs(z).max(axis=0)
+        for p, list_ in ratios.items():
+            powers = [(j, k) for j in range(p + 1) for k in range(p + 1 - j)]
+            full = np.stack([z[:, 0] ** j * z[:, 1] ** k for j, k in powers], axis=1)
+            alone = full[:, [j == 0 or k == 0 for j, k in powers]]
+            list_.append(np.divide(*(data.error_of(c @ data.solve(c)) for c in (full, alone))))
+    return {p: float(np.median(r)) for p, r in ratios.items()}
+
+
+def _products(wi, wo):
+    return np.stack([(wi * wo)[:, :2].sum(axis=1), wi[:, 2] * wo[:, 2]], axis=1)
+
+
+def _angle(wi, wo):
+    """The angle [rad] of the first principal axis."""
+    _, axes = np.linalg.eigh(np.cov(_products(wi, wo).T))
+    return np.arctan2(axes[1, 1], axes[0, 1])
+
+
+def _components(wi, wo, angle):
+    sine, cosine = np.sin(angle), np.cos(angle)
+    return _products(wi, wo) @ np.array([[cosine, -sine], [sine, cosine]])
+
+
+def _draw(data):
+    from matplotlib.ticker import MaxNLocator
+
+    found = fit(f"pca_polynomial:degree={DEGREE}", data, PLAIN, robust="bisquare")
+    shown, angle = select_samples(data, 80), found.values["angle_1_2"]
+    z, f = _components(shown.wi, shown.wo, angle), shown.values[:, 1]
+    betas = weight_matrix(found.model)[:, 1]
+    drawn = figure(6.0, 4.6)
+    axes = drawn.add_subplot(projection="3d", computed_zorder=False)
+    steps = [np.linspace(a, b, 33) for a, b in zip(z.min(axis=0), z.max(axis=0), strict=True)]
+    grid = np.meshgrid(*steps, indexing="ij")
+    surface = betas[0] + sum(
+        betas[2 * k - 1] * grid[0] ** k + betas[2 * k] * grid[1] ** k for k in range(1, DEGREE + 1)
+    )
+    surface = np.where(_reached(grid, angle) & (surface <= LIMIT), surface, np.nan)
+    low = f <= LIMIT
+    axes.scatter(*z[low].T, f[low], s=3, color="#d55e00", alpha=0.6, label="samples")
+    axes.plot_wireframe(
+        *grid, surface, rstride=1, cstride=1, linewidth=0.5, color="#0072b2", label="polynomial"
+    )
+    axes.set(xlabel="Z₁", ylabel="Z₂", zlabel="f [sr⁻¹], green", zlim=(0, LIMIT))
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.set_major_locator(MaxNLocator(4))
+    axes.view_init(22, -58)
+    axes.legend(loc="upper left", frameon=False)
+    caption = (
+        f"Cayman lacquer, p = {DEGREE}; the {(~low).sum()} of {len(f):,} samples above {LIMIT} "
+        "sr⁻¹, those of the highlight, are not shown: for bisquare they are outliers."
+    )
+    return Picture("figure_7_1", drawn, caption)
+
+
+def _reached(grid, angle):
+    """Where a pair of directions below 80° has these components: |W₁| ≤ sin θ_i sin θ_r."""
+    sine, cosine = np.sin(angle), np.cos(angle)
+    w1, w2 = cosine * grid[0] - sine * grid[1], sine * grid[0] + cosine * grid[1]
+    return (w2 >= np.cos(np.radians(80)) ** 2) & (np.abs(w1) + w2 <= 1)

@@ -1,0 +1,134 @@
+"""Chapter 5: directions drawn by phase functions: inverses, mixtures, and what they cost."""
+
+import numpy as np
+from brdfkit.theses.lesar2018.phases import PLUGINS
+from brdfkit.theses.lesar2018.sampler_times import (
+    DRAWS,
+    TURNS,
+    by_rayleigh,
+    over_the_first,
+    plugins,
+    samplers,
+    time_of,
+    time_of_picture,
+)
+from brdfkit.theses.lesar2018.two_lobes import TARGETS, fit
+
+from brdfkit.checks import directions
+from brdfkit.core.jit.llvm import use_variant
+from brdfkit.core.jit.threads import in_turn
+from brdfkit.theses.claims import Claim, verdict
+from brdfkit.theses.page import Section, Table
+
+SECONDS = 10
+TEXT = f"""Each random ξ gives the μ below which its share of the light is scattered. The time of a
+draw is that of {TURNS} times {DRAWS:,} in one kernel; the time of a picture that of a cube of even
+smoke, whose collisions cost least, by `single_scattering`. Both are told over Henyey-Greenstein's.
+Fits of two of Schlick's lobes, p ≈ r S(k₁) + (1 - r) S(k₂), are by least squares over μ; the thesis
+proposes such, and prints none."""
+
+
+@in_turn
+def run(sources, report):
+    """The samplers, their times, and the claims on them."""
+    use_variant()
+    rejected = [name for name, entries in PLUGINS.items() if p_value(entries) is None]
+    report(1, 3)
+    fits = {name: fit(*target) for name, target in TARGETS.items()}
+    draws = over_the_first({name: time_of(draw) for name, draw in samplers().items()})
+    report(2, 3)
+    seconds = over_the_first({name: time_of_picture(p) for name, p in plugins(fits).items()})
+    claims = [
+        inverse_claim(rejected),
+        rayleigh_claim(seconds),
+        faster_claim(seconds),
+        *(mie_claim(name, fits[name], seconds) for name in ("Mie hazy", "Mie murky")),
+    ]
+    times = [(n, f"{draws[n]:.2f}", f"{s:.2f}") for n, s in seconds.items()]
+    times = Table(
+        ("phase function", "a draw", "a picture"), times, "Times over Henyey-Greenstein's."
+    )
+    rows = [(n, *(f"{v:.4f}" for v in x), f"{e:.3f}", f"{100 * m:.0f} %")
+            for n, (x, e, m) in fits.items()]  # fmt: skip
+    heads = "", "r", "k₁", "k₂", "error", "largest"
+    caption = "Two of Schlick's lobes: errors of p relative to its norm, and the largest relative."
+    return Section("Directions drawn", TEXT, claims, [times, Table(heads, rows, caption)])
+
+
+def p_value(entries):
+    """Of the χ² test that a plugin draws by its density; None if that is rejected."""
+    import mitsuba as mi
+
+    phase, it = mi.load_dict(entries, parallel=False), mi.MediumInteraction3f()
+    it.p, it.wi = mi.Point3f(0), mi.Vector3f(0, 0, -1)
+    it.sh_frame = mi.Frame3f(it.wi)
+    context = mi.PhaseFunctionContext(None)
+    return directions.chi_squared(
+        lambda u, v, w: phase.sample(context, it, u, mi.Point2f(v, w)),
+        lambda wo: phase.eval_pdf(context, it, wo)[1],
+        len(PLUGINS),
+        dimensions=3,
+    )
+
+
+def inverse_claim(rejected):
+    """All samplers against their densities."""
+    said = f"χ² tests reject {len(rejected)} of {len(PLUGINS)}"
+    return Claim(
+        "Inverses of the distributions draw by the phase functions.",
+        "eq. 5.58-5.67",
+        "formulas",
+        f"{said}: {', '.join(rejected)}" if rejected else said,
+        verdict(not rejected),
+        f"{directions.SAMPLES:,} draws of each plugin, significance {directions.SIGNIFICANCE:g} of "
+        "all together. Schlick's with the sign of Henyey-Greenstein's.",
+    )
+
+
+def rayleigh_claim(seconds):
+    """Eq. 5.67, by which power, and how slow."""
+    u = np.linspace(0.001, 0.999, 999)
+    with np.errstate(invalid="ignore"):
+        by_power = np.isnan(by_rayleigh(u, lambda x: x ** (1 / 3))).sum()
+    mu = by_rayleigh(u, np.cbrt)
+    off = np.abs(0.5 + mu * (3 + mu * mu) / 8 - u).max()
+    ratio = seconds["Rayleigh"]
+    return Claim(
+        "Rayleigh's inverse is too slow to be drawn from while one waits.",
+        "eq. 5.67",
+        "no figure",
+        f"a picture takes {ratio:.2f} times as long as by Henyey-Greenstein's; the inverse is off "
+        f"by {off:.0e}",
+        verdict(ratio > 1.5),
+        f"With real cube roots: a power of 1/3 is no number for {by_power} of {len(u)} ξ. A draw "
+        "is a small part of what a collision costs. Confirmed above 1.5.",
+    )
+
+
+def faster_claim(seconds):
+    """Schlick's against Henyey-Greenstein's."""
+    ratio = 1 / seconds["Schlick"]
+    return Claim(
+        "Schlick's is noticeably faster to draw from than Henyey-Greenstein's.",
+        "eq. 5.63",
+        "no figure",
+        f"a picture is made {ratio:.2f} times as fast",
+        verdict(ratio > 1.1),
+        "Eq. 5.59, the other inverse, has no power either. Confirmed above 1.1.",
+    )
+
+
+def mie_claim(name, found, seconds):
+    """Two lobes in the place of a Mie approximation that can be drawn exactly."""
+    _, error, largest = found
+    ratio = seconds[name] / seconds["two of Schlick's"]
+    return Claim(
+        f"{name} is too costly to draw from; two of Schlick's lobes should stand for it.",
+        "eq. 4.62, 4.63",
+        "no fit, no figure",
+        f"a picture takes {ratio:.2f} times as long as by two lobes, which are off by {error:.3f}, "
+        f"{100 * largest:.0f} % at most",
+        verdict(ratio > 1.5),
+        "It is an equal mixture of even light and of a power, whose inverse is a root: "
+        "μ = 2 ξ^(1/(n+1)) - 1. Confirmed above 1.5 times.",
+    )

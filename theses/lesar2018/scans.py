@@ -1,0 +1,104 @@
+"""The data: an MRI scan, a frog of labels, and a phantom that is made."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from brdfkit.theses.lesar2018 import MRI
+
+from brdfkit.volumes import TransferFunction, Volume, load_volume
+
+FROG = "volumes/frog_tissues.vti"
+PHANTOM = 96  # voxels along an edge
+DENSE = 40.0  # optical depth of the longest edge, where A is 1
+SKELETON = 13  # the frog's label of it
+# Of the head: share of the range, R, G, B, A
+HEAD = (
+    (0.0, 0.5, 0.25, 0.2, 0.0),
+    (0.12, 0.6, 0.3, 0.24, 0.0),
+    (0.3, 0.78, 0.5, 0.42, 0.25),
+    (0.6, 0.85, 0.68, 0.58, 0.7),
+    (0.8, 0.92, 0.86, 0.8, 1.0),
+    (1.0, 0.95, 0.92, 0.88, 1.0),
+)
+
+
+@dataclass(frozen=True)
+class Scan:
+    """A volume within the cube from -1 to 1, with what its pictures need.
+
+    `density`: values of which the largest and a level mean something; `coloured`: those that have
+    colours, labels or the same; `function`: their colours; `level`: of the surface; `window`: the
+    densities that are black and white; `eye`: the direction of the camera; `up`: that way is up.
+    """
+
+    name: str
+    density: Volume
+    coloured: Volume
+    function: TransferFunction
+    level: float
+    window: tuple[float, float]
+    eye: Any
+    up: Any
+
+
+def scans(sources, fewer=1):
+    """Those scans that are at hand, and the phantom; `fewer`: times along each edge."""
+    found = []
+    if sources.beside(MRI):
+        found.append(mri(sources.beside(MRI), fewer))
+    if sources.beside(FROG):
+        found.append(frog(sources.beside(FROG), 2 * fewer))
+    return [*found, phantom(fewer)]
+
+
+def mri(path, fewer):
+    """A head without its skull."""
+    head = within_cube(load_volume(path, downsample=fewer))
+    function = TransferFunction([row[0] for row in HEAD], [row[1:] for row in HEAD])
+    function = function.scaled_to(*head.range)
+    return Scan("MRI", head, head, dense(function), 110, (150, 255), (1.3, 1.6, 0.9), (0, 0, 1))
+
+
+def frog(path, fewer):
+    """Tissues by their names; and densities, ours: of the skeleton 1, of others less."""
+    labels = within_cube(load_volume(path, downsample=fewer, labels=True))
+    n = int(labels.range[1]) + 1
+    a = np.array([0, *[0.3] * (n - 1)])
+    a[SKELETON] = 1
+    density = Volume(a[labels.values], labels.to_world, labels.name)
+    rgb = np.random.default_rng(4).uniform(0.2, 0.95, (n, 3))
+    rgb[SKELETON] = 0.9, 0.87, 0.8
+    function = dense(TransferFunction(np.arange(n), np.column_stack([rgb, a])))
+    return Scan("frog", density, labels, function, 0.15, (0, 1), (0.4, -0.5, 2), (1, 0, 0))
+
+
+def phantom(fewer):
+    """Shepp and Logan's, without its skull, and without the octant before the camera."""
+    found = load_volume("shepp_logan", size=2 * PHANTOM // fewer)
+    values = np.where(found.values > 0.9, 0, found.values)
+    n = PHANTOM // fewer
+    values[n:, :n, :n] = 0
+    volume = Volume(values, found.to_world, "phantom").resized(2)
+    colours = {  # value: RGB, A
+        0.0: (0.2, 0.3, 0.8, 0),
+        0.1: (0.2, 0.4, 0.9, 0.2),
+        0.2: (0.35, 0.7, 0.85, 0.1),
+        0.3: (0.95, 0.6, 0.2, 0.7),
+        0.4: (0.95, 0.25, 0.2, 1),
+    }
+    function = dense(TransferFunction(list(colours), list(colours.values())))
+    return Scan("phantom", volume, volume, function, 0.1, (0, 0.4), (-0.9, -2.0, 1.1), (0, 0, 1))
+
+
+def within_cube(volume):
+    """The volume moved and shrunk into the cube from -1 to 1."""
+    low, high = volume.bounds
+    fit = np.diag([*[2 / (high - low).max()] * 3, 1.0])
+    fit[:3, 3] = -fit[0, 0] * (low + high) / 2
+    return Volume(volume.values, fit @ volume.to_world, volume.name, volume.labels)
+
+
+def dense(function, depth=DENSE):
+    """The function with the extinction by which the cube's edge has an optical depth."""
+    return replace(function, extinction=depth / 2)

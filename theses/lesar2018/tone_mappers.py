@@ -1,0 +1,98 @@
+"""Eq. 6.4, 6.5 and Figure 7.2: tone mappers on maximum intensities."""
+
+import numpy as np
+from brdfkit.theses.lesar2018.scans import scans
+from brdfkit.theses.lesar2018.stage import stage
+
+from brdfkit.core.colours import to_srgb
+from brdfkit.core.jit.llvm import use_variant
+from brdfkit.core.jit.threads import in_turn
+from brdfkit.images.tone_mapping import ToneMapping
+from brdfkit.theses.claims import Claim, verdict
+from brdfkit.theses.drawing import COLOURS, figure, tidy
+from brdfkit.theses.page import Picture, Section
+
+SECONDS = 4
+SIZE, SPP, FEWER = 256, 16, 1
+EXPOSURES = 0.3, 1.0, 8.0
+TEXT = """Maximum intensities of a scan, told over its largest value, by the range 0 to 1, by a
+narrower one, and by Reinhard's with two exposures. The thesis shows such pictures, and says neither
+its settings nor whether sRGB's curve follows; here it does."""
+
+
+@in_turn
+def run(sources, report):
+    """The identities, and Figure 7.2."""
+    use_variant()
+    import mitsuba as mi
+
+    scan = scans(sources, FEWER)[0]
+    report(1, 3)
+    volume = {"type": "maximum_intensity", "volume": scan.density.scene_dict()}
+    found = np.array(mi.render(stage(volume, SIZE, scan.eye, scan.up, lit=False), spp=SPP), float)
+    light = found / scan.density.range[1]
+    seen = light[light > 0]
+    low, high = np.percentile(seen, [30, 99.5]).round(2).tolist()
+    shown = [
+        ToneMapping("range"),
+        ToneMapping("range", low=low, high=high),
+        ToneMapping("reinhard", exposure=1),
+        ToneMapping("reinhard", exposure=4),
+    ]
+    caption = f"{scan.name} by four tone mappers, and their curves."
+    picture = Picture("tone_mappers", draw(light, shown), caption)
+    claims = [range_claim(seen, low, high), reinhard_claim()]
+    return Section("Tone mappers", TEXT, claims, pictures=[picture])
+
+
+def range_claim(seen, low, high):
+    """What a window loses."""
+    lost = np.mean((seen <= low) | (seen >= high))
+    inside = np.linspace(low, high, 101)[1:-1]
+    tone = ToneMapping("range", low=low, high=high)
+    linear = np.abs(tone(inside) - (inside - low) / (high - low)).max()
+    return Claim(
+        "The range loses everything outside of its window.",
+        "eq. 6.4, Figure 7.2",
+        "no figure",
+        f"{100 * lost:.0f} % of the pixels are black or white, of a window from {low:.2f} to "
+        f"{high:.2f}",
+        verdict(lost > 0 and linear < 1e-12),
+    )
+
+
+def reinhard_claim():
+    """Its identities."""
+    light = np.linspace(0, 1000, 100_001)
+    off, rises, largest = 0.0, True, 0.0
+    for exposure in EXPOSURES:
+        shown = ToneMapping("reinhard", exposure=exposure)(light)
+        off = max(off, np.abs(shown / (exposure * (1 - shown)) - light).max() / light.max())
+        rises = rises and bool((np.diff(shown) > 0).all())
+        largest = max(largest, shown.max())
+    return Claim(
+        "Reinhard's is injective and rises, from 0 and ∞ to 0 and 1.",
+        "eq. 6.5",
+        "[0, ∞) → [0, 1]",
+        f"rises everywhere, {largest:.5f} at 1000; its inverse is off by {off:.0e}",
+        verdict(rises and largest < 1 and off < 1e-9),
+        "1 itself is not reached. As ε L / (1 + ε L) it is black for ε = 0, which "
+        "L / (1/ε + L), as printed, is not.",
+    )
+
+
+def draw(light, shown):
+    """The pictures, and the curves."""
+    drawn = figure(9, 4.4)
+    above, below = drawn.subfigures(2, 1, height_ratios=(1.3, 1))
+    for axes, tone in zip(above.subplots(1, len(shown)), shown, strict=True):
+        axes.imshow(to_srgb(tone(light)))
+        axes.set_title(str(tone) or "range 0 to 1", size=9)
+        axes.set_axis_off()
+    axes, x = below.subplots(), np.linspace(0, 1.2, 300)
+    for tone, colour in zip(shown, COLOURS, strict=False):
+        axes.plot(x, tone(x), color=colour, label=str(tone) or "range 0 to 1")
+    axes.set_xlabel("intensity")
+    axes.legend(fontsize=7)
+    tidy(axes, "", "shown, linear")
+    return drawn
