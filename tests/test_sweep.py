@@ -409,6 +409,7 @@ def test_the_page(swept):
     text = Path("out/index.html").read_text(encoding="utf-8")
     page = Page(text)
     assert not {"i", "img", "link"} & set(page.tags)
+    assert page.tags.count("script") == 1  # which sorts the tables
     assert "prefers-color-scheme: dark" in text
     assert "http" not in text
     assert swept.problems[0] in page.text

@@ -10,8 +10,8 @@ def fit_many(files, names, settings, output, jobs, judge, console):
     """Fit the models of these `names` to all `files`, and print their errors.
 
     `output`: the folder for the fits, or None; `jobs`: how many processes, or None; `judge`:
-    whether to tell errors that were held out and pictures, too. What fails is
-    said in one sentence each; the exit status is then 2.
+    whether to tell errors that were held out and pictures, too. What fails is said in one sentence
+    each; the exit status is then 2.
     """
     from brdfkit.cli.arguments import results_folder
     from brdfkit.fitting.sweeping import sweep

@@ -1,1 +1,4 @@
-"""The verbs that are one file each: `fit` and what says more of one, `compare`, `convert` ..."""
+"""The verbs of fitting: `fit`, `compare`, and what ranks, repeats and doubts fits.
+
+The numbers behind them, which know no `Measured`, are in `brdfkit.regression`.
+"""

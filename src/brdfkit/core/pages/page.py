@@ -36,7 +36,7 @@ def _environment():
         finalize=_without_control,
     )
     found.globals |= {
-        "source": lambda name: Markup(_source(name)),
+        "source": lambda name: Markup(source(name)),
         "policy": policy,
     }
     return found
@@ -62,11 +62,11 @@ def policy(style, *scripts):
 
 def _hash(name):
     """What a browser must find in an element for it to be the file of this name."""
-    digest = sha256(_source(name).encode()).digest()
+    digest = sha256(source(name).encode()).digest()
     return f"'sha256-{b64encode(digest).decode()}'"
 
 
 @cache
-def _source(name):
+def source(name):
     """A file of `templates/` as it stands in its element."""
     return "\n" + (resources.files(__package__) / "templates" / name).read_text(encoding="utf-8")

@@ -30,12 +30,16 @@ class Judge:
         self.settings, self.anisotropic = settings, data.anisotropic
         angle, seed = settings["max_angle"], settings["seed"]
         samples = select_samples(data, angle, None, False, settings["spectral"])
-        self.appearance = Appearance(data, select_samples(data, angle), angle, seed + 1)
+        self.appearance = Appearance(data, samples, angle, seed + 1)
         self.held_out, loss = None, as_loss(settings["loss"])
         if not isinstance(loss, Picture):
             rng = np.random.default_rng(seed)
             with suppress(BrdfkitError):  # fewer blocks of directions than folds
                 self.held_out = HeldOut.draw(samples, loss, data.anisotropic, FOLDS, rng)
+
+    def judge(self, fit: Fit) -> dict[str, float]:
+        """The numbers of a fit by their names in `Row`."""
+        return {"held_out": self.error_of(fit), "psnr": self.psnr_of(fit)}
 
     def error_of(self, fit: Fit) -> float:
         """E of the fit's loss in directions that a fit did not see; nan under a `Picture`, and

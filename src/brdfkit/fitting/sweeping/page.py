@@ -8,6 +8,7 @@ from urllib.parse import quote
 
 from brdfkit.core.files import write_safely
 from brdfkit.core.names import listed, printable
+from brdfkit.core.pages.page import source
 from brdfkit.core.version import __version__
 from brdfkit.fitting.sweeping import tables
 from brdfkit.materials.measured.albedos import ANGLES
@@ -31,7 +32,8 @@ table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .25rem .7rem; text-align: left; border-bottom: 1px solid var(--line);
   white-space: nowrap; vertical-align: top; }
 th { font-weight: 600; }
-thead th { cursor: pointer; }
+th button { all: unset; cursor: pointer; }
+th button:focus-visible { outline: 2px solid; outline-offset: 2px; }
 th[aria-sort=ascending]::after { content: " ▲"; } th[aria-sort=descending]::after { content: " ▼"; }
 .number, .failed { text-align: right; }
 .errors th:first-child { position: sticky; left: 0; background: var(--paper); }
@@ -68,30 +70,6 @@ TOLD = {
     "several lights, as a screen shows it: the more the better.",
 }
 
-# Sorts a table by the column whose head is clicked, or has Enter pressed on it: numbers first, and
-# failures last; a second time the other way round
-SORT = """
-for (const head of document.querySelectorAll("thead th")) {
-  const column = head.cellIndex, body = head.closest("table").tBodies[0];
-  head.tabIndex = 0;
-  head.title = "sort by this column";
-  const sort = () => {
-    const down = head.getAttribute("aria-sort") === "ascending";
-    for (const other of head.parentNode.cells) other.removeAttribute("aria-sort");
-    head.setAttribute("aria-sort", down ? "descending" : "ascending");
-    const key = row => row.cells[column].dataset.value ?? row.cells[column].textContent;
-    const compare = (a, b) => {
-      const [x, y] = [key(a), key(b)], [u, v] = [parseFloat(x), parseFloat(y)];
-      if (isNaN(u) !== isNaN(v)) return isNaN(u) ? 1 : -1;
-      return (isNaN(u) ? x.localeCompare(y) : u - v) * (down ? -1 : 1);
-    };
-    body.append(...[...body.rows].sort(compare));
-  };
-  head.onclick = sort;
-  head.onkeydown = event => { if (event.key === "Enter") sort(); };
-}
-"""
-
 
 def write(sweep, path):
     """Write the page of a `Sweep` to the file `path`."""
@@ -121,7 +99,7 @@ def page(sweep, folder):
         f"<title>{title}</title><style>{STYLE}</style></head>\n<body>\n"
         + "\n".join(parts)
         + f"\n<footer>Made by brdfkit {__version__}.</footer>\n"
-        + f"<script>{SORT}</script></body></html>\n"
+        + f'<script type="module">{source("sort_tables.js")}</script></body></html>\n'
     )
 
 
@@ -170,10 +148,7 @@ def _number(row, best, quantity, folder):
         link = quote(Path(os.path.relpath(row.saved, folder)).as_posix())
         text = f'<a href="{link}">{text}</a>'
     hint = _text("; ".join([f"{number:.9g}", *row.fit.warnings]))
-    return (
-        f'<td class="{kind}" style="--near: {near}" title="{hint}" '
-        f'data-value="{number:.9g}">{text}</td>'
-    )
+    return f'<td class="{kind}" style="--near: {near}" title="{hint}">{text}</td>'
 
 
 def _explain_marks(sweep):
@@ -229,7 +204,7 @@ def _table(kind, columns, body, foot=()):
     )
     end = "<tfoot>" + "\n".join(foot) + "</tfoot>" if foot else ""
     return (
-        f'<div class="wide"><table class="{kind}"><thead><tr>{head}</tr></thead>\n<tbody>'
+        f'<div class="wide"><table class="{kind} sortable"><thead><tr>{head}</tr></thead>\n<tbody>'
         + "\n".join(body)
         + f"</tbody>{end}</table></div>"
     )

@@ -103,11 +103,10 @@ class Sweep(Shown):
     @property
     def best(self) -> dict[str, Fit]:
         """The fit with the least error of every material that has one, by the material's name."""
-        best: dict[str, Fit] = {}
-        for row in self.rows:
-            if row.fit and (row.material not in best or row.error < best[row.material].loss):
-                best[row.material] = row.fit
-        return best
+        best = {
+            m: tables.ERROR.best(found.values()) for m, found in tables.by_material(self).items()
+        }
+        return {material: row.fit for material, row in best.items() if row}
 
     @property
     def problems(self) -> list[str]:

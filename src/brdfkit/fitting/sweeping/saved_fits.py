@@ -23,8 +23,7 @@ def keep(folder: Path, task: Task, outcome: Outcome) -> Path:
     file = _path(folder, task, outcome.model)
     record = {**json.loads(outcome.text), KEY: _identity(task, outcome.model)}
     if task.judge:
-        judged = {"held_out": outcome.held_out, "psnr": outcome.psnr}
-        record[JUDGED] = {name: None if isnan(v) else v for name, v in judged.items()}
+        record[JUDGED] = {name: None if isnan(v) else v for name, v in outcome.judged.items()}
     make_folder(file.parent)
     with write_safely(file) as beside:
         beside.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
@@ -44,12 +43,8 @@ def find(folder: Path, task: Task, label: str) -> tuple[Fit, Path, dict[str, flo
             judged = record.get(JUDGED, {}) if task.judge else {}
             judged = {name: nan if v is None else float(v) for name, v in judged.items()}
             return fit_json.read(Source(file, None, data)), file, judged
-    except (
-        BrdfkitError,
-        ValueError,
-        TypeError,
-        AttributeError,
-    ):  # damaged, or a file of somebody else's
+    # Damaged, or a file of somebody else's
+    except (BrdfkitError, ValueError, TypeError, AttributeError):
         pass
     return None
 

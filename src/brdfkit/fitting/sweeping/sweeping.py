@@ -160,8 +160,7 @@ def _finish(task: Task, outcome: Outcome, folder: Path | None) -> Row:
         loss = task.settings["loss"]
         return Row(task.material, task.file, outcome.model, loss, message=outcome.failure)
     saved = saved_fits.keep(folder, task, outcome) if folder else None
-    judged = {"held_out": outcome.held_out, "psnr": outcome.psnr}
-    return _make_row(task, outcome.model, fit, saved, judged)
+    return _make_row(task, outcome.model, fit, saved, outcome.judged)
 
 
 def _make_row(

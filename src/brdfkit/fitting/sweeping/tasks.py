@@ -5,9 +5,8 @@ takes and gives can be sent anywhere; only the files must be there, by the same 
 """
 
 import io
-import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
@@ -47,15 +46,14 @@ class Task:
 class Outcome:
     """What became of one fit: `text`, the fit as brdfkit saves it, or `failure`, a sentence.
 
-    `held_out`, `psnr`: as in `Row`, of a task that judges.
+    `judged`: of a task that judges, numbers by their names in `Row`.
     """
 
     material: str
     model: str
     text: str = ""
     failure: str = ""
-    held_out: float = math.nan
-    psnr: float = math.nan
+    judged: dict[str, float] = field(default_factory=dict)
 
 
 def fit_models(task: Task) -> Iterator[Outcome]:
@@ -74,8 +72,8 @@ def fit_models(task: Task) -> Iterator[Outcome]:
             stream = io.BytesIO()
             found = fit(label, data, **task.settings)
             fit_json.write(found, stream)
-            judged = (judge.error_of(found), judge.psnr_of(found)) if judge else ()
-            yield Outcome(task.material, label, stream.getvalue().decode(), "", *judged)
+            judged = judge.judge(found) if judge else {}
+            yield Outcome(task.material, label, text=stream.getvalue().decode(), judged=judged)
         except Exception as error:
             yield fail(task, label, error)
 

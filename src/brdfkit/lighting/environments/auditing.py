@@ -88,9 +88,7 @@ class EnvironmentAudit(Shown):
 
         >>> audit_environment("studio").picture().savefig("studio.png")    # doctest: +SKIP
         """
-        from brdfkit.lighting.environments.picture import (
-            picture,  # only here: matplotlib is slow to load
-        )
+        from brdfkit.lighting.environments.picture import picture  # only here: matplotlib is slow
 
         return picture(self)
 

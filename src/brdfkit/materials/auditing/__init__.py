@@ -121,9 +121,7 @@ class Audit(Shown):
 
         >>> load("paint.astm").audit().picture().savefig("paint.png")    # doctest: +SKIP
         """
-        from brdfkit.materials.auditing.picture import (
-            picture,  # only here: matplotlib is slow to load
-        )
+        from brdfkit.materials.auditing.picture import picture  # only here: matplotlib is slow
 
         return picture(self)
 

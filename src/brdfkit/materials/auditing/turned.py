@@ -16,7 +16,7 @@ LARGEST = 85
 TURN = np.array([-1.0, -1.0, 1.0])
 # Where the correlation of logarithms with how far wo lies towards the mirror direction is larger,
 # no fit is needed: of 37 files turned by 180°, those that are recognised have -0.1 or less
-FORWARDS = 0.1
+CLEAR = 0.1
 
 
 def error_when_turned(samples: Samples) -> float:
@@ -32,7 +32,7 @@ def error_when_turned(samples: Samples) -> float:
         rows = np.random.default_rng(0).choice(len(samples.wi), ENOUGH, replace=False)
         samples = samples.at(rows)
     rows = samples.within(LARGEST)
-    if rows.sum() < FEWEST or _forwards(samples.at(rows)) > FORWARDS:
+    if rows.sum() < FEWEST or _forwards(samples.at(rows)) > CLEAR:
         return np.nan
     own, turned = (_error(s.at(rows)) for s in (samples, replace(samples, wo=samples.wo * TURN)))
     return turned / own if own > 0 else np.nan

@@ -6,7 +6,7 @@ const text = (row, column) => row.cells[column].textContent.trim();
 /** The order of two texts: of numbers by size; else by letters. */
 function compare(a, b, numeric, turned) {
   if (!numeric) return turned * a.localeCompare(b, "en", { numeric: true });
-  const [x, y] = [parseFloat(a), parseFloat(b)];
+  const [x, y] = [a, b].map((number) => parseFloat(number.replaceAll(",", "")));
   return Number.isNaN(x) - Number.isNaN(y) || turned * (x - y) || 0;
 }
 
