@@ -84,7 +84,7 @@ def run_in_processes(tasks: list[Task], workers: int) -> Iterator[Outcome]:
                     crew.append(idle[0])
                 idle.pop().give(waiting.popleft())
             busy: dict[Any, Worker] = {worker.pipe: worker for worker in crew if worker.task}
-            for pipe in wait(list(busy)):
+            for pipe in wait(list(busy), timeout=1):  # Ctrl-C in another thread does not end it
                 worker = busy[pipe]
                 try:
                     outcome = worker.receive()

@@ -106,6 +106,8 @@ def sweep(
                 rows[outcome.material, outcome.model] = _finish(task, outcome, folder)
                 report(len(rows) - found, total)
     except KeyboardInterrupt:
+        for task in tasks:  # Ctrl-C may come between the saving of a fit and its row
+            rows.update(_find_rows(_without(task, rows), folder))
         if not rows:
             raise
 
