@@ -1,7 +1,6 @@
 """Scenes for frames of shadows: what stands on a ground, seen from above, under a light."""
 
-from brdfkit.theses.balint2019 import ground as seen_from_above
-from brdfkit.theses.balint2019 import scenes
+from brdfkit.theses.balint2019 import scenes, view
 
 from brdfkit.distance_fields import box
 
@@ -26,4 +25,4 @@ def complicated():
 
 def ground(size, radius, half=4.0):
     """The cones (size², in rows) from the ground to a light of this `radius`."""
-    return seen_from_above.ground(size, half, LIGHT, radius, BALL)
+    return view.ground(size, half, LIGHT, radius, BALL)

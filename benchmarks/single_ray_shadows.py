@@ -21,11 +21,11 @@ import occluders
 import shadow_gradients
 import single_ray_shadows_page as page
 
-from brdfkit.distance_fields.shadows.aaltonen import aaltonen
-from brdfkit.distance_fields.shadows.base import base
+from brdfkit.distance_fields.shadows.rivals import aaltonen
+from brdfkit.distance_fields.shadows.marches import base
 from brdfkit.distance_fields.shadows.convex import convex
 from brdfkit.distance_fields.shadows.dense import dense
-from brdfkit.distance_fields.shadows.discrete import discrete
+from brdfkit.distance_fields.shadows.marches import discrete
 from brdfkit.distance_fields.shadows.marches import linear
 from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
 from brdfkit.distance_fields.shadows.rivals import quilez

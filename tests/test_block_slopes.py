@@ -5,8 +5,7 @@ import pytest
 
 from brdfkit.lighting.sampling.block_slopes import STEEPEST, draw, line, slopes
 from brdfkit.lighting.sampling.map_samplers.blocks import Blocks
-from brdfkit.lighting.sampling.map_samplers.mip import Mip
-from brdfkit.lighting.sampling.map_samplers.tables import Cdf
+from brdfkit.lighting.sampling.map_samplers.tables import Cdf, Mip
 from brdfkit.lighting.sampling.power_map import cell_power
 from brdfkit.lighting.sampling.tree import Sums
 

@@ -8,7 +8,8 @@ import pytest
 
 import brdfkit as bk
 from brdfkit import BrdfkitError
-from brdfkit.distance_fields import box, from_function, kinds, plane, sphere, torus
+from brdfkit.distance_fields import box, from_function, plane, sphere, torus
+from brdfkit.distance_fields import parameters as kinds
 from brdfkit.distance_fields.shading.direct_light import DirectLight
 from brdfkit.rendering.progressive import Progressive
 

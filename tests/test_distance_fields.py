@@ -15,7 +15,7 @@ from brdfkit import BrdfkitError
 from brdfkit import distance_fields as df
 from brdfkit.core.jit import double_precision
 from brdfkit.core.jit.double_precision import Vector
-from brdfkit.distance_fields import kinds
+from brdfkit.distance_fields import parameters
 
 # Random trees
 
@@ -199,7 +199,7 @@ def walk(node):
 
 
 def test_the_tree_has_every_kind():
-    own = {n for n, cls in kinds._KINDS.items() if cls.__module__.startswith("brdfkit.")}
+    own = {n for n, cls in parameters._KINDS.items() if cls.__module__.startswith("brdfkit.")}
     assert walk(everything()) == own - {"function"}
 
 

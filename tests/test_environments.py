@@ -11,7 +11,7 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.cli import main
-from brdfkit.core import catalogue, index, public_maps
+from brdfkit.core import catalogue, index
 from brdfkit.core.colours import luminance
 from brdfkit.lighting.environments.compass import COLOURS
 from brdfkit.lighting.environments.conventions import LAYOUTS, NAMED, convention
@@ -463,7 +463,7 @@ def test_public_maps(capsys):
     named = json.loads(out)["environment maps"]
     assert {"polyhaven", "debevec", "usc"} <= set(named)
     assert "Convention: usc" in run(capsys, "data", "list", "usc")[1]
-    for name, found in public_maps.collections().items():
+    for name, found in catalogue.collections().items():
         assert found.page.startswith("http")
         assert found.page in named[name]["page"]
         if " " not in found.convention:

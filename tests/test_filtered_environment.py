@@ -15,8 +15,8 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.latitude_rows import solid_angles
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.lighting.filtering import paraboloid_levels as levels
+from brdfkit.lighting.filtering.filtered_light import irradiance
 from brdfkit.lighting.filtering.filtered_map import FilteredMap, LobeMaps, Mips, picture
-from brdfkit.lighting.filtering.irradiance import irradiance
 from brdfkit.lighting.filtering.lobe_light import LobeLight
 from brdfkit.lighting.filtering.scene_bsdfs import has_matte_part, is_isotropic, is_same_everywhere
 from brdfkit.lighting.filtering.sphere_filter import azimuths, convolve, row_angles

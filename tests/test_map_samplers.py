@@ -11,8 +11,7 @@ from brdfkit.checks import emitters as checks
 from brdfkit.checks.plugin_subject import example
 from brdfkit.lighting.sampling.map_samplers.alias import Alias, alias_table
 from brdfkit.lighting.sampling.map_samplers.blocks import DISTRIBUTIONS, LOOKUPS, Blocks
-from brdfkit.lighting.sampling.map_samplers.mip import Mip
-from brdfkit.lighting.sampling.map_samplers.tables import Cdf
+from brdfkit.lighting.sampling.map_samplers.tables import Cdf, Mip
 from brdfkit.lighting.sampling.power_map import compensated
 
 BY_NAME = {

@@ -9,15 +9,12 @@ import brdfkit as bk
 from brdfkit import distance_fields as df
 from brdfkit.core.jit import llvm
 from brdfkit.distance_fields.shadows import LightCone, edge, light_cone, soft_shadow
-from brdfkit.distance_fields.shadows.aaltonen import aaltonen
-from brdfkit.distance_fields.shadows.base import base
 from brdfkit.distance_fields.shadows.convex import convex
 from brdfkit.distance_fields.shadows.dense import dense
-from brdfkit.distance_fields.shadows.discrete import discrete
 from brdfkit.distance_fields.shadows.field import pieces_of
-from brdfkit.distance_fields.shadows.marches import linear
+from brdfkit.distance_fields.shadows.marches import base, discrete, linear
 from brdfkit.distance_fields.shadows.monte_carlo import halton_disc, monte_carlo, trace
-from brdfkit.distance_fields.shadows.rivals import quilez
+from brdfkit.distance_fields.shadows.rivals import aaltonen, quilez
 from brdfkit.distance_fields.shadows.split import cells, split
 from brdfkit.distance_fields.shadows.tau import slope, tau, tau_inverse
 

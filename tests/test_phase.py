@@ -5,7 +5,7 @@ import pytest
 from brdfkit.plugins.phase import bsdf_phase, mie_hazy, mie_murky, schlick
 
 from brdfkit.checks import directions
-from brdfkit.mitsuba_bridge import even_and_forward
+from brdfkit.mitsuba_bridge import phase_functions
 
 MU, XI = np.linspace(-1, 1, 5), np.array([0.1, 0.25, 0.5, 0.75, 0.9])
 # By a program of its own, in double precision: p(μ) at the MU, and the μ below which XI lies
@@ -81,10 +81,10 @@ def test_mie_by_quadrature_and_its_samples(module):
     """∫ p = 1 and the mean cosine; evenly spread random numbers have the known quantiles."""
     quantiles, mean = HALVES[module]
     mu, weight = np.polynomial.legendre.leggauss(40)
-    p = 2 * np.pi * weight * even_and_forward.density(module.N, mu)
+    p = 2 * np.pi * weight * phase_functions.density(module.N, mu)
     assert [p.sum(), p @ mu] == pytest.approx([1, mean], abs=1e-12)
     u = (np.arange(100_000) + 0.5) / 100_000
-    drawn = [even_and_forward.cosine(module.N, half, u) for half in (0.25, 0.75)]
+    drawn = [phase_functions.cosine(module.N, half, u) for half in (0.25, 0.75)]
     np.testing.assert_allclose(np.quantile(drawn, XI), quantiles, atol=1e-5)
 
 

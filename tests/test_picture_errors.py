@@ -11,10 +11,9 @@ from brdfkit.core.colours import colour_science, to_srgb
 from brdfkit.images.errors import image_errors
 from brdfkit.images.errors.colour_difference import WHITE, ciede2000, delta_e_itp
 from brdfkit.images.errors.flip import exposures, flip
-from brdfkit.images.errors.metrics import METRICS
+from brdfkit.images.errors.metrics import METRICS, ssim
 from brdfkit.images.errors.noise import Halves, samples_for
 from brdfkit.images.errors.psnr import psnr
-from brdfkit.images.errors.ssim import ssim
 from brdfkit.rendering import render
 
 pytestmark = pytest.mark.quick

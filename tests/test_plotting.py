@@ -11,7 +11,7 @@ from brdfkit.core.colours import luminance
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.plots import Plot
-from brdfkit.images.thumbnails.radius import Radius
+from brdfkit.images.thumbnails.lobes import Radius
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.plotting import plot
 from brdfkit.materials.plotting.plane_of_incidence import lobe

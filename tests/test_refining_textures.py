@@ -7,9 +7,9 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.inverse.scenes.problem.parameters import choose
-from brdfkit.inverse.scenes.problem.roughness import roughness
 from brdfkit.inverse.scenes.problem.scene import integrator_of, load_subject
 from brdfkit.inverse.scenes.problem.targets import read_targets
+from brdfkit.inverse.scenes.problem.tensors import roughness
 from brdfkit.inverse.scenes.problem.views import Views
 from brdfkit.inverse.scenes.search import descent
 from brdfkit.inverse.scenes.search.backward_derivatives import error_and_slopes

@@ -28,7 +28,7 @@ from brdfkit.model.samples import Table
 from brdfkit.regression.robust.reweighting import WEIGHTS
 from brdfkit.reporting import many_files, origin, report
 from brdfkit.reporting.charts import svg
-from brdfkit.reporting.charts.errors_table import errors_table
+from brdfkit.reporting.charts.svg import errors_table
 from brdfkit.reporting.pictures import pixels
 from brdfkit.reporting.pictures.defaults import MODELS
 from brdfkit.reporting.pictures.defaults import SIZE as SIZE_OF_REPORTS

@@ -20,12 +20,12 @@ from brdfkit.theses.lesar2018 import (
     isosurface_depth,
     iteration_times,
     largest_values,
+    phases,
     ray_marching,
     schlick,
     single_scattering,
     tone_mappers,
     transfer_functions,
-    two_lobes,
 )
 from brdfkit.theses.lesar2018.iterations import iteration
 
@@ -88,7 +88,7 @@ def test_how_near_schlicks_is(g, k, mean, distance):
     [("Rayleigh", 0.023, 0.044), ("Mie hazy", 0.054, 0.17), ("Mie murky", 0.103, 0.67)],
 )
 def test_two_lobes_of_schlicks(name, error, largest):
-    _, *found = two_lobes.fit(*two_lobes.TARGETS[name])
+    _, *found = phases.fit(*phases.TARGETS[name])
     assert found == pytest.approx((error, largest), abs=0.005)
 
 

@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 from shadow_scenes import half_plane, objects_on_a_ground, placement_of, seen_from
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.shadows.maps.bias import AUTOMATIC, Bias
-from brdfkit.shadows.maps.bias_errors import acne, peter_panning
+from brdfkit.shadows.maps.bias import AUTOMATIC, Bias, acne, peter_panning
 from brdfkit.shadows.maps.filters import (
     bilinear_percentage_closer,
     exponential_variance,

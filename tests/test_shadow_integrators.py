@@ -11,7 +11,7 @@ from shadow_scenes import light
 
 import brdfkit as bk
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.shadows.maps.shadow_map import ShadowMap
+from brdfkit.shadows.maps.light_shadow import ShadowMap
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 INTEGRATORS = "shadow_map", "shadow_volume", "hybrid_shadow"

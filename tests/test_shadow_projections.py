@@ -11,11 +11,10 @@ from placements import LIGHTS, SUN, VIEWS, camera, placement
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.homogeneous import axes_about, project_all
 from brdfkit.core.projective.light import Light
-from brdfkit.shadows.maps.aliasing import aliasing
-from brdfkit.shadows.maps.depth_curve import depth_curve, unevenness
 from brdfkit.shadows.maps.light_depth import LightDepth
 from brdfkit.shadows.maps.light_shadow import LightShadow
 from brdfkit.shadows.maps.projection import Projection
+from brdfkit.shadows.maps.resolution import aliasing, depth_curve, unevenness
 from brdfkit.shadows.maps.sight import Sight
 from brdfkit.shadows.maps.techniques import FILES, techniques
 

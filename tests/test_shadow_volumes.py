@@ -13,13 +13,12 @@ from brdfkit.core.projective.light import Light
 from brdfkit.shadows.comparison.exact_shadow import Seen
 from brdfkit.shadows.hybrid import hybrid_shadow
 from brdfkit.shadows.volumes.casters import CASTERS
-from brdfkit.shadows.volumes.extrusion import extruded
 from brdfkit.shadows.volumes.light_volumes import METHODS, LightVolumes
 from brdfkit.shadows.volumes.mesh import Mesh
 from brdfkit.shadows.volumes.seen_faces import picture_matrix, seen_faces
 from brdfkit.shadows.volumes.silhouettes import SILHOUETTES
 from brdfkit.shadows.volumes.stencil import Stencil
-from brdfkit.shadows.volumes.volume import BACK_CAPS, Faces, shadow_volume
+from brdfkit.shadows.volumes.volume import BACK_CAPS, Faces, extruded, shadow_volume
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 SIZE = 96

@@ -15,13 +15,11 @@ from shadow_scenes import LIGHTS, objects_on_a_ground, placement_of
 
 import brdfkit as bk
 from brdfkit.shadows.comparison.exact_shadow import Seen
-from brdfkit.shadows.comparison.map_pictures import CHECKS, OUTSIDE, MapPictures
-from brdfkit.shadows.comparison.packed import Packed
+from brdfkit.shadows.comparison.map_pictures import CHECKS, OUTSIDE, MapPictures, Packed
 from brdfkit.shadows.comparison.page_pictures import draw_errors
 from brdfkit.shadows.comparison.paths import TURN, arrives, path
-from brdfkit.shadows.comparison.quality import aliasing_error
+from brdfkit.shadows.comparison.quality import aliasing_error, share_used
 from brdfkit.shadows.comparison.scores import Scores, between_lights, mean
-from brdfkit.shadows.comparison.texture_use import share_used
 from brdfkit.shadows.comparison.tracked_points import Watched
 from brdfkit.shadows.maps.scenes import SCENES
 

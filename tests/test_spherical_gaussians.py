@@ -11,11 +11,10 @@ from brdfkit.core.geometry.quadrature import directional_albedo, ring_rule
 from brdfkit.lighting.spherical_gaussians import (
     LobeTable,
     anisotropic,
-    initial_guess,
+    gmm,
     kernel_density,
     lobe_table,
     mixture,
-    warp,
 )
 from brdfkit.lighting.spherical_gaussians import von_mises_fisher as vmf
 from brdfkit.lighting.spherical_gaussians.anisotropic import AnisotropicGaussian
@@ -149,9 +148,9 @@ def some_samples(n=3000):
 @pytest.mark.parametrize("restarts", [0, 2])
 def test_the_likelihood_never_falls(restarts):
     _, x, weights = some_samples()
-    starts = [initial_guess.cut_in_intervals(x, weights, 5)]
+    starts = [gmm.cut_in_intervals(x, weights, 5)]
     random = np.random.default_rng(restarts)
-    starts += [initial_guess.around_samples(x, weights, 5, random) for _ in range(restarts)]
+    starts += [gmm.around_samples(x, weights, 5, random) for _ in range(restarts)]
     for start in starts:
         found, likelihood = mixture.fit(x, weights, start, steps=40)
         assert len(likelihood) > 5
@@ -163,7 +162,7 @@ def test_the_likelihood_never_falls(restarts):
 @quick
 def test_the_lobes_that_samples_come_from_are_found():
     mu, x, weights = some_samples()
-    found = initial_guess.best_mixture(x, weights, 3)
+    found = gmm.best_mixture(x, weights, 3)
     order = (mu @ found.axes.T).argmax(axis=1)
     assert sorted(order) == [0, 1, 2]
     # Weights between 0 and 1 are worth 3/4 of the 3000 samples; within 4 standard errors
@@ -177,7 +176,7 @@ def test_the_lobes_that_samples_come_from_are_found():
 @quick
 def test_the_fit_stops_where_it_has_converged():
     _, x, weights = some_samples()
-    found, likelihood = mixture.fit(x, weights, initial_guess.best_mixture(x, weights, 3), 500)
+    found, likelihood = mixture.fit(x, weights, gmm.best_mixture(x, weights, 3), 500)
     assert len(likelihood) < 100
     again, _ = mixture.fit(x, weights, found, 1, tolerance=0)
     np.testing.assert_allclose(again.kappa, found.kappa, rtol=1e-3)
@@ -188,7 +187,7 @@ def test_the_guess_of_the_thesis_cuts_the_wider_angle():
     phi = np.linspace(-0.1, 0.1, 50)
     theta = np.linspace(0.2, 1.2, 50)
     x = from_angles(theta, phi[::-1])
-    found = initial_guess.cut_in_intervals(x, np.ones(50), 5)
+    found = gmm.cut_in_intervals(x, np.ones(50), 5)
     np.testing.assert_allclose(found.weights, 0.2)
     middles = np.arccos(found.axes[:, 2])
     np.testing.assert_allclose(middles, 0.2 + (np.arange(5) + 0.5) / 5, atol=0.01)
@@ -256,7 +255,7 @@ def above_the_horizon(view):
 def test_wangs_warp_is_as_far_from_beckmanns_lobe_as_known(m, degrees, percent):
     """The values, to the percent, and the integrals were computed apart, by drawn directions."""
     view = from_angles(np.radians(degrees), 0.0)
-    mu, kappa = warp.to_light(UP, warp.beckmann(m), view)
+    mu, kappa = gmm.to_light(UP, gmm.beckmann(m), view)
     x, solid_angle = above_the_horizon(view)
     found = vmf.density(x, mu, kappa) * 4 * (view @ UP)  # the amplitude is D's
     expected = beckmann(x, view, m)
@@ -273,7 +272,7 @@ def test_an_anisotropic_gaussian_warps_better_and_is_wangs_in_the_mean():
     m, view = 0.1, from_angles(np.radians(60), 0.4)
     lobe = AnisotropicGaussian(np.eye(3), np.array([1, 1]) / m**2)
     warped = lobe.to_light(view)
-    mu, kappa = warp.to_light(UP, warp.beckmann(m), view)
+    mu, kappa = gmm.to_light(UP, gmm.beckmann(m), view)
     np.testing.assert_allclose(warped.frame[2], mu, atol=1e-12)
     # Wang's κ / 2 is the geometric mean of the bandwidths, of which one is 4 cos²60° of the other
     assert np.sqrt(warped.bandwidths.prod()) == pytest.approx(kappa / 2)
@@ -308,7 +307,7 @@ def test_one_anisotropic_gaussian_does_what_eight_round_ones_do():
         return np.abs(light.sum() * density - values) @ seen.solid_angle / light.sum()
 
     def of_round_ones(n):
-        found = initial_guess.best_mixture(*seen.samples(), n, restarts=2)
+        found = gmm.best_mixture(*seen.samples(), n, restarts=2)
         return error(np.exp(found.log_lobes(seen.directions)).sum(axis=0))
 
     lobe = anisotropic.fit(seen.directions, light)
@@ -322,7 +321,7 @@ def test_a_lobe_of_light_warps_back():
     view = from_angles(1.0, 2.0)
     axes = from_angles(np.array([0.1, 0.7]), np.array([0.0, 1.9]))
     kappa = np.array([30.0, 500.0])
-    halves = warp.to_half_vectors(*warp.to_light(axes, kappa, view), view)
+    halves = gmm.to_half_vectors(*gmm.to_light(axes, kappa, view), view)
     np.testing.assert_allclose(halves[0], axes, atol=1e-12)
     np.testing.assert_allclose(halves[1], kappa)
 

@@ -16,8 +16,8 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 import brdfkit as bk
+from brdfkit.core.interrupts import hold_signals
 from brdfkit.core.jit.threads import cached_in_turn, in_turn
-from brdfkit.core.signals import hold_signals
 from brdfkit.rendering import render_materials, render_scene
 
 THREADS = 8

@@ -11,8 +11,7 @@ out what is below the map's mean [Karlík et al. 2019].
 
 from brdfkit.lighting.sampling.emitter import MAP, environment_emitter, small_sky
 from brdfkit.lighting.sampling.map_samplers.alias import Alias
-from brdfkit.lighting.sampling.map_samplers.mip import Mip
-from brdfkit.lighting.sampling.map_samplers.tables import Cdf
+from brdfkit.lighting.sampling.map_samplers.tables import Cdf, Mip
 from brdfkit.mitsuba_bridge.properties.declarations import word
 
 SAMPLERS = {"cdf": Cdf, "mip": Mip, "alias": Alias}

@@ -30,8 +30,8 @@ import numpy as np
 from brdfkit.lighting.visibility.casters import Casters
 from brdfkit.lighting.visibility.decomposition import CONCAVITY
 from brdfkit.lighting.visibility.occluders import RESOLUTION
+from brdfkit.mitsuba_bridge.check_scenes import reference_film
 from brdfkit.mitsuba_bridge.properties.declarations import count, declared, plain_number
-from brdfkit.mitsuba_bridge.reference_camera import reference_film
 
 PARAMETERS = {
     "concavity": plain_number(CONCAVITY, (0.01, 1.0), "largest distance of a part to its hull"),

@@ -47,17 +47,16 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields import from_json, load
 from brdfkit.distance_fields.checking import check_steps
 from brdfkit.distance_fields.shading.direct_light import SHADINGS, SHADOWS, DirectLight
-from brdfkit.distance_fields.shading.exposed import exposed
 from brdfkit.distance_fields.shading.lamps import lamps_of
-from brdfkit.distance_fields.shading.parts import parts_of
+from brdfkit.distance_fields.shading.parts import exposed, parts_of
 from brdfkit.distance_fields.shading.seen_point import FINEST, seen_point
 from brdfkit.distance_fields.shading.silhouettes import near_miss
-from brdfkit.distance_fields.shadows.extent import sphere_about
+from brdfkit.distance_fields.shadows.field import sphere_about
 from brdfkit.distance_fields.shadows.shadow import DIRECTIONS
+from brdfkit.mitsuba_bridge.check_scenes import reference_film
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
 from brdfkit.mitsuba_bridge.properties.declarations import count, declared, plain_number, text, word
-from brdfkit.mitsuba_bridge.reference_camera import reference_film
-from brdfkit.mitsuba_bridge.registration.variants import refuse_scalar
+from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
 
 PARAMETERS = {
     "filename": text("", "file of the field, as JSON"),

@@ -30,8 +30,8 @@ import numpy as np
 
 from brdfkit.core.jit.loops import recorded
 from brdfkit.mitsuba_bridge.channels import emission_of_rgb, white
+from brdfkit.mitsuba_bridge.check_scenes import through_unit_cube
 from brdfkit.mitsuba_bridge.properties.declarations import count, declared, flag, volume
-from brdfkit.mitsuba_bridge.reference_camera import through_unit_cube
 from brdfkit.model.numerics import expm1
 from brdfkit.volumes.rays.along_ray import light_behind, within
 

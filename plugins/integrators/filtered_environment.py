@@ -38,9 +38,9 @@ from brdfkit.lighting.visibility.casters import Casters
 from brdfkit.lighting.visibility.decomposition import CONCAVITY
 from brdfkit.lighting.visibility.occluders import RESOLUTION
 from brdfkit.lighting.visibility.shadowed_light import ShadowedLight
+from brdfkit.mitsuba_bridge.check_scenes import reference_film
 from brdfkit.mitsuba_bridge.properties.declarations import count, declared, plain_number, text, word
-from brdfkit.mitsuba_bridge.reference_camera import reference_film
-from brdfkit.mitsuba_bridge.registration.variants import refuse_scalar
+from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
 
 METHODS = "filtered_sampling", *LOBES
 PARAMETERS = {

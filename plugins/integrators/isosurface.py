@@ -23,6 +23,7 @@ missing in them.
 import drjit as dr
 import numpy as np
 
+from brdfkit.mitsuba_bridge.check_scenes import through_unit_cube
 from brdfkit.mitsuba_bridge.properties.declarations import (
     bsdf,
     count,
@@ -31,9 +32,8 @@ from brdfkit.mitsuba_bridge.properties.declarations import (
     number,
     volume,
 )
-from brdfkit.mitsuba_bridge.reference_camera import through_unit_cube
-from brdfkit.mitsuba_bridge.registration.variants import refuse_scalar
-from brdfkit.mitsuba_bridge.surface_point import interaction
+from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
+from brdfkit.mitsuba_bridge.surface_points import interaction
 from brdfkit.volumes.light.surface_light import direct_light
 from brdfkit.volumes.rays.along_ray import light_behind, within
 from brdfkit.volumes.rays.first_crossing import first_above, first_crossing, reattach

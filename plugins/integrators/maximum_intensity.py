@@ -20,8 +20,8 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.mitsuba_bridge.channels import emission_of_rgb
+from brdfkit.mitsuba_bridge.check_scenes import through_unit_cube
 from brdfkit.mitsuba_bridge.properties.declarations import count, declared, flag, volume
-from brdfkit.mitsuba_bridge.reference_camera import through_unit_cube
 from brdfkit.volumes.rays.along_ray import light_behind, within
 from brdfkit.volumes.rays.largest_value import largest_along
 from brdfkit.volumes.transfer.transfer_function import TransferFunction

@@ -34,7 +34,7 @@ from brdfkit.mitsuba_bridge.properties.declarations import flag, plain_number, w
 from brdfkit.shadows.volumes.casters import CASTERS
 from brdfkit.shadows.volumes.light_volumes import FAR_PLANES, METHODS, LightVolumes
 from brdfkit.shadows.volumes.mesh import Mesh
-from brdfkit.shadows.volumes.pinhole import pinhole
+from brdfkit.shadows.volumes.seen_faces import pinhole
 from brdfkit.shadows.volumes.silhouettes import SILHOUETTES
 from brdfkit.shadows.volumes.volume import BACK_CAPS
 

@@ -39,6 +39,7 @@ import math
 import drjit as dr
 import numpy as np
 
+from brdfkit.mitsuba_bridge.check_scenes import through_unit_cube
 from brdfkit.mitsuba_bridge.properties.declarations import (
     count,
     declared,
@@ -47,8 +48,7 @@ from brdfkit.mitsuba_bridge.properties.declarations import (
     volume,
     word,
 )
-from brdfkit.mitsuba_bridge.reference_camera import through_unit_cube
-from brdfkit.mitsuba_bridge.registration.variants import refuse_scalar
+from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
 from brdfkit.volumes.light import emitters
 from brdfkit.volumes.light.medium import Medium
 from brdfkit.volumes.light.vertex import Vertex, medium_interaction

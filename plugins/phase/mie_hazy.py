@@ -8,7 +8,7 @@ has an inverse. The mean cosine is 2/5.
 [Nishita et al. 1987]; [Lesar 2018, eq. 4.62].
 """
 
-from brdfkit.mitsuba_bridge.even_and_forward import even_and_forward
+from brdfkit.mitsuba_bridge.phase_functions import even_and_forward
 
 PARAMETERS = {}
 N = 8

@@ -8,7 +8,7 @@ has an inverse. The mean cosine is 8/17.
 [Nishita et al. 1987]; [Lesar 2018, eq. 4.63].
 """
 
-from brdfkit.mitsuba_bridge.even_and_forward import even_and_forward
+from brdfkit.mitsuba_bridge.phase_functions import even_and_forward
 
 PARAMETERS = {}
 N = 32

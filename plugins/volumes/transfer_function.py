@@ -31,8 +31,8 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.channels import emission_of_rgb, spectrum_of_rgb
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
 from brdfkit.mitsuba_bridge.properties.declarations import declared, text, volume, word
-from brdfkit.mitsuba_bridge.registration.variants import refuse_scalar
-from brdfkit.volumes.light.extinction_bounds import data_of
+from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
+from brdfkit.volumes.light.majorants import data_of
 from brdfkit.volumes.rays.voxel_steps import is_trilinear, typical
 from brdfkit.volumes.transfer import files
 from brdfkit.volumes.transfer.block_bounds import block_ranges, largest_between

@@ -3,7 +3,7 @@
 from functools import cache
 
 import numpy as np
-from brdfkit.theses.balint2019.marches import MARCHES
+from brdfkit.theses.balint2019.scenes import MARCHES
 from drjit.llvm import Array3f64, Float64
 from scipy.integrate import quad
 

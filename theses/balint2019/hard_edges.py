@@ -2,13 +2,11 @@
 
 import numpy as np
 from brdfkit.theses.balint2019 import scenes
-from brdfkit.theses.balint2019.ground import ground
 from brdfkit.theses.balint2019.measuring import shares
-from brdfkit.theses.balint2019.view import View
+from brdfkit.theses.balint2019.view import View, ground
 
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.distance_fields.shadows.hard import hard
-from brdfkit.distance_fields.shadows.marches import linear
+from brdfkit.distance_fields.shadows.marches import hard, linear
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.drawing import figure
 from brdfkit.theses.page import Picture, Section

@@ -3,7 +3,7 @@
 import drjit as dr
 import numpy as np
 
-from brdfkit.theses.timing import cpu_seconds
+from brdfkit.theses.claims import cpu_seconds
 
 
 def evaluate(shadow):

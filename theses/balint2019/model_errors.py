@@ -4,8 +4,8 @@ from functools import reduce
 from math import pi
 
 import numpy as np
-from brdfkit.theses.balint2019.ground import ground
 from brdfkit.theses.balint2019.measuring import rms, shares
+from brdfkit.theses.balint2019.view import ground
 
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.distance_fields import box, plane

@@ -5,6 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.distance_fields import Node, box, capped_cylinder, mandelbulb, plane, sphere, union
+from brdfkit.distance_fields.shadows.convex import convex
+from brdfkit.distance_fields.shadows.marches import base, discrete, linear
+
+MARCHES = {march.__name__: march for march in (base, linear, discrete, convex)}
+
 
 Triple = tuple[float, float, float]
 

@@ -6,10 +6,9 @@ from brdfkit.theses.balint2019.measuring import rms
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.theses.claims import Claim, verdict
+from brdfkit.theses.claims import Claim, least_seconds, verdict
 from brdfkit.theses.drawing import figure
 from brdfkit.theses.page import Picture, Section, Table
-from brdfkit.theses.timing import least_seconds
 
 SECONDS = 25
 SIZE, MANY, FEW, TRUE_SAMPLES, TIMES = 128, 150, 50, 1024, 2

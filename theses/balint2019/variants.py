@@ -19,8 +19,8 @@ from brdfkit.theses.balint2019.march_times import (
     settings,
     times_table,
 )
-from brdfkit.theses.balint2019.marches import MARCHES
 from brdfkit.theses.balint2019.measuring import seconds_in_turns
+from brdfkit.theses.balint2019.scenes import MARCHES
 from brdfkit.theses.balint2019.view import View
 
 from brdfkit.core.jit.threads import in_turn

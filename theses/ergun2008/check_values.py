@@ -9,15 +9,15 @@ from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.homogeneous import axes_about, project_all, rigid
 from brdfkit.core.projective.light import Light
-from brdfkit.shadows.maps.aliasing import aliasing
 from brdfkit.shadows.maps.filters.bilinear_percentage_closer import Lookup
 from brdfkit.shadows.maps.moments.chebyshev import most_lit
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.projections import light_space_perspective
+from brdfkit.shadows.maps.resolution import aliasing
 from brdfkit.shadows.maps.sight import Sight
 from brdfkit.shadows.maps.split_planes import split_planes
-from brdfkit.shadows.volumes.extrusion import extruded
+from brdfkit.shadows.volumes.volume import extruded
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.page import Section
 

@@ -4,9 +4,8 @@ from brdfkit.theses.ergun2008.views import RESOLUTION, View, measured
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.theses.claims import UNSTATED, Claim, verdict
+from brdfkit.theses.claims import UNSTATED, Claim, least_seconds, verdict
 from brdfkit.theses.page import Picture, Section, Table
-from brdfkit.theses.timing import least_seconds
 
 SECONDS = 60
 SCENES = ()  # by default all

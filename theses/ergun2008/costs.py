@@ -10,9 +10,8 @@ from brdfkit.shadows.hybrid import hybrid_shadow
 from brdfkit.shadows.maps.scenes import SCENES
 from brdfkit.shadows.volumes.light_volumes import LightVolumes
 from brdfkit.shadows.volumes.mesh import Mesh
-from brdfkit.theses.claims import UNSTATED, Claim, verdict
+from brdfkit.theses.claims import UNSTATED, Claim, least_seconds, verdict
 from brdfkit.theses.page import Section, Table
-from brdfkit.theses.timing import least_seconds
 
 SECONDS = 15
 COUNTS = 16, 64, 256, 1024  # of boxes

@@ -5,7 +5,7 @@ from brdfkit.theses.ergun2008.views import PROJECTIONS, View
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.shadows.maps.depth_curve import depth_curve, unevenness
+from brdfkit.shadows.maps.resolution import depth_curve, unevenness
 from brdfkit.shadows.maps.scenes import VIEWS
 from brdfkit.shadows.maps.techniques import techniques
 from brdfkit.theses.claims import Claim, verdict

@@ -7,8 +7,8 @@ from brdfkit.theses.ergun2008.trapezoid import CORNERS, SQUARE, trapezoid_to_squ
 from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.homogeneous import axes_about, project_all, rigid
 from brdfkit.core.projective.light import Light
-from brdfkit.shadows.maps.aliasing import magnification
 from brdfkit.shadows.maps.projection import Projection
+from brdfkit.shadows.maps.resolution import magnification
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.page import Section
 

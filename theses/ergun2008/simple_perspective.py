@@ -7,11 +7,10 @@ It is symmetric about its axis, and the camera's near plane is nearer than what 
 import numpy as np
 
 from brdfkit.core.projective.homogeneous import project_all, to_unit_cube
-from brdfkit.shadows.comparison.quality import aliasing_error
-from brdfkit.shadows.comparison.texture_use import share_used
-from brdfkit.shadows.maps.aliasing import aliasing
+from brdfkit.shadows.comparison.quality import aliasing_error, share_used
 from brdfkit.shadows.maps.light_camera import view as light_view
 from brdfkit.shadows.maps.projection import Projection
+from brdfkit.shadows.maps.resolution import aliasing
 
 NEAR = 0.1  # the camera's near plane over the distance of what is nearest
 

@@ -1,7 +1,7 @@
 """C1: which block to cut next, by the error of the map that the blocks hold."""
 
 import numpy as np
-from brdfkit.theses.ergun2015.probes import find_probes, read_probes
+from brdfkit.theses.ergun2015.lit_balls import find_probes, read_probes
 
 from brdfkit.core.colours import luminance
 from brdfkit.lighting.environments.auditing import audit_environment

@@ -1,7 +1,7 @@
 """C2, C5: the law of sorted blocks, how well it holds, and what it and the blocks take to store."""
 
 import numpy as np
-from brdfkit.theses.ergun2015.probes import read_probes
+from brdfkit.theses.ergun2015.lit_balls import read_probes
 
 from brdfkit.core.colours import luminance
 from brdfkit.lighting.sampling import tree

@@ -1,7 +1,7 @@
 """C3, C4, C6: pictures by samples of blocks beside those by cumulative sums."""
 
 import numpy as np
-from brdfkit.theses.ergun2015.probes import read_probes
+from brdfkit.theses.ergun2015.lit_balls import read_probes
 
 from brdfkit.core.colours import luminance
 from brdfkit.core.jit.llvm import use_variant
@@ -10,9 +10,8 @@ from brdfkit.images.errors.psnr import psnr
 from brdfkit.lighting.sampling import tree
 from brdfkit.lighting.sampling.block_laws.hyperbolic import Hyperbolic
 from brdfkit.lighting.sampling.power_map import cell_power
-from brdfkit.theses.claims import Claim, verdict
+from brdfkit.theses.claims import Claim, least_seconds, verdict
 from brdfkit.theses.page import Section, Table
-from brdfkit.theses.timing import least_seconds
 
 SECONDS = 60
 BLOCKS, SIZE, SPP, REFERENCE = 4096, 96, 16, 4096

@@ -16,7 +16,7 @@ from brdfkit.lighting.visibility.decomposition import decompose
 from brdfkit.lighting.visibility.height_fields import HeightFields
 from brdfkit.lighting.visibility.occluders import Occluders
 from brdfkit.rendering.scene_input.environment import environment, light_by
-from brdfkit.theses.timing import least_seconds
+from brdfkit.theses.claims import least_seconds
 
 SIZE, SPP = 96, 64
 SWEPT = "spot"  # the mesh of which settings are varied, and that moves

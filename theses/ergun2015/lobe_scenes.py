@@ -8,12 +8,12 @@ from brdfkit.theses.ergun2015.lit_balls import (
     SAMPLES,
     SIZE,
     decibels,
+    find_probes,
     integrators,
     material,
     render,
     truth,
 )
-from brdfkit.theses.ergun2015.probes import find_probes
 from brdfkit.theses.ergun2015.shapes import find_meshes, torus
 
 from brdfkit.core.colours import to_srgb

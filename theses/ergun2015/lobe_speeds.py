@@ -1,7 +1,6 @@
 """C11: how fast lobes make a picture, by method, as ratios."""
 
-from brdfkit.theses.ergun2015.lit_balls import integrators, material, render
-from brdfkit.theses.ergun2015.probes import find_probes
+from brdfkit.theses.ergun2015.lit_balls import find_probes, integrators, material, render
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn

@@ -1,8 +1,7 @@
 """C13: mixtures are stored for some views; what shows between them."""
 
 import numpy as np
-from brdfkit.theses.ergun2015.lit_balls import decibels, material, render, truth
-from brdfkit.theses.ergun2015.probes import find_probes
+from brdfkit.theses.ergun2015.lit_balls import decibels, find_probes, material, render, truth
 
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.jit.llvm import use_variant

@@ -11,10 +11,9 @@ from brdfkit.theses.ergun2015.convex_study import GREY, NO_COACD, SETTING, has_c
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.images.errors.psnr import psnr
-from brdfkit.theses.claims import NOT_RUN, Claim, verdict
+from brdfkit.theses.claims import NOT_RUN, Claim, cpu_seconds, verdict
 from brdfkit.theses.drawing import figure
 from brdfkit.theses.page import Picture, Section
-from brdfkit.theses.timing import cpu_seconds
 
 SECONDS = 30
 MOVES, FRAMES = 20, 6

@@ -4,7 +4,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-from brdfkit.theses.kurt2007.eq_5_13 import error, error_of
 from brdfkit.theses.kurt2007.printed import SEVEN
 
 from brdfkit.core.jit import double_precision
@@ -12,7 +11,22 @@ from brdfkit.fitting.fit import fit
 from brdfkit.materials.loading import load
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
+from brdfkit.model.evaluation import lobe_values, weight_matrix
 from brdfkit.regression.losses.named import losses
+
+
+def error(model, samples):
+    """E of a model with values at `Samples`, squares summed over the channels."""
+    plain, squared = lobe_values(model, samples.wi, samples.wo)
+    weights = weight_matrix(model)
+    return error_of(plain @ weights + squared @ weights**2, samples)
+
+
+def error_of(values, samples):
+    """E of values (n, channels) of a BRDF."""
+    squares = ((values - samples.values) * samples.wi[:, 2:]) ** 2
+    return float(np.sqrt(losses["kurt"].importance(samples) @ squares.sum(axis=1)))
+
 
 # Ribbed paper, straw, corduroy, linen, cotton, corn husk, two woods and bark, as the thesis says
 ANISOTROPIC = 38, 40, 42, 44, 46, 51, 54, 56, 58

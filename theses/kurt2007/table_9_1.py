@@ -1,8 +1,7 @@
 """Table 9.1: the error of the polynomial by its degree, on Cayman lacquer and quarry tile."""
 
 import numpy as np
-from brdfkit.theses.kurt2007.curet import BISQUARE, OLS, PLAIN, WLS, sample, scale
-from brdfkit.theses.kurt2007.eq_5_13 import error
+from brdfkit.theses.kurt2007.curet import BISQUARE, OLS, PLAIN, WLS, error, sample, scale
 from brdfkit.theses.kurt2007.printed import printed
 
 from brdfkit.fitting.fit import fit

@@ -1,8 +1,7 @@
 """Table 9.3: eight models on five materials of MERL, their errors and their pictures."""
 
 import numpy as np
-from brdfkit.theses.kurt2007.curet import BISQUARE, BOUNDS, WLS
-from brdfkit.theses.kurt2007.eq_5_13 import error
+from brdfkit.theses.kurt2007.curet import BISQUARE, BOUNDS, WLS, error
 from brdfkit.theses.kurt2007.printed import SEVEN, printed
 
 from brdfkit.fitting.fit import fit

@@ -4,9 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from brdfkit.theses.lesar2018.clouds import cloud
-from brdfkit.theses.lesar2018.iterations import iteration
-from brdfkit.theses.lesar2018.stage import stage
+from brdfkit.theses.lesar2018.iterations import cloud, iteration, stage
 
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.jit.llvm import use_variant

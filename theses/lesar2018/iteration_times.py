@@ -1,15 +1,12 @@
 """Table 7.1: the time of an iteration by renderer, size of the volume and size of the frame."""
 
-from brdfkit.theses.lesar2018.clouds import cloud
-from brdfkit.theses.lesar2018.iterations import iteration
+from brdfkit.theses.lesar2018.iterations import cloud, iteration, stage
 from brdfkit.theses.lesar2018.renderers import RENDERERS
-from brdfkit.theses.lesar2018.stage import stage
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.theses.claims import Claim, verdict
+from brdfkit.theses.claims import Claim, least_seconds, verdict
 from brdfkit.theses.page import Section, Table
-from brdfkit.theses.timing import least_seconds
 
 SECONDS = 60
 VOXELS, FRAMES = (64, 128, 256), (256, 512, 1024)

@@ -2,11 +2,67 @@
 
 import gc
 from contextlib import contextmanager
-from functools import partial
+from functools import cache, partial
 
 import drjit as dr
+import numpy as np
 
-from brdfkit.core.jit.first_error import first_error
+from brdfkit.core.jit.loops import first_error
+from brdfkit.volumes import TransferFunction
+from brdfkit.volumes.made import make
+
+FOV = 30  # degrees
+DISTANCE = 3.95
+LAMP, SKY = 3.2, 0.35  # irradiance, radiance
+
+
+def stage(integrator, size, eye=(0, -1, 0), up=(0, 0, 1), lit=True):
+    """A scene of a volume in the cube from -1 to 1, seen from the direction `eye`.
+
+    integrator : its dictionary, in which the volume is.
+    size : pixels along both edges.
+    lit : whether there are a lamp, to the left above the camera, and a sky that is not seen.
+    """
+    import mitsuba as mi
+
+    eye, up = (np.array(v, float) / np.linalg.norm(v) for v in (eye, up))
+    camera = mi.ScalarTransform4f().look_at((DISTANCE * eye).tolist(), [0, 0, 0], up.tolist())
+    film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}}
+    scene = {
+        "type": "scene",
+        "integrator": integrator,
+        "sensor": {"type": "perspective", "fov": FOV, "to_world": camera, "film": film},
+    }
+    if lit:
+        left = np.cross(up, eye)
+        direction = (-eye - 0.9 * up + 0.8 * left).tolist()
+        scene["lamp"] = {"type": "directional", "direction": direction, "irradiance": LAMP}
+        scene["fill"] = {"type": "directional", "direction": (-eye - left).tolist(),
+                         "irradiance": SKY}  # fmt: skip
+    return mi.load_dict(scene, parallel=False)
+
+
+EXTINCTION = 8.0  # where smoke is densest, of a cube of edge 2
+LEVEL = 0.35
+
+
+@cache
+def smoke(voxels):
+    """The smoke."""
+    return make("smoke", (voxels,) * 3)
+
+
+def cloud(renderer, voxels):
+    """The dictionary of a renderer with smoke of `voxels`³."""
+    rgba = [[0.95, 0.8, 0.6, 0], [0.85, 0.9, 0.95, 1]]
+    coloured = smoke(voxels).scene_dict(TransferFunction([0, 1], rgba, EXTINCTION))
+    volume = {
+        "maximum_intensity": {"volume": coloured},
+        "isosurface": {"volume": smoke(voxels).scene_dict(), "level": LEVEL},
+        "emission_absorption": {"extinction": coloured},
+        "single_scattering": {"extinction": coloured, "phase": {"type": "hg", "g": 0.3}},
+    }
+    return {"type": renderer, **volume[renderer]}
 
 
 def iteration(spp=1):

@@ -1,7 +1,7 @@
 """Chapter 5: directions drawn by phase functions: inverses, mixtures, and what they cost."""
 
 import numpy as np
-from brdfkit.theses.lesar2018.phases import PLUGINS
+from brdfkit.theses.lesar2018.phases import PLUGINS, TARGETS, fit
 from brdfkit.theses.lesar2018.sampler_times import (
     DRAWS,
     TURNS,
@@ -12,7 +12,6 @@ from brdfkit.theses.lesar2018.sampler_times import (
     time_of,
     time_of_picture,
 )
-from brdfkit.theses.lesar2018.two_lobes import TARGETS, fit
 
 from brdfkit.checks import directions
 from brdfkit.core.jit.llvm import use_variant

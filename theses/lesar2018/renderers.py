@@ -1,6 +1,6 @@
 """The four renderers of the thesis, each with a volume of one of the scans."""
 
-from brdfkit.theses.lesar2018.stage import stage
+from brdfkit.theses.lesar2018.iterations import stage
 
 from brdfkit.volumes import TransferFunction
 

@@ -2,8 +2,8 @@
 
 import drjit as dr
 
-from brdfkit.mitsuba_bridge import even_and_forward
-from brdfkit.theses.timing import least_seconds
+from brdfkit.mitsuba_bridge import phase_functions
+from brdfkit.theses.claims import least_seconds
 
 DRAWS, TURNS = 1 << 20, 16  # of which the time is taken
 SIZE, SPP = 256, 16  # of the picture
@@ -38,7 +38,7 @@ def two_lobes(u):
 
 def mie(u, n):
     """μ of `mie_hazy` or `mie_murky`; one number both chooses the half and places μ in it."""
-    return even_and_forward.cosine(n, u, dr.select(u < 0.5, 2 * u, 2 * u - 1))
+    return phase_functions.cosine(n, u, dr.select(u < 0.5, 2 * u, 2 * u - 1))
 
 
 def samplers():

@@ -1,8 +1,8 @@
 """Eq. 6.4, 6.5 and Figure 7.2: tone mappers on maximum intensities."""
 
 import numpy as np
+from brdfkit.theses.lesar2018.iterations import stage
 from brdfkit.theses.lesar2018.scans import scans
-from brdfkit.theses.lesar2018.stage import stage
 
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.jit.llvm import use_variant

@@ -3,16 +3,15 @@
 from dataclasses import replace
 
 import numpy as np
+from brdfkit.theses.lesar2018.iterations import stage
 from brdfkit.theses.lesar2018.scans import DENSE, dense, scans
-from brdfkit.theses.lesar2018.stage import stage
 
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.theses.claims import Claim, verdict
+from brdfkit.theses.claims import Claim, cpu_seconds, verdict
 from brdfkit.theses.drawing import figure
 from brdfkit.theses.page import Picture, Section
-from brdfkit.theses.timing import cpu_seconds
 from brdfkit.volumes import TransferFunction
 
 SECONDS = 12

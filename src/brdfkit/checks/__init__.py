@@ -11,20 +11,19 @@ import pkgutil
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from brdfkit.checks.failure import describe
 from brdfkit.checks.material_subject import Subject
 from brdfkit.checks.plugin_subject import PluginSubject, example, is_no_model
-from brdfkit.checks.registry import Finding, checks
+from brdfkit.checks.registry import Finding, checks, describe
 from brdfkit.core.discovery import plugin_files
 from brdfkit.core.discovery.plugin_files import KINDS, MODELS
 from brdfkit.core.documents import Cell, Document, Shown, Table
 from brdfkit.core.documents.parts import BAD, GOOD
 from brdfkit.core.errors import BrdfkitError, nearest, no_such
 from brdfkit.core.jit import llvm
-from brdfkit.core.jit.first_error import is_interrupt
+from brdfkit.core.jit.loops import is_interrupt
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.materials.resolve import MaterialLike, material
-from brdfkit.mitsuba_bridge.properties.load_by_mitsuba import load_by_mitsuba
+from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 
 for _module in pkgutil.iter_modules(__path__):
     importlib.import_module(f"{__name__}.{_module.name}")

@@ -5,7 +5,6 @@ from contextlib import contextmanager
 import drjit as dr
 import numpy as np
 
-from brdfkit.checks.figures import larger
 from brdfkit.checks.material_subject import incidences, random_pairs
 from brdfkit.checks.model_derivatives import (
     exact_derivative,
@@ -13,7 +12,7 @@ from brdfkit.checks.model_derivatives import (
     free_shapes,
     has_effect,
 )
-from brdfkit.checks.registry import check_of
+from brdfkit.checks.registry import check_of, larger
 from brdfkit.checks.sampling import sample_weights, uniform
 from brdfkit.core.discovery.plugin_files import MODELS
 from brdfkit.model.evaluation import weight_matrix

@@ -3,8 +3,7 @@
 import numpy as np
 
 from brdfkit.checks import directions
-from brdfkit.checks.figures import larger
-from brdfkit.checks.registry import check_of
+from brdfkit.checks.registry import check_of, larger
 from brdfkit.checks.variants import WAVELENGTHS, columns
 
 NO_ENVIRONMENT = "nothing to check: the emitter is no environment"

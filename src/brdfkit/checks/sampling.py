@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from brdfkit.checks.figures import larger
 from brdfkit.checks.material_subject import INCIDENCES, incidences
-from brdfkit.checks.registry import check_of
+from brdfkit.checks.registry import check_of, larger
 from brdfkit.checks.variants import columns
 from brdfkit.core.discovery.plugin_files import MODELS
 from brdfkit.core.geometry.quadrature import TOLERANCE, directional_albedo

@@ -2,6 +2,8 @@
 
 import sys
 from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any
 
 import numpy as np
 
@@ -45,3 +47,13 @@ def to_positive(what, value):
     if not isinstance(value, int | float | np.number) or not 0 < value <= LARGEST:
         raise BrdfkitError(f"{what} = {value!r} should be a number above 0.")
     return float(value)
+
+
+def check_numbers(solver: Any) -> None:
+    """Raise `BrdfkitError` unless the fields of a frozen dataclass are above 0, and whole where
+    their defaults are."""
+    for field in fields(solver):
+        what, value = f"{type(solver).__name__}: {field.name}", getattr(solver, field.name)
+        whole = isinstance(field.default, int)
+        checked = to_whole_number(what, value, least=1) if whole else to_positive(what, value)
+        object.__setattr__(solver, field.name, checked)

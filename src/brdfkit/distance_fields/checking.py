@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields.boxes import join
-from brdfkit.distance_fields.evaluation import evaluate
+from brdfkit.distance_fields.functions import evaluate
 
 ROUNDING = 1e-9
 WITHIN = 0.999  # of the ball that should hold no surface

@@ -7,8 +7,24 @@ A formula is written once, with these and with + - * / and <. Given arrays it co
 from typing import Any, NamedTuple
 
 import drjit as dr
+import numpy as np
 
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.jit import double_precision
+from brdfkit.core.jit.threads import in_turn
 from brdfkit.distance_fields.symbols import Symbol
+
+
+@in_turn
+def evaluate(distance, points):
+    """f (n,) of a callable `distance` at `points` (n, 3)."""
+    points = np.asarray(points, float)
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise BrdfkitError(f"points have the shape {points.shape}; it should be (n, 3).")
+    if not len(points):
+        return np.zeros(0)
+    values = np.asarray(distance(double_precision.vector(points)), float)
+    return np.broadcast_to(values, len(points)).copy()
 
 
 class Point(NamedTuple):

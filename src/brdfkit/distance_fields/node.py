@@ -7,7 +7,7 @@ from typing import Any
 from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.distance_fields import kinds
+from brdfkit.distance_fields import parameters as kinds
 from brdfkit.distance_fields.boxes import EVERYWHERE
 from brdfkit.distance_fields.export.conversions import Conversions
 from brdfkit.distance_fields.export.python_code import written
@@ -85,7 +85,7 @@ class Node(Operators, Conversions):
         >>> sphere(1)([[0, 0, 3]])
         array([2.])
         """
-        from brdfkit.distance_fields.evaluation import evaluate
+        from brdfkit.distance_fields.functions import evaluate
 
         return evaluate(self.distance, points)
 

@@ -3,7 +3,7 @@
 from typing import Any, NamedTuple
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.distance_fields.kinds import kind
+from brdfkit.distance_fields.parameters import kind
 
 
 class Operators:

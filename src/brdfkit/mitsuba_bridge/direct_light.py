@@ -3,10 +3,10 @@
 import drjit as dr
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.interrupts import give_back_interrupts
 from brdfkit.core.projective.body import Empty
-from brdfkit.core.signals import give_back_interrupts
 from brdfkit.mitsuba_bridge.properties.declarations import declared
-from brdfkit.mitsuba_bridge.registration.variants import refuse_scalar
+from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
 
 
 def shadowed(mi, parameters):

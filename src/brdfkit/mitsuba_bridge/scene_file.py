@@ -5,7 +5,7 @@ from html import unescape
 from pathlib import Path
 
 from brdfkit.core.errors import BrdfkitError, nearest
-from brdfkit.mitsuba_bridge.properties.load_by_mitsuba import load_by_mitsuba
+from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.mitsuba_bridge.properties.radiance_rows import require_rows
 
 SUFFIX = ".xml"

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from brdfkit.core.names import listed
-from brdfkit.regression.problem.points import join, of_channel
+from brdfkit.regression.problem.parameter_space import join, of_channel
 from brdfkit.regression.problem.subset import draw_part
 
 # More samples are judged by a part of half as many

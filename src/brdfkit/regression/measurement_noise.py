@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from brdfkit.core.jit import double_precision
-from brdfkit.core.jit.derivative import differentiate
+from brdfkit.core.jit.double_precision import differentiate
 from brdfkit.regression.regression import regress
 
 # The least τ², as a share of the mean σ²: a σ of 0 is not trusted beyond it

@@ -15,7 +15,7 @@ from brdfkit.core.documents import Document, Paragraph, Shown, Table
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.materials import resolve
-from brdfkit.mitsuba_bridge.properties.load_by_mitsuba import load_by_mitsuba
+from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.progressive import rgb
 from brdfkit.rendering.scene_input.arguments import mitsuba
 from brdfkit.rendering.scene_input.environment import environment, light_by

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.core.jit.first_error import first_error
+from brdfkit.core.jit.loops import first_error
 from brdfkit.images.errors.noise import Accumulated
 
 

@@ -16,9 +16,9 @@ from brdfkit.regression import losses
 from brdfkit.rendering.montage import colour_differences
 from brdfkit.reporting import origin, parameters
 from brdfkit.reporting.charts.albedos import albedo_chart, is_guessed
-from brdfkit.reporting.charts.errors_table import errors_table
 from brdfkit.reporting.charts.lobes import lobe_charts
 from brdfkit.reporting.charts.slices import slice_charts
+from brdfkit.reporting.charts.svg import errors_table
 from brdfkit.reporting.pictures.picture_errors import PictureError, picture_errors
 from brdfkit.reporting.pictures.pixels import for_script
 from brdfkit.reporting.verdict.fit_errors import in_order, ranked_by, standings

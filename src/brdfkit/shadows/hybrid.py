@@ -12,7 +12,7 @@ from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projections import focused
 from brdfkit.shadows.volumes.light_volumes import LightVolumes
 from brdfkit.shadows.volumes.mesh import Mesh
-from brdfkit.shadows.volumes.pinhole import pinhole
+from brdfkit.shadows.volumes.seen_faces import pinhole
 
 
 def hybrid_shadow(scene, sensor, emitter, resolution, jump):

@@ -21,7 +21,7 @@ def data(context, console):
 
     Downloads are kept in your cache folder. Only `brdfkit data get` downloads anything.
     """
-    from brdfkit.core.public_maps import collections as map_collections
+    from brdfkit.core.catalogue import collections as map_collections
     from brdfkit.materials.collections.public import collections
 
     if context.invoked_subcommand is None:
@@ -33,10 +33,10 @@ def data(context, console):
 @output_options
 def data_list(collection, console):
     """List the materials of a COLLECTION; of one of maps, its page and terms."""
-    from brdfkit.core import public_maps
+    from brdfkit.core import catalogue
     from brdfkit.materials.collections import public
 
-    maps = public_maps.collections().get(collection)
+    maps = catalogue.collections().get(collection)
     if maps is None:
         _print_collection(public.collection(collection), console)
     elif console.as_json:

@@ -6,6 +6,7 @@ What the files of a kind contain is left to the code that uses the kind.
 
 import importlib
 import importlib.util
+import pkgutil
 import sys
 from collections.abc import Callable
 from functools import cache
@@ -14,6 +15,23 @@ from pathlib import Path
 
 from brdfkit import plugins
 from brdfkit.core.errors import BrdfkitError
+
+
+def names_in(path):
+    """The names, in alphabetical order, of the modules of a package with this `__path__`, without
+    those that begin with an underscore.
+
+    >>> import brdfkit.materials.formats
+    >>> "merl" in names_in(brdfkit.materials.formats.__path__)
+    True
+    """
+    return tuple(sorted(m.name for m in pkgutil.iter_modules(path) if not m.name.startswith("_")))
+
+
+def modules_in(package, path):
+    """The modules of these names of a `package`, imported."""
+    return tuple(importlib.import_module(f"{package}.{name}") for name in names_in(path))
+
 
 # Kind, the name of its folder → (Mitsuba's class, the function of `mitsuba` that registers it)
 KINDS = {

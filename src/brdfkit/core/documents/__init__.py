@@ -10,4 +10,4 @@ from brdfkit.core.documents.parts import Folded as Folded
 from brdfkit.core.documents.parts import Paragraph as Paragraph
 from brdfkit.core.documents.parts import Picture as Picture
 from brdfkit.core.documents.parts import Table as Table
-from brdfkit.core.documents.shown import Shown as Shown
+from brdfkit.core.documents.text import Shown as Shown

@@ -1,6 +1,7 @@
 """A document as text: the title, and below it, indented, its paragraphs and tables."""
 
-from brdfkit.core.documents.parts import BAD, Cell, Paragraph, Table
+from brdfkit.core.documents.html import to_html
+from brdfkit.core.documents.parts import BAD, Cell, Document, Paragraph, Table
 from brdfkit.core.names import printable
 
 INDENT, BETWEEN = "  ", "  "
@@ -51,3 +52,21 @@ def _apart(row):
     """A row of texts; two where its name is long: the name, and below it the numbers."""
     name, *others = row
     return [[name, *("" for _ in others)], ["", *others]] if len(name) > NAME else [row]
+
+
+class Shown:
+    """What tells of itself in `document()`; terminals show it as text, notebooks as HTML."""
+
+    def document(self) -> Document:
+        """What the object tells of itself."""
+        raise NotImplementedError
+
+    def __str__(self) -> str:
+        return to_text(self.document())
+
+    def __repr__(self) -> str:
+        return str(self)
+
+    def _repr_html_(self) -> str:
+        """What notebooks show; without scripts, and without addresses from elsewhere."""
+        return to_html(self.document())

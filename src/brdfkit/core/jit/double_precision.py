@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
+import drjit as dr
 import numpy as np
 
 from brdfkit.core.jit import llvm
@@ -79,3 +80,14 @@ def shapes(model):
     """The free shape parameters of a model with values, by name, each a `scalar`."""
     linear = model.weights()
     return {name: scalar(v) for name, v in model.free_values.items() if name not in linear}
+
+
+def differentiate(function, x):
+    """A function of arrays at `x`, and its derivative there."""
+    if not differentiable():
+        h = 1e-6 * dr.maximum(x, 1e-3)
+        return function(x), (function(x + h) - function(x - h)) / (2 * h)
+    dr.enable_grad(x)
+    y = function(x)
+    dr.forward_from(x)
+    return dr.detach(y), dr.grad(y)

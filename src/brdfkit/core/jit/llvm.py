@@ -18,8 +18,8 @@ import warnings
 from pathlib import Path
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.interrupts import hold_signals
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.core.signals import hold_signals
 
 VARIABLE = "DRJIT_LIBLLVM_PATH"
 OLDEST = 17

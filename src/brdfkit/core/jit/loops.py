@@ -5,9 +5,30 @@ which it knows the `max_iterations`. Each step of a march was a kernel of its ow
 picture, and the whole some 10 times as slow.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import wraps
 
 import drjit as dr
+
+
+@contextmanager
+def first_error() -> Iterator[None]:
+    """Within the block, a RuntimeError that another error caused gives way to the first of them."""
+    try:
+        yield
+    except RuntimeError as error:
+        first: BaseException = error
+        while isinstance(first, RuntimeError) and first.__cause__:
+            first = first.__cause__
+        raise first from None
+
+
+def is_interrupt(error: BaseException | None) -> bool:
+    """Whether Ctrl-C is the error, or caused it."""
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__
+    return error is not None
 
 
 def recorded(function):

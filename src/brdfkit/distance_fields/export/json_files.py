@@ -12,7 +12,7 @@ import numpy as np
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.files import contents, write_safely
 from brdfkit.distance_fields.boxes import plain
-from brdfkit.distance_fields.kinds import kind
+from brdfkit.distance_fields.parameters import kind
 
 
 def to_json(node):

@@ -4,7 +4,7 @@ import numpy as np
 
 from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.distance_fields.kinds import kind
+from brdfkit.distance_fields.parameters import kind
 
 MARGIN = 0.05  # of the longest edge of a box, beyond the surface
 

@@ -20,7 +20,7 @@ from brdfkit.distance_fields.tracing.cone_tracing import cone_trace
 from brdfkit.distance_fields.tracing.hits import reattach
 from brdfkit.distance_fields.tracing.normals import normal
 from brdfkit.distance_fields.tracing.sphere_tracing import sphere_trace
-from brdfkit.mitsuba_bridge.surface_point import interaction
+from brdfkit.mitsuba_bridge.surface_points import interaction
 
 FINEST = 10.0  # over `precision`: half of the differences of normals; less than all details
 CLOSE = 1 / 8  # the smaller ball over the first

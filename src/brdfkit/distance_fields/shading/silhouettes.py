@@ -21,7 +21,7 @@ import drjit as dr
 from brdfkit.core.jit.loops import recorded
 from brdfkit.distance_fields.shading.seen_point import FINEST, SeenPoint, cone_of
 from brdfkit.distance_fields.tracing.normals import normal
-from brdfkit.mitsuba_bridge.surface_point import interaction
+from brdfkit.mitsuba_bridge.surface_points import interaction
 
 BAND = 4.0  # ε over ρ
 STEPS = 512  # of a march, as of `cone_trace`

@@ -1,13 +1,9 @@
 """The methods of shadows by their names."""
 
-from brdfkit.distance_fields.shadows.aaltonen import aaltonen
-from brdfkit.distance_fields.shadows.base import base
 from brdfkit.distance_fields.shadows.convex import convex
-from brdfkit.distance_fields.shadows.discrete import discrete
-from brdfkit.distance_fields.shadows.hard import hard
-from brdfkit.distance_fields.shadows.marches import linear
+from brdfkit.distance_fields.shadows.marches import base, discrete, hard, linear
 from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
-from brdfkit.distance_fields.shadows.rivals import quilez
+from brdfkit.distance_fields.shadows.rivals import aaltonen, quilez
 from brdfkit.distance_fields.shadows.split import split
 
 SOFT = {m.__name__: m for m in (linear, base, discrete, convex, split)}  # one march finds the edge

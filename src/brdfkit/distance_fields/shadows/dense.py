@@ -8,8 +8,7 @@ truly arrives by is the error of the model.
 
 import drjit as dr
 
-from brdfkit.distance_fields.shadows.minimum import nearest_minimum, ratio
-from brdfkit.distance_fields.shadows.shadow import Shadow
+from brdfkit.distance_fields.shadows.shadow import Shadow, nearest_minimum, ratio
 from brdfkit.distance_fields.shadows.tau import tau
 
 

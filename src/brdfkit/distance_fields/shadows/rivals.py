@@ -42,3 +42,13 @@ def nearest_passing(field, cone, nearness):
         found = dr.while_loop((start, zero + 1, zero, zero + 1e20, zero), going_on, one_step)
     _, visible, t_min, _, i = found
     return Shadow(visible, visible, t_min, i)
+
+
+def aaltonen(field, cone):
+    """The `Shadow`: the smallest k √(f² - y²) / (t - y), y = f² / (2 f before)."""
+
+    def nearness(t, F, F_before):
+        y = F * F / (2 * F_before)
+        return dr.safe_sqrt(F * F - y * y) / dr.maximum(t - y, 1e-6 * t)
+
+    return nearest_passing(field, cone, nearness)

@@ -12,9 +12,34 @@ from typing import Any
 
 import drjit as dr
 
+from brdfkit.distance_fields.shadows.field import distance_of
 from brdfkit.distance_fields.shadows.march import cone_pace, march
-from brdfkit.distance_fields.shadows.minimum import nearest_minimum, ratio
 from brdfkit.distance_fields.shadows.tau import tau
+
+GOLDEN = (5**0.5 - 1) / 2
+
+
+def ratio(field, cone, t):
+    """f / ρ at t."""
+    return distance_of(field)(cone.point(t)) / cone.radius(t)
+
+
+def nearest_minimum(field, cone, t, width, steps):
+    """The place of the minimum within `width` of t, by golden sections, without derivatives."""
+    cone = cone.detached()
+
+    def narrow(i, left, right):
+        part = GOLDEN * (right - left)
+        low, high = right - part, left + part
+        lower = ratio(field, cone, low) < ratio(field, cone, high)
+        return i + 1, dr.select(lower, left, low), dr.select(lower, high, right)
+
+    with dr.suspend_grad():
+        left, right = dr.maximum(t - width, 0), dr.minimum(t + width, cone.d)
+        found = dr.while_loop((0 * t, left, right), lambda i, left, right: i < steps, narrow)
+    _, left, right = found
+    return (left + right) / 2
+
 
 DIRECTIONS = "A", "B"  # from the surface to the light, or from the light to the surface
 # Where the minimum may be about the smallest ratio of a march, over ε ρ: two steps or so

@@ -21,8 +21,8 @@ from typing import Any
 
 import psutil
 
+from brdfkit.core.interrupts import hold_signals
 from brdfkit.core.jit.threads import use_threads
-from brdfkit.core.signals import hold_signals
 from brdfkit.fitting.sweeping.tasks import Outcome, Task, fail, fit_models
 
 MEMORY = 10**9  # bytes for a process; to fit a MERL table takes 0.55 GB

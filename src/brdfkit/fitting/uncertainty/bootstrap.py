@@ -12,7 +12,7 @@ from brdfkit.core.documents import Document, Paragraph, Shown, Table
 from brdfkit.core.documents.parts import SOFT
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.fitting.refit import refit
+from brdfkit.fitting.settings import refit
 from brdfkit.materials.resolve import MaterialLike
 from brdfkit.regression import Fit
 

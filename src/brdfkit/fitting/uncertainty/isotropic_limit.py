@@ -6,7 +6,7 @@ import numpy as np
 
 from brdfkit.core.geometry.directions import rotate_z
 from brdfkit.core.jit import double_precision
-from brdfkit.core.jit.derivative import differentiate
+from brdfkit.core.jit.double_precision import differentiate
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.regression import Picture
 

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.fitting.refit import fitted_samples
+from brdfkit.fitting.settings import fitted_samples
 from brdfkit.materials.resolve import MaterialLike, material
 from brdfkit.model.evaluation import lobe_values
 from brdfkit.regression import Fit

@@ -12,7 +12,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.figures import to_png
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.plots import Plot
-from brdfkit.fitting.refit import refit
+from brdfkit.fitting.settings import refit
 from brdfkit.materials.resolve import MaterialLike
 from brdfkit.regression import Fit
 from brdfkit.regression.profiling import curvature, follow

@@ -5,10 +5,34 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.core.colours import to_srgb
 from brdfkit.images.errors.colour_difference import ciede2000, delta_e_itp
 from brdfkit.images.errors.flip import flip
+from brdfkit.images.errors.masks import cropped
 from brdfkit.images.errors.psnr import psnr
-from brdfkit.images.errors.ssim import ssim
+
+RADIUS = 5  # of the window [pixels]: 11 × 11, a Gaussian of σ = 1.5, as in the paper
+
+
+def ssim(reference, picture, mask):
+    """The mean structural similarity over the mask and R, G, B of sRGB in 0..1 [Wang et al. 2004].
+
+    Equal pictures have 1.     Raises `ImportError` without the package scikit-image.
+    """
+    from skimage.metrics import structural_similarity
+
+    (first, other), inside = cropped([reference, picture], mask, margin=RADIUS)
+    _, similarity = structural_similarity(
+        to_srgb(first).astype(float),
+        to_srgb(other).astype(float),
+        data_range=1.0,
+        channel_axis=-1,
+        gaussian_weights=True,
+        sigma=1.5,
+        use_sample_covariance=False,
+        full=True,
+    )
+    return float(similarity[inside].mean())
 
 
 @dataclass(frozen=True)

@@ -24,8 +24,7 @@ from brdfkit.inverse.photographs.maps.maps import Maps, errors_of
 from brdfkit.inverse.photographs.maps.residuals import describe_misfit
 from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS
 from brdfkit.inverse.photographs.maps.undetermined import describe_open
-from brdfkit.inverse.photographs.result.levelling import describe_normals
-from brdfkit.inverse.photographs.result.notes import describe_capture
+from brdfkit.inverse.photographs.result.levelling import describe_capture, describe_normals
 from brdfkit.inverse.photographs.result.result import Svbrdf
 from brdfkit.inverse.photographs.result.simulated_errors import simulated_errors
 from brdfkit.inverse.photographs.search.fitting_maps import fit_maps, usual_total

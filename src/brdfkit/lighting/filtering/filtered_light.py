@@ -4,10 +4,47 @@ import hashlib
 
 import numpy as np
 
-from brdfkit.lighting.filtering.drawn_light import DrawnLight
 from brdfkit.lighting.filtering.emitted import radiance_of
 from brdfkit.lighting.filtering.filtered_map import FilteredMap, LobeMaps, Mips, picture
-from brdfkit.lighting.filtering.irradiance import irradiance
+from brdfkit.lighting.filtering.paraboloid_levels import discs
+from brdfkit.lighting.filtering.sphere_filter import convolve, halve
+from brdfkit.mitsuba_bridge.arrays import Rows
+
+SIDE = 64  # texels: irradiance is smooth
+
+
+def irradiance(picture):
+    """Discs (2, SIDE, SIDE, channels) over normals, of radiance (height, 2 height, channels)."""
+    while len(picture) > 4 * SIDE:
+        picture = halve(picture)
+    return discs(convolve(picture, lambda cos: np.maximum(cos, 0) / np.pi, np.pi / 2), SIDE)
+
+
+class DrawnLight:
+    """At least `count` directions that an `emitter` draws, brighter light more often; always the
+    same. They are dealt out to the `rays` of a pixel."""
+
+    def __init__(self, emitter, count, rays):
+        import drjit as dr
+        import mitsuba as mi
+        from scipy.stats import qmc
+
+        self.rays, self.per_ray = rays, -(-count // rays)
+        # Any few of Halton's points that follow each other, as those of a ray do, are spread out
+        u = qmc.Halton(2, scramble=False).random(1 + rays * self.per_ray)[1:].astype(np.float32)
+        origin = dr.zeros(mi.SurfaceInteraction3f, len(u))
+        drawn, _ = emitter.sample_direction(origin, mi.Point2f(u.T))
+        directions, density = np.array(drawn.d).T, np.array(drawn.pdf)[:, None]
+        self.directions = Rows(directions)
+        self.powers = Rows(radiance_of(emitter)(directions) / density)
+
+    def at(self, i, ray):
+        """Direction `i` of a ray, and the radiance from it over its density, linear sRGB."""
+        import mitsuba as mi
+
+        place = ray * self.per_ray + i
+        return self.directions.at(place, mi.Vector3f), self.powers.at(place, mi.Color3f)
+
 
 DIRECTIONS = 256  # that stand for all the light, where it may be hidden
 FILTERS = {"lobes": LobeMaps, "mips": Mips}

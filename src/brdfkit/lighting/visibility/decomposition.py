@@ -25,7 +25,7 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import make_folder, write_safely
-from brdfkit.core.signals import give_back_interrupts
+from brdfkit.core.interrupts import give_back_interrupts
 from brdfkit.lighting.visibility.hull import hull
 from brdfkit.lighting.visibility.pieces import solids
 

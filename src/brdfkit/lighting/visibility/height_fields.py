@@ -7,8 +7,8 @@ keeps triangles where a field would hold few of them; here every leaf is a field
 
 import numpy as np
 
-from brdfkit.lighting.visibility.frames import Frames
 from brdfkit.lighting.visibility.hierarchy import Hierarchy
+from brdfkit.lighting.visibility.hull import Frames
 from brdfkit.lighting.visibility.occluders import CLEARANCE
 from brdfkit.mitsuba_bridge.arrays import Rows, cell
 

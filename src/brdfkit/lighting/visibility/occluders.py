@@ -4,8 +4,8 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.lighting.visibility.convex_ray import enter
-from brdfkit.lighting.visibility.frames import Frames
 from brdfkit.lighting.visibility.hierarchy import Hierarchy
+from brdfkit.lighting.visibility.hull import Frames
 from brdfkit.lighting.visibility.plane_map import RasterisedPlaneMap
 from brdfkit.mitsuba_bridge.arrays import Rows
 

@@ -17,7 +17,7 @@ import lzma
 from contextlib import contextmanager
 from functools import cache
 
-from brdfkit.core.discovery.modules import modules_in
+from brdfkit.core.discovery.plugin_files import modules_in
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import COMPRESSED, GZIP
 from brdfkit.materials.formats._source import Source as Source

@@ -17,8 +17,12 @@ import numpy as np
 
 from brdfkit.core.colours import RGB
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.materials.formats._notes import note_lone_point
-from brdfkit.materials.formats._writing import require_measured, sample_angles, write_rows
+from brdfkit.materials.formats._writing import (
+    note_lone_point,
+    require_measured,
+    sample_angles,
+    write_rows,
+)
 
 NAME = "ASTM"
 SUFFIXES = (".astm",)

@@ -8,8 +8,13 @@ at Δφ = 180°. https://www.graphics.cornell.edu/online/measurements/reflectanc
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.materials.formats._notes import note_lone_point, note_short_rings
-from brdfkit.materials.formats._writing import require_measured, sample_angles, write_rows
+from brdfkit.materials.formats._writing import (
+    note_lone_point,
+    note_short_rings,
+    require_measured,
+    sample_angles,
+    write_rows,
+)
 from brdfkit.materials.measured.long_form import NANOMETRES
 from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
 

@@ -15,11 +15,10 @@ from brdfkit.core.documents import Document, Shown
 from brdfkit.core.jit.threads import cached_in_turn, in_turn
 from brdfkit.images.thumbnails import thumbnails
 from brdfkit.materials.measured.albedos import MeasuredAlbedo, measured_albedo
-from brdfkit.materials.measured.arithmetic import subtract
+from brdfkit.materials.measured.arithmetic import mix, subtract
 from brdfkit.materials.measured.from_angles import FromAngles
 from brdfkit.materials.measured.interpolation import Interpolant
 from brdfkit.materials.measured.mending import mend
-from brdfkit.materials.measured.mixing import mix
 from brdfkit.materials.measured.spectrum_to_rgb import rgb_or_mean, to_rgb, wavelengths
 from brdfkit.materials.measured.tabulation import (
     bounded,

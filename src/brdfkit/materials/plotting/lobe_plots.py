@@ -11,11 +11,41 @@ from numpy.typing import ArrayLike
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.names import make_unique
 from brdfkit.core.plots import Plot
-from brdfkit.images.thumbnails.radius import Radius
+from brdfkit.images.thumbnails.lobes import Radius
 from brdfkit.materials.measured import Measured
-from brdfkit.materials.plotting.half_disc import draw_half_disc, xy
 from brdfkit.materials.plotting.plane_of_incidence import is_scattered, lobe, usual_angles
 from brdfkit.materials.resolve import MaterialLike, materials
+
+SMALL = {"size": 8, "color": "0.35"}
+
+
+def draw_half_disc(axes, radius):
+    """Draw rim, grid and labels; `radius`: a `Radius`.
+
+    Matplotlib's own polar axes would leave half of the page blank.
+    """
+    axes.set(aspect="equal", xlim=(-1.2, 1.2), ylim=(-0.27, 1.13))
+    axes.set_axis_off()
+    half = np.arange(-90, 91)
+    rim = {"color": "0.3", "linewidth": 0.8, "zorder": 1.2}
+    grid = {"color": "0.87", "linewidth": 0.7, "zorder": 1}
+    axes.plot(*xy(half, 1), **rim)
+    axes.plot([-1, 1], [0, 0], **rim)
+    for theta in range(-90, 91, 30):
+        axes.plot(*xy(theta, np.array([0, 1])), **grid)
+        text = f"{theta}°".replace("-", "−")
+        va = "bottom" if abs(theta) == 90 else "center"  # above the numbers along the radius
+        axes.text(*xy(theta, 1.1), text, ha="center", va=va, **SMALL)
+    for tick in radius.ticks():
+        axes.plot(*xy(half, radius(tick)), **grid)
+        axes.text(radius(tick), -0.03, f"{tick:g}", ha="center", va="top", **SMALL)
+    axes.text(0, -0.17, "luminance of the BRDF [sr⁻¹], logarithmic", ha="center", va="top", **SMALL)
+
+
+def xy(theta, radius):
+    """The place (x, y) of a radius at an angle to the normal [degrees], positive to the right."""
+    return radius * np.sin(np.radians(theta)), radius * np.cos(np.radians(theta))
+
 
 BLACK, GREY = "black", "0.45"
 # Okabe and Ito's colours, which the colour-blind tell apart

@@ -8,7 +8,7 @@ import numpy as np
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.mitsuba_bridge.properties.load_by_mitsuba import load_by_mitsuba
+from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,8 +11,8 @@ import sys
 from contextlib import contextmanager
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.interrupts import hold_signals
 from brdfkit.core.jit import llvm
-from brdfkit.core.signals import hold_signals
 
 
 def install():

@@ -14,6 +14,17 @@ from brdfkit.mitsuba_bridge.bsdf import adapter
 from brdfkit.mitsuba_bridge.properties.conversions import require_known
 from brdfkit.model import Model, labels
 
+
+def refuse_scalar(plugin):
+    """Raise `BrdfkitError` in scalar variants, for a `plugin` of this name that needs arrays."""
+    import mitsuba as mi
+
+    if mi.variant().startswith("scalar"):
+        raise BrdfkitError(
+            f"{plugin} does not run in {mi.variant()}; set llvm_ad_rgb or cuda_ad_rgb."
+        )
+
+
 _registered: set[tuple[str, str, str]] = set()
 
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.jit import double_precision
-from brdfkit.core.jit.derivative import differentiate
+from brdfkit.core.jit.double_precision import differentiate
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.model.samples.measures import MEASURES, weigh
 

@@ -4,11 +4,36 @@ A coordinate runs from 0 at the lower to 1 at the upper bound of its parameter, 
 a parameter that is declared so.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
+
+
+def join(u, weights):
+    """The vectors (points, n) of coordinates `u` (points, shapes) and `weights` (points, channels,
+    lobes)."""
+    return np.concatenate([u, weights.reshape(len(u), math.prod(weights.shape[1:]))], axis=1)
+
+
+def split(z, shapes, channels):
+    """The coordinates and weights of vectors `z` (points, n), as `join` takes them."""
+    lobes = (z.shape[1] - shapes) // channels
+    return z[:, :shapes], z[:, shapes:].reshape(len(z), channels, lobes)
+
+
+def limits(shapes, channels, least):
+    """The bounds low and high (n,) of vectors; `least` (lobes,): the least weights."""
+    count = channels * len(least)
+    low = np.concatenate([np.zeros(shapes), np.tile(least, channels)])
+    return low, np.concatenate([np.ones(shapes), np.full(count, np.inf)])
+
+
+def of_channel(c, shapes, lobes):
+    """The numbers in a vector of what one channel depends on: all shapes, and its own weights."""
+    return np.r_[0:shapes, shapes + c * lobes : shapes + (c + 1) * lobes]
 
 
 @dataclass(frozen=True)

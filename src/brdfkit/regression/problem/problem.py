@@ -11,7 +11,7 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit import double_precision
-from brdfkit.core.jit.derivative import differentiate
+from brdfkit.core.jit.double_precision import differentiate
 from brdfkit.regression.problem.blocks import GROUP, Blocks
 from brdfkit.regression.problem.columns import Columns
 from brdfkit.regression.problem.expansion import Expansion, combine

@@ -6,7 +6,7 @@ import numpy as np
 
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.problem.expansion import Expansion
-from brdfkit.regression.problem.points import join, limits
+from brdfkit.regression.problem.parameter_space import join, limits
 from brdfkit.regression.robust.reweighting import (
     WEIGHTS,
     least_scale,

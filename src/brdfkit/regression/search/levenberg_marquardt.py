@@ -11,7 +11,7 @@ import numpy as np
 from brdfkit.core.interrupts import Stopped
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.problem.expansion import Expansion
-from brdfkit.regression.problem.points import join, limits
+from brdfkit.regression.problem.parameter_space import join, limits
 
 # A search goes on while so many times its next gain could bring it below the best one
 PATIENCE = 10

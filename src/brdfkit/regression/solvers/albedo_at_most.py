@@ -13,7 +13,7 @@ from brdfkit.core.geometry.quadrature import ring_rule
 from brdfkit.core.jit import double_precision
 from brdfkit.regression.problem.expansion import combine
 from brdfkit.regression.problem.not_finite import require_finite
-from brdfkit.regression.problem.points import of_channel
+from brdfkit.regression.problem.parameter_space import of_channel
 
 # Half the rings of a quadrature, and the points on each: albedos are exact to 1e-7
 POINTS = 128

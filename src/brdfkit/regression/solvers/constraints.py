@@ -8,7 +8,7 @@ import numpy as np
 from brdfkit.core.arguments import to_positive
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.model.evaluation import with_weights
-from brdfkit.regression.problem.points import join, limits, split
+from brdfkit.regression.problem.parameter_space import join, limits, split
 
 # Constraints are met to the first, and active where they have less than the second to spare
 MET, ACTIVE = 1e-8, 1e-6

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.core.parameters import check_numbers
+from brdfkit.core.arguments import check_numbers
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.solvers.levenberg_marquardt import LevenbergMarquardt
 from brdfkit.regression.solvers.objective import End, Objective

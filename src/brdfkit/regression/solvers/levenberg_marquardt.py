@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.core.parameters import check_numbers
+from brdfkit.core.arguments import check_numbers
 from brdfkit.regression.search.multistart import EXACT, MOST_STEPS, search
 from brdfkit.regression.solvers.objective import End, Floats, Objective
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.regression.problem.expansion import Expansion
-from brdfkit.regression.problem.points import join, limits, split
+from brdfkit.regression.problem.parameter_space import join, limits, split
 
 Floats = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from brdfkit.core.parameters import check_numbers
+from brdfkit.core.arguments import check_numbers
 from brdfkit.regression.solvers.levenberg_marquardt import LevenbergMarquardt
 from brdfkit.regression.solvers.objective import End, Objective
 from brdfkit.regression.solvers.several_starts import best_starts, descend

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.core.parameters import check_numbers
+from brdfkit.core.arguments import check_numbers
 from brdfkit.regression.solvers.objective import End, Objective
 from brdfkit.regression.solvers.several_starts import best_starts, descend
 

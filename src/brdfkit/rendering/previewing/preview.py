@@ -15,11 +15,11 @@ import numpy as np
 
 from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.jit.first_error import first_error
+from brdfkit.core.jit.loops import first_error
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.memory import require_memory
 from brdfkit.lighting.environments.map_files import find
-from brdfkit.mitsuba_bridge.properties.load_by_mitsuba import load_by_mitsuba
+from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.previewing.cache import bsdf_of, keep
 from brdfkit.rendering.previewing.staging import Shape, stage
 from brdfkit.rendering.progressive import rgb

@@ -9,9 +9,9 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields.materials import material_names
-from brdfkit.distance_fields.shadows.extent import sphere_about
+from brdfkit.distance_fields.shadows.field import sphere_about
 from brdfkit.materials.resolve import material
-from brdfkit.mitsuba_bridge.properties.load_by_mitsuba import load_by_mitsuba
+from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 
 SIZE = 400, 300  # pixels
 SPP = 4  # there is no noise: they smooth edges

@@ -5,7 +5,7 @@ from pathlib import Path
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.lighting.environments.map_files import find
 from brdfkit.mitsuba_bridge import scene_file
-from brdfkit.mitsuba_bridge.properties.load_by_mitsuba import load_by_mitsuba
+from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.scene_input import mesh_file
 from brdfkit.rendering.scene_input.environment import environment, light_by
 from brdfkit.rendering.scene_input.shown_material import load_material, mask

@@ -7,7 +7,7 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.obj_indices import counted_from_the_start
-from brdfkit.mitsuba_bridge.properties.load_by_mitsuba import load_by_mitsuba
+from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.scene_input.upright import guess_up
 from brdfkit.rendering.scenes._meshes import mesh
 from brdfkit.rendering.scenes._studio import studio

@@ -3,7 +3,7 @@
 import numpy as np
 
 from brdfkit.core.jit.padding import pad
-from brdfkit.mitsuba_bridge.properties.load_by_mitsuba import load_by_mitsuba
+from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 
 
 def load_material(bsdf, name, both_sides=False):

@@ -15,7 +15,7 @@ file whose name begins with an underscore is no scene: it holds what several sce
 
 import importlib
 
-from brdfkit.core.discovery.modules import names_in
+from brdfkit.core.discovery.plugin_files import names_in
 from brdfkit.core.errors import no_such
 
 

@@ -11,7 +11,7 @@ from brdfkit.core.arguments import to_number, to_positive, to_whole_number
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.memory import require_memory
-from brdfkit.mitsuba_bridge.properties.load_by_mitsuba import load_by_mitsuba
+from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.render_materials import rendering_of, to_size
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scene_input.arguments import mitsuba

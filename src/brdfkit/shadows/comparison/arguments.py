@@ -1,10 +1,38 @@
 """What `compare` is asked for, checked before the work."""
 
+from pathlib import Path
+
 from brdfkit.core.arguments import to_whole_number
-from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.light import Light
-from brdfkit.shadows.comparison import given_scene
+from brdfkit.mitsuba_bridge.scene_file import load_scene_file
+from brdfkit.shadows.maps.scenes import SCENES, in_all_views
+
+
+def load(given, size):
+    """The `mitsuba.Scene` of a name in `SCENES`, of a path, or the `given` one itself.
+
+    size : (width, height) of the pictures of a scene by name [pixels].
+
+    Raises `BrdfkitError` for anything else, and for a file that cannot be loaded.
+    """
+    import mitsuba as mi
+
+    if isinstance(given, mi.Scene):
+        return given
+    if not isinstance(given, str | Path):
+        raise BrdfkitError(
+            f"scene should be a name ({', '.join(SCENES)}), the path of a scene file of Mitsuba's "
+            f"or a mitsuba.Scene, not of the type {type(given).__name__}; load it by "
+            "mitsuba.load_dict."
+        )
+    if given in SCENES:
+        return mi.load_dict(in_all_views(given, size), parallel=False)
+    if not Path(given).suffix and not Path(given).exists():
+        raise no_such("scene or scene file", str(given), SCENES)
+    return load_scene_file(given)
+
 
 MOST = 16384  # texels or pixels along a side
 
@@ -39,7 +67,7 @@ def to_scene(scene, size):
     Raises `BrdfkitError` for what is no scene, for one without a camera or a light, and for one
     with others than shadows by projection take.
     """
-    scene = given_scene.load(scene, size)
+    scene = load(scene, size)
     if not scene.sensors():
         raise BrdfkitError("the scene has no camera; add a perspective one.")
     if not scene.emitters():

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.core.jit.first_error import first_error
 from brdfkit.core.jit.llvm import use_variant
-from brdfkit.mitsuba_bridge.registration.variants import refuse_scalar
+from brdfkit.core.jit.loops import first_error
+from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
 from brdfkit.shadows.comparison.arguments import to_names, to_scene, to_size, to_texels
 from brdfkit.shadows.comparison.comparison import ShadowComparison
 from brdfkit.shadows.comparison.exact_shadow import Seen

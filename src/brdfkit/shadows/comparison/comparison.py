@@ -9,9 +9,8 @@ import numpy as np
 
 from brdfkit.core.documents import Cell, Document, Paragraph, Shown, Table
 from brdfkit.core.documents.parts import STRONG
-from brdfkit.shadows.comparison.columns import COLUMNS, to_texts
 from brdfkit.shadows.comparison.pictures import Pictures
-from brdfkit.shadows.comparison.scores import Scores, between_lights, mean
+from brdfkit.shadows.comparison.scores import COLUMNS, Scores, between_lights, mean, to_texts
 
 
 @dataclass(frozen=True, repr=False)

@@ -1,12 +1,34 @@
 """Where the texels of shadow maps go, and what the light sees: two pictures of a projection."""
 
+import zlib
 from dataclasses import dataclass
 from math import ceil, sqrt
 
 import numpy as np
 
-from brdfkit.shadows.comparison.packed import Packed
 from brdfkit.shadows.maps.light_shadow import LightShadow
+
+
+@dataclass(frozen=True)
+class Packed:
+    """An array by its `shape`, its `kind` (NumPy's dtype) and its compressed bytes, `data`."""
+
+    shape: tuple[int, ...]
+    kind: str
+    data: bytes
+
+    @classmethod
+    def of(cls, array):
+        """Of any array; neighbours' bytes of one place stand together, which packs better."""
+        bytes_apart = np.ascontiguousarray(array).reshape(-1, 1).view(np.uint8).T
+        return cls(array.shape, array.dtype.str, zlib.compress(bytes_apart.tobytes()))
+
+    @property
+    def array(self):
+        kind = np.dtype(self.kind)
+        found = np.frombuffer(zlib.decompress(self.data), np.uint8).reshape(kind.itemsize, -1)
+        return np.ascontiguousarray(found.T).view(kind).reshape(self.shape)
+
 
 CHECKS = 32  # squares of the checker along a side of a map
 SIDE = 256  # pixels of the light's view

@@ -11,7 +11,6 @@ from brdfkit.core.pages import page
 from brdfkit.core.pages.images import colour_bar
 from brdfkit.core.version import __version__
 from brdfkit.images.errors.flip import flip
-from brdfkit.shadows.comparison.columns import to_texts
 from brdfkit.shadows.comparison.map_pictures import CHECKS
 from brdfkit.shadows.comparison.page_pictures import (
     ERRORS,
@@ -21,6 +20,7 @@ from brdfkit.shadows.comparison.page_pictures import (
     draw_texels,
     small,
 )
+from brdfkit.shadows.comparison.scores import to_texts
 
 FLIP = ">FLIP"
 

@@ -4,8 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from brdfkit.shadows.comparison.map_pictures import MapPictures
-from brdfkit.shadows.comparison.packed import Packed
+from brdfkit.shadows.comparison.map_pictures import MapPictures, Packed
 
 
 @dataclass

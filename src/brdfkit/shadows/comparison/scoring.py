@@ -7,13 +7,12 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.images.errors.psnr import psnr
-from brdfkit.shadows.comparison.quality import aliasing_error
+from brdfkit.shadows.comparison.quality import aliasing_error, share_used
 from brdfkit.shadows.comparison.scores import Scores
-from brdfkit.shadows.comparison.texture_use import share_used
-from brdfkit.shadows.maps.aliasing import aliasing
-from brdfkit.shadows.maps.bias_errors import acne
+from brdfkit.shadows.maps.bias import acne
 from brdfkit.shadows.maps.light_shadow import LightShadow
 from brdfkit.shadows.maps.projection import Projection
+from brdfkit.shadows.maps.resolution import aliasing
 
 MARGIN = 4  # pixels about shadows in which a soft border is no acne
 

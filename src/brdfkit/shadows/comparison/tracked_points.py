@@ -7,7 +7,7 @@ import numpy as np
 
 from brdfkit.shadows.comparison import camera_path, paths
 from brdfkit.shadows.comparison.exact_shadow import Seen
-from brdfkit.shadows.comparison.stability import flicker
+from brdfkit.shadows.comparison.quality import flicker
 from brdfkit.shadows.maps.placement import Placement
 
 EVERY = 7  # of the pixels one is watched

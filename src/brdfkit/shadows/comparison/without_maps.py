@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from brdfkit.shadows.hybrid import volumes_of_map
 from brdfkit.shadows.volumes.light_volumes import LightVolumes
-from brdfkit.shadows.volumes.pinhole import pinhole
+from brdfkit.shadows.volumes.seen_faces import pinhole
 
 JUMP = 8.0  # change of depth at a silhouette [width of a texel], as the integrator has it
 

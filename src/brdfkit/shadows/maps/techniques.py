@@ -9,7 +9,7 @@ arguments; they are keyword arguments of `LightShadow`, too, and parameters of t
 from dataclasses import replace
 from functools import partial
 
-from brdfkit.core.discovery import modules
+from brdfkit.core.discovery import plugin_files
 from brdfkit.core.errors import no_such
 from brdfkit.mitsuba_bridge.properties.declarations import read
 from brdfkit.shadows.maps import filters, partitions, projections
@@ -23,7 +23,7 @@ MADE_BY = {
 FILES = {
     kind: {
         file.__name__.rpartition(".")[2]: file
-        for file in modules.modules_in(folder.__name__, folder.__path__)
+        for file in plugin_files.modules_in(folder.__name__, folder.__path__)
     }
     for kind, (folder, _) in MADE_BY.items()
 }

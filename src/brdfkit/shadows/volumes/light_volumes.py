@@ -1,15 +1,34 @@
 """All shadow volumes of one light, and whether it arrives at what a camera sees."""
 
 import math
+from dataclasses import replace
 
 import drjit as dr
+import numpy as np
 
 from brdfkit.core.projective.homogeneous import transform
 from brdfkit.mitsuba_bridge.surface_points import clearance
-from brdfkit.shadows.volumes.near_cap import BEFORE, seen_near_cap
 from brdfkit.shadows.volumes.seen_faces import picture_matrix, seen_faces
 from brdfkit.shadows.volumes.stencil import Stencil
 from brdfkit.shadows.volumes.volume import Faces, shadow_volume
+
+BEFORE = 1.0  # 1/z of the near plane in the picture of the light
+
+
+def seen_near_cap(volumes, light, camera):
+    """The `SeenFaces` of the triangles that cast onto a `Camera`'s near plane, as the `Light` sees
+    them through it: by the places of the picture."""
+    to_picture, n = picture_matrix(camera), camera.near
+    *across, l_z, l_w = to_picture @ light.point
+    height = l_z - n * l_w
+    fronts = [volume.front for volume in volumes if height]  # a light in the plane darkens none
+    beta = np.array([0, 0, 1, -n]) / (height or 1)
+    alpha = np.array([0, 0, 0, 1]) - l_w * beta
+    sideways = (np.eye(4)[:2] - np.outer(across, beta)) / n
+    to_light = np.vstack([sideways, alpha, alpha + beta])
+    seen = seen_faces(Faces.joined(fronts), to_light @ to_picture)
+    return replace(seen, times=np.abs(seen.times))
+
 
 METHODS = ("depth_fail", "depth_pass")
 FAR_PLANES = ("infinite", "finite")

@@ -10,8 +10,25 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.shadows.volumes.casters import CASTERS
-from brdfkit.shadows.volumes.extrusion import extruded, finite
 from brdfkit.shadows.volumes.silhouettes import SILHOUETTES
+
+
+def extruded(points, light, length):
+    """The points (n, 4) of `points` (n, 3), away from a `Light`.
+
+    length : how far each is moved [unit of length]; 0: to infinity.
+    """
+    away = points * light.point[3] - light.point[:3]
+    if not length:
+        return np.column_stack([away, np.zeros(len(points))])
+    away /= np.linalg.norm(away, axis=1, keepdims=True)
+    return finite(points + length * away)
+
+
+def finite(points):
+    """Points (n, 3) at a place, as (n, 4)."""
+    return np.column_stack([points, np.ones(len(points))])
+
 
 BACK_CAPS = ("triangles", "fan")
 

@@ -15,9 +15,9 @@ import gzip
 import zlib
 from functools import cache
 
-from brdfkit.core.discovery.modules import modules_in
+from brdfkit.core.discovery.plugin_files import modules_in
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.volumes.formats import _folders
+from brdfkit.volumes.formats import _stored
 from brdfkit.volumes.formats._stored import Stored as Stored
 from brdfkit.volumes.formats._stored import VolumeFile as VolumeFile
 
@@ -40,15 +40,15 @@ def is_series(folder):
     if not folder.is_dir():
         return False
     sniff = _of_name("dicom").sniff
-    return bool(_folders.pictures(folder)) or any(
-        sniff(_folders.head(path, HEAD)) for path in _folders.files(folder)
+    return bool(_stored.pictures(folder)) or any(
+        sniff(_stored.head(path, HEAD)) for path in _stored.files(folder)
     )
 
 
 def find(file):
     """The `Stored` of a `VolumeFile`, by the format that recognises it, else by its suffix."""
     if file.path.is_dir():
-        return _of_name(_folders.kind(file)).find(file)
+        return _of_name(_stored.kind(file)).find(file)
     if not (file.size is file.dtype is file.offset is None):  # what is told only of raw voxels
         return _of_name("raw").find(file)
     head, packed = _head(file)

@@ -11,6 +11,45 @@ import numpy as np
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.names import printable
 
+TIFF = ".tif", ".tiff"
+
+
+def files(folder):
+    """The files of a folder, without hidden ones, by name."""
+    return sorted(p for p in Path(folder).iterdir() if p.is_file() and p.name[0] != ".")
+
+
+def pictures(folder):
+    """The TIFF files of a folder."""
+    return [p for p in files(folder) if p.suffix.lower() in TIFF]
+
+
+def kind(file):
+    """The name of the format of a folder, "tiff" or "dicom"."""
+    if not files(file.path):
+        raise file.error("the folder is empty; name one with a series of DICOM or a stack of TIFF")
+    return "tiff" if pictures(file.path) else "dicom"
+
+
+def head(path, size):
+    """The first bytes of a file; none of one that cannot be read."""
+    try:
+        with path.open("rb") as stream:
+            return stream.read(size)
+    except OSError:
+        return b""
+
+
+LPS_TO_RAS = np.diag([-1.0, -1.0, 1.0, 1.0])
+
+
+def transform(directions, spacing, origin):
+    """(4, 4) of a grid: a column of `directions` (3, 3) for each axis, `spacing`, `origin` (3,)."""
+    to_world = np.eye(4)
+    to_world[:3, :3] = np.asarray(directions, float) * np.asarray(spacing, float)
+    to_world[:3, 3] = origin
+    return to_world
+
 
 @dataclass(frozen=True)
 class VolumeFile:

@@ -7,10 +7,9 @@ a folder ``scans#2`` names the one with the SeriesNumber 2.
 
 import numpy as np
 
-from brdfkit.volumes.formats import _folders
-from brdfkit.volumes.formats._axes import LPS_TO_RAS, transform
+from brdfkit.volumes.formats import _stored
 from brdfkit.volumes.formats._dicom_slices import pixels, read_slice
-from brdfkit.volumes.formats._stored import Stored
+from brdfkit.volumes.formats._stored import LPS_TO_RAS, Stored, transform
 
 NAME = "DICOM"
 SUFFIXES = (".dcm", ".dicom", ".ima")
@@ -27,7 +26,7 @@ def sniff(head):
 def find(file):
     """The volume of a series of DICOM, of the folder or of the file."""
     pydicom = file.package("pydicom", "pydicom")
-    paths = _folders.files(file.path) if file.path.is_dir() else [file.path]
+    paths = _stored.files(file.path) if file.path.is_dir() else [file.path]
     images = [image for path in paths if (image := read_slice(file, pydicom, path)) is not None]
     images = _one_series(file, images)
     _require_alike(file, images)

@@ -6,8 +6,7 @@ ITK's, LPS, and is turned to RAS.
 
 import numpy as np
 
-from brdfkit.volumes.formats._axes import LPS_TO_RAS, transform
-from brdfkit.volumes.formats._stored import Stored
+from brdfkit.volumes.formats._stored import LPS_TO_RAS, Stored, transform
 from brdfkit.volumes.formats._streams import layers, numbers, opener, require_bytes
 
 NAME = "MetaImage"

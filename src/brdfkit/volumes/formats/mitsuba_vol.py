@@ -4,8 +4,7 @@ import struct
 
 import numpy as np
 
-from brdfkit.volumes.formats._axes import transform
-from brdfkit.volumes.formats._stored import Stored
+from brdfkit.volumes.formats._stored import Stored, transform
 from brdfkit.volumes.formats._streams import layers, opener, require_bytes
 
 NAME = "Mitsuba's grid"

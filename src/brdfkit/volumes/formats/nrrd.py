@@ -7,8 +7,7 @@ left-posterior-superior and left-anterior-superior are turned to RAS. A segmenta
 
 import numpy as np
 
-from brdfkit.volumes.formats._axes import transform
-from brdfkit.volumes.formats._stored import Stored
+from brdfkit.volumes.formats._stored import Stored, transform
 from brdfkit.volumes.formats._streams import layers, numbers, opener, require_bytes
 
 NAME = "NRRD"

@@ -10,9 +10,8 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from brdfkit.volumes.formats import _folders
-from brdfkit.volumes.formats._axes import transform
-from brdfkit.volumes.formats._stored import Stored
+from brdfkit.volumes.formats import _stored
+from brdfkit.volumes.formats._stored import Stored, transform
 from brdfkit.volumes.formats._streams import layers, opener, require_bytes
 
 NAME = "TIFF"
@@ -56,7 +55,7 @@ def _file(file, tifffile):
 
 
 def _folder(file, tifffile):
-    paths = sorted(_folders.pictures(file.path), key=_by_numbers)
+    paths = sorted(_stored.pictures(file.path), key=_by_numbers)
     kinds = []
     for path in paths:
         with _opened(file, tifffile, path) as tiff:

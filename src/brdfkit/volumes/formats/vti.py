@@ -12,8 +12,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from brdfkit.core.errors import no_such
-from brdfkit.volumes.formats._axes import transform
-from brdfkit.volumes.formats._stored import Stored
+from brdfkit.volumes.formats._stored import Stored, transform
 from brdfkit.volumes.formats._streams import CUT_SHORT, layers
 from brdfkit.volumes.formats._vti_blocks import Encoding, opener
 

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.padding import pad
+from brdfkit.volumes.rays.along_ray import to_cube
 from brdfkit.volumes.transfer.block_bounds import along_blocks
 
 VOXELS = 16  # along the edges of a cell
@@ -156,3 +157,29 @@ class Majorants:
 
 def _place(p):
     return f"({', '.join(f'{c:.3g}' for c in p)})"
+
+
+def extinction_bounds(volume, scale, local):
+    """`Majorants` of a volume times a `scale`: of coarse cells if `local`, else one for all of it.
+
+    Those of a gridvolume and of a `transfer_function` are found from their values; of another
+    volume its `max()` is taken at its word.
+    """
+    if hasattr(volume, "majorants"):
+        bounds = volume.majorants
+    elif (data := data_of(volume)) is not None:
+        bounds = Majorants.of_grid(data).values
+    else:
+        bounds = np.reshape(volume.max(), (1, 1, 1))
+    if not local:
+        bounds = bounds.max(keepdims=True)
+    box = np.array(to_cube(volume).matrix, float).reshape(4, 4)
+    return Majorants(bounds * scale[0], np.linalg.inv(box))
+
+
+def data_of(volume):
+    """The values (nz, ny, nx) of a gridvolume, in NumPy; None of another volume."""
+    import mitsuba as mi
+
+    data = mi.traverse(volume).get("data")
+    return None if data is None else np.array(data)[..., 0]

@@ -18,7 +18,7 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.channels import emission_of_rgb, spectrum_of_rgb, white
-from brdfkit.volumes.light.extinction_bounds import extinction_bounds
+from brdfkit.volumes.light.majorants import extinction_bounds
 from brdfkit.volumes.light.tracking import divide, transmittance
 from brdfkit.volumes.rays.along_ray import within
 

@@ -9,7 +9,7 @@ import importlib
 import math
 from functools import cache
 
-from brdfkit.core.discovery.modules import names_in
+from brdfkit.core.discovery.plugin_files import names_in
 
 
 @cache

@@ -23,7 +23,7 @@ import numpy as np
 from brdfkit.core.colours import from_srgb
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.files import contents
-from brdfkit.volumes.transfer.piecewise import places, require_order
+from brdfkit.volumes.transfer.colour_maps import places, require_order
 
 PARTS = 8  # of a segment between two colours
 UNIT_DISTANCE = 1.0  # mm

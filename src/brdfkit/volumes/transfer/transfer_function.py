@@ -22,9 +22,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.core.arguments import to_pair, to_positive, to_whole_number
 from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.volumes.transfer.colour_maps import places, require_order
 from brdfkit.volumes.transfer.conversions import Conversions
 from brdfkit.volumes.transfer.length_units import METRES, ratio
-from brdfkit.volumes.transfer.piecewise import places, require_order
 
 COLOURS = "albedo", "emission"  # what RGB means
 # Units of values, of functions for any data

@@ -6,9 +6,13 @@ from pathlib import Path
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.inverse.photographs.capture.cameras import cameras_of_file
+from brdfkit.inverse.photographs.capture.cameras import (
+    cameras_of_file,
+    require_known,
+    to_number,
+    to_numbers,
+)
 from brdfkit.inverse.photographs.capture.capture import Capture
-from brdfkit.inverse.photographs.capture.toml_values import require_known, to_number, to_numbers
 from brdfkit.mitsuba_bridge.properties.picture_file import read_photograph
 
 NAME = "capture.toml"

@@ -6,7 +6,7 @@ from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.resolve import material
-from brdfkit.mitsuba_bridge.properties.load_by_mitsuba import load_by_mitsuba
+from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.mitsuba_bridge.scene_file import SUFFIX, load_scene_file
 from brdfkit.model import Model
 from brdfkit.regression import Fit

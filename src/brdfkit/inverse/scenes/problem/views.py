@@ -6,7 +6,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.jit.first_error import first_error
+from brdfkit.core.jit.loops import first_error
 from brdfkit.inverse.scenes.problem.leverage import number_blocks
 from brdfkit.inverse.scenes.problem.tensors import tensor_of
 

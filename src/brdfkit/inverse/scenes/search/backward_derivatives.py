@@ -11,7 +11,7 @@ those of the same samples, and right in the mean. See `normal_equations.py`.
 import drjit as dr
 import numpy as np
 
-from brdfkit.core.jit.first_error import first_error
+from brdfkit.core.jit.loops import first_error
 from brdfkit.inverse.scenes.search.forward_derivatives import DERIVATIVE_COST, differentiated
 
 

@@ -4,7 +4,7 @@
 import numpy as np
 
 from brdfkit.core.interrupts import Stopped
-from brdfkit.inverse.scenes.problem.roughness import roughness
+from brdfkit.inverse.scenes.problem.tensors import roughness
 from brdfkit.inverse.scenes.problem.unseen_parameters import nothing_seen
 from brdfkit.inverse.scenes.search.backward_derivatives import error_and_slopes
 from brdfkit.inverse.scenes.search.gauss_newton import Search

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 import drjit as dr
 import numpy as np
 
-from brdfkit.core.jit.first_error import first_error
+from brdfkit.core.jit.loops import first_error
 from brdfkit.inverse.scenes.problem.views import opaque
 
 DERIVATIVE_COST = 2.3  # of a picture of derivatives, in pictures

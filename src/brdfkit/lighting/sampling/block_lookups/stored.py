@@ -6,8 +6,28 @@ tried one after the other. [Ergun 2015, section 6.2]
 
 import numpy as np
 
-from brdfkit.lighting.sampling.block_lookups.block_densities import BlockDensities
-from brdfkit.mitsuba_bridge.arrays import Integers, cell
+from brdfkit.lighting.sampling.block_slopes import line
+from brdfkit.mitsuba_bridge.arrays import Integers, Rows, cell
+
+
+class BlockDensities:
+    """Of `boxes` (n, 4), their mean densities (n,) and their slopes (n, 2)."""
+
+    def __init__(self, boxes, densities, slopes):
+        self.boxes = Rows(boxes)
+        self.lines = Rows(np.column_stack([densities, slopes]))
+        self.nbytes = 28 * len(boxes)
+
+    def at(self, block, x, y, active):
+        """The density at a point of the block of this number."""
+        import drjit as dr
+        import mitsuba as mi
+
+        box = self.boxes.at(block, mi.Vector4f, active)
+        lines = self.lines.at(block, mi.Vector3f, active)
+        s = dr.clip((x - box.x) / (box.y - box.x), 0, 1)
+        t = dr.clip((y - box.z) / (box.w - box.z), 0, 1)
+        return lines.x * line(s, lines.y) * line(t, lines.z)
 
 
 class Grid:
@@ -57,3 +77,20 @@ def _squares(start, end, count, size):
     """
     first, last = ((a + 0.5) * count / size for a in (start, end - 1))
     return first.astype(int), last.astype(int) + 1
+
+
+class Texture:
+    """The blocks of a tree by cell, their mean densities and slopes."""
+
+    def __init__(self, tree, densities, slopes):
+        _, self.columns, _, self.rows = tree.boxes[0].tolist()
+        texels = np.zeros((self.rows, self.columns), np.uint32)
+        for block, (x0, x1, y0, y1) in enumerate(tree.blocks.tolist()):
+            texels[y0:y1, x0:x1] = block
+        self.texels = Integers(texels.ravel())
+        self.densities = BlockDensities(tree.blocks, densities, slopes)
+        self.nbytes = texels.nbytes + self.densities.nbytes
+
+    def density(self, x, y, active):
+        index = cell(y, self.rows) * self.columns + cell(x, self.columns)
+        return self.densities.at(self.texels.at(index, active), x, y, active)

@@ -7,8 +7,7 @@ from brdfkit.lighting.sampling import tree
 from brdfkit.lighting.sampling.block_laws.hyperbolic import Hyperbolic
 from brdfkit.lighting.sampling.block_laws.sorted_blocks import SortedBlocks
 from brdfkit.lighting.sampling.block_laws.steps import Steps
-from brdfkit.lighting.sampling.block_lookups.stored import Grid
-from brdfkit.lighting.sampling.block_lookups.texture import Texture
+from brdfkit.lighting.sampling.block_lookups.stored import Grid, Texture
 from brdfkit.lighting.sampling.block_lookups.walk import Walk
 from brdfkit.lighting.sampling.block_slopes import slopes
 from brdfkit.lighting.sampling.power_map import cell_power, pixel_power

@@ -6,7 +6,7 @@ the scene for `mitsuba.load_dict`: four views, V1 to V4, and two suns that are c
 shadow maps need it; for pretty pictures give the dictionary a "sky".
 """
 
-from brdfkit.core.discovery.modules import modules_in
+from brdfkit.core.discovery.plugin_files import modules_in
 from brdfkit.shadows.maps.scenes._stage import LIGHTS, VIEWS
 
 SCENES = {
