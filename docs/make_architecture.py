@@ -1,14 +1,12 @@
-"""Makes `docs/architecture.png`, the layers of the library with their imports, and `house.md`.
+"""Draw `docs/architecture.png`, the layers of the library with their imports.
 
 python docs/make_architecture.py
 
 The layers are those that `make lint` holds (pyproject.toml), the arrows the imports that the code
 has, at the top of a file or within a function. An import that other arrows lead to as well is left
-out. A room is the wider the more lines it has. `house.md` has every file in one line: the
-first of its docstring.
+out. A room is the wider the more lines it has.
 """
 
-import ast
 import tomllib
 from pathlib import Path
 
@@ -22,12 +20,6 @@ PACKAGE = ROOT / "src" / "brdfkit"
 ROW, GAP = 0.74, 0.2  # inches
 LABELS = 2.5  # inches for what a row is for
 PAPER, INK, LINE = "#f5f1e8", "#2b2b2b", "#8a5a2b"
-HEAD = """# The house, room by room
-
-From the top layer to the ground; a room imports from those below it and nothing from those beside
-it or above, which `make lint` holds. The plugins lie apart, in
-the top folder [`plugins/`](plugins/README.md). Made by `make docs` of the first lines of the files.
-"""
 GROUPS = {  # what a row of rooms is for, by one of them
     "cli": "what people type",
     "inverse": "numbers from pictures; reports",
@@ -46,32 +38,6 @@ def layers():
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]
     rows = contracts["contracts"][0]["layers"]
     return [[room.strip() for room in row.replace(":", "|").split("|")] for row in rows]
-
-
-def house():
-    """The page `house.md`: every room, from the top, and every file in it."""
-    return "\n".join([HEAD, *(_room_in_words(room) for row in layers() for room in row)])
-
-
-def _room_in_words(room):
-    folder = PACKAGE / room
-    if not folder.is_dir():
-        file = folder.with_suffix(".py")
-        return f"## {_link(file)}\n\n{first_line(file)}\n"
-    files = [f for f in sorted(folder.rglob("*.py")) if f != folder / "__init__.py"]
-    rows = [f"| {_link(f, str(f.relative_to(folder)))} | {first_line(f)} |" for f in files]
-    title = f"## {_link(folder, f'{room}/')}\n\n{first_line(folder / '__init__.py')}\n"
-    return "\n".join([title, "| | |", "| --- | --- |", *rows, ""])
-
-
-def _link(file, name=None):
-    return f"[`{name or file.name}`](../{file.relative_to(ROOT).as_posix()})"
-
-
-def first_line(file):
-    """The first line of a file's docstring."""
-    text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8")))
-    return text.splitlines()[0].replace("|", "∣")
 
 
 def lines(room):
@@ -165,5 +131,4 @@ def _arrow(axes, start, end):
 
 
 if __name__ == "__main__":
-    Path(__file__).with_name("house.md").write_text(house(), encoding="utf-8")
     draw().savefig(Path(__file__).with_name("architecture.png"), dpi=110)

@@ -60,12 +60,6 @@ def test_the_pages_are_what_the_plugins_say(make):
     assert import_module("make_plugins").problems() == []
 
 
-def test_the_page_of_the_house_is_what_its_files_say():
-    """Otherwise: python docs/make_architecture.py"""
-    house = (ROOT / "docs" / "house.md").read_text(encoding="utf-8")
-    assert house == import_module("make_architecture").house()
-
-
 def test_the_pages_of_materials_are_what_the_index_says():
     """Otherwise: python docs/make_materials.py"""
     make = import_module("make_materials")
