@@ -99,17 +99,23 @@ def test_intervals_are_around_the_values_and_printed():
 
 
 @pytest.mark.quick
-def test_what_trades_off_is_said():
-    """Light that comes and goes near the normal sees the product of strength and Fresnel alone."""
-    rng = np.random.default_rng(0)
+@pytest.mark.parametrize(("seed", "f0"), [(0, 0.5), (2, 0.8), (3, 0.2)])
+def test_what_trades_off_is_said(seed, f0):
+    """Directions near the normal determine only the product of strength and Fresnel reflectance.
+
+    The search ends anywhere along this product, for some seeds on the bound f0 = 1.
+    """
+    rng = np.random.default_rng(seed)
     wi, wo = (from_angles(rng.uniform(0, 0.3, 300), rng.uniform(0, 6, 300)) for _ in range(2))
-    values = bk.models()["cook_torrance"](f0=0.5).eval(wi, wo)
+    values = bk.models()["cook_torrance"](f0=f0).eval(wi, wo)
     values *= np.exp(1e-5 * rng.normal(size=values.shape))
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
     fit = bk.fit("cook_torrance", data, "log", starts=1)
     (said,) = [note for note in fit.notes if "f0" in note and "trade off" in note]
     assert "specular_reflectance" in said
     assert "only their product is determined" in said
+    assert np.isnan(fit.standard_errors["f0"])
+    assert np.isnan(fit.standard_errors["specular_reflectance"]).all()
 
 
 @pytest.mark.quick

@@ -108,7 +108,9 @@ def certify(problem, u, weights, passes=None, rng=None):
         whole, problem = problem.importance[rows], problem.on(part)
         shares = whole / np.where(problem.importance > 0, problem.importance, 1)
         passes = passes and [[array[rows] for array in by_channel] for by_channel in passes]
-    scores, hessian, scale = _sum(problem, u, weights, free, shares, passes)
+    residuals, jacobians = problem.jacobians(u, weights)
+    free |= _find_open_bounds(jacobians, free, u.shape[1])
+    scores, hessian, scale = _sum(residuals, jacobians, free, u.shape[1], shares, passes)
     most = (numbers - len(names)) / problem.channels
     return conclude(names, free, at, scores, hessian, scale, numbers, most)
 
@@ -156,22 +158,45 @@ def _list_parameters(problem, u, weights):
     return names, np.concatenate([inside, (weights[0] > problem.least).ravel()])
 
 
-def _sum(problem, u, weights, free, shares, passes):
-    """By free parameters, each in units of `scale`: scores (n, samples), over the root of 1 - the
-    leverage, and the Hessian (n, n) with a diagonal of 1; and the `scale` (n,)."""
-    residuals, jacobians = problem.jacobians(u, weights)
-    shapes, lobes = u.shape[1], weights.shape[2]
+def _find_open_bounds(jacobians, free, shapes):
+    """Return which parameters (n,) are shape parameters on a bound that E² does not determine.
+
+    E² stays as it is when such a parameter moves together with others, so where a search ended
+    along this direction, on the bound or off it, is due to rounding. `free` (n,): the parameters
+    that are not on a bound; `jacobians`: derivatives (shapes + lobes, samples) by channel.
+    """
+    is_open = np.zeros(len(free), bool)
+    moving = free.copy()
+    # A derivative of 0, as of a lobe without weight, would make a parameter a direction by itself
+    moving[:shapes] |= np.any([jacobian[:shapes].any(axis=1) for jacobian in jacobians], axis=0)
+    if (moving != free).any():
+        hessian, _, _, _ = _sum_hessian(jacobians, moving, shapes)
+        values, vectors = np.linalg.eigh(hessian)
+        null = vectors[:, np.abs(values) <= SINGULAR * max(values.max(), 1)]
+        is_open[moving] = (np.abs(null) > ABSENT).any(axis=1)
+    return is_open & ~free
+
+
+def _sum_hessian(jacobians, free, shapes):
+    """Return the Hessian (n, n) of the `free` parameters, in units that make its diagonal 1, these
+    units (n,), and by channel the rows of its parameters and their derivatives."""
     where = np.cumsum(free) - 1
-    owns = []
-    for c in range(problem.channels):
-        own = of_channel(c, shapes, lobes)
-        jacobians[c] = jacobians[c][free[own]]
-        owns.append(where[own[free[own]]])
+    rows, derivatives = [], []
+    for c, jacobian in enumerate(jacobians):
+        own = of_channel(c, shapes, len(jacobian) - shapes)
+        rows.append(where[own[free[own]]])
+        derivatives.append(jacobian[free[own]])
     hessian = np.zeros((free.sum(), free.sum()))
-    for own, jacobian in zip(owns, jacobians, strict=True):
+    for own, jacobian in zip(rows, derivatives, strict=True):
         hessian[np.ix_(own, own)] += jacobian @ jacobian.T
     scale = 1 / np.sqrt(np.maximum(np.diagonal(hessian), 1e-300))
-    hessian *= np.outer(scale, scale)
+    return hessian * np.outer(scale, scale), scale, rows, derivatives
+
+
+def _sum(residuals, jacobians, free, shapes, shares, passes):
+    """By free parameters, each in units of `scale`: scores (n, samples), over the root of 1 - the
+    leverage, and the Hessian (n, n) with a diagonal of 1; and the `scale` (n,)."""
+    hessian, scale, owns, jacobians = _sum_hessian(jacobians, free, shapes)
     inverse = np.linalg.pinv(hessian, rcond=SINGULAR, hermitian=True)
     scores = np.zeros((len(hessian), len(shares)))
     for c, (own, jacobian) in enumerate(zip(owns, jacobians, strict=True)):
