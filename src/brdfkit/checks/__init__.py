@@ -22,7 +22,7 @@ from brdfkit.core.errors import BrdfkitError, nearest, no_such
 from brdfkit.core.jit import llvm
 from brdfkit.core.jit.loops import is_interrupt
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.materials.resolve import MaterialLike, material
+from brdfkit.materials.resolve import MaterialLike, to_material
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 
 for _module in pkgutil.iter_modules(__path__):
@@ -134,7 +134,7 @@ def _subject(thing):
 def _material(thing):
     """The material of `thing`; the error for an unknown name proposes plugins, too."""
     try:
-        return material(thing)
+        return to_material(thing)
     except BrdfkitError:
         others = [n for kind in KINDS if kind != MODELS for n in plugin_files.sources(kind)]
         if isinstance(thing, str) and nearest(thing, others):

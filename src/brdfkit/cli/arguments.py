@@ -17,7 +17,7 @@ FIGURES = ".png", ".pdf", ".svg"
 def material(name, settings=()):
     """The material of a name or a file; of a model with `settings`, see `model_values`."""
     if not settings:
-        return resolve.material(name)
+        return resolve.to_material(name)
     label = labels.read_files(name)
     if not labels.is_label(label):
         raise BrdfkitError(f"{name} is no model: --set works for models only.")
@@ -26,7 +26,7 @@ def material(name, settings=()):
 
 def measured_material(name, mends):
     """The measured material of a name or a file, mended as `mends`, of `mend_options`, say."""
-    found = resolve.measured_material(name)
+    found = resolve.to_measured(name)
     return found.mend(**mends) if mends else found
 
 

@@ -13,7 +13,7 @@ from brdfkit.core.names import make_unique
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.albedos import ANGLES
 from brdfkit.materials.measured.selection import select_samples
-from brdfkit.materials.resolve import MaterialLike, materials, measured_material
+from brdfkit.materials.resolve import MaterialLike, to_materials, to_measured
 from brdfkit.regression import Fit, losses
 from brdfkit.regression.albedo_cells import albedo_cell
 from brdfkit.regression.light import FOUR, ONE, albedo_pixels
@@ -128,7 +128,7 @@ def compare(
     --------
     >>> print(compare("car_paint", ["ward", fit("ggx", "car_paint")]))    # doctest: +SKIP
     """
-    data, found = measured_material(data), materials(things)
+    data, found = to_measured(data), to_materials(things)
     samples = select_samples(data, max_angle, spectral=spectral)
     light = (data if spectral else data.rgb).albedo
     pixels = albedo_pixels(ANGLES, FOUR if data.anisotropic else ONE)

@@ -21,7 +21,7 @@ from brdfkit.images.ball import draw_pixels
 from brdfkit.materials.extrapolation import note_on_extrapolation
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
-from brdfkit.materials.resolve import MaterialLike, measured_material
+from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model import Model, labels
 from brdfkit.model.evaluation import with_weights
 from brdfkit.model.samples.measures import weigh, whole
@@ -132,7 +132,7 @@ def fit(
     >>> print(fit("ward", "paint.binary"))    # doctest: +SKIP
     """
     began = time.perf_counter()
-    model, data = labels.model(labels.read_files(name)), measured_material(data)
+    model, data = labels.model(labels.read_files(name)), to_measured(data)
     how: dict[str, Any] = {"seed": seed, "starts": starts, "bounds": bounds, "fixed": fixed}
     how |= {"solver": solver, "constraints": constraints}
     how["anisotropic"] = data.anisotropic if anisotropic is None else anisotropic

@@ -4,7 +4,7 @@ from brdfkit.core.arguments import to_dictionary, to_pair, to_whole_number
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.fitting.light_of_data import light_of_data
 from brdfkit.materials.measured.selection import require_max_angle, select_samples
-from brdfkit.materials.resolve import measured_material
+from brdfkit.materials.resolve import to_measured
 from brdfkit.regression import Fit, as_loss
 from brdfkit.regression.refitting import Refit
 from brdfkit.regression.robust.reweighting import WEIGHTS
@@ -14,7 +14,7 @@ from brdfkit.regression.solvers.settings import require_suitable, to_constraints
 def refit(fit, data):
     """The `Refit` of a fit and the material that was fitted."""
     samples = fitted_samples(fit, data)
-    material = measured_material(data)
+    material = to_measured(data)
     material = material if fit.wavelengths else material.rgb
     light = light_of_data(material, None, fit.settings.get("max_angle", 80.0))
     return Refit(fit, samples, light)
@@ -24,7 +24,7 @@ def fitted_samples(fit, data):
     """The `Samples` of a material that were fitted; with standard errors, where these counted."""
     if not isinstance(fit, Fit):
         raise BrdfkitError(f"Here a Fit is needed, not a {type(fit).__name__}; make one by fit.")
-    settings, data = fit.settings, measured_material(data)
+    settings, data = fit.settings, to_measured(data)
     errors = settings.get("use_standard_error", False)
     return select_samples(
         data, settings.get("max_angle", 80.0), errors=errors, spectral=bool(fit.wavelengths)

@@ -12,7 +12,7 @@ from brdfkit.materials.extrapolation import describe_extrapolation
 from brdfkit.materials.loading import save_and_read
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.tabulation import table_shape, tabulate
-from brdfkit.materials.resolve import Material, MaterialLike, material
+from brdfkit.materials.resolve import Material, MaterialLike, to_material
 
 # Two materials are compared at this many direction pairs, up to this angle from the normal
 PAIRS, STEEPEST = 4000, np.radians(80)
@@ -66,7 +66,7 @@ def convert(thing: MaterialLike, path: str | Path) -> Conversion:
     >>> print(convert("cayman.brdf", "cayman.npz"))    # doctest: +SKIP
     cayman.npz (nothing lost)
     """
-    thing = material(thing)
+    thing = to_material(thing)
     if isinstance(thing, Measured):
         back = save_and_read(thing, path)
         changes = (*describe_extrapolation(thing, back), *list_changes(thing, back))

@@ -6,7 +6,7 @@ from numpy.typing import ArrayLike, NDArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import normalize
 from brdfkit.core.geometry.quadrature import directional_albedo
-from brdfkit.materials.resolve import MaterialLike, material
+from brdfkit.materials.resolve import MaterialLike, to_material
 
 
 def evaluate(brdf: MaterialLike, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
@@ -34,7 +34,7 @@ def evaluate(brdf: MaterialLike, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.flo
     >>> evaluate(models()["lambert"](), [[0, 0, 1]], [[0.6, 0, 0.8]])
     array([[0.15915494]])
     """
-    brdf = material(brdf)
+    brdf = to_material(brdf)
     wi, wo = (np.array(w, float, ndmin=2) if np.size(w) else np.empty((0, 3)) for w in (wi, wo))
     if wi.shape != wo.shape or wi.shape[-1] != 3 or wi.ndim != 2:
         raise BrdfkitError(
@@ -74,7 +74,7 @@ def albedo(brdf: MaterialLike, wi: ArrayLike) -> NDArray[np.float64]:
     >>> albedo(models()["lambert"](diffuse_reflectance=0.5), [0, 0, 1]).round(4)
     array([0.5])
     """
-    return directional_albedo(material(brdf, needed=("eval",)).eval, _check_incidence(wi))
+    return directional_albedo(to_material(brdf, needed=("eval",)).eval, _check_incidence(wi))
 
 
 def _check_incidence(wi: ArrayLike) -> NDArray[np.float64]:

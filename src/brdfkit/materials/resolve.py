@@ -41,13 +41,13 @@ MaterialLike: TypeAlias = Material | str | Path | dict[str, Any]
 ATTRIBUTES = "name", "eval", "scene_dict"
 
 
-def material(thing: MaterialLike, needed: Iterable[str] = ATTRIBUTES) -> Material:
+def to_material(thing: MaterialLike, needed: Iterable[str] = ATTRIBUTES) -> Material:
     """The material that `thing` is, or stands for as a name, a path or a dictionary.
 
     An object with the `needed` attributes is returned as it is. Raises `BrdfkitError`, the same one
     for every verb, for anything that is no material.
 
-    >>> material("ward").alpha_u
+    >>> to_material("ward").alpha_u
     0.2
     """
     if isinstance(thing, str | Path):
@@ -65,24 +65,24 @@ def material(thing: MaterialLike, needed: Iterable[str] = ATTRIBUTES) -> Materia
     return thing
 
 
-def materials(
+def to_materials(
     things: MaterialLike | Iterable[MaterialLike], needed: Iterable[str] = ATTRIBUTES
 ) -> list[Material]:
-    """The `material` of each of `things`, as a list; one thing alone gives a list of one.
+    """Return the material of each of `things`, as a list; one thing alone gives a list of one.
 
     Raises `BrdfkitError` where there is none.
     """
     if isinstance(things, str | dict) or not isinstance(things, Iterable):
         things = [things]
-    found = [material(thing, needed) for thing in things]
+    found = [to_material(thing, needed) for thing in things]
     if not found:
         raise BrdfkitError("There is no material here; give at least one.")
     return found
 
 
-def measured_material(thing: MaterialLike) -> Measured:
-    """The `material` of `thing`, which must be a `Measured`: `BrdfkitError` for any other."""
-    found = material(thing)
+def to_measured(thing: MaterialLike) -> Measured:
+    """Return the `Measured` that `thing` is or stands for; raise `BrdfkitError` for any other."""
+    found = to_material(thing)
     if not isinstance(found, Measured):
         raise BrdfkitError(
             f"{found.name} was not measured; give a measured material, or the name or path of one."

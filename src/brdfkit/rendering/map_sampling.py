@@ -207,7 +207,7 @@ def compare_samplers(
     if not isinstance(scene, str | Path):
         raise BrdfkitError(f"scene = {scene!r:.60} should be a scene's name or a mesh's file.")
     mitsuba()
-    found = resolve.material(material)
+    found = resolve.to_material(material)
     noise, seconds = _measure(envmap, found, scene, rounds, spp, size, seed, progress)
     where = str(Path(str(envmap)).name), found.name, Path(str(scene)).name
     return SamplerComparison(*where, noise, seconds, rounds)

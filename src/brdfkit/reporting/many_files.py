@@ -9,7 +9,7 @@ from brdfkit.core.names import make_unique, printable, slug
 from brdfkit.core.pages import page
 from brdfkit.core.version import __version__
 from brdfkit.fitting.compare import format_error
-from brdfkit.materials.resolve import measured_material
+from brdfkit.materials.resolve import to_measured
 from brdfkit.reporting.contents import Contents
 from brdfkit.reporting.fits import fit_each
 from brdfkit.reporting.report import write_report
@@ -75,7 +75,7 @@ def report_many(files, things, folder, settings, progress=None, **pictures):
             if progress:
                 progress(number, len(files))
             try:
-                material = measured_material(file)
+                material = to_measured(file)
                 name = make_unique(slug(material.name), {*entries, PAGE.removesuffix(".html")})
                 path = folder / f"{name}.html"
                 require_writable(path)

@@ -12,7 +12,7 @@ from brdfkit.core.pages import page
 from brdfkit.fitting.fit import check_settings
 from brdfkit.fitting.ranking import Ranking
 from brdfkit.materials.measured import Measured
-from brdfkit.materials.resolve import MaterialLike, measured_material
+from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model import Model
 from brdfkit.regression import Fit
 from brdfkit.reporting.charts.svg import fit_class
@@ -84,7 +84,7 @@ def report(
     """
     chosen = check_settings(to_dictionary("settings", settings))
     require_pictures(size, scene, envmap)
-    data, file = measured_material(material), material if isinstance(material, str | Path) else None
+    data, file = to_measured(material), material if isinstance(material, str | Path) else None
     path = require_page(page_of(data) if path is None else path)
     fits = [to_fit(thing, data, chosen, progress) for thing in as_list(things)]
     pictures: dict[str, Any] = {"spp": spp, "until": until, "size": size, "seed": seed}

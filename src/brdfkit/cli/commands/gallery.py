@@ -84,7 +84,7 @@ def _balls(names, size, console):
     """The pictures and lines by name, the sentences on what is no material by its name, and whether
     Ctrl-C ended it."""
     from brdfkit.core.names import make_unique
-    from brdfkit.materials.resolve import material
+    from brdfkit.materials.resolve import to_material
     from brdfkit.rendering.previewing.preview import preview
 
     balls, skipped = {}, {}
@@ -92,7 +92,7 @@ def _balls(names, size, console):
         with console.progress(f"draw {len(names)} balls") as progress:
             for done, name in enumerate(names, 1):
                 try:
-                    found = material(name)
+                    found = to_material(name)
                     (picture,) = preview(found, size=size).pictures.values()
                     kind = KINDS.get(type(found).__name__, "model")
                     balls[make_unique(found.name, balls)] = picture, kind

@@ -57,12 +57,12 @@ def report(files, names, how, output, scene, envmap, spp, until, size, seed, con
 def _report_one(file, names, how, output, pictures, console):
     """Fit the models to one file, and write and print its report."""
     from brdfkit.cli.rank_output import print_ranking, recommend
-    from brdfkit.materials.resolve import measured_material
+    from brdfkit.materials.resolve import to_measured
     from brdfkit.reporting.fits import fit_each
     from brdfkit.reporting.report import page_of, require_page, write_report
 
     with console.progress(f"read {file}"):
-        material = measured_material(file)
+        material = to_measured(file)
     path = require_page(output or page_of(material))
     names, ranking = recommend(names, material, how, console)
     if ranking:

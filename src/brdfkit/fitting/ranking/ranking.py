@@ -16,7 +16,7 @@ from brdfkit.fitting.ranking.ranked import rows_of
 from brdfkit.fitting.ranking.result import Ranking
 from brdfkit.images.ball import draw_pixels
 from brdfkit.materials.measured.selection import select_samples
-from brdfkit.materials.resolve import MaterialLike, measured_material
+from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model import Model, labels
 from brdfkit.regression import Loss, Picture, as_loss
 from brdfkit.regression.light import Light
@@ -90,7 +90,7 @@ def rank(
     >>> print(rank("paint.binary", ["ward", "ggx", "ggx+ggx"]))    # doctest: +SKIP
     """
     began = time.perf_counter()
-    data, classes = measured_material(data), _find_classes(models)
+    data, classes = to_measured(data), _find_classes(models)
     folds, seed = to_whole_number("folds", folds, 2), to_whole_number("seed", seed, 0)
     chosen = as_loss(loss)
     anisotropic = data.anisotropic if anisotropic is None else anisotropic

@@ -16,7 +16,7 @@ from brdfkit.fitting.fit import fit
 from brdfkit.fitting.sweeping.judging import Judge
 from brdfkit.materials.formats import fit_json
 from brdfkit.materials.loading import load
-from brdfkit.materials.resolve import measured_material
+from brdfkit.materials.resolve import to_measured
 from brdfkit.model import labels
 
 
@@ -98,7 +98,7 @@ def _read(task):
             f"the worker has brdfkit {__version__} and the sweep {task.version}; install the same."
         )
     _require_unchanged(task.checksums)
-    return measured_material(load(task.path))
+    return to_measured(load(task.path))
 
 
 def _require_unchanged(checksums):

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.fitting.settings import fitted_samples
-from brdfkit.materials.resolve import MaterialLike, material
+from brdfkit.materials.resolve import MaterialLike, to_material
 from brdfkit.model.evaluation import lobe_values
 from brdfkit.regression import Fit
 from brdfkit.regression.losses.loss import squares
@@ -94,7 +94,7 @@ def prediction_error(
     # (Z'WZ)⁻¹ Z'W, of the weights W of the loss
     root = _root_weights(as_loss(fit.loss_name), samples)
     solve = np.linalg.pinv(root[:, None] * Z) * root
-    values = samples.values if truth is None else material(truth).eval(samples.wi, samples.wo)
+    values = samples.values if truth is None else to_material(truth).eval(samples.wi, samples.wo)
     if values.shape != samples.values.shape:
         raise BrdfkitError(
             f"truth has {values.shape[1]} channels and the measurement {samples.values.shape[1]}; "

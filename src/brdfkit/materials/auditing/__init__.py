@@ -21,7 +21,7 @@ from brdfkit.materials.auditing.spread import some_samples
 from brdfkit.materials.auditing.symmetries import Difference, by_mirror, by_reciprocity
 from brdfkit.materials.measured.coverage import Coverage, coverage, in_plane
 from brdfkit.materials.measured.spectrum_to_rgb import rgb_or_mean
-from brdfkit.materials.resolve import MaterialLike, measured_material
+from brdfkit.materials.resolve import MaterialLike, to_measured
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -165,7 +165,7 @@ def audit(data: MaterialLike) -> Audit:
     --------
     >>> print(audit("copper.astm"))    # doctest: +SKIP
     """
-    data = measured_material(data)
+    data = to_measured(data)
     samples, part = data.samples, some_samples(data)
     above = (samples.wi[:, 2] > 0) & (samples.wo[:, 2] > 0)
     values = samples.values[samples.valid]

@@ -14,7 +14,7 @@ from brdfkit.core.plots import Plot
 from brdfkit.images.thumbnails.lobes import Radius
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.plotting.plane_of_incidence import is_scattered, lobe, usual_angles
-from brdfkit.materials.resolve import MaterialLike, materials
+from brdfkit.materials.resolve import MaterialLike, to_materials
 
 SMALL = {"size": 8, "color": "0.35"}
 
@@ -94,7 +94,7 @@ def plot(things: MaterialLike | Iterable[MaterialLike], theta_i: ArrayLike | Non
 
 def _find_materials(things):
     """The materials of what `plot` was given; those of wavelengths in linear sRGB."""
-    found = materials(things, needed=("name", "eval"))
+    found = to_materials(things, needed=("name", "eval"))
     return [getattr(thing, "rgb", thing) for thing in found]
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.loading import locate
 from brdfkit.materials.measured import Measured
-from brdfkit.materials.resolve import material
+from brdfkit.materials.resolve import to_material
 from brdfkit.rendering.scene_input.shown_material import load_material
 
 MOST = 8  # materials; a table of MERL's size takes some 50 MB
@@ -29,7 +29,7 @@ def keep(thing):
 @lru_cache(MOST)
 def _read(name, path, changed, size):
     """The material that a name stands for, whose file `path` was `changed` at a time."""
-    return material(name)
+    return to_material(name)
 
 
 def bsdf_of(found, name, variant, both_sides):

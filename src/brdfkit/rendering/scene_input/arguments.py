@@ -5,7 +5,7 @@ from typing import Any, TypeAlias
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.names import make_unique
-from brdfkit.materials.resolve import Material, MaterialLike, material
+from brdfkit.materials.resolve import Material, MaterialLike, to_material
 from brdfkit.model import Model
 from brdfkit.regression import Fit
 from brdfkit.volumes import Volume
@@ -62,5 +62,5 @@ def identify(thing: Any) -> tuple[str, Material]:
         raise BrdfkitError(f"{thing.name} is a volume, not a material: call render_volume.")
     if _is_pair(thing):
         return thing[0], identify(thing[1])[1]
-    found = material(thing)
+    found = to_material(thing)
     return str(found.name), found

@@ -10,7 +10,7 @@ import numpy as np
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields.materials import material_names
 from brdfkit.distance_fields.shadows.field import sphere_about
-from brdfkit.materials.resolve import material
+from brdfkit.materials.resolve import to_material
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 
 SIZE = 400, 300  # pixels
@@ -60,6 +60,6 @@ def field_scene(field, size):
 def bsdf(name):
     """The dictionary of the material called so, or of a grey one."""
     try:
-        return material(name).scene_dict()
+        return to_material(name).scene_dict()
     except BrdfkitError:
         return {"type": "diffuse", "reflectance": 0.6}

@@ -3,7 +3,7 @@
 import numpy as np
 
 from brdfkit.core.errors import no_such
-from brdfkit.materials.resolve import material
+from brdfkit.materials.resolve import to_material
 from brdfkit.rendering.scenes._studio import camera
 from brdfkit.rendering.volumes import looks
 from brdfkit.rendering.volumes.framing import FOV, direction, origin_and_target
@@ -76,5 +76,5 @@ def integrator(volume, transfer, renderer, settings):
 def _plugin(name, value):
     """The value of an integrator's parameter, in which a name may stand for a plugin."""
     if name == "bsdf":
-        return material(value).scene_dict()
+        return to_material(value).scene_dict()
     return {"type": value} if name == "phase" and isinstance(value, str) else value

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.materials.resolve import material
+from brdfkit.materials.resolve import to_material
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.mitsuba_bridge.scene_file import SUFFIX, load_scene_file
 from brdfkit.model import Model
@@ -37,7 +37,7 @@ def load_subject(thing: Any, size: tuple[int, int]) -> Any:
     elif isinstance(thing, dict) and thing.get("type") == "scene":
         scene = _load(thing, "the scene")
     else:
-        found = material(thing)
+        found = to_material(thing)
         scene = _load(ball(_coloured(found), size), found.name)
     if not scene.sensors():
         raise BrdfkitError("the scene has no sensor to see it with; add one.")
