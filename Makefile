@@ -45,12 +45,12 @@ bench: $(VENV)/.ready
 	$(RUN)/python tests/benchmark_fits.py
 
 docs: $(VENV)/.ready
-	$(RUN)/python docs/make_models.py
-	$(RUN)/python docs/make_plugins.py
-	$(RUN)/python docs/make_formats.py
-	$(RUN)/python docs/make_references.py
-	$(RUN)/python docs/make_architecture.py
-	[ -z "$$BRDFKIT_DATA" ] || $(RUN)/python docs/make_real_measurements.py
+	$(RUN)/python docs/tools/make_models.py
+	$(RUN)/python docs/tools/make_plugins.py
+	$(RUN)/python docs/tools/make_formats.py
+	$(RUN)/python docs/tools/make_references.py
+	$(RUN)/python docs/tools/make_architecture.py
+	[ -z "$$BRDFKIT_DATA" ] || $(RUN)/python docs/tools/make_real_measurements.py
 	$(MAKE) site
 
 site: $(VENV)/.ready

@@ -6,7 +6,7 @@ runs against known truths, some 20 minutes.
 Five scenes, four guesses of the width of a lobe, five seeds; pictures of 24 × 24 pixels have noise
 of 1 %. A run is right if every number is within 3 of its own standard errors of the truth, and
 warned if it did not converge, ended on a bound, or a note says that something is wrong. Each run is
-a line; the last lines are the table that `docs/make_refining.py` puts on its page.
+a line; the last lines are the table that `docs/tools/make_refining.py` puts on its page.
 """
 
 import argparse

@@ -6,7 +6,7 @@ from importlib import import_module
 from pathlib import Path
 
 DOCS = Path(__file__).parent
-sys.path[:0] = [str(DOCS), str(DOCS.parent / "src")]
+sys.path[:0] = [str(DOCS), str(DOCS / "tools"), str(DOCS.parent / "src")]
 
 project = "brdfkit"
 author = "the authors of brdfkit"

@@ -61,7 +61,7 @@ def test_the_pages_are_what_the_plugins_say(make):
 
 
 def test_the_pages_of_materials_are_what_the_index_says():
-    """Otherwise: python docs/make_materials.py"""
+    """Otherwise: python docs/tools/make_materials.py"""
     make = import_module("make_materials")
     assert (make.FOLDER / "README.md").read_text(encoding="utf-8") == make.index()
     for name, material in catalogue.materials().items():
@@ -70,7 +70,7 @@ def test_the_pages_of_materials_are_what_the_index_says():
 
 
 def test_the_gallery_of_distance_fields_shows_its_scenes_and_their_code():
-    """Otherwise: python docs/make_distance_fields.py"""
+    """Otherwise: python docs/tools/make_distance_fields.py"""
     make = import_module("make_distance_fields")
     page = make.PAGE.read_text(encoding="utf-8")
     for function in make.SCENES + make.lessons.LESSONS:

@@ -23,7 +23,7 @@ def results(make):
 
 
 def test_the_page_is_what_its_figures_say(make, results, monkeypatch, tmp_path):
-    """Otherwise: python docs/make_real_measurements.py --only page"""
+    """Otherwise: python docs/tools/make_real_measurements.py --only page"""
     text = make.page.PAGE.read_text(encoding="utf-8")
     assert all(line in text for line in make.page.verdict(results))
     monkeypatch.setattr(make.page, "PAGE", tmp_path / "again.md")
@@ -62,7 +62,7 @@ def test_a_table_and_its_rows_give_the_fit_of_the_page(make, results, tmp_path):
 def test_a_cell_of_the_page_comes_again(make, results, measured_data):
     name, model = "curet/abrdf.dat#21", "ggx"
     data = bk.load(str(measured_data / name))
-    found = import_module("real_measurements_errors").Judge(data)(bk.fit(model, data))
+    found = import_module("real_measurements.errors").Judge(data)(bk.fit(model, data))
     kept = results["files"][name]["fits"][model]["cbrt"]
     for figure in ("albedo", "most", "psnr", "log error"):
         assert found[figure] == pytest.approx(kept[figure], rel=5e-3), figure

@@ -3,8 +3,8 @@
 import make_shadow_map_gradients as make
 import numpy as np
 import pytest
-from shadow_gradient_scenes import LIGHTS
-from shadow_map_gradients_page import off, slope
+from shadow_map_gradients.page import off, slope
+from shadow_map_gradients.scenes import LIGHTS
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 

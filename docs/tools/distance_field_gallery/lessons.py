@@ -3,8 +3,8 @@
 
 from math import pi
 
-from distance_field_highlights import highlights
-from distance_field_stage import bulb, camera, scene
+from distance_field_gallery.highlights import highlights
+from distance_field_gallery.stage import bulb, camera, scene
 
 from brdfkit.distance_fields import box, capped_cone, plane, rounded_box, sphere, torus
 

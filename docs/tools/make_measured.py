@@ -1,6 +1,6 @@
 """Makes `docs/measured.md` and its sheet of balls: every measurement at hand, audited and rendered.
 
-    BRDFKIT_DATA=FOLDER python docs/make_measured.py [FILE...]    # six seconds a material
+    BRDFKIT_DATA=FOLDER python docs/tools/make_measured.py [FILE...]    # six seconds a material
 
 The folder holds third-party files, which are shown and not shipped; brdfkit's own come first.
 """
@@ -23,13 +23,13 @@ from brdfkit.core.colours import to_srgb
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.rendering.scenes.ball import ball
 
-PAGE = Path(__file__).with_name("measured.md")
+PAGE = Path(__file__).parents[1] / "measured.md"
 SIZE, SPP, COLUMNS = 128, 121, 10
 CAPTION, FONT, LETTERS = 32, 11, 18  # heights [pixels] of the label and its font; a line's length
 SAMPLES = 200_000
 TEXT = """# Measured materials
 
-Every measurement that was at hand when `docs/make_measured.py` ran, looked up and path-traced in
+Every measurement that was at hand when `docs/tools/make_measured.py` ran, looked up and path-traced in
 the same light: brdfkit's own, then third-party files, which are shown here and not shipped.
 What begins with *neural* is no measurement, but a neural reconstruction of one in MERL's or
 Nielsen's collection [Sztrajman et al. 2021].

@@ -1,6 +1,6 @@
 """Makes `docs/formats/`: a page of each file format, and a table of what each can hold.
 
-python docs/make_formats.py         # one minute
+python docs/tools/make_formats.py         # one minute
 
 What a format holds is found out by writing small materials and reading them again.
 """
@@ -17,7 +17,7 @@ from brdfkit.checks.material_subject import random_pairs
 from brdfkit.core.references import works
 from brdfkit.materials.formats import formats
 
-FOLDER = Path(__file__).with_name("formats")
+FOLDER = Path(__file__).parents[1] / "formats"
 FORMULA = {"alpha_u": 0.3, "diffuse_reflectance": 0.3}
 INDEX = """What `bk.load` reads and `bk.save` writes; each also as `.gz` or `.xz`. A file is known
 by its content, and by its suffix where that leaves a doubt. The columns are small materials that

@@ -4,19 +4,19 @@ from collections import Counter, defaultdict
 from pathlib import Path
 from statistics import mean, median
 
-from leaderboard_page import made_with
+from leaderboard.page import made_with
 from make_models import paragraphs, table
 
 from brdfkit.core.names import listed
 from brdfkit.regression.losses.named import DEFAULT
 from brdfkit.theses.drawing import COLOURS, figure, tidy
 
-PAGE = Path(__file__).with_name("losses.md")
+PAGE = Path(__file__).parents[1] / "losses.md"
 # The losses that the figure shows, and the difference that is clear [dB]
 DRAWN, CLEAR = (DEFAULT, "log", "picture", "cosine"), 0.5
 INTRODUCTION = """A fit by another loss is another picture. Here the same models are fitted to
 {count} materials by {losses}, and each fit is path-traced beside the measurement, on the
-ball that `brdfkit render` shows. Made by `BRDFKIT_DATA=FOLDER python docs/make_losses.py
+ball that `brdfkit render` shows. Made by `BRDFKIT_DATA=FOLDER python docs/tools/make_losses.py
 --cache CACHE`; FOLDER holds third-party files, which brdfkit does not ship.
 
 The materials are every fifth of the neural reconstructions that stand for MERL's tables [Sztrajman

@@ -5,13 +5,13 @@ from pathlib import Path
 from runpy import run_path
 
 import numpy as np
-from leaderboard_page import made_with
+from leaderboard.page import made_with
 from make_models import paragraphs, table
 from PIL import Image, ImageDraw, ImageFont
 
 from brdfkit.core.colours import to_srgb
 
-PAGE = Path(__file__).with_name("refining.md")
+PAGE = Path(__file__).parents[1] / "refining.md"
 RUNS = PAGE.parent.parent / "benchmarks" / "refining_runs.json"
 SIDE, LINE, GAP = 288, 30, 8
 CLEAR = 0.5  # difference that is clear [dB]
@@ -51,7 +51,7 @@ the loss `picture`, and from there refined on that picture, with at most {sample
 pixel. Both are held against another picture, from a camera that no search saw: PSNR, and HDR-FLIP
 in brackets, 0 at best. *Noise* is the measured material beside itself, of another seed; `room` is
 the scene `cornell_box`, with paths of six edges, `ball` that of `brdfkit render`, under direct
-light. Made by `python docs/make_refining.py`: {versions}."""
+light. Made by `python docs/tools/make_refining.py`: {versions}."""
 PICTURE = """![What was measured, fitted and refined, from both cameras](refining.jpg)
 
 *Blasted gold and `ggx` in the room: in the upper row the camera of the picture, in the lower one

@@ -3,12 +3,12 @@
 from pathlib import Path
 
 import numpy as np
-from leaderboard_page import made_with
+from leaderboard.page import made_with
 from make_models import paragraphs, table
 
 from brdfkit.theses.drawing import COLOURS, figure, tidy
 
-PAGE = Path(__file__).with_name("shadow_map_gradients.md")
+PAGE = Path(__file__).parents[2] / "shadow_map_gradients.md"
 RESOLUTION = 512  # texels along a side of a map
 RESOLUTIONS = 128, 256, RESOLUTION, 1024
 # Name → the technique; those that average moments of depth first, then those that compare depths
@@ -77,7 +77,7 @@ where rays on both sides tell what is a border. Differences of dense shadow rays
 - **off**: how far they are from the exact ones in all, ‖g - t‖ / ‖t‖: bias and noise.
 
 Maps have 512² texels and defaults, and the lights are a sun and a lamp, where nothing else is
-said. Made by `python docs/make_shadow_map_gradients.py`: {versions}."""
+said. Made by `python docs/tools/make_shadow_map_gradients.py`: {versions}."""
 
 PROJECTIONS = """The slope over a box and a faceted ring in both lights, and in brackets off, in per
 cent."""

@@ -1,7 +1,7 @@
 """Makes `docs/volumes.jpg`: volumes that brdfkit makes, by its renderers, as one would see them who
 changes nothing.
 
-python docs/make_volumes.py           # two minutes
+python docs/tools/make_volumes.py           # two minutes
 """
 
 from pathlib import Path
@@ -13,7 +13,7 @@ import brdfkit as bk
 from brdfkit.core.colours import to_srgb
 from brdfkit.rendering.volumes.scene import RENDERERS
 
-PICTURE = Path(__file__).with_name("volumes.jpg")
+PICTURE = Path(__file__).parents[1] / "volumes.jpg"
 VOLUMES = ("smoke", "marschner_lobb")
 SIZE, VOXELS, SPP, LINE = 250, 128, 128, 28
 

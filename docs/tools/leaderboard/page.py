@@ -10,10 +10,10 @@ from make_models import paragraphs, table
 from brdfkit.core.version import versions
 from brdfkit.theses.drawing import COLOURS, figure, tidy
 
-PAGE = Path(__file__).with_name("leaderboard.md")
-INTRODUCTION = """Every model, fitted to every measurement at hand, and how far it is off. Made by
-`BRDFKIT_DATA=FOLDER python docs/make_leaderboard.py --cache CACHE`, which goes on from where it was
-stopped; FOLDER holds third-party files, which brdfkit does not ship.
+PAGE = Path(__file__).parents[2] / "leaderboard.md"
+INTRODUCTION = """Every model, fitted to every measurement at hand, and how far it is off. The page is made by
+`BRDFKIT_DATA=FOLDER python docs/tools/make_leaderboard.py --cache CACHE`, which goes on from where
+it was stopped; FOLDER holds third-party files, which brdfkit does not ship.
 
 The error ε is the RMS over R, G and B of ln((f cosθ_i cosθ_o + 0.001) / (g cosθ_i cosθ_o + 0.001)):
 0.1 is about 10 %. f is the fit and g the truth, at {pairs:,} direction pairs, uniform in

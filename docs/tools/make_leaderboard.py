@@ -1,10 +1,10 @@
 """Makes `docs/leaderboard.md` and its figure: every model, fitted to every measurement at hand.
 
-    BRDFKIT_DATA=FOLDER python docs/make_leaderboard.py --cache CACHE    # 15 minutes on two cores
+    BRDFKIT_DATA=FOLDER python docs/tools/make_leaderboard.py --cache CACHE    # 15 minutes on two cores
 
 FOLDER holds third-party measurements. CACHE keeps each fit as soon as it is finished, and the same
 command goes on from there; the page is written after each part of the plan. The errors are computed
-by `leaderboard_truth.py`, and made into tables and words by `leaderboard_page.py`.
+by `leaderboard/truth.py`, and made into tables and words by `leaderboard/page.py`.
 """
 
 import argparse
@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from leaderboard_page import write_page
-from leaderboard_truth import MAX_ANGLE, PAIRS, Truth
+from leaderboard.page import write_page
+from leaderboard.truth import MAX_ANGLE, PAIRS, Truth
 
 import brdfkit as bk
 from brdfkit.core.files import sha256, write_safely

@@ -1,7 +1,7 @@
 """Makes `docs/models/` of the models' files: a page each, with balls and lobes, and the index.
 
-python docs/make_models.py              # pages and pictures, in two minutes
-python docs/make_models.py --check      # exits 1 where a page is not what its model says
+python docs/tools/make_models.py              # pages and pictures, in two minutes
+python docs/tools/make_models.py --check      # exits 1 where a page is not what its model says
 """
 
 import json
@@ -16,10 +16,10 @@ from brdfkit.cli.commands.models import choices, example
 from brdfkit.core.discovery.plugin_pages import page as plugin_page
 from brdfkit.model import labels
 
-FOLDER = Path(__file__).with_name("models")
+FOLDER = Path(__file__).parents[1] / "models"
 SIZE, SPP = 320, 128
 INDEX = """A model is a file in [`plugins/bsdfs/`](../../plugins/bsdfs), of which
-`docs/make_models.py` makes its page here. The balls show what each is for, by the
+`docs/tools/make_models.py` makes its page here. The balls show what each is for, by the
 values that its file names, all in the same light; lobes are those of the defaults. A
 form of a model is named with its option, `koenderink:order=8`, a sum of models with a plus,
 `oren_nayar+ward`: see [mixture](mixture.md). In Mitsuba every parameter may be a texture, and one

@@ -1,11 +1,11 @@
 # ruff: noqa: I001, for brdfkit comes first: it chooses the LLVM that Dr.Jit loads
 """Makes `docs/shadow_map_gradients.md` and its picture: how wrong gradients of shadow maps are.
 
-    python docs/make_shadow_map_gradients.py    # minutes on two cores
+    python docs/tools/make_shadow_map_gradients.py    # minutes on two cores
 
 Nine patches of ground receive light that things keep from them. The derivatives by the place of
 these things, as Dr.Jit finds them through shadow maps, stand beside exact ones; see
-`shadow_gradient_truth.py`. The words are in `shadow_map_gradients_page.py`.
+`shadow_map_gradients/truth.py`. The words are in `shadow_map_gradients/page.py`.
 """
 
 import sys
@@ -14,9 +14,9 @@ from functools import cached_property
 import brdfkit  # noqa: F401
 import drjit as dr
 import numpy as np
-import shadow_gradient_truth as truth
-import shadow_map_gradients_page as page
-from shadow_gradient_scenes import LIGHTS, SCENES, load
+from shadow_map_gradients import truth
+from shadow_map_gradients import page
+from shadow_map_gradients.scenes import LIGHTS, SCENES, load
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.shadows.maps.light_shadow import LightShadow

@@ -1,9 +1,10 @@
 """Makes `docs/distance_fields.md`, a gallery of surfaces given by distance functions.
 
-    python docs/make_distance_fields.py     # a quarter of an hour on two cores
+    python docs/tools/make_distance_fields.py     # a quarter of an hour on two cores
 
-Scenes (`distance_field_scenes.py`) that have a picture keep it: delete it to draw it anew. Lessons
-(`distance_field_lessons.py`), small pictures beside each other, are drawn and measured each time.
+A scene (`distance_field_gallery/scenes.py`) that has a picture keeps it: delete the picture to draw
+it anew. Lessons (`distance_field_gallery/lessons.py`), which are small pictures beside each other,
+are drawn and measured each time.
 """
 
 import inspect
@@ -11,21 +12,21 @@ import runpy
 import time
 from pathlib import Path
 
-import distance_field_lessons as lessons  # which imports brdfkit before Mitsuba
 import drjit as dr
 import mitsuba as mi
 import numpy as np
-from distance_field_highlights import SIZES, errors_by_roughness, highlights
-from distance_field_scenes import SCENES
+from distance_field_gallery import lessons  # which imports brdfkit before Mitsuba
+from distance_field_gallery.highlights import SIZES, errors_by_roughness, highlights
+from distance_field_gallery.scenes import SCENES
 from make_models import paragraphs, table
 from PIL import Image, ImageDraw, ImageFont
 
 from brdfkit.core.colours import to_srgb
 
-PAGE = Path(__file__).with_name("distance_fields.md")
+PAGE = Path(__file__).parents[1] / "distance_fields.md"
 FOLDER = PAGE.with_suffix("")
-GYROID = PAGE.with_name("distance_field_gyroid.py")
-START = PAGE.with_name("distance_field_start.py")
+GALLERY = Path(__file__).with_name("distance_field_gallery")
+GYROID, START = GALLERY / "gyroid.py", GALLERY / "start.py"
 SIZE, SPP = (720, 450), 16  # of a scene
 SMALL, SMALL_SPP, TURNS = (300, 225), 4, 3  # of a lesson; its time is the least of some turns
 COLUMNS, LINE = 4, 22  # pictures in a row, pixels of a label
@@ -36,7 +37,8 @@ single march for each point and lamp. Nothing is random but the places within a 
 is no noise, unless it is asked for. There is no light between surfaces either, only that of the
 lamps.
 
-[`make_distance_fields.py`](make_distance_fields.py) makes this page of the code that it shows."""
+[`make_distance_fields.py`](tools/make_distance_fields.py) makes this page from the code that it
+shows."""
 LOOK = """`bk.render` shows any field, of any size. A part with the name of a material that
 brdfkit knows is made of it. In a notebook the picture appears below the cell.
 
@@ -51,7 +53,7 @@ BEGIN = """`|` is the union, `&` the intersection, `-` the difference, as in fog
 [sdf](https://github.com/fogleman/sdf). A part has the material whose name `made_of` gives; the rest
 is grey."""
 SCENE = """What is common to the scenes, `scene`, `bulb`, `panel`, `camera` and `cove`, is in
-[`distance_field_stage.py`](distance_field_stage.py). Materials with a name are measured ones that
+[`stage.py`](tools/distance_field_gallery/stage.py). Materials with a name are measured ones that
 come along: [all of them](materials/README.md)."""
 FIGURES = """*Error*: root mean square over the pixels, of linear values up to {brightest:.1f}, from
 `{truth}`, {rays} rays for each point. *Time*: of the whole picture, over that of `{first}`."""
@@ -93,7 +95,11 @@ light](../notebooks/shadow_of_a_light.md)."""
 
 def page(figures):
     """The text of the page; `figures`: what is said of the errors of a lesson, by its function."""
-    start = BEGIN, shown(START.stem, "A cut cube"), code(START.read_text(encoding="utf-8"))
+    start = (
+        BEGIN,
+        shown("distance_field_start", "A cut cube"),
+        code(START.read_text(encoding="utf-8")),
+    )
     scenes = [text for make in SCENES for text in (f"### {title(make)}", *section(make))]
     own = "The node of one's own:", code(GYROID.read_text(encoding="utf-8"))
     compared = [
@@ -211,7 +217,7 @@ def write(picture, name):
 if __name__ == "__main__":
     mi.set_variant("llvm_ad_rgb")
     FOLDER.mkdir(exist_ok=True)
-    write(image(runpy.run_path(str(START))["picture"]), START.stem)
+    write(image(runpy.run_path(str(START))["picture"]), "distance_field_start")
     for make in SCENES:
         draw_scene(make)
     figures = {make: draw_lesson(make) for make in lessons.LESSONS}

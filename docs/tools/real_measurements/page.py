@@ -3,18 +3,17 @@
 from pathlib import Path
 from statistics import median
 
-import real_measurements_five as five
-import real_measurements_reasons as reasons
-from leaderboard_page import made_with
+from leaderboard.page import made_with
 from make_models import paragraphs, table
-from real_measurements_reasons import DEFAULT, best, farthest, is_beyond, percent
+from real_measurements import five, reasons
+from real_measurements.reasons import DEFAULT, best, farthest, is_beyond, percent
 
-PAGE = Path(__file__).with_name("real_measurements.md")
+PAGE = Path(__file__).parents[2] / "real_measurements.md"
 # A gain of light beyond the rounding of the quadrature
 GAIN = 1.005
 INTRODUCTION = """Whether a fit of a file, as an instrument gives it, is right: its light, its
 picture, and whether another file of the same material gives the same fit. Made by
-`BRDFKIT_DATA=FOLDER python docs/make_real_measurements.py`; FOLDER holds third-party files, which
+`BRDFKIT_DATA=FOLDER python docs/tools/make_real_measurements.py`; FOLDER holds third-party files, which
 brdfkit does not ship.
 
 {versions}; seed 0."""

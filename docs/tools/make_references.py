@@ -1,13 +1,13 @@
 """Makes `docs/references.md`: all works that brdfkit cites.
 
-python docs/make_references.py
+python docs/tools/make_references.py
 """
 
 from pathlib import Path
 
 from brdfkit.core.references import references
 
-PAGE = Path(__file__).with_name("references.md")
+PAGE = Path(__file__).parents[1] / "references.md"
 HEAD = """# References
 
 The works that brdfkit cites, by the key that stands in brackets in its texts. A new one is an entry

@@ -1,7 +1,7 @@
 # ruff: noqa: I001, for brdfkit comes first: it chooses the LLVM that Dr.Jit loads
 """Makes `docs/refining.md` and its picture: fits of tables, refined on pictures.
 
-    python docs/make_refining.py    # minutes on two cores
+    python docs/tools/make_refining.py    # minutes on two cores
 
 Measured materials are rendered as they are, in a room that throws light back, and on a ball under
 direct light alone. Models are fitted to the tables by the loss "picture", refined on one picture of

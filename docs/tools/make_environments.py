@@ -1,7 +1,7 @@
 """Makes `docs/environments.md`, a page of the environment maps that brdfkit brings, with pictures;
 and the picture of the compass for the how-to.
 
-python docs/make_environments.py           # some minutes
+python docs/tools/make_environments.py           # some minutes
 """
 
 from pathlib import Path
@@ -15,7 +15,7 @@ from brdfkit.core import catalogue
 from brdfkit.core.colours import luminance, to_srgb
 from brdfkit.lighting.environments.map_files import read
 
-PAGE = Path(__file__).with_name("environments.md")
+PAGE = Path(__file__).parents[1] / "environments.md"
 COMPASS = PAGE.parent / "how_to" / "compass.jpg"
 SHOWN = [name for name in catalogue.environments() if name != "compass"]
 BALLS = ("red_plastic", "car_paint", "blasted_gold")

@@ -3,8 +3,8 @@
 
 from math import pi
 
-from distance_field_gyroid import gyroid
-from distance_field_stage import bulb, camera, cove, panel, scene
+from distance_field_gallery.gyroid import gyroid
+from distance_field_gallery.stage import bulb, camera, cove, panel, scene
 
 from brdfkit.distance_fields import (
     box,

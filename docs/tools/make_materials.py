@@ -1,8 +1,8 @@
 """Makes `docs/materials/`: a page of each material that brdfkit brings, with the balls of its fits;
 and `docs/materials.jpg`, all of them, which README shows.
 
-python docs/make_materials.py           # five minutes
-python docs/make_materials.py plaster   # one of them
+python docs/tools/make_materials.py           # five minutes
+python docs/tools/make_materials.py plaster   # one of them
 """
 
 import sys
@@ -16,7 +16,7 @@ import brdfkit as bk
 from brdfkit.core import catalogue
 from brdfkit.regression.losses.named import DEFAULT
 
-FOLDER = Path(__file__).with_name("materials")
+FOLDER = Path(__file__).parents[1] / "materials"
 MODELS = ("ward", "ggx", "ggx+ggx", "abc+student_t")
 SIZE, SPP = 224, 144
 BALL, LINE = 160, 28  # pixels of the montage

@@ -4,8 +4,8 @@ from collections import Counter
 from statistics import median
 
 from make_models import table
-from real_measurements_invariance import CAUSES, OF_ALL, SAME, SAME_ALBEDO, cause
-from real_measurements_reasons import percent
+from real_measurements.invariance import CAUSES, OF_ALL, SAME, SAME_ALBEDO, cause
+from real_measurements.reasons import percent
 
 DEFAULT = "cbrt"
 TEXT = f"""Does the fit depend on the file? Materials that are known everywhere, brdfkit's isotropic

@@ -5,7 +5,7 @@
 from math import sqrt
 
 from brdfkit.distance_fields import plane, sphere
-from distance_field_stage import bulb, camera, scene
+from distance_field_gallery.stage import bulb, camera, scene
 import mitsuba as mi
 import numpy as np
 

@@ -1,7 +1,7 @@
 """Makes `docs/plugins/` of the plugins' files: a page of each that is no model, and an index.
 
-python docs/make_plugins.py              # the pages, at once
-python docs/make_plugins.py --check      # exits 1 where a page is not what its plugin says
+python docs/tools/make_plugins.py              # the pages, at once
+python docs/tools/make_plugins.py --check      # exits 1 where a page is not what its plugin says
 """
 
 import math
@@ -14,7 +14,7 @@ from brdfkit.core.discovery import plugin_files
 from brdfkit.core.discovery.plugin_files import KINDS, MODELS
 from brdfkit.model.labels import model_in
 
-FOLDER = Path(__file__).with_name("plugins")
+FOLDER = Path(__file__).parents[1] / "plugins"
 TOP = "../../plugins"
 INDEX = """A file in [`plugins/KIND/`]({top}) is a plugin of Mitsuba's, and its name the type. After
 `import brdfkit` it is known in every variant, in `mitsuba.load_dict`, in scene files and to

@@ -1,6 +1,6 @@
 """Draw `docs/architecture.png`, the layers of the library with their imports.
 
-python docs/make_architecture.py
+python docs/tools/make_architecture.py
 
 The layers are those that `make lint` holds (pyproject.toml), the arrows the imports that the code
 has, at the top of a file or within a function. An import that other arrows lead to as well is left
@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "src" / "brdfkit"
 ROW, GAP = 0.74, 0.2  # inches
 LABELS = 2.5  # inches for what a row is for
@@ -131,4 +131,4 @@ def _arrow(axes, start, end):
 
 
 if __name__ == "__main__":
-    draw().savefig(Path(__file__).with_name("architecture.png"), dpi=110)
+    draw().savefig(Path(__file__).parents[1] / "architecture.png", dpi=110)

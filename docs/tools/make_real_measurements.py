@@ -1,16 +1,16 @@
 """Makes `docs/real_measurements.md`, its figures and its picture: fits of files as instruments give
 them, and of one material as five files.
 
-    BRDFKIT_DATA=FOLDER python docs/make_real_measurements.py [FILE...]    # minutes on two cores
+    BRDFKIT_DATA=FOLDER python docs/tools/make_real_measurements.py [FILE...]    # minutes on two cores
 
 FOLDER holds third-party measurements, which brdfkit does not ship. What is measured is kept in
 `real_measurements.json`, and the same command goes on from there; where files or materials are
 named, they alone are measured, anew. `--only files`, `invariance`, `balls` or `page` makes one
 part. To measure everything anew, delete the JSON.
 
-The figures of files are those of `real_measurements_errors.py`; the five files are written by
-`real_measurements_files.py` and compared by `real_measurements_invariance.py`; the words are in
-`real_measurements_page.py`.
+The figures of files are those of `real_measurements/errors.py`; the five files are written by
+`real_measurements/files.py` and compared by `real_measurements/invariance.py`; the words are in
+`real_measurements/page.py`.
 """
 
 import argparse
@@ -24,11 +24,11 @@ from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
-import real_measurements_page as page
 from PIL import Image, ImageDraw, ImageFont
-from real_measurements_errors import MODELS, measure
-from real_measurements_files import FILES, read_again
-from real_measurements_invariance import LOSSES, Part, compare_files
+from real_measurements import page
+from real_measurements.errors import MODELS, measure
+from real_measurements.files import FILES, read_again
+from real_measurements.invariance import LOSSES, Part, compare_files
 
 import brdfkit as bk
 from brdfkit.core import catalogue
@@ -38,7 +38,7 @@ from brdfkit.core.jit.threads import use_threads
 from brdfkit.core.json_values import rounded
 from brdfkit.model.samples.neural import decode_network
 
-RESULTS = Path(__file__).with_name("real_measurements.json")
+RESULTS = Path(__file__).parents[1] / "real_measurements.json"
 DIGITS = 4  # of numbers in it
 # Where measurements lie in the folder; of CUReT's file of 61 samples every tenth
 COLLECTIONS = "rgl/*.bsdf", "minidiff_paints/*.astm.xz", "cornell/*.[ab]*", "alta_retro/*.dat.xz"
