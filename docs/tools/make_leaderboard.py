@@ -1,6 +1,6 @@
 """Makes `docs/leaderboard.md` and its figure: every model, fitted to every measurement at hand.
 
-    BRDFKIT_DATA=FOLDER python docs/tools/make_leaderboard.py --cache CACHE    # 15 minutes on two cores
+    BRDFKIT_DATA=FOLDER python docs/tools/make_leaderboard.py --cache CACHE  # 15 minutes
 
 FOLDER holds third-party measurements. CACHE keeps each fit as soon as it is finished, and the same
 command goes on from there; the page is written after each part of the plan. The errors are computed

@@ -1,6 +1,6 @@
 """Makes `docs/losses.md` and its pictures: which loss looks best, by path-traced pictures.
 
-    BRDFKIT_DATA=FOLDER python docs/tools/make_losses.py --cache CACHE    # half an hour on two cores
+    BRDFKIT_DATA=FOLDER python docs/tools/make_losses.py --cache CACHE  # half an hour
 
 FOLDER holds third-party measurements: neural reconstructions of MERL's materials. Every fifth of
 them is fitted by every loss, and rendered beside its fits until the noise is as small as is asked

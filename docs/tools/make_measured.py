@@ -29,8 +29,8 @@ CAPTION, FONT, LETTERS = 32, 11, 18  # heights [pixels] of the label and its fon
 SAMPLES = 200_000
 TEXT = """# Measured materials
 
-Every measurement that was at hand when `docs/tools/make_measured.py` ran, looked up and path-traced in
-the same light: brdfkit's own, then third-party files, which are shown here and not shipped.
+Every measurement that was at hand when `docs/tools/make_measured.py` ran, looked up and path-traced
+in the same light: brdfkit's own, then third-party files, which are shown here and not shipped.
 What begins with *neural* is no measurement, but a neural reconstruction of one in MERL's or
 Nielsen's collection [Sztrajman et al. 2021].
 

@@ -1,7 +1,7 @@
 """Makes `docs/real_measurements.md`, its figures and its picture: fits of files as instruments give
 them, and of one material as five files.
 
-    BRDFKIT_DATA=FOLDER python docs/tools/make_real_measurements.py [FILE...]    # minutes on two cores
+    BRDFKIT_DATA=FOLDER python docs/tools/make_real_measurements.py [FILE...]  # minutes
 
 FOLDER holds third-party measurements, which brdfkit does not ship. What is measured is kept in
 `real_measurements.json`, and the same command goes on from there; where files or materials are

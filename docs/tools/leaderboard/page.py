@@ -11,7 +11,7 @@ from brdfkit.core.version import versions
 from brdfkit.theses.drawing import COLOURS, figure, tidy
 
 PAGE = Path(__file__).parents[2] / "leaderboard.md"
-INTRODUCTION = """Every model, fitted to every measurement at hand, and how far it is off. The page is made by
+INTRODUCTION = """Every model, fitted to every measurement at hand, and how far it is off. Made by
 `BRDFKIT_DATA=FOLDER python docs/tools/make_leaderboard.py --cache CACHE`, which goes on from where
 it was stopped; FOLDER holds third-party files, which brdfkit does not ship.
 

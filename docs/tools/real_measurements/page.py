@@ -13,8 +13,8 @@ PAGE = Path(__file__).parents[2] / "real_measurements.md"
 GAIN = 1.005
 INTRODUCTION = """Whether a fit of a file, as an instrument gives it, is right: its light, its
 picture, and whether another file of the same material gives the same fit. Made by
-`BRDFKIT_DATA=FOLDER python docs/tools/make_real_measurements.py`; FOLDER holds third-party files, which
-brdfkit does not ship.
+`BRDFKIT_DATA=FOLDER python docs/tools/make_real_measurements.py`; FOLDER holds third-party files,
+which brdfkit does not ship.
 
 {versions}; seed 0."""
 LOSSES = """## What a loss sums over
