@@ -363,7 +363,7 @@ def test_a_field_that_is_no_distance_is_refused(mi, monkeypatch):
         ({"filename": "a.json", "field": ""}, "a.json: there is no such file"),
         ({"field": "[1]"}, 'distance_field: field: .* should be an object with a "kind"'),
         ({"field": '{"kind": "union", "children": []}'}, "union: there is nothing in it"),
-        ({"field": '{"kind": "sphere", "radius": NaN}'}, "radius = nan should be a finite"),
+        ({"field": '{"kind": "sphere", "radius": NaN}'}, "radius = nan should be a number"),
         ({"shadow": "soft"}, "distance_field: shadow = soft should be one of linear, base"),
         ({"shading": "estimated", "shadow": "quilez"}, "shadow = quilez finds none; give one of"),
         ({"field": sphere(1).made_of("gold").to_json()}, "made of 'gold'; give a bsdf"),

@@ -78,7 +78,7 @@ def test_what_is_no_number_stays_visible():
     [
         ({"curve": "reinhart"}, "did you mean reinhard"),
         ({"by": "hue"}, "channel, luminance"),
-        ({"exposure": -1}, "exposure = -1 should be at least 0"),
+        ({"exposure": -1}, "exposure = -1 should be a number, at least 0"),
         ({"exposure": np.nan}, "exposure = nan"),
         ({"low": 2}, "low = 2 should be below high = 1"),
     ],

@@ -1,57 +1,134 @@
-"""Checks arguments of public verbs: a wrong one is an error that names it."""
+"""Checks arguments of public functions: a wrong value raises an error that names the argument.
 
-import sys
+Each `to_…` function takes `what`, the argument's name in the error, and the value that a user gave;
+it returns the value in the type that the caller works with.
+"""
+
+from __future__ import annotations
+
+import math
 from collections.abc import Mapping
 from dataclasses import fields
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 
-LARGEST = sys.float_info.max  # that an int may exceed
+LONGEST = 80  # characters of a value in an error
 
 
-def to_whole_number(what, value, least):
-    """`value` as an int of at least `least`; `what` names the argument in the error."""
-    if not isinstance(value, int | np.integer) or value < least:
-        raise BrdfkitError(f"{what} = {value!r} should be a whole number, at least {least}.")
-    return int(value)
+def wrong_argument(what: str, value: object, expected: str) -> BrdfkitError:
+    """Return the error for an argument whose value is not as `expected`.
+
+    >>> wrong_argument("spp", -3, "a whole number, at least 1")
+    BrdfkitError('spp = -3 should be a whole number, at least 1.')
+    """
+    text = " ".join(repr(value).split())
+    short = text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
+    return BrdfkitError(f"{what} = {short} should be {expected}.")
 
 
-def to_dictionary(what, given):
-    """`given` as a dictionary by parameter, empty for None."""
-    if not isinstance(given, Mapping | None):
-        raise BrdfkitError(f"{what} = {given!r} should be a dictionary by parameter.")
-    return dict(given or {})
-
-
-def to_pair(what, given):
-    """`given` as two floats."""
+def is_number(value: object) -> TypeGuard[float]:
+    """Return whether a value is a finite real number of Python or NumPy; True and False are not."""
+    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+        return False
     try:
-        low, high = map(float, given)
+        return math.isfinite(value)
+    except OverflowError:  # a whole number that is larger than any float
+        return False
+
+
+def describe_range(
+    noun: str, least: float | None, most: float | None = None, above: float | None = None
+) -> str:
+    """Return a noun with the range that a value should lie in; an infinite `most` is no limit.
+
+    >>> describe_range("a number", 0, 1), describe_range("a whole number", 2)
+    ('a number between 0 and 1', 'a whole number, at least 2')
+    """
+    upper = None if most is None or math.isinf(most) else f"{most:g}"
+    if least is not None and upper:
+        return f"{noun} between {least:g} and {upper}"
+    lower = f" above {above:g}" if above is not None else ""
+    lower = f", at least {least:g}" if least is not None else lower
+    return noun + lower + (f", at most {upper}" if upper else "")
+
+
+def to_number(
+    what: str,
+    value: object,
+    least: float | None = None,
+    most: float | None = None,
+    *,
+    above: float | None = None,
+) -> float:
+    """Return a number as a finite float from `least` to `most`, or larger than `above`."""
+    if is_number(value):
+        number = float(value)
+        low = (least is None or number >= least) and (above is None or number > above)
+        if low and (most is None or number <= most):
+            return number
+    raise wrong_argument(what, value, describe_range("a number", least, most, above))
+
+
+def to_positive(what: str, value: object) -> float:
+    """Return a number as a finite float above 0."""
+    return to_number(what, value, above=0)
+
+
+def to_whole_number(
+    what: str, value: object, least: int | None = None, most: int | None = None
+) -> int:
+    """Return a whole number as an int from `least` to `most`; a float such as 2.0 is an error."""
+    if isinstance(value, int | np.integer) and not isinstance(value, bool):
+        number = int(value)
+        if (least is None or number >= least) and (most is None or number <= most):
+            return number
+    raise wrong_argument(what, value, describe_range("a whole number", least, most))
+
+
+def to_pair(what: str, value: Any) -> tuple[float, float]:
+    """Return two numbers as floats (low, high)."""
+    try:
+        low, high = map(float, value)
     except (TypeError, ValueError):
-        raise BrdfkitError(f"{what} = {given!r} should be two numbers, (low, high).") from None
+        raise wrong_argument(what, value, "two numbers, (low, high)") from None
     return low, high
 
 
-def to_number(what, value):
-    """`value` as a finite float."""
-    if not isinstance(value, int | float | np.number) or not abs(value) <= LARGEST:
-        raise BrdfkitError(f"{what} = {value!r} should be a number.")
-    return float(value)
+def to_dictionary(what: str, value: Any) -> dict[str, Any]:
+    """Return a mapping from names of parameters as a dictionary, which is empty for None."""
+    if not isinstance(value, Mapping | None):
+        raise wrong_argument(what, value, "a dictionary by parameter")
+    return dict(value or {})
 
 
-def to_positive(what, value):
-    """`value` as a float above 0 and finite."""
-    if not isinstance(value, int | float | np.number) or not 0 < value <= LARGEST:
-        raise BrdfkitError(f"{what} = {value!r} should be a number above 0.")
-    return float(value)
+def to_array(what: str, value: Any, shape: tuple[int, ...] | None = None) -> FloatArray:
+    """Return numbers, such as nested lists, as an array of floats.
+
+    An array of floats is returned itself, without a copy. Where a `shape` is given, the array must
+    have it, and all of its numbers must be finite.
+    """
+    try:
+        array: AnyArray = np.asarray(value)
+        if array.dtype not in (np.float32, np.float64):
+            array = array.astype(float)
+    except (TypeError, ValueError):
+        raise BrdfkitError(f"{what}: they should be numbers, in lists of one length.") from None
+    if shape is not None and array.shape != shape:
+        raise BrdfkitError(f"{what}: their shape {array.shape} should be {shape}.")
+    if shape is not None and not np.isfinite(array).all():
+        raise BrdfkitError(f"{what}: they should be finite numbers.")
+    return array
 
 
 def check_numbers(solver: Any) -> None:
-    """Raise `BrdfkitError` unless the fields of a frozen dataclass are above 0, and whole where
-    their defaults are."""
+    """Check that the fields of a frozen dataclass are above 0, and whole where their defaults are.
+
+    The fields then hold plain ints and floats.
+    """
     for field in fields(solver):
         what, value = f"{type(solver).__name__}: {field.name}", getattr(solver, field.name)
         whole = isinstance(field.default, int)

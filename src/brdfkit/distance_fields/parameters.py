@@ -5,7 +5,8 @@ from dataclasses import field
 import drjit as dr
 import numpy as np
 
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.arguments import to_number, to_whole_number, wrong_argument
+from brdfkit.core.errors import no_such
 
 _KINDS: dict[str, type] = {}
 
@@ -20,9 +21,6 @@ def kind(name, where=""):
     if not isinstance(name, str) or name not in _KINDS:
         raise no_such("node", name, sorted(_KINDS), where)
     return _KINDS[name]
-
-
-LARGEST = 1e300
 
 
 def number(default, least=None, above=None):
@@ -51,13 +49,7 @@ def checked(what, value, rules):
 def _number(what, value, rules):
     if dr.is_array_v(value):
         return value
-    least, above = rules["least"], rules["above"]
-    low = least if least is not None else above
-    valid = isinstance(value, int | float | np.number) and abs(value) < LARGEST
-    if valid and (low is None or value > low or (value == least)):
-        return float(value)
-    bound = "" if low is None else (f" above {low:g}" if above is not None else f" from {low:g} on")
-    raise BrdfkitError(f"{what} = {value!r} should be a finite number{bound}.")
+    return to_number(what, value, rules["least"], above=rules["above"])
 
 
 def _vector(what, value, rules):
@@ -66,13 +58,11 @@ def _vector(what, value, rules):
     if hasattr(value, "x"):
         value = value.x, value.y, value.z
     if not isinstance(value, tuple | list | np.ndarray) or len(value) != 3:
-        raise BrdfkitError(f"{what} = {value!r} should be three numbers.")
+        raise wrong_argument(what, value, "three numbers")
     return tuple(_number(f"{what}[{i}]", v, rules) for i, v in enumerate(value))
 
 
 def _count(what, value, rules):
     if value is None and rules["optional"]:
         return None
-    if not isinstance(value, int | np.integer) or value < rules["least"]:
-        raise BrdfkitError(f"{what} = {value!r} should be a whole number from {rules['least']} on.")
-    return int(value)
+    return to_whole_number(what, value, rules["least"])

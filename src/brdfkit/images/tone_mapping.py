@@ -91,8 +91,7 @@ class ToneMapping:
             raise no_such("tone mapping", self.curve, CURVES)
         if self.by not in MEANS:
             raise no_such("tone mapping by", self.by, MEANS)
-        if to_number("exposure", self.exposure) < 0:
-            raise BrdfkitError(f"exposure = {self.exposure!r} should be at least 0.")
+        to_number("exposure", self.exposure, least=0)
         if not to_number("low", self.low) < to_number("high", self.high):
             raise BrdfkitError(f"low = {self.low!r} should be below high = {self.high!r}.")
 

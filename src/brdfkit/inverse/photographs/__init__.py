@@ -1,7 +1,7 @@
 """Textures of a flat sample from photographs of it under known lights.
 
 `capture/capture.py` is what was photographed, by a `capture/pinhole.py`, and `capture/checks.py`
-what must hold of it; `core/to_arrays.py` reads lists of numbers, `capture/capture_file.py` a
+what must hold of it; `capture/capture_file.py` a
 folder, with `capture/cameras.py`, `capture/camera_from_corners.py` and `capture/toml_values.py`;
 `capture/downsampling.py` makes pictures smaller, and `capture/observations.py` says what of them
 each texel shows.

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.arguments import to_number, to_whole_number
 from brdfkit.core.errors import BrdfkitError, Interrupted
 from brdfkit.core.interrupts import Stopped
 from brdfkit.core.jit.llvm import use_variant
@@ -131,8 +131,8 @@ def refine(
     for name, number in (("steps", steps), ("starts", starts)):
         if number is not None:
             to_whole_number(f"refine: {name}", number, 1)
-    if smoothing is not None and not 0 <= smoothing < np.inf:
-        raise BrdfkitError(f"refine: smoothing = {smoothing!r} should be a number ≥ 0.")
+    if smoothing is not None:
+        to_number("refine: smoothing", smoothing, least=0)
     views = _views(scene, read_targets(pictures, linearise, mask), parameters)
     steps = steps or STEPS
     if len(views.start) > MOST or any(unknown.shape for unknown in views.unknowns):

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from brdfkit.core.arguments import describe_range, is_number
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.properties.conversions import is_colour
 from brdfkit.mitsuba_bridge.properties.volumes import (
@@ -43,8 +44,7 @@ def number(default, bounds, meaning):
         import drjit as dr
         import mitsuba as mi
 
-        _require_within(value, bounds)
-        opaque = mi.Float(float(value))
+        opaque = mi.Float(_to_number(value, bounds))
         dr.make_opaque(opaque)
         return opaque
 
@@ -55,10 +55,10 @@ def count(default, bounds, meaning):
     """A whole number within `bounds`, a Python value: each value compiles a kernel of its own."""
 
     def read(value):
-        _require_within(value, bounds)
-        if value != int(value):
+        number = _to_number(value, bounds)
+        if not number.is_integer():
             raise ValueError("a whole number")
-        return int(value)
+        return int(number)
 
     return Setting(default, bounds, meaning, read)
 
@@ -67,8 +67,7 @@ def plain_number(default, bounds, meaning):
     """A number within `bounds`, a Python value: for what is computed before a render."""
 
     def read(value):
-        _require_within(value, bounds)
-        return float(value)
+        return _to_number(value, bounds)
 
     return Setting(default, bounds, meaning, read)
 
@@ -144,7 +143,7 @@ def texture(default, meaning):
 
         if isinstance(value, mi.Texture):
             return value
-        if not (_is_number(value) and math.isfinite(value)):
+        if not is_number(value):
             raise ValueError("a texture or a number")
         return mi.load_dict({"type": "uniform", "value": float(value)}, parallel=False)
 
@@ -178,11 +177,10 @@ def volume(default, meaning, coloured=True, least=0.0):
             return value
         if coloured and is_colour(value):
             return volume_of_colour(value)
-        if not _is_number(value):
+        if not is_number(value):
             constant = "a number or a colour" if coloured else "or a number"
             raise ValueError(f"a volume, such as a gridvolume, {constant}")
-        _require_within(value, (least, math.inf))
-        return constant_volume(value)
+        return constant_volume(_to_number(value, (least, math.inf)))
 
     return Setting(default, None, meaning, read, differentiable=True)
 
@@ -229,17 +227,12 @@ def declared(base, parameters):
     return Declared
 
 
-def _is_number(value):
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def _require_within(value, bounds):
+def _to_number(value, bounds):
+    """Return a property as a float; raise a ValueError for what is no number within `bounds`."""
     low, high = bounds
-    number = float(value) if _is_number(value) else math.nan
-    # "not <=" refuses NaN as well
-    if not low <= number <= high or math.isinf(number):
-        limits = f"at least {low:g}" if math.isinf(high) else f"between {low:g} and {high:g}"
-        raise ValueError(f"a number {limits}")
+    if not (is_number(value) and low <= value <= high):
+        raise ValueError(describe_range("a number", low, high))
+    return float(value)
 
 
 def _shorten(value):

@@ -49,7 +49,7 @@ def to_names(what, names):
 
 def to_texels(resolution):
     """The texels along a side of a map."""
-    return _to_side("resolution", resolution)
+    return to_whole_number("resolution", resolution, 1, MOST)
 
 
 def to_size(size):
@@ -58,7 +58,8 @@ def to_size(size):
         width, height = size
     except (TypeError, ValueError):
         raise BrdfkitError(f"size = {size!r} should be (width, height) in pixels.") from None
-    return _to_side("the width in size", width), _to_side("the height in size", height)
+    width = to_whole_number("the width in size", width, 1, MOST)
+    return width, to_whole_number("the height in size", height, 1, MOST)
 
 
 def to_scene(scene, size):
@@ -77,9 +78,3 @@ def to_scene(scene, size):
     for emitter in scene.emitters():
         Light.of_emitter(emitter)
     return scene
-
-
-def _to_side(what, value):
-    if to_whole_number(what, value, 1) > MOST:
-        raise BrdfkitError(f"{what} = {value!r} should be a whole number, {MOST} at most.")
-    return int(value)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from brdfkit.core.arguments import to_array
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.to_arrays import to_array
 from brdfkit.inverse.photographs.capture.pinhole import Pinhole, corners_of
 
 SMALLEST = 8  # pixels along the longer side of the sample

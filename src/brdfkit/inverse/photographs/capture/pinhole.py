@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.core.arguments import to_array
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.to_arrays import to_array
 
 NEAREST, FARTHEST = 1e-2, 1e4  # what Mitsuba shows, in heights of the camera above the sample
 PARALLEL = 1e-5  # the sine of an angle in which Mitsuba sees none

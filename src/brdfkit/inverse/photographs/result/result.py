@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from brdfkit.core.arguments import to_array, wrong_argument
 from brdfkit.core.documents import Document, Paragraph, Shown, Table
 from brdfkit.core.documents.parts import SOFT
-from brdfkit.core.to_arrays import to_intensity, to_place
 from brdfkit.inverse.photographs.capture.capture import Capture
 from brdfkit.inverse.photographs.capture.observations import light_on
 
@@ -116,9 +116,9 @@ class Svbrdf(Shown):
         >>> picture = maps.relight((0.1, 0.2, 0.5))    # doctest: +SKIP
         """
         points = self.capture.texels(self.shape)
-        eye = self.capture.cameras[0].origin if viewer is None else to_place("viewer", viewer)
-        place = to_place("position", position)[None]
-        power = to_intensity(intensity)
+        eye = self.capture.cameras[0].origin if viewer is None else _to_place("viewer", viewer)
+        place = _to_place("position", position)[None]
+        power = _to_intensity(intensity)
         from brdfkit.inverse.photographs.maps.prediction import predict
 
         to_light, irradiance = light_on(points, place, power)
@@ -214,3 +214,22 @@ def _median(name, errors):
         return ""
     median = float(np.median(errors))
     return f"{np.degrees(median):.2g}°" if name == "normal" else f"{median:.2g}"
+
+
+def _to_place(what: str, point: Any) -> NDArray[Any]:
+    """Return a point above the sample as an array (3,) [m]."""
+    place = to_array(what, point, (3,))
+    if place[2] <= 0:
+        raise wrong_argument(what, point, "above the sample, its z [m] above 0")
+    return place
+
+
+def _to_intensity(value: Any) -> NDArray[Any]:
+    """Return the intensity of a light, one number or three, as an array (1, 3)."""
+    intensity = to_array("intensity", value)
+    if (
+        intensity.shape not in ((), (1,), (3,))
+        or not (np.isfinite(intensity) & (intensity >= 0)).all()
+    ):
+        raise wrong_argument("intensity", value, "a number, or three, 0 or above")
+    return np.broadcast_to(intensity, (1, 3))
