@@ -97,7 +97,7 @@ def main():
     seconds = render_seconds(materials)
     data = full_table()
     columns = [f"std {d}°" for d in INCIDENCES]
-    losses = [f"fit {loss} [s]" for loss in bk.losses.by_sample]
+    losses = [f"fit {loss} [s]" for loss in bk.losses.named.by_sample]
     table = Printed("model", *columns, "albedo", "time", "compile [s]", *losses)
     for name, best in seconds.items():
         row = [f"{best / seconds['roughplastic']:.2f}", f"{compiled[name]:.2f}"]
@@ -107,7 +107,7 @@ def main():
         subject = Subject(bk.models()[name]())
         spreads = [f"{spread(subject, degrees):.2f}" for degrees in INCIDENCES]
         brightest = max(bk.albedo(subject.thing, wi).max() for _, wi in incidences())
-        fits = [f"{fit_seconds(name, data, loss):.2f}" for loss in bk.losses.by_sample]
+        fits = [f"{fit_seconds(name, data, loss):.2f}" for loss in bk.losses.named.by_sample]
         table.add_row(name, *spreads, f"{brightest:.3f}", *row, *fits)
     out.print(table)
     one = np.mean([compiled[name] for name in THESIS])

@@ -23,7 +23,7 @@ from brdfkit.model import labels
 from brdfkit.model.samples import Samples
 from brdfkit.model.samples.measures import estimate_extents
 from brdfkit.regression.certainty import certify
-from brdfkit.regression.losses.named import OFFSET
+from brdfkit.regression.losses.named_losses import OFFSET
 from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.robust.search import settle
@@ -91,7 +91,7 @@ def held(name, loss, noise, replicates, n=600, robust=None, seed=0):
         rng = np.random.default_rng([seed, k])
         noisy = NOISES[noise](rng, values, wi, wo, loss)
         samples = replace(Samples.from_arrays(wi, wo, noisy, None, "RGB", "noisy"), extents=extents)
-        problem = Problem(model, samples, bk.losses[loss], space)
+        problem = Problem(model, samples, bk.losses.named[loss], space)
         ends = levenberg_marquardt(problem.expand, u, weights, problem.least, 50, 1e-10, 1e-4).ends
         point, passes = (ends.u, ends.weights), None
         if robust:
@@ -138,7 +138,7 @@ if __name__ == "__main__":
     models = given.models or [name for name in bk.models() if name != "mixture"]
     report(
         models,
-        given.loss or bk.losses.by_sample,
+        given.loss or bk.losses.named.by_sample,
         given.noise or NOISES,
         given.replicates,
         given.robust,

@@ -9,7 +9,9 @@ from brdfkit.inverse.photographs.capture.pinhole import corners_of
 from brdfkit.inverse.photographs.maps.scene import bsdf_dict
 
 SIDE = 0.1  # m
-CAMERA = bk.Pinhole(np.array([0.02, -0.05, 0.35]), np.zeros(3), np.array([0.0, 1.0, 0.0]), 22.0)
+CAMERA = bk.photographs.Pinhole(
+    np.array([0.02, -0.05, 0.35]), np.zeros(3), np.array([0.0, 1.0, 0.0]), 22.0
+)
 F0 = 0.5
 
 
@@ -85,7 +87,7 @@ def photographs(texels, count, noise=0.01, pixels=None, truth=None, lights_at=No
     )
     noisy = clean * (1 + noise * np.random.default_rng(5).standard_normal(clean.shape))
     names = tuple(f"{k:02}.exr" for k in range(count))
-    return truth, bk.Capture(noisy, *places, cameras or CAMERA, (SIDE, SIDE), names)
+    return truth, bk.photographs.Capture(noisy, *places, cameras or CAMERA, (SIDE, SIDE), names)
 
 
 def write_capture(capture, folder, by_corners=False):

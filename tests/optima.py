@@ -80,7 +80,7 @@ def search(model, data, loss):
     """E of a model's label on a `Measured` where the search ends."""
     samples = select_samples(data, 80.0)
     how = {"anisotropic": data.anisotropic}
-    return regress(labels.model(model), samples, bk.losses[loss], **how).loss
+    return regress(labels.model(model), samples, bk.losses.named[loss], **how).loss
 
 
 def main():

@@ -7,4 +7,4 @@ from brdfkit.regression import losses
 
 def sample_sum(name):
     """The loss of this name as such a sum."""
-    return replace(losses.by_sample[name], name=f"{name} sum", measure="samples")
+    return replace(losses.named.by_sample[name], name=f"{name} sum", measure="samples")

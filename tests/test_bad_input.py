@@ -20,7 +20,7 @@ def of_values(values):
     return bk.Measured.from_samples(samples.wi, samples.wo, values, channels=channels)
 
 
-@pytest.mark.parametrize("loss", bk.losses.by_sample)
+@pytest.mark.parametrize("loss", bk.losses.named.by_sample)
 @pytest.mark.parametrize("name", ["ggx", "koenderink:order=4", "pca_polynomial", "ggx+ggx", "eon"])
 def test_fewer_numbers_than_parameters(name, loss):
     """The fit meets them, claims no certainty, and says so."""
@@ -50,7 +50,7 @@ def test_a_channel_without_values():
         of_values(np.full((20, 3), np.nan))
 
 
-@pytest.mark.parametrize("loss", bk.losses.by_sample)
+@pytest.mark.parametrize("loss", bk.losses.named.by_sample)
 @pytest.mark.parametrize("constant", [0.3, 0.0, -0.2, 1e-30, 1e20])
 def test_constant_data(constant, loss):
     """A diffuse term, or nothing at all; a search that ends, and a note."""
@@ -118,7 +118,7 @@ def test_unknown_names_propose_the_nearest():
     with pytest.raises(BrdfkitError, match="did you mean ward"):
         bk.models()["wrad"]
     with pytest.raises(BrdfkitError, match="did you mean log"):
-        bk.losses["lgo"]
+        bk.losses.named["lgo"]
     assert bk.models().get("wrad") is None
     with pytest.raises(BrdfkitError, match="wrad"):
         bk.check({"type": "wrad"})
@@ -126,7 +126,7 @@ def test_unknown_names_propose_the_nearest():
 
 def test_a_loss_that_weighs_nothing_is_refused():
     grey = of_values(np.full((40, 1), 0.2))
-    nothing = bk.Loss(
+    nothing = bk.losses.Loss(
         "mine", "nothing", lambda m, d, ci, co: m - d, weights=lambda cos_i: 0 * cos_i
     )
     with pytest.raises(BrdfkitError, match="of its weights all are 0"):
@@ -137,4 +137,4 @@ def test_sigma_is_a_number():
     grey = of_values(np.full((40, 1), 0.2))
     fit = bk.fit("koenderink", grey, "plain")
     with pytest.raises(BrdfkitError, match="sigma = 'a' should be a number"):
-        bk.prediction_error(fit, grey, sigma="a")
+        bk.uncertainty.prediction_error(fit, grey, sigma="a")

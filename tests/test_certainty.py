@@ -201,7 +201,7 @@ def test_a_part_is_as_certain_as_the_whole(loss, monkeypatch):
     """Standard errors of 20,000 samples by a sixth of them, to a tenth."""
     data = noisy(bk.models()["ggx"](diffuse_reflectance=(0.1, 0.2, 0.3)), n=20_000)
     model, samples = labels.model("ggx"), select_samples(data, 80.0)
-    problem = Problem(model, samples, losses[loss], Space.of(model, {}, {}, False))
+    problem = Problem(model, samples, losses.named[loss], Space.of(model, {}, {}, False))
     fit = bk.fit("ggx", data, loss, starts=1)
     u = problem.space.coordinates(fit.values)[None]
     weights = np.array([fit.values[n] for n in model.weights()]).T[None]

@@ -606,7 +606,7 @@ def test_bad_input(cli, here, words, said):
 @pytest.mark.quick
 def test_help_names_every_loss(cli):
     described = cli("fit", "--help").stdout
-    assert all(re.search(rf"\b{loss}\b", described) for loss in bk.losses)
+    assert all(re.search(rf"\b{loss}\b", described) for loss in bk.losses.named)
 
 
 def test_ctrl_c_keeps_the_finished_fits(cli, monkeypatch):

@@ -8,7 +8,7 @@ from scipy.integrate import cumulative_trapezoid, trapezoid
 from volume_programs import by_brdfkit
 from volume_programs.case import BEHIND, FOLDER, INDEX, NAMES, PIXELS, Case
 
-from brdfkit import Volume
+from brdfkit.volumes import Volume
 
 ROW = 21  # through everything
 SOME = np.s_[ROW : ROW + 1, ::4]  # of the pixels

@@ -44,7 +44,7 @@ def albedos(model, points=400):
 def test_lambert_ends_at_the_limit():
     """Its albedo is its reflectance; the best one within the limit is the limit."""
     data = synthetic(bk.models()["lambert"](diffuse_reflectance=[0.8, 0.6, 0.3]), noise=0.1)
-    for limit in (bk.AlbedoAtMost(0.5), bk.WeightsAtMost(0.5)):
+    for limit in (bk.solvers.AlbedoAtMost(0.5), bk.solvers.WeightsAtMost(0.5)):
         found, free = bk.fit("lambert", data, constraints=limit), bk.fit("lambert", data)
         own = found.values["diffuse_reflectance"]
         np.testing.assert_allclose(own[:2], 0.5, rtol=0, atol=1e-6)
@@ -57,7 +57,7 @@ def test_lambert_ends_at_the_limit():
 def test_the_limit_is_met_from_a_perfect_fit(loss):
     """Where E is 0 without the constraint."""
     data = synthetic(bk.models()["ward"](diffuse_reflectance=0.8))
-    found = bk.fit("ward", data, loss, starts=4, constraints=bk.AlbedoAtMost(0.6))
+    found = bk.fit("ward", data, loss, starts=4, constraints=bk.solvers.AlbedoAtMost(0.6))
     assert albedos(found.model, 128).max() == pytest.approx(0.6, abs=1e-6)
     # A little less light is not better: the limit holds it
     less = found.model.changed(diffuse_reflectance=found.model.diffuse_reflectance[0] - 1e-3)
@@ -67,7 +67,10 @@ def test_the_limit_is_met_from_a_perfect_fit(loss):
 @pytest.mark.quick
 def test_what_meets_the_constraints_is_returned_as_it_is():
     data = synthetic(bk.models()["ggx"](), noise=0.1)
-    found, free = bk.fit("ggx", data, constraints=[bk.AlbedoAtMost(1.0)]), bk.fit("ggx", data)
+    found, free = (
+        bk.fit("ggx", data, constraints=[bk.solvers.AlbedoAtMost(1.0)]),
+        bk.fit("ggx", data),
+    )
     assert found.values == free.values
     assert found.notes == free.notes
 
@@ -87,7 +90,9 @@ def test_one_parameter_by_brute_force():
 
     best = minimize_scalar(error, bounds=(0, 0.3), method="bounded", options={"xatol": 1e-9})
     loss = sample_sum("log")
-    found = bk.fit("ward", data, loss, fixed={"alpha_u": 0.3}, constraints=bk.AlbedoAtMost(0.3))
+    found = bk.fit(
+        "ward", data, loss, fixed={"alpha_u": 0.3}, constraints=bk.solvers.AlbedoAtMost(0.3)
+    )
     assert found.loss == pytest.approx(np.sqrt(best.fun), rel=1e-9)
     assert found.values["diffuse_reflectance"][0] == pytest.approx(best.x, rel=1e-4)
 
@@ -95,7 +100,7 @@ def test_one_parameter_by_brute_force():
 def setup(label, data, loss, constraints):
     model = labels.model(label)
     problem = Problem(
-        model, select_samples(data, 80.0), losses[loss], Space.of(model, {}, {}, False)
+        model, select_samples(data, 80.0), losses.named[loss], Space.of(model, {}, {}, False)
     )
     return problem, Constraints(constraints, problem)
 
@@ -106,7 +111,7 @@ def test_the_end_is_feasible_and_stationary(model, loss):
     factors ≥ 0; by differences of E² alone."""
     data = synthetic(bk.models()["ggx"](diffuse_reflectance=[0.5, 0.4, 0.3]), noise=0.1)
     limit = 0.9 * albedos(bk.fit(model, data, loss, starts=8).model, 64).max()
-    limits = [bk.AlbedoAtMost(limit)]
+    limits = [bk.solvers.AlbedoAtMost(limit)]
     found = bk.fit(model, data, loss, starts=8, constraints=limits)
     problem, constraints = setup(model, data, loss, limits)
     u = problem.space.coordinates(found.values)
@@ -131,7 +136,9 @@ def test_the_end_is_feasible_and_stationary(model, loss):
 def test_slopes_are_those_of_the_values(model):
     """Of squared weights and of clamped models, too."""
     data = synthetic(bk.models()["lambert"](diffuse_reflectance=[0.5, 0.4, 0.3]))
-    problem, constraints = setup(model, data, "log", [bk.AlbedoAtMost(theta=(20, 70), phi=(0, 40))])
+    problem, constraints = setup(
+        model, data, "log", [bk.solvers.AlbedoAtMost(theta=(20, 70), phi=(0, 40))]
+    )
     shapes = len(problem.space.names)
     count = shapes + 3 * len(problem.least)
     z = np.random.default_rng(0).uniform(0.2, 0.6, count)
@@ -151,7 +158,9 @@ def test_a_users_function_is_a_constraint():
 
     truth = bk.models()["ward"](diffuse_reflectance=[0.5, 0.4, 0.1], specular_reflectance=0.1)
     data = synthetic(truth, noise=0.1)
-    own, ours = (bk.fit("ward", data, constraints=c) for c in (spare, bk.WeightsAtMost(0.4)))
+    own, ours = (
+        bk.fit("ward", data, constraints=c) for c in (spare, bk.solvers.WeightsAtMost(0.4))
+    )
     assert own.loss == pytest.approx(ours.loss, rel=1e-8)
     assert "the constraint spare is at its limit" in own.notes[0]
     assert max(np.add(own.model.diffuse_reflectance, own.model.specular_reflectance)) <= 0.4 + 1e-8
@@ -160,7 +169,7 @@ def test_a_users_function_is_a_constraint():
 def test_a_fit_that_gains_light_is_kept_from_it():
     """`ward_duer` shows blasted gold with an albedo of 1.8 at 85°; kept to 1, it fits worse."""
     free = bk.fit("ward_duer", "blasted_gold", use_standard_error=False)
-    limit = bk.AlbedoAtMost(1.0, theta=(0, 45, 75, 85))
+    limit = bk.solvers.AlbedoAtMost(1.0, theta=(0, 45, 75, 85))
     found = bk.fit("ward_duer", "blasted_gold", use_standard_error=False, constraints=limit)
     assert max(free.albedo.fit[-1]) > 1.5
     assert max(found.albedo.fit[-1]) == pytest.approx(1, abs=1e-4)

@@ -75,8 +75,10 @@ def textures():
     values = {"alpha_u": np.full((2, 2), 0.2), "normal": np.tile([0.0, 0.0, 1.0], (2, 2, 1))}
     errors = {name: np.full((2, 2), 0.01) for name in values}
     pictures = np.full((1, 24, 24, 3), 0.5)
-    capture = bk.Capture(pictures, [[0, 0, 1]], [[1, 1, 1]], CAMERA, (SIDE, SIDE), (NASTY,))
-    return bk.Svbrdf(
+    capture = bk.photographs.Capture(
+        pictures, [[0, 0, 1]], [[1, 1, 1]], CAMERA, (SIDE, SIDE), (NASTY,)
+    )
+    return bk.photographs.Svbrdf(
         name=NASTY,
         model="ggx",
         maps=values,
@@ -98,7 +100,7 @@ def samplers():
     """A `SamplerComparison` of two samplers and three rounds."""
     noise = {"envmap": np.array([1.0, 1.1, 0.9]), NASTY: np.array([0.5, 0.6, 0.5])}
     seconds = {"envmap": np.ones(3), NASTY: np.array([1.0, 1.0, 1.1])}
-    return bk.SamplerComparison(NASTY, NASTY, "ball", noise, seconds, 3)
+    return bk.rendering.SamplerComparison(NASTY, NASTY, "ball", noise, seconds, 3)
 
 
 @pytest.fixture(scope="module")
@@ -111,24 +113,24 @@ def shown():
     objects = [
         named,
         bk.audit(named),
-        bk.audit_environment("sky"),
+        bk.environments.audit("sky"),
         fit,
         bk.models()["ggx"](alpha_u=0.1),
         bk.models(),
-        bk.losses,
+        bk.losses.named,
         bk.compare(named, [fit, "lambert"]),
         bk.check("lambert", only=["energy"]),
         bk.rank(plaster, ["lambert", "ward"]),
         bk.sweep("plaster", "lambert", workers=1),
-        bk.bootstrap(fit, plaster, count=2),
-        bk.profile(fit, plaster, "alpha_u", points=5),
+        bk.uncertainty.bootstrap(fit, plaster, count=2),
+        bk.uncertainty.profile(fit, plaster, "alpha_u", points=5),
         bk.Reproduction(NASTY, ()),
         refinement(),
         textures(),
         rendering,
         rendering.errors(),
         bk.gallery([[(NASTY, named), fit]], spp=2, size=32),
-        summarise(bk.load_volume("slab", size=8)),
+        summarise(bk.volumes.load("slab", size=8)),
         samplers(),
         bk.shadows.ShadowComparison({NASTY: (bk.shadows.Scores(psnr=30.0),)}, 1, 1, ()),
     ]

@@ -4,7 +4,7 @@ import drjit as dr
 import numpy as np
 import pytest
 
-from brdfkit import TransferFunction
+from brdfkit.volumes import TransferFunction
 
 pytestmark = pytest.mark.quick
 SPP = 512  # of gradients, whose samples are others

@@ -258,7 +258,7 @@ def test_compass(maps):
 def test_what_cannot_be_converted(tmp_path, monkeypatch, words, sentence):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(bk.BrdfkitError, match=sentence):
-        bk.convert_environment("sky", **{"path": "new.exr", **words})
+        bk.environments.convert("sky", **{"path": "new.exr", **words})
     assert not list(tmp_path.iterdir())
 
 
@@ -274,7 +274,7 @@ def test_an_audit_of_a_known_map():
         bright = np.where(d @ towards > np.cos(np.radians(20)), 100.0, 1.0)
         return np.repeat(bright[..., None], 3, axis=-1)
 
-    found = bk.audit_environment(map_of(radiance, "mitsuba", 256))
+    found = bk.environments.audit(map_of(radiance, "mitsuba", 256))
     share = (1 - np.cos(np.radians(20))) / 2
     assert found.mean == pytest.approx(1 + 99 * share, rel=0.005)
     assert (found.median, found.largest) == (1, pytest.approx(100))
@@ -310,7 +310,7 @@ CLIPPED = np.minimum(one_pixel(0.5), 0.4)
     ],
 )
 def test_findings(rgb, finding):
-    found = bk.audit_environment(rgb)
+    found = bk.environments.audit(rgb)
     assert any(finding in sentence for sentence in found.findings()), found.findings()
     assert finding in str(found)
     assert found.picture().axes
@@ -319,7 +319,7 @@ def test_findings(rgb, finding):
 def test_shipped_maps_are_not_doubtful():
     for name in {*MAPS} - {"compass"}:
         clipped = "unless a computer made the map"  # one did
-        assert all(clipped in f for f in bk.audit_environment(name).findings()), name
+        assert all(clipped in f for f in bk.environments.audit(name).findings()), name
 
 
 # Bad files
@@ -399,8 +399,8 @@ def test_bad_files(bad, module_in_llvm):
     renders = {"black.exr": "gives no light from above"}
     before = set(bad.iterdir())
     verbs = {
-        bk.audit_environment: everywhere,
-        lambda file: bk.convert_environment(file, "new.exr"): everywhere | lights,
+        bk.environments.audit: everywhere,
+        lambda file: bk.environments.convert(file, "new.exr"): everywhere | lights,
         lambda file: bk.render("lambert", 1, 8, envmap=file): everywhere | lights | renders,
     }
     for verb, sentences in verbs.items():
@@ -416,9 +416,9 @@ def test_bad_files(bad, module_in_llvm):
 def test_eight_bit_pictures_are_said_to_be(tmp_path):
     file = tmp_path / "sky.png"
     mi.Bitmap((255 * one_pixel(0.5)).astype(np.uint8)).write(str(file))
-    assert "8 bits per channel" in str(bk.audit_environment(file))
+    assert "8 bits per channel" in str(bk.environments.audit(file))
     with pytest.warns(UserWarning, match="8 bits per channel"):
-        bk.convert_environment(file, tmp_path / "sky.exr", target="cross")
+        bk.environments.convert(file, tmp_path / "sky.exr", target="cross")
 
 
 # By name, and on the command line

@@ -5,8 +5,10 @@ import pytest
 from click.testing import CliRunner
 from PIL import Image, ImageSequence
 
-from brdfkit import BrdfkitError, Film, ToneMapping, TransferFunction, Volume, render_orbit
+from brdfkit import BrdfkitError, ToneMapping
 from brdfkit.cli import main
+from brdfkit.rendering import Film, render_orbit
+from brdfkit.volumes import TransferFunction, Volume
 
 pytestmark = pytest.mark.usefixtures("module_in_llvm")
 GREY = TransferFunction.from_colormap("gray", (0, 1), [(0, 1), (1, 1)])

@@ -71,7 +71,7 @@ def assert_same_parameters(found, truth):
 
 
 @pytest.mark.parametrize(
-    ("loss", "starts"), [("cbrt", 16), *((loss, 4) for loss in bk.losses.by_sample)]
+    ("loss", "starts"), [("cbrt", 16), *((loss, 4) for loss in bk.losses.named.by_sample)]
 )
 def test_known_parameters_come_back(model, loss, starts):
     """To 1e-4, from few starts and with the usual several ones."""
@@ -178,7 +178,7 @@ def test_what_sits_on_a_bound_is_named():
 def test_a_lobe_that_is_not_there_is_named():
     """A facet model without its tails would want less than nothing diffuse: it gets none."""
     samples = select_samples(synthetic(bk.models()["ggx"](diffuse_reflectance=0.0)), 80.0)
-    loss, bounds = bk.losses["kurt"], {"exponent": (0.1, 2.0)}
+    loss, bounds = bk.losses.named["kurt"], {"exponent": (0.1, 2.0)}
     found = regress(bk.models()["blinn_phong"], samples, loss, bounds=bounds)
     assert found.weights[0, 0] == 0
     assert "diffuse_reflectance" in found.at_bounds
@@ -218,7 +218,7 @@ def test_lafortunes_other_lobes_come_back(c_x, c_y):
 @pytest.mark.quick
 def test_a_black_material_is_fitted():
     data = synthetic(bk.models()["lambert"](diffuse_reflectance=0.0), n=50)
-    for loss in bk.losses.by_sample:
+    for loss in bk.losses.named.by_sample:
         found = bk.fit("ward", data, loss=loss, starts=2)
         assert found.loss < 1e-9
         assert found.values["diffuse_reflectance"][0] < 1e-9
@@ -300,7 +300,7 @@ def test_fixed_parameter_stays():
 def test_metrics_agree_with_the_fit():
     """`compare`, which evaluates in NumPy, finds the loss that the fit reported."""
     data = synthetic(random_model(bk.models()["ggx"], 3))
-    for loss in bk.losses.by_sample:
+    for loss in bk.losses.named.by_sample:
         found = bk.fit("ward", data, loss=loss)
         assert bk.compare(data, found).errors["ward"][loss] == pytest.approx(found.loss, rel=1e-9)
 

@@ -82,7 +82,7 @@ def test_residuals_are_measured_less_modelled():
         assert (left.values[rows] < 0).any()
         samples = select_samples(left, 70.0)
         cosines = samples.wi[:, 2:] * samples.wo[:, 2:]
-        loss = bk.losses["lafortune"].importance(samples) @ (cosines * samples.values) ** 2
+        loss = bk.losses.named["lafortune"].importance(samples) @ (cosines * samples.values) ** 2
         assert loss.sum() == pytest.approx(fit.loss**2)
         bk.plot(left)
         assert bk.render(left, spp=1, size=4).pictures[f"{data.name} - lambert"].min() >= 0

@@ -31,7 +31,7 @@ def problem_of(name, samples, loss="cosine"):
     """The `Problem` of a model, with what the directions determine fixed."""
     model = labels.model(name)
     space = Space.of(model, {}, model.determined(samples), True)
-    return Problem(model, samples, losses.by_sample[loss], space)
+    return Problem(model, samples, losses.named.by_sample[loss], space)
 
 
 def point(problem, seed, points=2):
@@ -43,7 +43,7 @@ def point(problem, seed, points=2):
     return u, weights
 
 
-@pytest.mark.parametrize("loss", losses.by_sample)
+@pytest.mark.parametrize("loss", losses.named.by_sample)
 @pytest.mark.parametrize("name", MODELS_WITHOUT_SUMS)
 def test_squared_error_and_gradient(name, loss):
     """E² against NumPy, its gradient against central differences: at several points at once."""

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from brdfkit import TransferFunction, Volume
+from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.rays.first_crossing import first_above, first_crossing
 
 SUN = {"type": "directional", "direction": [0, 0, -1], "irradiance": 2.0}

@@ -31,13 +31,13 @@ def assert_same(found, other, rtol=1e-10):
 @pytest.mark.quick
 def test_a_loss_tells_itself_whether_it_is_linear():
     """Not by a flag: by its values, over eight decades of the model's and the measured one."""
-    linear = {name for name, loss in bk.losses.items() if loss.linear}
+    linear = {name for name, loss in bk.losses.named.items() if loss.linear}
     assert linear == {"cosine", "plain", "lafortune", "kurt"}
 
     def bent(model, measured, cos_i, cos_o):
         return dr.minimum(model, 100.0) - dr.minimum(measured, 100.0)
 
-    assert not bk.Loss("bent", "linear up to 100", bent).linear
+    assert not bk.losses.Loss("bent", "linear up to 100", bent).linear
 
 
 @pytest.mark.quick
@@ -50,12 +50,12 @@ def test_a_loss_of_ones_own_is_as_good():
         return dr.log(kappa * model + 1e-3) - dr.log(kappa * dr.maximum(measured, 0) + 1e-3)
 
     data = measured(bk.models()["ward"](alpha_u=0.3), noise=0.01)
-    mine = bk.Loss("own_log", "Mine", own_log, measure="angles")
+    mine = bk.losses.Loss("own_log", "Mine", own_log, measure="angles")
     found, known = bk.fit("ggx", data, mine), bk.fit("ggx", data, "log")
     assert bk.fit("ggx", data, own_log).loss_name == "own_log"
     assert found.loss == pytest.approx(known.loss, rel=1e-12)
     assert_same(found, known)
-    both = bk.Loss("both", "with weights", own_log, weights=lambda cos_i: cos_i)
+    both = bk.losses.Loss("both", "with weights", own_log, weights=lambda cos_i: cos_i)
     assert bk.fit("ggx", data, both).loss != pytest.approx(known.loss, rel=1e-3)
 
 
@@ -70,12 +70,15 @@ def test_a_loss_of_ones_own_is_as_good():
         (lambda m, r, ci, co: dr.sum(m - r), "gives 1 numbers for 4 samples"),
         (lambda m, r, ci, co: r * ci, "does not change with the model's value"),
         (lambda m, r, ci, co: dr.detach(m) - r, "or has no derivative by it"),
-        (bk.Loss("log", "taken", lambda m, r, ci, co: m - r), "a name that brdfkit.losses lacks"),
         (
-            bk.Loss("few", "", lambda m, r, ci, co: m - r, weights=lambda c: c[:2]),
+            bk.losses.Loss("log", "taken", lambda m, r, ci, co: m - r),
+            "a name that brdfkit.losses.named lacks",
+        ),
+        (
+            bk.losses.Loss("few", "", lambda m, r, ci, co: m - r, weights=lambda c: c[:2]),
             "weights of the loss few",
         ),
-        (bk.Loss("low", "", lambda m, r, ci, co: m - r, weights=lambda c: -c), "at least 0"),
+        (bk.losses.Loss("low", "", lambda m, r, ci, co: m - r, weights=lambda c: -c), "at least 0"),
         (lambda m, r, ci, co: dr.log(m) - dr.log(r + 1), "is -inf at theta_i.*the model's 0; keep"),
         (lambda m, r, ci, co: dr.log(m + 1) - dr.log(r), "is inf at theta_i.*measured value is 0"),
         (lambda m, r, ci, co: dr.sqrt(m) - dr.sqrt(r), "the derivative inf at theta_i"),
@@ -109,7 +112,7 @@ def test_a_sample_that_is_there_twice_counts_once():
     wi, wo, values = data.samples.wi[rows], data.samples.wo[rows], data.values[rows]
     repeated = select_samples(bk.Measured.from_samples(wi, wo, values), 80.0)
     once = select_samples(data, 80.0)
-    for loss in bk.losses.by_sample.values():
+    for loss in bk.losses.named.by_sample.values():
         if loss.measure != "samples":
             first = loss.importance(repeated)[rows < N // 2].sum()
             expected = loss.importance(once)[: N // 2].sum()
@@ -168,7 +171,7 @@ def test_bad_standard_errors_are_refused(bad):
 
 def stopping(after, name="stopped"):
     """The log loss; its call number `after` is hit by Ctrl-C."""
-    log, calls = bk.losses["log"], []
+    log, calls = bk.losses.named["log"], []
 
     def difference(*arrays):
         calls.append(1)
@@ -176,7 +179,7 @@ def stopping(after, name="stopped"):
             raise KeyboardInterrupt
         return log.difference(*arrays)
 
-    return bk.Loss(name, log.meaning, difference, log.measure)
+    return bk.losses.Loss(name, log.meaning, difference, log.measure)
 
 
 @pytest.mark.quick
@@ -200,7 +203,7 @@ def test_ctrl_c_on_the_command_line_prints_it(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     lambert = CliRunner().invoke(main, ["fit", "ward.npz", "-m", "lambert"])
     assert lambert.exit_code == 0
-    monkeypatch.setitem(bk.losses, "cbrt", stopping(120, "cbrt"))
+    monkeypatch.setitem(bk.losses.named, "cbrt", stopping(120, "cbrt"))
     found = CliRunner().invoke(
         main, ["fit", "ward.npz", "-m", "lambert", "-m", "ggx", "-m", "ward", "-o", "fits"]
     )

@@ -4,7 +4,7 @@ import drjit as dr
 import numpy as np
 import pytest
 
-from brdfkit import TransferFunction, Volume
+from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.rays.largest_value import largest_along
 
 

@@ -100,10 +100,10 @@ def test_a_model_that_cannot_have_the_light_says_so(measured_data):
 
 def test_an_unknown_measure_is_refused():
     with pytest.raises(bk.BrdfkitError, match="no measure of directions 'solid'"):
-        bk.Loss("mine", "mine", lambda m, r, ci, co: m - r, measure="solid")
+        bk.losses.Loss("mine", "mine", lambda m, r, ci, co: m - r, measure="solid")
 
 
-@pytest.mark.parametrize("loss", [n for n, one in bk.losses.by_sample.items() if n != "kurt"])
+@pytest.mark.parametrize("loss", [n for n, one in bk.losses.named.by_sample.items() if n != "kurt"])
 def test_either_direction_may_be_first(loss):
     """A goniometer that turns the detector, and one that turns the lamp, give one fit."""
     wi, wo = random_pairs(2_000, seed=5, max_degrees=75.0)
@@ -176,9 +176,9 @@ def test_the_bootstrap_of_a_fit_that_keeps_its_light_keeps_it(measured_data):
     data = bk.load(measured_data / "minidiff_paints" / "C2_Black.astm.xz")
     found = bk.fit("ggx", data)
     assert any(note.startswith("by the loss alone") for note in found.notes)
-    for name, interval in bk.bootstrap(found, data, 20).intervals(0.99).items():
+    for name, interval in bk.uncertainty.bootstrap(found, data, 20).intervals(0.99).items():
         low, high = np.reshape(interval, (-1, 2)).T
         assert (low <= found.values[name]).all(), name
         assert (found.values[name] <= high).all(), name
     with pytest.raises(bk.BrdfkitError, match="searched again for the light of its data"):
-        bk.profile(found, data, "alpha_u")
+        bk.uncertainty.profile(found, data, "alpha_u")

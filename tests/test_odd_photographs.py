@@ -26,7 +26,7 @@ def capture(mi):
 
 
 def fit(capture, **how):
-    return bk.svbrdf(capture, **{"resolution": TEXELS, "smoothness": 0.1} | how)
+    return bk.photographs.svbrdf(capture, **{"resolution": TEXELS, "smoothness": 0.1} | how)
 
 
 @pytest.fixture(scope="module")
@@ -43,11 +43,11 @@ def test_lists_are_as_good_as_arrays(capture, found):
     camera = capture.camera
     vectors = (getattr(camera, name).tolist() for name in ("origin", "target", "up"))
     again = fit(
-        bk.Capture(
+        bk.photographs.Capture(
             capture.pictures.tolist(),
             capture.positions.tolist(),
             capture.intensities.tolist(),
-            bk.Pinhole(*vectors, 22),
+            bk.photographs.Pinhole(*vectors, 22),
             list(capture.size),
             list(capture.names),
             lost=np.zeros(capture.pictures.shape, int),  # not ~0
@@ -78,7 +78,9 @@ ODD = {
     "all different": lambda c: {"names": ("a",) * len(c.names)},
     "names: there should be 8": lambda c: {"names": ("a",)},
     "should be a Pinhole": lambda c: {"camera": None},
-    "looks along up": lambda c: {"camera": bk.Pinhole([0, 0, 1], [0, 0, 0], [0, 0, 1], 20)},
+    "looks along up": lambda c: {
+        "camera": bk.photographs.Pinhole([0, 0, 1], [0, 0, 0], [0, 0, 1], 20)
+    },
     "fov = 190 should be between": lambda c: {"camera": dataclasses.replace(c.camera, fov=190)},
     "smaller than 8 pixels": lambda c: {"camera": dataclasses.replace(c.camera, fov=120)},
 }

@@ -35,7 +35,7 @@ def made(mi):
 
 @pytest.fixture(scope="module")
 def found(made):
-    return bk.svbrdf(made[1], resolution=TEXELS)
+    return bk.photographs.svbrdf(made[1], resolution=TEXELS)
 
 
 def inner(values):
@@ -144,7 +144,7 @@ def test_what_is_found_says_what_it_is(found):
 def test_widths_of_two_directions_come_back_as_one(made):
     """The sample is isotropic, which two maps of width should find out."""
     truth, capture = made
-    found = bk.svbrdf(capture, resolution=TEXELS, anisotropic=True, smoothness=0.1)
+    found = bk.photographs.svbrdf(capture, resolution=TEXELS, anisotropic=True, smoothness=0.1)
     for name in ("alpha_u", "alpha_v"):
         assert np.median(np.abs(inner(found.maps[name] / truth.maps["alpha_u"] - 1))) < 0.05
 
@@ -159,7 +159,7 @@ def test_the_direction_of_a_brushed_metal_comes_back(mi, tmp_path):
         ANGLE: np.arctan2(0.2 - row, column - 0.6) % np.pi - np.pi / 2,
     }
     _, capture = made_capture.photographs(TEXELS, LIGHTS, truth=truth)
-    found = bk.svbrdf(capture, anisotropic=True, resolution=TEXELS)
+    found = bk.photographs.svbrdf(capture, anisotropic=True, resolution=TEXELS)
     for name in ("alpha_u", "alpha_v"):
         assert np.median(np.abs(inner(found.maps[name] / truth.maps[name] - 1))) < 0.03
     off = inner(found.maps[ANGLE] - truth.maps[ANGLE] + np.pi / 2) % np.pi - np.pi / 2
@@ -173,7 +173,7 @@ def test_the_direction_of_a_brushed_metal_comes_back(mi, tmp_path):
 
 
 def test_models_with_options_and_sums_can_be_shown(mi, made):
-    found = bk.svbrdf(made[1], "ggx+ward", resolution=8, smoothness=0.1)
+    found = bk.photographs.svbrdf(made[1], "ggx+ward", resolution=8, smoothness=0.1)
     assert mi.load_dict(found.scene_dict()).bsdf() is not None
     assert 'name="models" value="ggx+ward"' in scene_xml(found, {n: n for n in found.maps})
 
@@ -190,7 +190,7 @@ def test_ctrl_c_keeps_the_coarser_maps(made, monkeypatch, tmp_path):
 
     monkeypatch.setattr(coarse_to_fine, "finish", stop)
     with pytest.raises(bk.Interrupted) as stopped:
-        bk.svbrdf(made[1], resolution=TEXELS, smoothness=0.1)
+        bk.photographs.svbrdf(made[1], resolution=TEXELS, smoothness=0.1)
     best = stopped.value.best
     assert best.shape == (TEXELS, TEXELS)
     off = best.maps["diffuse_reflectance"] - made[0].maps["diffuse_reflectance"]
@@ -212,7 +212,7 @@ def test_one_light_says_what_trades_off(made):
     alone = dataclasses.replace(
         capture, pictures=first[0], positions=first[1], intensities=first[2], names=("one.exr",)
     )
-    found = bk.svbrdf(alone, resolution=8)
+    found = bk.photographs.svbrdf(alone, resolution=8)
     assert "One light: roughness and strength trade off" in found.notes[0]
 
 
@@ -232,7 +232,7 @@ def test_matt_parts_of_a_sample_of_metal_come_back(mi):
     truth.maps["diffuse_reflectance"][:, metal] = 0
     truth.maps["specular_reflectance"][:, ~metal] *= 0.1
     _, capture = made_capture.photographs(24, LIGHTS, truth=truth)
-    found = bk.svbrdf(capture, resolution=24)
+    found = bk.photographs.svbrdf(capture, resolution=24)
     off = inner(found.maps["diffuse_reflectance"] - truth.maps["diffuse_reflectance"])
     assert np.sqrt((off**2).mean()) < 0.08  # 0.18 with units by the weights' own median
 
@@ -251,7 +251,7 @@ def test_parts_that_fit_badly_begin_again(mi):
         truth.maps[name] = np.array(values)[1 * white + 2 * metal]
     truth.maps["normal"][:] = 0, 0, 1
     _, capture = made_capture.photographs(48, 10, truth=truth)
-    found = bk.svbrdf(capture, resolution=48)
+    found = bk.photographs.svbrdf(capture, resolution=48)
     flat = minimum_filter(metal, 3)
     off = (found.maps["specular_reflectance"] - truth.maps["specular_reflectance"])[flat]
     assert (np.abs(off).max(axis=1) > 0.2).mean() < 0.01
@@ -268,14 +268,16 @@ def test_parts_that_fit_badly_begin_again(mi):
 def test_what_cannot_be_is_said(made, fields, sentence):
     """Lights whose y is upside down, intensities of another unit."""
     changed = {name: getattr(made[1], name) * factor for name, factor in fields.items()}
-    found = bk.svbrdf(dataclasses.replace(made[1], **changed), resolution=16, smoothness=0.1)
+    found = bk.photographs.svbrdf(
+        dataclasses.replace(made[1], **changed), resolution=16, smoothness=0.1
+    )
     assert sentence in str(found).replace("\n", " ").replace("  ", " ")
 
 
 def test_one_light_in_a_wrong_place_is_named(made):
     positions = made[1].positions.copy()
     positions[3, 0] *= -1
-    found = bk.svbrdf(dataclasses.replace(made[1], positions=positions), resolution=16)
+    found = bk.photographs.svbrdf(dataclasses.replace(made[1], positions=positions), resolution=16)
     assert any("Worst explained: 03.exr;" in note for note in found.notes)
 
 
@@ -319,7 +321,7 @@ def test_the_command_writes_maps_a_scene_and_a_report(mi, made, tmp_path):
 
 
 def change(capture, **fields):
-    return lambda: bk.svbrdf(dataclasses.replace(capture, **fields))
+    return lambda: bk.photographs.svbrdf(dataclasses.replace(capture, **fields))
 
 
 def test_bad_captures_are_one_sentence(made):
@@ -359,7 +361,7 @@ def test_a_light_behind_the_sample_is_refused(found):
 )
 def test_bad_arguments_are_one_sentence(made, how, sentence):
     with pytest.raises(bk.BrdfkitError, match=sentence):
-        bk.svbrdf(made[1], **how)
+        bk.photographs.svbrdf(made[1], **how)
 
 
 NO_PLACE = "[sample]\nwidth = 1\nheight = 1\n[camera]\nfov = 60"
@@ -410,7 +412,7 @@ def test_a_camera_comes_back_from_corners():
             [across * np.cos(phi), across * np.sin(phi), np.cos(theta)]
         )
         target, up = rng.standard_normal((2, 3)) * [[0.02, 0.02, 0], [1, 1, 1]]
-        camera = bk.Pinhole(origin, target, up, 40.0)
+        camera = bk.photographs.Pinhole(origin, target, up, 40.0)
         places = camera.project(corners_of(size), (640, 480))
         found = camera_from_corners(places, corners_of(size), (640, 480), 40.0)
         np.testing.assert_allclose(found.origin, origin, atol=1e-9)
@@ -422,12 +424,15 @@ def test_a_camera_that_moves_with_its_flash(mi, tmp_path):
     truth = made_capture.Truth(TEXELS)
     rng = np.random.default_rng(1)
     positions, intensities = made_capture.lights(8, seed=5)
-    cameras = [bk.Pinhole(place, np.zeros(3), rng.standard_normal(3), 22.0) for place in positions]
+    cameras = [
+        bk.photographs.Pinhole(place, np.zeros(3), rng.standard_normal(3), 22.0)
+        for place in positions
+    ]
     _, capture = made_capture.photographs(
         TEXELS, 8, truth=truth, lights_at=(positions, intensities), cameras=cameras
     )
     made_capture.write_capture(capture, tmp_path, by_corners=True)
-    found = bk.svbrdf(tmp_path, resolution=TEXELS)
+    found = bk.photographs.svbrdf(tmp_path, resolution=TEXELS)
     np.testing.assert_allclose(found.capture.positions, positions, atol=1e-6)
     off = inner(found.maps["diffuse_reflectance"] - truth.maps["diffuse_reflectance"])
     assert np.sqrt((off**2).mean()) < 0.02
@@ -437,7 +442,7 @@ def test_a_camera_that_moves_with_its_flash(mi, tmp_path):
 
 def test_a_folder_that_is_missing_is_said(tmp_path):
     with pytest.raises(bk.BrdfkitError, match="no such folder"):
-        bk.svbrdf(tmp_path / "nowhere")
+        bk.photographs.svbrdf(tmp_path / "nowhere")
 
 
 @pytest.mark.parametrize("case", FILES)

@@ -143,7 +143,7 @@ def test_gradient_of_pictures(name):
     model, data = bk.model.labels.model(name), measured(truth, 300)
     samples, space = select_samples(data, 80.0), Space.of(model, {}, {}, False)
     pixels = draw_pixels(("sky",), truth.eval, pixels=60)
-    problem = PictureProblem(model, samples, bk.Picture(share=0.1), space, pixels)
+    problem = PictureProblem(model, samples, bk.losses.Picture(share=0.1), space, pixels)
     rng = np.random.default_rng(2)
     u = rng.uniform(0.3, 0.7, (1, len(space.names)))
     weights = rng.uniform(0.1, 0.4, (1, 3, len(model.weights())))
@@ -201,7 +201,7 @@ def test_a_fit_by_pictures_looks_better(monkeypatch):
 @pytest.mark.quick
 def test_a_fit_says_what_it_saw(tmp_path):
     data = measured(bk.models()["ggx"](**GLOSSY, alpha_u=0.3), 500)
-    found = bk.fit("lambert", data, bk.Picture(lights=("hall", "sky")))
+    found = bk.fit("lambert", data, bk.losses.Picture(lights=("hall", "sky")))
     assert found.notes[0].startswith("seen: pictures of a ball under hall and sky")
     assert np.isnan(found.aic)
     assert np.isnan(found.standard_errors["diffuse_reflectance"]).all()
@@ -209,7 +209,7 @@ def test_a_fit_says_what_it_saw(tmp_path):
     assert bk.load(tmp_path / "fit.json") == found
     assert "picture" not in bk.compare(data, found).errors["lambert"]
     with pytest.raises(BrdfkitError, match="lambert was fitted by pictures"):
-        bk.bootstrap(found, data)
+        bk.uncertainty.bootstrap(found, data)
 
 
 @pytest.mark.quick
@@ -243,4 +243,4 @@ def test_what_pictures_cannot_do_is_refused(model, how, words):
 )
 def test_a_bad_picture_is_refused(given, words):
     with pytest.raises(BrdfkitError, match=words):
-        bk.Picture(**given)
+        bk.losses.Picture(**given)

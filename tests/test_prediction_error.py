@@ -18,7 +18,7 @@ def test_variance_and_bias_are_those_of_repeated_fits(name, loss):
     noise = sigma * np.random.default_rng(3).normal(size=(count, len(wi), 1))
     measured = [bk.Measured.from_samples(wi, wo, clean.values + e, channels=("Y",)) for e in noise]
     fits = [bk.fit(name, data, loss) for data in measured]
-    error = bk.prediction_error(fits[0], measured[0], truth, sigma)
+    error = bk.uncertainty.prediction_error(fits[0], measured[0], truth, sigma)
     rows = measured[0].samples.within(80)
     lobes = np.array([np.ravel([f.values[n] for n in f.model.weights()]) for f in fits])
     predicted = lobe_values(fits[0].model, wi[rows], wo[rows])[0] @ lobes.T
@@ -37,7 +37,7 @@ def test_of_the_measured_values_it_is_the_residuals():
     data = synthetic(bk.models()["ggx"](diffuse_reflectance=(0.1, 0.2, 0.3), alpha_u=0.4), n=120)
     fit = bk.fit("pca_polynomial", data, "plain")
     left = fit.residuals(data)
-    error = bk.prediction_error(fit, data)
+    error = bk.uncertainty.prediction_error(fit, data)
     lobes = -left.values[left.samples.valid]
     unclamped = fit.eval(*(w[left.samples.valid] for w in (data.samples.wi, data.samples.wo))) > 0
     np.testing.assert_allclose(error.bias[unclamped], lobes[unclamped], atol=1e-9)
@@ -59,6 +59,6 @@ def test_what_is_not_linear_is_refused(name, how, why):
     fit = bk.fit(name, data, **how)
     said = rf"^{name}: its prediction is not linear .*{why}.*plain\.$"
     with pytest.raises(BrdfkitError, match=said):
-        bk.prediction_error(fit, data)
+        bk.uncertainty.prediction_error(fit, data)
     known = bk.fit("ward", data, "plain", fixed={"alpha_u": 0.3})
-    assert bk.prediction_error(known, data).variance.shape == (known.samples, 1)
+    assert bk.uncertainty.prediction_error(known, data).variance.shape == (known.samples, 1)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from brdfkit import TransferFunction, Volume
+from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.rays.voxel_steps import typical
 from brdfkit.volumes.transfer.lookup import TransferLookup
 

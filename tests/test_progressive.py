@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from brdfkit import TransferFunction, Volume
 from brdfkit.images.errors.noise import Accumulated
 from brdfkit.rendering.progressive import Progressive
 from brdfkit.rendering.volumes.scene import scene as volume_scene
+from brdfkit.volumes import TransferFunction, Volume
 
 RNG = np.random.default_rng(3)
 

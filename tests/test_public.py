@@ -12,7 +12,22 @@ from brdfkit.core.colours import RGB
 
 pytestmark = pytest.mark.quick
 
-PUBLIC = {name: getattr(bk, name) for name in bk.__all__ if not name.startswith("_")}
+SUBNAMESPACES = {
+    "environments": "EnvironmentAudit audit convert",
+    "losses": "Loss Picture named",
+    "photographs": "Capture Pinhole Svbrdf svbrdf",
+    "rendering": "Film SamplerComparison compare_samplers render_orbit",
+    "solvers": "AlbedoAtMost DifferentialEvolution End LevenbergMarquardt Objective SLSQP Solver "
+    "TrustRegion WeightsAtMost",
+    "uncertainty": "Bootstrap PredictionError Profile bootstrap prediction_error profile",
+    "volumes": "TransferFunction Volume load",
+}
+TOP = {name: getattr(bk, name) for name in bk.__all__ if not name.startswith("_")}
+PUBLIC = TOP | {
+    f"{space}.{name}": getattr(getattr(bk, space), name)
+    for space, names in SUBNAMESPACES.items()
+    for name in names.split()
+}
 FUNCTIONS = {name: thing for name, thing in PUBLIC.items() if inspect.isfunction(thing)}
 CLASSES = {
     name: thing
@@ -37,10 +52,10 @@ METHODS = {
         bk.Gallery: ["write"],
         bk.Refinement: ["put_into"],
         bk.Rendering: ["write"],
-        bk.Svbrdf: ["relight", "write"],
+        bk.photographs.Svbrdf: ["relight", "write"],
         bk.Sweep: ["to_csv", "to_html", "to_parquet"],
-        bk.TransferFunction: ["from_colormap", "from_opacity", "load", "save"],
-        bk.Volume: ["scene_dict"],
+        bk.volumes.TransferFunction: ["from_colormap", "from_opacity", "load", "save"],
+        bk.volumes.Volume: ["scene_dict"],
     }.items()
     for method in names
 }
@@ -109,7 +124,11 @@ def test_a_function_of_a_room_has_an_example(name):
     assert documented(TRACED[name]).examples
 
 
-@pytest.mark.parametrize("name", CLASSES | FIELDS)
+# What the author of a solver reads: a protocol, and an object that only brdfkit makes
+OF_SOLVERS = {"solvers.Objective", "solvers.Solver"}
+
+
+@pytest.mark.parametrize("name", (CLASSES | FIELDS).keys() - OF_SOLVERS)
 def test_a_class_lists_its_attributes_or_arguments(name):
     cls = (CLASSES | FIELDS)[name]
     listed = {

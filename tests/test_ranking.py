@@ -120,7 +120,7 @@ def test_blocks_cover_all_directions_and_folds_share_them(anisotropic):
 def test_each_fold_sees_the_highlight_and_grazing_angles():
     table = bk.load("red_plastic")
     samples = select_samples(table, 80.0)
-    held_out = HeldOut.draw(samples, bk.losses["log"], False, 5, np.random.default_rng(3))
+    held_out = HeldOut.draw(samples, bk.losses.named["log"], False, 5, np.random.default_rng(3))
     assert len(held_out.folds) == len(held_out.samples.wi) <= PART
     theta_h, theta_d, _ = to_half_difference(held_out.samples.wi, held_out.samples.wo)
     for fold in range(5):
@@ -303,7 +303,7 @@ def test_a_model_is_beaten_only_in_both_error_and_picture():
 def pixels_held_out():
     """What is held out of fits by the picture loss, of a material without noise."""
     data = bk.load("red_plastic")
-    samples, loss = select_samples(data, 80.0), bk.Picture(("hall", "sky"))
+    samples, loss = select_samples(data, 80.0), bk.losses.Picture(("hall", "sky"))
     pixels = draw_pixels(loss.lights, data.eval, 80.0, 0, directions=8)
     return HeldOut.draw(samples, loss, False, 5, np.random.default_rng(0), pixels)
 

@@ -49,7 +49,7 @@ def here(tmp_path, monkeypatch, llvm_variant):
     bk.save(Measured.from_samples(wi, wo, copper.eval(wi, wo)), "copper.astm")
     Path("cayman.brdf").write_bytes(small_files.cornell())
     Path("gold-metallic-paint.binary").write_bytes(small_files.merl())
-    bk.convert_environment(np.ones((4, 8, 3)), "sky.exr")
+    bk.environments.convert(np.ones((4, 8, 3)), "sky.exr")
     brain = np.random.default_rng(0).integers(0, 255, (6, 6, 6), np.uint8)
     nibabel.save(nibabel.Nifti1Image(brain, np.eye(4)), "brain.nii.gz")
     Path("my_model.py").write_text(USER_MODEL, encoding="utf-8")

@@ -97,7 +97,7 @@ def test_the_fit_is_the_material(mi, found):
     assert np.isnan(fit.standard_errors["f0"])
     assert np.isnan(fit.aic)
     with pytest.raises(bk.BrdfkitError, match="found by refine"):
-        bk.bootstrap(fit, "plaster")
+        bk.uncertainty.bootstrap(fit, "plaster")
     assert pickle.loads(pickle.dumps(result)) == result
     others = mi.load_dict(corner(mi, TRUTH), optimize=False), corner(mi, TRUTH)
     for one in (scene, *map(result.put_into, others)):

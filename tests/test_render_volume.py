@@ -5,10 +5,11 @@ from math import exp
 import numpy as np
 import pytest
 
-from brdfkit import BrdfkitError, TransferFunction, Volume, load_volume, render, render_volume
+from brdfkit import BrdfkitError, render, render_volume, volumes
 from brdfkit.rendering.tracing import _passes_within
 from brdfkit.rendering.volumes import looks
 from brdfkit.rendering.volumes.scene import RENDERERS, UNLIT, integrator
+from brdfkit.volumes import TransferFunction, Volume
 
 pytestmark = pytest.mark.usefixtures("module_in_llvm")
 RNG = np.random.default_rng(15)
@@ -84,7 +85,7 @@ def test_the_light_of_a_known_block():
 @pytest.mark.parametrize("renderer", RENDERERS)
 def test_behind_a_volume_is_the_background(renderer):
     """The corners of the picture see nothing else, however bright the environment is there."""
-    picture = seen(load_volume("sphere", size=16), renderer, background=0.07)
+    picture = seen(volumes.load("sphere", size=16), renderer, background=0.07)
     corners = picture[[0, 0, -1, -1], [0, -1, 0, -1]]
     np.testing.assert_allclose(corners, 0.07, rtol=1e-3)
     assert np.isfinite(picture).all()
@@ -166,7 +167,7 @@ def test_the_level_parts_the_values_best():
 def test_a_surface_is_of_any_material():
     black = seen("sphere", "isosurface", 4, bsdf={"type": "diffuse", "reflectance": 0.0})
     assert black[16, 16].max() < 1e-6
-    by_name = integrator(load_volume("sphere", size=4), None, "isosurface", {"bsdf": "lambert"})
+    by_name = integrator(volumes.load("sphere", size=4), None, "isosurface", {"bsdf": "lambert"})
     assert by_name["bsdf"]["type"] == "lambert"
 
 
@@ -215,7 +216,7 @@ def test_what_is_wrong_is_said(how, message):
 
 def test_render_says_where_volumes_belong():
     with pytest.raises(BrdfkitError, match="call render_volume"):
-        render(load_volume("sphere", size=4))
+        render(volumes.load("sphere", size=4))
 
 
 @pytest.mark.parametrize("renderer", UNLIT)

@@ -336,7 +336,7 @@ def test_the_command_in_a_report_repeats_it(here):
 
 
 def test_settings_that_no_option_tells_are_named(material):
-    settings = {"solver": "slsqp", "constraints": bk.AlbedoAtMost(0.9), "max_angle": 70}
+    settings = {"solver": "slsqp", "constraints": bk.solvers.AlbedoAtMost(0.9), "max_angle": 70}
     told = bk.fit("lambert", material, **settings)
     how = {**SMALL, "seed": 0, "scene": "ball", "envmap": None}
     words, untold = origin.command(material, "x.npz", [told], "out/x y.html", **how)

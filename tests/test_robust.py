@@ -73,7 +73,7 @@ def spoiled():
     return truth, bk.Measured.from_samples(wi, wo, values, channels=("Y",))
 
 
-@pytest.mark.parametrize("loss", losses.by_sample)
+@pytest.mark.parametrize("loss", losses.named.by_sample)
 def test_outliers_lose_their_say(spoiled, loss):
     truth, data = spoiled
     plain, robust = (bk.fit("ggx", data, loss, robust=r) for r in (None, "bisquare"))
@@ -131,7 +131,7 @@ def test_the_thesis_polynomial(measured_data):
         columns, _ = lobe_values(fit.model, samples.wi, samples.wo)
         weights = np.ravel([fit.values[n] for n in fit.model.weights()])
         difference = (columns @ weights - samples.values[:, 0]) * samples.wi[:, 2]
-        assert np.sqrt(losses["kurt"].importance(samples) @ difference**2) == pytest.approx(
+        assert np.sqrt(losses.named["kurt"].importance(samples) @ difference**2) == pytest.approx(
             error, rel=3e-3
         )
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from brdfkit.theses.lesar2018.volpath_settings import pictures, settings, z_scores
 
-from brdfkit import BrdfkitError, TransferFunction
+from brdfkit import BrdfkitError
+from brdfkit.volumes import TransferFunction
 
 DEVIATIONS = 4.5  # of a mean: one in 150 000 is farther
 SIZE = 32  # pixels along the edges of a picture

@@ -67,7 +67,7 @@ def test_slsqp_ends_where_scipy_does_by_itself(noisy):
     start = [0.3, *[0.4] * 3, *[0.2] * 3]
     bounds = [(0.001, 1), *[(0, None)] * 6]
     direct = minimize(error, start, method="SLSQP", bounds=bounds, options={"ftol": 1e-14})
-    found = bk.fit("ward_duer", noisy, sample_sum("log"), solver=bk.SLSQP(starts=2))
+    found = bk.fit("ward_duer", noisy, sample_sum("log"), solver=bk.solvers.SLSQP(starts=2))
     assert found.loss == pytest.approx(np.sqrt(direct.fun), rel=1e-6)
     assert found.values["alpha_u"] == pytest.approx(direct.x[0], rel=1e-3)
 
@@ -79,7 +79,7 @@ def test_differential_evolution_does_not_depend_on_its_start():
     data = bk.Measured.from_samples(wi, wo, truth.eval(wi, wo), channels=("Y",))
     how = {"anisotropic": True, "starts": 1}
     assert bk.fit("lafortune", data, "cosine", **how).loss > 0.005
-    evolution = bk.DifferentialEvolution(population=6, iterations=20)
+    evolution = bk.solvers.DifferentialEvolution(population=6, iterations=20)
     assert bk.fit("lafortune", data, "cosine", solver=evolution, **how).loss < 1e-8
 
 
@@ -101,8 +101,8 @@ def test_a_solver_is_plain_data(name):
 
 @pytest.mark.quick
 def test_a_saved_fit_knows_its_solver(noisy, tmp_path):
-    solver = bk.SLSQP(starts=2)
-    limits = [bk.AlbedoAtMost(5.0, theta=10), lambda model: 1.0]
+    solver = bk.solvers.SLSQP(starts=2)
+    limits = [bk.solvers.AlbedoAtMost(5.0, theta=10), lambda model: 1.0]
     found = bk.fit("lambert", noisy, solver=solver, constraints=limits)
     bk.save(found, tmp_path / "lambert.json")
     loaded = bk.load(tmp_path / "lambert.json")
@@ -142,15 +142,18 @@ def test_an_end_that_is_none_is_explained(noisy, end):
     [
         ({"solver": "slsq"}, ["'slsq'", "did you mean slsqp?"]),
         ({"solver": 3}, ["solver = 3", "SLSQP()"]),
-        ({"solver": bk.SLSQP}, ["SLSQP()", "slsqp"]),
+        ({"solver": bk.solvers.SLSQP}, ["SLSQP()", "slsqp"]),
         ({"solver": {"name": "slsqp", "steps": 3}}, ["parameter of slsqp", "iterations"]),
         ({"constraints": "energy"}, ["'energy' is no constraint", "AlbedoAtMost"]),
-        ({"constraints": [bk.AlbedoAtMost]}, ["no constraint", "AlbedoAtMost(1.0)"]),
+        ({"constraints": [bk.solvers.AlbedoAtMost]}, ["no constraint", "AlbedoAtMost(1.0)"]),
         (
-            {"constraints": bk.WeightsAtMost(), "solver": "trust_region"},
+            {"constraints": bk.solvers.WeightsAtMost(), "solver": "trust_region"},
             ["TrustRegion takes no constraints", "SLSQP"],
         ),
-        ({"constraints": bk.WeightsAtMost(), "robust": "huber"}, ["robust", "no constraints"]),
+        (
+            {"constraints": bk.solvers.WeightsAtMost(), "robust": "huber"},
+            ["robust", "no constraints"],
+        ),
         ({"constraints": lambda model: -1.0}, ["lambert", "<lambda>", "beyond the limit"]),
         ({"constraints": lambda model: "no"}, ["<lambda>", "'no'", "a finite number"]),
         ({"constraints": lambda model: np.nan}, ["<lambda>", "nan"]),
@@ -166,13 +169,13 @@ def test_bad_solvers_and_constraints_are_explained(noisy, arguments, words):
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: bk.SLSQP(iterations=0), "SLSQP: iterations = 0"),
-        (lambda: bk.TrustRegion(tolerance=-1), "TrustRegion: tolerance = -1"),
-        (lambda: bk.DifferentialEvolution(population=2.5), "population = 2.5"),
-        (lambda: bk.AlbedoAtMost(0), "limit = 0"),
-        (lambda: bk.AlbedoAtMost(theta=90), "theta = 90"),
-        (lambda: bk.AlbedoAtMost(phi="x"), "phi = 'x'"),
-        (lambda: bk.WeightsAtMost("1"), "limit = '1'"),
+        (lambda: bk.solvers.SLSQP(iterations=0), "SLSQP: iterations = 0"),
+        (lambda: bk.solvers.TrustRegion(tolerance=-1), "TrustRegion: tolerance = -1"),
+        (lambda: bk.solvers.DifferentialEvolution(population=2.5), "population = 2.5"),
+        (lambda: bk.solvers.AlbedoAtMost(0), "limit = 0"),
+        (lambda: bk.solvers.AlbedoAtMost(theta=90), "theta = 90"),
+        (lambda: bk.solvers.AlbedoAtMost(phi="x"), "phi = 'x'"),
+        (lambda: bk.solvers.WeightsAtMost("1"), "limit = '1'"),
     ],
 )
 def test_bad_numbers_are_explained(make, words):

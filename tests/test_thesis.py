@@ -57,7 +57,7 @@ class Sample:
     @classmethod
     def of(cls, data):
         samples = select_samples(data, 80)
-        weights, cosines = losses["kurt"].weights(samples.wi[:, 2]), samples.wi[:, 2]
+        weights, cosines = losses.named["kurt"].weights(samples.wi[:, 2]), samples.wi[:, 2]
         return cls(samples.wi, samples.wo, samples.values[:, 0], cosines, weights)
 
     def solve(self, lobes, weights=None):

@@ -12,7 +12,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.volumes.transfer import opacity
 from brdfkit.volumes.transfer.files import presets
 
-TF = bk.TransferFunction
+TF = bk.volumes.TransferFunction
 pytestmark = pytest.mark.quick
 RAMP = TF([0, 10, 30], [[0, 0, 0, 0], [1, 0.5, 0, 0.25], [1, 1, 1, 1]], 2.0, value_unit="HU")
 SLICER = """<MRML><VolumeProperty name="CT-A" scalarOpacity="8 0 0 100 0.5 100 0.9 300 1"
@@ -82,7 +82,7 @@ def test_lengths_in_another_unit():
     for function, unit in ((bone, "pixels"), (replace(bone, length_unit=""), "mm")):
         with pytest.raises(BrdfkitError, match=f"cannot be converted to 1/{unit}: units are m, "):
             function.per(unit)
-    image = bk.Volume(np.ones((2, 2, 2)), unit="pixels")
+    image = bk.volumes.Volume(np.ones((2, 2, 2)), unit="pixels")
     with pytest.raises(BrdfkitError, match="extinction is per mm, which cannot"):
         image.scene_dict("mri_head")
 

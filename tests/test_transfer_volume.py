@@ -6,7 +6,7 @@ import drjit as dr
 import numpy as np
 import pytest
 
-from brdfkit import TransferFunction, Volume
+from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.transfer.block_bounds import block_ranges, largest_between
 from brdfkit.volumes.transfer.lookup import TransferLookup
 

@@ -49,7 +49,7 @@ ITK = {
 def test_what_itk_writes(tmp_path, name):
     """Oblique axes, LPS to RAS, uneven spacing; packed, and beside a header."""
     small.by_itk(tmp_path / name, **ITK[name])
-    volume = bk.load_volume(tmp_path / name)
+    volume = bk.volumes.load(tmp_path / name)
     assert_alike(volume, *small.read_by_itk(tmp_path / name))
     assert_alike(volume, values(ITK[name].get("dtype", np.int16)), LPS @ TO_WORLD)
     assert (volume.axes, volume.unit, volume.name) == ("RAS", "mm", name[0])
@@ -72,7 +72,7 @@ def test_what_itk_writes(tmp_path, name):
 def test_nifti(tmp_path, how):
     path = tmp_path / "a.nii"
     small.nifti(path, **how)
-    volume = bk.load_volume(path)
+    volume = bk.volumes.load(path)
     expected = values(how.get("dtype", np.int16)) * how.get("slope", 1) + how.get("intercept", 0)
     assert_alike(volume, expected, TO_WORLD)
     assert volume.labels == (how.get("intent_code") == 1002)
@@ -89,12 +89,12 @@ def test_a_point_in_time_of_nifti(tmp_path):
     path = tmp_path / "a.nii.gz"
     times = np.stack([values(), values() + 1], axis=-1)
     nibabel.save(nibabel.Nifti1Image(np.moveaxis(times, -1, 0).T, TO_WORLD), path)
-    assert_alike(bk.load_volume(f"{path}#1"), values() + 1, TO_WORLD)
-    assert bk.load_volume(f"{path}#1").name == "a#1"
+    assert_alike(bk.volumes.load(f"{path}#1"), values() + 1, TO_WORLD)
+    assert bk.volumes.load(f"{path}#1").name == "a#1"
     with pytest.raises(BrdfkitError, match=r"holds 2 volumes; name one, from 0: a\.nii\.gz#0"):
-        bk.load_volume(path)
+        bk.volumes.load(path)
     with pytest.raises(BrdfkitError, match=r"no volume '#2'; name one of 0 to 1"):
-        bk.load_volume(f"{path}#2")
+        bk.volumes.load(f"{path}#2")
 
 
 @pytest.mark.parametrize("encoding", ["raw", "gzip", "bzip2", "ascii"])
@@ -112,7 +112,7 @@ def test_nrrd(tmp_path, encoding, detached):
     }
     path = tmp_path / ("a.nhdr" if detached else "a.nrrd")
     nrrd.write(str(path), values(np.uint16), header, index_order="C", detached_header=detached)
-    volume = bk.load_volume(path)
+    volume = bk.volumes.load(path)
     assert_alike(volume, values(np.uint16), np.diag([-1, 1, 1, 1]) @ TO_WORLD)
     assert (volume.labels, volume.axes) == (True, "RAS")
 
@@ -130,11 +130,11 @@ def test_headers_of_others(tmp_path):
     text += " ".join(map(str, values().ravel()))
     for name, header in {"a.nhdr": nhdr, "a.mhd": detached, "a.mha": text}.items():
         (tmp_path / name).write_text(header)
-        volume = bk.load_volume(tmp_path / name)
+        volume = bk.volumes.load(tmp_path / name)
         frame = np.eye(4) if name == "a.nhdr" else LPS
         assert_alike(volume, values(), frame @ np.diag([*SPACING, 1]))
     with pytest.raises(BrdfkitError, match=r"has no header; open a\.mhd, which is one\.$"):
-        bk.load_volume(tmp_path / "a.raw")
+        bk.volumes.load(tmp_path / "a.raw")
 
 
 VTK = [
@@ -153,7 +153,7 @@ VTK = [
 def test_what_vtk_writes(tmp_path, how):
     """Points and cells, oblique; text, and blocks in each of their codings."""
     small.vti(tmp_path / "a.vti", **how)
-    volume = bk.load_volume(tmp_path / "a.vti")
+    volume = bk.volumes.load(tmp_path / "a.vti")
     middle = TO_WORLD @ np.array([0.5, 0.5, 0.5, 1]) if how.get("cells") else TO_WORLD[:, 3]
     to_world = np.column_stack([TO_WORLD[:, :3], middle])
     assert_alike(volume, values(how.get("dtype", np.int16)), to_world)
@@ -166,11 +166,11 @@ def test_several_arrays_of_vtk(tmp_path):
     start, end = text.index("<DataArray"), text.index("</DataArray>") + len("</DataArray>")
     second = text[start:end].replace("density", "facies").replace("-50", "-51")
     (tmp_path / "b.vti").write_text(text[:end] + second + text[end:])
-    assert bk.load_volume(f"{tmp_path}/b.vti#facies").values.min() == -51
+    assert bk.volumes.load(f"{tmp_path}/b.vti#facies").values.min() == -51
     with pytest.raises(BrdfkitError, match=r"holds density, facies; name one: b\.vti#density"):
-        bk.load_volume(tmp_path / "b.vti")
+        bk.volumes.load(tmp_path / "b.vti")
     with pytest.raises(BrdfkitError, match=r"no array 'face'; did you mean facies\?"):
-        bk.load_volume(f"{tmp_path}/b.vti#face")
+        bk.volumes.load(f"{tmp_path}/b.vti#face")
 
 
 SLICES = {"spacing": 2, "unit": "um", "axes": "ZYX"}
@@ -191,7 +191,7 @@ OME = {"PhysicalSizeX": 0.5, "PhysicalSizeY": 0.25, "PhysicalSizeZ": 2, "axes": 
 def test_tiff(tmp_path, how, spacing):
     how = {"photometric": "minisblack", **how}
     tifffile.imwrite(tmp_path / "a.tif", values(np.uint16), **how)
-    volume = bk.load_volume(tmp_path / "a.tif")
+    volume = bk.volumes.load(tmp_path / "a.tif")
     assert_alike(volume, values(np.uint16), np.diag([*spacing, 1]))
     assert volume.unit == ("µm" if spacing != (1, 1, 1) else "")
 
@@ -201,21 +201,21 @@ def test_a_folder_of_tiff(tmp_path):
     for k, layer in enumerate(values(np.uint8)):
         tifffile.imwrite(tmp_path / f"slice{4 * k + 2}.tif", layer)
     (tmp_path / "notes.txt").write_text("not a slice")
-    volume = bk.load_volume(tmp_path, spacing=SPACING)
+    volume = bk.volumes.load(tmp_path, spacing=SPACING)
     assert_alike(volume, values(np.uint8), np.diag([*SPACING, 1]))
     tifffile.imwrite(tmp_path / "slice99.tif", values(np.uint8)[0, :2])
     with pytest.raises(BrdfkitError, match=r"slice99\.tif is not as large as slice2\.tif"):
-        bk.load_volume(tmp_path)
+        bk.volumes.load(tmp_path)
 
 
 def test_dicom(tmp_path):
     """Sorted by place, not by name; slope and intercept; one file of it is a slice."""
     small.dicom(tmp_path, slope=0.5, intercept=-1024)
-    volume = bk.load_volume(tmp_path)
+    volume = bk.volumes.load(tmp_path)
     assert_alike(volume, *small.read_by_itk(tmp_path))
     assert_alike(volume, values() * 0.5 - 1024, LPS @ TO_WORLD)
     assert (volume.axes, volume.unit, volume.values.dtype) == ("RAS", "mm", np.float32)
-    assert bk.load_volume(tmp_path / "s19.dcm").size == (6, 5, 1)
+    assert bk.volumes.load(tmp_path / "s19.dcm").size == (6, 5, 1)
 
 
 def test_what_is_wrong_with_series_of_dicom(tmp_path):
@@ -230,15 +230,15 @@ def test_what_is_wrong_with_series_of_dicom(tmp_path):
     }
     for name, sentence in sentences.items():
         with pytest.raises(BrdfkitError, match=sentence):
-            bk.load_volume(tmp_path / name)
-    assert bk.load_volume(f"{tmp_path}/two#2").values.min() == values().min() + 7
+            bk.volumes.load(tmp_path / name)
+    assert bk.volumes.load(f"{tmp_path}/two#2").values.min() == values().min() + 7
 
 
 def test_what_mitsuba_writes(tmp_path, llvm_variant):
     mi = llvm_variant
     grid = mi.VolumeGrid(values(np.float32)[..., None])
     grid.write(str(tmp_path / "a.vol"))
-    volume = bk.load_volume(tmp_path / "a.vol")
+    volume = bk.volumes.load(tmp_path / "a.vol")
     np.testing.assert_array_equal(volume.values, values(np.float32))
     np.testing.assert_allclose(volume.bounds, [[0, 0, 0], [1, 1, 1]], atol=1e-6)
     np.testing.assert_allclose(volume.cube_to_world, np.eye(4), atol=1e-6)
@@ -249,8 +249,8 @@ def test_raw(tmp_path):
     (tmp_path / "b.raw").write_bytes(b"header" + data.tobytes())
     (tmp_path / "a_6x5x4_int16.raw").write_bytes(data.astype("<i2").tobytes())
     told = {"size": SHAPE[::-1], "dtype": ">i2", "offset": 6, "spacing": SPACING}
-    assert_alike(bk.load_volume(tmp_path / "b.raw", **told), values(), np.diag([*SPACING, 1]))
-    assert_alike(bk.load_volume(tmp_path / "a_6x5x4_int16.raw"), values(), np.eye(4))
+    assert_alike(bk.volumes.load(tmp_path / "b.raw", **told), values(), np.diag([*SPACING, 1]))
+    assert_alike(bk.volumes.load(tmp_path / "a_6x5x4_int16.raw"), values(), np.eye(4))
     for change, sentence in (
         ({"size": None}, r"has no header; give its size=\(nx, ny, nz\) and dtype"),
         ({"offset": 4}, r"has 246 bytes, where 6×5×4 voxels of >i2 behind 4 bytes make 244"),
@@ -263,7 +263,7 @@ def test_raw(tmp_path):
         ({"offset": -6}, "offset = -6 should be a whole number, at least 0"),
     ):
         with pytest.raises(BrdfkitError, match=sentence):
-            bk.load_volume(tmp_path / "b.raw", **(told | change))
+            bk.volumes.load(tmp_path / "b.raw", **(told | change))
 
 
 # Downsampling, labels and memory
@@ -273,12 +273,12 @@ def test_downsampling_while_reading_is_that_of_the_volume(tmp_path):
     small.nifti(tmp_path / "a.nii")
     small.nifti(tmp_path / "b.nii", intent_code=1002)
     for name in ("a.nii", "b.nii"):
-        whole = bk.load_volume(tmp_path / name)
+        whole = bk.volumes.load(tmp_path / name)
         for factor in (2, 3, 9):
-            read = bk.load_volume(tmp_path / name, downsample=factor)
+            read = bk.volumes.load(tmp_path / name, downsample=factor)
             assert_alike(read, whole.resized(factor).values, whole.resized(factor).to_world)
     assert read.values.dtype == np.int16
-    labels = bk.load_volume(tmp_path / "a.nii", downsample=2, labels=True)
+    labels = bk.volumes.load(tmp_path / "a.nii", downsample=2, labels=True)
     assert set(labels.values.ravel()) < set(values().ravel())
 
 
@@ -290,13 +290,13 @@ def test_means_of_what_may_be_labels_are_told(tmp_path, recwarn, dtype):
     for name, kept in {"a": tissues, "b": np.arange(8000) % 250, "c": tissues / 2 + 0.25}.items():
         kept.astype(dtype).tofile(tmp_path / f"{name}.raw")
     with pytest.warns(UserWarning, match="a has 8 different values, all whole, of which means we"):
-        bk.load_volume(tmp_path / "a.raw", **given)
+        bk.volumes.load(tmp_path / "a.raw", **given)
     recwarn.clear()
     for labels in (True, False):
-        bk.load_volume(tmp_path / "a.raw", **given, labels=labels)
-    bk.load_volume(tmp_path / "a.raw", **given | {"downsample": 1})
+        bk.volumes.load(tmp_path / "a.raw", **given, labels=labels)
+    bk.volumes.load(tmp_path / "a.raw", **given | {"downsample": 1})
     for name in "bc" if dtype == "float32" else "b":
-        bk.load_volume(tmp_path / f"{name}.raw", **given)
+        bk.volumes.load(tmp_path / f"{name}.raw", **given)
     assert not recwarn.list
 
 
@@ -311,10 +311,10 @@ def test_memory_is_asked_for_before_voxels_are_read(tmp_path, monkeypatch):
     monkeypatch.setattr(psutil, "virtual_memory", lambda: have)
     said = r"its 2000×2000×3000 voxels would take about 29 GB of memory, of which 4 GB are "
     with pytest.raises(BrdfkitError, match=f"{said}available; load it with downsample=3"):
-        bk.load_volume(tmp_path / "a.mha")
+        bk.volumes.load(tmp_path / "a.mha")
     have = have._replace(available=1000)
     with pytest.raises(BrdfkitError, match="check that it is the right file"):
-        bk.load_volume(tmp_path / "a.mha")
+        bk.volumes.load(tmp_path / "a.mha")
 
 
 # Bad ones
@@ -342,7 +342,7 @@ def good(tmp_path_factory):
 def assert_refused(path):
     """One sentence, which names the file."""
     with pytest.raises(BrdfkitError) as told:
-        bk.load_volume(path)
+        bk.volumes.load(path)
     assert path.name.partition("_")[0] in str(told.value)
     assert "\n" not in str(told.value)
     assert str(told.value).endswith(".")
@@ -378,7 +378,7 @@ def test_damaged_headers(tmp_path, good, name, old, new, sentence):
     (tmp_path / name).write_bytes(good[name].replace(old, new, 1))
     assert_refused(tmp_path / name)
     with pytest.raises(BrdfkitError, match=sentence):
-        bk.load_volume(tmp_path / name)
+        bk.volumes.load(tmp_path / name)
 
 
 def test_a_checksum_that_differs(tmp_path, good):
@@ -395,10 +395,10 @@ def test_files_that_are_something_else(tmp_path, good):
         (tmp_path / name).write_bytes(b"This is a letter, not a volume. " * 20)
         assert_refused(tmp_path / name)
     (tmp_path / "b.vol").write_bytes(good["c.mha"])
-    np.testing.assert_array_equal(bk.load_volume(tmp_path / "b.vol").values, values())
+    np.testing.assert_array_equal(bk.volumes.load(tmp_path / "b.vol").values, values())
     (tmp_path / "b.vol").write_bytes(good["a.nii.gz"])
     with pytest.raises(BrdfkitError, match=r"is NIfTI by its content; rename it to \.nii"):
-        bk.load_volume(tmp_path / "b.vol")
+        bk.volumes.load(tmp_path / "b.vol")
 
 
 @pytest.mark.parametrize(
@@ -449,19 +449,19 @@ def test_blocks_and_pages_that_lie(tmp_path, good):
         at = data.index(sizes)
         path.write_bytes(data[:at] + lie + data[at + len(lie) :])
         with pytest.raises(BrdfkitError, match=said):
-            bk.load_volume(path)
+            bk.volumes.load(path)
     bomb = zlib.compress(bytes(2**26))
     tracemalloc.start()
     path.write_bytes(data[: data.index(sizes)] + struct.pack("<4Q", 1, 240, 0, len(bomb)) + bomb)
     with pytest.raises(BrdfkitError, match="all voxels are 0"):
-        bk.load_volume(path)
+        bk.volumes.load(path)
 
     page = struct.pack("<2H2I", 257, 4, 1, SHAPE[1])  # of TIFF: its number of rows
     data, longer = good["b.tif"], struct.pack("<2H2I", 257, 4, 1, 10**8)
     at = data.index(page, data.index(page) + 1)  # of the second page
     (tmp_path / "b.tif").write_bytes(data[:at] + longer + data[at + len(page) :])
     with pytest.raises(BrdfkitError, match="cannot be read as TIFF"):
-        bk.load_volume(tmp_path / "b.tif")
+        bk.volumes.load(tmp_path / "b.tif")
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak < 2**25
@@ -481,7 +481,7 @@ def test_values_that_cannot_be_rendered(tmp_path, change, sentence):
 
     nrrd.write(str(tmp_path / "a.nrrd"), change(values(float)), index_order="C")
     with pytest.raises(BrdfkitError, match=sentence):
-        bk.load_volume(tmp_path / "a.nrrd")
+        bk.volumes.load(tmp_path / "a.nrrd")
 
 
 def test_what_no_format_reads(tmp_path, monkeypatch):
@@ -500,20 +500,22 @@ def test_what_no_format_reads(tmp_path, monkeypatch):
         "a.mha.gz": "is MetaImage packed by gzip, which is not read; unpack it",
     }.items():
         with pytest.raises(BrdfkitError, match=sentence):
-            bk.load_volume(name)
+            bk.volumes.load(name)
     with pytest.raises(BrdfkitError, match="smoke is made: it takes size and downsample alone"):
-        bk.load_volume("smoke", dtype="uint8")
+        bk.volumes.load("smoke", dtype="uint8")
     with pytest.raises(BrdfkitError, match=r"smoke: .* of memory, .* give a smaller size"):
-        bk.load_volume("smoke", size=100_000)
-    with pytest.raises(BrdfkitError, match=r"and no ndarray; of an array brdfkit.Volume\(array\)"):
-        bk.load_volume(values())
+        bk.volumes.load("smoke", size=100_000)
+    with pytest.raises(
+        BrdfkitError, match=r"and no ndarray; of an array brdfkit.volumes.Volume\(array\)"
+    ):
+        bk.volumes.load(values())
 
 
 def test_a_package_that_is_missing_is_named(tmp_path, monkeypatch):
     small.nifti(tmp_path / "a.nii")
     monkeypatch.setitem(__import__("sys").modules, "nibabel", None)
     with pytest.raises(BrdfkitError, match=r'needs the package nibabel; pip install "brdfkit\[vol'):
-        bk.load_volume(tmp_path / "a.nii")
+        bk.volumes.load(tmp_path / "a.nii")
 
 
 def test_the_page_of_volumes_names_what_there_is():
@@ -523,7 +525,7 @@ def test_the_page_of_volumes_names_what_there_is():
         assert f"| {module.NAME} | {suffixes}" in page
     for name in (*made.names(), *presets()):
         assert f"`{name}`" in page
-        assert name in bk.load_volume.__doc__ or name in presets()
+        assert name in bk.volumes.load.__doc__ or name in presets()
 
 
 def test_no_two_formats_take_one_suffix():
@@ -537,13 +539,13 @@ def test_a_sparse_file_packed_by_bzip2_is_whole(tmp_path):
     sparse = np.zeros((64, 64, 64), np.uint8)
     sparse[30, 30, 30] = 200
     nrrd.write(str(tmp_path / "sparse.nrrd"), sparse, header={"encoding": "bzip2"})
-    assert bk.load_volume(tmp_path / "sparse.nrrd").values.sum() == 200
+    assert bk.volumes.load(tmp_path / "sparse.nrrd").values.sum() == 200
 
 
 def test_names_of_a_stack_may_have_any_digits(tmp_path):
     for name in ("1²3.tif", "1²10.tif", "①.tif"):
         tifffile.imwrite(tmp_path / name, np.ones((8, 8), np.uint8))
-    assert bk.load_volume(tmp_path).values.shape == (3, 8, 8)
+    assert bk.volumes.load(tmp_path).values.shape == (3, 8, 8)
 
 
 @pytest.mark.parametrize(("offset", "told"), [(0.0, False), (1e9, True)])
@@ -553,6 +555,6 @@ def test_rounding_to_single_precision_is_told(tmp_path, offset, told):
     nrrd.write(str(tmp_path / "double.nrrd"), exact)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        found = bk.load_volume(tmp_path / "double.nrrd")
+        found = bk.volumes.load(tmp_path / "double.nrrd")
     assert np.abs(found.values - exact.T).max() <= 32
     assert any("off by up to 3" in str(w.message) for w in caught) == told

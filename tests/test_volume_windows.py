@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from brdfkit import BrdfkitError, TransferFunction, Volume
+from brdfkit import BrdfkitError
 from brdfkit.core.colours import to_srgb
 from brdfkit.rendering.volumes import looks
+from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.summary.summary import summarise
 from brdfkit.volumes.transfer.windows import fitted, window
 

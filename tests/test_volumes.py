@@ -15,7 +15,7 @@ from brdfkit.volumes import made
 from brdfkit.volumes.made import marschner_lobb, shepp_logan, slab, smoke, sphere
 from brdfkit.volumes.summary.summary import summarise
 
-OBLIQUE = bk.Volume(values(np.float32) ** 2, TO_WORLD, "oblique", unit="mm")
+OBLIQUE = bk.volumes.Volume(values(np.float32) ** 2, TO_WORLD, "oblique", unit="mm")
 SHEARED = TO_WORLD @ np.array([[1, 0.3, 0, 0], [0, 1, 0.2, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
 
 
@@ -32,7 +32,7 @@ def test_slices_lie_where_the_box_does():
     """Their axes show the world's coordinates, also where an axis of the grid runs downwards."""
     to_world = np.diag([-1.0, 1.0, 2.0, 1.0])
     to_world[:3, 3] = 3.0, -98.5, -7.0
-    found = summarise(bk.Volume(np.arange(24.0).reshape(2, 3, 4), to_world))
+    found = summarise(bk.volumes.Volume(np.arange(24.0).reshape(2, 3, 4), to_world))
     box = list(zip(found.low, found.high, strict=True))
     axes = found.picture().axes[:3]
     for one, (across, up) in zip(axes, ((0, 1), (0, 2), (1, 2)), strict=True):
@@ -54,7 +54,7 @@ def test_spacing_box_and_cube():
 
 @pytest.mark.quick
 def test_resizing_keeps_means_places_and_labels():
-    even = bk.Volume(values(np.float32, (4, 6, 8)), TO_WORLD)
+    even = bk.volumes.Volume(values(np.float32, (4, 6, 8)), TO_WORLD)
     small_one = even.resized(2)
     assert small_one.values.mean() == pytest.approx(even.values.mean(), rel=1e-6)
     np.testing.assert_allclose(small_one.bounds, even.bounds)
@@ -63,7 +63,7 @@ def test_resizing_keeps_means_places_and_labels():
     np.testing.assert_allclose(
         OBLIQUE.resized(4).values[0, -1, -1], OBLIQUE.values[:, 4:, 4:].mean()
     )
-    labels = bk.Volume(values(np.uint8), labels=True).resized(3)
+    labels = bk.volumes.Volume(values(np.uint8), labels=True).resized(3)
     assert labels.values.dtype == np.uint8
     assert labels.values[0, 0, 0] == values(np.uint8)[1, 1, 1]
     assert labels.size == (2, 2, 2)
@@ -95,7 +95,7 @@ def test_resizing_keeps_means_places_and_labels():
 )
 def test_what_is_no_volume(given, how, sentence):
     with pytest.raises(BrdfkitError, match=sentence):
-        bk.Volume(given, **how)
+        bk.volumes.Volume(given, **how)
 
 
 @pytest.mark.quick
@@ -106,10 +106,10 @@ def test_types_of_values():
         (bool, np.uint8),
         (">i4", int),
     ):
-        found = bk.Volume(np.ones((2, 2, 2), given)).values
+        found = bk.volumes.Volume(np.ones((2, 2, 2), given)).values
         assert found.dtype.isnative
         assert np.issubdtype(found.dtype, kept if kept is not int else np.int32)
-    assert bk.Volume(np.full((2, 2, 2), 3.0), labels=True).values.dtype == np.int32
+    assert bk.volumes.Volume(np.full((2, 2, 2), 3.0), labels=True).values.dtype == np.int32
 
 
 # Between voxels
@@ -125,7 +125,7 @@ def test_trilinear_against_scipy_and_nearest():
         OBLIQUE.values.astype(float), places.T[::-1], order=1, mode="nearest"
     )
     np.testing.assert_allclose(found, expected, rtol=1e-9)
-    labels = bk.Volume(values(np.uint8), TO_WORLD, labels=True)
+    labels = bk.volumes.Volume(values(np.uint8), TO_WORLD, labels=True)
     assert set(labels(world(labels, places))) <= set(values(np.uint8).ravel())
     assert (OBLIQUE(world(OBLIQUE, [[-0.51, 0, 0], [0, 0, 3.51]])) == 0).all()
 
@@ -137,7 +137,7 @@ def test_gradients_of_a_linear_field_are_exact(to_world):
     grid = np.stack(np.meshgrid(*(np.arange(n) for n in (6, 5, 4)), indexing="ij"), axis=-1)
     points = grid.reshape(-1, 3) @ to_world[:3, :3].T + to_world[:3, 3]
     linear = (points @ slope).reshape(6, 5, 4).T
-    volume = bk.Volume(linear, to_world)
+    volume = bk.volumes.Volume(linear, to_world)
     np.testing.assert_allclose(volume.gradient_magnitude, np.linalg.norm(slope), rtol=1e-4)
     inside = world(volume, np.random.default_rng(2).uniform(1, [4, 3, 2], (20, 3)))
     for of_interpolant in (False, True):
@@ -149,7 +149,7 @@ def test_gradients_of_a_linear_field_are_exact(to_world):
 def test_the_interpolants_derivative_is_that_of_its_values():
     """By differences within cells of random values, in an oblique frame."""
     rng = np.random.default_rng(3)
-    volume = bk.Volume(rng.random((4, 5, 6)), TO_WORLD)
+    volume = bk.volumes.Volume(rng.random((4, 5, 6)), TO_WORLD)
     places = np.floor(rng.uniform(0, [5, 4, 3], (30, 3))) + rng.uniform(0.1, 0.9, (30, 3))
     points, step = world(volume, places), 1e-4
     differences = [
@@ -167,7 +167,7 @@ def test_gradients_converge_to_those_of_marschner_and_lobb():
     errors = {}
     for of_interpolant in (False, True):
         for n in (128, 256):
-            volume = bk.load_volume("marschner_lobb", size=(n, n, n // 4))
+            volume = bk.volumes.load("marschner_lobb", size=(n, n, n // 4))
             off = volume.gradient(points, of_interpolant) - true
             errors[of_interpolant, n] = np.sqrt(np.square(off).mean())
     assert errors[False, 128] / errors[False, 256] == pytest.approx(4, abs=0.3)
@@ -184,13 +184,13 @@ def test_gradients_converge_to_those_of_marschner_and_lobb():
 def test_gradient_magnitudes_of_large_values():
     """Their squares have no room in 32 bits."""
     values = np.random.default_rng(0).random((3, 4, 5), np.float32)
-    large = bk.Volume(values * np.float32(2.0**90)).gradient_magnitude
-    assert (large == bk.Volume(values).gradient_magnitude * np.float32(2.0**90)).all()
+    large = bk.volumes.Volume(values * np.float32(2.0**90)).gradient_magnitude
+    assert (large == bk.volumes.Volume(values).gradient_magnitude * np.float32(2.0**90)).all()
 
 
 def test_gradient_magnitudes_of_many_layers_are_those_of_one_piece():
     """Taken by layers, with what is beside them."""
-    volume = bk.load_volume("smoke", size=(20, 24, 40))
+    volume = bk.volumes.load("smoke", size=(20, 24, 40))
     x, y, z = volume.spacing
     slopes = np.gradient(volume.values, z, y, x)
     expected = np.sqrt(sum(np.square(slope) for slope in slopes))
@@ -204,10 +204,10 @@ def test_gradient_magnitudes_of_many_layers_are_those_of_one_piece():
 def test_made_volumes_fill_their_cube():
     assert set(made.names()) == {"marschner_lobb", "shepp_logan", "slab", "smoke", "sphere"}
     for name in made.names():
-        volume = bk.load_volume(name, size=(12, 16, 20))
+        volume = bk.volumes.load(name, size=(12, 16, 20))
         assert (volume.size, volume.name) == ((12, 16, 20), name)
         np.testing.assert_allclose(volume.bounds, [[-1, -1, -1], [1, 1, 1]], atol=1e-12)
-        assert bk.load_volume(name, size=16, downsample=2).size == (8, 8, 8)
+        assert bk.volumes.load(name, size=16, downsample=2).size == (8, 8, 8)
 
 
 @pytest.mark.quick
@@ -279,7 +279,7 @@ def test_a_summary_of_a_known_volume():
     """Half of the voxels 0, half 200; steep at one face; two values look like labels."""
     voxels = np.zeros((10, 10, 10), np.uint8)
     voxels[5:] = 200
-    found = summarise(bk.Volume(voxels, np.diag([1, 1, 4, 1])))
+    found = summarise(bk.volumes.Volume(voxels, np.diag([1, 1, 4, 1])))
     assert (found.least, found.largest, found.mean, found.different) == (0, 200, 100, 2)
     assert found.steepest == pytest.approx(25)
     assert found.counts[0] == found.counts[-1] == 500
@@ -290,8 +290,8 @@ def test_a_summary_of_a_known_volume():
     assert any("4 times as long as wide" in finding for finding in found.findings())
     assert "<table" in found._repr_html_()
     clipped = np.minimum(np.arange(1000).reshape(10, 10, 10), 900).astype(np.uint16)
-    (told,) = summarise(bk.Volume(clipped)).findings()
+    (told,) = summarise(bk.volumes.Volume(clipped)).findings()
     assert "perhaps clipped" in told
-    assert summarise(bk.Volume(np.ones((2, 2, 2)))).findings() == ("of one value all over",)
-    flipped = bk.Volume(voxels, np.diag([-1, -1, 1, 1]), axes="RAS")
+    assert summarise(bk.volumes.Volume(np.ones((2, 2, 2)))).findings() == ("of one value all over",)
+    flipped = bk.volumes.Volume(voxels, np.diag([-1, -1, 1, 1]), axes="RAS")
     assert summarise(flipped).directions == ("left", "back", "head")

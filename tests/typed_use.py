@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 import brdfkit as bk
 from brdfkit.checks import Report
+from brdfkit.images.errors import ImageErrors
+from brdfkit.materials.converting import Conversion
 from brdfkit.materials.goniometer.microgeometry import gaussian
 
 Floats = NDArray[np.float64]
@@ -21,7 +23,7 @@ def read_and_write(path: Path) -> None:
     loaded = bk.load(path)
     assert_type(loaded, bk.Measured | bk.Fit)
     bk.save(loaded, "copper.npz")
-    assert_type(bk.convert("cayman.brdf", path), bk.Conversion)
+    assert_type(bk.convert("cayman.brdf", path), Conversion)
 
 
 def build() -> None:
@@ -53,18 +55,20 @@ def fit_and_render(paint: bk.Measured) -> None:
     """The way from a measurement to a picture."""
     fits = [bk.fit(name, paint, bounds={"alpha_u": (0.01, 0.5)}) for name in ("ward", "ggx")]
     assert_type(fits, list[bk.Fit])
-    bk.fit("ggx", paint, solver=bk.TrustRegion(starts=4))
-    bk.fit("ggx", paint, solver="slsqp", constraints=[bk.AlbedoAtMost(0.9), lambda m: 1 - m.f0])
+    bk.fit("ggx", paint, solver=bk.solvers.TrustRegion(starts=4))
+    bk.fit(
+        "ggx", paint, solver="slsqp", constraints=[bk.solvers.AlbedoAtMost(0.9), lambda m: 1 - m.f0]
+    )
     assert_type(fits[0].model, bk.Model)
     assert_type(bk.compare(paint, fits).best, str)
     assert_type(paint.minus(fits[0]), bk.Measured)
-    assert_type(bk.bootstrap(fits[0], paint).standard_errors, dict[str, Floats])
-    assert_type(bk.profile(fits[0], paint, "alpha_u").interval, tuple[float, float])
-    assert_type(bk.prediction_error(fits[0], paint).bias, Floats)
+    assert_type(bk.uncertainty.bootstrap(fits[0], paint).standard_errors, dict[str, Floats])
+    assert_type(bk.uncertainty.profile(fits[0], paint, "alpha_u").interval, tuple[float, float])
+    assert_type(bk.uncertainty.prediction_error(fits[0], paint).bias, Floats)
     rendering = bk.render([paint, *fits, ("grey", {"type": "diffuse"})], size=(64, 32))
     assert_type(rendering, bk.Rendering)
     assert_type(rendering.psnr(), dict[str, float])
-    assert_type(rendering.errors(), bk.ImageErrors)
+    assert_type(rendering.errors(), ImageErrors)
     assert_type(rendering.errors().floor, dict[str, float])
     assert_type(bk.render_scene("kitchen.xml"), bk.Rendering)
     assert_type(bk.gallery([[paint, *fits]], scene="vase"), bk.Gallery)
@@ -82,20 +86,24 @@ def fit_many(files: list[Path]) -> None:
 
 def volumes() -> None:
     """Volumes, and what their values mean."""
-    head = bk.load_volume("smoke", size=32, downsample=2)
-    assert_type(head, bk.Volume)
+    head = bk.volumes.load("smoke", size=32, downsample=2)
+    assert_type(head, bk.volumes.Volume)
     assert_type(head.resized(2).spacing, tuple[float, float, float])
-    ramp = bk.TransferFunction([0, 1], [[1, 1, 1, 0], [1, 1, 1, 1]], extinction=2.0)
+    ramp = bk.volumes.TransferFunction([0, 1], [[1, 1, 1, 0], [1, 1, 1, 1]], extinction=2.0)
     assert_type(ramp.table(64), NDArray[np.float32])
-    assert_type(bk.TransferFunction.from_opacity([0, 1], ramp.rgba), bk.TransferFunction)
-    assert_type(bk.TransferFunction.load("ct_bone").scaled_to(0, 1), bk.TransferFunction)
+    assert_type(
+        bk.volumes.TransferFunction.from_opacity([0, 1], ramp.rgba), bk.volumes.TransferFunction
+    )
+    assert_type(
+        bk.volumes.TransferFunction.load("ct_bone").scaled_to(0, 1), bk.volumes.TransferFunction
+    )
 
 
 def extend() -> None:
     """Plugins of one's own."""
     assert_type(bk.load_models("my_models/"), dict[str, type[bk.Model]])
     assert_type(bk.load_plugins("my_plugins/"), dict[str, str])
-    assert_type(bk.losses["log"].meaning, str)
+    assert_type(bk.losses.named["log"].meaning, str)
     dictionary: dict[str, Any] = bk.models()["ggx"]().scene_dict()
     assert dictionary["type"] == "ggx"
     assert_type(bk.__version__, str)

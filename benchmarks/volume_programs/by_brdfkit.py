@@ -70,9 +70,9 @@ def function(case):
     given = case.transfer
     if "opacity_unit_distance" in given:
         opacity = given["values"], given["rgba"], given["opacity_unit_distance"]
-        return brdfkit.TransferFunction.from_opacity(*opacity)
+        return brdfkit.volumes.TransferFunction.from_opacity(*opacity)
     gradients = given.get("gradients")
-    return brdfkit.TransferFunction(
+    return brdfkit.volumes.TransferFunction(
         given["values"], given["rgba"], given["extinction"], "emission", gradients
     )
 
@@ -82,4 +82,4 @@ def volume(case):
     spacing = case.spacing
     to_world = np.diag([*spacing, 1.0])
     to_world[:3, 3] = spacing / 2 - 1
-    return brdfkit.Volume(case.voxels, to_world, labels=case.told["labels"])
+    return brdfkit.volumes.Volume(case.voxels, to_world, labels=case.told["labels"])

@@ -8,7 +8,7 @@ from leaderboard.page import made_with
 from make_models import paragraphs, table
 
 from brdfkit.core.names import listed
-from brdfkit.regression.losses.named import DEFAULT
+from brdfkit.regression.losses.named_losses import DEFAULT
 from brdfkit.theses.drawing import COLOURS, figure, tidy
 
 PAGE = Path(__file__).parents[1] / "losses.md"

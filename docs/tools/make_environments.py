@@ -37,7 +37,7 @@ def page():
     """The text of the page."""
     rows = []
     for name in SHOWN:
-        map, found = catalogue.environments()[name], bk.audit_environment(name)
+        map, found = catalogue.environments()[name], bk.environments.audit(name)
         share, stops = found.brightest_share, np.log2(found.largest / found.median)
         rows.append((f"`{name}`", map.what, f"{share:.0%}".replace("%", " %"), f"{stops:.0f}"))
     figures = table("map, what it is, light in 1 %, stops from median to max", rows)

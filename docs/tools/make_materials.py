@@ -14,7 +14,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 import brdfkit as bk
 from brdfkit.core import catalogue
-from brdfkit.regression.losses.named import DEFAULT
+from brdfkit.regression.losses.named_losses import DEFAULT
 
 FOLDER = Path(__file__).parents[1] / "materials"
 MODELS = ("ward", "ggx", "ggx+ggx", "abc+student_t")

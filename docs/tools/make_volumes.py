@@ -26,7 +26,7 @@ def picture():
     for column, renderer in enumerate(RENDERERS):
         draw.text((column * SIZE + 4, LINE // 2), renderer, "black", font, anchor="lm")
         for row, name in enumerate(VOLUMES):
-            volume = bk.load_volume(name, size=VOXELS)
+            volume = bk.volumes.load(name, size=VOXELS)
             shown = bk.render_volume(volume, renderer=renderer, spp=SPP, size=SIZE)
             rgb = np.clip(to_srgb(shown.pictures[name]), 0, 1)
             sheet.paste(

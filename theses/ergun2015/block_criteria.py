@@ -4,7 +4,7 @@ import numpy as np
 from brdfkit.theses.ergun2015.lit_balls import find_probes, read_probes
 
 from brdfkit.core.colours import luminance
-from brdfkit.lighting.environments.auditing import audit_environment
+from brdfkit.lighting import environments
 from brdfkit.lighting.environments.picture import DRAWN, draw_map
 from brdfkit.lighting.sampling import tree
 from brdfkit.lighting.sampling.power_map import cell_power
@@ -53,7 +53,7 @@ def reconstruction_error(power, criterion, count=BLOCKS):
 
 def draw(name, file):
     """A map with its first blocks, by the sum of squared errors."""
-    drawn, audit = figure(8, 4.4), audit_environment(file)
+    drawn, audit = figure(8, 4.4), environments.audit(file)
     rgb = audit.data.astype(float)
     blocks = tree.build(cell_power(luminance(rgb)), DRAWN, "sse").blocks
     draw_map(drawn.subplots(), audit, rgb, blocks)

@@ -12,7 +12,7 @@ from brdfkit.materials.loading import load
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
 from brdfkit.model.evaluation import lobe_values, weight_matrix
-from brdfkit.regression.losses.named import losses
+from brdfkit.regression import losses
 
 
 def error(model, samples):
@@ -25,7 +25,7 @@ def error(model, samples):
 def error_of(values, samples):
     """E of values (n, channels) of a BRDF."""
     squares = ((values - samples.values) * samples.wi[:, 2:]) ** 2
-    return float(np.sqrt(losses["kurt"].importance(samples) @ squares.sum(axis=1)))
+    return float(np.sqrt(losses.named["kurt"].importance(samples) @ squares.sum(axis=1)))
 
 
 # Ribbed paper, straw, corduroy, linen, cotton, corn husk, two woods and bark, as the thesis says
@@ -34,7 +34,7 @@ NUMBERS = tuple(n for n in range(1, 62) if n not in ANISOTROPIC)
 # The thesis's widths are at most 0.5; its polynomials are fitted by bisquare without a cosine, and
 # Koenderink's basis by plain least squares
 BOUNDS = {name: {"alpha_u": (0.001, 0.5)} for name in ("ward", "ward_duer")}
-PLAIN = replace(losses.by_sample["plain"], name="plain sum", measure="samples")
+PLAIN = replace(losses.named.by_sample["plain"], name="plain sum", measure="samples")
 BISQUARE, OLS, WLS = (PLAIN, "bisquare"), (PLAIN, None), ("kurt", None)
 METHODS = {"bisquare": BISQUARE, "least squares": OLS, "weighted by eq. 5.13": WLS}
 
@@ -47,7 +47,7 @@ class Sample:
         self.samples = select_samples(self.data, 80)
         self.wi, self.wo = self.samples.wi, self.samples.wo
         self.values, self.cosines = self.samples.values[:, 0], self.wi[:, 2]
-        self.weights = losses["kurt"].weights(self.cosines)
+        self.weights = losses.named["kurt"].weights(self.cosines)
         self.fits = {}
 
     def fit(self, label, how=WLS):

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 from brdfkit.theses.lesar2018 import MRI
 
-from brdfkit.volumes import TransferFunction, Volume, load_volume
+from brdfkit import volumes
+from brdfkit.volumes import TransferFunction, Volume
 
 FROG = "volumes/frog_tissues.vti"
 PHANTOM = 96  # voxels along an edge
@@ -54,7 +55,7 @@ def scans(sources, fewer=1):
 
 def mri(path, fewer):
     """A head without its skull."""
-    head = within_cube(load_volume(path, downsample=fewer))
+    head = within_cube(volumes.load(path, downsample=fewer))
     function = TransferFunction([row[0] for row in HEAD], [row[1:] for row in HEAD])
     function = function.scaled_to(*head.range)
     return Scan("MRI", head, head, dense(function), 110, (150, 255), (1.3, 1.6, 0.9), (0, 0, 1))
@@ -62,7 +63,7 @@ def mri(path, fewer):
 
 def frog(path, fewer):
     """Tissues by their names; and densities, ours: of the skeleton 1, of others less."""
-    labels = within_cube(load_volume(path, downsample=fewer, labels=True))
+    labels = within_cube(volumes.load(path, downsample=fewer, labels=True))
     n = int(labels.range[1]) + 1
     a = np.array([0, *[0.3] * (n - 1)])
     a[SKELETON] = 1
@@ -75,7 +76,7 @@ def frog(path, fewer):
 
 def phantom(fewer):
     """Shepp and Logan's, without its skull, and without the octant before the camera."""
-    found = load_volume("shepp_logan", size=2 * PHANTOM // fewer)
+    found = volumes.load("shepp_logan", size=2 * PHANTOM // fewer)
     values = np.where(found.values > 0.9, 0, found.values)
     n = PHANTOM // fewer
     values[n:, :n, :n] = 0

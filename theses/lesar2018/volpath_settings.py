@@ -5,8 +5,8 @@ import time
 import numpy as np
 from brdfkit.theses.lesar2018.iterations import iteration
 
-from brdfkit import TransferFunction
 from brdfkit.lighting.sampling.emitter import small_sky
+from brdfkit.volumes import TransferFunction
 
 SIZE = 16  # pixels along the edges of a picture
 

@@ -98,7 +98,7 @@ class Part:
 
     def error(self, fit):
         """E of the loss that the fit minimised, on the part."""
-        loss = bk.losses[fit.loss_name]
+        loss = bk.losses.named[fit.loss_name]
         values = fit.eval(self.samples.wi, self.samples.wo)
         return float(np.sqrt(loss.importance(self.samples) @ squares(loss, values, self.samples)))
 

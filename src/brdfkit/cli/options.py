@@ -89,7 +89,7 @@ def _fit_options(default, others):
             metavar="LOSS",
             show_default=True,
             help="What the fit minimises: cosine, log, cbrt, plain, lafortune, relative, kurt "
-            "or picture; print(brdfkit.losses) in Python says what each is.",
+            "or picture; print(brdfkit.losses.named) in Python says what each is.",
         ),
         click.option(
             "--robust",

@@ -93,14 +93,14 @@ def render_volume(name, of_volume, values, console, **how):
 
     `of_volume`: options of volumes; `values`: of --set; `how`: what `brdfkit.render_volume` takes.
     """
-    from brdfkit.rendering.volumes import render_orbit, render_volume
-    from brdfkit.volumes import load_volume
+    from brdfkit import volumes
+    from brdfkit.rendering import render_orbit, render_volume
     from brdfkit.volumes.summary.report import may_be_labels
 
     loading = {key: of_volume.pop(key) for key in ("labels", "downsample") if key in of_volume}
     settings = parse_settings(values, "--set", free=True)
     with console.progress(f"read {name}"):
-        volume = load_volume(name, **loading)
+        volume = volumes.load(name, **loading)
     if may_be_labels(volume) and "labels" not in loading:
         say(f"{volume.name} may hold labels, not densities: if so, add --labels.")
     _warn_of_units(volume, of_volume.get("transfer"))

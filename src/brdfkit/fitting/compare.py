@@ -18,7 +18,7 @@ from brdfkit.regression import Fit, losses
 from brdfkit.regression.albedo_cells import albedo_cell
 from brdfkit.regression.light import FOUR, ONE, albedo_pixels
 from brdfkit.regression.losses.loss import squares
-from brdfkit.regression.losses.named import DEFAULT
+from brdfkit.regression.losses.named_losses import DEFAULT
 
 # The losses by which errors are told, beside those that were minimised
 USUAL = "cosine", "log", "cbrt", "plain"
@@ -34,8 +34,8 @@ class Comparison(Shown):
     material : str
         Name of the measured material.
     errors : dict
-        Name → loss → E, in the units of `brdfkit.losses`, the best by the cbrt loss first; nan
-        where a loss weighs no sample.
+        Name → loss → E, in the units of `brdfkit.losses.named`, the best by the cbrt loss first;
+        nan where a loss weighs no sample.
     albedos : dict
         Name → the directional albedo at 5°, 45° and 75° of incidence, the mean over the channels.
     measured_albedo : tuple of float
@@ -61,7 +61,7 @@ class Comparison(Shown):
         table = np.array([[row[loss] for loss in self.shown] for row in self.errors.values()])
         is_least = table == np.nanmin(np.vstack([table, np.full(len(self.shown), np.inf)]), axis=0)
         kinds = np.where(is_least, STRONG, "").tolist()
-        hints = [losses[loss].meaning for loss in self.shown]
+        hints = [losses.named[loss].meaning for loss in self.shown]
         measured = "measured", *"-" * len(hints), *map(albedo_cell, self.measured_albedo)
         rows = tuple(
             (
@@ -83,7 +83,7 @@ def told(*minimised):
     >>> told("relative")
     ['cosine', 'log', 'cbrt', 'plain', 'relative']
     """
-    return [name for name in losses.by_sample if name in {*USUAL, *minimised}]
+    return [name for name in losses.named.by_sample if name in {*USUAL, *minimised}]
 
 
 def format_error(error):
@@ -137,7 +137,9 @@ def compare(
     for thing in found:
         name, brdf = make_unique(thing.name, errors), thing if spectral else _in_rgb(thing)
         values = _evaluate(brdf, data, samples)
-        errors[name] = {loss: _error(losses[loss], values, samples) for loss in losses.by_sample}
+        errors[name] = {
+            loss: _error(losses.named[loss], values, samples) for loss in losses.named.by_sample
+        }
         albedos[name] = _reflect(brdf, pixels)
     errors = dict(sorted(errors.items(), key=lambda item: item[1][DEFAULT]))
     shown = told(*(thing.loss_name for thing in found if isinstance(thing, Fit)))

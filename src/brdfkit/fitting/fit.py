@@ -69,7 +69,7 @@ def fit(
     data : Measured, str or Path
         The measured material, or the name or path of one.
     loss : str, Loss, Picture or callable, default "cbrt"
-        What is made small: a name in `brdfkit.losses`, a `Loss`, a `Picture`, or your own
+        What is made small: a name in `brdfkit.losses.named`, a `Loss`, a `Picture`, or your own
         difference of a model's value from the measured one, a function (model, measured, cos_i,
         cos_o) of Dr.Jit's arrays.
     robust : str, optional

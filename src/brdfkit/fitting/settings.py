@@ -39,7 +39,7 @@ def to_settings(settings, where):
     if not isinstance(loss, str):
         raise BrdfkitError(
             f"loss = {loss!r} is no name; where other processes fit, it should be one of "
-            "brdfkit.losses."
+            "brdfkit.losses.named."
         )
     as_loss(loss)
     if robust not in (None, *WEIGHTS):

@@ -1,7 +1,7 @@
 """The numeric core of a fit: a model regressed on samples, without files and without Mitsuba.
 
-From the ground up: `losses/loss.py` is the error E that a fit minimises, `losses/named.py` the
-usual ones, `losses/picture.py` that of pictures. `problem/columns.py` evaluates the lobes of a
+From the ground up: `losses/loss.py` is the error E that a fit minimises, `losses/named_losses.py`
+the usual ones, `losses/picture.py` that of pictures. `problem/columns.py` evaluates the lobes of a
 model and their derivatives, on `problem/blocks.py` of samples; `problem/sums.py` adds them up,
 `problem/expansion.py` makes of the sums E² to second order, and `problem/problem.py` all this of a
 model on samples (`problem/folding.py`: quicker, on a table with a linear loss;
@@ -18,8 +18,7 @@ fits again from the end of one, and `profiling.py` follows its loss over a param
 """
 
 from brdfkit.regression.losses.loss import Loss as Loss
-from brdfkit.regression.losses.named import as_loss as as_loss
-from brdfkit.regression.losses.named import losses as losses
+from brdfkit.regression.losses.named_losses import as_loss as as_loss
 from brdfkit.regression.losses.picture import Picture as Picture
 from brdfkit.regression.regression import regress as regress
 from brdfkit.regression.result import Fit as Fit

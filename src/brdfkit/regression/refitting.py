@@ -8,7 +8,8 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.model.evaluation import weight_matrix, with_weights
-from brdfkit.regression.losses.named import as_loss, losses
+from brdfkit.regression import losses
+from brdfkit.regression.losses.named_losses import as_loss
 from brdfkit.regression.losses.picture import Picture
 from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.problem import Problem
@@ -33,10 +34,10 @@ class Refit:
                 f"{self.fit.name} was found by refine, from pictures of a scene and not from "
                 "samples; fit it to a measured material first."
             )
-        if self.fit.loss_name not in losses:
+        if self.fit.loss_name not in losses.named:
             raise BrdfkitError(
                 f"{self.fit.name} was fitted by a loss of your own, {self.fit.loss_name}, which a "
-                "fit does not keep; fit by one of brdfkit.losses first."
+                "fit does not keep; fit by one of brdfkit.losses.named first."
             )
         if isinstance(as_loss(self.fit.loss_name), Picture):
             raise BrdfkitError(
@@ -79,8 +80,8 @@ class Refit:
         if self.keeps_light:
             raise BrdfkitError(
                 f"{self.fit.name} was searched again for the light of its data, and is not the "
-                "least of its loss alone, as is needed here; brdfkit.bootstrap tells how certain "
-                "it is."
+                "least of its loss alone, as is needed here; "
+                "brdfkit.uncertainty.bootstrap tells how certain it is."
             )
 
     def problem(self, **held):

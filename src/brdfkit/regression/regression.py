@@ -19,7 +19,8 @@ from brdfkit.regression.search.levenberg_marquardt import ROUNDING
 from brdfkit.regression.search.light_search import keep_light
 from brdfkit.regression.search.multistart import search, with_parts
 from brdfkit.regression.search.starting_points import start_points, usual_starts
-from brdfkit.regression.solvers import SLSQP, Constraints, LevenbergMarquardt, Objective
+from brdfkit.regression.solvers import SLSQP, LevenbergMarquardt, Objective
+from brdfkit.regression.solvers.constraints import Constraints
 
 # Starts of a search that keeps the light, beside the end of the one that does not
 FEW_STARTS = 8

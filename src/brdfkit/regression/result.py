@@ -35,7 +35,7 @@ class Fit(Shown):
     data : str
         Name of the measured material.
     loss_name : str
-        Name of the loss, one of `brdfkit.losses`, or "rendered" by `refine`.
+        Name of the loss, one of `brdfkit.losses.named`, or "rendered" by `refine`.
     loss : float
         E of that loss, in its units.
     samples : int

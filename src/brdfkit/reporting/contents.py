@@ -100,7 +100,7 @@ def describe(material, fits, rendering, file, path, scene, envmap, ranking):
         "pixels": for_script([material.name, *names], pictures, differences),
         "errors": errors_table(standing, loss, material.rgb.albedo.means),
         "warnings": warnings,
-        "meanings": {n: losses[n].meaning.replace("θ_", "θ") for n in standing[0].errors},
+        "meanings": {n: losses.named[n].meaning.replace("θ_", "θ") for n in standing[0].errors},
         "loss": loss,
         "ranking": ranking and _ranked(ranking),
         "lobes": lobes,

@@ -15,6 +15,6 @@ values, for steps that would jump over what it has (`rays/voxel_steps.py`), and
 `light/extinction_bounds.py`, turn at a `light/vertex.py`, and come from `light/emitters.py`.
 """
 
-from brdfkit.volumes.loading import load_volume as load_volume
-from brdfkit.volumes.transfer.transfer_function import TransferFunction as TransferFunction
-from brdfkit.volumes.volume import Volume as Volume
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

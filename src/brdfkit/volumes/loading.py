@@ -1,4 +1,4 @@
-"""`load_volume`: a volume from a file, a folder or a name, within the memory that there is."""
+"""`volumes.load`: a volume from a file, a folder or a name, within the memory that there is."""
 
 import itertools
 import math
@@ -24,7 +24,7 @@ MOST = 65  # up to which a `downsample` is proposed
 SPARE = 1.2  # times what the voxels take, for what Python and NumPy take beside them
 
 
-def load_volume(
+def load(
     path: str | os.PathLike[str],
     downsample: int = 1,
     labels: bool | None = None,
@@ -73,7 +73,7 @@ def load_volume(
 
     Examples
     --------
-    >>> load_volume("marschner_lobb", size=41)
+    >>> volumes.load("marschner_lobb", size=41)
     marschner_lobb: 41×41×41 voxels of 0.04878×0.04878×0.04878 units, float32, 4.4e-05 to 0.999956
     """
     downsample = to_whole_number("downsample", downsample, 1)
@@ -85,7 +85,7 @@ def load_volume(
         kind = type(path).__name__
         raise BrdfkitError(
             f"A volume is a Volume, or the path or name of one, and no {kind}; of an array "
-            "brdfkit.Volume(array) makes one."
+            "brdfkit.volumes.Volume(array) makes one."
         ) from None
     if text in made.names() and not os.path.exists(text):
         if any(setting is not None for setting in (labels, dtype, spacing, offset)):

@@ -21,7 +21,7 @@ MOST = 1e30  # of values, and the inverse of their span: renderers have 32 bits
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Volume:
-    """Values on a regular grid of voxels. `load_volume` makes it of a file or a name.
+    """Values on a regular grid of voxels. `volumes.load` makes it of a file or a name.
 
     Raises `BrdfkitError` for no voxels, values that are not finite, and nothing but zeros.
 
@@ -162,7 +162,7 @@ class Volume:
 
         Examples
         --------
-        >>> head = load_volume("brain.nii.gz")    # doctest: +SKIP
+        >>> head = volumes.load("brain.nii.gz")    # doctest: +SKIP
         >>> {"type": "isosurface", "volume": head.scene_dict()}    # doctest: +SKIP
         """
         return in_mitsuba.scene_dict(self, transfer)

@@ -31,7 +31,7 @@ def convert(thing, output, values, mends, console, **how):
     """
     from brdfkit.cli.arguments import material, measured_material, refuse_mends
     from brdfkit.core.files import require_writable
-    from brdfkit.lighting.environments import convert_environment
+    from brdfkit.lighting import environments
     from brdfkit.lighting.environments.map_files import looks_like_map
     from brdfkit.materials.converting import convert as convert_thing
 
@@ -42,7 +42,7 @@ def convert(thing, output, values, mends, console, **how):
         if values:
             raise BrdfkitError(f"{thing} is an environment map: --set works for models only.")
         with console.progress(f"convert {thing}"):
-            path = convert_environment(thing, output, **given)
+            path = environments.convert(thing, output, **given)
         _print(path, (), path, console)
         return
     if given:

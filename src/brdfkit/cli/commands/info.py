@@ -70,22 +70,23 @@ def info(file, output, downsample, transfer, labels, mends, console):
 
 def _ways(file, downsample, labels, mends):
     """The functions that read and audit what the word `file` means: a map, a volume, a material."""
+    from brdfkit import volumes
     from brdfkit.cli.arguments import measured_material, refuse_mends
-    from brdfkit.lighting.environments import audit_environment
+    from brdfkit.lighting import environments
     from brdfkit.lighting.environments.map_files import looks_like_map
     from brdfkit.materials.auditing import audit
-    from brdfkit.volumes.loading import load_volume, looks_like_volume
+    from brdfkit.volumes.loading import looks_like_volume
     from brdfkit.volumes.summary.summary import summarise
 
     if looks_like_volume(file):
         refuse_mends(file, "a volume", mends)
         how = {"downsample": downsample or 1, "labels": labels or None}
-        return lambda volume: load_volume(volume, **how), summarise
+        return lambda volume: volumes.load(volume, **how), summarise
     if downsample or labels:
         raise BrdfkitError(f"{file} is no volume: --downsample and --labels are for volumes only.")
     if looks_like_map(file):
         refuse_mends(file, "an environment map", mends)
-        return lambda name: name, audit_environment
+        return lambda name: name, environments.audit
     return lambda name: measured_material(name, mends), audit
 
 

@@ -46,7 +46,7 @@ class HeldOut:
     def draw(cls, samples, loss, anisotropic, folds, rng, pixels=None):
         """Of `Samples`, with so many folds, and of `Pixels` under a `Picture`; `rng`: a
         generator."""
-        of_samples = loss if pixels is None else losses["log"]
+        of_samples = loss if pixels is None else losses.named["log"]
         if len(samples.wi) > PART:
             black = squares(of_samples, np.zeros_like(samples.values), samples)
             samples, _ = draw_part(samples, of_samples.importance(samples) * black, PART, rng)
@@ -78,7 +78,7 @@ class HeldOut:
         pixels = self.pixels.at(of_pixels)
         brdf = with_weights(model, solution.shapes, solution.weights).eval
         apart = squares(self.loss.of_pixels, pixels.look(brdf), _as_samples(pixels))
-        return np.concatenate([squares(losses["log"], values, samples), apart])
+        return np.concatenate([squares(losses.named["log"], values, samples), apart])
 
     def sum_by_block(self, values):
         """The sums (blocks,) of `values` (n,), each times its importance."""

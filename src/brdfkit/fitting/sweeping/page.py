@@ -107,7 +107,7 @@ def _tell(sweep, quantity):
     """What to know of a quantity's table, in sentences."""
     told = TOLD.get(quantity.name)
     if told is None:
-        loss = losses[sweep.rows[0].loss]
+        loss = losses.named[sweep.rows[0].loss]
         judged = len(tables.quantities(sweep)) > 1
         told = (
             f"Loss {loss.name}: {loss.meaning}. The best of a row is bold, the others have the "

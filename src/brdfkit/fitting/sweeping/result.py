@@ -23,7 +23,7 @@ class Row:
     model : str
         The model's label.
     loss : str
-        Name of the loss, one of `brdfkit.losses`.
+        Name of the loss, one of `brdfkit.losses.named`.
     error : float
         E of that loss, in its units; nan where the fit failed.
     seconds : float

@@ -1,3 +1,9 @@
-"""How certain a fit is: bootstrap, profiles, prediction errors, and the limit of isotropic
-models.
+"""The uncertainty of a fit: the bootstrap, loss profiles and prediction errors.
+
+Users reach the three functions as `brdfkit.uncertainty`. `isotropic_limit.py` serves the notes of
+a fit: the least error that any isotropic model can reach on an anisotropic material.
 """
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

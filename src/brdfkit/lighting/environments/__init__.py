@@ -7,6 +7,6 @@ what a program does; `auditing.py`, `spread.py`, `report.py` and `picture.py` ar
 MAP.exr` tells.
 """
 
-from brdfkit.lighting.environments.auditing import EnvironmentAudit as EnvironmentAudit
-from brdfkit.lighting.environments.auditing import audit_environment as audit_environment
-from brdfkit.lighting.environments.converting import convert_environment as convert_environment
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

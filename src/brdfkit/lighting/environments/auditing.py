@@ -1,4 +1,4 @@
-"""`audit_environment`: how bright an environment map is, from where, and what is doubtful in it."""
+"""`environments.audit`: how bright an environment map is and from where, and doubtful values."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -28,7 +28,7 @@ DPI, WIDTH = 75, 760  # of the picture in a notebook
 
 @dataclass(frozen=True, repr=False)
 class EnvironmentAudit(Shown):
-    """What is in an environment map; prints as text. Made by `audit_environment`.
+    """What is in an environment map; prints as text. Made by `environments.audit`.
 
     Directions are those of Mitsuba's `envmap`: +y is up, the middle of the picture is +z. Pixels
     that are not finite, or negative, count as black.
@@ -86,7 +86,7 @@ class EnvironmentAudit(Shown):
     def picture(self) -> "Figure":
         """The map with the blocks that `kdtree_envmap` cuts it into, and how the light is spread.
 
-        >>> audit_environment("studio").picture().savefig("studio.png")    # doctest: +SKIP
+        >>> environments.audit("studio").picture().savefig("studio.png")    # doctest: +SKIP
         """
         from brdfkit.lighting.environments.picture import picture  # only here: matplotlib is slow
 
@@ -109,7 +109,7 @@ class EnvironmentAudit(Shown):
         return to_png(self.picture(), DPI)
 
 
-def audit_environment(environment: str | Path | NDArray[Any]) -> EnvironmentAudit:
+def audit(environment: str | Path | NDArray[Any]) -> EnvironmentAudit:
     """How bright an environment map is, from where, and what is doubtful in it.
 
     Parameters
@@ -130,7 +130,7 @@ def audit_environment(environment: str | Path | NDArray[Any]) -> EnvironmentAudi
 
     Examples
     --------
-    >>> audit_environment("sky").brightest_share > 0.5    # the sun
+    >>> environments.audit("sky").brightest_share > 0.5    # the sun
     True
     """
     name, data = load(environment)

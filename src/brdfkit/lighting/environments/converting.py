@@ -1,4 +1,4 @@
-"""`convert_environment`: writes an environment map in the convention of another program."""
+"""`environments.convert`: writes an environment map in the convention of another program."""
 
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from brdfkit.lighting.environments.resampling import resample
 LARGEST = 16_384
 
 
-def convert_environment(
+def convert(
     environment: str | Path | NDArray[Any],
     path: str | Path,
     source: str = "mitsuba",
@@ -63,7 +63,7 @@ def convert_environment(
 
     Examples
     --------
-    >>> convert_environment("sky", "sky_cross.exr", target="cross")    # doctest: +SKIP
+    >>> environments.convert("sky", "sky_cross.exr", target="cross")    # doctest: +SKIP
     """
     before, after = convention(source), convention(target)
     turn = to_number("turn", turn)

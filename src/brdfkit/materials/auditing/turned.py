@@ -53,4 +53,4 @@ def _error(samples):
     """The error of the model by the mean of the channels."""
     grey = samples.values.mean(axis=1, keepdims=True)
     grey = Samples.from_arrays(samples.wi, samples.wo, grey, None, ("Y",), "grey")
-    return regress(labels.model(MODEL), grey, losses["log"], starts=STARTS).loss
+    return regress(labels.model(MODEL), grey, losses.named["log"], starts=STARTS).loss

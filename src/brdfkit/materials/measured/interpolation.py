@@ -134,17 +134,17 @@ def _fit_guide(samples, anisotropic):
     grey = Samples.from_arrays(samples.wi, samples.wo, grey, None, ("Y",), "grey")
     model, how = labels.model(GUIDE), {"starts": 1, "anisotropic": anisotropic}
     inside = grey.at(grey.within(MAX_ANGLE))
-    found = regress(model, inside, losses["log"], **how)
+    found = regress(model, inside, losses.named["log"], **how)
     (diffuse, specular), f0 = found.weights[0], found.shapes["f0"]
     too_bright = specular > _remaining(diffuse)
     if too_bright:
         # The samples do not show Fresnel's rise, and the fit overestimates it: fit again with an f0
         # that reflects no more than all light at the horizon
         f0 = min(f0 * specular / _remaining(diffuse), 1.0)
-        found = regress(model, inside, losses["log"], **how, fixed={"f0": f0})
+        found = regress(model, inside, losses.named["log"], **how, fixed={"f0": f0})
     # The weights of each channel, with the same shape parameters
     diffuse, specular = regress(
-        model, samples, losses["log"], anisotropic=anisotropic, fixed=found.shapes
+        model, samples, losses.named["log"], anisotropic=anisotropic, fixed=found.shapes
     ).weights.T
     rise = np.inf if too_bright else (1 - f0) * specular
     return _limit_rise(model, found.shapes, diffuse, f0 * specular, rise)

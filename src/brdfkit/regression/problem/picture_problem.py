@@ -3,12 +3,12 @@
 import math
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.regression.losses.named import losses
+from brdfkit.regression import losses
 from brdfkit.regression.problem.pixel_problem import PixelProblem
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.problem.subset import draw_part
 
-LOG = losses.by_sample["log"]
+LOG = losses.named.by_sample["log"]
 # So many samples stand for all; where starts are compared, fewer do, and a share of the pixels
 SAMPLES, FEW_SAMPLES, FEW_PIXELS = 20_000, 2_000, 1 / 12
 

@@ -22,15 +22,6 @@ A search at random is a solver, too:
             return End(best, error, "as good as chance had it")
 """
 
-from brdfkit.regression.solvers.albedo_at_most import AlbedoAtMost as AlbedoAtMost
-from brdfkit.regression.solvers.constraints import Constraints as Constraints
-from brdfkit.regression.solvers.constraints import WeightsAtMost as WeightsAtMost
-from brdfkit.regression.solvers.differential_evolution import (
-    DifferentialEvolution as DifferentialEvolution,
-)
-from brdfkit.regression.solvers.levenberg_marquardt import LevenbergMarquardt as LevenbergMarquardt
-from brdfkit.regression.solvers.objective import End as End
-from brdfkit.regression.solvers.objective import Objective as Objective
-from brdfkit.regression.solvers.objective import Solver as Solver
-from brdfkit.regression.solvers.slsqp import SLSQP as SLSQP
-from brdfkit.regression.solvers.trust_region import TrustRegion as TrustRegion
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

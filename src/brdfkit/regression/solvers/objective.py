@@ -20,7 +20,17 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class End:
-    """Where a search ended: a `point` z (n,), `error`, E² there, and `message`, why it stopped."""
+    """The result of a search: the best point, and why the search stopped.
+
+    Attributes
+    ----------
+    point : ndarray, shape (n,)
+        The point z.
+    error : float
+        E² there.
+    message : str
+        Why the search stopped.
+    """
 
     point: Floats
     error: float

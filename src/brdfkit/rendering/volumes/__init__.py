@@ -4,6 +4,3 @@
 `light.py` what lights it and is behind it, `scene.py` puts them together, `render_volume.py` and
 `orbit.py` are the verbs.
 """
-
-from brdfkit.rendering.volumes.orbit import render_orbit as render_orbit
-from brdfkit.rendering.volumes.render_volume import render_volume as render_volume

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from brdfkit import volumes
 from brdfkit.core.arguments import to_number, to_positive, to_whole_number
 from brdfkit.rendering.film import Film
 from brdfkit.rendering.volumes.render_volume import render_volume
-from brdfkit.volumes import TransferFunction, Volume, load_volume
+from brdfkit.volumes import TransferFunction, Volume
 
 FRAMES, SIZE = 48, 320
 
@@ -35,7 +36,7 @@ def render_orbit(
     Parameters
     ----------
     volume : Volume, str or Path
-        The volume; or the file, folder or name that `load_volume` takes.
+        The volume; or the file, folder or name that `volumes.load` takes.
     transfer : TransferFunction, str or Path, optional
         As in `render_volume`.
     frames : int, default 48
@@ -68,7 +69,7 @@ def render_orbit(
     frames = to_whole_number("frames", frames, least=2)
     azimuth = to_number("azimuth", azimuth)
     each = None if seconds is None else to_positive("seconds", seconds) / frames
-    volume = volume if isinstance(volume, Volume) else load_volume(volume)
+    volume = volume if isinstance(volume, Volume) else volumes.load(volume)
     start, spp = time.perf_counter(), 0
     found: list[NDArray[np.float32]] = []
     told = _Told(progress, frames)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from brdfkit import volumes
 from brdfkit.core.arguments import to_number, to_positive, to_whole_number
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.jit.threads import in_turn
@@ -18,7 +19,7 @@ from brdfkit.rendering.scene_input.arguments import mitsuba
 from brdfkit.rendering.tracing import trace
 from brdfkit.rendering.volumes import looks
 from brdfkit.rendering.volumes.scene import RENDERERS, UNLIT, scene
-from brdfkit.volumes import TransferFunction, Volume, load_volume
+from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.transfer.windows import fitted
 
 SPP, UNLIT_SPP = 64, 8  # samples per pixel
@@ -53,7 +54,7 @@ def render_volume(
     Parameters
     ----------
     volume : Volume, str or Path
-        The volume; or the file, folder or name that `load_volume` takes.
+        The volume; or the file, folder or name that `volumes.load` takes.
     transfer : TransferFunction, str or Path, optional
         What its values look like: colours and extinction; or the name of a preset, or a file. By
         default a colour for each label; of scans in HU "ct_bone", or "ct_skin" without bone; of
@@ -119,7 +120,7 @@ def render_volume(
     light = envmap, _to_background(background)
     if renderer not in RENDERERS:
         raise no_such("renderer", renderer, RENDERERS)
-    volume = volume if isinstance(volume, Volume) else load_volume(volume)
+    volume = volume if isinstance(volume, Volume) else volumes.load(volume)
     require_memory(size, 1)
     mi = mitsuba()  # sets a variant, on which the dictionaries depend
     if mi.variant().startswith("scalar"):

@@ -13,7 +13,7 @@ from brdfkit.fitting.ranking.ties import beside, is_tied
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.regression import losses
 from brdfkit.regression.losses.loss import squares
-from brdfkit.regression.losses.named import DEFAULT
+from brdfkit.regression.losses.named_losses import DEFAULT
 
 MOST_SAMPLES = 200_000  # of which quantiles and ties are told; of more, so many are drawn
 BAND, LEAST = 15.0, 20  # degrees of θi over which a deviation is told; samples that it needs
@@ -44,7 +44,7 @@ def ranked_by(fits):
     """The loss by which fits are ranked: that of all of them, or the default where it is none of
     samples or not the same."""
     names = {fit.loss_name for fit in fits}
-    return names.pop() if len(names) == 1 and names <= {*losses.by_sample} else DEFAULT
+    return names.pop() if len(names) == 1 and names <= {*losses.named.by_sample} else DEFAULT
 
 
 def standings(material, fits, loss):
@@ -59,11 +59,11 @@ def standings(material, fits, loss):
             "factor; a report needs some."
         )
     blocks = number_blocks(samples.wi, samples.wo, material.anisotropic)
-    weight = losses[loss].importance(samples)
+    weight = losses.named[loss].importance(samples)
     sums, factors = [], []
     for fit in fits:
         values = np.broadcast_to(fit.rgb.eval(samples.wi, samples.wo), samples.values.shape)
-        sums.append(np.bincount(blocks, weight * squares(losses[loss], values, samples)))
+        sums.append(np.bincount(blocks, weight * squares(losses.named[loss], values, samples)))
         factors.append(_factors(values, samples))
     best = min(sums, key=np.sum)
     shares = np.bincount(blocks, weight)

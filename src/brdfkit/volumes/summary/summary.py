@@ -92,7 +92,7 @@ class VolumeSummary(Shown):
         """Three slices through the middle, and the histograms of value, and of value × gradient,
         over which a transfer function is drawn.
 
-        >>> summarise(load_volume("smoke")).picture().savefig("smoke.png")    # doctest: +SKIP
+        >>> summarise(volumes.load("smoke")).picture().savefig("smoke.png")    # doctest: +SKIP
         """
         from brdfkit.volumes.summary.picture import picture  # only here: matplotlib is slow to load
 
@@ -116,7 +116,7 @@ class VolumeSummary(Shown):
 def summarise(volume: Volume) -> VolumeSummary:
     """What is in a volume, which way it lies, and what is doubtful.
 
-    >>> summarise(load_volume("slab")).directions
+    >>> summarise(volumes.load("slab")).directions
     ('+x', '+y', '+z')
     """
     values, (low, high) = volume.values, volume.bounds

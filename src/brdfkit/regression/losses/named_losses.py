@@ -61,7 +61,7 @@ class Losses(Shown, dict[str, Loss | Picture]):
     white. "kurt" is the thesis's sum of f cos θ_i [sr⁻¹] over the samples as they are. `by_sample`:
     all but "picture", which judge a model sample by sample.
 
-    >>> losses["plain"].meaning
+    >>> named["plain"].meaning
     'RMS difference of f: what is bright counts'
     """
 
@@ -79,7 +79,7 @@ class Losses(Shown, dict[str, Loss | Picture]):
         return Document("Losses: what a fit makes small", (Table(rows),))
 
 
-losses = Losses(
+named = Losses(
     (loss.name, loss)
     for loss in (
         Loss(
@@ -132,22 +132,23 @@ losses = Losses(
 
 
 def as_loss(given: Any) -> Loss | Picture:
-    """The loss of a name in `losses`, of a difference written as a function, or a loss itself.
+    """The loss of a name in `named`, of a difference written as a function, or a loss itself.
 
     Raises `BrdfkitError` for an unknown name, and for a function that fails on Dr.Jit's arrays.
     """
-    if isinstance(given, str) and given in losses:
-        return losses[given]
+    if isinstance(given, str) and given in named:
+        return named[given]
     if isinstance(given, Picture):
         return given
     if not callable(given) and not isinstance(given, Loss):
-        raise no_such("loss", given, losses)
+        raise no_such("loss", given, named)
     loss = given if isinstance(given, Loss) else loss_of(given)
-    if loss is losses.get(loss.name):
+    if loss is named.get(loss.name):
         return loss
-    if not isinstance(loss.name, str) or loss.name in losses:
+    if not isinstance(loss.name, str) or loss.name in named:
         raise BrdfkitError(
-            f"A loss of your own is named {loss.name!r}; give it a name that brdfkit.losses lacks."
+            f"A loss of your own is named {loss.name!r}; give it a name that brdfkit.losses.named "
+            "lacks."
         )
     require_working(loss)
     return loss

@@ -12,7 +12,7 @@ from brdfkit.materials.resolve import MaterialLike, to_material
 from brdfkit.model.evaluation import lobe_values
 from brdfkit.regression import Fit
 from brdfkit.regression.losses.loss import squares
-from brdfkit.regression.losses.named import as_loss
+from brdfkit.regression.losses.named_losses import as_loss
 from brdfkit.regression.refitting import Refit
 
 

@@ -1,0 +1,9 @@
+from .albedo_at_most import AlbedoAtMost as AlbedoAtMost
+from .constraints import WeightsAtMost as WeightsAtMost
+from .differential_evolution import DifferentialEvolution as DifferentialEvolution
+from .levenberg_marquardt import LevenbergMarquardt as LevenbergMarquardt
+from .objective import End as End
+from .objective import Objective as Objective
+from .objective import Solver as Solver
+from .slsqp import SLSQP as SLSQP
+from .trust_region import TrustRegion as TrustRegion

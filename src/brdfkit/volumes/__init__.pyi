@@ -1,0 +1,3 @@
+from .loading import load as load
+from .transfer.transfer_function import TransferFunction as TransferFunction
+from .volume import Volume as Volume
