@@ -516,7 +516,7 @@ TRAPS = [
     (["info", "paint.binary", "-o", "no/a.png"], ["no/a.png", "create it"]),
     (["info", "missing.binary"], ["missing.binary", "no such file"]),
     (["info", "."], ["folder"]),
-    (["info", "studoi"], ["no environment map 'studoi'", "did you mean studio?"]),
+    (["info", "studoi"], ["no file or environment map 'studoi'", "did you mean studio?"]),
     (["fit", "plaster", "ggx"], ["ggx is a model, not a file", "-m ggx"]),
     (["render", "spot.obj"], ["spot.obj is a mesh", "--scene spot.obj"]),
     ([*WARD, "--shadows"], ["--shadows is for --preview"]),
@@ -527,10 +527,10 @@ TRAPS = [
     (["render", "bounds.xml", "--scene", "vase"], ["bounds.xml", "leave --scene"]),
     (["render", "bounds.xml", "--size", "9"], ["bounds.xml", "leave", "--size"]),
     (["render", "bounds.xml#wall"], ["bounds.xml#wall is a place", "as --scene bounds.xml#wall"]),
-    ([*WARD, "--envmap", ""], ["'' should be the path of an environment map"]),
+    ([*WARD, "--envmap", ""], ["environment map = '' should be the path of a file"]),
     ([*WARD, "--scene", "vaes"], ["vaes", "did you mean vase?", "cornell_box"]),
-    ([*LAMBERT, "--render", "--scene", "no.obj", "-o", "new"], ["no.obj", "no such mesh"]),
-    ([*LAMBERT, "--render", "--envmap", "no.exr", "-o", "new"], ["no.exr", "no such environment"]),
+    ([*LAMBERT, "--render", "--scene", "no.obj", "-o", "new"], ["no.obj", "no such file"]),
+    ([*LAMBERT, "--render", "--envmap", "no.exr", "-o", "new"], ["no.exr", "no such file"]),
     *(
         ([*LAMBERT, option, value], [f"{option} is for pictures; add --render"])
         for option, value in (

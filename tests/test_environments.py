@@ -387,8 +387,8 @@ def test_bad_files(bad, module_in_llvm):
         "text.exr": "fetch it again",
         "empty.exr": "fetch it again",
         "one.exr": "1×1 pixels; it needs 2×2",
-        "none.exr": "there is no such environment map",
-        "studoi": "no environment map 'studoi'; did you mean studio?",
+        "none.exr": "there is no such file",
+        "studoi": "no file or environment map 'studoi'; did you mean studio?",
     }
     lights = {
         "nan.exr": "a negative value, or one not finite",

@@ -433,7 +433,7 @@ def test_a_changed_or_turned_mesh_casts_its_own_shadows(llvm_variant, monkeypatc
         ({"scene": "ball.obj#w"}, "behind the #, is x, y or z"),
         ({"envmap": "nowhere.exr"}, "nowhere.exr"),
         ({"scene": "cornell_box"}, "A preview shows a shape"),
-        ({"scene": "nothing.obj"}, "no such mesh"),
+        ({"scene": "nothing.obj"}, "no such file"),
         ({"scene": 3}, "scene = 3 should be a scene's name or a mesh's file"),
         ({"method": "gm"}, "^filtered_environment: there is no method 'gm'; did you mean gmm"),
         ({"size": 0}, "size = 0"),
@@ -441,7 +441,9 @@ def test_a_changed_or_turned_mesh_casts_its_own_shadows(llvm_variant, monkeypatc
         ({"spp": 3}, "spp = 3 should be a square number"),
     ],
 )
-def test_what_cannot_be_previewed_is_said(llvm_variant, given, said):
+def test_what_cannot_be_previewed_is_said(llvm_variant, tmp_path, monkeypatch, given, said):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "ball.obj").touch()
     with pytest.raises(bk.BrdfkitError, match=said):
         bk.preview("lambert", **{"size": 8, **given})
 

@@ -191,7 +191,7 @@ BAD = {
     "two for one camera": (lambda p: [p, p], {}, "one picture for each sensor: 2 for 1"),
     "8 bits": (lambda p: np.uint8(np.clip(p, 0, 1) * 255), {}, "8 bits"),
     "a JPEG": (lambda p: "photo.jpg", {}, "8 bits"),
-    "no file": (lambda p: "missing.exr", {}, "no such picture"),
+    "no file": (lambda p: "missing.exr", {}, "no such file"),
     "one channel": (lambda p: p[..., 0], {}, "1 channel, and a camera's film 3"),
     "not finite": (lambda p: np.where(p > p.mean(), np.nan, p), {}, "not finite"),
     "black": (lambda p: 0 * p, {}, "black"),
@@ -214,7 +214,7 @@ BAD = {
     "a mask below 0": (lambda p: p, {"mask": -np.ones((SIZE, SIZE))}, "finite numbers ≥ 0"),
     "a mask of 0": (lambda p: p, {"mask": np.zeros((SIZE, SIZE), bool)}, "no pixel would count"),
     "two masks": (lambda p: p, {"mask": [None, None]}, "one mask for each picture: 2 for 1"),
-    "no such mask": (lambda p: p, {"mask": "mask.png"}, "no such mask"),
+    "no such mask": (lambda p: p, {"mask": "mask.png"}, "no such file"),
     "a mask of clipped pixels": (
         lambda p: np.where(np.arange(SIZE) < 5, 9.0, p.T).T,
         {"mask": np.repeat(np.arange(SIZE)[:, None] < 5, SIZE, axis=1)},

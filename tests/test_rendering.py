@@ -335,7 +335,7 @@ def test_a_scene_file_is_rendered(tmp_path):
     (tmp_path / "empty.xml").write_text(scene)
     picture = render_scene(tmp_path / "empty.xml", spp=2).pictures["empty"]
     np.testing.assert_allclose(picture, np.ones((8, 12, 3)), rtol=1e-5)
-    with pytest.raises(BrdfkitError, match="no such scene"):
+    with pytest.raises(BrdfkitError, match="no such file"):
         render_scene(tmp_path / "missing.xml")
     (tmp_path / "cut.xml").write_text(scene.replace('<integrator type="path"/>', ""))
     with pytest.raises(BrdfkitError, match=r"cut\.xml: the scene has no integrator; add"):

@@ -513,7 +513,7 @@ def stop_after_two_passes(self, what):
         (["paint.npz", "ward.json"], "ward.json: a saved fit goes behind -m"),
         (["paint.npz", "--scene", "vaes"], "did you mean vase?"),
         (["paint.npz", "--scene", "room.xml#it"], "room.xml#it: a report shows materials in"),
-        (["paint.npz", "--envmap", "no.exr"], "no.exr: there is no such environment map"),
+        (["paint.npz", "--envmap", "no.exr"], "no.exr: there is no such file"),
     ],
 )
 def test_mistakes_are_said_and_nothing_is_written(here, words, said):

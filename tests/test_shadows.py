@@ -143,9 +143,9 @@ def test_a_scene_by_its_name_has_four_views_and_two_suns():
 @pytest.mark.parametrize(
     ("scene", "said"),
     [
-        ("stret", "no scene or scene file 'stret'; did you mean street"),
-        ("stret.xml", "stret.xml: there is no such scene file"),
-        (3, "scene should be a name .* not of the type int"),
+        ("stret", "no file or scene 'stret'; did you mean street"),
+        ("stret.xml", "stret.xml: there is no such file"),
+        (3, "scene = 3 should be the path of a file, or one of"),
     ],
 )
 def test_a_wrong_scene_is_one_sentence(scene, said):

@@ -144,7 +144,7 @@ def contents(path):
     >>> contents("gold.binary.xz")[:4]  # doctest: +SKIP
     b'Z\\x00\\x00\\x00'
     """
-    path = Path(path)
+    path = require_file(path)
     with _reading(path):
         data = _read(path)
     if not data:
@@ -159,16 +159,15 @@ def sha256(path):
     """
     import hashlib  # only here: `--help` should be instant
 
-    path = Path(path)
+    path = require_file(path)
     with _reading(path), path.open("rb") as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 @contextmanager
 def _reading(path):
-    """Within the block the file at `path` is read; what then fails is a `BrdfkitError`."""
+    """Turn an `OSError` inside the block, which reads the file at `path`, into a `BrdfkitError`."""
     try:
-        _require_file(path)
         yield
     except OSError as error:
         raise BrdfkitError(
@@ -176,15 +175,20 @@ def _reading(path):
         ) from error
 
 
-def _require_file(path):
-    """Raise `BrdfkitError` unless `path` is a regular file; propose a similar name beside it."""
-    if path.is_dir():
-        raise BrdfkitError(f"{path}: is a folder; name a file in it.")
-    if path.is_file():
-        return
-    if path.exists():
-        raise BrdfkitError(f"{path}: is no regular file; name one.")
-    beside = {file.name for file in path.parent.glob("*")} if path.parent.is_dir() else set()
+def require_file(path: str | os.PathLike[str]) -> Path:
+    """Return the `Path` of a regular file.
+
+    Raises `BrdfkitError` where there is none; it proposes the file beside it with a similar name.
+    """
+    path = Path(path)
+    with _reading(path):
+        if path.is_dir():
+            raise BrdfkitError(f"{path}: is a folder; name a file in it.")
+        if path.is_file():
+            return path
+        if path.exists():
+            raise BrdfkitError(f"{path}: is no regular file; name one.")
+        beside = {file.name for file in path.parent.glob("*")} if path.parent.is_dir() else set()
     near = nearest(path.name, sorted(beside - {path.name}))
     remedy = f"did you mean {path.with_name(near)}? Else check" if near else "check"
     raise BrdfkitError(f"{path}: there is no such file; {remedy} the path.")

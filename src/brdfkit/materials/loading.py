@@ -4,8 +4,9 @@ import os
 from pathlib import Path
 
 from brdfkit.core import catalogue, index
-from brdfkit.core.errors import BrdfkitError, nearest, no_such
+from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import contents, write_safely
+from brdfkit.core.locate import find_file_or_name, split_part
 from brdfkit.materials import formats
 from brdfkit.materials.collections import public
 from brdfkit.materials.measured import Measured
@@ -59,20 +60,22 @@ def load(
 
 
 def locate(path: str | Path) -> tuple[Path, str | None]:
-    """The file that `load` reads for a path or a name, and the sample named behind '#', if any.
+    """Return the file that `load` reads for a path or a name, and the sample named behind '#'.
 
-    Raises `BrdfkitError` for a name that is no path and like that of a material; whether there is
-    such a file shows when it is read.
+    The sample is None where none is named. Raises `BrdfkitError` where there is neither a file nor
+    a material of that name.
 
-    >>> locate("abrdf.dat#12")
-    (PosixPath('abrdf.dat'), '12')
+    >>> locate("dusty_gold")[0].name
+    'dusty_gold.binary.xz'
     """
     if not str(path):
         raise BrdfkitError("The path is empty; name a file, or a material that brdfkit knows.")
-    path, sample = _split(path)
-    if not os.path.isfile(path):  # isfile is False, too, for text that cannot be a path
-        path = _find_known(path.as_posix()) or path
-    return path, sample
+    file, sample = split_part(path)
+    collection, slash, _ = file.as_posix().partition("/")
+    if slash and collection in index.entries()["collections"] and not os.path.isfile(file):
+        return public.path(file.as_posix()), sample
+    place = find_file_or_name(file, "material", catalogue.materials())
+    return (catalogue.path(place) if isinstance(place, str) else place), sample
 
 
 def read(path: Path, sample: str | None = None) -> Measured | Fit:
@@ -120,27 +123,3 @@ def save_and_read(obj: Measured, path: str | Path) -> Measured:
             raise BrdfkitError(
                 f"{path}: the file could not be read again ({reason.rstrip('.')})."
             ) from error
-
-
-def _find_known(name: str) -> Path | None:
-    """The file of the material that brdfkit knows by `name`, None for another name.
-
-    Raises `BrdfkitError` for a name that is no path and like that of a material.
-    """
-    if name in catalogue.materials():
-        return catalogue.path(name)
-    if name.partition("/")[0] in index.entries()["collections"] and "/" in name:
-        return public.path(name)
-    if not os.path.exists(name) and not Path(name).suffix and nearest(name, catalogue.materials()):
-        raise no_such("file or material", name, catalogue.materials())
-    return None
-
-
-def _split(path: str | Path) -> tuple[Path, str | None]:
-    """The path before its last '#', and the sample named behind it; the whole path and None where
-    there is no '#', or where it belongs to the name of a file."""
-    path = Path(path)
-    name, hash_sign, sample = path.name.rpartition("#")
-    if not hash_sign or not name or os.path.exists(path):
-        return path, None
-    return path.with_name(name), sample

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from brdfkit.core import catalogue
 from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.locate import looks_like_name
 from brdfkit.materials.loading import load
 from brdfkit.materials.measured import Measured
 from brdfkit.mitsuba_bridge.bsdf.from_dictionary import BsdfMaterial
@@ -99,7 +100,7 @@ def _find(name: str) -> Material:
     try:
         return load(name)
     except BrdfkitError:
-        if not name or "/" in name or Path(name).suffix or os.path.exists(name):
+        if not looks_like_name(name):
             raise
     raise no_such("file, model or material", name, [*labels.models(), *catalogue.materials()])
 

@@ -2,9 +2,9 @@
 
 import re
 from html import unescape
-from pathlib import Path
 
 from brdfkit.core.errors import BrdfkitError, nearest
+from brdfkit.core.files import require_file
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.mitsuba_bridge.properties.radiance_rows import require_rows
 
@@ -21,7 +21,7 @@ def load_scene_file(path, **how):
     """
     import mitsuba as mi
 
-    path = _existing(path)
+    path = require_file(path)
     _require_maps(path)
 
     def load(source, parallel):
@@ -44,7 +44,7 @@ def file_scene(source):
     `BrdfkitError` for a file that cannot be rendered, and for one without that id.
     """
     path, _, place = str(source).partition("#")
-    path, place = _existing(path), place or PLACE
+    path, place = require_file(path), place or PLACE
 
     def build(bsdf, size):
         # equal BSDFs would become one, with one of their ids
@@ -62,13 +62,6 @@ def file_scene(source):
         return scene
 
     return build
-
-
-def _existing(path):
-    """The `Path` of a scene file; an error where there is none."""
-    if not Path(path).is_file():
-        raise BrdfkitError(f"{path}: there is no such scene file; check the path.")
-    return Path(path)
 
 
 def _require_maps(path):

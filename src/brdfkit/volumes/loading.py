@@ -12,7 +12,8 @@ import numpy as np
 import psutil
 
 from brdfkit.core.arguments import to_whole_number
-from brdfkit.core.errors import BrdfkitError, nearest, no_such
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.locate import find_file_or_name, split_part
 from brdfkit.volumes import formats, made, reducing
 from brdfkit.volumes.formats import VolumeFile
 from brdfkit.volumes.summary.histograms import FEW
@@ -87,15 +88,16 @@ def load(
             f"A volume is a Volume, or the path or name of one, and no {kind}; of an array "
             "brdfkit.volumes.Volume(array) makes one."
         ) from None
-    if text in made.names() and not os.path.exists(text):
-        if any(setting is not None for setting in (labels, dtype, spacing, offset)):
+    found, part = split_part(text)
+    place = find_file_or_name(found, "volume", made.names(), folders=True)
+    if isinstance(place, str):
+        if any(setting is not None for setting in (part, labels, dtype, spacing, offset)):
             raise BrdfkitError(f"{text} is made: it takes size and downsample alone.")
         if voxels is not None:
-            _require_memory_to_make(text, voxels)
-        volume = made.make(text, voxels)
+            _require_memory_to_make(place, voxels)
+        volume = made.make(place, voxels)
         return volume if downsample == 1 else volume.resized(downsample)
-    found, part = _locate(text)
-    file = VolumeFile(found, part, voxels, dtype, offset)
+    file = VolumeFile(place, part, voxels, dtype, offset)
     with np.errstate(all="ignore"):  # of a damaged header's numbers `require_transform` tells
         stored = formats.find(file)
     if labels is not None:
@@ -110,10 +112,10 @@ def looks_like_volume(name: str) -> bool:
 
     A file .hdr that begins as Radiance's maps do is none: Analyze's begin otherwise.
     """
-    path, _ = _split(name)
-    if name in made.names() or formats.is_series(Path(path)):
+    path, _ = split_part(name)
+    if name in made.names() or formats.is_series(path):
         return True
-    return formats.has_format(path) and not _is_radiance(Path(path))
+    return formats.has_format(str(path)) and not _is_radiance(path)
 
 
 def _is_radiance(path):
@@ -207,25 +209,6 @@ def _needed(stored, downsample):
     _, ny, nx = stored.shape
     slab = ny * nx * (downsample * stored.dtype.itemsize + np.dtype(float).itemsize)
     return SPARE * (kept * _dtype(stored, downsample).itemsize + slab)
-
-
-def _locate(text):
-    """The `Path` of a file or a folder, and the part that is named behind '#', or None."""
-    name, part = _split(text)
-    path = Path(name)
-    if path.exists():
-        return path, part
-    if not path.suffix and len(path.parts) == 1:
-        raise no_such("file or volume", text, made.names())
-    beside = {p.name for p in path.parent.glob("*")} if path.parent.is_dir() else set()
-    near = nearest(path.name, sorted(beside))
-    remedy = f"did you mean {path.with_name(near)}? Else check" if near else "check"
-    raise BrdfkitError(f"{path}: there is no such file; {remedy} the path.")
-
-
-def _split(text):
-    name, hash_sign, part = text.rpartition("#")
-    return (name, part) if hash_sign and not os.path.exists(text) else (text, None)
 
 
 def _name(file):

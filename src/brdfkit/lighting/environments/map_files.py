@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from brdfkit.core import catalogue
-from brdfkit.core.errors import BrdfkitError, nearest, no_such
+from brdfkit.core.errors import BrdfkitError, nearest
 from brdfkit.core.files import write_safely
 from brdfkit.core.jit.threads import in_turn, two_threads
+from brdfkit.core.locate import find_file_or_name
 from brdfkit.mitsuba_bridge.properties.picture_file import read_pixels
 from brdfkit.model import labels
 
@@ -30,18 +31,8 @@ def find(name):
     >>> find("studio").name
     'studio.exr'
     """
-    if not isinstance(name, str | Path) or not str(name):
-        raise BrdfkitError(
-            f"{name!r:.60} should be the path of an environment map, or the name of one."
-        )
-    if Path(name).is_file():
-        return Path(name)
-    known = catalogue.environments()
-    if str(name) in known:
-        return catalogue.environment_path(str(name))
-    if not Path(name).suffix and (nearest(name, known) or len(Path(name).parts) == 1):
-        raise no_such("environment map", str(name), known)
-    raise BrdfkitError(f"{name}: there is no such environment map; check the path.")
+    place = find_file_or_name(name, "environment map", catalogue.environments())
+    return catalogue.environment_path(place) if isinstance(place, str) else place
 
 
 def looks_like_map(name):

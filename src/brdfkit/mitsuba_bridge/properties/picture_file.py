@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.files import is_utf8
+from brdfkit.core.files import is_utf8, require_file
 from brdfkit.core.jit.threads import two_threads
 from brdfkit.mitsuba_bridge.properties.radiance_rows import require_rows
 
@@ -58,9 +58,7 @@ def read_photograph(path, linearise):
             f"{path}: such files hold 8 bits, or 16, behind a curve for screens; give an OpenEXR "
             "file, or say linearise=True (--linearise), for sRGB's curve."
         )
-    if not Path(path).is_file():
-        raise BrdfkitError(f"{path}: there is no such picture; check the path.")
-    return read_pixels(path, str(path))
+    return read_pixels(require_file(path), str(path))
 
 
 def read_pixels(path, name):

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.locate import find_file_or_name, split_part
 from brdfkit.lighting.environments.map_files import find
 from brdfkit.mitsuba_bridge import scene_file
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
@@ -63,19 +64,19 @@ def find_scene(given):
     """
     if callable(given):
         return given
-    if not isinstance(given, str | Path):
-        raise BrdfkitError(f"scene = {given!r} should be a scene's name, a file or a function.")
+    file = split_part(given)[0] if isinstance(given, str | Path) and str(given) else given
+    place = find_file_or_name(file, "scene", scene_names())
+    if isinstance(place, str):
+        return scene(place)
     suffix = suffix_of(given)
     if suffix == scene_file.SUFFIX:
         return scene_file.file_scene(given)
     if suffix in mesh_file.SUFFIXES:
         return mesh_file.mesh_scene(given)
-    if suffix or isinstance(given, Path):
-        raise BrdfkitError(
-            f"{given}: a scene is a mesh (.obj, .ply), a scene file (.xml), or one of "
-            f"{', '.join(scene_names())}."
-        )
-    return scene(given)
+    raise BrdfkitError(
+        f"{given}: a scene is a mesh (.obj, .ply), a scene file (.xml), or one of "
+        f"{', '.join(scene_names())}."
+    )
 
 
 def _require_scene(loaded):

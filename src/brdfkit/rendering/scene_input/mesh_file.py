@@ -1,11 +1,11 @@
 """A mesh of the user's, OBJ or PLY, as a scene: it stands in the place of the ball."""
 
 import warnings
-from pathlib import Path
 
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.files import require_file
 from brdfkit.mitsuba_bridge.obj_indices import counted_from_the_start
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.scene_input.upright import guess_up
@@ -33,11 +33,9 @@ def mesh_scene(given):
     mesh, for one whose faces lack vertices or an area, and for an axis that there is not.
     """
     name, _, up = str(given).partition("#")
-    path = Path(name)
     if up and up not in TURNS:
         raise BrdfkitError(f"{given}: the axis that points up, behind the #, is x, y or z.")
-    if not path.is_file():
-        raise BrdfkitError(f"{path}: there is no such mesh; check the path.")
+    path = require_file(name)
     made = []  # the same mesh serves every material, and is read once
 
     def build(bsdf, size=(512, 512)):

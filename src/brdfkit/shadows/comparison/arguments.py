@@ -1,9 +1,8 @@
 """What `compare` is asked for, checked before the work."""
 
-from pathlib import Path
-
 from brdfkit.core.arguments import to_whole_number
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.locate import find_file_or_name
 from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.light import Light
 from brdfkit.mitsuba_bridge.scene_file import load_scene_file
@@ -21,17 +20,12 @@ def load(given, size):
 
     if isinstance(given, mi.Scene):
         return given
-    if not isinstance(given, str | Path):
-        raise BrdfkitError(
-            f"scene should be a name ({', '.join(SCENES)}), the path of a scene file of Mitsuba's "
-            f"or a mitsuba.Scene, not of the type {type(given).__name__}; load it by "
-            "mitsuba.load_dict."
-        )
-    if given in SCENES:
-        return mi.load_dict(in_all_views(given, size), parallel=False)
-    if not Path(given).suffix and not Path(given).exists():
-        raise no_such("scene or scene file", str(given), SCENES)
-    return load_scene_file(given)
+    if isinstance(given, dict):
+        raise BrdfkitError("scene: a dictionary is no scene yet; load it by mitsuba.load_dict.")
+    place = find_file_or_name(given, "scene", SCENES)
+    if isinstance(place, str):
+        return mi.load_dict(in_all_views(place, size), parallel=False)
+    return load_scene_file(place)
 
 
 MOST = 16384  # texels or pixels along a side

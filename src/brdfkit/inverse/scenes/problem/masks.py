@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.files import require_file
 from brdfkit.mitsuba_bridge.properties.picture_file import read_pixels
 
 
@@ -30,9 +31,7 @@ def _read(mask, number):
     name = f"refine: mask {number}"
     if isinstance(mask, str | Path):
         name = str(mask)
-        if not Path(mask).is_file():
-            raise BrdfkitError(f"{name}: there is no such mask; check the path.")
-        mask = read_pixels(mask, name).mean(axis=2)
+        mask = read_pixels(require_file(mask), name).mean(axis=2)
     mask = np.asarray(mask)
     if mask.ndim != 2 or mask.dtype.kind not in "biuf":
         raise BrdfkitError(
