@@ -41,8 +41,8 @@ lint: $(VENV)/.ready
 	$(RUN)/mypy
 
 bench: $(VENV)/.ready
-	DRJIT_CACHE_DIR=$$(mktemp -d) $(RUN)/python tests/benchmark.py
-	$(RUN)/python tests/benchmark_fits.py
+	DRJIT_CACHE_DIR=$$(mktemp -d) $(RUN)/python benchmarks/model_times.py
+	$(RUN)/python benchmarks/fit_times.py
 
 docs: $(VENV)/.ready
 	$(RUN)/python docs/tools/make_models.py

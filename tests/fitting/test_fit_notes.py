@@ -20,7 +20,7 @@ from brdfkit.reporting.parameters import describe
 
 pytestmark = pytest.mark.quick
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 GREY = (0.3, 0.3, 0.3)
 
 

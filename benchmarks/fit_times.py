@@ -11,9 +11,9 @@ from pathlib import Path
 
 import numpy as np
 import psutil
-from benchmark import full_table
 from brdfkit.theses.kurt2007.curet import NUMBERS
 from brdfkit.theses.kurt2007.printed import SEVEN
+from model_times import full_table
 from rich.console import Console
 from rich.table import Table as Printed
 from scipy.optimize import minimize

@@ -519,7 +519,7 @@ def test_a_package_that_is_missing_is_named(tmp_path, monkeypatch):
 
 
 def test_the_page_of_volumes_names_what_there_is():
-    page = (Path(__file__).parents[1] / "docs/volumes.md").read_text("utf-8")
+    page = (Path(__file__).parents[2] / "docs/volumes.md").read_text("utf-8")
     for module in formats():
         suffixes = " ".join(f"`{suffix}`" for suffix in module.SUFFIXES)
         assert f"| {module.NAME} | {suffixes}" in page

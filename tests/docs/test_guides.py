@@ -9,7 +9,7 @@ import pytest
 import brdfkit as bk
 from brdfkit.materials.measured.tabulation import tabulate
 
-DOCS = Path(__file__).resolve().parents[1] / "docs"
+DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGES = [DOCS / "five_minutes.md", *sorted(DOCS.glob("how_to/*.md"))]
 BLOCKS = re.compile(r"```python\n(.*?)```", re.DOTALL)
 PROGRAMS = {page: "".join(BLOCKS.findall(page.read_text(encoding="utf-8"))) for page in PAGES}

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import small_files
 from click.testing import CliRunner
-from test_cli import USER_MODEL
+from user_model import USER_MODEL
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
@@ -17,7 +17,7 @@ from brdfkit.cli import main
 from brdfkit.core.discovery import plugin_files
 from brdfkit.materials.measured import Measured
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 SMALL_PICTURE = ("--spp", "1", "--size", "16")
 SMALL = {  # command: what makes it answer at once
     "--render": SMALL_PICTURE,

@@ -16,7 +16,7 @@ from urllib.request import urlopen
 import drjit as dr
 import pytest
 
-TOP = Path(__file__).parents[1]
+TOP = Path(__file__).parents[2]
 NOTEBOOKS = sorted(path for path in (TOP / "notebooks").glob("*.md") if path.stem != "README")
 SMALLER = {  # smaller pictures and shorter searches, of which the notebooks' asserts hold, too
     r"spp=32, size=\d+": "spp=8, size=32",

@@ -1,7 +1,7 @@
 """No fit has become worse: every model on thirty materials, against the list of optima.
 
 Each model is searched on some of the materials, by one loss after the other: the whole list would
-take three minutes. `python tests/optima.py` runs all of it.
+take three minutes. `python tests/fitting/optima.py` runs all of it.
 """
 
 import optima

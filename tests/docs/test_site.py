@@ -15,7 +15,7 @@ from brdfkit.core import catalogue
 from brdfkit.core.discovery import plugin_files
 from brdfkit.materials.formats import formats
 
-DOCS = Path(__file__).resolve().parents[1] / "docs"
+DOCS = Path(__file__).resolve().parents[2] / "docs"
 # The list of all pages beside each page takes a third of the time, and is the same on all
 BUILD = """import sys, furo, sphinx.cmd.build
 whole = furo._compute_navigation_tree

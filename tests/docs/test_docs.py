@@ -16,7 +16,7 @@ from brdfkit.core import catalogue
 from brdfkit.core.references import citations, references
 from brdfkit.materials.formats import formats
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 PAGES = [
     ROOT / "README.md",
     ROOT / "CONTRIBUTING.md",

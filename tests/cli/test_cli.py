@@ -19,6 +19,7 @@ from click.testing import CliRunner
 from PIL import Image
 from rich.cells import cell_len
 from small_files import merl
+from user_model import USER_MODEL
 
 import brdfkit as bk
 from brdfkit.cli import main
@@ -44,18 +45,6 @@ SCENE = """<scene version="3.0.0">
         <bsdf type="ward"><float name="alpha_u" value="{alpha}"/></bsdf>
     </shape>
 </scene>"""
-USER_MODEL = '''"""Felt: dull."""
-
-from brdfkit.model.lobes import lambertian
-from brdfkit.model import Model, weight
-
-
-class Felt(Model):
-    diffuse_reflectance = weight(0.3, "k_d")
-
-    def lobes(self):
-        return (lambertian(),)
-'''
 
 
 @pytest.fixture

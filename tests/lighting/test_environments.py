@@ -471,7 +471,7 @@ def test_public_maps(capsys):
 
 
 def test_the_how_to_names_all_conventions():
-    page = (Path(__file__).parents[1] / "docs/how_to/mirrored_environment.md").read_text("utf-8")
+    page = (Path(__file__).parents[2] / "docs/how_to/mirrored_environment.md").read_text("utf-8")
     for name, short_for in NAMED.items():
         assert f"| `{name}` | `{short_for}` |" in page
     for name in LAYOUTS:

@@ -1,4 +1,4 @@
-"""The bar of `progress` in the kernel of a notebook; in a terminal: tests/test_cli.py."""
+"""The bar of `progress` in the kernel of a notebook; in a terminal: tests/cli/test_cli.py."""
 
 import nbclient
 import nbformat
