@@ -1,6 +1,6 @@
 """How often 95 % intervals hold the truth: 400 noisy measurements of each model, and of each loss.
 
-    python tests/helpers/coverage_of_intervals.py [MODEL ...] [--loss LOSS] [--noise N] [--robust NAME]
+    python tests/helpers/coverage_of_intervals.py [MODEL ...] [--loss L] [--noise N] [--robust NAME]
 
 Noise is proportional to the value (3 %), of one size (2 % of the median), or of one size in the
 loss's own differences; the first two have the value that was measured as their median. Fits begin
