@@ -4,8 +4,8 @@
     python data/environments/make.py studio    # one
 
 `sky` is Mitsuba's `sunsky` above grey ground. `studio` and `room` are path-traced from a point
-within, into all directions. `compass` is drawn: see `brdfkit/lighting/environments/compass.py`. To
-add one, write a function like those below, and an entry in `index.toml`.
+within, into all directions. `compass` is drawn. To add a map, write a function like
+those below, and an entry in `index.toml`.
 
 Rows and columns are those of Mitsuba's `envmap`. Every texel has the mean over its cell, so that
 the sun, which is smaller, has its power. Seeds are fixed; values are rounded to half floats, and
@@ -19,15 +19,28 @@ from pathlib import Path
 import numpy as np
 
 from brdfkit.core.colours import luminance
-from brdfkit.lighting.environments.compass import compass
-from brdfkit.lighting.environments.map_files import write
-from brdfkit.lighting.environments.spread import directions, solid_angles
+from brdfkit.lighting.environments.conventions import parse_convention
+from brdfkit.lighting.environments.light_distribution import pixel_directions, pixel_solid_angles
+from brdfkit.lighting.environments.map_files import write_map
+from brdfkit.lighting.environments.resampling import resample
 
 HEIGHT = 128
 PASSES = 128, 16  # of a path-traced map, and the samples of every texel in each
 SUN = (0.35, 0.55, 0.75)
 GROUND = np.array([0.21, 0.19, 0.16])  # albedo
 SUN_CELLS = 96  # places per side of a texel: the sun is 0.5° wide, a texel 1.4°
+# Of the compass: the colour of each side of the world, the radiance of the white column and of the
+# letters, and the side of the cube's faces [pixels]
+COLOURS = {
+    "+x": (0.8, 0.1, 0.1),
+    "-x": (0.1, 0.7, 0.7),
+    "+y": (0.1, 0.65, 0.1),
+    "-y": (0.7, 0.1, 0.7),
+    "+z": (0.12, 0.2, 0.9),
+    "-z": (0.8, 0.7, 0.1),
+}
+MARK = 3.0
+FACE = 256
 
 
 def sky(height=HEIGHT):
@@ -38,8 +51,8 @@ def sky(height=HEIGHT):
     x, y, z = SUN
     emitter = mi.load_dict({"type": "sunsky", "sun_direction": [x, -z, y], "turbidity": 3.0})
     rgb = _mean_over_cells(lambda d: _emitted(emitter, d[:, [0, 2, 1]] * [1, -1, 1]), height)
-    up = directions(height, 2 * height)[..., 1:2]
-    cells = solid_angles(height, 2 * height)[..., None]
+    up = pixel_directions(height, 2 * height)[..., 1:2]
+    cells = pixel_solid_angles(height, 2 * height)[..., None]
     illuminance = (rgb * cells * up.clip(0)).sum(axis=(0, 1))
     below = np.clip(-up * height / np.pi + 0.5, 0, 1)  # share of the cell
     return rgb + below * GROUND * illuminance / np.pi
@@ -111,6 +124,34 @@ def room(height=HEIGHT, passes=PASSES):
     return _path_trace({**walls, "floor": floor, **window, **things}, (0, 1.3, 0), height, passes)
 
 
+def compass(height=HEIGHT):
+    """A map that shows which way a program turns, mirrors and shifts its environments.
+
+    Every side of the world has its own colour and its name in it, legible from inside: +x red and
+    -x cyan, +y green and -y magenta, +z blue and -z yellow. The first column of the picture is
+    white and the last black, so that the seam between them is visible to half a pixel.
+    """
+    # right, left, up, down, ahead, back of an observer who looks along +z
+    faces = np.concatenate([_face(side) for side in ("-x", "+x", "+y", "-y", "+z", "-z")], axis=1)
+    source, target = parse_convention("strip:-x+y+z"), parse_convention("mitsuba")
+    rgb = resample(faces, source, target, height)
+    rgb[:, 0], rgb[:, -1] = MARK, 0
+    return rgb
+
+
+def _face(side):
+    import matplotlib as mpl
+    from PIL import Image, ImageDraw, ImageFont
+
+    picture = Image.new("L", (FACE, FACE))
+    file = Path(mpl.get_data_path(), "fonts/ttf/DejaVuSans-Bold.ttf")  # comes with matplotlib
+    font = ImageFont.truetype(str(file), FACE // 3)
+    name = side.replace("-", "\N{MINUS SIGN}")
+    ImageDraw.Draw(picture).text((FACE / 2, FACE / 2), name, 255, font, "mm")
+    share = np.asarray(picture)[..., None] / 255
+    return (1 - share) * np.array(COLOURS[side]) + share * MARK
+
+
 MAPS = {make.__name__: make for make in (studio, sky, room, compass)}
 
 
@@ -118,18 +159,22 @@ def _mean_over_cells(radiance, height):
     """The mean over every texel of `radiance`, a function of directions (n, 3)."""
     offsets = (np.arange(4) + 0.5) / 4 - 0.5
     cells = [
-        directions(height, 2 * height, dx, dy).reshape(-1, 3) for dx in offsets for dy in offsets
+        pixel_directions(height, 2 * height, dx, dy).reshape(-1, 3)
+        for dx in offsets
+        for dy in offsets
     ]
     rgb = np.mean([radiance(cell) for cell in cells], axis=0)
     # again, more finely, where the sun may be
     sun = np.array(SUN) / np.linalg.norm(SUN)
     near = np.flatnonzero(
-        directions(height, 2 * height).reshape(-1, 3) @ sun > np.cos(np.radians(3))
+        pixel_directions(height, 2 * height).reshape(-1, 3) @ sun > np.cos(np.radians(3))
     )
     offsets = (np.arange(SUN_CELLS) + 0.5) / SUN_CELLS - 0.5
     total = np.zeros((len(near), 3))
     for dx in offsets:
-        cells = [directions(height, 2 * height, dx, dy).reshape(-1, 3)[near] for dy in offsets]
+        cells = [
+            pixel_directions(height, 2 * height, dx, dy).reshape(-1, 3)[near] for dy in offsets
+        ]
         total += radiance(np.concatenate(cells)).reshape(SUN_CELLS, -1, 3).sum(axis=0)
     rgb[near] = total / SUN_CELLS**2
     return rgb.reshape(height, 2 * height, 3)
@@ -157,7 +202,7 @@ def _path_trace(things, eye, height, passes):
     texels = len(total)
     for seed in range(count):
         offsets = random.uniform(-0.5, 0.5, (2, samples, height, 2 * height))
-        towards = directions(height, 2 * height, *offsets)
+        towards = pixel_directions(height, 2 * height, *offsets)
         sampler.seed(seed, texels * samples)
         ray = mi.Ray3f(
             o=mi.Point3f(*eye), d=mi.Vector3f(towards.reshape(-1, 3).T.astype(np.float32))
@@ -233,7 +278,7 @@ if __name__ == "__main__":
     mi.set_variant("llvm_ad_rgb")
     for name in sys.argv[1:] or MAPS:
         rgb = MAPS[name]()
-        path = write(rgb, Path(__file__).with_name(f"{name}.exr"))
+        path = write_map(rgb, Path(__file__).with_name(f"{name}.exr"))
         checksum = hashlib.sha256(path.read_bytes()).hexdigest()
         bright = luminance(rgb)
         print(f"{path.name}: {path.stat().st_size:,} bytes, mean {bright.mean():.3g}, ", end="")

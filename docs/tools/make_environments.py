@@ -13,7 +13,7 @@ from PIL import Image, ImageDraw, ImageFont
 import brdfkit as bk
 from brdfkit.core import catalogue
 from brdfkit.core.colours import luminance, to_srgb
-from brdfkit.lighting.environments.map_files import read
+from brdfkit.lighting.environments.map_files import read_map
 
 PAGE = Path(__file__).parents[1] / "environments.md"
 COMPASS = PAGE.parent / "how_to" / "compass.jpg"
@@ -52,7 +52,7 @@ def picture():
     for row, name in enumerate(SHOWN):
         top = row * (HEIGHT + GAP + LINE)
         draw.text((4, top + LINE // 2), name, "black", font, anchor="lm")
-        rgb = read(catalogue.environment_path(name))
+        rgb = read_map(catalogue.environment_path(name))
         exposure = 0.18 / np.exp(np.log(luminance(rgb) + 1e-4).mean())
         sheet.paste(image(rgb * exposure).resize((2 * HEIGHT, HEIGHT)), (0, top + LINE))
         balls = bk.render(BALLS, spp=SPP, size=HEIGHT, envmap=name).pictures.values()
@@ -69,5 +69,5 @@ def image(linear):
 if __name__ == "__main__":
     PAGE.write_text(page(), encoding="utf-8")
     picture().save(PAGE.with_suffix(".jpg"), quality=88, optimize=True)
-    compass = image(read(catalogue.environment_path("compass")))
+    compass = image(read_map(catalogue.environment_path("compass")))
     compass.resize((768, 384), Image.Resampling.NEAREST).save(COMPASS, quality=90, optimize=True)

@@ -27,7 +27,7 @@ def run(tmp_path, monkeypatch):
     (tmp_path / "s.xml").write_text(SCENE)
     grid = bk.Measured.from_samples([[0.0, 0.6, 0.8]] * 2, [[0.0, 0.0, 1.0]] * 2, [[0.1], [0.1]])
     bk.save(grid, "grid.csv")
-    shutil.copy(map_files.find("studio"), "e.exr")
+    shutil.copy(map_files.find_map("studio"), "e.exr")
 
     def command(*words):
         found = CliRunner().invoke(main, words)

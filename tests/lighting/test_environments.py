@@ -13,11 +13,10 @@ import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.core import catalogue, index
 from brdfkit.core.colours import luminance
-from brdfkit.lighting.environments.compass import COLOURS
-from brdfkit.lighting.environments.conventions import LAYOUTS, NAMED, convention
-from brdfkit.lighting.environments.map_files import read, write
+from brdfkit.lighting.environments.conventions import LAYOUTS, NAMED, parse_convention
+from brdfkit.lighting.environments.light_distribution import pixel_solid_angles
+from brdfkit.lighting.environments.map_files import read_map, write_map
 from brdfkit.lighting.environments.resampling import look_up, resample
-from brdfkit.lighting.environments.spread import solid_angles
 
 MAPS = sorted(catalogue.environments())
 RANDOM = np.random.default_rng(5).normal(size=(400, 3))
@@ -26,7 +25,7 @@ DIRECTIONS = RANDOM / np.linalg.norm(RANDOM, axis=1, keepdims=True)
 
 @pytest.fixture(scope="module")
 def maps():
-    return {name: read(catalogue.environment_path(name)) for name in MAPS}
+    return {name: read_map(catalogue.environment_path(name)) for name in MAPS}
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +45,7 @@ def smooth(d):
 
 def map_of(radiance, name, height):
     """The map of a function of directions in a world with y up, in a convention."""
-    found = convention(name)
+    found = parse_convention(name)
     width = round(height * found.layout.aspect)
     x, y = np.arange(width)[None, :], np.arange(height)[:, None]
     towards = found.layout.directions(x, y, height, width) @ found.frame.T
@@ -93,7 +92,7 @@ def test_the_program_makes_what_is_shipped(maps, make, module_in_llvm):
 def _octants(rgb):
     """The light from each octant of directions, in linear R, G, B."""
     height, width = rgb.shape[:2]
-    light = rgb * solid_angles(height, width)[..., None]
+    light = rgb * pixel_solid_angles(height, width)[..., None]
     return light.reshape(2, height // 2, 4, width // 4, 3).sum(axis=(1, 3))
 
 
@@ -147,7 +146,7 @@ def _usc(d):
 )
 def test_programs_look_up_where_their_code_does(name, formula, z_up):
     """z up to y up: (x, y, z) → (x, z, -y)."""
-    found = convention(name)
+    found = parse_convention(name)
     d = DIRECTIONS
     world = np.stack([d[:, 0], d[:, 2], -d[:, 1]], axis=1) if z_up else d
     x, y, _ = found.layout.places(world @ found.frame, 100, 200)
@@ -163,7 +162,7 @@ def test_debevec_looks_up_as_the_page_says():
 
     The page has acos(Dz) in this formula, against its own text, which turns (0, 0, -1) by phi.
     """
-    found, (x, y, z) = convention("debevec"), DIRECTIONS.T
+    found, (x, y, z) = parse_convention("debevec"), DIRECTIONS.T
     r = np.arccos(-z) / np.pi / np.hypot(x, y)
     px, py, _ = found.layout.places(DIRECTIONS @ found.frame, 500, 500)
     assert np.allclose((px + 0.5) / 250 - 1, x * r, atol=0.005)
@@ -173,7 +172,7 @@ def test_debevec_looks_up_as_the_page_says():
 @pytest.mark.quick
 def test_faces_are_those_of_opengl():
     """OpenGL 4.6, table 8.19: (sc, tc) of the faces +x -x +y -y +z -z, s = (sc / |ma| + 1) / 2."""
-    found, (x, y, z) = convention("opengl"), DIRECTIONS.T
+    found, (x, y, z) = parse_convention("opengl"), DIRECTIONS.T
     sc = np.array([-z, z, x, x, x, -x])
     tc = np.array([-y, -y, z, -z, -y, -y])
     ma = np.array([x, -x, y, -y, z, -z])
@@ -191,7 +190,7 @@ def test_mitsuba_looks_up_as_mitsuba_does(module_in_llvm):
     si = mi.SurfaceInteraction3f()
     si.wi = -mi.Vector3f(DIRECTIONS.T.astype(np.float32))
     theirs = np.array(emitter.eval(si)).T
-    found = convention("mitsuba")
+    found = parse_convention("mitsuba")
     assert np.allclose(look_up(rgb, found.layout, DIRECTIONS @ found.frame), theirs, atol=2e-4)
 
 
@@ -199,9 +198,9 @@ def test_mitsuba_looks_up_as_mitsuba_does(module_in_llvm):
 def test_conversions_keep_the_light_of_every_direction(source):
     """Of a smooth map: to Mitsuba's convention, and back from there."""
     before, mitsuba = map_of(smooth, source, 96), map_of(smooth, "mitsuba", 96)
-    to = resample(before, convention(source), convention("mitsuba"), 96)
+    to = resample(before, parse_convention(source), parse_convention("mitsuba"), 96)
     assert np.abs(to - mitsuba).max() < 0.04
-    back = resample(mitsuba, convention("mitsuba"), convention(source), 96)
+    back = resample(mitsuba, parse_convention("mitsuba"), parse_convention(source), 96)
     seen = before.any(axis=2)
     assert np.abs(back - before)[seen].max() < 0.04
 
@@ -209,7 +208,7 @@ def test_conversions_keep_the_light_of_every_direction(source):
 @pytest.mark.quick
 def test_mirrors_and_quarter_turns_lose_nothing():
     rgb = np.random.default_rng(2).random((8, 16, 3))
-    mitsuba = convention("mitsuba")
+    mitsuba = parse_convention("mitsuba")
     mirrored = resample(rgb, mitsuba, mitsuba, 8, mirror=True)
     assert np.allclose(mirrored, rgb[:, ::-1])
     # 90° anticlockwise takes +z, in the middle, to +x, a quarter to the left
@@ -222,20 +221,22 @@ def test_mirrors_and_quarter_turns_lose_nothing():
 
 def test_the_power_stays(maps):
     """Of a map with small bright lamps, converted to fewer pixels and back."""
-    rgb, mitsuba, cross = maps["room"], convention("mitsuba"), convention("cross")
+    rgb, mitsuba, cross = maps["room"], parse_convention("mitsuba"), parse_convention("cross")
     back = resample(resample(rgb, mitsuba, cross, 96), cross, mitsuba, 64)
-    light = [(m * solid_angles(*m.shape[:2])[..., None]).sum(axis=(0, 1)) for m in (rgb, back)]
+    light = [
+        (m * pixel_solid_angles(*m.shape[:2])[..., None]).sum(axis=(0, 1)) for m in (rgb, back)
+    ]
     assert np.allclose(*light, rtol=0.02)
 
 
 @pytest.mark.quick
-def test_compass(maps):
+def test_compass(maps, make):
     """Every side has its colour; a minus is left of its letter; the seam has its two columns."""
     rgb = maps["compass"]
     sides = {"+x": (40, 64), "-x": (168, 64), "+z": (104, 64), "-z": (232, 64)}
     found = {side: rgb[row, column] for side, (column, row) in sides.items()}
     found |= {"+y": rgb[22, 128], "-y": rgb[104, 128]}
-    for side, colour in COLOURS.items():
+    for side, colour in make.COLOURS.items():
         assert np.allclose(found[side], colour, atol=0.01), side
     white = (rgb[64] > 2).all(axis=1)
     assert white[160:192].sum() > white[192:224].sum()  # on the face -x, whose middle is 192
@@ -341,7 +342,7 @@ def bad(tmp_path, monkeypatch):
     """A folder with files that are no good maps."""
     monkeypatch.chdir(tmp_path)
     good = one_pixel(0.5)
-    whole = write(good, "whole.exr").read_bytes()
+    whole = write_map(good, "whole.exr").read_bytes()
     (tmp_path / "cut.exr").write_bytes(whole[: len(whole) // 2])
     mi.Bitmap(good).write("whole.hdr")
     whole = (tmp_path / "whole.hdr").read_bytes()
@@ -356,12 +357,12 @@ def bad(tmp_path, monkeypatch):
         (tmp_path / name).write_bytes(head.encode() + whole[-20:])
     (tmp_path / "text.exr").write_text("no picture")
     (tmp_path / "empty.exr").write_bytes(b"")
-    write(good[:1, :1], "one.exr")
-    write(one_pixel(np.nan), "nan.exr")
-    write(one_pixel(-1), "negative.exr")
-    write(one_pixel(np.inf), "infinite.exr")
-    write(good[:, :16], "square.exr")
-    write(0 * good, "black.exr")
+    write_map(good[:1, :1], "one.exr")
+    write_map(one_pixel(np.nan), "nan.exr")
+    write_map(one_pixel(-1), "negative.exr")
+    write_map(one_pixel(np.inf), "infinite.exr")
+    write_map(good[:, :16], "square.exr")
+    write_map(0 * good, "black.exr")
     return tmp_path
 
 
@@ -391,9 +392,9 @@ def test_bad_files(bad, module_in_llvm):
         "studoi": "no file or environment map 'studoi'; did you mean studio?",
     }
     lights = {
-        "nan.exr": "a negative value, or one not finite",
-        "negative.exr": "a negative value, or one not finite",
-        "infinite.exr": "a negative value, or one not finite",
+        "nan.exr": "a value that is negative or not finite",
+        "negative.exr": "a value that is negative or not finite",
+        "infinite.exr": "a value that is negative or not finite",
         "square.exr": "2 times as many columns as rows",
     }
     renders = {"black.exr": "gives no light from above"}
@@ -437,7 +438,7 @@ def run(capsys, *words):
     return ended.value.code, said.out, said.err
 
 
-def test_commands(tmp_path, capsys, monkeypatch):
+def test_commands(make, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     code, out, _ = run(capsys, "info", "sky", "-o", "sky.png", "--json")
     found = json.loads(out)
@@ -446,8 +447,8 @@ def test_commands(tmp_path, capsys, monkeypatch):
     assert "brightest 1 %" in run(capsys, "info", "studio")[1]
     words = "convert", "compass", "cross.exr", "--to", "cross", "--turn", "90", "--height", "96"
     assert run(capsys, *words)[:2] == (0, "written: cross.exr\n")
-    assert read("cross.exr").shape == (96, 128, 3)
-    assert np.allclose(read("cross.exr")[48, 34], COLOURS["-x"], atol=0.01)
+    assert read_map("cross.exr").shape == (96, 128, 3)
+    assert np.allclose(read_map("cross.exr")[48, 34], make.COLOURS["-x"], atol=0.01)
     code, _, told = run(capsys, "convert", "car_paint", "new.npz", "--mirror")
     assert code == 2
     assert "car_paint is no environment map" in told
@@ -467,7 +468,7 @@ def test_public_maps(capsys):
         assert found.page.startswith("http")
         assert found.page in named[name]["page"]
         if " " not in found.convention:
-            convention(found.convention)
+            parse_convention(found.convention)
 
 
 def test_the_how_to_names_all_conventions():

@@ -5,7 +5,7 @@ from brdfkit.theses.ergun2015.lit_balls import find_probes, read_probes
 
 from brdfkit.core.colours import luminance
 from brdfkit.lighting import environments
-from brdfkit.lighting.environments.picture import DRAWN, draw_map
+from brdfkit.lighting.environments.audit_picture import DRAWN_BLOCKS, draw_map
 from brdfkit.lighting.sampling import tree
 from brdfkit.lighting.sampling.power_map import cell_power
 from brdfkit.theses.claims import Claim, verdict
@@ -55,7 +55,9 @@ def draw(name, file):
     """A map with its first blocks, by the sum of squared errors."""
     drawn, audit = figure(8, 4.4), environments.audit(file)
     rgb = audit.data.astype(float)
-    blocks = tree.build(cell_power(luminance(rgb)), DRAWN, "sse").blocks
+    blocks = tree.build(cell_power(luminance(rgb)), DRAWN_BLOCKS, "sse").blocks
     draw_map(drawn.subplots(), audit, rgb, blocks)
-    drawn.axes[0].set_title(f"{name}: the first {DRAWN} blocks; the circle is the brightest pixel")
+    drawn.axes[0].set_title(
+        f"{name}: the first {DRAWN_BLOCKS} blocks; the circle is the brightest pixel"
+    )
     return drawn

@@ -7,7 +7,7 @@ from brdfkit.theses.ergun2015.unshadowed import unshadowed
 
 from brdfkit.core.colours import to_srgb
 from brdfkit.images.errors.psnr import psnr
-from brdfkit.lighting.environments.map_files import load
+from brdfkit.lighting.environments.map_files import load_map
 from brdfkit.rendering.previewing.staging import stage
 from brdfkit.rendering.scene_input.shown_material import load_material
 
@@ -24,7 +24,7 @@ def find_probes(sources):
 
 def read_probes(sources):
     """Name → radiance (height, width, 3) of each of the probes."""
-    return {name: load(file)[1].astype(float) for name, file in find_probes(sources).items()}
+    return {name: load_map(file)[1].astype(float) for name, file in find_probes(sources).items()}
 
 
 METHODS = "gmm", "kde", "warped", "filtered_sampling"

@@ -11,8 +11,8 @@ from brdfkit.core.colours import luminance, to_srgb
 from brdfkit.core.geometry.directions import from_angles, to_half_difference
 from brdfkit.images.ball import LIGHTS, draw_pixels
 from brdfkit.lighting.environments import map_files
-from brdfkit.lighting.environments.conventions import convention
-from brdfkit.lighting.environments.resampling import look_up, parts_of
+from brdfkit.lighting.environments.conventions import parse_convention
+from brdfkit.lighting.environments.resampling import label_parts, look_up
 from brdfkit.materials.measured.coverage import largest_angles
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model.samples.measures import weigh
@@ -128,9 +128,9 @@ def draw_picture(name, data):
 def light_of(name):
     """The light of a map that brdfkit brings: a function of directions (n, 3), z up, to grey
     radiances (n,)."""
-    grey = luminance(map_files.read(catalogue.environment_path(name)))[..., None]
-    own = convention("mitsuba")
-    parts = parts_of(own.layout, *grey.shape[:2])
+    grey = luminance(map_files.read_map(catalogue.environment_path(name)))[..., None]
+    own = parse_convention("mitsuba")
+    parts = label_parts(own.layout, *grey.shape[:2])
 
     def light(w):
         with_y_up = np.stack([w[:, 0], w[:, 2], -w[:, 1]], axis=1)

@@ -1,4 +1,4 @@
-"""Light from environments: how maps are cut, sampled and filtered; spherical Gaussians."""
+"""Light from environment maps: their files, their sampling, their filtering, and shadows."""
 
 import lazy_loader
 

@@ -1,10 +1,10 @@
-"""Environment maps as files: read, audited, and converted from one convention to another.
+"""Environment maps as files: reading, auditing, and converting between programs' conventions.
 
-`map_files.py` reads and writes them; `layouts.py` and `cubes.py`: where in a picture a direction
-lies; `conventions.py`: which direction of the world that is, by the names of programs;
-`resampling.py` and `converting.py` turn one into another; `compass.py` draws the map that shows
-what a program does; `auditing.py`, `spread.py`, `report.py` and `picture.py` are what `brdfkit info
-MAP.exr` tells.
+`map_files.py` reads and writes maps. `layouts.py` and `cubes.py` say where in a picture a direction
+lies, and `conventions.py` which direction of the world that is in a given program. `resampling.py`
+and `converting.py` convert between conventions. `auditing.py` describes the light of a map for
+`brdfkit info MAP.exr`, with numbers from `light_distribution.py`, text from `audit_text.py` and
+a figure from `audit_picture.py`.
 """
 
 import lazy_loader

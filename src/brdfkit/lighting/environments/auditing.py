@@ -1,4 +1,4 @@
-"""`environments.audit`: how bright an environment map is and from where, and doubtful values."""
+"""`environments.audit`: the brightness of an environment map by direction, and its defects."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -7,31 +7,32 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from brdfkit.core.array_types import AnyArray
 from brdfkit.core.colours import luminance
 from brdfkit.core.documents import Document, Paragraph, Picture, Shown, Table
 from brdfkit.core.documents.parts import BAD
-from brdfkit.lighting.environments import report
-from brdfkit.lighting.environments.map_files import is_eight_bit, load
-from brdfkit.lighting.environments.spread import (
-    directions,
-    median,
+from brdfkit.lighting.environments import audit_text
+from brdfkit.lighting.environments.light_distribution import (
+    pixel_directions,
+    pixel_solid_angles,
     share_of_brightest,
-    solid_angles,
+    weighted_median,
 )
+from brdfkit.lighting.environments.map_files import is_eight_bit, load_map
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-SHARE = 0.01  # of the solid angle, in which the brightest light is summed up
-DPI, WIDTH = 75, 760  # of the picture in a notebook
+BRIGHTEST = 0.01  # share of the solid angle of which `brightest_share` adds up the light
+DPI, WIDTH = 75, 760  # resolution and width [pixels] of the picture in a notebook
 
 
 @dataclass(frozen=True, repr=False)
 class EnvironmentAudit(Shown):
-    """What is in an environment map; prints as text. Made by `environments.audit`.
+    """The content of an environment map, which prints as text; `environments.audit` makes it.
 
-    Directions are those of Mitsuba's `envmap`: +y is up, the middle of the picture is +z. Pixels
-    that are not finite, or negative, count as black.
+    Directions are those of Mitsuba's `envmap`: +y is up, and +z is in the middle of the picture.
+    Pixels that are negative or not finite count as black.
 
     Attributes
     ----------
@@ -42,7 +43,7 @@ class EnvironmentAudit(Shown):
     colour : tuple of float
         Mean radiance over all directions, in linear R, G, B.
     mean, median, largest : float
-        Of the luminance over all directions.
+        Mean, median and largest luminance over all directions.
     brightest_share : float
         Share of the light that comes from the brightest 1 % of the solid angle.
     above : float
@@ -50,11 +51,11 @@ class EnvironmentAudit(Shown):
     brightest : tuple of float
         The direction (x, y, z) of the brightest pixel.
     not_finite, negative : int
-        Number of pixels that are not finite, and that are negative, in any channel.
+        Numbers of pixels that are not finite and that are negative, in any channel.
     equal : int
         Number of pixels that are as bright as the brightest one.
     eight_bit : bool
-        Whether the file has 8 bits per channel, and so nothing brighter than white.
+        Whether the file has 8 bits per channel, so that nothing is brighter than white.
     data : ndarray
         The map (height, width, 3).
     """
@@ -73,27 +74,27 @@ class EnvironmentAudit(Shown):
     negative: int
     equal: int
     eight_bit: bool
-    data: Any = field(repr=False, compare=False)
+    data: AnyArray = field(repr=False, compare=False)
 
     def rows(self) -> dict[str, str]:
-        """The audit in words, by heading."""
-        return report.rows(self)
+        """Return the lines of the audit's text by their headings."""
+        return audit_text.rows(self)
 
     def findings(self) -> tuple[str, ...]:
-        """Sentences on what is doubtful."""
-        return report.findings(self)
+        """Return a sentence on each likely defect of the map."""
+        return audit_text.findings(self)
 
     def picture(self) -> "Figure":
-        """The map with the blocks that `kdtree_envmap` cuts it into, and how the light is spread.
+        """Draw the map, the blocks that `kdtree_envmap` makes of it, and the spread of its light.
 
         >>> environments.audit("studio").picture().savefig("studio.png")    # doctest: +SKIP
         """
-        from brdfkit.lighting.environments.picture import picture  # only here: matplotlib is slow
+        from brdfkit.lighting.environments.audit_picture import draw  # imports matplotlib: slow
 
-        return picture(self)
+        return draw(self)
 
     def document(self) -> Document:
-        """How bright the map is, from where, and what is doubtful."""
+        """Return the audit with its picture as a `Document`."""
         return Document(
             self.name,
             (
@@ -103,14 +104,15 @@ class EnvironmentAudit(Shown):
             ),
         )
 
-    def _draw(self):
+    def _draw(self) -> bytes:
+        """Return the picture as a PNG file."""
         from brdfkit.core.figures import to_png
 
         return to_png(self.picture(), DPI)
 
 
 def audit(environment: str | Path | NDArray[Any]) -> EnvironmentAudit:
-    """How bright an environment map is, from where, and what is doubtful in it.
+    """Measure how bright an environment map is and from where, and look for its defects.
 
     Parameters
     ----------
@@ -121,27 +123,27 @@ def audit(environment: str | Path | NDArray[Any]) -> EnvironmentAudit:
     Returns
     -------
     EnvironmentAudit
-        Prints as text; `findings()` are its doubts, `picture()` is a matplotlib `Figure`.
+        Prints as text; `findings()` lists likely defects, `picture()` is a matplotlib `Figure`.
 
     Raises
     ------
     BrdfkitError
-        For a file that cannot be read, and for a map of fewer than 2×2 pixels.
+        If the file cannot be read, or the map has fewer than 2×2 pixels.
 
     Examples
     --------
     >>> environments.audit("sky").brightest_share > 0.5    # the sun
     True
     """
-    name, data = load(environment)
-    finite, negative = np.isfinite(data).all(axis=2), (data < 0).any(axis=2)
+    name, data = load_map(environment)
+    finite, negative = np.all(np.isfinite(data), axis=2), np.any(data < 0, axis=2)
     rgb = np.where((finite & ~negative)[..., None], data, 0).astype(float)
     height, width = rgb.shape[:2]
-    solid_angle = solid_angles(height, width)
+    solid_angle = pixel_solid_angles(height, width)
     weight = solid_angle / solid_angle.sum()
-    bright = luminance(rgb)
-    power = weight * bright
-    towards = directions(height, width)
+    brightness = luminance(rgb)
+    power = weight * brightness
+    directions = pixel_directions(height, width)
     total = power.sum()
     return EnvironmentAudit(
         name=name,
@@ -149,14 +151,14 @@ def audit(environment: str | Path | NDArray[Any]) -> EnvironmentAudit:
         width=width,
         colour=tuple((weight[..., None] * rgb).sum(axis=(0, 1)).tolist()),
         mean=float(total),
-        median=median(bright, weight),
-        largest=float(bright.max()),
-        brightest_share=share_of_brightest(bright, weight, SHARE) if total else np.nan,
-        above=float(power[towards[..., 1] > 0].sum() / total) if total else np.nan,
-        brightest=tuple(towards.reshape(-1, 3)[bright.argmax()].tolist()),
+        median=weighted_median(brightness, weight),
+        largest=float(brightness.max()),
+        brightest_share=share_of_brightest(brightness, weight, BRIGHTEST) if total else np.nan,
+        above=float(power[directions[..., 1] > 0].sum() / total) if total else np.nan,
+        brightest=tuple(directions.reshape(-1, 3)[brightness.argmax()].tolist()),
         not_finite=int((~finite).sum()),
         negative=int(negative.sum()),
-        equal=int((bright == bright.max()).sum()),
+        equal=int((brightness == brightness.max()).sum()),
         eight_bit=is_eight_bit(environment),
         data=data,
     )

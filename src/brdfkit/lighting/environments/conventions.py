@@ -1,19 +1,23 @@
-"""Conventions of environment maps: a layout, and which axes of the world are right, up and ahead.
+"""Conventions of environment maps: a layout, and the world's axes that are right, up and ahead.
 
-``mitsuba`` is short for ``latlong_poles:-x+y+z``: latitude and longitude with rows at the poles; in
-the middle of the picture is the world's +z, above is its +y, and to the right its -x.
+``mitsuba`` is short for ``latlong_poles:-x+y+z``: latitude and longitude with rows at the poles,
+and the world's +z in the middle of the picture, its +y at the top, and its -x to the right.
 """
 
 import re
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.lighting.environments.cubes import CROSS, STRIP, VERTICAL_CROSS
+from brdfkit.lighting.environments.cubes import CROSS, STRIP, VERTICAL_CROSS, Cube
 from brdfkit.lighting.environments.layouts import Angular, LatitudeLongitude, Paraboloids
 
-LAYOUTS = {
+Layout: TypeAlias = LatitudeLongitude | Angular | Paraboloids | Cube
+
+LAYOUTS: dict[str, Layout] = {
     "latlong": LatitudeLongitude(at_poles=False),
     "latlong_poles": LatitudeLongitude(at_poles=True),
     "angular": Angular(),
@@ -22,7 +26,7 @@ LAYOUTS = {
     "strip": STRIP,
     "paraboloids": Paraboloids(),
 }
-# What programs and collections do, as far as their code or documentation says
+# The conventions of programs and collections, according to their code or documentation
 NAMED = {
     "mitsuba": "latlong_poles:-x+y+z",  # src/emitters/envmap.cpp: atan2(v.x, -v.z), acos(v.y)
     "blender": "latlong:-y+z+x",  # Cycles, kernel/camera/projection.h: direction_to_equirectangular
@@ -37,38 +41,38 @@ AXES = re.compile("([+-][xyz])([+-][yz])([+-][xyz])")
 
 @dataclass(frozen=True)
 class Convention:
-    """A `layout`, and the `frame` (3, 3): its columns are right, up and ahead in a world with y up.
+    """A `layout`, and a `frame` (3, 3) whose columns are right, up and ahead in a world with y up.
 
-    A world with z up is turned to one with y up as exporters do: (x, y, z) → (x, z, -y).
+    A world with z up is turned into one with y up as exporters do: (x, y, z) → (x, z, -y).
     """
 
-    layout: object
-    frame: np.ndarray
+    layout: Layout
+    frame: FloatArray
 
 
-def convention(name):
-    """The `Convention` of a name, as ``blender``, ``cross`` or ``latlong:+x+y-z``.
+def parse_convention(name: str) -> Convention:
+    """Return the `Convention` of a name such as ``blender``, ``cross`` or ``latlong:+x+y-z``.
 
-    A layout without axes has those of Mitsuba. Raises `BrdfkitError` for anything else.
+    A layout without axes has Mitsuba's axes. Raises `BrdfkitError` for any other name.
 
-    >>> convention("blender").frame[:, 2].tolist()    # ahead is +x
-    [1.0, 0.0, 0.0]
+    >>> parse_convention("blender").frame[:, 2].tolist()    # ahead is +x
+    [1.0, 0.0, -0.0]
     """
     layout, _, axes = NAMED.get(str(name), str(name)).partition(":")
     if layout not in LAYOUTS:
         raise no_such("convention of maps", name, [*NAMED, *LAYOUTS])
-    return Convention(LAYOUTS[layout], _frame(axes or NAMED["mitsuba"].partition(":")[2]))
+    return Convention(LAYOUTS[layout], _parse_axes(axes or NAMED["mitsuba"].partition(":")[2]))
 
 
-def _frame(axes):
-    """The matrix of axes such as -x+y+z."""
-    found = AXES.fullmatch(axes)
-    if not found or len({word[1] for word in found.groups()}) < 3:
+def _parse_axes(axes: str) -> FloatArray:
+    """Return the frame (3, 3) of axes such as -x+y+z."""
+    match = AXES.fullmatch(axes)
+    if not match or len({word[1] for word in match.groups()}) < 3:
         raise BrdfkitError(
             f"{axes!r} should name the axes that are right, up and ahead, each once, up y or z: "
             "as in -x+y+z."
         )
-    columns = [float(f"{sign}1") * np.eye(3)["xyz".index(axis)] for sign, axis in found.groups()]
+    columns = [float(f"{word[0]}1") * np.eye(3)["xyz".index(word[1])] for word in match.groups()]
     frame = np.stack(columns, axis=1)
-    z_is_up = found[2][1] == "z"
+    z_is_up = match[2][1] == "z"
     return np.stack([frame[0], frame[2], -frame[1]]) if z_is_up else frame

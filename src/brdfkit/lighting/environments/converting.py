@@ -1,4 +1,4 @@
-"""`environments.convert`: writes an environment map in the convention of another program."""
+"""`environments.convert`: writing an environment map in the convention of another program."""
 
 from pathlib import Path
 from typing import Any
@@ -7,13 +7,12 @@ from numpy.typing import NDArray
 
 from brdfkit.core.arguments import to_number, to_whole_number
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.lighting.environments.conventions import convention
+from brdfkit.lighting.environments.conventions import parse_convention
 from brdfkit.lighting.environments.cubes import Cube
-from brdfkit.lighting.environments.map_files import load_light, write
+from brdfkit.lighting.environments.map_files import load_radiance, write_map
 from brdfkit.lighting.environments.resampling import resample
 
-# Rows of a map: more are a mistake
-LARGEST = 16_384
+LARGEST_HEIGHT = 16_384  # rows; a user who asks for more has mistyped
 
 
 def convert(
@@ -27,10 +26,10 @@ def convert(
 ) -> Path:
     """Write an environment map in the convention of another program, or in another layout.
 
-    Light keeps its direction in the world; a world with z up is turned to one with y up as
-    exporters do, (x, y, z) → (x, z, -y). A convention is the name of a program, as ``blender``, or
-    of a layout, as ``cross`` or ``angular``, with the axes of the world that are right, up and
-    ahead in it, as ``latlong:+x+y-z``; without axes, with those of Mitsuba.
+    Light keeps its direction in the world. A world with z up is turned into one with y up as
+    exporters do: (x, y, z) → (x, z, -y). A convention is the name of a program, such as
+    ``blender``, or of a layout, such as ``cross``, optionally followed by the axes of the world
+    that are right, up and ahead, as in ``latlong:+x+y-z``. The default axes are Mitsuba's.
 
     Parameters
     ----------
@@ -40,14 +39,14 @@ def convert(
     path : str or Path
         The file to write, `.exr`.
     source, target : str, default "mitsuba"
-        The conventions of the map as it is, and as it is written.
+        The conventions of the map that is read, and of the map that is written.
     height : int, optional
-        Rows of the written picture; by default, pixels along the horizon stay as large.
+        Rows of the written picture. By default, pixels along the horizon keep their size.
     turn : float, default 0
-        Turns the light about the up axis, anticlockwise seen from above [degrees]; half a column
-        of a map of 1024 is 180/1024.
+        Angle by which the light turns about the up axis, anticlockwise seen from above [degrees].
+        Half a column of a map of 1024 columns is 180/1024.
     mirror : bool, default False
-        Whether left and right of the source are exchanged.
+        Whether to exchange left and right of the source.
 
     Returns
     -------
@@ -57,27 +56,26 @@ def convert(
     Raises
     ------
     BrdfkitError
-        For an unknown convention, which names all; for a map that cannot be read, has
-        another shape than its layout, or has radiance that is negative or not finite; then nothing
-        is written.
+        If a convention is unknown (the error lists all), or if the map cannot be read, does not
+        have the shape of its layout, or has negative or infinite radiance. Nothing is written then.
 
     Examples
     --------
     >>> environments.convert("sky", "sky_cross.exr", target="cross")    # doctest: +SKIP
     """
-    before, after = convention(source), convention(target)
+    before, after = parse_convention(source), parse_convention(target)
     turn = to_number("turn", turn)
-    _, rgb = load_light(environment, before.layout.aspect)
+    _, rgb = load_radiance(environment, before.layout.aspect)
     if height is None:
         quarter = round(rgb.shape[0] / before.layout.rows)
         same = before.layout.rows == after.layout.rows
         height = rgb.shape[0] if same else max(2, int(quarter * after.layout.rows))
     height = to_whole_number("height", height, least=2)
-    if height > LARGEST:
-        raise BrdfkitError(f"height = {height} is more than a map may have, {LARGEST} rows.")
+    if height > LARGEST_HEIGHT:
+        raise BrdfkitError(f"height = {height} is more than {LARGEST_HEIGHT} rows; give fewer.")
     if isinstance(after.layout, Cube) and height % after.layout.lines:
         raise BrdfkitError(
             f"height = {height} should be a multiple of {after.layout.lines}, the faces from top "
             f"to bottom of {target}."
         )
-    return write(resample(rgb, before, after, height, turn, mirror), path)
+    return write_map(resample(rgb, before, after, height, turn, mirror), path)

@@ -1,12 +1,17 @@
-"""Layouts of cubes: six square faces, each the view through one side, in a cross or a row."""
+"""Layouts of cube maps: six square faces, each the view through one side, in a cross or a row."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray
+from brdfkit.lighting.environments.layouts import Places
+
+Face = tuple[FloatArray, FloatArray, FloatArray]
+
 RIGHT, UP, AHEAD = np.eye(3)
-# Of each face: through its middle, towards its right edge, and towards its lower edge; as OpenGL
-# has its faces +x, -x, +y, -y, +z, -z [OpenGL 4.6, table 8.19], x being right, z ahead
+# The directions through the middle of each face, towards its right edge and towards its lower edge.
+# With x right and z ahead these are OpenGL's faces +x, -x, +y, -y, +z, -z [OpenGL 4.6, table 8.19]
 RIGHT_FACE = RIGHT, -AHEAD, -UP
 LEFT_FACE = -RIGHT, AHEAD, -UP
 UP_FACE = UP, RIGHT, AHEAD
@@ -18,37 +23,37 @@ BACK_FACE_TURNED = -AHEAD, RIGHT, UP
 
 @dataclass(frozen=True)
 class Cube:
-    """Faces on a grid of `columns` × `lines` squares; see `layouts.py` for what a layout has.
+    """A layout of faces on a grid of `columns` × `lines` squares; `layouts.py` says what it has.
 
-    `faces`: (column, line, (through, right, down)).
+    `faces` are tuples (column, line, (through, right, down)); the last three are unit vectors.
     """
 
     columns: int
     lines: int
-    faces: tuple
+    faces: tuple[tuple[int, int, Face], ...]
     closed: bool = False
 
     @property
-    def aspect(self):
+    def aspect(self) -> float:
         return self.columns / self.lines
 
     @property
-    def rows(self):
+    def rows(self) -> float:
         return float(self.lines)
 
-    def directions(self, x, y, height, width):
+    def directions(self, x: AnyArray, y: AnyArray, height: int, width: int) -> FloatArray:
         x, y = np.broadcast_arrays(x, y)
         side = height / self.lines
-        found = np.full((*x.shape, 3), np.nan)
+        directions = np.full((*x.shape, 3), np.nan)
         for column, line, (through, right, down) in self.faces:
             s = 2 * ((x + 0.5) / side - column) - 1
             t = 2 * ((y + 0.5) / side - line) - 1
             here = (np.abs(s) <= 1) & (np.abs(t) <= 1)
             towards = through + s[here, None] * right + t[here, None] * down
-            found[here] = towards / np.linalg.norm(towards, axis=-1, keepdims=True)
-        return found
+            directions[here] = towards / np.linalg.norm(towards, axis=-1, keepdims=True)
+        return directions
 
-    def places(self, directions, height, width):
+    def places(self, directions: FloatArray, height: int, width: int) -> Places:
         side = height / self.lines
         forward = np.stack([directions @ face[0] for _, _, face in self.faces])
         part = forward.argmax(axis=0)

@@ -1,43 +1,50 @@
-"""Layouts: where in a picture the light of a direction lies.
+"""Layouts of environment maps: where in a picture the light of a direction lies.
 
-A direction is given in the frame of somebody in the middle who looks at the map from inside: right,
-up and ahead. All layouts show the map as it is seen so, not mirrored. A layout has
+Directions (..., 3) are (right, up, ahead), as an observer in the middle of the map sees it from
+inside. Every layout here, and the cubes in `cubes.py`, has
 
-- `aspect`, the width over the height, and `rows`, the rows of the picture per quarter of a circle;
-- `directions(x, y, height, width)`: the directions (..., 3) at places, NaN where the picture is
-  blank; the middle of the first pixel is at x = y = 0;
-- `places(directions, height, width)`: the inverse, x and y, and the part of the picture: pixels of
-  another part are no neighbours in space, even where they are in the picture;
-- `closed`: whether the last column is beside the first.
+- `aspect`, the picture's width over its height, and `rows`, its height in quarters of a circle;
+- `directions(x, y, height, width)`, the directions at places x and y [pixels], where 0 is the
+  middle of the first pixel; NaN where the picture is blank;
+- `places(directions, height, width)`, the inverse: x, y, and the number of the picture's part that
+  holds the place. Pixels of different parts are not neighbours in space, even where they are
+  neighbours in the picture;
+- `closed`, whether the last column is a neighbour of the first.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray, IntArray
 from brdfkit.core.geometry import dual_paraboloid
 
-AT_POLE = 1e-12  # polar angle of a row at the upper pole: its pixels keep their azimuths
+AT_POLE = 1e-12  # polar angle [rad] of a row at the upper pole, whose pixels keep their azimuths
+
+Places = tuple[FloatArray, FloatArray, IntArray]  # x, y, and the part
 
 
 @dataclass(frozen=True)
 class LatitudeLongitude:
-    """Azimuth across, polar angle down; ahead is in the middle. `at_poles`: the first and the last
-    row lie at the poles themselves, as in Mitsuba; else rows lie half a row from them."""
+    """The azimuth runs across the picture and the polar angle down; ahead is in the middle.
+
+    `at_poles` says whether the first and the last row lie at the poles, as in Mitsuba. Otherwise
+    they lie half a row away from the poles.
+    """
 
     at_poles: bool
     aspect: float = 2.0
     rows: float = 2.0
     closed: bool = True
 
-    def directions(self, x, y, height, width):
+    def directions(self, x: AnyArray, y: AnyArray, height: int, width: int) -> FloatArray:
         phi = 2 * np.pi * ((x + 0.5) / width - 0.5)
         theta = np.pi * (y / (height - 1) if self.at_poles else (y + 0.5) / height)
         theta = np.where(theta == 0, AT_POLE, theta)
         sine = np.sin(theta)
         return np.stack([sine * np.sin(phi), np.cos(theta) + 0 * phi, sine * np.cos(phi)], axis=-1)
 
-    def places(self, directions, height, width):
+    def places(self, directions: FloatArray, height: int, width: int) -> Places:
         right, up, ahead = np.moveaxis(directions, -1, 0)
         turn = np.arctan2(right, ahead) / (2 * np.pi) + 0.5
         row = np.arctan2(np.hypot(right, ahead), up) / np.pi
@@ -47,59 +54,63 @@ class LatitudeLongitude:
 
 @dataclass(frozen=True)
 class Angular:
-    """P. Debevec's light probes: a disc, whose middle is ahead and whose rim is behind; the
-    distance from the middle is the angle."""
+    """A light probe of P. Debevec: a disc whose middle is ahead and whose rim is behind.
+
+    The distance from the middle is proportional to the angle from the direction ahead.
+    """
 
     aspect: float = 1.0
     rows: float = 4.0
     closed: bool = False
 
-    def directions(self, x, y, height, width):
-        s, t = _centred(x, height), -_centred(y, height)
+    def directions(self, x: AnyArray, y: AnyArray, height: int, width: int) -> FloatArray:
+        s, t = _to_square(x, height), -_to_square(y, height)
         r = np.hypot(s, t)
         across = np.pi * np.sinc(r)  # sin(π r) / r
-        found = np.stack([s * across, t * across, np.cos(np.pi * r)], axis=-1)
-        return np.where((r <= 1)[..., None], found, np.nan)
+        towards = np.stack([s * across, t * across, np.cos(np.pi * r)], axis=-1)
+        return np.where((r <= 1)[..., None], towards, np.nan)
 
-    def places(self, directions, height, width):
+    def places(self, directions: FloatArray, height: int, width: int) -> Places:
         right, up, ahead = np.moveaxis(directions, -1, 0)
         side = np.hypot(right, up)
-        r = np.minimum(np.arctan2(side, ahead) / np.pi, _rim(height))
+        r = np.minimum(np.arctan2(side, ahead) / np.pi, _safe_radius(height))
         scale = r / np.where(side > 0, side, 1)
-        x, y = _pixel(right * scale, height), _pixel(-up * scale, height)
+        x, y = _to_pixel(right * scale, height), _to_pixel(-up * scale, height)
         return x, y, np.zeros(x.shape, int)
 
 
 @dataclass(frozen=True)
 class Paraboloids:
-    """The dual-paraboloid map: what is ahead in the left disc, what is behind in the right one."""
+    """A dual-paraboloid map: the hemisphere ahead in the left disc, the one behind in the right."""
 
     aspect: float = 2.0
     rows: float = 2.0
     closed: bool = False
 
-    def directions(self, x, y, height, width):
+    def directions(self, x: AnyArray, y: AnyArray, height: int, width: int) -> FloatArray:
         behind = x > height - 0.5
-        s, t = _centred(x - behind * height, height), -_centred(y, height)
-        found = np.stack(dual_paraboloid.from_disc(s, t, np.where(behind, -1, 1)), axis=-1)
-        return np.where((np.hypot(s, t) <= 1)[..., None], found, np.nan)
+        s, t = _to_square(x - behind * height, height), -_to_square(y, height)
+        towards = np.stack(dual_paraboloid.from_disc(s, t, np.where(behind, -1, 1)), axis=-1)
+        return np.where((np.hypot(s, t) <= 1)[..., None], towards, np.nan)
 
-    def places(self, directions, height, width):
+    def places(self, directions: FloatArray, height: int, width: int) -> Places:
         s, t = dual_paraboloid.to_disc(*np.moveaxis(directions, -1, 0))
-        inside = np.minimum(1, _rim(height) / np.maximum(np.hypot(s, t), 1e-9))
+        inside = np.minimum(1, _safe_radius(height) / np.maximum(np.hypot(s, t), 1e-9))
         behind = (directions[..., 2] < 0).astype(int)
-        return _pixel(s * inside, height) + behind * height, _pixel(-t * inside, height), behind
+        x = _to_pixel(s * inside, height) + behind * height
+        return x, _to_pixel(-t * inside, height), behind
 
 
-def _centred(pixel, size):
-    """-1 to 1 of a pixel's coordinate in a square of `size` pixels."""
+def _to_square(pixel: AnyArray, size: int) -> FloatArray:
+    """Convert a pixel's coordinate in a square of `size` pixels to the range -1 to 1."""
     return (2 * pixel + 1) / size - 1
 
 
-def _pixel(centred, size):
-    return ((centred + 1) * size - 1) / 2
+def _to_pixel(coordinate: FloatArray, size: int) -> FloatArray:
+    """Convert a coordinate in the range -1 to 1 to that of a pixel in a square of `size` pixels."""
+    return ((coordinate + 1) * size - 1) / 2
 
 
-def _rim(size):
-    """The largest radius at which the nearest pixel's middle lies in the disc for sure."""
-    return 1 - np.sqrt(2) / size
+def _safe_radius(size: int) -> float:
+    """Return the largest radius whose nearest pixel's middle lies in the disc for certain."""
+    return float(1 - np.sqrt(2) / size)

@@ -1,4 +1,4 @@
-"""Files of environment maps: OpenEXR and Radiance, or a name of a map that comes with brdfkit."""
+"""Reading and writing environment maps: OpenEXR and other picture files, and the shipped maps."""
 
 import warnings
 from pathlib import Path
@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from brdfkit.core import catalogue
+from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError, nearest
 from brdfkit.core.files import write_safely
 from brdfkit.core.jit.threads import in_turn, two_threads
@@ -15,61 +16,65 @@ from brdfkit.model import labels
 
 HDR = ".exr", ".hdr", ".rgbe", ".pfm"
 EIGHT_BIT = ".png", ".jpg", ".jpeg", ".bmp", ".tga"
-EIGHT_BIT_TOLD = (
+EIGHT_BIT_WARNING = (
     "8 bits per channel: nothing is brighter than white, so that lamps and the sun are far too "
     "dark; look for the .exr or .hdr of the picture"
 )
 LATLONG = 2.0  # columns over rows of a map by latitude and longitude
-HALF = 65_504.0  # the largest half float
+LARGEST_HALF_FLOAT = 65_504.0
 
 
-def find(name):
-    """The `Path` of an environment map, given as a path or by the name of a shipped one.
+def find_map(name: str | Path) -> Path:
+    """Return the path of an environment map, from its path or the name of a shipped map.
 
-    Raises `BrdfkitError` where there is neither.
+    Raises `BrdfkitError` if there is no such map.
 
-    >>> find("studio").name
+    >>> find_map("studio").name
     'studio.exr'
     """
     place = find_file_or_name(name, "environment map", catalogue.environments())
     return catalogue.environment_path(place) if isinstance(place, str) else place
 
 
-def looks_like_map(name):
-    """Whether a word of the command line means an environment map: by its suffix, or its name,
-    which may be misspelt where it is like no material's."""
+def looks_like_map(name: str) -> bool:
+    """Return whether a word of the command line means an environment map.
+
+    The suffix of a file decides, or the name of a shipped map. The name may be misspelt as long as
+    it does not resemble the name of a material.
+    """
     if Path(name).suffix or "/" in name or Path(name).exists():
         return Path(name).suffix.lower() in HDR + EIGHT_BIT
     materials = [*labels.models(), *catalogue.materials()]
     return bool(nearest(name, catalogue.environments())) and not nearest(name, materials)
 
 
-def load(given):
-    """The name and the pixels (height, width, 3) of a map: a path, a shipped name, or an array.
+def load_map(source: str | Path | AnyArray) -> tuple[str, AnyArray]:
+    """Return the name and the pixels (height, width, 3) of a map.
 
-    Raises `BrdfkitError` for what is none of these, and for a map of fewer than 2×2 pixels.
+    `source` is a path, the name of a shipped map, or an array of pixels. Raises `BrdfkitError` for
+    anything else, and for a map of fewer than 2×2 pixels.
     """
-    if isinstance(given, np.ndarray):
-        name, rgb = "the map", given
+    if isinstance(source, np.ndarray):
+        name, rgb = "the map", source
         if rgb.ndim != 3 or rgb.shape[2] != 3:
             raise BrdfkitError(
                 f"the map has the shape {rgb.shape}; it should be (height, width, 3)."
             )
     else:
-        name, rgb = str(given), read(find(given))
+        name, rgb = str(source), read_map(find_map(source))
     if min(rgb.shape[:2]) < 2:
         size = "×".join(map(str, rgb.shape[1::-1]))
         raise BrdfkitError(f"{name}: the map has {size} pixels; it needs 2×2 or more.")
     return name, rgb
 
 
-def load_light(given, aspect=LATLONG):
-    """`load`, of a map from which light is computed; `aspect`: its columns over its rows.
+def load_radiance(source: str | Path | AnyArray, aspect: float = LATLONG) -> tuple[str, AnyArray]:
+    """Return the name and the pixels of a map as `load_map` does, and check that it can be a light.
 
-    Raises `BrdfkitError` also for another shape, by more than 5 %, and for a value that is negative
-    or not finite. Warns of 8 bits per channel.
+    Raises `BrdfkitError` if the map's columns over rows differ from `aspect` by more than 5 %, or
+    if a value is negative or not finite. Warns if the file has 8 bits per channel.
     """
-    name, rgb = load(given)
+    name, rgb = load_map(source)
     height, width = rgb.shape[:2]
     if abs(width / height / aspect - 1) > 0.05:
         raise BrdfkitError(
@@ -77,22 +82,22 @@ def load_light(given, aspect=LATLONG):
             "many columns as rows; name its layout to 'brdfkit convert --from'."
         )
     if not (np.isfinite(rgb).all() and rgb.min() >= 0):
-        raise BrdfkitError(f"{name}: the map has a negative value, or one not finite; mend it.")
-    if is_eight_bit(given):
-        warnings.warn(f"{name} has {EIGHT_BIT_TOLD}.", stacklevel=2)
+        raise BrdfkitError(f"{name}: the map has a value that is negative or not finite; mend it.")
+    if is_eight_bit(source):
+        warnings.warn(f"{name} has {EIGHT_BIT_WARNING}.", stacklevel=2)
     return name, rgb
 
 
-def is_eight_bit(given):
-    """Whether a map, a path or a name, is in a file with 8 bits per channel."""
-    return isinstance(given, str | Path) and Path(given).suffix.lower() in EIGHT_BIT
+def is_eight_bit(source: str | Path | AnyArray) -> bool:
+    """Return whether a map is a file with 8 bits per channel, judging by its suffix."""
+    return isinstance(source, str | Path) and Path(source).suffix.lower() in EIGHT_BIT
 
 
 @in_turn
-def read(path):
-    """The map (height, width, 3) in linear sRGB of a file that Mitsuba reads.
+def read_map(path: str | Path) -> AnyArray:
+    """Read a map (height, width, 3) in linear sRGB from a file, by Mitsuba.
 
-    Raises `BrdfkitError` for a file that it cannot read, because it is cut off, for instance.
+    Raises `BrdfkitError` if Mitsuba cannot read the file, for instance because it is truncated.
     """
     try:
         return read_pixels(path, path)
@@ -102,17 +107,17 @@ def read(path):
 
 
 @in_turn
-def write(rgb, path):
-    """Write a map (height, width, 3) as OpenEXR, in half floats where they reach.
+def write_map(rgb: AnyArray, path: str | Path) -> Path:
+    """Write a map (height, width, 3) as OpenEXR, in half floats unless a value is too large.
 
-    Returns the `Path`. Raises `BrdfkitError` for another suffix than .exr.
+    Returns the `Path`. Raises `BrdfkitError` for any suffix other than .exr.
     """
     import OpenEXR
 
     path = Path(path)
     if path.suffix.lower() != ".exr":
         raise BrdfkitError(f"{path}: maps are written as .exr; choose that suffix.")
-    precision = np.float16 if rgb.max() <= HALF else np.float32
+    precision = np.float16 if rgb.max() <= LARGEST_HALF_FLOAT else np.float32
     header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.PIZ_COMPRESSION}
     channels = {c: np.ascontiguousarray(rgb[..., i], precision) for i, c in enumerate("RGB")}
     with write_safely(path) as beside, two_threads():

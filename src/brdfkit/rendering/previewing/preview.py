@@ -18,7 +18,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.loops import first_error
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.memory import require_memory
-from brdfkit.lighting.environments.map_files import find
+from brdfkit.lighting.environments.map_files import find_map
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.previewing.cache import bsdf_of, keep
 from brdfkit.rendering.previewing.staging import Shape, stage
@@ -131,7 +131,7 @@ def _show(materials, envmap, size, scene, method, spp, shadows):
 
     start, variant = time.perf_counter(), mi.variant()
     shape = _shape(variant, scene, _changed(str(scene).partition("#")[0]))
-    light = _light(variant, envmap, _changed(find(envmap)), shadows)
+    light = _light(variant, envmap, _changed(find_map(envmap)), shadows)
     integrator = _integrator(variant, method, shadows)
     both_sides = suffix_of(scene) in mesh_file.SUFFIXES
     pictures, seen = {}, None

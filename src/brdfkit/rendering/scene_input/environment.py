@@ -5,7 +5,7 @@ import numpy as np
 from brdfkit.core.colours import luminance
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.latitude_rows import projected_solid_angles
-from brdfkit.lighting.environments.map_files import load_light
+from brdfkit.lighting.environments.map_files import load_radiance
 
 ILLUMINANCE = 1.0  # of the ground, as from sky and softbox
 
@@ -20,7 +20,7 @@ def environment(given):
     """
     import mitsuba as mi
 
-    name, rgb = load_light(given)
+    name, rgb = load_radiance(given)
     received = luminance(_received(rgb))
     if not received > 0:
         raise BrdfkitError(f"{name}: the map gives no light from above; choose another.")

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.locate import find_file_or_name, split_part
-from brdfkit.lighting.environments.map_files import find
+from brdfkit.lighting.environments.map_files import find_map
 from brdfkit.mitsuba_bridge import scene_file
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.scene_input import mesh_file
@@ -52,7 +52,7 @@ def require_scene(given, envmap=None):
     long begins."""
     find_scene(given)
     if envmap is not None:
-        find(envmap)
+        find_map(envmap)
 
 
 def find_scene(given):

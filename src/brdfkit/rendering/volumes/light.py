@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from brdfkit.lighting.environments.spread import directions
+from brdfkit.lighting.environments.light_distribution import pixel_directions
 from brdfkit.rendering.scene_input.environment import environment
 from brdfkit.rendering.volumes.framing import FOV
 
@@ -31,7 +31,7 @@ def environment_light(envmap, illuminance, background, towards, aspect):
     corner = np.degrees(np.arctan(half * np.hypot(max(aspect, 1), max(1 / aspect, 1))))
     rgb = np.array(light["bitmap"])
     x, y, z = -towards
-    cosine = directions(*rgb.shape[:2]) @ [x, z, -y]  # the map has y up
+    cosine = pixel_directions(*rgb.shape[:2]) @ [x, z, -y]  # the map has y up
     behind = cosine > np.cos(np.radians(corner + EDGE))
     rgb[behind] = np.broadcast_to(background, 3) / light["scale"]
     return light | {"bitmap": mi.Bitmap(rgb)}

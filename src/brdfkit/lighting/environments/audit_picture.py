@@ -1,0 +1,127 @@
+"""The figure of an `EnvironmentAudit`: the map with its blocks, and the spread of its light."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from brdfkit.core.array_types import FloatArray, IntArray
+from brdfkit.core.colours import luminance, to_srgb
+from brdfkit.core.plots import Plot
+from brdfkit.lighting.environments.light_distribution import (
+    cumulative_shares,
+    pixel_directions,
+    pixel_solid_angles,
+)
+from brdfkit.lighting.sampling import tree
+from brdfkit.lighting.sampling.map_samplers.blocks import LAWS
+from brdfkit.lighting.sampling.power_map import cell_power
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from brdfkit.lighting.environments.auditing import EnvironmentAudit
+
+SIZE = 10.4, 9.4  # inches
+MIDDLE_GREY = 0.18  # the grey that the geometric mean of the map is drawn in
+BLOCKS = 4096  # the number that `kdtree_envmap` makes by default
+DRAWN_BLOCKS = 256  # the number whose outlines are drawn
+DRAWN_ROWS = 1024  # a larger map is thinned to about this many rows
+CURVE_POINTS = 1000  # along the curve of shares
+COLOUR = "#0072b2"
+LAW_COLOURS = {"hyperbolic": "#d55e00", "steps": "#009e73"}
+SIDES = ("−z", "+x", "+z", "−x", "−z")  # along the horizon
+
+
+def draw(audit: "EnvironmentAudit") -> "Figure":
+    """Draw an `EnvironmentAudit` as a matplotlib `Figure`."""
+    rgb = np.where(np.isfinite(audit.data), audit.data, 0).clip(0).astype(float)
+    brightness = luminance(rgb)
+    solid_angle = pixel_solid_angles(audit.height, audit.width)
+    power = cell_power(brightness)
+    figure = Plot(figsize=SIZE, layout="constrained")
+    above, below = figure.subfigures(2, 1, squeeze=False, height_ratios=(1.45, 1))[:, 0]
+    draw_map(above.subplots(), audit, rgb, tree.build(power, DRAWN_BLOCKS).blocks)
+    left, right = below.subplots(1, 2)
+    _draw_probabilities(left, power)
+    _draw_shares(right, brightness, solid_angle, audit)
+    return figure
+
+
+def draw_map(axes: "Axes", audit: "EnvironmentAudit", rgb: FloatArray, blocks: IntArray) -> None:
+    """Draw the tone-mapped map, the outlines of its `blocks` (n, 4), and its brightest spot.
+
+    `rgb` (height, width, 3) is linear and finite; `blocks` are in cells, as `Tree.blocks` has them.
+    """
+    from matplotlib.collections import PolyCollection
+
+    brightness = luminance(rgb)
+    lit = brightness[brightness > 0]
+    exposure = MIDDLE_GREY / np.exp(np.log(lit).mean()) if lit.size else 1
+    half = 0.5 / (audit.height - 1)  # half a row
+    extent = 0, 1, -half, 1 + half
+    step = 1 + audit.height // DRAWN_ROWS
+    axes.imshow(
+        to_srgb(rgb[::step, ::step] * exposure),
+        extent=extent,
+        aspect="auto",
+        interpolation="nearest",
+    )
+    # A cell lies between four pixels; the first and the last row of pixels lie at the poles
+    x0, x1, y0, y1 = blocks.T / np.repeat((audit.width, audit.height - 1), 2)[:, None]
+    x0, x1 = x0 + 0.5 / audit.width, x1 + 0.5 / audit.width
+    corners = [(x0, 1 - y0), (x1, 1 - y0), (x1, 1 - y1), (x0, 1 - y1)]
+    outlines = np.moveaxis(np.array(corners), 2, 0)
+    axes.add_collection(
+        PolyCollection(list(outlines), facecolors="none", edgecolors="w", linewidths=0.4)
+    )
+    directions = pixel_directions(audit.height, audit.width).reshape(-1, 3)
+    spot = int(np.argmax(directions @ np.array(audit.brightest)))
+    place = (spot % audit.width + 0.5) / audit.width, 1 - spot // audit.width / (audit.height - 1)
+    axes.plot(*place, "o", markersize=14, mfc="none", mec="#d55e00", mew=1.6)
+    axes.set(xlim=(0, 1), ylim=extent[2:])
+    axes.set_xticks(np.linspace(0, 1, 5), SIDES)
+    axes.set_yticks((0, 0.5, 1), ("−y, below", "horizon", "+y, above"))
+    name = audit.name.replace("$", r"\$")  # $ would begin a formula
+    axes.set_title(f"{name}: {len(blocks)} blocks; the circle is the brightest pixel", fontsize=11)
+
+
+def _draw_probabilities(axes: "Axes", power: FloatArray) -> None:
+    """Draw the sorted probabilities of the blocks, and the laws that approximate them."""
+    blocks = tree.build(power, BLOCKS).blocks
+    light = np.sort(tree.block_sums(power, blocks).clip(0))[::-1]
+    axes.set(xscale="log", xlabel="rank of the block", ylabel="probability")
+    axes.set_title(f"probabilities of {len(blocks):,} blocks, sorted", fontsize=10)
+    axes.spines[["top", "right"]].set_visible(False)
+    if len(light) < 2:  # a map of one value is not cut
+        return
+    share, rank = light / light.sum(), np.arange(len(light))
+    lit = share > 0
+    axes.plot(rank[lit] + 1, share[lit], color=COLOUR, label="the blocks' own")
+    for name, colour in LAW_COLOURS.items():
+        fitted = LAWS[name].fit(share).probability(rank)
+        axes.plot(rank[lit] + 1, fitted[lit], color=colour, linewidth=1, label=f"{name} law")
+    axes.set(yscale="log", ylim=(share[lit].min() / 2, min(1, 3 * share[0])))
+    axes.legend(frameon=False)
+
+
+def _draw_shares(
+    axes: "Axes", brightness: FloatArray, solid_angle: FloatArray, audit: "EnvironmentAudit"
+) -> None:
+    """Draw the share of the light over the share of the solid angle, the brightest first."""
+    axes.set(xscale="log", xlim=(1e-5, 1), ylim=(0, 1.03))
+    axes.set(xlabel="share of the solid angle, brightest first", ylabel="share of the light")
+    axes.set_title("where the light comes from", fontsize=10)
+    axes.spines[["top", "right"]].set_visible(False)
+    if not audit.mean > 0:
+        return
+    areas, light = cumulative_shares(brightness, solid_angle / solid_angle.sum())
+    drawn = np.unique(areas.searchsorted(np.geomspace(areas[1], 1, CURVE_POINTS)))
+    axes.plot(areas[drawn], light[drawn], color=COLOUR)
+    axes.plot(0.01, audit.brightest_share, "o", color="#d55e00")
+    axes.annotate(
+        f"brightest 1 %: {100 * audit.brightest_share:.0f} %",
+        (0.01, audit.brightest_share),
+        (8, -12),
+        textcoords="offset points",
+    )
