@@ -241,9 +241,9 @@ def figures(entries, repeat):
         "noise": noise(emitter, "independent", repeat),
         "jittered": noise(emitter, "multijitter", repeat),
         "time": least_seconds(picture(emitter)),
-        "build": least_seconds(lambda _: emitter.sampler_of(bright)) if ours else np.nan,
+        "build": least_seconds(lambda _: emitter.make_sampler(bright)) if ours else np.nan,
         "load": least_seconds(lambda _: mi.load_dict(entries)),
-        "memory": emitter.points.nbytes if ours else np.nan,
+        "memory": emitter.map_sampler.nbytes if ours else np.nan,
         "sum": sum(derivatives(seed) for seed in seeds),
         "backward": least_seconds(derivatives),
     }

@@ -25,12 +25,12 @@ are drawn with, `independent` does not; `exact` keeps the strata, the closed for
 D65 [Mallett & Yuksel 2019], linear in the colour.
 """
 
-from brdfkit.lighting.sampling.emitter import MAP, environment_emitter, small_sky
-from brdfkit.lighting.sampling.map_samplers.blocks import DISTRIBUTIONS, LOOKUPS, Blocks
+from brdfkit.lighting.sampling.blocks import DISTRIBUTIONS, LOOKUPS, Blocks
+from brdfkit.lighting.sampling.emitter import MAP_PARAMETERS, environment_emitter, make_small_sky
 from brdfkit.lighting.sampling.tree import CRITERIA
 from brdfkit.mitsuba_bridge.properties.declarations import count, word
 
-PARAMETERS = MAP | {
+PARAMETERS = MAP_PARAMETERS | {
     "blocks": count(4096, (1, 1_000_000), "blocks that the map is cut into at most"),
     "criterion": word(CRITERIA, "which block is cut next"),
     "distribution": word(DISTRIBUTIONS, "how a block is chosen"),
@@ -42,7 +42,7 @@ def define(mi):
     """The class of `mi.Emitter` for the current variant."""
 
     class KdtreeEnvmap(environment_emitter(mi, PARAMETERS)):
-        def sampler_of(self, brightness):
+        def make_sampler(self, brightness):
             chosen = self.criterion, self.distribution, self.lookup
             return Blocks(brightness, self.blocks, *chosen)
 
@@ -51,4 +51,4 @@ def define(mi):
 
 def example():
     """A small sky with a sun, for the checks."""
-    return {"type": "kdtree_envmap", "bitmap": small_sky(), "blocks": 64}
+    return {"type": "kdtree_envmap", "bitmap": make_small_sky(), "blocks": 64}

@@ -9,20 +9,158 @@ row [Vose 1991]. `compensated`: only for integrators that also sample surfaces, 
 out what is below the map's mean [Karlík et al. 2019].
 """
 
-from brdfkit.lighting.sampling.emitter import MAP, environment_emitter, small_sky
-from brdfkit.lighting.sampling.map_samplers.alias import Alias
-from brdfkit.lighting.sampling.map_samplers.tables import Cdf, Mip
+import numpy as np
+
+from brdfkit.core.array_types import FloatArray, IntArray, JitFloat, JitInt, JitMask, JitVector
+from brdfkit.lighting.sampling.emitter import MAP_PARAMETERS, environment_emitter, make_small_sky
+from brdfkit.lighting.sampling.power_map import cell_power, pixel_power
+from brdfkit.mitsuba_bridge.arrays import Integers, Rows, cell
 from brdfkit.mitsuba_bridge.properties.declarations import word
 
+# The map samplers below have the methods that `lighting/sampling/__init__.py` lists
+
+
+class Mip:
+    """Mitsuba's `Hierarchical2D0` of the power of pixels, bilinear between them."""
+
+    def __init__(self, brightness: FloatArray) -> None:
+        import mitsuba as mi
+
+        power = pixel_power(brightness)
+        power = np.append(power, power[:, :1], axis=1).astype(np.float32)
+        self.rows, self.columns = power.shape[0] - 1, power.shape[1] - 1
+        self.warp = mi.Hierarchical2D0(power)
+        self.nbytes = 4 * round(power.size * 7 / 3)  # the map, and a pyramid of sums over it
+
+    def sample(self, u: JitVector, active: JitMask) -> tuple[JitFloat, JitFloat, JitFloat]:
+        point, density = self.warp.sample(u, active=active)
+        return point.x * self.columns, point.y * self.rows, density
+
+    def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
+        import mitsuba as mi
+
+        return self.warp.eval(mi.Point2f(x / self.columns, y / self.rows), active=active)
+
+
+class Cdf:
+    """Mitsuba's `DiscreteDistribution2D` of the power of cells."""
+
+    def __init__(self, brightness: FloatArray) -> None:
+        import mitsuba as mi
+
+        power = cell_power(brightness).astype(np.float32)
+        self.rows, self.columns = power.shape
+        self.table = mi.DiscreteDistribution2D(power)
+        self.nbytes = 4 * (power.size + self.rows)  # sums of every row, and of all rows
+
+    def sample(self, u: JitVector, active: JitMask) -> tuple[JitFloat, JitFloat, JitFloat]:
+        import mitsuba as mi
+
+        corner, probability, rest = self.table.sample(u, active)
+        point = mi.Point2f(corner) + rest
+        return point.x, point.y, probability * (self.rows * self.columns)
+
+    def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
+        import mitsuba as mi
+
+        index = mi.Point2u(cell(x, self.columns), cell(y, self.rows))
+        return self.table.pdf(index, active) * (self.rows * self.columns)
+
+
+class Alias:
+    """Alias tables of the rows, and of the cells of each row: two reads for each.
+
+    Every entry of a table is drawn equally often. It stands for itself below its threshold, and for
+    one other entry, its alias, above. One table of all cells would use up the bits of a uniform
+    number in single precision.
+    """
+
+    def __init__(self, brightness: FloatArray) -> None:
+        power = cell_power(brightness)
+        self.rows, self.columns = power.shape
+        tables = [alias_table(row) for row in power]
+        self.by_row = AliasTable(*alias_table(power.sum(axis=1)))
+        self.by_cell = AliasTable(*(np.concatenate(part) for part in zip(*tables, strict=True)))
+        self.densities = Rows(power.ravel() / power.mean())
+        self.nbytes = 4 * power.size + self.by_row.nbytes + self.by_cell.nbytes
+
+    def sample(self, u: JitVector, active: JitMask) -> tuple[JitFloat, JitFloat, JitFloat]:
+        import mitsuba as mi
+
+        row, y = self.by_row.draw(u.y, 0, self.rows, active)
+        column, x = self.by_cell.draw(u.x, row * self.columns, self.columns, active)
+        density = self.densities.at(row * self.columns + column, active=active)
+        return mi.Float(column) + x, mi.Float(row) + y, density
+
+    def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
+        index = cell(y, self.rows) * self.columns + cell(x, self.columns)
+        return self.densities.at(index, active=active)
+
+
+class AliasTable:
+    """Alias tables, one after the other: `thresholds` (n,) and `aliases` (n,) of their entries."""
+
+    def __init__(self, thresholds: FloatArray, aliases: IntArray) -> None:
+        self.thresholds, self.aliases = Rows(thresholds), Integers(aliases)
+        self.nbytes = 8 * len(thresholds)
+
+    def draw(
+        self, u: JitFloat, first: JitInt, count: int, active: JitMask
+    ) -> tuple[JitInt, JitFloat]:
+        """Draw an entry of the table of `count` entries that begins at `first`.
+
+        Returns the entry's index within its table, and a new uniform number that is left of `u`.
+        """
+        import drjit as dr
+        import mitsuba as mi
+
+        entry = cell(u * count, count)
+        remainder = u * count - mi.Float(entry)
+        threshold = self.thresholds.at(first + entry, active=active)
+        own = remainder < threshold
+        left = dr.select(own, remainder, remainder - threshold)
+        left = left / dr.maximum(dr.select(own, threshold, 1 - threshold), 1e-7)
+        return dr.select(own, entry, self.aliases.at(first + entry, active)), dr.clip(left, 0, 1)
+
+
+def alias_table(weights: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Return thresholds (n,) and aliases (n,) of `weights` (n,) ≥ 0; equal weights if all are 0.
+
+    Light entries, below the mean, are filled up by heavy ones in order. Cumulative sums of what is
+    missing from the light and of the excess of the heavy entries thus tell which one fills which.
+
+    >>> [part.tolist() for part in alias_table(np.array([1.0, 3.0]))]
+    [[0.5, 1.0], [1, 1]]
+    """
+    n, total = len(weights), weights.sum()
+    share = weights * (n / total) if total > 0 else np.ones(n)
+    thresholds, aliases = np.ones(n), np.arange(n)
+    light, heavy = np.flatnonzero(share < 1), np.flatnonzero(share >= 1)
+    if min(len(light), len(heavy)) == 0:  # equal weights, but for rounding
+        return thresholds, aliases
+    missing, excess = np.cumsum(1 - share[light]), np.cumsum(share[heavy] - 1)
+    last = len(heavy) - 1
+    # A light entry is filled up by the first heavy one that is not used up yet
+    thresholds[light] = share[light]
+    turn = np.searchsorted(excess, missing - (1 - share[light]), side="right")
+    aliases[light] = heavy[np.minimum(turn, last)]
+    # The light entry that uses up a heavy one leaves it short, and the next heavy one fills it up
+    by = np.searchsorted(missing, excess, side="right")
+    short = np.flatnonzero((by < len(light)) & (np.arange(last + 1) < last))
+    thresholds[heavy[short]] = 1 - (missing[by[short]] - excess[short])
+    aliases[heavy[short]] = heavy[short + 1]
+    return thresholds.clip(0, 1), aliases
+
+
 SAMPLERS = {"cdf": Cdf, "mip": Mip, "alias": Alias}
-PARAMETERS = MAP | {"sampler": word(SAMPLERS, "how points of the map are drawn")}
+PARAMETERS = MAP_PARAMETERS | {"sampler": word(SAMPLERS, "how points of the map are drawn")}
 
 
 def define(mi):
     """The class of `mi.Emitter` for the current variant."""
 
     class SampledEnvmap(environment_emitter(mi, PARAMETERS)):
-        def sampler_of(self, brightness):
+        def make_sampler(self, brightness):
             return SAMPLERS[self.sampler](brightness)
 
     return SampledEnvmap
@@ -30,4 +168,4 @@ def define(mi):
 
 def example():
     """A small sky with a sun, for the checks."""
-    return {"type": "sampled_envmap", "bitmap": small_sky()}
+    return {"type": "sampled_envmap", "bitmap": make_small_sky()}

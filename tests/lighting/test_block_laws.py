@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from brdfkit.lighting.sampling.block_laws.hyperbolic import Hyperbolic
-from brdfkit.lighting.sampling.block_laws.sorted_blocks import SortedBlocks
-from brdfkit.lighting.sampling.block_laws.steps import Steps
+from brdfkit.lighting.sampling.block_laws import Hyperbolic, SortedBlocks, Steps
 from brdfkit.lighting.sampling.tree import build
 
 pytestmark = pytest.mark.quick

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from brdfkit.plugins.emitters.sampled_envmap import Cdf, Mip
 
-from brdfkit.lighting.sampling.block_slopes import STEEPEST, draw, line, slopes
-from brdfkit.lighting.sampling.map_samplers.blocks import Blocks
-from brdfkit.lighting.sampling.map_samplers.tables import Cdf, Mip
+from brdfkit.lighting.sampling.block_slopes import STEEPEST, draw_on_line, fit_slopes, line_density
+from brdfkit.lighting.sampling.blocks import Blocks
 from brdfkit.lighting.sampling.power_map import cell_power
 from brdfkit.lighting.sampling.tree import Sums
 
@@ -14,9 +14,9 @@ from brdfkit.lighting.sampling.tree import Sums
 @pytest.mark.parametrize("slope", [-STEEPEST, -0.3, 0.0, 1e-6, 1.0, STEEPEST])
 def test_a_line_is_drawn_by_the_inverse_of_its_integral(slope):
     for u in np.linspace(0, 1, 11).tolist():
-        s = draw(u, slope)
+        s = draw_on_line(u, slope)
         assert s + slope * (s**2 - s) / 2 == pytest.approx(u, abs=1e-12)
-    assert line(draw(1.0, slope), slope) > 0
+    assert line_density(draw_on_line(1.0, slope), slope) > 0
 
 
 @pytest.mark.quick
@@ -29,7 +29,7 @@ def test_the_slopes_of_a_plane_are_found():
     x0, x1, y0, y1 = boxes.T
     mean = 5 + 0.3 * (x0 + x1) / 2 - 0.2 * (y0 + y1) / 2
     expected = np.stack([0.3 * (x1 - x0) / mean, -0.2 * (y1 - y0) / mean], axis=1)
-    np.testing.assert_allclose(slopes(Sums(cells), pixels, boxes), expected)
+    np.testing.assert_allclose(fit_slopes(Sums(cells), pixels, boxes), expected)
 
 
 @pytest.mark.quick
@@ -38,7 +38,7 @@ def test_no_line_ends_in_the_dark():
     pixels = np.zeros((5, 8))
     pixels[1, 2] = 1
     boxes = np.array([[2, 3, 1, 2], [0, 8, 0, 4], [5, 7, 2, 4], [5, 6, 3, 4]])
-    found = slopes(Sums(cell_power(pixels)), pixels, boxes)
+    found = fit_slopes(Sums(cell_power(pixels)), pixels, boxes)
     np.testing.assert_array_equal(found[0], [-STEEPEST, -STEEPEST])
     np.testing.assert_array_equal(found[2:], 0)
     assert np.abs(found).max() <= STEEPEST

@@ -164,4 +164,4 @@ def test_an_optimiser_s_map_lights_too(llvm_variant, value, said):
 
 def test_more_blocks_than_pixels_are_as_many(llvm_variant):
     emitter = llvm_variant.load_dict(example("kdtree_envmap", blocks=1_000_000))
-    assert len(emitter.points.shares) <= 15 * 32
+    assert len(emitter.map_sampler.shares) <= 15 * 32

@@ -4,15 +4,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from brdfkit.plugins.emitters.sampled_envmap import Alias, Cdf, Mip, alias_table
 
 import brdfkit as bk
 from brdfkit.checks import directions
 from brdfkit.checks import emitters as checks
 from brdfkit.checks.plugin_subject import example
-from brdfkit.lighting.sampling.map_samplers.alias import Alias, alias_table
-from brdfkit.lighting.sampling.map_samplers.blocks import DISTRIBUTIONS, LOOKUPS, Blocks
-from brdfkit.lighting.sampling.map_samplers.tables import Cdf, Mip
-from brdfkit.lighting.sampling.power_map import compensated
+from brdfkit.lighting.sampling.blocks import DISTRIBUTIONS, LOOKUPS, Blocks
+from brdfkit.lighting.sampling.power_map import subtract_mean
 
 BY_NAME = {
     "cdf": Cdf,
@@ -105,8 +104,8 @@ def test_an_alias_table_holds_its_weights(seed):
 @pytest.mark.quick
 def test_a_compensated_map_is_what_is_above_its_mean():
     even = np.full((8, 16), 0.3)
-    np.testing.assert_array_equal(compensated(even), even)
-    above = compensated(sky())
+    np.testing.assert_array_equal(subtract_mean(even), even)
+    above = subtract_mean(sky())
     assert (above == 0).mean() > 0.9
     np.testing.assert_allclose((sky() - above)[above > 0], (sky() - above).max())
 

@@ -5,8 +5,7 @@ from brdfkit.theses.ergun2015.lit_balls import read_probes
 
 from brdfkit.core.colours import luminance
 from brdfkit.lighting.sampling import tree
-from brdfkit.lighting.sampling.block_laws.hyperbolic import Hyperbolic
-from brdfkit.lighting.sampling.block_laws.steps import Steps
+from brdfkit.lighting.sampling.block_laws import Hyperbolic, Steps
 from brdfkit.lighting.sampling.power_map import cell_power
 from brdfkit.theses.claims import UNSTATED, Claim, verdict
 from brdfkit.theses.drawing import COLOURS, figure, tidy

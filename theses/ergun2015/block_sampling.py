@@ -8,7 +8,7 @@ from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.lighting.sampling import tree
-from brdfkit.lighting.sampling.block_laws.hyperbolic import Hyperbolic
+from brdfkit.lighting.sampling.block_laws import Hyperbolic
 from brdfkit.lighting.sampling.power_map import cell_power
 from brdfkit.theses.claims import Claim, least_seconds, verdict
 from brdfkit.theses.page import Section, Table

@@ -5,7 +5,7 @@ import time
 import numpy as np
 from brdfkit.theses.lesar2018.iterations import iteration
 
-from brdfkit.lighting.sampling.emitter import small_sky
+from brdfkit.lighting.sampling.emitter import make_small_sky
 from brdfkit.volumes import TransferFunction
 
 SIZE = 16  # pixels along the edges of a picture
@@ -38,8 +38,8 @@ def settings():
     beside = t().look_at([1.4, 1.2, 1.0], [0.5, 0.5, 0.5], [0, 1, 0]).scale(0.3)
     disk = {"lamp": {"type": "disk", "to_world": beside, "emitter": area}}
     even = {"sky": {"type": "constant", "radiance": 0.6}}
-    map_of_mitsuba = {"sky": {"type": "envmap", "bitmap": small_sky()}}
-    map_of_ours = {"sky": {"type": "kdtree_envmap", "bitmap": small_sky(), "blocks": 64}}
+    map_of_mitsuba = {"sky": {"type": "envmap", "bitmap": make_small_sky()}}
+    map_of_ours = {"sky": {"type": "kdtree_envmap", "bitmap": make_small_sky(), "blocks": 64}}
     ground = t().translate([0.5, 0.3, 0.5]).rotate([1, 0, 0], -90).scale(1.5)
     grey = {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0.6, 0.5, 0.4]}}
     surfaces = {

@@ -13,7 +13,7 @@ from brdfkit.lighting.environments.light_distribution import (
     pixel_solid_angles,
 )
 from brdfkit.lighting.sampling import tree
-from brdfkit.lighting.sampling.map_samplers.blocks import LAWS
+from brdfkit.lighting.sampling.blocks import LAWS
 from brdfkit.lighting.sampling.power_map import cell_power
 
 if TYPE_CHECKING:

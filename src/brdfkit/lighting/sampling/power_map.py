@@ -1,4 +1,4 @@
-"""Environment maps as numbers: pixels that give light, their brightness, and power over angles.
+"""Power per angle of an environment map, which samplers draw points in proportion to.
 
 A map has rows from the polar angle 0 to π, both included, and columns around; a cell lies between
 four pixels.
@@ -6,24 +6,29 @@ four pixels.
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 
 
-def require_light(what, pixels):
-    """Raise `BrdfkitError`, which begins with `what`, for pixels that give no light."""
+def require_light(name: str, pixels: AnyArray) -> None:
+    """Raise `BrdfkitError` unless `pixels` (rows, columns, channels) give light.
+
+    The error begins with `name`.
+    """
     if pixels.ndim != 3 or min(pixels.shape[:2]) < 2:
         size = "×".join(map(str, pixels.shape[1::-1]))
-        raise BrdfkitError(f"{what} has {size} pixels; give 2×2 or more.")
+        raise BrdfkitError(f"{name} has {size} pixels; give 2×2 or more.")
     if not np.isfinite(pixels).all():
-        raise BrdfkitError(f"{what} has values that are not finite; mend them.")
+        raise BrdfkitError(f"{name} has values that are not finite; mend them.")
     if pixels.max() <= 0:
-        raise BrdfkitError(f"{what} is black all over and lights nothing; give another map.")
+        raise BrdfkitError(f"{name} is black all over and lights nothing; give another map.")
 
 
-def cell_power(brightness):
-    """Power (rows - 1, columns) per angle of the cells of pixels of `brightness` (rows, columns).
+def cell_power(brightness: FloatArray) -> FloatArray:
+    """Return the power per angle (rows - 1, columns) of the cells between pixels.
 
-    A cell is as bright as the mean of its pixels: it is black only where the interpolated map is.
+    A cell has the mean `brightness` (rows, columns) of its four pixels, so that it is black only
+    where the interpolated map is black.
     """
     pairs = brightness + np.roll(brightness, -1, axis=1)
     between = (pairs[:-1] + pairs[1:]) / 4
@@ -31,17 +36,17 @@ def cell_power(brightness):
     return between * np.sin(theta)[:, None]
 
 
-def pixel_power(brightness):
-    """Power (rows, columns) per angle at pixels of `brightness` (rows, columns)."""
+def pixel_power(brightness: FloatArray) -> FloatArray:
+    """Return the power per angle (rows, columns) at pixels of `brightness` (rows, columns)."""
     theta = np.linspace(0, np.pi, len(brightness))
     return brightness * np.sin(theta).clip(0)[:, None]
 
 
-def compensated(brightness):
-    """The `brightness` (rows, columns) above its mean over the sphere, for a density of samples.
+def subtract_mean(brightness: FloatArray) -> FloatArray:
+    """Return the `brightness` (rows, columns) above its mean over the sphere, else 0.
 
-    Where directions are drawn by surfaces as well, these serve the even part of the light. A map
-    that is even all over stays as it is. [Karlík et al. 2019]
+    A density made of it serves where surfaces draw directions as well, because their samples take
+    care of the uniform part of the light. A uniform map is returned unchanged. [Karlík et al. 2019]
     """
     theta = np.linspace(0, np.pi, len(brightness))
     mean = np.average(brightness.mean(axis=1), weights=np.sin(theta))

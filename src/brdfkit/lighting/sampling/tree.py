@@ -1,123 +1,128 @@
-"""Cuts a picture into blocks of nearly constant value, by a tree of axis-aligned cuts.
+"""A tree of axis-aligned cuts that divides a picture into blocks of nearly constant value.
 
-The block whose criterion is largest is cut next, at the place where the squared errors of its two
-parts about their means have the smallest sum. Sums over blocks come from summed-area tables. All
-blocks that are among the next to be cut are cut at once, which ends with the same tree.
+The block with the largest criterion is cut next, at the place that minimises the sum of squared
+errors of its two parts about their means. Sums over blocks come from summed-area tables. All blocks
+that would be cut among the next ones are cut at once, which gives the same tree.
+
+A box is (x0, x1, y0, y1): columns x0 ≤ x < x1 and rows y0 ≤ y < y1.
 
 [Ergun 2015, Algorithm 2, eqs. 6.1, 6.2]
 """
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, IntArray
+
 
 @dataclass(frozen=True)
 class Tree:
-    """Nodes: `boxes` (n, 4) of columns x0 ≤ x < x1 and rows y0 ≤ y < y1, and their parts.
+    """A tree of nodes with `boxes` (n, 4); node 0 is the whole picture.
 
-    `left` (n,) is the index of a node's left or upper part, behind which the other part stands; -1
-    for a block, which is not cut. Node 0 is the whole picture.
+    `left` (n,) is the index of a node's left or upper part, directly followed by the other part; it
+    is -1 for a block, which is not cut.
     """
 
-    boxes: np.ndarray
-    left: np.ndarray
+    boxes: IntArray
+    left: IntArray
 
     @property
-    def blocks(self):
-        """The boxes (n, 4) of the blocks, which cover the picture once."""
+    def blocks(self) -> IntArray:
+        """The boxes (blocks, 4) of the blocks, which cover the picture once."""
         return self.boxes[self.left < 0]
 
 
-def build(values, count, criterion="relative"):
-    """The `Tree` of at most `count` blocks of `values` (height, width) ≥ 0.
+def build(values: FloatArray, count: int, criterion: str = "relative") -> Tree:
+    """Cut `values` (height, width) ≥ 0 into at most `count` blocks.
 
-    A block of constant value is not cut, so that there may be fewer than `count`. `criterion`: a
-    name in `CRITERIA`.
+    A block of constant value is not cut, so that there may be fewer blocks. `criterion` is a name
+    in `CRITERIA`.
 
     >>> build(np.array([[0.0, 0.0, 1.0]]), 2).blocks.tolist()
     [[0, 2, 0, 1], [2, 3, 0, 1]]
     """
-    return build_by(Sums(values), count, criterion)
+    return build_from_sums(Sums(values), count, criterion)
 
 
-def build_by(sums, count, criterion="relative"):
-    """`build` of values whose `Sums` are at hand."""
+def build_from_sums(sums: Sums, count: int, criterion: str = "relative") -> Tree:
+    """Cut values into at most `count` blocks as `build` does, given their `Sums`."""
     height, width = sums.values.shape
     error = CRITERIA[criterion]
     boxes, left = np.array([[0, width, 0, height]]), np.array([-1])
     keys = error(sums, boxes)
     while True:
-        # In the end, the nodes of the `count` - 1 largest keys are cut; keys that more nodes reach
-        # already are large enough. Half of those above, so that few are cut in vain
-        enough = np.partition(keys, -count + 1)[-count + 1] if 1 < count <= len(keys) else 0
-        uncut = np.flatnonzero((left < 0) & (keys > 0) & (keys >= enough))
+        # In the end the nodes with the `count` - 1 largest keys are cut. A node whose key is not
+        # among these now never will be. Of the others only half are cut: few cuts are wasted
+        threshold = np.partition(keys, -count + 1)[-count + 1] if 1 < count <= len(keys) else 0
+        uncut = np.flatnonzero((left < 0) & (keys > 0) & (keys >= threshold))
         if len(uncut) == 0 or count == 1:
-            return _of_nodes_cut(boxes, left, np.argsort(-keys, kind="stable")[: count - 1])
+            return _keep_cuts(boxes, left, np.argsort(-keys, kind="stable")[: count - 1])
         uncut = uncut[np.argsort(-keys[uncut], kind="stable")[: len(uncut) // 2 + 1]]
         left[uncut] = len(boxes) + 2 * np.arange(len(uncut))
-        parts = _cut(sums, boxes[uncut])
+        parts = _cut_boxes(sums, boxes[uncut])
         # A part cannot be cut before the whole, even if its criterion is larger
         keys = np.append(keys, np.minimum(error(sums, parts), np.repeat(keys[uncut], 2)))
         boxes, left = np.append(boxes, parts, axis=0), np.append(left, np.full(len(parts), -1))
 
 
 class Sums:
-    """Sums of `values` (height, width), and of their squares, over any blocks."""
+    """Sums of `values` (height, width) and of their squares over any boxes."""
 
-    def __init__(self, values):
+    def __init__(self, values: FloatArray) -> None:
         self.values = values
         self.table, self.squares = _summed_area_table(values), _summed_area_table(values**2)
-        self.rounding = 1e-14 * self.squares[-1, -1]  # of sums of squares
+        self.rounding = 1e-14 * self.squares[-1, -1]  # rounding error of sums of squares
 
-    def of(self, boxes):
-        """Numbers of pixels (n,), sums of values and sums of squares over `boxes` (n, 4)."""
+    def moments(self, boxes: IntArray) -> tuple[IntArray, FloatArray, FloatArray]:
+        """Return numbers of pixels (n,), sums of values and sums of squares over `boxes` (n, 4)."""
         x0, x1, y0, y1 = boxes.T
-        return (x1 - x0) * (y1 - y0), self.of_values(boxes), _sums(self.squares, boxes)
+        return (x1 - x0) * (y1 - y0), self.sum_values(boxes), _sum_boxes(self.squares, boxes)
 
-    def of_values(self, boxes):
-        """Sums of values (n,) over `boxes` (n, 4)."""
-        return _sums(self.table, boxes)
-
-
-def block_sums(values, boxes):
-    """The sums (n,) of `values` (height, width) over each of the `boxes` (n, 4)."""
-    return _sums(_summed_area_table(values), boxes)
+    def sum_values(self, boxes: IntArray) -> FloatArray:
+        """Return the sums of values (n,) over `boxes` (n, 4)."""
+        return _sum_boxes(self.table, boxes)
 
 
-# What a block's error is: each takes `Sums` and boxes (n, 4), and returns (n,)
+def block_sums(values: FloatArray, boxes: IntArray) -> FloatArray:
+    """Return the sums (n,) of `values` (height, width) over each of the `boxes` (n, 4)."""
+    return _sum_boxes(_summed_area_table(values), boxes)
 
 
-def squared_error(sums, boxes):
-    """Σ (value - mean)²."""
-    n, sum_, squares = sums.of(boxes)
+def squared_error(sums: Sums, boxes: IntArray) -> FloatArray:
+    """Return the squared error Σ (value - mean)² (n,) of each box (n, 4)."""
+    n, sum_, squares = sums.moments(boxes)
     error = squares - sum_**2 / n
     return np.where((n > 1) & (error > sums.rounding), error, 0)
 
 
-def relative_squared_error(sums, boxes):
-    """Σ (value - mean)² / mean: what the block adds to the variance of a sample's weight.
+def relative_squared_error(sums: Sums, boxes: IntArray) -> FloatArray:
+    """Return Σ (value - mean)² / mean (n,) of each box, its share in the variance of samples.
 
-    The variance, times the square of the picture's sum, is Σ value² / density less that square;
-    with the density of a block in proportion to its mean, it is the sum of this error over blocks.
+    The variance of a sample's weight, times the square of the picture's sum, is Σ value² / density
+    minus that square. If a block's density is proportional to its mean, this equals the sum of the
+    relative squared errors of all blocks.
     """
-    n, sum_, _ = sums.of(boxes)
+    n, sum_, _ = sums.moments(boxes)
     return squared_error(sums, boxes) * n / np.maximum(sum_, 1e-300)
 
 
-def variance(sums, boxes):
-    """Σ (value - mean)² / (n - 1)."""
-    n = sums.of(boxes)[0]
+def variance(sums: Sums, boxes: IntArray) -> FloatArray:
+    """Return the variance Σ (value - mean)² / (pixels - 1) (n,) of each box."""
+    n = sums.moments(boxes)[0]
     return squared_error(sums, boxes) / np.maximum(n - 1, 1)
 
 
-def value_range(sums, boxes):
-    """The largest value less the smallest."""
+def value_range(sums: Sums, boxes: IntArray) -> FloatArray:
+    """Return the largest value minus the smallest (n,) of each box."""
     cut_out = (sums.values[y0:y1, x0:x1] for x0, x1, y0, y1 in boxes.tolist())
     return np.array([block.max() - block.min() for block in cut_out])
 
 
+# The error of a block, by which the next one to cut is chosen
 CRITERIA = {
     "relative": relative_squared_error,
     "sse": squared_error,
@@ -126,8 +131,8 @@ CRITERIA = {
 }
 
 
-def _summed_area_table(values):
-    """(height + 1, width + 1): entry (y, x) is the sum over the rows below y, columns below x."""
+def _summed_area_table(values: FloatArray) -> FloatArray:
+    """Return a table (height + 1, width + 1): entry (y, x) sums all rows < y and columns < x."""
     table = np.zeros((values.shape[0] + 1, values.shape[1] + 1))
     np.cumsum(values, axis=1, out=table[1:, 1:])
     for above, row in pairwise(table):  # twice as fast as a sum along columns
@@ -135,15 +140,16 @@ def _summed_area_table(values):
     return table
 
 
-def _sums(table, boxes):
+def _sum_boxes(table: FloatArray, boxes: IntArray) -> FloatArray:
+    """Return the sums (n,) over `boxes` (n, 4), from a summed-area table."""
     x0, x1, y0, y1 = boxes.T
     return table[y1, x1] - table[y0, x1] - table[y1, x0] + table[y0, x0]
 
 
-def _cut(sums, boxes):
-    """The two parts (2n, 4) of each of the `boxes` (n, 4), which hold more than one pixel."""
-    x, across = _best_column(sums.table, boxes)
-    y, down = _best_column(sums.table.T, boxes[:, [2, 3, 0, 1]])
+def _cut_boxes(sums: Sums, boxes: IntArray) -> IntArray:
+    """Cut each of the `boxes` (n, 4), of more than one pixel, into its two parts (2n, 4)."""
+    x, across = _find_best_column(sums.table, boxes)
+    y, down = _find_best_column(sums.table.T, boxes[:, [2, 3, 0, 1]])
     vertical = across >= down
     first, second = boxes.copy(), boxes.copy()
     first[vertical, 1] = second[vertical, 0] = x[vertical]
@@ -151,16 +157,16 @@ def _cut(sums, boxes):
     return np.stack([first, second], axis=1).reshape(-1, 4)
 
 
-def _best_column(table, boxes):
-    """The column before which each box (n, 4) is best cut, and eq. 6.2 there, -1 if too narrow.
+def _find_best_column(table: FloatArray, boxes: IntArray) -> tuple[IntArray, FloatArray]:
+    """Return the column (n,) before which each box is best cut, and the value (n,) of eq. 6.2.
 
     Eq. 6.2, Σ (sum of a part)² / (its number of pixels), is largest where the squared error is
-    smallest.
+    smallest. The value of a box of one column, which cannot be cut, is -1.
     """
     x0, x1, y0, y1 = boxes.T
     cuts = x1 - x0 - 1
-    start, whole = np.cumsum(cuts) - cuts, _sums(table, boxes)
-    # The columns inside the boxes, one box behind the other; to the left of each, a part of n
+    start, whole = np.cumsum(cuts) - cuts, _sum_boxes(table, boxes)
+    # All columns inside the boxes, one box after the other; left of each lie n columns of its box
     n = np.arange(1, cuts.sum() + 1) - np.repeat(start, cuts)
     x, top, bottom = np.repeat(x0, cuts) + n, np.repeat(y0, cuts), np.repeat(y1, cuts)
     left = table[bottom, x] - table[top, x] - np.repeat(table[y1, x0] - table[y0, x0], cuts)
@@ -177,8 +183,8 @@ def _best_column(table, boxes):
     return at, best / (y1 - y0)
 
 
-def _of_nodes_cut(boxes, left, cut):
-    """The `Tree` in which only the nodes `cut` are cut, of nodes of which more were."""
+def _keep_cuts(boxes: IntArray, left: IntArray, cut: IntArray) -> Tree:
+    """Return the `Tree` in which only the nodes with the indices `cut` are cut."""
     cut = np.sort(cut[left[cut] >= 0])
     kept = np.concatenate([[0], (left[cut][:, None] + [0, 1]).ravel()])
     number = np.zeros(len(boxes), int)

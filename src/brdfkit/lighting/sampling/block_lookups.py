@@ -1,0 +1,192 @@
+"""Looking up the density at a point of a map: by a texture of block numbers, a grid, or the tree.
+
+Multiple importance sampling needs the density at directions that surfaces have drawn. Each class
+is made of the `Tree` of blocks, their mean densities (n,) relative to a uniform one, and their
+slopes (n, 2), in the order of `Tree.blocks`. It has `density(x, y, active)`, and `nbytes`, the
+memory of its tables.
+"""
+
+import numpy as np
+
+from brdfkit.core.array_types import FloatArray, IntArray, JitFloat, JitInt, JitMask, JitVector
+from brdfkit.lighting.sampling.block_slopes import draw_on_line, line_density
+from brdfkit.lighting.sampling.tree import Tree
+from brdfkit.mitsuba_bridge.arrays import Integers, Rows, cell
+
+
+class BlockDensities:
+    """The densities within blocks: `boxes` (n, 4), mean `densities` (n,) and `slopes` (n, 2)."""
+
+    def __init__(self, boxes: IntArray, densities: FloatArray, slopes: FloatArray) -> None:
+        self.boxes = Rows(boxes)
+        self.lines = Rows(np.column_stack([densities, slopes]))
+        self.nbytes = 28 * len(boxes)
+
+    def at(self, block: JitInt, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
+        """Return the density at a point of the block with this number."""
+        import drjit as dr
+        import mitsuba as mi
+
+        box = self.boxes.at(block, mi.Vector4f, active)
+        lines = self.lines.at(block, mi.Vector3f, active)
+        s = dr.clip((x - box.x) / (box.y - box.x), 0, 1)
+        t = dr.clip((y - box.z) / (box.w - box.z), 0, 1)
+        return lines.x * line_density(s, lines.y) * line_density(t, lines.z)
+
+
+class TextureLookup:
+    """A texture with the number of the block of every cell: the fastest and the largest."""
+
+    def __init__(self, tree: Tree, densities: FloatArray, slopes: FloatArray) -> None:
+        _, self.columns, _, self.rows = tree.boxes[0].tolist()
+        texels = np.zeros((self.rows, self.columns), np.uint32)
+        for block, (x0, x1, y0, y1) in enumerate(tree.blocks.tolist()):
+            texels[y0:y1, x0:x1] = block
+        self.texels = Integers(texels.ravel())
+        self.densities = BlockDensities(tree.blocks, densities, slopes)
+        self.nbytes = texels.nbytes + self.densities.nbytes
+
+    def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
+        """Return the density at a point."""
+        index = cell(y, self.rows) * self.columns + cell(x, self.columns)
+        return self.densities.at(self.texels.at(index, active), x, y, active)
+
+
+class GridLookup:
+    """A coarse grid over the map, whose squares list the blocks that overlap them.
+
+    There are half as many squares as blocks. Where blocks are small, at a sun, a square lists many,
+    which are tried one after the other. [Ergun 2015, section 6.2]
+    """
+
+    def __init__(self, tree: Tree, densities: FloatArray, slopes: FloatArray) -> None:
+        blocks = tree.blocks
+        _, self.width, _, self.height = tree.boxes[0].tolist()
+        side = np.sqrt(2 * self.width * self.height / len(blocks))
+        self.columns, self.rows = (max(round(n / side), 1) for n in (self.width, self.height))
+
+        lists: list[list[int]] = [[] for _ in range(self.columns * self.rows)]
+        x0, x1 = _find_squares(blocks[:, 0], blocks[:, 1], self.columns, self.width)
+        y0, y1 = _find_squares(blocks[:, 2], blocks[:, 3], self.rows, self.height)
+        for block, (a, b, c, d) in enumerate(zip(x0, x1, y0, y1, strict=True)):
+            for row in range(c, d):
+                for square in lists[row * self.columns + a : row * self.columns + b]:
+                    square.append(block)
+        self.first = Integers(np.cumsum([0] + [len(square) for square in lists[:-1]]))
+        self.listed = Integers(np.concatenate(lists))
+        self.densities = BlockDensities(blocks, densities, slopes)
+        self.nbytes = 4 * (len(lists) + sum(map(len, lists))) + self.densities.nbytes
+
+    def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
+        """Return the density at a point."""
+        import drjit as dr
+        import mitsuba as mi
+
+        # All blocks of a list are tried with the same cell, so that one of them holds an edge
+        column, row = (mi.Float(cell(a, n)) for a, n in ((x, self.width), (y, self.height)))
+        square = cell((row + 0.5) * (self.rows / self.height), self.rows) * self.columns
+        square = square + cell((column + 0.5) * (self.columns / self.width), self.columns)
+
+        def is_outside(i: JitInt) -> JitMask:
+            box = self.densities.boxes.at(self.listed.at(i, active), mi.Vector4f, active)
+            inside = (column >= box.x) & (column < box.y) & (row >= box.z) & (row < box.w)
+            return ~inside & active if dr.is_jit_v(mi.Float) else not inside and active
+
+        first = self.first.at(square, active)
+        (i,) = dr.while_loop((first,), is_outside, lambda i: (i + 1,))
+        return self.densities.at(self.listed.at(i, active), x, y, active)
+
+
+def _find_squares(
+    start: IntArray, end: IntArray, count: int, size: int
+) -> tuple[IntArray, IntArray]:
+    """Return the first square, and the one after the last, that pixels `start` to `end` overlap.
+
+    There are `count` squares along `size` pixels. A pixel belongs to the square of its middle.
+    """
+    first, last = ((a + 0.5) * count / size for a in (start, end - 1))
+    return first.astype(int), last.astype(int) + 1
+
+
+class TreeWalk:
+    """A walk down the tree of blocks, which finds the block of a point, or draws a point.
+
+    To draw, a uniform number moves along the axis of each cut, stretched by the shares of the two
+    parts. Evenly spread numbers thus give evenly spread points, and strata are kept.
+
+    A node has four numbers, which are read at once: the place of its cut, the axis of the cut, its
+    first part, and the share of that part. A block has its mean density, and 0 as its part between
+    its two slopes. [Ergun 2015, section 6.2] packs a node into eight bytes, for maps of at most
+    2048 pixels a side and 2¹⁸ blocks; here it has sixteen, and no limits.
+    """
+
+    def __init__(self, tree: Tree, densities: FloatArray, slopes: FloatArray) -> None:
+        leaf, left = tree.left < 0, tree.left.clip(0)
+        x0, x1, y0, y1 = tree.boxes.T
+        probability = np.zeros(len(leaf))
+        probability[leaf] = densities * ((x1 - x0) * (y1 - y0))[leaf]
+        for node in np.flatnonzero(~leaf)[::-1]:  # parts stand behind the whole
+            probability[node] = probability[left[node]] + probability[left[node] + 1]
+        down = x1[left] == x1
+        cut = np.where(down, y1[left], x1[left])
+        share = probability[left] / np.maximum(probability, 1e-300)
+        nodes = np.stack([cut, down, left, share], axis=1)
+        nodes[leaf] = np.column_stack([densities, slopes[:, 0], 0 * densities, slopes[:, 1]])
+        self.nodes, self.nbytes = Rows(nodes), 16 * len(leaf)
+        self.root_box = tree.boxes[0].tolist()
+
+    def sample(self, u: JitVector, active: JitMask) -> tuple[JitFloat, JitFloat, JitFloat]:
+        """Return (x, y, density) of a point, drawn by the probabilities of the blocks."""
+        import drjit as dr
+        import mitsuba as mi
+
+        def descend(node: JitVector, box: JitVector, u: JitVector) -> tuple[JitVector, ...]:
+            # Choose a part, and stretch the number along the axis of the cut to that part
+            down, share = node.y > 0, node.w
+            along = dr.select(down, u.y, u.x)
+            second = along >= share
+            start, size = dr.select(second, share, 0), dr.select(second, 1 - share, share)
+            along = dr.minimum((along - start) / size, 1)
+            u = mi.Vector2f(dr.select(down, u.x, along), dr.select(down, along, u.y))
+            return *self._get_part(node, box, second, active), u
+
+        start = *self._get_root(active), mi.Vector2f(u)
+        node, box, u = dr.while_loop(start, lambda node, box, u: (node.z > 0) & active, descend)
+        s, t = draw_on_line(u.x, node.y), draw_on_line(u.y, node.w)
+        density = node.x * line_density(s, node.y) * line_density(t, node.w)
+        return dr.lerp(box.x, box.y, s), dr.lerp(box.z, box.w, t), density
+
+    def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
+        """Return the density at a point."""
+        import drjit as dr
+
+        x, y = dr.detach(x), dr.detach(y)
+
+        def descend(node: JitVector, box: JitVector) -> tuple[JitVector, JitVector]:
+            return self._get_part(node, box, dr.select(node.y > 0, y, x) >= node.x, active)
+
+        start = self._get_root(active)
+        node, box = dr.while_loop(start, lambda node, box: (node.z > 0) & active, descend)
+        s, t = (x - box.x) / (box.y - box.x), (y - box.z) / (box.w - box.z)
+        s, t = dr.clip(s, 0, 1), dr.clip(t, 0, 1)
+        return node.x * line_density(s, node.y) * line_density(t, node.w)
+
+    def _get_root(self, active: JitMask) -> tuple[JitVector, JitVector]:
+        """Return the node of the whole picture, and its bounds (x0, x1, y0, y1)."""
+        import mitsuba as mi
+
+        return self.nodes.at(mi.UInt32(0), mi.Vector4f, active), mi.Vector4f(self.root_box)
+
+    def _get_part(
+        self, node: JitVector, box: JitVector, second: JitMask, active: JitMask
+    ) -> tuple[JitVector, JitVector]:
+        """Return the first or the `second` part of a node, and its bounds."""
+        import drjit as dr
+        import mitsuba as mi
+
+        cut, down = node.x, node.y > 0
+        x0, y0 = (dr.select(second, cut, edge) for edge in (box.x, box.z))
+        x1, y1 = (dr.select(second, edge, cut) for edge in (box.y, box.w))
+        across, downwards = mi.Vector4f(x0, x1, box.z, box.w), mi.Vector4f(box.x, box.y, y0, y1)
+        index = mi.UInt32(node.z) + dr.select(second, mi.UInt32(1), 0)
+        return self.nodes.at(index, mi.Vector4f, active), dr.select(down, downwards, across)
