@@ -3,8 +3,8 @@
 `map_files.py` reads and writes maps. `layouts.py` and `cubes.py` say where in a picture a direction
 lies, and `conventions.py` which direction of the world that is in a given program. `resampling.py`
 and `converting.py` convert between conventions. `auditing.py` describes the light of a map for
-`brdfkit info MAP.exr`, with numbers from `light_distribution.py`, text from `audit_text.py` and
-a figure from `audit_picture.py`.
+`brdfkit info MAP.exr`, with numbers from `light_distribution.py` and a figure from
+`audit_picture.py`.
 """
 
 import lazy_loader

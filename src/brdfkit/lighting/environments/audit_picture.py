@@ -1,6 +1,6 @@
 """The figure of an `EnvironmentAudit`: the map with its blocks, and the spread of its light."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from brdfkit.lighting.environments.auditing import EnvironmentAudit
+EnvironmentAudit = Any  # the class in `auditing.py`, which imports this file
 
 SIZE = 10.4, 9.4  # inches
 MIDDLE_GREY = 0.18  # the grey that the geometric mean of the map is drawn in
@@ -33,7 +33,7 @@ LAW_COLOURS = {"hyperbolic": "#d55e00", "steps": "#009e73"}
 SIDES = ("−z", "+x", "+z", "−x", "−z")  # along the horizon
 
 
-def draw(audit: "EnvironmentAudit") -> "Figure":
+def draw(audit: EnvironmentAudit) -> "Figure":
     """Draw an `EnvironmentAudit` as a matplotlib `Figure`."""
     rgb = np.where(np.isfinite(audit.data), audit.data, 0).clip(0).astype(float)
     brightness = luminance(rgb)
@@ -48,7 +48,7 @@ def draw(audit: "EnvironmentAudit") -> "Figure":
     return figure
 
 
-def draw_map(axes: "Axes", audit: "EnvironmentAudit", rgb: FloatArray, blocks: IntArray) -> None:
+def draw_map(axes: "Axes", audit: EnvironmentAudit, rgb: FloatArray, blocks: IntArray) -> None:
     """Draw the tone-mapped map, the outlines of its `blocks` (n, 4), and its brightest spot.
 
     `rgb` (height, width, 3) is linear and finite; `blocks` are in cells, as `Tree.blocks` has them.
@@ -106,7 +106,7 @@ def _draw_probabilities(axes: "Axes", power: FloatArray) -> None:
 
 
 def _draw_shares(
-    axes: "Axes", brightness: FloatArray, solid_angle: FloatArray, audit: "EnvironmentAudit"
+    axes: "Axes", brightness: FloatArray, solid_angle: FloatArray, audit: EnvironmentAudit
 ) -> None:
     """Draw the share of the light over the share of the solid angle, the brightest first."""
     axes.set(xscale="log", xlim=(1e-5, 1), ylim=(0, 1.03))

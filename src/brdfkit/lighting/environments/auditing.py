@@ -1,5 +1,6 @@
 """`environments.audit`: the brightness of an environment map by direction, and its defects."""
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,19 +12,28 @@ from brdfkit.core.array_types import AnyArray
 from brdfkit.core.colours import luminance
 from brdfkit.core.documents import Document, Paragraph, Picture, Shown, Table
 from brdfkit.core.documents.parts import BAD
-from brdfkit.lighting.environments import audit_text
 from brdfkit.lighting.environments.light_distribution import (
     pixel_directions,
     pixel_solid_angles,
     share_of_brightest,
     weighted_median,
 )
-from brdfkit.lighting.environments.map_files import is_eight_bit, load_map
+from brdfkit.lighting.environments.map_files import (
+    EIGHT_BIT_WARNING,
+    LARGEST_HALF_FLOAT,
+    LATLONG,
+    is_eight_bit,
+    load_map,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 BRIGHTEST = 0.01  # share of the solid angle of which `brightest_share` adds up the light
+# Tolerances: a larger value is a finding
+ASPECT_TOLERANCE = 0.05  # relative deviation of width over height from 2
+EQUAL_TOLERANCE = 4  # pixels that are as bright as the brightest one
+BELOW_TOLERANCE = 2.0  # light from below over light from above
 DPI, WIDTH = 75, 760  # resolution and width [pixels] of the picture in a notebook
 
 
@@ -77,12 +87,56 @@ class EnvironmentAudit(Shown):
     data: AnyArray = field(repr=False, compare=False)
 
     def rows(self) -> dict[str, str]:
-        """Return the lines of the audit's text by their headings."""
-        return audit_text.rows(self)
+        """Describe how bright the map is and from where; texts by heading."""
+        x, y, z = self.brightest
+        elevation, azimuth = math.degrees(math.asin(y)), math.degrees(math.atan2(x, z))
+        r, g, b = self.colour
+        return {
+            "size": f"{self.width} × {self.height} pixels",
+            "luminance": f"mean {self.mean:.4g}, median {self.median:.4g}, max {self.largest:.4g}",
+            "mean colour": f"R {r:.4g}, G {g:.4g}, B {b:.4g}",
+            "dynamic range": self._dynamic_range(),
+            "brightest 1 %": f"{_percent(self.brightest_share)} of the light comes from the brightest "
+            "1 % of the solid angle",
+            "from above": f"{_percent(self.above)} of the light comes from above the horizon",
+            "brightest spot": f"towards ({x:.2f}, {y:.2f}, {z:.2f}): {elevation:.0f}° above the "
+            f"horizon, {azimuth:.0f}° from +z towards +x",
+            "not finite": f"{self.not_finite:,} pixels; negative: {self.negative:,}",
+        }
 
     def findings(self) -> tuple[str, ...]:
         """Return a sentence on each likely defect of the map."""
-        return audit_text.findings(self)
+        sentences = []
+        if self.not_finite:
+            sentences.append(
+                f"{self.not_finite:,} pixels are not finite: no renderer can use the map"
+            )
+        if self.negative:
+            sentences.append(
+                f"{self.negative:,} pixels are negative: light is never below 0; mend them"
+            )
+        if abs(self.width / self.height / LATLONG - 1) > ASPECT_TOLERANCE:
+            sentences.append(
+                f"{self.width} × {self.height} pixels are not twice as wide as high: perhaps another "
+                "layout than latitude and longitude; 'brdfkit convert --from' makes it one"
+            )
+        if self.eight_bit:
+            sentences.append(EIGHT_BIT_WARNING)
+        if not self.largest:
+            return (*sentences, "black all over: it lights nothing")
+        if self.equal == self.width * self.height:
+            return (*sentences, "of one value all over: it has no lamps, and casts no shadows")
+        if self.equal > EQUAL_TOLERANCE and not self.eight_bit:
+            limit = ", the largest half float" if self.data.max() >= LARGEST_HALF_FLOAT else ""
+            sentences.append(
+                f"{self.equal:,} pixels share the largest luminance, {self.largest:.4g}{limit}: "
+                "clipped, unless a computer made the map"
+            )
+        if 1 - self.above > BELOW_TOLERANCE * self.above:
+            sentences.append(
+                f"{_percent(1 - self.above)} of the light comes from below: perhaps upside down"
+            )
+        return tuple(sentences)
 
     def picture(self) -> "Figure":
         """Draw the map, the blocks that `kdtree_envmap` makes of it, and the spread of its light.
@@ -109,6 +163,13 @@ class EnvironmentAudit(Shown):
         from brdfkit.core.figures import to_png
 
         return to_png(self.picture(), DPI)
+
+    def _dynamic_range(self) -> str:
+        """Describe the largest luminance over the median."""
+        if not self.median:
+            return "without bound: half of the directions are black"
+        ratio = self.largest / self.median
+        return f"max over median {ratio:.3g}, {math.log2(ratio):.1f} stops"
 
 
 def audit(environment: str | Path | NDArray[Any]) -> EnvironmentAudit:
@@ -162,3 +223,8 @@ def audit(environment: str | Path | NDArray[Any]) -> EnvironmentAudit:
         eight_bit=is_eight_bit(environment),
         data=data,
     )
+
+
+def _percent(share: float) -> str:
+    """Format a share in percent; NaN, of a black map, as "no share"."""
+    return "no share" if math.isnan(share) else f"{100 * share:.3g} %"
