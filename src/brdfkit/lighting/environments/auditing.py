@@ -96,8 +96,8 @@ class EnvironmentAudit(Shown):
             "luminance": f"mean {self.mean:.4g}, median {self.median:.4g}, max {self.largest:.4g}",
             "mean colour": f"R {r:.4g}, G {g:.4g}, B {b:.4g}",
             "dynamic range": self._dynamic_range(),
-            "brightest 1 %": f"{_percent(self.brightest_share)} of the light comes from the brightest "
-            "1 % of the solid angle",
+            "brightest 1 %": f"{_percent(self.brightest_share)} of the light comes from the "
+            "brightest 1 % of the solid angle",
             "from above": f"{_percent(self.above)} of the light comes from above the horizon",
             "brightest spot": f"towards ({x:.2f}, {y:.2f}, {z:.2f}): {elevation:.0f}° above the "
             f"horizon, {azimuth:.0f}° from +z towards +x",
@@ -117,8 +117,8 @@ class EnvironmentAudit(Shown):
             )
         if abs(self.width / self.height / LATLONG - 1) > ASPECT_TOLERANCE:
             sentences.append(
-                f"{self.width} × {self.height} pixels are not twice as wide as high: perhaps another "
-                "layout than latitude and longitude; 'brdfkit convert --from' makes it one"
+                f"{self.width} × {self.height} pixels are not twice as wide as high: perhaps "
+                "another layout than latitude and longitude; 'brdfkit convert --from' makes it one"
             )
         if self.eight_bit:
             sentences.append(EIGHT_BIT_WARNING)
