@@ -4,7 +4,7 @@ from . import shadows as shadows
 from . import volumes as volumes
 from .checks import check as check
 from .core.errors import BrdfkitError as BrdfkitError
-from .core.errors import Interrupted as Interrupted
+from .core.interrupts import Interrupted as Interrupted
 from .core.progress_bar import progress as progress
 from .fitting import uncertainty as uncertainty
 from .fitting.compare import Comparison as Comparison

@@ -15,8 +15,8 @@ from small_files import merl
 import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.cli.errors import Group, say
-from brdfkit.cli.stopping import is_stopped
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.interrupts import is_stopped
 
 SHAPE = (6, 4, 8)
 

@@ -9,9 +9,9 @@ from contextlib import contextmanager, nullcontext
 import click
 
 from brdfkit.cli.outputs import refuse_to_replace, remember
-from brdfkit.cli.stopping import is_stopped, status, stop_on_signals
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.files import watch_writing
+from brdfkit.core.interrupts import exit_status, is_stopped, stop_on_signals
 from brdfkit.core.names import printable
 
 NO_ROOM = errno.ENOSPC, errno.EDQUOT, errno.EIO  # writing to standard output, a file, failed
@@ -75,7 +75,7 @@ def tell_errors():
     except MemoryError as error:
         raise LastWords("there is too little memory for this; make it smaller.") from error
     except KeyboardInterrupt as error:
-        raise LastWords("interrupted.", status()) from error
+        raise LastWords("interrupted.", exit_status()) from error
 
 
 @contextmanager

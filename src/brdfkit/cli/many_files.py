@@ -3,7 +3,7 @@
 import click
 
 from brdfkit.cli.errors import say
-from brdfkit.cli.stopping import status
+from brdfkit.core.interrupts import exit_status
 
 
 def fit_many(files, names, settings, output, jobs, judge, console):
@@ -28,7 +28,7 @@ def fit_many(files, names, settings, output, jobs, judge, console):
         more = "; the same command goes on from there" if output else ""
         say(f"interrupted; {len(found.fits)} of {found.asked} fits are finished{more}.")
     if interrupted or found.failed:
-        click.get_current_context().exit(status() if interrupted else 2)
+        click.get_current_context().exit(exit_status() if interrupted else 2)
 
 
 def _print_sweep(found, output, console):

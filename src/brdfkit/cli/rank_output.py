@@ -3,8 +3,8 @@
 import click
 
 from brdfkit.cli.errors import say
-from brdfkit.cli.stopping import status
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.interrupts import exit_status
 
 BEST = "best"  # stands for the recommended model
 # Options that a ranking leaves out, with the settings that they give
@@ -32,7 +32,7 @@ def recommend(names, material, how, console):
     if len(ranking.rows) < ranking.asked:
         print_ranking(ranking, console)
         say(f"interrupted; {len(ranking.rows)} of {ranking.asked} models are ranked.")
-        click.get_current_context().exit(status())
+        click.get_current_context().exit(exit_status())
     chosen = [ranking.best if name == BEST else name for name in names]
     return list(dict.fromkeys(chosen)), ranking
 

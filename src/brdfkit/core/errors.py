@@ -1,4 +1,4 @@
-"""The one error of brdfkit that is meant for people, and what Ctrl-C raises."""
+"""The error that brdfkit raises for people to read, and the proposal of a similar name."""
 
 
 class BrdfkitError(ValueError):
@@ -6,17 +6,6 @@ class BrdfkitError(ValueError):
 
     The command line prints it and leaves with status 2; nothing was half-written.
     """
-
-
-class Interrupted(KeyboardInterrupt):
-    """Ctrl-C ended a fit: `best` is the best `Fit` so far, in a notebook ``sys.last_value.best``.
-
-    Loops and programs end by it, as by any KeyboardInterrupt.
-    """
-
-    def __init__(self, best, message="interrupted"):
-        super().__init__(message)
-        self.best = best
 
 
 def no_such(what, name, known, where=""):

@@ -1,24 +1,93 @@
-"""What Ctrl-C raises within a search."""
+"""Handles Ctrl-C and SIGTERM, the signal that `kill` and batch systems send to end a program.
+
+A search that Ctrl-C ends raises `Interrupted` with its best result so far. A command turns both
+signals into KeyboardInterrupt by `stop_on_signals`; `hold_signals` delays them while native code
+runs that could not bear them.
+"""
+
+from __future__ import annotations
 
 import signal
 import threading
+from collections.abc import Iterator
 from contextlib import contextmanager
+from types import FrameType
+from typing import Any
 
-HELD = signal.SIGINT, signal.SIGTERM
+SIGNALS = signal.SIGINT, signal.SIGTERM
+_received: int | None = None  # the signal that ended the command
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C ended a search; a notebook finds its best result in ``sys.last_value.best``.
+
+    Loops and programs end by it, as by any KeyboardInterrupt.
+
+    Attributes
+    ----------
+    best : object
+        The best result so far: of `brdfkit.fit` the `Fit`, of `refine` the `Refinement`, of
+        `svbrdf` the `Svbrdf`. Inner searches hand their own kind of result up to these functions.
+    """
+
+    def __init__(self, best: Any, message: str = "interrupted") -> None:
+        super().__init__(message)
+        self.best = best
 
 
 @contextmanager
-def hold_signals():
-    """Within the block Ctrl-C and SIGTERM wait; they have their effect at its end.
+def stop_on_signals() -> Iterator[None]:
+    """Let Ctrl-C and SIGTERM raise KeyboardInterrupt within the block; `is_stopped` tells of it.
+
+    A Ctrl-C that the shell has the command ignore, in the background, stays ignored.
+    """
+    global _received
+    _received = None
+    if threading.current_thread() is not threading.main_thread():  # no other thread gets signals
+        yield
+        return
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+    for number, handler in before.items():
+        if handler is not signal.SIG_IGN:
+            signal.signal(number, _stop)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler or signal.SIG_DFL)
+
+
+def is_stopped() -> bool:
+    """Return whether a signal ended the command: native code may have raised another error then."""
+    return _received is not None
+
+
+def exit_status() -> int:
+    """Return the exit status of a command that a signal ended: 130 by Ctrl-C, 143 by SIGTERM."""
+    # After Ctrl-C within exec, as in making a dataclass, Python would end by the signal itself and
+    # without a status; the next exec clears that
+    exec("")
+    return 128 + (_received or signal.SIGINT)
+
+
+def _stop(number: int, _frame: FrameType | None) -> None:
+    global _received
+    _received = number
+    raise KeyboardInterrupt
+
+
+@contextmanager
+def hold_signals() -> Iterator[None]:
+    """Delay Ctrl-C and SIGTERM to the end of the block, where they have their usual effect.
 
     A KeyboardInterrupt within the import of Dr.Jit or Mitsuba is lost in native code, or ends the
-    process. Blocking the signals of this thread would not do: another one would get them.
+    process. Blocking the signals of this thread would not help: another thread would get them.
     """
     if threading.current_thread() is not threading.main_thread():  # only it may set handlers
         yield
         return
-    received = []
-    before = {number: signal.getsignal(number) for number in HELD}
+    received: list[int] = []
+    before = {number: signal.getsignal(number) for number in SIGNALS}
     before = {number: h for number, h in before.items() if h is not None}  # not set by Python
     for number in before:
         signal.signal(number, lambda number, _frame: received.append(number))
@@ -27,25 +96,18 @@ def hold_signals():
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-        for number in received[:1]:
-            signal.raise_signal(number)
+        if received:
+            signal.raise_signal(received[0])
 
 
-def give_back_interrupts():
-    """Let Ctrl-C raise KeyboardInterrupt again, whatever native code has put into its place.
+def give_back_interrupts() -> None:
+    """Let Ctrl-C raise KeyboardInterrupt again after native code replaced Python's handler.
 
-    Mitsuba, while it renders, has a handler of its own. It takes that for the one to be restored
-    where the Python method `render` of an integrator calls that of its base class: afterwards
-    Ctrl-C does nothing, or ends the process, as the handler calls an integrator that is gone.
+    Mitsuba sets a handler of its own while it renders. Where the Python method `render` of an
+    integrator calls that of its base class, Mitsuba takes its own handler for the one to restore:
+    afterwards Ctrl-C does nothing, or ends the process, as the handler calls an integrator that no
+    longer exists.
     """
     handler = signal.getsignal(signal.SIGINT)
     if handler is not None and threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGINT, handler)
-
-
-class Stopped(KeyboardInterrupt):
-    """Ctrl-C ended a search; `best`: what it had come to."""
-
-    def __init__(self, best):
-        super().__init__("interrupted")
-        self.best = best

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from brdfkit.core.errors import Interrupted, no_such
-from brdfkit.core.interrupts import Stopped
+from brdfkit.core.errors import no_such
+from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.version import versions
 from brdfkit.fitting.light_of_data import light_of_data
@@ -192,7 +192,7 @@ def fit(
         return to_fit(
             solve(model, samples, loss, robust=robust, light=kept, **how, report=progress)
         )
-    except Stopped as stop:
+    except Interrupted as stop:
         best = to_fit(stop.best)
         raise Interrupted(
             best, f"{best.name}: the best fit so far has the loss {best.loss:.6g}"

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.core.interrupts import Stopped
+from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.model.evaluation import mix_lobes
 from brdfkit.regression.certainty import ON_BOUND, Certainty, certify, explain_end
@@ -79,7 +79,7 @@ def regress(
     parameter; `anisotropic`: search the second parameter of an anisotropic model, such as
     ``alpha_v``, too; `seed`: for the start points, and for the parts of many samples by which they
     are compared; `first`: the shape parameters of the first of these points, by default the
-    model's; `report`: called with (done, total). On Ctrl-C `Stopped` has the best `Solution` so
+    model's; `report`: called with (done, total). On Ctrl-C `Interrupted` has the best `Solution` so
     far.
     """
     bounds, report = bounds or {}, report or (lambda done, total: None)
@@ -97,7 +97,10 @@ def regress(
     counted = 0
     if len(whole.groups) > 1:  # compare the starts on few channels
         bands = with_parts(whole.on(mix_bands(samples)), rng)
-        found, _, counted = search(bands, points, report)
+        try:
+            found, _, counted = search(bands, points, report)
+        except Interrupted:  # of a fit to all channels nothing is known yet
+            raise KeyboardInterrupt from None
         points = found.u
     limits = Constraints(constraints, whole) if constraints else None
     objective = Objective.of(problems, points, seed, report, limits)
@@ -119,7 +122,7 @@ def regress(
     if robust and not stopped:
         try:
             u, weights, message, notes, passes = settle(whole, u, weights, robust, rng, report)
-        except Stopped as stop:
+        except Interrupted as stop:
             u, weights, stopped = stop.best.point.u, stop.best.point.weights, True
         error = whole.sums(u, weights, curvature=False).error[0]
     elif light is not None and not (limits or stopped or pixels):
@@ -145,7 +148,7 @@ def regress(
         certainty,
     )
     if stopped:
-        raise Stopped(found)
+        raise Interrupted(found)
     return found
 
 

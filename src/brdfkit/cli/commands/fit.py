@@ -15,8 +15,8 @@ from brdfkit.cli.options import (
     scene_options,
     writing_options,
 )
-from brdfkit.cli.stopping import status
-from brdfkit.core.errors import BrdfkitError, Interrupted
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.interrupts import Interrupted, exit_status
 
 
 @click.command()
@@ -132,7 +132,7 @@ def fit(
     for error in failed.values():
         say(error)
     if interrupted or failed:
-        click.get_current_context().exit(status() if interrupted else 2)
+        click.get_current_context().exit(exit_status() if interrupted else 2)
 
 
 def _require_files(folder, names, rendered):

@@ -6,8 +6,8 @@ import click
 
 from brdfkit.cli.errors import say
 from brdfkit.cli.options import writing_options
-from brdfkit.cli.stopping import status
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.interrupts import exit_status
 
 SIZE = 160  # pixels of a ball's picture
 KINDS = {"Measured": "measured", "Fit": "fitted", "BsdfMaterial": "Mitsuba's"}  # by their class
@@ -61,7 +61,7 @@ def gallery(things, output, size, console):
         say(f"skipped {why}" if name in why else f"skipped {name}: {why}")
     if interrupted:
         say(f"interrupted; {len(balls)} of {len(listed)} balls are finished.")
-        click.get_current_context().exit(status())
+        click.get_current_context().exit(exit_status())
     if not balls or set(skipped) & set(things):
         click.get_current_context().exit(2)
 

@@ -7,7 +7,7 @@ import click
 from brdfkit.cli.commands.info import print_audit
 from brdfkit.cli.errors import say
 from brdfkit.cli.options import writing_options
-from brdfkit.cli.stopping import status
+from brdfkit.core.interrupts import exit_status
 
 
 @click.command()
@@ -79,4 +79,4 @@ def measure(
     print_audit(audited, [output], console)
     if "interrupted" in found.info:
         say(f"interrupted; measured with {found.info['interrupted']}.")
-        context.exit(status())
+        context.exit(exit_status())

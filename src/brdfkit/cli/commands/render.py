@@ -14,9 +14,9 @@ from brdfkit.cli.options import (
     values_option,
     writing_options,
 )
-from brdfkit.cli.stopping import status
 from brdfkit.cli.volume_render import render_volume, the_volume, volume_options
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.interrupts import exit_status
 
 
 @click.command()
@@ -156,7 +156,7 @@ def render(
             picture = path_trace(found, output, console, spp, until, tone, **where)
     _print_picture(picture, output, console)
     if picture.spp < picture.asked:
-        click.get_current_context().exit(status())
+        click.get_current_context().exit(exit_status())
 
 
 def _warn_of_gains(models):
@@ -209,7 +209,7 @@ def _end_with_film(film, output, tone, console):
         console.out.print(str(film))
         console.list_written([output])
     if shown < asked:
-        click.get_current_context().exit(status())
+        click.get_current_context().exit(exit_status())
 
 
 def _write(picture, output, tone):

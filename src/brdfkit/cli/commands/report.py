@@ -7,8 +7,8 @@ import click
 
 from brdfkit.cli.errors import say
 from brdfkit.cli.options import MESHES, fit_options, render_options, scene_options, writing_options
-from brdfkit.cli.stopping import status
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.interrupts import exit_status
 from brdfkit.reporting.pictures.defaults import LARGEST, MODELS, SIZE, SMALLEST, SPP
 
 
@@ -79,7 +79,7 @@ def _report_one(file, names, how, output, pictures, console):
         say(error)
     if said.spp < said.asked:
         say(f"interrupted; rendered with {said.spp} of {said.asked} samples per pixel.")
-        click.get_current_context().exit(status())
+        click.get_current_context().exit(exit_status())
     if failed:
         click.get_current_context().exit(2)
 
@@ -129,4 +129,4 @@ def _report_many(files, names, how, folder, pictures, console):
         noisy = ", and one with fewer samples per pixel is kept" if fewer else ""
         say(f"interrupted; {found.finished} of {len(files)} reports are finished{noisy}.")
     if found.interrupted or found.problems:
-        click.get_current_context().exit(status() if found.interrupted else 2)
+        click.get_current_context().exit(exit_status() if found.interrupted else 2)

@@ -6,7 +6,7 @@ import click
 
 from brdfkit.cli.errors import say
 from brdfkit.cli.options import writing_options
-from brdfkit.cli.stopping import status
+from brdfkit.core.interrupts import exit_status
 
 
 @click.command()
@@ -59,7 +59,7 @@ def reproduce(name, output, data, tables, parts, console):
     _print(found, console)
     if found.unfinished:
         say(f"interrupted; not finished: {', '.join(found.unfinished)}.")
-        click.get_current_context().exit(status())
+        click.get_current_context().exit(exit_status())
 
 
 def _print_theses(found, console):

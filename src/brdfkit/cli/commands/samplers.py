@@ -4,7 +4,7 @@ import click
 
 from brdfkit.cli.errors import say
 from brdfkit.cli.options import MESHES, output_options
-from brdfkit.cli.stopping import status
+from brdfkit.core.interrupts import exit_status
 
 
 @click.command()
@@ -61,4 +61,4 @@ def samplers(envmap, material, scene, rounds, seed, console):
         console.out.print(found.verdict)
     if found.rounds < found.rounds_requested:
         say(f"interrupted; {found.rounds} of {found.rounds_requested} rounds are finished.")
-        click.get_current_context().exit(status())
+        click.get_current_context().exit(exit_status())

@@ -8,7 +8,7 @@ import click
 import brdfkit
 from brdfkit.cli.errors import say
 from brdfkit.cli.options import writing_options
-from brdfkit.cli.stopping import status
+from brdfkit.core.interrupts import exit_status
 
 # by the names of their files: to import them takes a second
 FOLDER = Path(brdfkit.__file__).with_name("shadows") / "maps"
@@ -103,4 +103,4 @@ def shadows(scene, projections, filters, partitions, others, resolution, size, o
         console.list_written(written)
     if found.interrupted:
         say(f"interrupted; {found.finished} of {found.asked} scores are finished.")
-        click.get_current_context().exit(status())
+        click.get_current_context().exit(exit_status())

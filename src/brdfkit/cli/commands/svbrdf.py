@@ -7,8 +7,7 @@ import click
 from brdfkit.cli.errors import say
 from brdfkit.cli.options import writing_options
 from brdfkit.cli.settings import parse_settings
-from brdfkit.cli.stopping import status
-from brdfkit.core.errors import Interrupted
+from brdfkit.core.interrupts import Interrupted, exit_status
 
 
 @click.command()
@@ -89,4 +88,4 @@ def svbrdf(folder, model, resolution, anisotropic, fixed, smoothness, linearise,
         console.list_written(written)
     if interrupted:
         say("interrupted; these are the maps so far, without standard errors.")
-        click.get_current_context().exit(status())
+        click.get_current_context().exit(exit_status())

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from brdfkit.core.errors import Interrupted
-from brdfkit.core.interrupts import Stopped
+from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.inverse.photographs.arguments import (
     require_variant,
@@ -153,7 +152,7 @@ def svbrdf(
         best, rounds = refine_through_renderer(numbers, fitted, seen, taken, report)
         return conclude(best, simulated_errors(numbers, best, rounds, seen, taken, report))
     except KeyboardInterrupt as stop:
-        so_far = (stop.best if isinstance(stop, Stopped) else best) or fitted
+        so_far = (stop.best if isinstance(stop, Interrupted) else best) or fitted
         if so_far is None:
             raise
         if isinstance(so_far, Rendered):

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.core.arguments import to_number, to_whole_number
-from brdfkit.core.errors import BrdfkitError, Interrupted
-from brdfkit.core.interrupts import Stopped
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.inverse.scenes.problem.parameters import MOST, choose
@@ -143,7 +143,7 @@ def refine(
         with quiet_samplers():
             x = start(views, count, seed, report)
             found, second_look = _search_and_check(views, x, steps, samples, seed + 100, report)
-    except Stopped as stop:
+    except Interrupted as stop:
         best = conclude_search(views, stop.best, time.perf_counter() - began, interrupted=True)
         raise Interrupted(best, f"refine: the best so far leaves {best.loss:.3g}") from None
     seconds = time.perf_counter() - began
@@ -182,7 +182,7 @@ def _by_descent(views, smoothing, steps, samples, seed, progress, began):
     without = "descent, as for many numbers, gives no standard errors"
     try:
         found, chosen = descend(views, smoothing, steps, samples, seed, report)
-    except Stopped as stop:
+    except Interrupted as stop:
         best = conclude_search(
             views, stop.best, time.perf_counter() - began, interrupted=True, notes=(without,)
         )

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.core.interrupts import Stopped
+from brdfkit.core.interrupts import Interrupted
 from brdfkit.regression.problem.subset import draw_part
 from brdfkit.regression.robust.problem import Point, RobustProblem
 
@@ -79,13 +79,13 @@ class Passes:
     def settle(self, u, weights, report, tolerance=SETTLED, patience=ORDINARY):
         """The `Settled` end of the passes from `u` and `weights`: the next would change the fitted
         values by less than the `tolerance`, or there were too many. The first `patience` passes are
-        ordinary ones. On Ctrl-C `Stopped` has the best end so far."""
+        ordinary ones. On Ctrl-C `Interrupted` has the best end so far."""
         try:
             return self._settle(self.problem.at(u, weights), report, tolerance, patience)
         except KeyboardInterrupt:
             if self.best is None:
                 raise
-            raise Stopped(self.best) from None
+            raise Interrupted(self.best) from None
 
     def _settle(self, point, report, tolerance, patience):
         problem, near, solved = self.problem, NEAR, False
@@ -167,7 +167,7 @@ def settle(problem, u, weights, name, rng, report):
     message, notes, and what each sample has to say, as `RobustProblem.say`.
 
     Many samples settle on a part of them first, drawn by the generator `rng`. On Ctrl-C
-    `Stopped` has the best `Settled` so far.
+    `Interrupted` has the best `Settled` so far.
     """
     samples = problem.samples
     many = len(samples.wi) > MANY

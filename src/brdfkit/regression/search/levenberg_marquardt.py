@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.core.interrupts import Stopped
+from brdfkit.core.interrupts import Interrupted
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.problem.expansion import Expansion
 from brdfkit.regression.problem.parameter_space import join, limits
@@ -45,7 +45,7 @@ def levenberg_marquardt(expand, u, weights, least, iterations, tolerance=1e-6, d
     `expand(u, weights)` gives an `Expansion`; `least` (lobes,): the least weights; a search takes
     at most `iterations` steps, ends where the next would lower E² by less than `tolerance` of it,
     or where E² is rounding beside that of the worst start; `damping`: of its first step. A search
-    ends, too, that would not come below one that has converged. On Ctrl-C `Stopped` has the
+    ends, too, that would not come below one that has converged. On Ctrl-C `Interrupted` has the
     `Expansion` about where the searches are.
     """
     now = expand(u.copy(), weights.copy())  # the ends are put into these
@@ -107,7 +107,7 @@ def levenberg_marquardt(expand, u, weights, least, iterations, tolerance=1e-6, d
             converged |= now.error <= exact
             searching &= ~converged
     except KeyboardInterrupt:
-        raise Stopped(now) from None
+        raise Interrupted(now) from None
     return Search(now, converged, evaluations)
 
 

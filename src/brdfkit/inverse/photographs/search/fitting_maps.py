@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from brdfkit.core.interrupts import Stopped
+from brdfkit.core.interrupts import Interrupted
 from brdfkit.inverse.photographs.maps.residuals import MISFIT, misfits
 from brdfkit.inverse.photographs.maps.undetermined import are_seen, is_open
 from brdfkit.inverse.photographs.search.coarse_to_fine import USUAL, coarse_to_fine, finish
@@ -68,7 +68,7 @@ class FittedMaps:
 def fit_maps(numbers, seen, smoothness=None, report=lambda: None):
     """The `FittedMaps` of `Observations`; `smoothness`: τ, or None for one that is chosen.
 
-    On Ctrl-C `Stopped` has those of the finest maps that are finished, if there are any.
+    On Ctrl-C `Interrupted` has those of the finest maps that are finished, if there are any.
     """
     finest = None
     try:
@@ -86,7 +86,7 @@ def fit_maps(numbers, seen, smoothness=None, report=lambda: None):
     except KeyboardInterrupt:
         if finest is None:
             raise
-        raise Stopped(_enlarged(seen.shape, *finest)) from None
+        raise Interrupted(_enlarged(seen.shape, *finest)) from None
     return FittedMaps(x, equations(numbers, x, seen), tau, noise, strength, errors)
 
 

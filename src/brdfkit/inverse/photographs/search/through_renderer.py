@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from brdfkit.core.interrupts import Stopped
+from brdfkit.core.interrupts import Interrupted
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.inverse.photographs.capture.observations import DARK, gathered
 from brdfkit.inverse.photographs.maps.maps import Maps
@@ -44,7 +44,7 @@ class Rendered:
 def refine_through_renderer(numbers, fitted, seen, capture, report=lambda: None):
     """The `Rendered` of the best maps, and how many rounds lead to them from those `fitted`.
 
-    On Ctrl-C `Stopped` has the `Rendered` so far, if there is one.
+    On Ctrl-C `Interrupted` has the `Rendered` so far, if there is one.
     """
     best = None
     try:
@@ -57,7 +57,7 @@ def refine_through_renderer(numbers, fitted, seen, capture, report=lambda: None)
             best = trial
         return best, ROUNDS
     except KeyboardInterrupt:
-        raise Stopped(best) from None
+        raise Interrupted(best) from None
 
 
 def one_round(numbers, there, first, seen, capture, report):

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from brdfkit.core.interrupts import Stopped
+from brdfkit.core.interrupts import Interrupted
 from brdfkit.inverse.scenes.problem.tensors import roughness
 from brdfkit.inverse.scenes.problem.unseen_parameters import nothing_seen
 from brdfkit.inverse.scenes.search.backward_derivatives import error_and_slopes
@@ -25,7 +25,7 @@ def descend(views, smoothing, steps, samples, seed, report=lambda: None):
     """(the `Search` from the scene's own values, the strength of smoothing).
 
     `steps`: of L-BFGS-B, at most, in each stage. `report()` is called after each step. On Ctrl-C
-    `Stopped` has the `Search` so far.
+    `Interrupted` has the `Search` so far.
     """
     x, found = views.start, Search(None)
     stages = [spp for spp in SAMPLES if 2 * spp <= samples] or [max(1, samples // 2)]
@@ -39,9 +39,9 @@ def descend(views, smoothing, steps, samples, seed, report=lambda: None):
             found.here = Residuals.at(views, x, 2 * spp, seed + 10 * stage + 5)
             found.history.append((2 * spp, found.here.error))
     except KeyboardInterrupt as stop:
-        best = stop.best if isinstance(stop, Stopped) else x
+        best = stop.best if isinstance(stop, Interrupted) else x
         found.here = Residuals.at(views, best, 2 * stages[0], seed + 5)
-        raise Stopped(found) from None
+        raise Interrupted(found) from None
     return found, smoothing
 
 
@@ -108,6 +108,6 @@ def _stage(views, x, spp, seed, weights, smoothing, steps, found, report):
             options={"maxiter": steps, "maxfun": 2 * steps, "maxls": 6, "ftol": 0, "gtol": 0},
         )
     except KeyboardInterrupt:
-        raise Stopped(last) from None
+        raise Interrupted(last) from None
     found.converged = result.status != 1  # of L-BFGS-B: it ended before its steps did
     return result.x

@@ -5,7 +5,7 @@ A wide lobe beside a narrow highlight is a valley of its own; no descent leaves 
 
 import numpy as np
 
-from brdfkit.core.interrupts import Stopped
+from brdfkit.core.interrupts import Interrupted
 from brdfkit.inverse.scenes.search.forward_derivatives import share, tangents
 from brdfkit.inverse.scenes.search.gauss_newton import Search, few_samples, search
 from brdfkit.inverse.scenes.search.normal_equations import Residuals
@@ -22,7 +22,7 @@ def start(views, count, seed, report):
     """The coordinates of the best of `count` points after some steps; the scene's own is one.
 
     `report()` is called after each point. Without any that pictures are not linear in, the scene's
-    own point is best. On Ctrl-C `Stopped` has a `Search` at the best so far.
+    own point is best. On Ctrl-C `Interrupted` has a `Search` at the best so far.
     """
     curved = views.curved
     if count == 1 or not curved.any():
@@ -42,7 +42,7 @@ def start(views, count, seed, report):
     except KeyboardInterrupt:
         if not tried:
             raise
-        raise Stopped(Search(_best(ends or tried))) from None
+        raise Interrupted(Search(_best(ends or tried))) from None
     return _best(_judge(views, [views.start, *(end.x for end in ends)], spp, seed)).x
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.interrupts import Stopped
+from brdfkit.core.interrupts import Interrupted
 from brdfkit.inverse.scenes.search.normal_equations import SURE, Equations, Residuals
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 
@@ -48,7 +48,7 @@ def search(views, x, steps, samples, seed, report=lambda: None):
     """The `Search` from the coordinates `x` in at most so many `steps`, with at most so many
     `samples` per pixel.
 
-    `report()` is called after each step. On Ctrl-C `Stopped` has the `Search` so far.
+    `report()` is called after each step. On Ctrl-C `Interrupted` has the `Search` so far.
     """
     spp, damping, tries = min(few_samples(views), samples), DAMPING[0], 0
     found = Search(Residuals.at(views, x, spp, seed))
@@ -81,7 +81,7 @@ def search(views, x, steps, samples, seed, report=lambda: None):
                 found.history.append((spp, found.here.error))
                 report()
     except KeyboardInterrupt:
-        raise Stopped(found) from None
+        raise Interrupted(found) from None
     return found
 
 
