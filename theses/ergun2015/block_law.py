@@ -4,6 +4,7 @@ import numpy as np
 from brdfkit.theses.ergun2015.lit_balls import read_probes
 
 from brdfkit.core.colours import luminance
+from brdfkit.images.errors.psnr import psnr
 from brdfkit.lighting.sampling import tree
 from brdfkit.lighting.sampling.block_laws import Hyperbolic, Steps
 from brdfkit.lighting.sampling.power_map import cell_power
@@ -96,12 +97,12 @@ def compression_claim(maps):
     held = np.empty_like(power)
     for (x0, x1, y0, y1), total in zip(boxes, means, strict=True):
         held[y0:y1, x0:x1] = total / ((x1 - x0) * (y1 - y0))
-    psnr = 10 * np.log10(power.max() ** 2 / np.mean((power - held) ** 2))
+    quality = psnr(power, held, peak=power.max())
     return Claim(
         f"Uffizi is still recognised at 1:{COMPRESSION}.",
         "Figure 9.3",
         "a drawing",
-        f"{name}: {len(boxes):,} blocks for {power.size:,} pixels, PSNR {psnr:.1f} dB",
+        f"{name}: {len(boxes):,} blocks for {power.size:,} pixels, PSNR {quality:.1f} dB",
         UNSTATED,
         "Of the power per angle; the thesis compared by eye, and does not say what it counts as "
         "stored.",

@@ -73,6 +73,5 @@ def truth(made, light):
 
 def decibels(reference, picture, seen):
     """PSNR over the pixels `seen`: of 8-bit sRGB with the peak 255, and of linear values."""
-    a, b = (np.round(255 * to_srgb(p[seen])) for p in (reference, picture))
-    eight = 10 * np.log10(255**2 / max(np.mean((a - b) ** 2), 1e-12))
-    return float(eight), psnr(reference, picture, seen)
+    eight_bits = (np.round(255 * to_srgb(p)) for p in (reference, picture))
+    return psnr(*eight_bits, seen, peak=255), psnr(reference, picture, seen)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from brdfkit.core.colours import LUMINANCE, to_srgb
 from brdfkit.images.ball import LIGHTS, draw_pixels
 from brdfkit.images.errors.colour_difference import ciede2000
-from brdfkit.images.errors.psnr import peak
+from brdfkit.images.errors.psnr import find_peak
 from brdfkit.materials.measured import Measured
 from brdfkit.model.samples import Samples
 from brdfkit.regression.light import ONE, albedo_pixels
@@ -56,7 +56,7 @@ class Appearance:
         pixels, shown = self.pixels, to_srgb(self.pixels.values)
         apart = to_srgb(np.nan_to_num(pixels.look(brdf))) - shown
         error = math.sqrt(np.average((apart**2).mean(axis=1), weights=pixels.weights))
-        return error / max(peak(shown[None]), DARKEST)
+        return error / max(find_peak(shown[None]), DARKEST)
 
     def find_doubt(self, brdf: Brdf) -> str:
         """A clause on what a BRDF does at 85° that the material hardly does; or nothing."""

@@ -9,7 +9,7 @@ from math import ceil
 import numpy as np
 
 from brdfkit.core.colours import luminance
-from brdfkit.images.errors.masks import cropped
+from brdfkit.images.errors.masks import crop_to_mask
 from brdfkit.images.errors.psnr import PEAK
 
 # The exposures lift the brightest pixel, and the median one, to this value, where the tone curve of
@@ -28,7 +28,7 @@ def flip(reference, picture, mask):
     start, stop = exposures(reference, mask)
     if not np.isfinite(start):
         return np.nan
-    pictures, inside = cropped([np.maximum(p, 0) for p in (reference, picture)], mask)
+    pictures, inside = crop_to_mask([np.maximum(p, 0) for p in (reference, picture)], mask)
     settings = {
         "startExposure": start,
         "stopExposure": stop,

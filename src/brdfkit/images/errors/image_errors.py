@@ -7,9 +7,9 @@ import numpy as np
 
 from brdfkit.core.documents import Document, Paragraph, Shown, Table
 from brdfkit.core.documents.parts import SOFT
-from brdfkit.images.errors.masks import counted
+from brdfkit.images.errors.masks import to_mask
 from brdfkit.images.errors.metrics import METRICS
-from brdfkit.images.errors.psnr import peak
+from brdfkit.images.errors.psnr import find_peak
 
 NOISE = "({})"  # how an error is written that does not exceed the noise floor
 
@@ -93,7 +93,7 @@ def image_errors(pictures, other_seed=None, mask=None):
     """
     reference, *names = pictures
     first = pictures[reference]
-    mask = counted(first, mask)
+    mask = to_mask(first, mask)
     compared = [*(pictures[name] for name in names), other_seed]
 
     found, absent = {}, []  # errors of the pictures and, last, of noise, by metric
@@ -105,7 +105,7 @@ def image_errors(pictures, other_seed=None, mask=None):
     by_name = {n: {key: row[k] for key, row in found.items()} for k, n in enumerate(names)}
     floor = {key: row[-1] for key, row in found.items()}
     notes = [*_nothing_seen(mask), *_not_finite(pictures, mask), *_missing(absent)]
-    return ImageErrors(reference, by_name, floor, peak(first, mask), tuple(notes))
+    return ImageErrors(reference, by_name, floor, find_peak(first, mask), tuple(notes))
 
 
 def _error(metric, reference, picture, mask):

@@ -3,21 +3,21 @@
 import numpy as np
 
 
-def counted(picture, mask):
+def to_mask(picture, mask):
     """The mask (height, width) of the pixels that count: all where `mask` is None.
 
-    >>> counted(np.zeros((1, 2, 3)), None)
+    >>> to_mask(np.zeros((1, 2, 3)), None)
     array([[ True,  True]])
     """
     return np.full(picture.shape[:2], True) if mask is None else mask
 
 
-def cropped(pictures, mask, margin=0):
+def crop_to_mask(pictures, mask, margin=0):
     """The `pictures` and the mask, cut to the mask's bounding box and a black `margin` [pixels].
 
     All that is outside the mask becomes black in every picture, so that nothing of it counts.
 
-    >>> pictures, mask = cropped([np.ones((9, 9, 3))], np.eye(9) > 0)
+    >>> pictures, mask = crop_to_mask([np.ones((9, 9, 3))], np.eye(9) > 0)
     """
     rows, columns = (np.flatnonzero(mask.any(axis=axis)) for axis in (1, 0))
     box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)

@@ -8,7 +8,7 @@ import numpy as np
 from brdfkit.core.colours import to_srgb
 from brdfkit.images.errors.colour_difference import ciede2000, delta_e_itp
 from brdfkit.images.errors.flip import flip
-from brdfkit.images.errors.masks import cropped
+from brdfkit.images.errors.masks import crop_to_mask
 from brdfkit.images.errors.psnr import psnr
 
 RADIUS = 5  # of the window [pixels]: 11 × 11, a Gaussian of σ = 1.5, as in the paper
@@ -21,7 +21,7 @@ def ssim(reference, picture, mask):
     """
     from skimage.metrics import structural_similarity
 
-    (first, other), inside = cropped([reference, picture], mask, margin=RADIUS)
+    (first, other), inside = crop_to_mask([reference, picture], mask, margin=RADIUS)
     _, similarity = structural_similarity(
         to_srgb(first).astype(float),
         to_srgb(other).astype(float),

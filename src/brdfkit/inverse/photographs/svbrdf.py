@@ -29,7 +29,7 @@ from brdfkit.inverse.photographs.result.simulated_errors import simulated_errors
 from brdfkit.inverse.photographs.search.fitting_maps import fit_maps, usual_total
 from brdfkit.inverse.photographs.search.through_renderer import (
     Rendered,
-    decibels,
+    compute_psnr,
     left_of,
     misfits_of,
     refine_through_renderer,
@@ -164,7 +164,7 @@ def svbrdf(
 
 def _compared(best, capture):
     """What an `Svbrdf` knows of the pictures of a `Rendered`."""
-    dB = decibels(capture, best.pictures)
+    dB = compute_psnr(capture, best.pictures)
     return {"residual": best.left, "predicted": dB, "rendered": best.pictures}
 
 

@@ -126,7 +126,7 @@ def left_of(capture, pictures):
     return {name: float(np.sqrt((off[counts] ** 2).mean())) for name, off, counts in parts}
 
 
-def decibels(capture, pictures):
+def compute_psnr(capture, pictures):
     """Name of each photograph → `psnr` [dB] of its picture, over the pixels that count."""
     parts = zip(capture.names, capture.pictures, pictures, capture.counted, strict=True)
     return {name: psnr(photograph, picture, counts) for name, photograph, picture, counts in parts}
