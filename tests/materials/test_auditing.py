@@ -28,8 +28,12 @@ from brdfkit.materials.auditing.spikes import spikes
 from brdfkit.materials.auditing.spread import some_samples
 from brdfkit.materials.loading import load
 from brdfkit.materials.measured import Measured
-from brdfkit.materials.measured.coverage import coverage, is_near, largest_angles
-from brdfkit.materials.measured.pair_points import points
+from brdfkit.materials.measured.coverage import (
+    compute_coverage,
+    find_largest_angles,
+    is_near,
+    to_points,
+)
 from brdfkit.model.samples import Table
 
 SHAPE = 45, 23, 36
@@ -73,8 +77,8 @@ ANGLE, AZIMUTH = st.floats(0, np.pi / 2), st.floats(-np.pi, np.pi)
 
 @given(ANGLE, ANGLE, AZIMUTH, AZIMUTH)
 def test_turned_pairs_are_the_same_point(theta_i, theta_o, phi, turn):
-    a = points(from_angles(theta_i, [0.0]), from_angles(theta_o, [phi]))
-    b = points(from_angles(theta_i, [turn]), from_angles(theta_o, [phi + turn]))
+    a = to_points(from_angles(theta_i, [0.0]), from_angles(theta_o, [phi]))
+    b = to_points(from_angles(theta_i, [turn]), from_angles(theta_o, [phi + turn]))
     np.testing.assert_allclose(a, b, atol=1e-7)  # acos near 1
 
 
@@ -89,7 +93,7 @@ def test_a_distance_is_about_the_angle(theta_i, theta_o, phi, part, direction):
     wi_2, wo_2 = from_angles(other[0], turns), from_angles(other[1], further + turns)
     chords = np.sum((wi - wi_2) ** 2, axis=1) + np.sum((wo - wo_2) ** 2, axis=1)
     angle = np.sqrt(chords.min())
-    distance = np.linalg.norm(points(wi, wo) - points(wi_2[:1], wo_2[:1]))
+    distance = np.linalg.norm(to_points(wi, wo) - to_points(wi_2[:1], wo_2[:1]))
     # near the normal, where azimuths mean little, it is off most
     assert angle / np.sqrt(2) - 2e-3 <= distance <= 1.5 * angle + 2e-3
 
@@ -148,11 +152,11 @@ def test_coverage_of_samples():
     """Within 5° of pairs below 60° lies what is below 60°, and less than what is below 65°."""
     angles = range(0, 61, 4)
     near = scattered(lambda wi, wo: np.ones((len(wi), 1)), *grid(angles, angles, range(0, 181, 5)))
-    found = coverage(near)
+    found = compute_coverage(near)
     assert (1 - np.cos(np.radians(60))) ** 2 < found.measured < (1 - np.cos(np.radians(65))) ** 2
     assert found.between < 0.002
     assert found.measured + found.between + found.beyond == pytest.approx(1)
-    assert coverage(one_sample()).measured < 0.002
+    assert compute_coverage(one_sample()).measured < 0.002
 
 
 def test_coverage_below_an_angle():
@@ -160,11 +164,11 @@ def test_coverage_below_an_angle():
     quarters are, but for those within 5° of a sample."""
     angles = range(0, 61, 4)
     data = scattered(lambda wi, wo: np.ones((len(wi), 1)), *grid(angles, angles, range(0, 181, 5)))
-    assert coverage(data, 60).measured > 0.998
-    assert coverage(data, 60).beyond == 0
-    assert 0.6 < coverage(data).beyond < 0.75
-    assert largest_angles(data) == pytest.approx((60, 60))
-    assert largest_angles(scattered()) == pytest.approx((60, 75))
+    assert compute_coverage(data, 60).measured > 0.998
+    assert compute_coverage(data, 60).beyond == 0
+    assert 0.6 < compute_coverage(data).beyond < 0.75
+    assert find_largest_angles(data) == pytest.approx((60, 60))
+    assert find_largest_angles(scattered()) == pytest.approx((60, 75))
 
 
 def test_nothing_that_is_no_measurement_is_called_one():

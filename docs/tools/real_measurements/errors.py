@@ -13,7 +13,7 @@ from brdfkit.images.ball import LIGHTS, draw_pixels
 from brdfkit.lighting.environments import map_files
 from brdfkit.lighting.environments.conventions import parse_convention
 from brdfkit.lighting.environments.resampling import label_parts, look_up
-from brdfkit.materials.measured.coverage import largest_angles
+from brdfkit.materials.measured.coverage import find_largest_angles
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model.samples.measures import weigh
 
@@ -35,7 +35,7 @@ def measure(data):
         "name": data.name,
         "albedo": judge.albedos.mean(axis=1).tolist(),
         "hues": judge.hues(),
-        "reach": [float(angle) for angle in largest_angles(data)],
+        "reach": [float(angle) for angle in find_largest_angles(data)],
         "known": data.rgb.albedo.known[: len(ANGLES)].tolist(),
         "negative": float((judge.data.values[judge.data.samples.valid] < 0).mean()),
         "findings": list(data.audit().findings()),

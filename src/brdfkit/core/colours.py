@@ -64,7 +64,7 @@ def rgb_of_wavelengths(wavelengths, name):
         raise BrdfkitError(
             f"{name}: its wavelengths, {wavelengths.min():g} to {wavelengths.max():g} "
             f"nm, do not span {NEEDED[0]} to {NEEDED[1]} nm and give no colour; "
-            "choose one channel with `mixed`."
+            "choose one channel with `mix_channels`."
         )
     colour = colour_science()
     observer = colour.MSDS_CMFS[OBSERVER]

@@ -3,7 +3,8 @@
 from brdfkit.core.arguments import to_dictionary, to_pair, to_whole_number
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.fitting.light_of_data import light_of_data
-from brdfkit.materials.measured.selection import require_max_angle, select_samples
+from brdfkit.materials.measured.selection import select_samples
+from brdfkit.materials.measured.validation import require_max_angle
 from brdfkit.materials.resolve import to_measured
 from brdfkit.regression import Fit, as_loss
 from brdfkit.regression.refitting import Refit

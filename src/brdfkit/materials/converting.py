@@ -11,7 +11,7 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.extrapolation import describe_extrapolation
 from brdfkit.materials.loading import save_and_read
 from brdfkit.materials.measured import Measured
-from brdfkit.materials.measured.tabulation import table_shape, tabulate
+from brdfkit.materials.measured.tabulation import choose_table_shape, tabulate
 from brdfkit.materials.resolve import Material, MaterialLike, to_material
 
 # Two materials are compared at this many direction pairs, up to this angle from the normal
@@ -84,7 +84,7 @@ def evaluate_on_grid(thing: Material) -> Measured:
     anisotropic = any(model.parameters[name].follows for name in free)
     up = np.array([[0.0, 0.0, 1.0]])
     channels = thing.eval(up, up).shape[1]
-    table = tabulate(thing.eval, channels, table_shape(anisotropic))
+    table = tabulate(thing.eval, channels, choose_table_shape(anisotropic))
     wi, wo = (w.reshape(-1, 3) for w in table.directions())
     values = table.values.reshape(-1, channels)
     above = (wi[:, 2] > 0) & (wo[:, 2] > 0)

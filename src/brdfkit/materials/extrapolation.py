@@ -4,7 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.materials.measured import Measured
-from brdfkit.materials.measured.coverage import PAIRS, coverage, coverage_at, largest_angles
+from brdfkit.materials.measured.coverage import (
+    PAIRS,
+    compute_coverage,
+    compute_coverage_at,
+    find_largest_angles,
+)
 
 # A fit is told of more than this share of the direction pairs
 SHARE = 0.1
@@ -17,12 +22,12 @@ def note_on_extrapolation(data: Measured, max_angle: float) -> list[str]:
     beyond the measured angles."""
     if data.is_table:
         return []  # does not tell which cells were measured
-    smaller, larger = largest_angles(data)
+    smaller, larger = find_largest_angles(data)
     inside = [1 - np.cos(np.radians(min(a, max_angle))) for a in (smaller, larger, max_angle)]
     # An upper limit first, which costs nothing: pairs within both angles, by solid angle
     if 1 - (inside[1] ** 2 - (inside[1] - inside[0]) ** 2) / inside[2] ** 2 <= SHARE:
         return []
-    beyond = coverage(data, max_angle).beyond
+    beyond = compute_coverage(data, max_angle).beyond
     if beyond <= SHARE:
         return []
     reach = " and ".join(dict.fromkeys(f"{angle:.0f}°" for angle in (smaller, larger)))
@@ -40,7 +45,8 @@ def describe_extrapolation(before: Measured, after: Measured) -> list[str]:
     """
     if before.is_table or len(after.values) == len(before.values):
         return []
-    at = coverage(before) if after.is_table else coverage_at(before, *_some_pairs(after))
+    pairs = () if after.is_table else _some_pairs(after)
+    at = compute_coverage_at(before, *pairs) if pairs else compute_coverage(before)
     shares = {"extrapolated": at.beyond}
     if not before.has_lookup:  # else the format itself defines the values between
         shares["interpolated across gaps"] = at.between

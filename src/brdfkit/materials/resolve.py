@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.core import catalogue
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.locate import looks_like_name
 from brdfkit.materials.loading import load
@@ -31,7 +32,7 @@ class Material(Protocol):
     def name(self) -> str:
         """The name in pictures and tables."""
 
-    def eval(self, wi: NDArray[np.float64], wo: NDArray[np.float64]) -> NDArray[np.float64]:
+    def eval(self, wi: FloatArray, wo: FloatArray) -> NDArray[np.float64]:
         """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3)."""
 
     def scene_dict(self) -> dict[str, Any]:

@@ -19,8 +19,8 @@ from brdfkit.materials.auditing.noise import Noise, noise
 from brdfkit.materials.auditing.spikes import Spike, spikes
 from brdfkit.materials.auditing.spread import some_samples
 from brdfkit.materials.auditing.symmetries import Difference, by_mirror, by_reciprocity
-from brdfkit.materials.measured.coverage import Coverage, coverage, in_plane
-from brdfkit.materials.measured.spectrum_to_rgb import rgb_or_mean
+from brdfkit.materials.measured.coverage import Coverage, compute_coverage, is_in_plane
+from brdfkit.materials.measured.spectrum_to_rgb import to_rgb_or_mean
 from brdfkit.materials.resolve import MaterialLike, to_measured
 
 if TYPE_CHECKING:
@@ -172,7 +172,7 @@ def audit(data: MaterialLike) -> Audit:
     positive = values[values > 0]
     negative_from, negative_to = _where_negative(samples)
     theta_i, theta_o = _angles(data, samples.wi), _angles(data, samples.wo)
-    seen = rgb_or_mean(data)
+    seen = to_rgb_or_mean(data)
     return Audit(
         name=data.name,
         shape=data.table.shape if data.is_table else None,
@@ -190,8 +190,8 @@ def audit(data: MaterialLike) -> Audit:
         smallest=float(positive.min()) if positive.size else np.nan,
         median=float(np.median(values)),
         largest=float(values.max()),
-        coverage=coverage(data),
-        in_plane=in_plane(part),
+        coverage=compute_coverage(data),
+        in_plane=is_in_plane(part),
         reciprocity=by_reciprocity(data),
         mirror=by_mirror(data),
         noise=noise(data),

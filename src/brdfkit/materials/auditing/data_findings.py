@@ -19,8 +19,8 @@ from brdfkit.materials.auditing.spread import some_samples
 from brdfkit.materials.auditing.symmetries import by_reciprocity
 from brdfkit.materials.auditing.turned import error_when_turned
 from brdfkit.materials.measured import Measured
-from brdfkit.materials.measured.coverage import in_plane
-from brdfkit.materials.measured.mending import can_be_mended
+from brdfkit.materials.measured.conventions import can_mend
+from brdfkit.materials.measured.coverage import is_in_plane
 from brdfkit.model.samples import Samples
 from brdfkit.regression.light import format_share
 
@@ -75,7 +75,7 @@ def _find(data: Measured) -> dict[str, str]:
 def _say_direction(data: Measured, samples: Samples) -> str:
     """On light that is sent back to where it comes from, or azimuths that make it seem so."""
     ratio, near_light = backwards(samples), retroreflection(samples)
-    mendable = can_be_mended(data, "mirror_azimuth")
+    mendable = can_mend(data, "mirror_azimuth")
     found = ""
     if ratio > BACKWARDS or (ratio > WITH_A_LOBE[0] and near_light > WITH_A_LOBE[1]):
         found = f"the values are {ratio:.2g} times as large towards the light as"
@@ -105,7 +105,7 @@ def _say_cosine(data: Measured) -> str:
     if not why:
         return ""
     mend = ""
-    if can_be_mended(data, "divide_by_cos"):
+    if can_mend(data, "divide_by_cos"):
         mend = "; if they are, divide_by_cos=True (--divide-by-cos) mends them"
     return f"the values seem to be the BRDF times cos theta_o, because {why}{mend}"
 
@@ -139,7 +139,7 @@ def _say_horizon(samples: Samples) -> str:
 def _say_plane(samples: Samples) -> str:
     """On samples in the plane of incidence; along the normal there is none."""
     oblique = (samples.wi[:, 2] < ALONG) & (samples.wo[:, 2] < ALONG) & samples.valid
-    if not oblique.any() or not in_plane(samples):
+    if not oblique.any() or not is_in_plane(samples):
         return ""
     return (
         "the material was measured in the plane of incidence only: all beside it is a guess, also "

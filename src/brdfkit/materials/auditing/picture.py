@@ -8,7 +8,7 @@ from brdfkit.core.colours import RGB, luminance
 from brdfkit.core.plots import Plot
 from brdfkit.materials.auditing.report import percent
 from brdfkit.materials.measured.coverage import is_near
-from brdfkit.materials.measured.spectrum_to_rgb import rgb_or_mean
+from brdfkit.materials.measured.spectrum_to_rgb import to_rgb_or_mean
 from brdfkit.materials.plotting.lobe_plots import draw
 from brdfkit.materials.plotting.plane_of_incidence import usual_angles
 
@@ -22,7 +22,7 @@ FAINT = 0.35  # opacity of cells that were not measured
 
 def picture(audit):
     """The picture of an `Audit` as a matplotlib `Figure`."""
-    data = rgb_or_mean(audit.data)
+    data = to_rgb_or_mean(audit.data)
     figure = Plot(figsize=SIZE, layout="constrained")
     figure.get_layout_engine().set(w_pad=0.1, h_pad=0.1)
     above, below = figure.subfigures(2, 1, height_ratios=(1, 1.06))

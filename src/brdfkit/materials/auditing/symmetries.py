@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.materials.auditing.spread import some_half_vectors, some_rows, some_valid
-from brdfkit.materials.measured.pair_points import points
+from brdfkit.materials.measured.coverage import to_points
 
 SAME = np.radians(0.5)  # pairs this near are taken for one
 
@@ -78,10 +78,10 @@ def find_swapped(samples, anisotropic):
 
     Those of an isotropic material with θi = θo are left out: their exchange is a mirror image.
     """
-    images = points(samples.wo, samples.wi, anisotropic)
+    images = to_points(samples.wo, samples.wi, anisotropic)
     if not anisotropic:
         images[np.abs(images[:, 0] - images[:, 1]) < 2 * SAME] = np.inf
-    return _match(points(samples.wi, samples.wo, anisotropic), images)
+    return _match(to_points(samples.wi, samples.wo, anisotropic), images)
 
 
 def find_mirrored(samples, anisotropic):
@@ -91,7 +91,7 @@ def find_mirrored(samples, anisotropic):
     """
     if anisotropic:
         return np.empty((0, 2), int)
-    here = points(samples.wi, samples.wo)
+    here = to_points(samples.wi, samples.wo)
     return _match(here, here * [1, 1, 1, -1])
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from brdfkit.materials.formats._source import Source
 from brdfkit.materials.measured.angles import DEGREES, RADIANS
-from brdfkit.materials.measured.column_names import PER_STERADIAN, are_columns, key_of_rows
+from brdfkit.materials.measured.column_names import PER_STERADIAN, are_columns, find_row_key
 from brdfkit.materials.measured.long_form import channel_number
 
 DELIMITERS = "\t;,"  # the first of them in the line of names; blanks where there is none
@@ -46,7 +46,7 @@ def read_columns(source):
     names = split(header)
     names, rows = _take_units(names, rows, delimiter)
     named = [k for k, name in enumerate(names) if name]  # the index that pandas writes has none
-    texts = [k for k in named if key_of_rows(names[k]) == "channel"]
+    texts = [k for k in named if find_row_key(names[k]) == "channel"]
     lines, data, marks = [], [], {}
     for n, line in rows:
         fields = split(line, delimiter)

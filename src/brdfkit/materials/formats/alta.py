@@ -23,7 +23,7 @@ import numpy as np
 from brdfkit.core.colours import RGB
 from brdfkit.materials.formats._alta_coordinates import PARAM_IN
 from brdfkit.materials.formats._writing import require_measured, sample_angles, write_rows
-from brdfkit.materials.measured.mending import DIVIDED, cosines
+from brdfkit.materials.measured.conventions import DIVIDED, find_cosines
 
 NAME = "ALTA"
 SUFFIXES = (".dat",)
@@ -154,7 +154,7 @@ def _find_factor(source, header, wo):
     and notes."""
     stated = header.get("PARAM_OUT")
     if stated == COSINE:
-        factor, low = cosines(wo)
+        factor, low = find_cosines(wo)
         notes = dict(DIVIDED)
         if low.any():
             notes["masked"] = f"{low.sum():,} rows with the view at the horizon"

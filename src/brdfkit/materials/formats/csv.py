@@ -41,11 +41,11 @@ import numpy as np
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.formats._delimited import find_delimiter, read_columns, split
 from brdfkit.materials.formats._writing import require_measured, sample_angles
-from brdfkit.materials.measured.column_names import are_columns, understand
-from brdfkit.materials.measured.columns import to_samples
+from brdfkit.materials.measured.column_names import are_columns, parse_layout
+from brdfkit.materials.measured.columns import to_sample_arguments
 from brdfkit.materials.measured.coordinates import ANGLES
-from brdfkit.materials.measured.origin import Origin
 from brdfkit.materials.measured.spectrum_to_rgb import has_wavelengths
+from brdfkit.materials.measured.validation import Origin
 
 NAME = "CSV"
 SUFFIXES = (".csv",)
@@ -70,7 +70,7 @@ def read(source, name=NAME):
     text among numbers, angles that are impossible, and where their unit is not certain.
     """
     names, lines, columns = read_columns(source)
-    details = to_samples(names, columns, None, Origin(str(source.path), lines))
+    details = to_sample_arguments(names, columns, None, Origin(str(source.path), lines))
     notes = _read_notes(source)
     if "anisotropic" in notes:
         stated = notes.pop("anisotropic").lower()
@@ -118,7 +118,7 @@ def _name_values(obj, name):
     one = len(obj.channels) == 1 and not has_wavelengths(obj)
     names = ["BRDF"] if one else list(obj.channels)
     try:
-        if len(understand([*ANGLES, *names], Origin(obj.name)).values) == len(names):
+        if len(parse_layout([*ANGLES, *names], Origin(obj.name)).values) == len(names):
             return names
     except BrdfkitError:
         pass  # its sentence would tell of columns, where there are channels

@@ -1,24 +1,32 @@
-"""Subtracts a BRDF from a measured material: what is left has the same samples or cells."""
+"""Mixes the channels of a measured material, and subtracts another BRDF from it.
+
+The result has the same samples or cells.
+"""
 
 import functools
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.materials.measured.selection import require_max_angle
+from brdfkit.materials.measured.measured_data import Data, Lookup
+from brdfkit.materials.measured.validation import require_max_angle
 from brdfkit.model.samples import Table
 from brdfkit.model.samples.samples import require_some
 
 
-def mix(data, weights, channels, info):
-    """A copy of a `Measured` with other `channels`, mixed from its own by `weights` (old, new), and
-    with the notes `info`.
+def mix_channels(
+    data: Data, weights: FloatArray, channels: Sequence[str], info: dict[str, str]
+) -> Data:
+    """Return a `Measured` with other `channels`, mixed from the old ones, and with notes `info`.
 
-    Standard errors are mixed as those of independent channels.
+    `weights` (old, new) are the shares of the old channels in the new ones. Standard errors are
+    mixed as those of independent channels.
     """
-    changed = {"channels": tuple(channels), "info": info}
+    changed: dict[str, Any] = {"channels": tuple(channels), "info": info}
     if data.standard_error is not None:
         changed["standard_error"] = np.sqrt(data.standard_error**2 @ weights**2)
     if data._table is not None:
@@ -35,33 +43,34 @@ def mix(data, weights, channels, info):
 class MixedLookup:
     """A lookup whose channels are mixed by `weights` (old, new)."""
 
-    lookup: Callable
-    weights: np.ndarray
+    lookup: Lookup
+    weights: FloatArray
 
-    def __call__(self, wi, wo):
+    def __call__(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
         return self.lookup(wi, wo) @ self.weights
 
 
-def subtract(data, brdf, max_angle):
-    """A copy of a `Measured` with values less those of `brdf`, as `Measured.minus` says.
+def subtract(data: Data, brdf: Any, max_angle: float) -> Data:
+    """Return a `Measured` with values less those of `brdf`, as `Measured.minus` describes it.
 
-    Samples that are left out are unknown in it, and there is no lookup between the samples.
+    `brdf` is a material with `name` and `eval`. Samples with an angle at or beyond `max_angle`
+    [degrees] are unknown in the result, and it has no lookup between the samples.
     """
     require_max_angle(max_angle)
     samples, name = data.samples, f"{data.name} - {brdf.name}"
     inside = samples.within(max_angle)
-    known = brdf.eval(samples.wi[inside], samples.wo[inside])
-    if known.shape[1] not in (1, len(data.channels)):
+    subtrahend = brdf.eval(samples.wi[inside], samples.wo[inside])
+    if subtrahend.shape[1] not in (1, len(data.channels)):
         raise BrdfkitError(
-            f"{name}: {known.shape[1]} channels cannot be subtracted from {len(data.channels)}; "
-            "give BRDFs with the same channels."
+            f"{name}: {subtrahend.shape[1]} channels cannot be subtracted from "
+            f"{len(data.channels)}; give BRDFs with the same channels."
         )
     values = np.full(samples.values.shape, np.nan)
-    values[inside] = samples.values[inside] - known
+    values[inside] = samples.values[inside] - subtrahend
     valid = np.isfinite(values).all(axis=1)
     require_some(valid, name, values, data.channels)
-    if not data.is_table:
-        left = replace(samples, values=values, valid=valid)
-        return replace(data, name=name, _samples=left, _lookup=None)
+    if data._table is None:
+        differences = replace(samples, values=values, valid=valid)
+        return replace(data, name=name, _samples=differences, _lookup=None)
     table = Table(values.reshape(data._table.values.shape), data._table.phi_d_period)
     return replace(data, name=name, _table=table)

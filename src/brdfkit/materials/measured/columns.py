@@ -1,33 +1,40 @@
-"""A user's table of named columns as directions, values and standard errors."""
+"""Converts a user's table of named columns to directions, values and standard errors."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.materials.measured.angles import require_unit
-from brdfkit.materials.measured.column_names import key_of_rows, understand
-from brdfkit.materials.measured.coordinates import to_directions, turns
+from brdfkit.materials.measured.column_names import find_row_key, parse_layout
+from brdfkit.materials.measured.conventions import DIVIDED, find_cosines
+from brdfkit.materials.measured.coordinates import is_surface_turned, to_directions
 from brdfkit.materials.measured.long_form import channel_number, to_wide
-from brdfkit.materials.measured.mending import DIVIDED, cosines
+from brdfkit.materials.measured.validation import Origin
 
-NO_NUMBERS = "mMc"  # NumPy's kinds of what it would make numbers of: spans, dates, complex
+NO_NUMBERS = "mMc"  # kinds of NumPy's types that are no plain numbers: spans, dates, complex
 
 
-def to_samples(names, columns, unit, origin):
-    """The arguments of `Measured.from_samples` in the `columns`, arrays (n,) with these `names`.
+def to_sample_arguments(
+    names: Sequence[str], columns: Sequence[FloatArray], unit: str | None, origin: Origin
+) -> dict[str, Any]:
+    """Return the arguments of `Measured.from_samples` for `columns` (n,) with these `names`.
 
-    `unit`: of angles whose names state none, or None; `origin`: for errors. Rows of which no BRDF
-    is known are masked, and the argument `info` says how many.
+    `unit` is the unit of angles whose names state none, or None. Rows without a BRDF value are
+    masked, and the argument `info` says how many there are.
     """
     require_unit(unit)
-    layout = understand(names, origin)
+    layout = parse_layout(names, origin)
     coordinates = {name: columns[n] for name, n in layout.coordinates.items()}
     units = {name: stated or unit for name, stated in layout.units.items()}
     wi, wo = to_directions(coordinates, units, origin)
     values = np.stack([columns[n] for n in layout.values], axis=1)
     errors = np.stack([columns[n] for n in layout.errors], axis=1) if layout.errors else None
-    _require_positive(errors, origin)
-    channels, info, holes = layout.channels, {}, "not finite"
+    if errors is not None:
+        _require_positive(errors, origin)
+    info: dict[str, str] = {}
+    channels, holes = layout.channels, "not finite"
     if layout.key:
         kind, number = layout.key
         wide = to_wide(wi, wo, values, errors, kind, columns[number], origin)
@@ -37,14 +44,14 @@ def to_samples(names, columns, unit, origin):
         holes = f"without all {kind}s"
 
     # The rows that are masked, by the reason
-    finite = np.isfinite(values).all(axis=1)
+    finite = np.array(np.isfinite(values).all(axis=1))
     if errors is not None:
         finite &= np.isfinite(errors).all(axis=1)
     above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
     masked = {holes: ~finite, "at or below the horizon": ~above}
     if layout.cosine:
         info |= DIVIDED
-        cosine, low = cosines(wo)
+        cosine, low = find_cosines(wo)
         masked["view at the horizon"] = above & low
         values = values / cosine
         errors = None if errors is None else errors / cosine
@@ -59,16 +66,16 @@ def to_samples(names, columns, unit, origin):
         "valid": ~np.any(list(masked.values()), axis=0),
         "channels": channels,
         "info": info,
-        "anisotropic": turns(coordinates, units),
+        "anisotropic": is_surface_turned(coordinates, units),
         "standard_error": errors,
     }
 
 
-def columns_of(frame, origin):
-    """The names, as text, and the columns, arrays (n,), of a DataFrame or a dictionary; a number
-    in a dictionary is that of all rows.
+def to_columns(frame: Any, origin: Origin) -> tuple[list[str], list[FloatArray]]:
+    """Return the names and the columns (n,) of a DataFrame or a dictionary.
 
-    Raises `BrdfkitError` for what is neither, for columns of other lengths and for text.
+    A number in a dictionary counts for all rows. Raises `BrdfkitError` for any other object, for
+    columns of different lengths and for text.
     """
     names = getattr(frame, "columns", frame if isinstance(frame, Mapping) else ())
     names = list(getattr(frame, "column_names", names))  # as pyarrow calls them
@@ -81,10 +88,10 @@ def columns_of(frame, origin):
     for text in texts:
         if texts.count(text) > 1:
             raise origin.error(f"the column {text!r} comes twice; keep one")
-    columns = {str(name): _column(name, frame[name], origin) for name in names}
+    columns = {str(name): _to_column(name, frame[name], origin) for name in names}
     lengths = {name: len(column) for name, column in columns.items() if column.ndim}
-    longest = max(lengths, key=lengths.get) if lengths else None
-    rows = lengths.get(longest, 1)
+    longest = max(lengths, key=lambda name: lengths[name], default=None)
+    rows = lengths[longest] if longest is not None else 1
     for name, length in lengths.items():
         if length < rows:
             raise origin.error(
@@ -92,32 +99,36 @@ def columns_of(frame, origin):
             )
     if not rows:
         raise origin.error("has columns, but no rows; give some")
-    return list(columns), [np.broadcast_to(column, rows) for column in columns.values()]
+    return texts, [np.broadcast_to(column, rows) for column in columns.values()]
 
 
-def _column(name, given, origin):
-    if key_of_rows(str(name)) == "channel":
-        given = [channel_number(text) for text in np.ravel(given)]
-    column = to_numbers(f"the column {name!r}", given, origin)
+def _to_column(name: object, values: Any, origin: Origin) -> FloatArray:
+    """Return the `values` of a column as an array (n,), or () for a number."""
+    if find_row_key(str(name)) == "channel":
+        values = [channel_number(text) for text in np.ravel(values)]
+    column = to_numbers(f"the column {name!r}", values, origin)
     if column.ndim > 1:
         raise origin.error(f"the column {name!r} has {column.ndim} axes where one belongs")
     return column
 
 
-def to_numbers(what, given, origin):
-    """The array of floats of what a user gave as `what`, NaN where it is masked; `BrdfkitError`
-    where it is none."""
+def to_numbers(what: str, values: Any, origin: Origin) -> FloatArray:
+    """Return `values` as an array of floats, NaN where they are masked.
+
+    `what` names them in the `BrdfkitError` for values that are not numbers.
+    """
     try:
-        found = np.ma.asarray(given) if np.ma.isMaskedArray(given) else np.asarray(given)
-        if found.dtype.kind not in NO_NUMBERS:
-            return np.ma.filled(found.astype(float), np.nan)
+        array = np.ma.asarray(values) if np.ma.isMaskedArray(values) else np.asarray(values)
+        if array.dtype.kind not in NO_NUMBERS:
+            return np.ma.filled(array.astype(float), np.nan)
     except (TypeError, ValueError):
         pass
     raise origin.error(f"{what} should hold numbers alone; convert or drop it")
 
 
-def _require_positive(errors, origin):
-    for row in np.flatnonzero((errors < 0).any(axis=1))[:1] if errors is not None else ():
+def _require_positive(errors: FloatArray, origin: Origin) -> None:
+    """Raise `BrdfkitError` for the first row with a standard error below 0."""
+    for row in np.flatnonzero((errors < 0).any(axis=1))[:1]:
         raise origin.error(
             f"a standard error is {errors[row].min():g} in {origin.row(row)}; it should be at "
             "least 0"

@@ -1,13 +1,13 @@
-"""Coverage: the share of all direction pairs that a measurement reaches."""
+"""The share of all direction pairs that a measurement reaches, and distances between such pairs."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.materials.measured.pair_points import points
+from brdfkit.materials.measured.measured import Measured
+from brdfkit.model.samples import Samples, Table
 
 NEAR = np.radians(5)  # a pair this near to a sample counts as measured
 PAIRS = 20_000  # random pairs for scattered samples: the shares are accurate to 0.4 %
@@ -27,76 +27,99 @@ class Coverage:
     beyond: float
 
 
-def coverage(data: Any, max_angle: float = 90.0) -> Coverage:
-    """The `Coverage` of a `Measured`, of the pairs with both angles below `max_angle` [degrees]."""
+def compute_coverage(data: Measured, max_angle: float = 90.0) -> Coverage:
+    """Return the `Coverage` of the direction pairs with both angles below `max_angle` [degrees]."""
     least = np.cos(np.radians(max_angle))
     if not data.is_table:
         z, phi = np.random.default_rng(0).random((2, 2, PAIRS))
         wi, wo = from_angles(np.arccos(least + (1 - least) * z), 2 * np.pi * phi)
-        return coverage_at(data, wi, wo)
-    low, high = _cosines(data.samples.wi, data.samples.wo)
-    weight = _solid_angles(data.table) * (low > max(least, 0))
+        return compute_coverage_at(data, wi, wo)
+    low, high = _sort_cosines(data.samples.wi, data.samples.wo)
+    weight = _compute_solid_angles(data.table) * (low > max(least, 0))
     return _share(data, low, high, weight, data.samples.valid)
 
 
-def coverage_at(data: Any, wi: NDArray[np.float64], wo: NDArray[np.float64]) -> Coverage:
-    """The `Coverage` of scattered samples, a `Measured`, at direction pairs (n, 3) alone."""
-    low, high = _cosines(wi, wo)
+def compute_coverage_at(data: Measured, wi: FloatArray, wo: FloatArray) -> Coverage:
+    """Return the `Coverage` by scattered samples of these direction pairs (n, 3) alone."""
+    low, high = _sort_cosines(wi, wo)
     return _share(data, low, high, np.ones(len(wi)), is_near(data, wi, wo))
 
 
-def largest_angles(data: Any) -> tuple[float, float]:
-    """The largest measured angle of the direction nearer to the normal, and that of the other one
-    [degrees]: no pair was measured whose smaller, or larger, angle is above it."""
+def find_largest_angles(data: Measured) -> tuple[float, float]:
+    """Return the largest measured angles [degrees] of the nearer and of the farther direction.
+
+    Of each pair, the nearer direction has the smaller angle to the normal. No measured pair has a
+    smaller angle above the first result, or a larger angle above the second.
+    """
     valid = data.samples.valid
-    low, high = _cosines(data.samples.wi[valid], data.samples.wo[valid])
+    low, high = _sort_cosines(data.samples.wi[valid], data.samples.wo[valid])
     smaller, larger = np.degrees(np.arccos(np.minimum([high.min(), low.min()], 1)))
     return float(smaller), float(larger)
 
 
-def in_plane(samples):
-    """Whether all valid `Samples` are in the plane of incidence, within 5°."""
+def is_in_plane(samples: Samples) -> bool:
+    """Return whether all valid `Samples` are in the plane of incidence, within 5°."""
     wi, wo = samples.wi[samples.valid], samples.wo[samples.valid]
     across = np.abs(wi[:, 0] * wo[:, 1] - wi[:, 1] * wo[:, 0])  # sin θi sin θo |sin Δφ|
     return bool((across <= np.sin(NEAR) * np.sqrt(1 - wi[:, 2] ** 2)).all())
 
 
-def is_near(data, wi, wo):
-    """Which direction pairs are within 5° of a valid sample: a mask (n,) for `wi`, `wo` (n, 3)."""
+def is_near(data: Measured, wi: FloatArray, wo: FloatArray) -> BoolArray:
+    """Return a mask (n,) of the direction pairs (n, 3) that are within 5° of a valid sample."""
     from scipy.spatial import cKDTree
 
-    samples = data.samples
-    there = samples.wi[samples.valid], samples.wo[samples.valid]
-    both_ways = [_fold(data, *there), _fold(data, *there[::-1])]
+    valid = data.samples.at(data.samples.valid)
+    both_ways = [_fold(data, valid.wi, valid.wo), _fold(data, valid.wo, valid.wi)]
     tree = cKDTree(np.concatenate(both_ways))
     return np.isfinite(tree.query(_fold(data, wi, wo), distance_upper_bound=NEAR)[0])
 
 
-def _fold(data, wi, wo):
-    """The pairs as `points`; of an isotropic material, mirror images are the same point."""
-    here = points(wi, wo, data.anisotropic)
+def to_points(wi: FloatArray, wo: FloatArray, anisotropic: bool = False) -> FloatArray:
+    """Return direction pairs (n, 3) as points whose distance says how far the directions differ.
+
+    The points are (n, 4), or (n, 6) for an anisotropic material. Their distance is 1/√2 to 3/2 of
+    the angle [rad] by which the pairs' directions differ. For an isotropic material only the
+    azimuth between wi and wo counts: where it differs by δ between two pairs, no common rotation
+    brings the pairs nearer to each other than δ sin θi sin θo / √(sin² θi + sin² θo).
+    """
+    if anisotropic:
+        return np.concatenate([wi, wo], axis=-1)
+    theta_i, theta_o = (np.arccos(np.clip(w[:, 2], -1, 1)) for w in (wi, wo))
+    across_i, across_o = (w[:, 0] + 1j * w[:, 1] for w in (wi, wo))
+    length = np.hypot(np.abs(across_i), np.abs(across_o))
+    azimuth = across_i * across_o.conj() / np.maximum(length, 1e-12)
+    return np.stack([theta_i, theta_o, azimuth.real, azimuth.imag], axis=-1)
+
+
+def _fold(data: Measured, wi: FloatArray, wo: FloatArray) -> FloatArray:
+    """Return direction pairs as points; mirror images on an isotropic material are one point."""
+    points = to_points(wi, wo, data.anisotropic)
     if not data.anisotropic:
-        here[:, 3] = np.abs(here[:, 3])  # left and right of the plane of incidence
-    return here
+        points[:, 3] = np.abs(points[:, 3])  # left and right of the plane of incidence
+    return points
 
 
-def _cosines(wi, wo):
-    """The cosine of the larger angle, and that of the smaller angle, of each pair; both (n,)."""
+def _sort_cosines(wi: FloatArray, wo: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the smaller and the larger cosine to the normal of each pair, both (n,)."""
     return np.minimum(wi[:, 2], wo[:, 2]), np.maximum(wi[:, 2], wo[:, 2])
 
 
-def _share(data, low, high, weight, reached):
-    """The `Coverage` of pairs with these `_cosines` (n,) and weights (n,), of which `reached` (n,)
-    were measured."""
-    measured = _cosines(*(w[data.samples.valid] for w in (data.samples.wi, data.samples.wo)))
-    # neither the larger nor the smaller angle is above the largest such angle that was measured
+def _share(
+    data: Measured, low: FloatArray, high: FloatArray, weight: FloatArray, reached: BoolArray
+) -> Coverage:
+    """Return the `Coverage` of pairs with the cosines `low` and `high` and with these weights (n,).
+
+    `reached` (n,) is True where a pair was measured.
+    """
+    measured = _sort_cosines(*(w[data.samples.valid] for w in (data.samples.wi, data.samples.wo)))
+    # Neither the larger nor the smaller angle is above the largest such angle that was measured
     within = (low >= measured[0].min()) & (high >= measured[1].min())
     shares = (reached, ~reached & within, ~reached & ~within)
     return Coverage(*(float(weight @ share / weight.sum()) for share in shares))
 
 
-def _solid_angles(table):
-    """The solid angles (cells,) of a table's cells, up to a factor.
+def _compute_solid_angles(table: Table) -> FloatArray:
+    """Return the solid angles (cells,) of a table's cells, up to a factor.
 
     dωi dωo = 4 cos θd dωh dωd [Rusinkiewicz 1998].
     """

@@ -1,21 +1,22 @@
-"""`MeasuredData` made of angles, or of a table of named columns."""
+"""Constructors of a `Measured` from angles, and from a table of named columns."""
+
+from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.materials.measured.angles import require_unit
-from brdfkit.materials.measured.columns import columns_of, to_numbers, to_samples
-from brdfkit.materials.measured.coordinates import to_directions, turns
+from brdfkit.materials.measured.columns import to_columns, to_numbers, to_sample_arguments
+from brdfkit.materials.measured.coordinates import is_surface_turned, to_directions
 from brdfkit.materials.measured.measured_data import MeasuredData
-from brdfkit.materials.measured.origin import Origin
-from brdfkit.materials.measured.validation import to_notes
+from brdfkit.materials.measured.validation import Origin, to_notes
 
 
 class FromAngles(MeasuredData):
-    """Constructors for people whose samples are angles or a table, rather than vectors."""
+    """Measured data with constructors for samples at angles and for tables of named columns."""
 
     @classmethod
     def from_angles(
@@ -32,34 +33,33 @@ class FromAngles(MeasuredData):
         anisotropic: bool | None = None,
         standard_error: ArrayLike | None = None,
     ) -> Self:
-        """A measured BRDF from samples at angles, as a goniometer has them.
+        """Make a measured BRDF from samples at angles, as a goniometer measures them.
 
-        Theta is the angle to the normal, phi the azimuth; i is the direction to the light, o the
-        one to the viewer. The mirror direction is at phi_o = phi_i + 180°. A theta below 0 lies on
-        the other side of the normal: in the plane of incidence, with phi_i = 0 and phi_o = 180°,
-        theta_o = theta_i is the mirror direction, and theta_o = -theta_i that to the light. Where
-        an instrument states phi_o - phi_i alone, phi_i is 0.
+        Theta is the angle to the normal and phi the azimuth; i is the direction to the light and o
+        the direction to the viewer. The mirror direction is at phi_o = phi_i + 180°. A theta below
+        0 lies on the other side of the normal: in the plane of incidence, with phi_i = 0 and
+        phi_o = 180°, theta_o = theta_i is the mirror direction, and theta_o = -theta_i points to
+        the light. Where an instrument states phi_o - phi_i alone, give 0 for phi_i.
 
         Parameters
         ----------
         theta_i, phi_i, theta_o, phi_o : array_like or float
-            Angles, theta from -90° to 90° and phi from -360° to 360°. Numbers and arrays go
-            together as NumPy broadcasts them: ``theta_i[:, None]`` and ``theta_o`` are a grid.
-        values : array_like, the shape of the angles together, or that and channels
+            Angles, theta from -90° to 90° and phi from -360° to 360°. NumPy broadcasts numbers and
+            arrays: ``theta_i[:, None]`` and ``theta_o`` make a grid.
+        values : array_like, the shape of the angles together, or the same and channels
             BRDF [sr⁻¹], without a cosine; NaN where nothing was measured.
         unit : {"degrees", "radians"}, optional
-            Unit of the angles: by default degrees, but it has to be said where none of the angles
-            is so large that it could not be in radians.
+            Unit of the angles: by default degrees, but it must be given where all angles are so
+            small that they might be in radians.
         channels : sequence of str, optional
-            What the last axis of `values` is: ``("R", "G", "B")``, linear sRGB, by default for
-            three; ``("Y",)``, achromatic, for one; or wavelengths, as ``("400nm", "410nm")``.
+            Names of the last axis of `values`, as in `from_samples`.
         name : str, default "samples"
             Name in pictures and tables.
         info : dict of str to str, optional
             Notes, as ``{"instrument": "gonioreflectometer"}``.
         anisotropic : bool, optional
             Whether the BRDF changes as the surface turns about its normal; by default whether
-            phi_i varies, but for full turns.
+            phi_i varies, other than by full turns.
         standard_error : array_like, the shape of `values`, optional
             Standard errors of the values [sr⁻¹].
 
@@ -71,8 +71,8 @@ class FromAngles(MeasuredData):
         Raises
         ------
         BrdfkitError
-            For angles that are not finite or below the horizon, a unit that has to be said, and
-            shapes that do not fit. Rows are counted from 0, through all axes.
+            For angles that are not finite or below the horizon, a unit that must be given, and
+            shapes that do not fit each other. The errors count rows from 0, through all axes.
 
         Examples
         --------
@@ -83,8 +83,8 @@ class FromAngles(MeasuredData):
         """
         origin = Origin(name)
         require_unit(unit)
-        given = {"theta_i": theta_i, "phi_i": phi_i, "theta_o": theta_o, "phi_o": phi_o}
-        angles, shape = _broadcast(given, origin)
+        named = {"theta_i": theta_i, "phi_i": phi_i, "theta_o": theta_o, "phi_o": phi_o}
+        angles, shape = _broadcast(named, origin)
         units = dict.fromkeys(angles, unit)
         wi, wo = to_directions(angles, units, origin)
         values = _flatten("values", values, shape, origin)
@@ -97,7 +97,7 @@ class FromAngles(MeasuredData):
             channels=channels,
             name=name,
             info=info,
-            anisotropic=turns(angles, units) if anisotropic is None else anisotropic,
+            anisotropic=is_surface_turned(angles, units) if anisotropic is None else anisotropic,
             standard_error=standard_error,
         )
 
@@ -110,28 +110,28 @@ class FromAngles(MeasuredData):
         info: Mapping[str, str] | None = None,
         anisotropic: bool | None = None,
     ) -> Self:
-        """A measured BRDF from a DataFrame, or from any table of named columns.
+        """Make a measured BRDF from a DataFrame, or from any table of named columns.
 
-        The names say what the columns are, as in the files that `load` reads as CSV. Directions:
+        The names say what the columns hold, as in the files that `load` reads as CSV. Directions:
 
         - theta_i, phi_i, theta_o, phi_o: as in `from_angles`;
         - theta_i, theta_o, delta_phi: delta_phi is phi_o - phi_i, so 180° in the mirror direction;
         - theta_h, [phi_h,] theta_d, phi_d: half and difference angles of Rusinkiewicz, as MERL's;
         - wi_x, wi_y, wi_z, wo_x, wo_y, wo_z: unit vectors, z along the normal.
 
-        Values: R, G, B (linear sRGB), or wavelengths such as 550nm, or one column BRDF; CCBRDF,
-        CCBRDF_R or CCBRDF_550nm where they are the BRDF times cos theta_o, which is divided out.
-        Standard errors: R_error, 550nm_error, BRDF_error or standard_error. A unit may stand behind
-        a name, as in ``theta_i [rad]``. With a column wavelength [nm], or channel of R, G and B,
-        each row has the value BRDF of one.
+        Values: R, G, B (linear sRGB), or wavelengths such as 550nm, or one column BRDF. Columns
+        CCBRDF, CCBRDF_R or CCBRDF_550nm hold the BRDF times cos theta_o, which is divided out.
+        Standard errors: R_error, 550nm_error, BRDF_error or standard_error. A unit may follow a
+        name, as in ``theta_i [rad]``. With a column wavelength [nm], or a column channel with R, G
+        and B, the value BRDF of each row belongs to the one wavelength or channel stated there.
 
         Parameters
         ----------
         frame : DataFrame or dict of str to array_like
-            The columns, of equal lengths; a number in a dictionary is that of all rows.
+            The columns, with equal lengths; a number in a dictionary counts for all rows.
         unit : {"degrees", "radians"}, optional
-            Unit of angles whose names state none: by default degrees, but it has to be said where
-            none of the angles is so large that it could not be in radians.
+            Unit of angles whose names state none: by default degrees, but it must be given where
+            all angles are so small that they might be in radians.
         name : str, default "samples"
             Name in pictures and tables.
         info : dict of str to str, optional
@@ -148,8 +148,8 @@ class FromAngles(MeasuredData):
         Raises
         ------
         BrdfkitError
-            For columns that are unknown, missing or of other lengths, and for what is wrong in a
-            row; rows are counted from 0.
+            For columns that are unknown, missing or of different lengths, and for wrong numbers;
+            the errors count rows from 0.
 
         Examples
         --------
@@ -158,30 +158,38 @@ class FromAngles(MeasuredData):
         mine: samples, 3 of 3 valid, channels Y
         """
         origin = Origin(name)
-        names, columns = columns_of(frame, origin)
-        found = to_samples(names, columns, unit, origin)
-        found["info"] |= to_notes(info, name)
+        names, columns = to_columns(frame, origin)
+        arguments = to_sample_arguments(names, columns, unit, origin)
+        arguments["info"] |= to_notes(info, name)
         if anisotropic is not None:
-            found["anisotropic"] = anisotropic
-        return cls.from_samples(**found, name=name)
+            arguments["anisotropic"] = anisotropic
+        return cls.from_samples(**arguments, name=name)
 
 
-def _broadcast(given, origin):
-    """The angles `given` by name, broadcast, as arrays (n,), and their shape together before."""
-    arrays = [to_numbers(name, angle, origin) for name, angle in given.items()]
+def _broadcast(
+    angles: Mapping[str, ArrayLike], origin: Origin
+) -> tuple[dict[str, FloatArray], tuple[int, ...]]:
+    """Return the `angles`, by name, broadcast against each other and flattened to arrays (n,).
+
+    The second result is the shape that the broadcast arrays had.
+    """
+    arrays = [to_numbers(name, angle, origin) for name, angle in angles.items()]
     try:
-        arrays = np.broadcast_arrays(*arrays)
+        broadcast = np.broadcast_arrays(*arrays)
     except ValueError:
-        shapes = ", ".join(f"{n} {a.shape}" for n, a in zip(given, arrays, strict=True))
+        shapes = ", ".join(f"{n} {a.shape}" for n, a in zip(angles, arrays, strict=True))
         raise origin.error(
             f"the shapes {shapes} do not go together; give numbers and arrays of one length"
         ) from None
-    return dict(zip(given, map(np.ravel, arrays), strict=True)), arrays[0].shape
+    return dict(zip(angles, map(np.ravel, broadcast), strict=True)), broadcast[0].shape
 
 
-def _flatten(what, given, shape, origin):
-    """The values `given` (*shape) as (n,), or (*shape, channels) as (n, channels)."""
-    values, axes = to_numbers(what, given, origin), len(shape)
+def _flatten(what: str, numbers: ArrayLike, shape: tuple[int, ...], origin: Origin) -> FloatArray:
+    """Return `numbers` (*shape) as (n,), or (*shape, channels) as (n, channels).
+
+    `what` names them in the error for another shape.
+    """
+    values, axes = to_numbers(what, numbers, origin), len(shape)
     if values.shape[:axes] != shape or values.ndim > axes + 1:
         raise origin.error(
             f"{what} {values.shape} should have the shape of the angles, {shape}, or that and "

@@ -1,29 +1,33 @@
 """`Measured`: a BRDF given by samples or by a table, looked up anywhere and rendered."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 import brdfkit  # for `audit`, of a higher layer, which is imported when it is called
 from brdfkit.core import documents
+from brdfkit.core.array_types import ArrayLike
 from brdfkit.core.colours import RGB
 from brdfkit.core.documents import Document, Shown
 from brdfkit.core.jit.threads import cached_in_turn, in_turn
 from brdfkit.images.thumbnails import thumbnails
-from brdfkit.materials.measured.albedos import MeasuredAlbedo, measured_albedo
-from brdfkit.materials.measured.arithmetic import mix, subtract
+from brdfkit.materials.measured.albedos import MeasuredAlbedo, compute_measured_albedo
+from brdfkit.materials.measured.arithmetic import mix_channels, subtract
+from brdfkit.materials.measured.conventions import mend
 from brdfkit.materials.measured.from_angles import FromAngles
 from brdfkit.materials.measured.interpolation import Interpolant
-from brdfkit.materials.measured.mending import mend
-from brdfkit.materials.measured.spectrum_to_rgb import rgb_or_mean, to_rgb, wavelengths
+from brdfkit.materials.measured.measured_data import Lookup
+from brdfkit.materials.measured.spectrum_to_rgb import to_rgb, to_rgb_or_mean, wavelengths
 from brdfkit.materials.measured.tabulation import (
-    bounded,
-    reciprocal,
-    table_shape,
+    bound_lookup,
+    choose_table_shape,
+    make_reciprocal,
     tabulate,
     tabulate_lookup,
 )
@@ -33,14 +37,14 @@ from brdfkit.model.samples import Table
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Measured(Shown, FromAngles):
-    """A measured BRDF. Made by `brdfkit.load`, or by one of the methods `from_...`.
+    """A measured BRDF, made by `brdfkit.load` or by one of the methods `from_...`.
 
     Attributes
     ----------
     name : str
         Name in pictures and tables.
     channels : tuple of str
-        What the columns of `values` are: ``("R", "G", "B")``, linear sRGB; ``("Y",)``, achromatic;
+        Names of the columns of `values`: ``("R", "G", "B")``, linear sRGB; ``("Y",)``, achromatic;
         or wavelengths, as ``("400nm", "410nm")``.
     info : dict of str to str
         Notes of the file and of its reader.
@@ -58,21 +62,21 @@ class Measured(Shown, FromAngles):
 
     @cached_in_turn
     def table(self) -> Table:
-        """The material as a table: its own, or one of the values interpolated between samples."""
+        """The material as a table: its own, or a table interpolated between the samples."""
         if self._table is not None:
             return self._table
         if isinstance(self._lookup, Table):
             return self._lookup
         if self._lookup is not None:
             return tabulate_lookup(self._lookup, len(self.channels), self.anisotropic)
-        return self.resampled(table_shape(self.anisotropic))
+        return self.resampled(choose_table_shape(self.anisotropic))
 
     def resampled(self, shape: tuple[int, ...]) -> Table:
-        """The BRDF in a reciprocal table of another size.
+        """Tabulate the BRDF in a reciprocal table of another size.
 
-        Its values are those of `eval`. Where the format itself defines the values between the
-        samples, it is asked with the more grazing direction as wi, and directions nearer than 2°
-        to the horizon have the values at 2°.
+        The table has the values of `eval`. Where the format itself defines the values between the
+        samples, it is evaluated with the more grazing direction as wi, and directions less than 2°
+        above the horizon get the values at 2°.
 
         Parameters
         ----------
@@ -82,7 +86,7 @@ class Measured(Shown, FromAngles):
         Returns
         -------
         Table
-            The table; its `values` [sr⁻¹] are of `shape`, with a last axis of channels.
+            The table; its `values` [sr⁻¹] have this `shape` and a last axis of channels.
 
         Raises
         ------
@@ -95,18 +99,21 @@ class Measured(Shown, FromAngles):
         (90, 90, 180)
         """
         check_shape(shape, self.name)
-        brdf = self.eval
-        if self.has_lookup and not isinstance(self._lookup, Table):
-            brdf = reciprocal(bounded(self._lookup, self.anisotropic))
+        brdf: Lookup = self.eval
+        if self._lookup is not None and not isinstance(self._lookup, Table):
+            brdf = make_reciprocal(bound_lookup(self._lookup, self.anisotropic))
         return tabulate(brdf, len(self.channels), shape)
 
     @cached_in_turn
-    def _interpolant(self):
-        """The BRDF (wi, wo) → (n, channels) between the samples: the format's own or ours."""
+    def _interpolant(self) -> Lookup:
+        """The BRDF between the samples, by the format's own interpolation or by ours."""
         return self._lookup or Interpolant(self.samples, self.anisotropic)
 
     def eval(self, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
-        """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3), interpolated, never negative."""
+        """Return the BRDF [sr⁻¹] (n, channels) of direction pairs (n, 3).
+
+        It is interpolated between the samples or cells, and never negative.
+        """
         wi, wo = np.asarray(wi, float), np.asarray(wo, float)
         if self._table is not None:
             return np.maximum(self._table.eval(wi, wo), 0)
@@ -116,37 +123,38 @@ class Measured(Shown, FromAngles):
         return values
 
     @property
-    def rgb(self) -> "Measured":
+    def rgb(self) -> Measured:
         """The same material in linear sRGB, or itself where it is RGB or achromatic already."""
-        # Itself is not cached in itself: such a circle would keep its memory for long
+        # Not cached where it is the material itself: such a circle would keep its memory for long
         return self if self.channels == RGB or len(self.channels) == 1 else self._in_rgb
 
     @cached_property
-    def _in_rgb(self):
+    def _in_rgb(self) -> Measured:
         return to_rgb(self)
 
-    def mixed(
-        self, weights: NDArray[np.float64], channels: Sequence[str], **info: str
-    ) -> "Measured":
-        """The same material in other channels, the old ones mixed by `weights` (old, new)."""
-        return mix(self, weights, channels, {**self.info, **info})
+    def mixed(self, weights: NDArray[np.float64], channels: Sequence[str], **info: str) -> Measured:
+        """Return the material in other `channels`, mixed from its own by `weights` (old, new).
 
-    def minus(self, brdf: Any, max_angle: float = 90.0) -> "Measured":
-        """The measured values less those of another BRDF: signed residuals, as a measurement.
+        `info` are notes to add.
+        """
+        return mix_channels(self, weights, channels, {**self.info, **info})
+
+    def minus(self, brdf: Any, max_angle: float = 90.0) -> Measured:
+        """Subtract another BRDF from the measured values: signed residuals, as a measurement.
 
         Parameters
         ----------
         brdf : Measured, Fit or Model
-            What is subtracted, with the same channels or with one.
+            The BRDF to subtract, with the same channels or with one.
         max_angle : float, default 90
-            Samples with an angle to the normal at or beyond it [degrees, above 0 to 90] are left
-            out.
+            Samples with an angle to the normal at or beyond this one [degrees, above 0 to 90] are
+            left out.
 
         Returns
         -------
         Measured
-            The differences [sr⁻¹] of the samples, or of the cells of a table. `eval`, plots and
-            pictures show those below 0 as 0.
+            The differences [sr⁻¹] at the samples, or in the cells of a table. `eval`, plots and
+            pictures show negative differences as 0.
 
         Raises
         ------
@@ -160,31 +168,30 @@ class Measured(Shown, FromAngles):
         """
         return subtract(self, brdf, max_angle)
 
-    def mend(self, mirror_azimuth: bool = False, divide_by_cos: bool = False) -> "Measured":
-        """The same samples in brdfkit's convention, where a file or an instrument has another.
+    def mend(self, mirror_azimuth: bool = False, divide_by_cos: bool = False) -> Measured:
+        """Convert samples from another convention of a file or an instrument to brdfkit's.
 
-        What `load` does with the same arguments. The notes in `info` say what was done.
+        `load` does this with the same arguments. The notes in `info` say what was done.
 
         Parameters
         ----------
         mirror_azimuth : bool, default False
-            Whether 180° is added to every phi_o: of an instrument whose mirror direction is at
+            Whether 180° is added to every phi_o, for an instrument whose mirror direction is at
             phi_o = phi_i.
         divide_by_cos : bool, default False
-            Whether the values, and their standard errors, are divided by cos theta_o: of values
-            that are the BRDF times this cosine. Samples with a smaller cosine than 0.001 are
-            masked.
+            Whether the values, and their standard errors, are divided by cos theta_o, for values
+            that are the BRDF times this cosine. Samples with a cosine below 0.001 are masked.
 
         Returns
         -------
         Measured
-            The mended samples; this material itself where nothing is to be mended.
+            The mended samples; this material itself where both arguments are False.
 
         Raises
         ------
         BrdfkitError
-            For a table, and a format that has values between its samples: they state what they
-            hold; and for what was mended, or read as BRDF times cosine, before.
+            For a table, and for a format with values between its samples, because they state what
+            they hold; and for samples that were mended, or read as BRDF times cosine, before.
 
         Examples
         --------
@@ -194,10 +201,8 @@ class Measured(Shown, FromAngles):
         """
         return mend(self, mirror_azimuth, divide_by_cos)
 
-    def audit(self) -> "brdfkit.Audit":
-        """How far the measurement reaches, how noisy it is and what is doubtful.
-
-        `brdfkit.audit` of this material.
+    def audit(self) -> brdfkit.Audit:
+        """Audit the material: its reach, its noise and what is doubtful, as `brdfkit.audit` does.
 
         >>> print(load("copper.astm").audit())    # doctest: +SKIP
         """
@@ -205,38 +210,38 @@ class Measured(Shown, FromAngles):
 
     @cached_in_turn
     def albedo(self) -> MeasuredAlbedo:
-        """The light that the material reflects at 5°, 45° and 75°, where the samples tell it."""
-        return measured_albedo(self)
+        """The albedo at 5°, 45° and 75° of incidence, known where samples are near."""
+        return compute_measured_albedo(self)
 
     def document(self) -> Document:
-        """What the measurement tells of itself: its size, its look, and the notes of its file."""
+        """Return the measurement as a document: its size, its look and the notes of its file."""
         notes = tuple((key.replace("_", " "), str(value)) for key, value in self.info.items())
-        pictures = thumbnails(self.name, lambda wi, wo: rgb_or_mean(self).rendered.eval(wi, wo))
+        pictures = thumbnails(self.name, lambda wi, wo: to_rgb_or_mean(self).rendered.eval(wi, wo))
         return Document(self.summary, (*pictures, documents.Table(notes)))
 
     @cached_in_turn
-    def tabulated(self) -> "Measured":
-        """The same material given by its `table`."""
+    def tabulated(self) -> Measured:
+        """The same material, with its `table` in place of the samples."""
         if self.is_table:
             return self
         table, info = self.table, self.info
         return self.from_table(table.values, table.phi_d_period, self.channels, self.name, info)
 
     @property
-    def rendered(self) -> "Measured":
-        """The material as the renderer shows it: itself, or its table for most lookups."""
-        own = self.is_table or hasattr(self._lookup, "scene_dict")
-        return self if own else self.tabulated
+    def rendered(self) -> Measured:
+        """The material that Mitsuba renders: itself, or its table where Mitsuba has no plugin."""
+        has_plugin = self.is_table or hasattr(self._lookup, "scene_dict")
+        return self if has_plugin else self.tabulated
 
     @in_turn
     def scene_dict(self) -> dict[str, Any]:
-        """The dictionary of `rendered` for `mitsuba.load_dict`, for the current variant."""
+        """Return the dictionary of `rendered` for `mitsuba.load_dict`, in the current variant."""
         import mitsuba as mi
 
         spectral = mi.is_spectral and len(self.channels) > 1 and self.channels != RGB
         material = (self if spectral else self.rgb).rendered
-        shown: Any = material._table or material._lookup
-        entries: dict[str, Any] = shown.scene_dict()
+        table_or_lookup: Any = material._table or material._lookup
+        entries: dict[str, Any] = table_or_lookup.scene_dict()
         if spectral:
             entries["wavelengths"] = mi.TensorXf(wavelengths(material).astype(np.float32))
         return entries

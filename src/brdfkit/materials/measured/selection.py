@@ -1,24 +1,33 @@
 """Selects the samples of a measured material that fits and comparisons use."""
 
 from dataclasses import replace
-from numbers import Real
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import ArrayLike, BoolArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.materials.measured.measured import Measured
 from brdfkit.materials.measured.spectrum_to_rgb import has_wavelengths
+from brdfkit.materials.measured.validation import require_max_angle
 from brdfkit.model.samples import Samples
 from brdfkit.model.samples.measures import estimate_extents
 
 
-def select_samples(data, max_angle, weights=None, errors=False, spectral=False):
-    """The valid `Samples` of a `Measured` with both angles below `max_angle` [degrees].
+def select_samples(
+    data: Measured,
+    max_angle: float,
+    weights: ArrayLike | None = None,
+    errors: bool = False,
+    spectral: bool = False,
+) -> Samples:
+    """Return the valid `Samples` of a `Measured` with both angles below `max_angle` [degrees].
 
-    Spectral samples are converted to linear sRGB unless they are to be `spectral`. `weights`: of
-    all samples of the material (n,), or of a table's cells in its shape; samples of weight 0 are
-    left out. `errors`: whether the samples carry the standard errors of the material, where it has
-    them. Raises `BrdfkitError` for an angle that is not above 0° and at most 90°, for weights that
-    are none, for `spectral` without wavelengths, and where no sample is left.
+    Spectral samples are converted to linear sRGB unless they are to be `spectral`. `weights` are a
+    user's weights of all samples of the material (n,), or of a table's cells in its shape; samples
+    with weight 0 are left out. `errors` says whether the samples carry the standard errors of the
+    material. Raises `BrdfkitError` for an angle that is not above 0° and at most 90°, for
+    impossible weights, for `spectral` without wavelengths, and where no sample is left.
     """
     require_max_angle(max_angle)
     if not spectral:
@@ -28,28 +37,25 @@ def select_samples(data, max_angle, weights=None, errors=False, spectral=False):
             f"{data.name} was measured in the channels {' '.join(data.channels)[:80]}, not at "
             "wavelengths; leave spectral out."
         )
+    factors: Any = None
     if weights is not None:
-        weights = _check_weights(weights, data)
-        weights = weights / (weights.max(initial=0) or 1)  # of any size, their squares are finite
-    own = data.standard_error if errors else None
+        factors = _check_weights(weights, data)
+        factors = factors / (factors.max(initial=0) or 1)  # so that no square overflows
+    standard_error = data.standard_error if errors else None
     if data.is_table:
-        samples = Samples.of_cells(data.table, max_angle, weights, own)
+        samples = Samples.of_cells(data.table, max_angle, factors, standard_error)
     else:
-        factors = 1 if weights is None else weights
-        samples = replace(
-            data.samples,
-            weight=data.samples.weight * factors,
-            errors=own,
-        )
+        weight = data.samples.weight * (1 if factors is None else factors)
+        samples = replace(data.samples, weight=weight, errors=standard_error)
         rows = samples.within(max_angle)
         samples = samples.at(rows)
         if rows.any():
             samples = replace(samples, extents=_find_extents(data, samples, rows, max_angle))
-    if weights is not None:
+    if factors is not None:
         samples = samples.at(samples.weight > 0)
     if not len(samples.wi):
         what, more = "a larger max_angle", ""
-        if weights is not None:
+        if factors is not None:
             what, more = "other weights", " and a weight above 0"
         raise BrdfkitError(
             f"{data.name}: no valid sample has both angles below {max_angle:g}°{more}; give {what}."
@@ -57,39 +63,38 @@ def select_samples(data, max_angle, weights=None, errors=False, spectral=False):
     return samples
 
 
-def require_max_angle(max_angle):
-    """Raise `BrdfkitError` unless `max_angle` is above 0° and at most 90°."""
-    if not isinstance(max_angle, Real) or not 0 < max_angle <= 90:
-        raise BrdfkitError(
-            f"max_angle = {max_angle!r} should be an angle above 0° and at most 90°."
-        )
+def _find_extents(
+    data: Measured, samples: Samples, rows: BoolArray, max_angle: float
+) -> FloatArray:
+    """Return how much of both measures of directions the `samples` stand for (n, 2).
 
-
-def _find_extents(data, samples, rows, max_angle):
-    """How much of both measures of directions the `samples` of `data` in these `rows`, a mask,
-    stand for (n, 2): by the format's own grid or else estimated, once for each `max_angle`."""
+    `samples` are the `rows`, a mask, of `data`. The format's own grid says how much, or else it is
+    estimated, once for each `max_angle`. `model/samples/measures.py` defines the measures.
+    """
     if max_angle not in data.extents_by_angle:
-        if hasattr(data._lookup, "stored_extents"):
-            found = data._lookup.stored_extents(max_angle, rows)[rows]
+        lookup: Any = data._lookup
+        if hasattr(lookup, "stored_extents"):
+            extents = lookup.stored_extents(max_angle, rows)[rows]
         else:
-            found = estimate_extents(samples.wi, samples.wo, data.anisotropic, max_angle)
-        data.extents_by_angle[max_angle] = found
+            extents = estimate_extents(samples.wi, samples.wo, data.anisotropic, max_angle)
+        data.extents_by_angle[max_angle] = extents
     return data.extents_by_angle[max_angle]
 
 
-def _check_weights(given, data):
-    """Weights (n,) of all samples of a `Measured`, or `BrdfkitError`."""
+def _check_weights(weights: ArrayLike, data: Measured) -> FloatArray:
+    """Return the `weights` of all samples of a `Measured` as (n,); raise `BrdfkitError` unless they
+    are finite, at least 0 and in the right shape."""
     n = data.table.values[..., 0].size if data.is_table else len(data.samples.wi)
     try:
-        weights = np.array(given, float)
+        array = np.array(weights, float)
     except (TypeError, ValueError):
-        weights = np.array(np.nan)
+        array = np.array(np.nan)
     shapes = [(n,), data.table.shape] if data.is_table else [(n,)]
-    if weights.shape not in shapes:
+    if array.shape not in shapes:
         several = " or ".join(map(str, shapes))
         raise BrdfkitError(
-            f"{data.name}: weights {weights.shape} should be {several}, one for each sample."
+            f"{data.name}: weights {array.shape} should be {several}, one for each sample."
         )
-    if not (np.isfinite(weights) & (weights >= 0)).all():
+    if not (np.isfinite(array) & (array >= 0)).all():
         raise BrdfkitError(f"{data.name}: weights should be finite numbers of at least 0.")
-    return weights.ravel()
+    return array.ravel()

@@ -1,17 +1,21 @@
 """Converts spectral measurements to linear sRGB, and reads wavelengths from channel names."""
 
 import re
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from brdfkit.core.colours import ILLUMINANT, OBSERVER, RGB, rgb_of_wavelengths
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.materials.measured.arithmetic import mix_channels
+from brdfkit.materials.measured.measured_data import Data, MeasuredData
 
 WAVELENGTH = re.compile(r"\d+(\.\d+)?nm")
 
 
-def to_rgb(data):
-    """A `Measured` whose channels are wavelengths, in linear sRGB under D65 (CIE 1931, 2°).
+def to_rgb(data: Data) -> Data:
+    """Return a `Measured` whose channels are wavelengths in linear sRGB under D65 (CIE 1931, 2°).
 
     Reflectance is linear between the wavelengths and constant beyond them; reflectance 1 at all
     wavelengths becomes (1, 1, 1). Colours outside sRGB keep their negative values. Raises
@@ -20,30 +24,30 @@ def to_rgb(data):
     >>> to_rgb(load("cayman.brdf")).channels  # doctest: +SKIP
     ('R', 'G', 'B')
     """
-    known = wavelengths(data)
-    weights = rgb_of_wavelengths(known, data.name)
-    note = f"linear sRGB from {len(known)} wavelengths under {ILLUMINANT}, {OBSERVER}"
-    return data.mixed(weights, RGB, rgb=note)
+    nanometres = wavelengths(data)
+    weights = rgb_of_wavelengths(nanometres, data.name)
+    note = f"linear sRGB from {len(nanometres)} wavelengths under {ILLUMINANT}, {OBSERVER}"
+    return mix_channels(data, weights, RGB, {**data.info, "rgb": note})
 
 
-def rgb_or_mean(data):
-    """A `Measured` in linear sRGB, or the mean of its channels where they give no colour."""
+def to_rgb_or_mean(data: Any) -> Any:
+    """Return a `Measured` in linear sRGB, or the mean of its channels where they give no colour."""
     try:
         return data.rgb
     except BrdfkitError:
         n = len(data.channels)
-        return data.mixed(np.full((n, 1), 1 / n), ("mean",))
+        return mix_channels(data, np.full((n, 1), 1 / n), ("mean",), data.info)
 
 
-def has_wavelengths(data):
-    """Whether the channels of a `Measured` are all named as wavelengths, as ``"400nm"``."""
+def has_wavelengths(data: MeasuredData) -> bool:
+    """Return whether the channels of a `Measured` are all named as wavelengths, as ``"400nm"``."""
     return all(map(WAVELENGTH.fullmatch, data.channels))
 
 
-def wavelengths(data):
-    """The channels of a `Measured` as wavelengths [nm] (channels,).
+def wavelengths(data: MeasuredData) -> NDArray[np.float64]:
+    """Return the channels of a `Measured` as wavelengths [nm] (channels,).
 
-    Raises `BrdfkitError` unless all are named so.
+    Raises `BrdfkitError` unless all channels are named as wavelengths.
     """
     if not has_wavelengths(data):
         raise BrdfkitError(

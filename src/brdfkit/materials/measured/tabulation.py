@@ -1,8 +1,10 @@
-"""Tabulates any BRDF over half/difference angles, a `Table`."""
+"""Tabulates any BRDF over half and difference angles, as a `Table`."""
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.geometry.directions import from_angles, normalize
+from brdfkit.materials.measured.measured_data import Lookup
 from brdfkit.model.samples import Table
 
 # Cells ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d)
@@ -13,13 +15,15 @@ NEAR_NORMAL = np.radians(3)  # one and a half cells of theta_d
 AZIMUTHS = np.arange(16) / 16 * 2 * np.pi
 
 
-def table_shape(anisotropic):
-    """The default shape of a table."""
+def choose_table_shape(anisotropic: bool) -> tuple[int, ...]:
+    """Return the default shape of a table."""
     return ANISOTROPIC if anisotropic else ISOTROPIC
 
 
-def tabulate(brdf, channels, shape, phi_d_period=np.pi):
-    """The `Table` of `brdf(wi, wo)` → (n, channels) at the centres of `shape` cells.
+def tabulate(
+    brdf: Lookup, channels: int, shape: tuple[int, ...], phi_d_period: float = np.pi
+) -> Table:
+    """Return the `Table` of a BRDF with so many `channels` at the centres of `shape` cells.
 
     A cell whose centre lies below the surface is NaN.
     """
@@ -30,59 +34,60 @@ def tabulate(brdf, channels, shape, phi_d_period=np.pi):
     return table
 
 
-def tabulate_lookup(lookup, channels, anisotropic):
-    """The `Table` of a format's own interpolation, with all of phi_d unless it is reciprocal."""
-    *others, n_phi_d = table_shape(anisotropic)
-    brdf = bounded(lookup, anisotropic)
+def tabulate_lookup(lookup: Lookup, channels: int, anisotropic: bool) -> Table:
+    """Return the `Table` of a format's own interpolation; if not reciprocal, over 2π in phi_d."""
+    *others, n_phi_d = choose_table_shape(anisotropic)
+    brdf = bound_lookup(lookup, anisotropic)
     if _is_reciprocal(lookup):
         return tabulate(brdf, channels, (*others, n_phi_d))
     return tabulate(brdf, channels, (*others, 2 * n_phi_d), 2 * np.pi)
 
 
-def bounded(lookup, anisotropic):
-    """A format's own interpolation, bounded for a table: a function (wi, wo) → (n, channels).
+def bound_lookup(lookup: Lookup, anisotropic: bool) -> Lookup:
+    """Return a format's own interpolation with bounded values, for a table.
 
-    Directions are clamped 2° above the horizon: where the format stores f cosθ_o, f grows without
-    bound towards it. At normal incidence an isotropic lookup that is not reciprocal is averaged
-    over the azimuth.
+    Directions are clamped 2° above the horizon: where the format stores the BRDF f times cosθ_o, f
+    grows without bound towards the horizon. At normal incidence an isotropic lookup that is not
+    reciprocal is averaged over the azimuth.
     """
 
-    def clamped(wi, wo):
+    def look_up_clamped(wi: FloatArray, wo: FloatArray) -> FloatArray:
         return lookup(_lift(wi), _lift(wo))
 
     if anisotropic or _is_reciprocal(lookup):
-        return clamped
-    return _average_at_normal(clamped)
+        return look_up_clamped
+    return _average_at_normal(look_up_clamped)
 
 
-def reciprocal(brdf):
-    """`brdf` made reciprocal: a function that calls it with the more grazing direction as wi.
+def make_reciprocal(brdf: Lookup) -> Lookup:
+    """Return a reciprocal BRDF, which calls `brdf` with the more grazing direction as wi.
 
-    Where a format stores f cosθ_o, its values are thus divided by the larger cosine.
+    Where a format stores the BRDF times cosθ_o, its values are thus divided by the larger cosine.
     """
 
-    def call_with_lower_first(wi, wo):
+    def call_with_lower_first(wi: FloatArray, wo: FloatArray) -> FloatArray:
         lower = wi[:, 2:] < wo[:, 2:]
         return brdf(np.where(lower, wi, wo), np.where(lower, wo, wi))
 
     return call_with_lower_first
 
 
-def _is_reciprocal(brdf):
-    """Whether exchanging the directions of 1,000 random pairs leaves the values equal."""
+def _is_reciprocal(brdf: Lookup) -> bool:
+    """Return whether exchanging the directions of 1,000 random pairs leaves the values equal."""
     u, v = np.random.default_rng(0).random((2, 2, 1000))
     wi, wo = from_angles(np.arccos(0.1 + 0.9 * u), 2 * np.pi * v)
     return np.allclose(brdf(wi, wo), brdf(wo, wi), rtol=1e-6)
 
 
-def _average_at_normal(brdf):
-    """The BRDF of an isotropic material, averaged over the azimuth of wo at normal incidence.
+def _average_at_normal(brdf: Lookup) -> Lookup:
+    """Return an isotropic BRDF that is averaged over the azimuth of wo at normal incidence.
 
-    There the azimuth means nothing, but a file's values may depend on it; a table cell near the
-    normal would hold the value at one azimuth only. Up to 3° the mean fades out.
+    The azimuth means nothing there, but a file's values may depend on it, and a table cell near the
+    normal would hold the value at one azimuth only. The mean fades out until wi is 3° from the
+    normal.
     """
 
-    def average(wi, wo):
+    def average(wi: FloatArray, wo: FloatArray) -> FloatArray:
         values = brdf(wi, wo)
         theta_i = np.arccos(np.minimum(wi[:, 2], 1))
         near = theta_i < NEAR_NORMAL
@@ -98,8 +103,8 @@ def _average_at_normal(brdf):
     return average
 
 
-def _lift(w):
-    """The directions `w` (n, 3), with those whose cosine is below `LEAST_COSINE` lifted to it."""
+def _lift(w: FloatArray) -> FloatArray:
+    """Return the directions `w` (n, 3), lifted where their cosine is below `LEAST_COSINE`."""
     z = np.maximum(w[:, 2], LEAST_COSINE)
     shorter = np.sqrt((1 - z * z) / np.maximum(w[:, 0] ** 2 + w[:, 1] ** 2, 1e-12))
     lifted = np.stack([w[:, 0] * shorter, w[:, 1] * shorter, z], axis=1)

@@ -1,24 +1,63 @@
-"""Checks the data of which a `Measured` is made: names and notes, a table, standard errors."""
+"""Checks of the data that a `Measured` is made of, and errors that name the row of a wrong number.
+
+A `Measured` is made of names and notes, a table or samples, and standard errors.
+"""
+
+from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from numbers import Real
 
 import numpy as np
+from numpy.typing import NDArray
 
+from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.colours import RGB
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.names import printable
 from brdfkit.model.samples.samples import require_some
 
 
+@dataclass(frozen=True)
+class Origin:
+    """The place that numbers come from, for the errors about them.
+
+    `name`: of the file or of the material; `lines`: the number of the line of each row of a file,
+    None for arrays.
+
+    >>> Origin("mine.csv", [2, 3]).row(1)
+    'line 3'
+    """
+
+    name: str
+    lines: Sequence[int] | None = None
+
+    def error(self, problem: str) -> BrdfkitError:
+        """Return a `BrdfkitError`; `problem` says what is wrong and what to do, without a stop."""
+        return BrdfkitError(f"{self.name}: {problem}.")
+
+    def row(self, index: int) -> str:
+        """Return the words for a row: its line in the file, or its number, counted from 0."""
+        return f"row {index}" if self.lines is None else f"line {self.lines[index]}"
+
+    @property
+    def how_to_state_units(self) -> str:
+        """The end of an error: how to state the unit of the angles."""
+        if self.lines is None:
+            return "say unit='degrees' or unit='radians'"
+        return "say so in the columns' names, as theta_i [deg] or theta_i [rad]"
+
+
 def make_printable(
     name: str, channels: Sequence[str], info: Mapping[str, str] | None
 ) -> tuple[str, tuple[str, ...], dict[str, str]]:
-    """The name, the channels and the notes `info`, as text that can be printed."""
+    """Return the name, the channels and the notes `info` as text without control characters."""
     return printable(name), tuple(map(printable, channels)), to_notes(info, name)
 
 
-def to_notes(info, name):
-    """The notes `info`, or None, as text that can be printed."""
+def to_notes(info: Mapping[str, str] | None, name: str) -> dict[str, str]:
+    """Return the notes `info` as text without control characters; None gives no notes."""
     if not isinstance(info, Mapping | None):
         raise BrdfkitError(
             f"{name}: info = {info!r:.60} should be notes by their names, as in "
@@ -27,14 +66,15 @@ def to_notes(info, name):
     return {printable(key): printable(note, keep="\n\t") for key, note in (info or {}).items()}
 
 
-def usual_channels(values, samples, name):
-    """The channels of `values` (samples, channels) whose names are not given: R, G, B, or Y.
+def default_channels(values: ArrayLike, samples: int, name: str) -> tuple[str, ...]:
+    """Return the names of the channels where the user gives none: R, G, B for three, Y for one.
 
-    One sample may have its three values as (3,). Raises `BrdfkitError` for another number.
+    `values` are (samples, channels); a single sample may have its three values as (3,). Raises
+    `BrdfkitError` for another number of channels.
     """
     shape = np.shape(values)
-    of_one = shape[0] if shape and samples == 1 else 1
-    columns = shape[1] if len(shape) == 2 else of_one
+    in_single_sample = shape[0] if shape and samples == 1 else 1
+    columns = shape[1] if len(shape) == 2 else in_single_sample
     if columns not in (1, len(RGB)):
         raise BrdfkitError(
             f"{name}: values {shape} have {columns} columns; say what they are, as in "
@@ -43,11 +83,13 @@ def usual_channels(values, samples, name):
     return ("Y",) if columns == 1 else RGB
 
 
-def check_table(values, phi_d_period, channels, name):
-    """The `values` ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, channels) of a table, infinite ones
-    replaced by NaN.
+def check_table(
+    values: ArrayLike, phi_d_period: float, channels: Sequence[str], name: str
+) -> NDArray[np.float64]:
+    """Return the values of a table, with NaN for infinite ones.
 
-    Raises `BrdfkitError` for another shape, an impossible period, and where no cell is measured.
+    The shape is ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, channels). Raises `BrdfkitError` for
+    another shape, an impossible period [rad], and where no cell was measured.
     """
     values = np.asarray(values, float)
     if values.ndim not in (4, 5) or values.shape[-1] != len(channels) or 0 in values.shape:
@@ -61,12 +103,10 @@ def check_table(values, phi_d_period, channels, name):
             "reciprocal, 2π."
         )
     require_some(np.isfinite(values).all(axis=-1), name, values, channels)
-    if np.isinf(values).any():
-        values = np.where(np.isinf(values), np.nan, values)
-    return values
+    return np.where(np.isinf(values), np.nan, values) if np.isinf(values).any() else values
 
 
-def check_shape(shape, name):
+def check_shape(shape: Sequence[int], name: str) -> None:
     """Raise `BrdfkitError` unless `shape` is ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d)."""
     numbers = shape if isinstance(shape, tuple | list) else (shape,)
     whole = all(isinstance(n, int | np.integer) and n >= 1 for n in numbers)
@@ -77,20 +117,31 @@ def check_shape(shape, name):
         )
 
 
-def check_errors(standard_error, values, name):
-    """Standard errors (n, channels), or None where none are given.
+def require_max_angle(max_angle: float) -> None:
+    """Raise `BrdfkitError` unless `max_angle` is above 0° and at most 90°."""
+    if not isinstance(max_angle, Real) or not 0 < max_angle <= 90:
+        raise BrdfkitError(
+            f"max_angle = {max_angle!r} should be an angle above 0° and at most 90°."
+        )
 
-    Raises `BrdfkitError` unless they have the shape of `values`, those of one channel may be (n,),
-    and are finite and not negative wherever these are finite.
+
+def check_errors(
+    standard_error: ArrayLike | None, values: FloatArray, name: str
+) -> NDArray[np.float64] | None:
+    """Return standard errors as (n, channels); None where there are none.
+
+    They must have the shape of `values` (..., channels), or (n,) for one channel. Raises
+    `BrdfkitError` for another shape, and where a value is finite and its error negative or not
+    finite.
     """
     if standard_error is None:
         return None
-    errors = given = np.asarray(standard_error, float)
-    if given.ndim == 1 and values.shape[1:] == (1,):
-        errors = given[:, None]
+    errors = stated = np.asarray(standard_error, float)
+    if stated.ndim == 1 and values.shape[1:] == (1,):
+        errors = stated[:, None]
     if errors.shape != values.shape:
         raise BrdfkitError(
-            f"{name}: standard errors {given.shape} should have the shape {values.shape} of "
+            f"{name}: standard errors {stated.shape} should have the shape {values.shape} of "
             "the values."
         )
     bad = np.isfinite(values) & ~((errors >= 0) & np.isfinite(errors))

@@ -1,28 +1,30 @@
-"""Mends samples that were written in another convention: their azimuths, or a cosine in them."""
+"""Mends samples of another convention: azimuths from the mirror's side, or values times a cosine.
+
+brdfkit's own convention is the BRDF without a cosine, and the mirror direction at
+phi_o = phi_i + 180°.
+"""
 
 from dataclasses import replace
-from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.materials.measured.measured_data import MeasuredData
+from brdfkit.materials.measured.measured_data import Data, MeasuredData
 from brdfkit.model.samples.samples import require_some
 
-Data = TypeVar("Data", bound=MeasuredData)
-LEAST_COSINE = 1e-3  # a BRDF times a smaller cosine does not tell the BRDF
-# The notes of what was done, by their keys
+LEAST_COSINE = 1e-3  # a smaller cosine is not divided out: the quotient would be noise
+# The notes that say what was mended, by their keys
 DIVIDED = {"cosine": "the values were BRDF × cos theta_o and are divided by it"}
 TURNED = {"azimuth": "phi_o was counted from the mirror's side and is 180° more"}
 OPTIONS = {"mirror_azimuth": TURNED, "divide_by_cos": DIVIDED}
 
 
 def mend(data: Data, mirror_azimuth: bool = False, divide_by_cos: bool = False) -> Data:
-    """A `Measured` with 180° added to every phi_o, with its values divided by cos theta_o, or both.
+    """Return a `Measured` with 180° added to every phi_o, with values over cos theta_o, or both.
 
-    The notes in `info` say so. Raises `BrdfkitError` for a table, for a format that has values
-    between the samples, and for what was mended before: these are in brdfkit's convention.
+    The notes in `info` say so. Raises `BrdfkitError` for data that are in brdfkit's convention: a
+    table, a format with values between its samples, and data that were mended before.
     """
     if mirror_azimuth:
         _require_unmended(data, "mirror_azimuth")
@@ -34,22 +36,24 @@ def mend(data: Data, mirror_azimuth: bool = False, divide_by_cos: bool = False) 
     return data
 
 
-def can_be_mended(data: MeasuredData, option: str) -> bool:
-    """Whether `mend` takes this option for a `Measured`."""
+def can_mend(data: MeasuredData, option: str) -> bool:
+    """Return whether `mend` accepts this option, by its name, for a `Measured`."""
     return not (data.is_table or data.has_lookup) and not _has_notes(data, option)
 
 
-def cosines(wo: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """What values (n, channels) with a cosine of the view are divided by, (n, 1); and the rows of
-    `wo` (n, 3) in which it is too small, where this is 1."""
+def find_cosines(wo: FloatArray) -> tuple[FloatArray, BoolArray]:
+    """Return cos theta_o (n, 1) of the directions `wo` (n, 3), by which values are divided.
+
+    The second result is a mask (n,) of the rows where the cosine is too small; 1 stands there.
+    """
     low = wo[:, 2] < LEAST_COSINE
     return np.where(low, 1.0, wo[:, 2])[:, None], low
 
 
 def _divide(data: Data) -> Data:
-    """The values and their standard errors divided by cos theta_o."""
+    """Return a `Measured` with its values and their standard errors divided by cos theta_o."""
     samples, errors = data.samples, data.standard_error
-    cosine, low = cosines(samples.wo)
+    cosine, low = find_cosines(samples.wo)
     values, valid = samples.values / cosine, samples.valid & ~low
     require_some(valid, data.name, values, data.channels)
     return replace(
@@ -60,13 +64,14 @@ def _divide(data: Data) -> Data:
     )
 
 
-def _has_notes(data, option):
+def _has_notes(data: MeasuredData, option: str) -> bool:
+    """Return whether the notes of a `Measured` say that this option was applied."""
     return OPTIONS[option].items() <= data.info.items()
 
 
-def _require_unmended(data, option):
+def _require_unmended(data: MeasuredData, option: str) -> None:
     """Raise `BrdfkitError` where a `Measured` is in brdfkit's convention as it is."""
-    if can_be_mended(data, option):
+    if can_mend(data, option):
         return
     what = "is a table, which states its directions and that it holds the BRDF"
     if _has_notes(data, option):
