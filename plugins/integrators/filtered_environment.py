@@ -33,7 +33,7 @@ from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.lighting.filtering.filtered_light import FILTERS, FilteredLight
 from brdfkit.lighting.filtering.filtered_sampling import FilteredSampling
 from brdfkit.lighting.filtering.lobe_light import LobeLight
-from brdfkit.lighting.spherical_gaussians.lobes_of_material import METHODS as LOBES
+from brdfkit.lighting.spherical_gaussians.lobe_table import METHODS as LOBES
 from brdfkit.lighting.visibility.casters import Casters
 from brdfkit.lighting.visibility.decomposition import CONCAVITY
 from brdfkit.lighting.visibility.occluders import RESOLUTION

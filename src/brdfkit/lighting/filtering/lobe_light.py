@@ -8,7 +8,7 @@ with the lobes interpolated between the views of a `LobeTable`. [Ergun 2015, sec
 import numpy as np
 
 from brdfkit.lighting.filtering.scene_bsdfs import KeptByValues, bsdfs_of, is_isotropic
-from brdfkit.lighting.spherical_gaussians.lobes_of_material import lobe_table
+from brdfkit.lighting.spherical_gaussians.lobe_table import lobe_table
 from brdfkit.mitsuba_bridge.arrays import Rows, bracket, periodic_bracket
 from brdfkit.mitsuba_bridge.bsdf.from_dictionary import eval_bsdf
 from brdfkit.mitsuba_bridge.channels import emission_of_rgb

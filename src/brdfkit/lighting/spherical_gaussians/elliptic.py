@@ -1,45 +1,65 @@
-"""One anisotropic lobe per view, as n round lobes spread over its ellipse.
+"""The method `elliptic`: one anisotropic lobe per view, as n round lobes spread over its ellipse.
 
-The lobe of `single` is round; those of brushed metal, and of any material at grazing views, are
-not. Here the samples that belong to it give an `AnisotropicGaussian`, whose points carry round
-lobes, narrower than it is across: their sum has its second moments, from 3 lobes on.
+The lobe of `single_lobe.py` is round. Lobes of brushed metal, and of any material at grazing views,
+are not. Here the samples that belong to that lobe are fitted with an anisotropic spherical Gaussian
+
+    G(v) = max(v·z, 0) e^(-λ (v·x)² - μ (v·y)²)
+
+with an orthonormal frame x, y, z and bandwidths λ, μ > 0 [Xu et al. 2013]. Seen along z, it is a
+Gaussian of the plane, since v·z dω is an area of the plane; hence its moments. Round lobes narrower
+than the ellipse stand on its points: from 3 lobes on, their sum has the same second moments.
 """
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.geometry.directions import normalize
-from brdfkit.lighting.spherical_gaussians import anisotropic
-from brdfkit.lighting.spherical_gaussians.single import one_lobe
+from brdfkit.lighting.spherical_gaussians.one_view import OneView, ViewLobes
+from brdfkit.lighting.spherical_gaussians.single_lobe import fit_lobe
 from brdfkit.lighting.spherical_gaussians.von_mises_fisher import tangents
 
 
-def elliptic(grid, lobes):
-    """(diffuse, weights, axes, κ) of each `OneView` of a `grid`: `lobes` of equal weight and κ."""
-    return [[_spread(one, lobes) for one in views] for views in grid]
+def elliptic(grid: list[list[OneView]], lobes: int) -> list[list[ViewLobes]]:
+    """Fit an ellipse of `lobes` lobes, of equal weight and κ, to each view of a `grid`."""
+    return [[_spread_lobes(one, lobes) for one in views] for views in grid]
 
 
-def _spread(one, n):
-    part, share, *_ = one_lobe(one)
+def fit_anisotropic(x: FloatArray, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Fit an anisotropic Gaussian to directions `x` (n, 3) with `weights` (n,), by their moments.
+
+    Returns its frame (3, 3), with the rows x, y and z, and its bandwidths (2,), λ and μ.
+    """
+    axis = normalize(weights @ x)
+    plane = np.array(tangents(axis))
+    flat = x @ plane.T
+    moments = (weights[:, None] * flat).T @ flat / weights.sum()
+    bandwidths, directions = np.linalg.eigh(np.linalg.inv(2 * moments))  # <x²> = 1 / 2λ
+    return np.array([*directions.T @ plane, axis]), bandwidths
+
+
+def _spread_lobes(one: OneView, n: int) -> ViewLobes:
+    """Fit an anisotropic lobe to a view, and spread `n` round lobes over it."""
+    part, share, *_ = fit_lobe(one)
     x, weights = one.samples()
-    lobe = anisotropic.fit(x, weights * share)
+    frame, bandwidths = fit_anisotropic(x, weights * share)
     light = one.energy.sum(axis=0)
-    variances = 1 / (2 * lobe.bandwidths)  # along the lobe's x and y
-    # The kernels have half of a round lobe's variance, and less than that across a narrow one
+    variances = 1 / (2 * bandwidths)  # along the lobe's x and y
+    # The kernels have half of a round lobe's variance, and less than that across a narrow lobe
     kernel = min(np.sqrt(variances.prod()) / 2, 0.9 * variances.min())
-    # The symmetric root of what the kernels leave, so that points move smoothly from view to view,
-    # where the axes of the ellipse may change places
-    plane = np.array(tangents(lobe.frame[2]))
-    turn = lobe.frame[:2] @ plane.T
+    # The symmetric root of the remaining variance moves points smoothly from view to view, even
+    # where the axes of the ellipse change places
+    plane = np.array(tangents(frame[2]))
+    turn = frame[:2] @ plane.T
     root = turn.T @ np.diag(np.sqrt(variances - kernel)) @ turn
-    u = _standard_points(n) @ root @ plane
+    u = _normal_points(n) @ root @ plane
     height = np.sqrt(np.maximum(1 - (u**2).sum(axis=1), 0))
-    axes = u + height[:, None] * lobe.frame[2]
+    axes = u + height[:, None] * frame[2]
     weights = np.repeat(part * light[None] / n, n, axis=0)
     return one.diffuse + (1 - part) * light, weights, normalize(axes), np.full(n, 1 / kernel)
 
 
-def _standard_points(n):
-    """n points (n, 2) of a normal distribution, whose mean is 0 and whose covariance is 1."""
+def _normal_points(n: int) -> FloatArray:
+    """Return `n` points (n, 2) of a normal distribution, with mean 0 and covariance 1."""
     m = np.arange(n)
     radius = np.sqrt(-2 * np.log(1 - (m + 0.5) / n))
     angle = np.pi * (np.sqrt(5) - 1) * m

@@ -1,60 +1,123 @@
-"""`LobeTable`: BRDF × cosine as spherical Gaussians at a grid of views, and between them.
+"""`lobe_table`: BRDF × cosine of a material as spherical Gaussians, at a grid of views and between.
 
     f(i, o) cosθ_i ≈ d(o) cosθ_i / π + Σ_k w_k(o) g(i; μ_k(o), κ_k(o))
 
-At a view o between the stored ones, d, w, κ and μ are interpolated: lobe k of one view corresponds
-to lobe k of its neighbours. A white environment of radiance 1 thus gives d + Σ w.
+with the BRDF f, the light's direction i at the polar angle θ_i, the view o, the albedo d of the
+diffuse part, and lobes g with axes μ_k, concentrations κ_k and integrals w_k. Between the stored
+views, d, w, κ and μ are interpolated: lobe k of a view corresponds to lobe k of its neighbours. A
+white environment of radiance 1 thus gives d + Σ w.
 """
 
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.array_types import FloatArray
+from brdfkit.core.errors import no_such
 from brdfkit.core.geometry.directions import normalize, rotate_z, to_angles
 from brdfkit.core.geometry.multilinear import bracket, corners, flat_index, periodic_bracket
+from brdfkit.lighting.spherical_gaussians.elliptic import elliptic
+from brdfkit.lighting.spherical_gaussians.gmm import gmm
+from brdfkit.lighting.spherical_gaussians.one_view import Brdf, sample_view
+from brdfkit.lighting.spherical_gaussians.single_lobe import kde, warped
 from brdfkit.lighting.spherical_gaussians.von_mises_fisher import density
 
-Floats = NDArray[np.float64]
+METHODS = {"gmm": gmm, "elliptic": elliptic, "kde": kde, "warped": warped}
+LARGEST_THETA_O = np.radians(88)  # beyond it, a ball has a thousandth of its pixels
 
 
 @dataclass(frozen=True)
 class LobeTable:
-    """The lobes of a material at each view; see the file.
+    """The lobes of a material at each view of a grid; `lobe_table` makes it.
 
     The views are a grid of `theta_o` × `phi_o`, the azimuth fastest: view i·len(phi_o) + j has
-    theta_o[i] and phi_o[j], which is j·2π/len(phi_o). One azimuth stands for all of an isotropic
-    material. The axes are stored as if every view had azimuth 0, in the plane y = 0 with x ≥ 0, and
-    are turned about z by the azimuth of the view: the lobes of neighbours are most alike so.
+    theta_o[i] and phi_o[j], which is j·2π/len(phi_o). An isotropic material has one azimuth. Axes
+    are stored as if every view had azimuth 0, in the plane y = 0 with x ≥ 0, and are turned about z
+    by the azimuth of the view: so the lobes of neighbours are most alike.
     """
 
-    theta_o: Floats = field(repr=False)  #: (nθ,) [rad], evenly from 0, below π/2
-    phi_o: Floats = field(repr=False)  #: (nφ,) [rad], evenly from 0 around the circle
-    diffuse: Floats = field(repr=False)  #: (views, channels) albedo of the diffuse part
-    weights: Floats = field(repr=False)  #: (views, lobes, channels) integral of each lobe
-    axes: Floats = field(
-        repr=False
-    )  #: (views, lobes, 3) unit vectors, z along the normal, see above
-    kappa: Floats = field(repr=False)  #: (views, lobes) concentrations
+    theta_o: FloatArray = field(repr=False)  #: (nθ,) [rad], evenly from 0, below π/2
+    phi_o: FloatArray = field(repr=False)  #: (nφ,) [rad], evenly from 0 around the circle
+    diffuse: FloatArray = field(repr=False)  #: (views, channels) albedo of the diffuse part
+    weights: FloatArray = field(repr=False)  #: (views, lobes, channels) integral of each lobe
+    axes: FloatArray = field(repr=False)  #: (views, lobes, 3) unit vectors, z along the normal
+    kappa: FloatArray = field(repr=False)  #: (views, lobes) concentrations
 
-    def at(self, wo):
-        """(diffuse (n, channels), weights (n, lobes, channels), axes (n, lobes, 3), kappa
-        (n, lobes)) at views `wo` (n, 3); beyond the last theta_o, those of the last."""
+    def at(self, wo: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Interpolate the lobes at views `wo` (n, 3); beyond the last theta_o, take the last.
+
+        Returns diffuse (n, channels), weights (n, lobes, channels), axes (n, lobes, 3) and kappa
+        (n, lobes).
+        """
         theta, phi = to_angles(wo)
         brackets = [bracket(theta / self.theta_o[1], len(self.theta_o))]
         brackets += [periodic_bracket(phi / (2 * np.pi) * len(self.phi_o), len(self.phi_o))]
         shape = len(self.theta_o), len(self.phi_o)
         shares = [(flat_index(nodes, shape), share) for nodes, share in corners(brackets)]
 
-        def mixed(values):
+        def interpolate(values: FloatArray) -> FloatArray:
             each = (-1,) + (1,) * (values.ndim - 1)
-            return sum(values[view] * np.reshape(share, each) for view, share in shares)
+            return np.sum([values[view] * np.reshape(s, each) for view, s in shares], axis=0)
 
-        axes = rotate_z(normalize(mixed(self.axes)), phi[:, None])
-        return mixed(self.diffuse), mixed(self.weights), axes, mixed(self.kappa)
+        axes = rotate_z(normalize(interpolate(self.axes)), phi[:, None])
+        diffuse, weights = interpolate(self.diffuse), interpolate(self.weights)
+        return diffuse, weights, axes, interpolate(self.kappa)
 
-    def eval(self, wi, wo):
-        """BRDF × cosθ_i (n, channels) [sr⁻¹] as the lobes have it, of direction pairs (n, 3)."""
+    def eval(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
+        """Evaluate BRDF × cosθ_i (n, channels) [sr⁻¹] by the lobes, at direction pairs (n, 3)."""
         diffuse, weights, axes, kappa = self.at(wo)
         lobes = density(wi[:, None, :], axes, kappa)
         return diffuse * np.maximum(wi[:, 2:], 0) / np.pi + np.einsum("nk,nkc->nc", lobes, weights)
+
+
+def lobe_table(
+    brdf: Brdf, method: str = "gmm", lobes: int = 32, views: int = 24, azimuths: int = 1
+) -> LobeTable:
+    """Fit spherical Gaussians to a material at a grid of views.
+
+    Parameters
+    ----------
+    brdf : callable
+        ``brdf(wi, wo)`` gives (n, channels) in sr⁻¹, without a cosine, for pairs of unit vectors
+        (n, 3) above the surface: the `eval` of any material.
+    method : str, default "gmm"
+        "gmm" fits a mixture at each view, and is the nearest to the material; "warped" fits one
+        lobe per view; "kde" puts `lobes` sharper lobes in its place; "elliptic" spreads these over
+        an ellipse, for brushed metal and grazing views.
+    lobes : int, default 32
+        Number of lobes per view, at least 1; "warped" has 1.
+    views : int, default 24
+        Number of polar angles of the view, evenly from 0 to 88°, at least 2.
+    azimuths : int, default 1
+        Number of azimuths of the view, evenly around the circle: 1 for an isotropic material, about
+        16 otherwise.
+
+    Returns
+    -------
+    LobeTable
+        The lobes at all views. The same arguments always give the same table.
+
+    Raises
+    ------
+    BrdfkitError
+        If the method is unknown, a count is too small, or a value of the BRDF is not finite.
+
+    Examples
+    --------
+    >>> lobe_table(model.eval, lobes=16).weights.shape
+    (24, 16, 3)
+    """
+    if method not in METHODS:
+        raise no_such("method", method, METHODS)
+    lobes = to_whole_number("lobes", lobes, least=1)
+    theta_o = np.linspace(0, LARGEST_THETA_O, to_whole_number("views", views, least=2))
+    phi_o = np.arange(to_whole_number("azimuths", azimuths, least=1)) * 2 * np.pi / azimuths
+    grid = [[sample_view(brdf, theta, phi) for theta in theta_o] for phi in phi_o]
+    by_azimuth = METHODS[method](grid, lobes)
+    # From [azimuth][theta] of four arrays to four arrays (views, ...), the azimuth fastest
+    return LobeTable(
+        theta_o,
+        phi_o,
+        *(np.array([row[i][k] for i in range(views) for row in by_azimuth]) for k in range(4)),
+    )
