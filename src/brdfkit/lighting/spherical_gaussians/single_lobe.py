@@ -34,7 +34,7 @@ def kde(grid: list[list[OneView]], lobes: int) -> list[list[ViewLobes]]:
 
 
 def _split_lobe(one: OneView, n: int) -> ViewLobes:
-    """Return the lobe of a view, or `n` lobes in its place, and the diffuse part with all other light."""
+    """Fit the lobe of a view, or `n` lobes in its place; all other light joins the diffuse part."""
     part, _, axis, kappa = fit_lobe(one)
     light = one.energy.sum(axis=0)
     axes, kappas = split(axis, kappa, n) if n > 1 else (axis[None], np.array(kappa))
