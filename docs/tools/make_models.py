@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from formulas import set_formulas
 from PIL import Image
 
 import brdfkit as bk
@@ -95,7 +96,7 @@ def table(head, rows):
 def docstring(source):
     """Title, sentence and the other lines of the page of a plugin's file or class."""
     found = plugin_page(source)
-    text = "\n".join(found.lines).strip("\n")
+    text = set_formulas("\n".join(found.lines).strip("\n"))
     return found.title, found.sentence[0].upper() + found.sentence[1:], text
 
 

@@ -3,7 +3,7 @@
     f = k_d / π + k_s c (N·H)^(n_u cos²φ_h + n_v sin²φ_h)
 
     normalisation=printed   c = (n + 2) / 2π
-    normalisation=exact     c = (n + 2)(n + 4) / 8π (2^(-n/2) + n)
+    normalisation=exact     c = (n + 2)(n + 4) / (8π (2^(-n/2) + n))
 
 n + 2 stands for √((n_u + 2)(n_v + 2)) where the exponents differ. [Blinn 1977]; [Kurt 2007,
 eq. 3.4]. The printed constant is Phong's: with the half vector the lobe reflects up to four times
