@@ -85,6 +85,17 @@ class Camera:
         """Where it looks: a unit vector (3,)."""
         return -self.view[2, :3]
 
+    def rays(self, size):
+        """Return vectors (height, width, 3) from the eye through the middles of a picture's pixels.
+
+        size : (width, height) [pixels]. The vectors have the length 1 along the view.
+        """
+        width, height = size
+        across = self.slope_x * (2 * (np.arange(width) + 0.5) / width - 1)
+        upwards = self.slope_y * (1 - 2 * (np.arange(height) + 0.5) / height)
+        x, y = np.meshgrid(across, upwards)
+        return np.stack([x, y, np.full_like(x, -1)], axis=-1) @ self.view[:3, :3]
+
     def corners(self):
         """The corners (8, 3) of what it sees; the first four are on the near plane."""
         return project_all(np.linalg.inv(self.matrix), CUBE)

@@ -5,7 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.core.arguments import to_array
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.projective.camera import Camera
+from brdfkit.core.projective.homogeneous import axes_about, project_all, rigid
 
 NEAREST, FARTHEST = 1e-2, 1e4  # what Mitsuba shows, in heights of the camera above the sample
 PARALLEL = 1e-5  # the sine of an angle in which Mitsuba sees none
@@ -48,36 +51,36 @@ class Pinhole:
             raise BrdfkitError("camera: it looks along up, or at where it is.")
 
     @property
-    def axes(self):
-        """Unit vectors (right, up, forward) of the picture."""
-        forward = self.target - self.origin
-        forward = forward / np.linalg.norm(forward)
-        right = np.cross(forward, self.up)
-        right = right / np.linalg.norm(right)
-        return right, np.cross(right, forward), forward
+    def axes(self) -> FloatArray:
+        """The unit vectors (3, 3) that point right, up and backward in a picture, as rows."""
+        backward = self.origin - self.target
+        return axes_about(backward / np.linalg.norm(backward), self.up / np.linalg.norm(self.up))
 
-    def project(self, points, size):
-        """The places (n, 2) of `points` (n, 3) in a picture of `size` (width, height) [pixels]:
-        columns from its left, rows from its top edge; nan of points behind the camera."""
-        width, height = size
-        right, up, forward = self.axes
-        away = points - self.origin
-        depth = away @ forward
-        depth = np.where(depth > 0, depth, np.nan)
-        scale = width / 2 / np.tan(np.radians(self.fov) / 2)
-        column = width / 2 + scale * (away @ right) / depth
-        row = height / 2 - scale * (away @ up) / depth
-        return np.stack([column, row], axis=1)
+    def camera(self, size: tuple[int, int]) -> Camera:
+        """Return the camera with matrices for pictures of `size` (width, height) [pixels]."""
+        slope, clips = np.tan(np.radians(self.fov) / 2), self.clips()
+        view = rigid(self.axes, self.origin)
+        return Camera(view, slope, slope * size[1] / size[0], clips["near_clip"], clips["far_clip"])
 
-    def on_sample(self, size):
-        """Where the middle of each pixel of a picture of `size` (width, height) [pixels] is in the
-        plane z = 0, x and y (height, width, 2) [m]; inf where it looks beside."""
-        width, height = size
-        right, up, forward = self.axes
-        scale = 2 / width * np.tan(np.radians(self.fov) / 2)
-        column, row = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
-        across, down = scale * (column - width / 2), scale * (row - height / 2)
-        ray = forward + across[..., None] * right - down[..., None] * up
+    def project(self, points: FloatArray, size: tuple[int, int]) -> FloatArray:
+        """Return the places (n, 2) of points (n, 3) in a picture of `size` (width, height).
+
+        They are columns from the left and rows from the top edge [pixels]; nan for points behind
+        the camera.
+        """
+        camera = self.camera(size)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            x, y, _ = project_all(camera.infinite_projection @ camera.view, points).T
+        places = np.stack([(1 + x) / 2 * size[0], (1 - y) / 2 * size[1]], axis=1)
+        return np.where(camera.depths(points)[:, None] > 0, places, np.nan)
+
+    def on_sample(self, size: tuple[int, int]) -> FloatArray:
+        """Return where the middle of each pixel of a picture is in the plane z = 0.
+
+        The result holds x and y (height, width, 2) [m], inf where the pixel looks beside the plane;
+        `size` is (width, height) [pixels].
+        """
+        ray = self.camera(size).rays(size)
         steps = np.where(ray[..., 2] < 0, -self.origin[2] / np.minimum(ray[..., 2], -1e-12), np.inf)
         with np.errstate(invalid="ignore"):
             return np.nan_to_num((self.origin + steps[..., None] * ray)[..., :2], nan=np.inf)
