@@ -88,7 +88,7 @@ def main():
     plain, _ = best_seconds(lambda: plain_ward_duer(select_samples(data, 80.0)))
     table = Printed("full table", "loss", "seconds", "plain SciPy's", "loss reached", "message")
     for model, loss, robust in TABLE:
-        seconds, fit = best_seconds(lambda: bk.fit(model, data, loss, robust=robust))  # noqa: B023
+        seconds, fit = best_seconds(lambda: bk.fit(data, model, loss=loss, robust=robust))  # noqa: B023
         share = f"{plain / seconds:.1f} ×" if (model, loss) == ("ward_duer", "cosine") else ""
         name = " ".join(filter(None, (model, robust)))
         table.add_row(name, loss, f"{seconds:.3f}", share, f"{fit.loss:.6g}", fit.message)
@@ -99,16 +99,16 @@ def main():
         goniometer = bk.load(Path(folder) / "minidiff_paints" / "C8_Silver.astm.xz")
         table = Printed("10,804 samples, log", "seconds")
         for model in GONIOMETER:
-            seconds, _ = best_seconds(lambda: bk.fit(model, goniometer))  # noqa: B023
+            seconds, _ = best_seconds(lambda: bk.fit(goniometer, model))  # noqa: B023
             table.add_row(model, f"{seconds:.3f}")
         out.print(table)
         curet = [bk.load(Path(folder) / "curet" / f"abrdf.dat#{k}") for k in NUMBERS]
         for model in SEVEN.values():
-            bk.fit(model, curet[0], "cosine")
+            bk.fit(curet[0], model, loss="cosine")
         began = time.perf_counter()
         for model in SEVEN.values():
             for sample in curet:
-                bk.fit(model, sample, "cosine")
+                bk.fit(sample, model, loss="cosine")
         out.print(f"364 fits of CUReT: {time.perf_counter() - began:.1f} s")
     return 0
 

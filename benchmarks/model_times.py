@@ -38,8 +38,8 @@ def full_table():
 
 def fit_seconds(name, data, loss):
     """Seconds of a warm fit."""
-    bk.fit(name, data, loss)
-    return min(bk.fit(name, data, loss).seconds for _ in range(2))
+    bk.fit(data, name, loss=loss)
+    return min(bk.fit(data, name, loss=loss).seconds for _ in range(2))
 
 
 def render_seconds(materials):

@@ -150,7 +150,7 @@ def bounces():
     print("PSNR [dB] as a screen shows it, of the picture that refine saw / under another light")
     for name in ("satin_plastic", "car_paint", "blasted_gold"):
         measured = bk.load(name)
-        by_picture = bk.fit("ggx", measured, "picture")
+        by_picture = bk.fit(measured, "ggx", loss="picture")
         for said, depth in (("direct light", 2), ("light bounces", 6)):
             truth = [picture(corner(measured.scene_dict(), 48, depth, v)) for v in (FRONT, SIDE)]
             found = {'fit, "picture"': by_picture}

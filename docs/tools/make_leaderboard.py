@@ -153,7 +153,7 @@ def time_fits(file, models, kept):
         seconds = []
         for _ in range(2):
             began = time.process_time()
-            bk.fit(model, data)
+            bk.fit(data, model)
             seconds.append(time.process_time() - began)
         return min(seconds)
 

@@ -25,7 +25,7 @@ INDEX = """They come with brdfkit, are free to use, and are found by their names
 so every fit has something to miss. [How they were made](../../data/measured/README.md)."""
 FITS = """## Four fits
 
-Each by `bk.fit(model, "{name}")`, with the default loss, cbrt. *Error*: what the fit made small;
+Each by `bk.fit("{name}", model)`, with the default loss, cbrt. *Error*: what the fit made small;
 *PSNR*: of the fit's ball against the measured one, {spp} samples per pixel. The picture shows
 `{best}`, which has the least error."""
 AGAIN = """    brdfkit info {name}
@@ -55,7 +55,7 @@ def image(name, alt, width):
 def make(material):
     """Write the page of a material and its two pictures."""
     measured = bk.load(material.name)
-    fits = {name: bk.fit(name, measured) for name in MODELS}
+    fits = {name: bk.fit(measured, name) for name in MODELS}
     rendering = bk.render([measured, *fits.items()], spp=SPP, size=SIZE)
     psnr, errors = rendering.psnr(), bk.compare(measured, fits.values()).errors
     error = {name: errors[fit.name][DEFAULT] for name, fit in fits.items()}

@@ -34,7 +34,7 @@ import brdfkit as bk
 import mitsuba as mi
 
 measured = bk.load("car_paint")  # a file, or a material that brdfkit brings
-fit = bk.fit("{label}", measured)
+fit = bk.fit(measured, "{label}")
 bk.render([measured, fit]).write("fit.png")
 
 mi.set_variant("llvm_ad_rgb")

@@ -141,7 +141,7 @@ def balls(folder):
     draw, font = ImageDraw.Draw(sheet), ImageFont.load_default(FONT)
     for k, name in enumerate(shown):
         data = bk.load(str(folder / name))
-        fits = [bk.fit(model, data) for model in BALLS]
+        fits = [bk.fit(data, model) for model in BALLS]
         pictures = bk.render([data, *fits], spp=SPP, size=SIZE).pictures.values()
         left, top = k % COLUMNS * (width + CAPTION), k // COLUMNS * height
         for column, (title, picture) in enumerate(zip((data.name, *BALLS), pictures, strict=True)):

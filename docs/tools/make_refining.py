@@ -71,7 +71,7 @@ def compare():
     rows, shown = [], None
     for material, model, scene in product(MATERIALS, MODELS, SCENES):
         measured = bk.load(material)
-        fit = bk.fit(model, measured, loss="picture")
+        fit = bk.fit(measured, model, loss="picture")
         truth = pictures(load(scene, measured.scene_dict()), seed=1)
         refined = bk.refine(
             one_camera(load(scene, fit.scene_dict())), truth[0], samples=SAMPLES, starts=1

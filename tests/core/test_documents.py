@@ -107,7 +107,7 @@ def samplers():
 def shown():
     """One object of every class that derives from `Shown`, by the class's name."""
     plaster = bk.load("plaster")
-    fit = bk.fit("ward", plaster, use_standard_error=False)
+    fit = bk.fit(plaster, "ward", use_standard_error=False)
     named = bk.Measured.from_table(np.full((9, 9, 18, 3), 0.1), name=NASTY, info={NASTY: NASTY})
     rendering = bk.render([named, fit], spp=4, size=48)
     objects = [
@@ -122,8 +122,8 @@ def shown():
         bk.check("lambert", only=["energy"]),
         bk.rank(plaster, ["lambert", "ward"]),
         bk.sweep("plaster", "lambert", workers=1),
-        bk.uncertainty.bootstrap(fit, plaster, count=2),
-        bk.uncertainty.profile(fit, plaster, "alpha_u", points=5),
+        bk.uncertainty.bootstrap(fit, plaster, draws=2),
+        bk.uncertainty.profile(fit, plaster, parameter="alpha_u", points=5),
         bk.Reproduction(NASTY, ()),
         refinement(),
         textures(),
@@ -238,7 +238,7 @@ def test_a_name_is_one_line_of_text():
 
 
 def test_values_on_bounds_and_errors_are_told():
-    fit = bk.fit("ggx", bk.load("plaster"))  # it has no highlight: that weight ends on its bound
+    fit = bk.fit(bk.load("plaster"), "ggx")  # it has no highlight: that weight ends on its bound
     row = next(line for line in str(fit).splitlines() if "specular" in line)
     assert row.endswith("! on its bound")
     assert "±" not in row

@@ -37,7 +37,7 @@ def test_first_use_by_many_threads():
     import brdfkit as bk
 
     verbs = [
-        lambda: bk.fit("lambert", bk.Measured.from_table(np.ones((6, 4, 8, 3)))),
+        lambda: bk.fit(bk.Measured.from_table(np.ones((6, 4, 8, 3))), "lambert"),
         lambda: bk.load("plaster"),
         *[lambda: bk.check("lambert", only=["energy"])] * 3,
         *[lambda: bk.render("lambert", size=8, spp=1)] * 7,

@@ -62,7 +62,7 @@ def test_a_table_and_its_rows_give_the_fit_of_the_page(make, results, tmp_path):
 def test_a_cell_of_the_page_comes_again(make, results, measured_data):
     name, model = "curet/abrdf.dat#21", "ggx"
     data = bk.load(str(measured_data / name))
-    found = import_module("real_measurements.errors").Judge(data)(bk.fit(model, data))
+    found = import_module("real_measurements.errors").Judge(data)(bk.fit(data, model))
     kept = results["files"][name]["fits"][model]["cbrt"]
     for figure in ("albedo", "most", "psnr", "log error"):
         assert found[figure] == pytest.approx(kept[figure], rel=5e-3), figure

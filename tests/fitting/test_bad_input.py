@@ -25,7 +25,7 @@ def of_values(values):
 def test_fewer_numbers_than_parameters(name, loss):
     """The fit meets them, claims no certainty, and says so."""
     data = bk.Measured.from_samples(OBLIQUE, UP, [[0.1, 0.2, 0.3]])
-    fit = bk.fit(name, data, loss)
+    fit = bk.fit(data, name, loss=loss)
     if name != "eon":  # which has a roughness and a weight
         assert fit.message.startswith("underdetermined: the values are some of many that meet")
         assert fit.degrees_of_freedom < 0
@@ -33,7 +33,7 @@ def test_fewer_numbers_than_parameters(name, loss):
     assert np.isnan(np.concatenate([np.ravel(e) for e in fit.standard_errors.values()])).all()
     assert "1 sample," in str(fit)
     with pytest.raises(BrdfkitError, match=r"^A robust fit needs more samples than param"):
-        bk.fit(name, data, loss, robust="bisquare")
+        bk.fit(data, name, loss=loss, robust="bisquare")
 
 
 def test_a_channel_without_values():
@@ -54,7 +54,7 @@ def test_a_channel_without_values():
 @pytest.mark.parametrize("constant", [0.3, 0.0, -0.2, 1e-30, 1e20])
 def test_constant_data(constant, loss):
     """A diffuse term, or nothing at all; a search that ends, and a note."""
-    fit = bk.fit("ggx", of_values(np.full((60, 3), constant)), loss)
+    fit = bk.fit(of_values(np.full((60, 3), constant)), "ggx", loss=loss)
     diffuse = np.pi * max(constant, 0)
     np.testing.assert_allclose(fit.values["diffuse_reflectance"], diffuse, rtol=1e-6)
     assert max(fit.values["specular_reflectance"]) <= 1e-6 * diffuse
@@ -70,9 +70,9 @@ def test_a_black_channel_leaves_the_others_alone(loss, robust):
     noise = np.exp(0.1 * np.random.default_rng(0).normal(size=data.values.shape))
     values = data.values * noise * [1, 0, 1]
     black = bk.Measured.from_samples(data.samples.wi, data.samples.wo, values)
-    fit = bk.fit("ward", black, loss, robust=robust)
+    fit = bk.fit(black, "ward", loss=loss, robust=robust)
     others = black.mixed(np.eye(3)[:, [0, 2]], ("R", "B"))
-    alone = bk.fit("ward", others.mixed(np.eye(2), ("650nm", "450nm")), loss, spectral=True)
+    alone = bk.fit(others.mixed(np.eye(2), ("650nm", "450nm")), "ward", loss=loss, spectral=True)
     assert fit.values["diffuse_reflectance"][1] == fit.values["specular_reflectance"][1] == 0
     if not robust:
         assert fit.values["alpha_u"] == pytest.approx(alone.values["alpha_u"], rel=1e-6)
@@ -90,7 +90,7 @@ def test_a_black_channel_leaves_the_others_alone(loss, robust):
 )
 def test_bounds_crossed_or_beyond(given, said):
     with pytest.raises(BrdfkitError, match=f"^ward: .*{said}.*[.]$"):
-        bk.fit("ward", of_values(np.full((20, 1), 0.2)), **given)
+        bk.fit(of_values(np.full((20, 1), 0.2)), "ward", **given)
 
 
 def test_other_models_go_on_where_one_is_nan(tmp_path, no_user_plugins):
@@ -130,11 +130,11 @@ def test_a_loss_that_weighs_nothing_is_refused():
         "mine", "nothing", lambda m, d, ci, co: m - d, weights=lambda cos_i: 0 * cos_i
     )
     with pytest.raises(BrdfkitError, match="of its weights all are 0"):
-        bk.fit("lambert", grey, nothing)
+        bk.fit(grey, "lambert", loss=nothing)
 
 
 def test_sigma_is_a_number():
     grey = of_values(np.full((40, 1), 0.2))
-    fit = bk.fit("koenderink", grey, "plain")
+    fit = bk.fit(grey, "koenderink", loss="plain")
     with pytest.raises(BrdfkitError, match="sigma = 'a' should be a number"):
         bk.uncertainty.prediction_error(fit, grey, sigma="a")

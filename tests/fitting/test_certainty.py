@@ -67,7 +67,7 @@ def test_a_linear_model_has_the_sandwich_of_the_textbook():
     rng = np.random.default_rng(2)
     values = 0.1 + 0.05 * wi[:, 2:] + 0.02 * wo[:, 2:] * rng.normal(size=(100, 1))
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
-    fit = bk.fit("koenderink", data, sample_sum("plain"))
+    fit = bk.fit(data, "koenderink", loss=sample_sum("plain"))
     J, _ = lobe_values(fit.model, wi, wo)
     J = J.T if len(J) == len(fit.values) else J
     inverse = np.linalg.inv(J.T @ J)
@@ -86,7 +86,7 @@ def test_a_linear_model_has_the_sandwich_of_the_textbook():
 
 @pytest.mark.quick
 def test_intervals_are_around_the_values_and_printed():
-    fit = bk.fit("ggx", noisy(bk.models()["ggx"](diffuse_reflectance=(0.1, 0.2, 0.3))))
+    fit = bk.fit(noisy(bk.models()["ggx"](diffuse_reflectance=(0.1, 0.2, 0.3))), "ggx")
     assert fit.standard_errors["alpha_v"] == fit.standard_errors["alpha_u"] > 0
     for name, value in fit.values.items():
         pairs = np.reshape(fit.intervals[name], (-1, 2))
@@ -110,7 +110,7 @@ def test_what_trades_off_is_said(seed, f0):
     values = bk.models()["cook_torrance"](f0=f0).eval(wi, wo)
     values *= np.exp(1e-5 * rng.normal(size=values.shape))
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
-    fit = bk.fit("cook_torrance", data, "log", starts=1)
+    fit = bk.fit(data, "cook_torrance", loss="log", starts=1)
     (said,) = [note for note in fit.notes if "f0" in note and "trade off" in note]
     assert "specular_reflectance" in said
     assert "only their product is determined" in said
@@ -122,7 +122,7 @@ def test_what_trades_off_is_said(seed, f0):
 def test_few_samples_for_many_weights_do_not_trade_off():
     """A sandwich of fewer samples than parameters is singular; what was measured is not."""
     data = noisy(bk.models()["ggx"](diffuse_reflectance=(1, 2, 3)), 16)
-    fit = bk.fit("koenderink", data, "plain")
+    fit = bk.fit(data, "koenderink", loss="plain")
     assert fit.samples < len(fit.certainty.names)
     assert not any("trade off" in note for note in fit.notes)
 
@@ -130,7 +130,7 @@ def test_few_samples_for_many_weights_do_not_trade_off():
 @pytest.mark.quick
 def test_what_is_not_determined_is_said():
     """Of Lafortune's lobe the lengths, of a hundred equal directions all but one number."""
-    fit = bk.fit("lafortune", noisy(bk.models()["lafortune"]()), starts=1)
+    fit = bk.fit(noisy(bk.models()["lafortune"]()), "lafortune", starts=1)
     assert any(
         note == "c_x and c_z trade off: only their ratio is determined" for note in fit.notes
     )
@@ -138,7 +138,7 @@ def test_what_is_not_determined_is_said():
     assert fit.standard_errors["exponent"] > 0
     values = 0.2 + 0.01 * np.random.default_rng(0).normal(size=(100, 1))
     same = bk.Measured.from_samples(UP * 100, UP * 100, values, channels=("Y",))
-    fit = bk.fit("ward", same)
+    fit = bk.fit(same, "ward")
     assert "converged" not in fit.message
     assert np.isnan(fit.standard_errors["alpha_u"])
     assert any("trade off: only a combination" in note for note in fit.notes)
@@ -147,7 +147,7 @@ def test_what_is_not_determined_is_said():
 @pytest.mark.quick
 @pytest.mark.parametrize(("model", "said"), [("ward", "underdetermined"), ("lambert", "as many")])
 def test_one_sample_does_not_converge(model, said):
-    fit = bk.fit(model, bk.Measured.from_samples(UP, UP, [[0.2, 0.3, 0.4]]))
+    fit = bk.fit(bk.Measured.from_samples(UP, UP, [[0.2, 0.3, 0.4]]), model)
     assert fit.message.startswith(said)
     assert "converged" not in str(fit)
     assert all(np.isnan(error).all() for error in map(np.array, fit.standard_errors.values()))
@@ -157,10 +157,10 @@ def test_one_sample_does_not_converge(model, said):
 @pytest.mark.quick
 def test_on_a_bound_is_no_interval():
     data = noisy(bk.models()["ward"](alpha_u=0.4))
-    fit = bk.fit("ward", data, bounds={"alpha_u": (0.01, 0.3)})
+    fit = bk.fit(data, "ward", bounds={"alpha_u": (0.01, 0.3)})
     assert np.isnan(fit.standard_errors["alpha_u"])
     assert fit.standard_errors["diffuse_reflectance"][0] > 0
-    fit = bk.fit("ward", data, fixed={"alpha_u": 0.4})
+    fit = bk.fit(data, "ward", fixed={"alpha_u": 0.4})
     assert np.isnan(fit.intervals["alpha_u"]).all()
     assert fit.degrees_of_freedom == fit.samples - 2
 
@@ -170,10 +170,10 @@ def test_a_saved_or_pickled_fit_is_equal(tmp_path):
     data = noisy(bk.models()["ggx"](diffuse_reflectance=(0.1, 0.2, 0.3)))
     one = bk.Measured.from_samples(UP, UP, [[0.2, 0.3, 0.4]])
     for fit in (
-        bk.fit("ggx", data, bounds={"alpha_u": (0.05, 0.5)}, fixed={"f0": 0.04}),
-        bk.fit("ggx", data, "cosine", robust="huber", starts=1),
-        bk.fit("lafortune", data, starts=1),
-        bk.fit("ward", one),
+        bk.fit(data, "ggx", bounds={"alpha_u": (0.05, 0.5)}, fixed={"f0": 0.04}),
+        bk.fit(data, "ggx", loss="cosine", robust="huber", starts=1),
+        bk.fit(data, "lafortune", starts=1),
+        bk.fit(one, "ward"),
     ):
         bk.save(fit, tmp_path / "fit.json")
         assert bk.load(tmp_path / "fit.json") == fit
@@ -183,7 +183,7 @@ def test_a_saved_or_pickled_fit_is_equal(tmp_path):
 @pytest.mark.quick
 def test_a_fit_of_an_earlier_version_is_read(tmp_path):
     file = tmp_path / "fit.json"
-    fit = bk.fit("ward", noisy(bk.models()["ward"]()), starts=1)
+    fit = bk.fit(noisy(bk.models()["ward"]()), "ward", starts=1)
     bk.save(fit, file)
     record = json.loads(file.read_text())
     del record["fit"]["certainty"]
@@ -202,7 +202,7 @@ def test_a_part_is_as_certain_as_the_whole(loss, monkeypatch):
     data = noisy(bk.models()["ggx"](diffuse_reflectance=(0.1, 0.2, 0.3)), n=20_000)
     model, samples = labels.model("ggx"), select_samples(data, 80.0)
     problem = Problem(model, samples, losses.named[loss], Space.of(model, {}, {}, False))
-    fit = bk.fit("ggx", data, loss, starts=1)
+    fit = bk.fit(data, "ggx", loss=loss, starts=1)
     u = problem.space.coordinates(fit.values)[None]
     weights = np.array([fit.values[n] for n in model.weights()]).T[None]
     whole = certainty.certify(problem, u, weights)

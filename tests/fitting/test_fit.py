@@ -77,7 +77,7 @@ def test_known_parameters_come_back(model, loss, starts):
     """To 1e-4, from few starts and with the usual several ones."""
     truth = isotropic(model)
     data = synthetic(truth)
-    found = bk.fit(truth.type_name(), data, loss, starts=starts, fixed=given(truth, data))
+    found = bk.fit(data, truth.type_name(), loss=loss, starts=starts, fixed=given(truth, data))
     assert_same_parameters(found, truth)
     assert found.loss < 1e-5
 
@@ -89,7 +89,7 @@ def test_known_parameters_come_back_from_a_table(model):
     above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
     table.values[above] = truth.eval(wi[above], wo[above])
     data = bk.Measured.from_table(table.values)
-    found = bk.fit(truth.type_name(), data, fixed=given(truth, data))
+    found = bk.fit(data, truth.type_name(), fixed=given(truth, data))
     assert_same_parameters(found, truth)
 
 
@@ -125,7 +125,7 @@ def test_optima_on_curet(sample, name, measured_data):
     loss, expected = CURET[sample, name]
     data = bk.load(measured_data / "curet" / f"abrdf.dat#{sample}")
     bounds = {"alpha_u": (0.001, 0.5)} if name.startswith("ward") else {}
-    found = bk.fit(name, data, loss="kurt", bounds=bounds)
+    found = bk.fit(data, name, loss="kurt", bounds=bounds)
     assert found.samples == 189
     assert found.loss == pytest.approx(loss, rel=3e-3)
     for parameter, value in expected.items():
@@ -135,16 +135,16 @@ def test_optima_on_curet(sample, name, measured_data):
 def test_large_tables_end_where_all_cells_say():
     """The starts see a part of the cells, the end all of them: no start may be better."""
     data = bk.load("red_plastic")
-    found = bk.fit("ggx", data)
+    found = bk.fit(data, "ggx")
     assert found.samples > 40_000
-    again = bk.fit("ggx", data, seed=3)
+    again = bk.fit(data, "ggx", seed=3)
     assert again.loss == pytest.approx(found.loss, rel=1e-6)
 
 
 @pytest.mark.quick
 def test_reproducible_to_the_last_digit():
     data = synthetic(bk.models()["ggx"]())
-    first, second = (bk.fit("ggx", data, loss="cbrt") for _ in range(2))
+    first, second = (bk.fit(data, "ggx", loss="cbrt") for _ in range(2))
     assert first.values == second.values
     assert first.loss == second.loss
 
@@ -152,7 +152,7 @@ def test_reproducible_to_the_last_digit():
 @pytest.mark.quick
 def test_fit_is_plain_data(tmp_path):
     """Saved and loaded, pickled and copied, a fit is the same material."""
-    found = bk.fit("ward", synthetic(bk.models()["ward"]()), starts=1)
+    found = bk.fit(synthetic(bk.models()["ward"]()), "ward", starts=1)
     bk.save(found, tmp_path / "ward.json")
     wi, wo = from_angles([0.5], [0.0]), from_angles([0.6], [3.0])
     for other in (
@@ -168,7 +168,7 @@ def test_fit_is_plain_data(tmp_path):
 @pytest.mark.quick
 def test_what_sits_on_a_bound_is_named():
     data = synthetic(bk.models()["ward"](alpha_u=0.4))
-    found = bk.fit("ward", data, bounds={"alpha_u": (0.01, 0.3)})
+    found = bk.fit(data, "ward", bounds={"alpha_u": (0.01, 0.3)})
     assert found.at_bounds == ("alpha_u",)
     assert found.values["alpha_u"] == pytest.approx(0.3)
     assert "on its bound" in str(found)
@@ -187,7 +187,7 @@ def test_a_lobe_that_is_not_there_is_named():
 @pytest.mark.quick
 def test_anisotropy_comes_back_where_it_is_asked_for():
     truth = bk.models()["ward"](alpha_u=0.1, alpha_v=0.35)
-    found = bk.fit("ward", synthetic(truth), anisotropic=True)
+    found = bk.fit(synthetic(truth), "ward", anisotropic=True)
     for name, value in truth.values.items():
         np.testing.assert_allclose(found.values[name], value, rtol=1e-4, err_msg=name)
 
@@ -195,14 +195,14 @@ def test_anisotropy_comes_back_where_it_is_asked_for():
 def test_anisotropy_is_searched_where_it_was_measured():
     """Grooves along x, ten times as steep across; the other material knows no azimuth."""
     brushed = bk.load("brushed_aluminium")
-    found = bk.fit("ward_duer", brushed)
+    found = bk.fit(brushed, "ward_duer")
     assert found.values["alpha_v"] > 2 * found.values["alpha_u"]
     assert found.settings["anisotropic"]
     log = sample_sum("log")  # without a term for the light, which both would pay for
-    found, tied = (bk.fit("ward_duer", brushed, log, anisotropic=how) for how in (None, False))
+    found, tied = (bk.fit(brushed, "ward_duer", loss=log, anisotropic=how) for how in (None, False))
     assert tied.values["alpha_u"] == tied.values["alpha_v"]
     assert found.loss < 0.5 * tied.loss
-    blasted = bk.fit("ward_duer", bk.load("blasted_gold"))
+    blasted = bk.fit(bk.load("blasted_gold"), "ward_duer")
     assert blasted.values["alpha_u"] == blasted.values["alpha_v"]
 
 
@@ -211,7 +211,7 @@ def test_anisotropy_is_searched_where_it_was_measured():
 def test_lafortunes_other_lobes_come_back(c_x, c_y):
     """Towards the light and across it, though the default looks the other way."""
     truth = bk.models()["lafortune"](c_x=c_x, c_y=c_y, c_z=0.7, exponent=20)
-    found = bk.fit("lafortune", synthetic(truth), anisotropic=c_x != c_y)
+    found = bk.fit(synthetic(truth), "lafortune", anisotropic=c_x != c_y)
     assert_same_parameters(found, truth)
 
 
@@ -219,7 +219,7 @@ def test_lafortunes_other_lobes_come_back(c_x, c_y):
 def test_a_black_material_is_fitted():
     data = synthetic(bk.models()["lambert"](diffuse_reflectance=0.0), n=50)
     for loss in bk.losses.named.by_sample:
-        found = bk.fit("ward", data, loss=loss, starts=2)
+        found = bk.fit(data, "ward", loss=loss, starts=2)
         assert found.loss < 1e-9
         assert found.values["diffuse_reflectance"][0] < 1e-9
 
@@ -229,7 +229,7 @@ def test_one_sample_is_fitted():
     """At normal incidence, where the loss kurt, weighted by sin θ_i, has nothing to say."""
     up = np.array([[0.0, 0.0, 1.0]])
     data = bk.Measured.from_samples(up, up, [[0.1, 0.2, 0.3]])
-    found = bk.fit("lambert", data)
+    found = bk.fit(data, "lambert")
     np.testing.assert_allclose(found.values["diffuse_reflectance"], np.pi * data.values[0])
     compared = bk.compare(data, found)
     assert np.isnan(compared.errors["lambert"].pop("kurt"))
@@ -238,14 +238,14 @@ def test_one_sample_is_fitted():
     assert measured == ["measured", *"-------"]
     assert lambert == ["lambert", *["0.00000"] * 4, *["0.63"] * 3]
     with pytest.raises(BrdfkitError, match="kurt loss weighs no sample"):
-        bk.fit("lambert", data, "kurt")
+        bk.fit(data, "lambert", loss="kurt")
 
 
 @pytest.mark.quick
 def test_compare_finds_the_light_of_the_fit_and_marks_what_is_wrong():
     """By the quadrature of the fit; of a model, the one that refines."""
     data, light = bk.load("red_plastic"), bk.load("plaster")
-    found, narrow = bk.fit("ward", data), bk.models()["ggx"](alpha_u=0.01)
+    found, narrow = bk.fit(data, "ward"), bk.models()["ggx"](alpha_u=0.01)
     compared = bk.compare(data, [found, narrow, light, {"type": "diffuse"}])
     assert compared.measured_albedo == pytest.approx(data.albedo.values[:3].mean(axis=1))
     assert compared.albedos["ward"] == pytest.approx(np.mean(found.albedo.fit[:3], axis=1))
@@ -258,12 +258,12 @@ def test_compare_finds_the_light_of_the_fit_and_marks_what_is_wrong():
     assert [line.count("!") for line in lines] == [0, 0, 0, 1, 3, 3, 3]
     assert max(map(len, lines)) <= 80
     assert compared.shown == ("cosine", "log", "cbrt", "plain")
-    assert "kurt" in str(bk.compare(data, bk.fit("lambert", data, "kurt")))
+    assert "kurt" in str(bk.compare(data, bk.fit(data, "lambert", loss="kurt")))
 
 
 @pytest.mark.quick
 def test_print_tells_the_light_its_warnings_and_samples_that_count_little():
-    found = bk.fit("lambert", bk.load("red_plastic"))
+    found = bk.fit(bk.load("red_plastic"), "lambert")
     (warning,) = found.warnings
     assert warning in found.notes
     said = str(found).splitlines()
@@ -277,7 +277,7 @@ def test_print_tells_the_light_its_warnings_and_samples_that_count_little():
     wi, wo = from_angles(np.full(40, 0.3), np.zeros(40)), from_angles(np.linspace(0, 0.7, 40), 3.0)
     few = bk.Measured.from_samples(wi, wo, np.linspace(0.1, 0.3, 40))
     weights = np.r_[np.ones(10), np.full(30, 1e-6)]
-    found = bk.fit("lambert", few, weights=weights)
+    found = bk.fit(few, "lambert", weights=weights)
     assert found.unrepresented > 0.5
     said = str(found).splitlines()
     assert said[2].endswith("measured: -, -, -")
@@ -291,7 +291,7 @@ def test_print_tells_the_light_its_warnings_and_samples_that_count_little():
 @pytest.mark.quick
 def test_fixed_parameter_stays():
     data = synthetic(bk.models()["ggx"](f0=0.2))
-    found = bk.fit("ggx", data, fixed={"f0": 0.04})
+    found = bk.fit(data, "ggx", fixed={"f0": 0.04})
     assert found.values["f0"] == 0.04
     assert found.loss > 0.01
 
@@ -301,7 +301,7 @@ def test_metrics_agree_with_the_fit():
     """`compare`, which evaluates in NumPy, finds the loss that the fit reported."""
     data = synthetic(random_model(bk.models()["ggx"], 3))
     for loss in bk.losses.named.by_sample:
-        found = bk.fit("ward", data, loss=loss)
+        found = bk.fit(data, "ward", loss=loss)
         assert bk.compare(data, found).errors["ward"][loss] == pytest.approx(found.loss, rel=1e-9)
 
 
@@ -312,10 +312,10 @@ def test_without_derivatives_the_fit_is_the_same(monkeypatch):
     from brdfkit.core.jit import double_precision
 
     data = synthetic(bk.models()["cook_torrance"](alpha=0.3, f0=0.2), n=500)
-    exact = bk.fit("cook_torrance", data)
+    exact = bk.fit(data, "cook_torrance")
     monkeypatch.setattr(double_precision, "float64", lambda: dr.scalar.ArrayXf64)
     assert not double_precision.differentiable()
-    slow = bk.fit("cook_torrance", data)
+    slow = bk.fit(data, "cook_torrance")
     for name, value in exact.values.items():
         np.testing.assert_allclose(slow.values[name], value, rtol=1e-4)
 
@@ -333,19 +333,19 @@ class InNoFile(Model):
 def test_a_class_stands_for_its_name():
     data = synthetic(bk.models()["lambert"](), n=50)
     coupled = bk.models()["ashikhmin_shirley"].configured(diffuse="coupled")
-    assert bk.fit(coupled, data, starts=1).name == "ashikhmin_shirley:diffuse=coupled"
+    assert bk.fit(data, coupled, starts=1).name == "ashikhmin_shirley:diffuse=coupled"
 
 
 @pytest.mark.quick
 def test_a_class_in_no_file_is_a_model(no_user_plugins, llvm_variant):
     """It is fitted, summed, checked, rendered and pickled; its name is that of the class."""
     data = synthetic(bk.models()["lambert"](), n=200)
-    found = bk.fit(InNoFile, data, starts=1)
+    found = bk.fit(data, InNoFile, starts=1)
     assert found.name == "in_no_file"
-    lambert = bk.fit("lambert", data)
+    lambert = bk.fit(data, "lambert")
     assert found.values["diffuse_reflectance"] == lambert.values["diffuse_reflectance"]
     assert "in_no_file" in bk.models()
-    assert bk.fit("in_no_file+ward", data, starts=1).name == "in_no_file+ward"
+    assert bk.fit(data, "in_no_file+ward", starts=1).name == "in_no_file+ward"
     assert bk.check(found, only=["plugin is formula"])
     assert bk.render(found, spp=1, size=4).pictures["in_no_file"].max() > 0
     assert pickle.loads(pickle.dumps(found)) == found
@@ -354,15 +354,15 @@ def test_a_class_in_no_file_is_a_model(no_user_plugins, llvm_variant):
 @pytest.mark.quick
 def test_weights_that_may_be_negative_have_no_bound():
     data = synthetic(bk.models()["lambert"](diffuse_reflectance=0.0), n=50)
-    assert bk.fit("koenderink", data, "plain").at_bounds == ()
-    assert bk.fit("lambert", data, "plain").at_bounds == ("diffuse_reflectance",)
+    assert bk.fit(data, "koenderink", loss="plain").at_bounds == ()
+    assert bk.fit(data, "lambert", loss="plain").at_bounds == ("diffuse_reflectance",)
 
 
 @pytest.mark.quick
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ({"name": "wrad"}, ["'wrad'", "ward_duer"]),
+        ({"model": "wrad"}, ["'wrad'", "ward_duer"]),
         ({"loss": "l2"}, ["'l2'", "cosine, log, cbrt, plain"]),
         ({"bounds": {"alpha_w": (0, 1)}}, ["'alpha_w'", "alpha_u"]),
         ({"bounds": {"alpha_u": (0.5, 0.1)}}, ["alpha_u", "0.001..1"]),
@@ -384,19 +384,36 @@ def test_weights_that_may_be_negative_have_no_bound():
         ({"starts": 2.5}, ["starts = 2.5"]),
         ({"seed": -1}, ["seed = -1", "at least 0"]),
         ({"loss": ["log"]}, ["['log']", "cosine, log"]),
-        ({"name": 3}, ["int", "ward"]),
-        ({"name": "wrad"}, ["'wrad'", "did you mean ward?"]),
-        ({"data": "car_pant"}, ["'car_pant'", "did you mean car_paint?"]),
-        ({"data": InNoFile()}, ["was not measured"]),
+        ({"model": 3}, ["int", "ward"]),
+        ({"model": "wrad"}, ["'wrad'", "did you mean ward?"]),
+        ({"material": "car_pant"}, ["'car_pant'", "did you mean car_paint?"]),
+        ({"material": InNoFile()}, ["is a model", "fit(material, model)"]),
     ],
 )
 def test_bad_requests_are_refused(arguments, words):
     data = synthetic(bk.models()["lambert"](), n=50)
     with pytest.raises(BrdfkitError) as caught:
-        bk.fit(**{"name": "ward", "data": data, **arguments})
+        bk.fit(**{"model": "ward", "material": data, **arguments})
     for word in words:
         assert word in str(caught.value)
     assert str(caught.value).count("\n") == 0
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("verb", "models", "order"),
+    [
+        (bk.fit, "ggx", "fit(material, model)"),
+        (bk.fit, bk.Model, "fit(material, model)"),
+        (bk.rank, ["ward", "ggx+ggx"], "rank(material, models)"),
+        (bk.compare, InNoFile(), "compare(material, fits)"),
+    ],
+)
+def test_a_model_in_the_place_of_the_material_is_refused_with_the_order(verb, models, order):
+    with pytest.raises(
+        BrdfkitError, match=re.escape(f"where the measured material belongs: {order}")
+    ):
+        verb(models, "plaster")
 
 
 @pytest.mark.quick
@@ -459,15 +476,15 @@ def mirrored(n=500):
 )
 def test_a_formula_that_is_not_finite_is_named(model, said, no_user_plugins):
     with pytest.raises(BrdfkitError, match=rf"{said}.*Δφ 180°, where h is the normal; keep"):
-        bk.fit(model, mirrored(), "plain", starts=1)
+        bk.fit(mirrored(), model, loss="plain", starts=1)
 
 
 @pytest.mark.quick
 def test_too_few_numbers_are_noted():
     up = [[0.0, 0.0, 1.0]]
     one = bk.Measured.from_samples(up, up, [[0.2, 0.3, 0.4]])
-    assert any(n.startswith("3 numbers were measured for 7") for n in bk.fit("ward", one).notes)
-    assert not any("were measured for" in note for note in bk.fit("lambert", one).notes)
+    assert any(n.startswith("3 numbers were measured for 7") for n in bk.fit(one, "ward").notes)
+    assert not any("were measured for" in note for note in bk.fit(one, "lambert").notes)
 
 
 @pytest.mark.quick
@@ -478,8 +495,8 @@ def test_negatives_out_of_gamut_are_told_from_measured_ones():
     values = np.zeros((20, len(names)))
     values[:, names.index("520nm")] = 0.5
     green = bk.Measured.from_samples(wi, wi, values, channels=names, name="green")
-    (note,) = (note for note in bk.fit("lambert", green).notes if "negative" in note)
+    (note,) = (note for note in bk.fit(green, "lambert").notes if "negative" in note)
     assert "in linear sRGB are negative and count as 0, though none was measured so" in note
     noisy = bk.Measured.from_samples(wi, wi, values - 0.01, channels=names)
-    (note,) = (note for note in bk.fit("lambert", noisy).notes if "negative" in note)
+    (note,) = (note for note in bk.fit(noisy, "lambert").notes if "negative" in note)
     assert "of the measured values are negative and count as 0" in note

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.quick
 
 def test_a_fit_remembers_its_data_and_what_made_it(tmp_path):
     data = bk.load("blasted_gold")
-    fit = bk.fit("lambert", data)
+    fit = bk.fit(data, "lambert")
     assert fit.checksum == data.checksum
     assert len(bytes.fromhex(fit.checksum)) == 32
     assert fit.versions["brdfkit"] == bk.__version__
@@ -33,7 +33,7 @@ def test_a_fit_remembers_its_data_and_what_made_it(tmp_path):
 
 def test_a_fit_of_other_versions_is_read(tmp_path):
     file = tmp_path / "fit.json"
-    fit = bk.fit("lambert", synthetic(bk.models()["lambert"](), n=50))
+    fit = bk.fit(synthetic(bk.models()["lambert"](), n=50), "lambert")
     bk.save(replace(fit, versions={"brdfkit": "0.0.1", "mitsuba": "3.5.0"}), file)
     other = bk.load(file)
     assert other == fit
@@ -72,7 +72,7 @@ def test_the_checksum_is_of_what_was_measured(tmp_path):
 def test_residuals_are_measured_less_modelled():
     """Of samples and of a table, at what was fitted; rendered and plotted as any material."""
     for data in (synthetic(bk.models()["ggx"](), n=300), bk.load("red_plastic")):
-        fit = bk.fit("lambert", data, "lafortune", max_angle=70)
+        fit = bk.fit(data, "lambert", loss="lafortune", max_angle=70)
         left = fit.residuals(data)
         assert left.is_table == data.is_table
         assert left.samples.valid.sum() == fit.samples
@@ -95,7 +95,7 @@ def test_a_loss_that_standard_errors_weigh_is_told_from_that_of_compare():
     errors = np.linspace(0.01, 0.1, 200)[:, None]
     wi, wo = data.samples.wi, data.samples.wo
     noisy = bk.Measured.from_samples(wi, wo, data.samples.values, standard_error=errors)
-    plain, weighed = (bk.fit("lambert", one, "log") for one in (data, noisy))
+    plain, weighed = (bk.fit(one, "lambert", loss="log") for one in (data, noisy))
     assert plain.loss == pytest.approx(bk.compare(data, plain).errors["lambert"]["log"])
     assert plain.loss_label == "log loss"
     assert weighed.loss != pytest.approx(bk.compare(noisy, weighed).errors["lambert"]["log"])
@@ -107,7 +107,7 @@ def test_residuals_keep_what_is_known_of_the_data():
     wi = wo = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.999, 0.0, 0.04]])
     errors = np.full((3, 1), 0.01)
     data = bk.Measured.from_samples(wi, wo, [1, 2, 3], channels=("Y",), standard_error=errors)
-    left = bk.fit("lambert", data, sample_sum("plain")).residuals(data)
+    left = bk.fit(data, "lambert", loss=sample_sum("plain")).residuals(data)
     np.testing.assert_allclose(left.values[:, 0], [-0.5, 0.5, np.nan])
     np.testing.assert_array_equal(left.standard_error, errors)
     assert str(left) == "samples - lambert: samples, 2 of 3 valid, channels Y"
@@ -115,7 +115,7 @@ def test_residuals_keep_what_is_known_of_the_data():
 
 def test_what_cannot_be_subtracted_is_refused():
     data = synthetic(bk.models()["lambert"](), n=20)
-    fit = bk.fit("lambert", data)
+    fit = bk.fit(data, "lambert")
     with pytest.raises(BrdfkitError, match="lambert need the measured material, not a str; load"):
         fit.residuals("car_paint")
     with pytest.raises(BrdfkitError, match="3 channels cannot be subtracted from 1"):
@@ -143,7 +143,7 @@ def entries(record, path=()):
 def test_a_damaged_saved_fit_is_refused_in_a_sentence(tmp_path):
     """Every entry in turn is of another kind; a file that is accepted works."""
     file = tmp_path / "fit.json"
-    bk.save(bk.fit("ggx", synthetic(bk.models()["ggx"](), n=50)), file)
+    bk.save(bk.fit(synthetic(bk.models()["ggx"](), n=50), "ggx"), file)
     record = json.loads(file.read_text())
     wi = wo = np.array([[0.0, 0.6, 0.8]])
     refused = []
@@ -168,7 +168,7 @@ def test_a_damaged_saved_fit_is_refused_in_a_sentence(tmp_path):
 
 def test_a_saved_fit_of_a_later_version_is_refused(tmp_path):
     file = tmp_path / "fit.json"
-    bk.save(bk.fit("lambert", synthetic(bk.models()["lambert"](), n=20)), file)
+    bk.save(bk.fit(synthetic(bk.models()["lambert"](), n=20), "lambert"), file)
     file.write_text(file.read_text().replace(bk.__version__, "99.0", 1))
     with pytest.raises(bk.BrdfkitError, match=r"saved by brdfkit 99\.0, and this is .*: update"):
         bk.load(file)

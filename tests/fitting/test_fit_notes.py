@@ -212,13 +212,13 @@ def test_widths_and_steps_are_those_of_formulas():
 def test_all_that_show_a_fit_show_its_notes(tmp_path):
     path = tmp_path / "paint.npz"
     bk.save(measure(PAINT, step=15.0, largest=60.0), path)
-    found = bk.fit("abc", path, fixed={"ior": 9.9}, starts=1)
+    found = bk.fit(path, "abc", fixed={"ior": 9.9}, starts=1)
     notes = [n for n in found.notes if "no surface" in n or "the fit extrapolates" in n]
     assert len(notes) == 2
     for note in notes:
         assert note in " ".join(str(found).split())
         assert note in describe(found)["remarks"]
-    found = bk.fit("ward", path)
+    found = bk.fit(path, "ward")
     done = CliRunner().invoke(main, ["fit", str(path), "-m", "ward", "--json"])
     assert json.loads(done.output)["fits"][0]["notes"] == list(found.notes)
     shown = CliRunner().invoke(main, ["fit", str(path), "-m", "ward"]).output
@@ -235,8 +235,8 @@ def test_the_note_on_azimuths_comes_with_pictures_too():
     values = brushed.eval(wi.reshape(-1, 3), wo.reshape(-1, 3)).reshape(6, 8, 4, 8, 1)
     data = Measured.from_table(values, channels=("Y",))
     note = "the material changes as the surface turns, and the model as fitted does not"
-    assert note in bk.fit("lambert", data, "picture", starts=1).notes
-    assert any(n.startswith(f"{note}: no") for n in bk.fit("lambert", data).notes)
+    assert note in bk.fit(data, "lambert", loss="picture", starts=1).notes
+    assert any(n.startswith(f"{note}: no") for n in bk.fit(data, "lambert").notes)
 
 
 # Extrapolation

@@ -128,7 +128,7 @@ OPTIMA = {
 @pytest.mark.parametrize(("sample", "label"), OPTIMA)
 def test_optima_on_curet(sample, label, measured_data):
     data = bk.load(measured_data / "curet" / f"abrdf.dat#{sample}")
-    assert bk.fit(label, data, loss="kurt").loss == pytest.approx(OPTIMA[sample, label], abs=1e-5)
+    assert bk.fit(data, label, loss="kurt").loss == pytest.approx(OPTIMA[sample, label], abs=1e-5)
 
 
 @pytest.mark.quick
@@ -140,5 +140,5 @@ def test_what_is_clamped_is_said():
     data = bk.Measured.from_samples(
         wi, wo, np.where(np.arange(50) < 25, 0.3, 0.0)[:, None], channels=("Y",)
     )
-    notes = bk.fit("koenderink:order=4", data, loss="cosine").notes
+    notes = bk.fit(data, "koenderink:order=4", loss="cosine").notes
     assert any("pairs are clamped at 0" in note for note in notes)

@@ -51,12 +51,12 @@ def test_a_loss_of_ones_own_is_as_good():
 
     data = measured(bk.models()["ward"](alpha_u=0.3), noise=0.01)
     mine = bk.losses.Loss("own_log", "Mine", own_log, measure="angles")
-    found, known = bk.fit("ggx", data, mine), bk.fit("ggx", data, "log")
-    assert bk.fit("ggx", data, own_log).loss_name == "own_log"
+    found, known = bk.fit(data, "ggx", loss=mine), bk.fit(data, "ggx", loss="log")
+    assert bk.fit(data, "ggx", loss=own_log).loss_name == "own_log"
     assert found.loss == pytest.approx(known.loss, rel=1e-12)
     assert_same(found, known)
     both = bk.losses.Loss("both", "with weights", own_log, weights=lambda cos_i: cos_i)
-    assert bk.fit("ggx", data, both).loss != pytest.approx(known.loss, rel=1e-3)
+    assert bk.fit(data, "ggx", loss=both).loss != pytest.approx(known.loss, rel=1e-3)
 
 
 @pytest.mark.quick
@@ -86,7 +86,9 @@ def test_a_loss_of_ones_own_is_as_good():
 )
 def test_a_bad_loss_is_refused(loss, words):
     with np.errstate(all="ignore"), pytest.raises(BrdfkitError, match=words):
-        bk.fit("ward", measured(bk.models()["lambert"](diffuse_reflectance=0.0)), loss, starts=2)
+        bk.fit(
+            measured(bk.models()["lambert"](diffuse_reflectance=0.0)), "ward", loss=loss, starts=2
+        )
 
 
 @pytest.mark.quick
@@ -96,8 +98,8 @@ def test_weights_count_samples():
     weights = np.random.default_rng(5).integers(0, 3, N)
     rows = np.repeat(np.arange(N), weights)
     wi, wo, values = data.samples.wi[rows], data.samples.wo[rows], data.values[rows]
-    repeated = bk.fit("ggx", bk.Measured.from_samples(wi, wo, values), "kurt")
-    found = bk.fit("ggx", data, "kurt", weights=weights)
+    repeated = bk.fit(bk.Measured.from_samples(wi, wo, values), "ggx", loss="kurt")
+    found = bk.fit(data, "ggx", loss="kurt", weights=weights)
     assert found.loss == pytest.approx(repeated.loss, rel=1e-10)
     assert_same(found, repeated, rtol=1e-6)
     assert found.samples == np.count_nonzero(weights)
@@ -128,13 +130,13 @@ def test_weights_of_cells_have_the_tables_shape():
     data, weights = bk.Measured.from_table(table.values), np.ones(table.shape)
     weights[3:] = 0
     left = bk.Measured.from_table(np.where(weights[..., None] > 0, table.values, np.nan))
-    expected = bk.fit("ward", left)
+    expected = bk.fit(left, "ward")
     for given in (weights, weights.ravel()):
-        assert_same(bk.fit("ward", data, weights=given), expected)
+        assert_same(bk.fit(data, "ward", weights=given), expected)
     with pytest.raises(BrdfkitError, match=r"weights \(8, 6\) should be \(480,\) or \(8, 6, 10\)"):
-        bk.fit("ward", data, weights=weights[..., 0])
+        bk.fit(data, "ward", weights=weights[..., 0])
     with pytest.raises(BrdfkitError, match="finite numbers of at least 0"):
-        bk.fit("ward", data, weights=-weights)
+        bk.fit(data, "ward", weights=-weights)
 
 
 def test_standard_errors_bring_the_fit_nearer():
@@ -146,7 +148,7 @@ def test_standard_errors_bring_the_fit_nearer():
     for seed in range(12):
         data = measured(truth, seed, noise, standard_error=np.broadcast_to(noise, (N, 3)))
         for use in squares:
-            found = bk.fit("ward", data, "plain", starts=1, use_standard_error=use)
+            found = bk.fit(data, "ward", loss="plain", starts=1, use_standard_error=use)
             squares[use] += (found.values["alpha_u"] - 0.3) ** 2
             assert any("standard errors" in note for note in found.notes) == use
     assert squares[True] < squares[False] / 30
@@ -157,7 +159,9 @@ def test_standard_errors_bring_the_fit_nearer():
 def test_standard_errors_that_say_nothing_change_nothing(size):
     """Equal ones in the loss's differences, and such as are small beside the model's own error."""
     data = measured(bk.models()["ggx"](), noise=0.05, standard_error=np.full((N, 3), size))
-    found, other = (bk.fit("ward", data, "plain", use_standard_error=use) for use in (True, False))
+    found, other = (
+        bk.fit(data, "ward", loss="plain", use_standard_error=use) for use in (True, False)
+    )
     assert found.values == other.values
     assert found.loss == other.loss
 
@@ -188,7 +192,7 @@ def test_ctrl_c_keeps_the_best_fit_so_far(robust, after):
     """In an exception, by which loops end; its loss is that of its model."""
     data = measured(bk.models()["ward"](alpha_u=0.3), noise=0.01)
     with pytest.raises(bk.Interrupted, match="the best fit so far has the loss") as stop:
-        bk.fit("ggx", data, stopping(after), robust=robust)
+        bk.fit(data, "ggx", loss=stopping(after), robust=robust)
     best = stop.value.best
     assert isinstance(stop.value, KeyboardInterrupt)
     assert best.message == "interrupted: the best so far"

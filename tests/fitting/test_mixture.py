@@ -49,13 +49,13 @@ def test_two_lobes_come_back():
     )
     pairs = random_pairs(4000, seed=3, max_degrees=79)
     data = bk.Measured.from_samples(*pairs, truth.eval(*pairs))
-    found = bk.fit("ggx+ggx", data)
+    found = bk.fit(data, "ggx+ggx")
     np.testing.assert_allclose(found.eval(*pairs), truth.eval(*pairs), rtol=1e-4)
 
 
 def test_a_second_lobe_fits_better():
     data = bk.load("car_paint")
-    one, two = bk.fit("ggx", data), bk.fit("ggx+ggx", data)
+    one, two = bk.fit(data, "ggx"), bk.fit(data, "ggx+ggx")
     assert two.loss < one.loss / 3
 
 
@@ -68,7 +68,7 @@ def test_a_mixture_is_plain_data(tmp_path):
     data = bk.Measured.from_samples(
         *random_pairs(500, 1), model.eval(*random_pairs(500, 1)), channels=("Y",)
     )
-    found = bk.fit("lambert+ward", data, starts=1)
+    found = bk.fit(data, "lambert+ward", starts=1)
     bk.save(found, tmp_path / "fit.json")
     assert bk.load(tmp_path / "fit.json").values == found.values
 
@@ -97,7 +97,7 @@ def test_a_second_lobe_of_the_same_model_begins_narrower(model):
 def test_what_a_part_takes_from_the_geometry_is_no_search():
     data = bk.load("dusty_gold")
     angles = labels.model("pca_polynomial").determined(select_samples(data, 80.0))
-    found = bk.fit("pca_polynomial+ward", data, starts=1)
+    found = bk.fit(data, "pca_polynomial+ward", starts=1)
     for name, value in angles.items():
         assert found.values[f"pca_polynomial_1_{name}"] == value
 

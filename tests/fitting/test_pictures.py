@@ -169,11 +169,11 @@ def test_known_parameters_come_back(name, shapes):
     """Where a model can meet every pixel, and the same from equal seeds."""
     truth = bk.models()[name](**shapes, diffuse_reflectance=(0.3, 0.1, 0.05))
     how = {"loss": "picture", "starts": 4, "anisotropic": "alpha_v" in shapes}
-    found = bk.fit(name, measured(truth, 500), **how)
+    found = bk.fit(measured(truth, 500), name, **how)
     for parameter, value in truth.values.items():
         np.testing.assert_allclose(found.values[parameter], value, rtol=1e-6, err_msg=parameter)
     assert found.loss < 1e-7
-    assert bk.fit(name, measured(truth, 500), **how) == found
+    assert bk.fit(measured(truth, 500), name, **how) == found
 
 
 def window(w):
@@ -190,7 +190,7 @@ def test_a_fit_by_pictures_looks_better(monkeypatch):
     pixels = draw_pixels(["window"], data.eval, seed=9, pixels=600)
     decibels, errors = {}, {}
     for loss in ("log", "cbrt", "picture"):
-        found = bk.fit("ggx", data, loss)
+        found = bk.fit(data, "ggx", loss=loss)
         squares = np.square(pixels.look(found.eval) - pixels.values).mean(axis=1)
         decibels[loss] = -10 * np.log10(pixels.weights @ squares)
         errors[loss] = bk.compare(data, found).errors["ggx"]["log"]
@@ -201,7 +201,7 @@ def test_a_fit_by_pictures_looks_better(monkeypatch):
 @pytest.mark.quick
 def test_a_fit_says_what_it_saw(tmp_path):
     data = measured(bk.models()["ggx"](**GLOSSY, alpha_u=0.3), 500)
-    found = bk.fit("lambert", data, bk.losses.Picture(lights=("hall", "sky")))
+    found = bk.fit(data, "lambert", loss=bk.losses.Picture(lights=("hall", "sky")))
     assert found.notes[0].startswith("seen: pictures of a ball under hall and sky")
     assert np.isnan(found.aic)
     assert np.isnan(found.standard_errors["diffuse_reflectance"]).all()
@@ -224,9 +224,9 @@ def test_a_fit_says_what_it_saw(tmp_path):
 def test_what_pictures_cannot_do_is_refused(model, how, words):
     with pytest.raises(BrdfkitError, match=words):
         bk.fit(
-            model,
             measured(bk.models()["lambert"](diffuse_reflectance=(0.1, 0.2, 0.3)), 500),
-            "picture",
+            model,
+            loss="picture",
             **how,
         )
 

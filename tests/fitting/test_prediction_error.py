@@ -17,8 +17,8 @@ def test_variance_and_bias_are_those_of_repeated_fits(name, loss):
     wi, wo = clean.samples.wi, clean.samples.wo
     noise = sigma * np.random.default_rng(3).normal(size=(count, len(wi), 1))
     measured = [bk.Measured.from_samples(wi, wo, clean.values + e, channels=("Y",)) for e in noise]
-    fits = [bk.fit(name, data, loss) for data in measured]
-    error = bk.uncertainty.prediction_error(fits[0], measured[0], truth, sigma)
+    fits = [bk.fit(data, name, loss=loss) for data in measured]
+    error = bk.uncertainty.prediction_error(fits[0], measured[0], truth=truth, sigma=sigma)
     rows = measured[0].samples.within(80)
     lobes = np.array([np.ravel([f.values[n] for n in f.model.weights()]) for f in fits])
     predicted = lobe_values(fits[0].model, wi[rows], wo[rows])[0] @ lobes.T
@@ -35,7 +35,7 @@ def test_variance_and_bias_are_those_of_repeated_fits(name, loss):
 
 def test_of_the_measured_values_it_is_the_residuals():
     data = synthetic(bk.models()["ggx"](diffuse_reflectance=(0.1, 0.2, 0.3), alpha_u=0.4), n=120)
-    fit = bk.fit("pca_polynomial", data, "plain")
+    fit = bk.fit(data, "pca_polynomial", loss="plain")
     left = fit.residuals(data)
     error = bk.uncertainty.prediction_error(fit, data)
     lobes = -left.values[left.samples.valid]
@@ -56,9 +56,9 @@ def test_of_the_measured_values_it_is_the_residuals():
 )
 def test_what_is_not_linear_is_refused(name, how, why):
     data = synthetic(bk.models()["lambert"](), n=60)
-    fit = bk.fit(name, data, **how)
+    fit = bk.fit(data, name, **how)
     said = rf"^{name}: its prediction is not linear .*{why}.*plain\.$"
     with pytest.raises(BrdfkitError, match=said):
         bk.uncertainty.prediction_error(fit, data)
-    known = bk.fit("ward", data, "plain", fixed={"alpha_u": 0.3})
+    known = bk.fit(data, "ward", loss="plain", fixed={"alpha_u": 0.3})
     assert bk.uncertainty.prediction_error(known, data).variance.shape == (known.samples, 1)

@@ -48,7 +48,7 @@ def measured(truth, n=1500, **how):
 @pytest.mark.parametrize("name", TRUTHS)
 def test_the_true_model_is_recommended(name):
     """And its held-out error is the noise."""
-    found = bk.rank(measured(bk.models()[name](**TRUTHS[name])), TRUTHS, "log")
+    found = bk.rank(measured(bk.models()[name](**TRUTHS[name])), TRUTHS, loss="log")
     assert found.best == name
     assert [row.model for row in found.rows if row.tied] == [name]
     assert found.rows[0].error == pytest.approx(NOISE, rel=0.1)
@@ -85,7 +85,7 @@ def test_held_out_errors_are_those_of_fits_without_the_fold():
     for fold in range(5):
         out = held_out.folds == fold
         squares[out] = (values[out] - values[~out].mean()) ** 2
-    (row,) = bk.rank(data, "lambert", plain_sum).rows
+    (row,) = bk.rank(data, "lambert", loss=plain_sum).rows
     assert row.error == pytest.approx(np.sqrt(squares.mean()), rel=1e-9)
     assert (row.behind, row.uncertainty, row.tied) == (0.0, 0.0, True)
 
@@ -426,7 +426,7 @@ def test_an_isotropic_fit_of_an_anisotropic_table_is_told_what_it_cannot_reach(m
     wi, wo = (w.reshape(-1, 3) for w in table.directions())
     values = truth.eval(wi, wo).reshape(len(factor), -1) * factor
     data = bk.Measured.from_table(values.reshape(*table.shape, 1), channels=("Y",))
-    fit = bk.fit(model, data, "log", anisotropic=False)
+    fit = bk.fit(data, model, loss="log", anisotropic=False)
     (note,) = (note for note in fit.notes if "turns" in note)
     told = float(note.rpartition(" ")[2])
     assert told == pytest.approx(0.3 / np.sqrt(2), rel=0.05)
@@ -436,7 +436,7 @@ def test_an_isotropic_fit_of_an_anisotropic_table_is_told_what_it_cannot_reach(m
 def test_an_anisotropic_fit_has_no_such_note():
     ward = bk.models()["ward"](alpha_u=0.1, alpha_v=0.3)
     data = measured(ward, n=300, anisotropic=True)
-    notes = {model: " ".join(bk.fit(model, data).notes) for model in ("ward", "lambert")}
+    notes = {model: " ".join(bk.fit(data, model).notes) for model in ("ward", "lambert")}
     assert "turns" not in notes["ward"]
     assert "the material changes as the surface turns, and the model as fitted" in notes["lambert"]
 

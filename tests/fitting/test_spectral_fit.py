@@ -39,11 +39,11 @@ def test_known_spectra_come_back(loss):
     """More channels than one kernel evaluates, in no order; E is that of `compare`."""
     truth = spectral("ggx", WAVELENGTHS[::-1], alpha_u=0.15, f0=0.3)
     data = measured(truth)
-    fit = bk.fit("ggx", data, loss, spectral=True)
+    fit = bk.fit(data, "ggx", loss=loss, spectral=True)
     assert_same_parameters(fit, truth)
     assert fit.wavelengths == truth.wavelengths
     assert fit.eval(UP, UP).shape == (1, 10)
-    other = bk.fit("ward", data, loss, spectral=True)
+    other = bk.fit(data, "ward", loss=loss, spectral=True)
     errors = bk.compare(data, other, spectral=True).errors["ward"]
     assert errors[loss] == pytest.approx(other.loss, rel=1e-9)
     assert other.loss > 10 * fit.loss
@@ -54,10 +54,10 @@ def test_known_spectra_come_back(loss):
 def test_of_known_shapes_each_wavelength_is_a_fit_of_its_own(robust):
     data = measured(spectral("ward", alpha_u=0.2), noise=0.1)
     given = {"fixed": {"alpha_u": 0.2}, "loss": "plain", "robust": robust}
-    fit = bk.fit("ward", data, spectral=True, **given)
+    fit = bk.fit(data, "ward", spectral=True, **given)
     for c in (0, 7, 9):  # of two groups that one kernel evaluates
         channel = data.channels[c]
-        alone = bk.fit("ward", data.mixed(np.eye(10)[:, [c]], [channel]), **given)
+        alone = bk.fit(data.mixed(np.eye(10)[:, [c]], [channel]), "ward", **given)
         for name in ("diffuse_reflectance", "specular_reflectance"):
             np.testing.assert_allclose(fit.values[name][c], alone.values[name][0], rtol=1e-6)
             own = fit.standard_errors[name][c], alone.standard_errors[name][0]
@@ -69,7 +69,7 @@ def test_its_rgb_is_the_fit_in_rgb():
     """A linear loss: to mix the channels and to fit may change places."""
     data = measured(spectral("ward", alpha_u=0.2), noise=0.1)
     given = {"fixed": {"alpha_u": 0.25}, "loss": "cosine"}
-    fit, rgb = (bk.fit("ward", data, spectral=s, **given) for s in (True, False))
+    fit, rgb = (bk.fit(data, "ward", spectral=s, **given) for s in (True, False))
     for name, value in rgb.values.items():
         np.testing.assert_allclose(fit.rgb.values[name], value, rtol=1e-6)
     wi, wo = data.samples.wi, data.samples.wo
@@ -90,7 +90,7 @@ def test_standard_errors_count_at_every_wavelength():
     noisy = data.values + errors * np.random.default_rng(0).normal(size=errors.shape)
     given = {"channels": data.channels, "standard_error": errors}
     data = bk.Measured.from_samples(data.samples.wi, data.samples.wo, noisy, **given)
-    fit = bk.fit("ward", data, "plain", spectral=True)
+    fit = bk.fit(data, "ward", loss="plain", spectral=True)
     assert any(note.startswith("samples count by their standard errors") for note in fit.notes)
     assert fit.values["alpha_u"] == pytest.approx(0.2, rel=0.1)
 
@@ -101,7 +101,7 @@ def test_it_is_rendered_as_the_measurement(llvm_variant):
     import mitsuba as mi
 
     data = measured(spectral("lambert"))
-    fit = bk.fit("lambert", data, spectral=True)
+    fit = bk.fit(data, "lambert", spectral=True)
     wavelengths = (380.0, 452.0, 651.0, 720.0)
     expected = np.interp(wavelengths, WAVELENGTHS, fit.values["diffuse_reflectance"]) / np.pi
     for variant in ("llvm_ad_spectral", "llvm_ad_rgb", "llvm_ad_mono"):
@@ -123,7 +123,7 @@ def test_it_is_rendered_as_the_measurement(llvm_variant):
 @pytest.mark.quick
 def test_it_is_plain_data(tmp_path):
     """Saved, pickled, changed, printed in a few words."""
-    fit = bk.fit("ward", measured(spectral("ward"), noise=0.1), spectral=True, starts=1)
+    fit = bk.fit(measured(spectral("ward"), noise=0.1), "ward", spectral=True, starts=1)
     bk.save(fit, tmp_path / "fit.json")
     assert bk.load(tmp_path / "fit.json") == fit
     assert pickle.loads(pickle.dumps(fit)) == fit
@@ -151,14 +151,19 @@ def test_files_of_it_have_the_wavelengths(tmp_path):
 def test_what_has_no_spectrum_is_refused(llvm_variant):
     rgb = synthetic(bk.models()["ward"](diffuse_reflectance=(0.1, 0.2, 0.3)), n=20)
     with pytest.raises(BrdfkitError, match="the channels R G B, not at wavelengths; leave"):
-        bk.fit("ward", rgb, spectral=True)
+        bk.fit(rgb, "ward", spectral=True)
     lambert, koenderink = bk.models()["lambert"], bk.models()["koenderink"]
     with pytest.raises(BrdfkitError, match="should be a number, or 2, one per wavelength"):
         lambert(wavelengths=(400, 500), diffuse_reflectance=(0.1, 0.2, 0.3))
     with pytest.raises(BrdfkitError, match=r"wavelengths = \(400, 400\) should be different"):
         lambert(wavelengths=(400, 400))
     with pytest.raises(BrdfkitError, match="3 channels and samples 10; compare what has the same"):
-        bk.compare(measured(spectral("lambert")), lambert(diffuse_reflectance=(1, 1, 1)), 80, True)
+        bk.compare(
+            measured(spectral("lambert")),
+            lambert(diffuse_reflectance=(1, 1, 1)),
+            max_angle=80,
+            spectral=True,
+        )
     negative = koenderink(wavelengths=(400, 700), **{koenderink.weights()[0]: (-0.1, 0.2)})
     llvm_variant.set_variant("llvm_ad_spectral")
     with pytest.raises(BrdfkitError, match=r"a spectrum with a value below 0.* as \.bsdf"):
@@ -173,9 +178,9 @@ def test_what_has_no_spectrum_is_refused(llvm_variant):
 
 def test_a_measured_paint_is_fitted_at_31_wavelengths(measured_data):
     data = bk.load(measured_data / "cornell" / "cayman.brdf")
-    fit = bk.fit("ggx", data, spectral=True)
+    fit = bk.fit(data, "ggx", spectral=True)
     assert len(fit.values["specular_reflectance"]) == 31
-    best = bk.fit("ggx", data, spectral=True, starts=40, seed=1)
+    best = bk.fit(data, "ggx", spectral=True, starts=40, seed=1)
     assert fit.loss == pytest.approx(best.loss, rel=1e-6)
     wi = from_angles(np.linspace(0, 1, 5), 0.0)
     assert (fit.eval(wi, wi) >= 0).all()

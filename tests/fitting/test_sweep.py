@@ -89,7 +89,7 @@ def test_rows_and_the_best(here, fitted):
     assert found.asked == len(found.fits) == 6
     assert found.failed == []
     for row in found.rows:
-        assert row.fit == bk.fit(row.model, row.file)
+        assert row.fit == bk.fit(row.file, row.model)
         assert row.error == row.fit.loss
         assert row.parameters == {"lambert": 3, "koenderink": 15}[row.model]
     for material, best in found.best.items():
@@ -108,7 +108,7 @@ def test_fits_are_judged_where_they_were_not_fitted_and_by_pictures(here, fitted
     assert judged["paint", "ward"][1] > judged["paint", "lambert"][1] + 5
     error, psnr = judged["paint", "lambert"]
     assert 0.5 < error / found.rows[2].error < 5
-    ranking = bk.rank("paint.npz", models, "cbrt")
+    ranking = bk.rank("paint.npz", models, loss="cbrt")
     assert abs(psnr - {row.model: row.psnr for row in ranking.rows}["lambert"]) < 1
     text = Path("out/index.html").read_text(encoding="utf-8")
     assert "<h2>Errors where they were not fitted</h2>" in text
@@ -151,14 +151,14 @@ def test_settings_are_those_of_a_fit(here, fitted):
     settings = {"loss": "cbrt", "robust": "bisquare", "max_angle": 60, "fixed": {"alpha_u": 0.1}}
     settings |= {"solver": "trust_region"}
     row = bk.sweep("paint.npz", "ward", settings).rows[0]
-    assert row.fit == bk.fit("ward", "paint.npz", **settings)
+    assert row.fit == bk.fit("paint.npz", "ward", **settings)
     assert (row.loss, row.parameters) == ("cbrt", 6)
 
 
 @pytest.mark.quick
 def test_what_fails_does_not_stop_the_others(here, fitted):
     Path("short.npz").write_bytes(b"PK")
-    bk.save(bk.fit("lambert", "chalk.npz"), "fit.json")
+    bk.save(bk.fit("chalk.npz", "lambert"), "fit.json")
     found = bk.sweep(["missing.npz", *FILES, "short.npz", "fit.json", "crapet"], LINEAR)
     assert [r.material for r in found.failed[::2]] == ["missing", "short", "fit", "crapet"]
     assert len(found.fits) == 6
@@ -185,7 +185,7 @@ def test_a_name_counts_once_and_names_are_made_unlike(here, fitted):
 @pytest.mark.quick
 def test_an_error_that_is_not_for_people_fails_one_fit(here, fitted, monkeypatch):
     def broken(name, data, **settings):
-        return {}[name] if name == "lambert" else bk.fit(name, data, **settings)
+        return {}[name] if name == "lambert" else bk.fit(data, name, **settings)
 
     monkeypatch.setattr("brdfkit.fitting.sweeping.tasks.fit", broken)
     found = bk.sweep("chalk.npz", LINEAR)
@@ -274,7 +274,7 @@ def test_what_has_changed_is_fitted_again(here, fitted, monkeypatch):
     Path("out/paint/lambert.json").write_text("{")
     Path("out/chalk/lambert.json").write_text("[1]")
     assert changed(max_angle=70) == ["chalk", "paint"]
-    bk.save(bk.fit("lambert", "chalk.npz", max_angle=70), "out/chalk/lambert.json")
+    bk.save(bk.fit("chalk.npz", "lambert", max_angle=70), "out/chalk/lambert.json")
     assert changed(max_angle=70) == ["chalk"]  # of which nobody knows that it is this one
     defaults = "brdfkit.fitting.sweeping.tasks.Task.__init__.__defaults__"
     monkeypatch.setattr(defaults, (False, "", "0.0.9"))

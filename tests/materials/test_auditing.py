@@ -522,7 +522,7 @@ def test_what_lies_beyond_the_samples_of_a_fit_is_not_told():
     line = np.clip((90 - np.degrees(np.arccos(wo[:, 2:]))) / 15, 0, 1)
     data = scattered(0.3 * line, wi, wo)
     for max_angle, told in ((75, False), (80, False), (89, True)):
-        notes = bk.fit("lambert", data, max_angle=max_angle).notes
+        notes = bk.fit(data, "lambert", max_angle=max_angle).notes
         assert any("fall towards the horizon" in note for note in notes) == told
 
 

@@ -614,7 +614,7 @@ def test_a_saved_fit_runs_no_program(tmp_path):
     evil.write_text(f"open({str(tmp_path / 'done')!r}, 'w')")
     wi, wo = np.array([[[0.0, 0.0, 1.0]]] * 2)
     data = bk.Measured.from_samples(wi, wo, [[0.2]], channels=("Y",))
-    save(bk.fit("lambert", data), tmp_path / "fit.json")
+    save(bk.fit(data, "lambert"), tmp_path / "fit.json")
     for label in (str(evil), f"{evil}+ward", "mixture:models=" + str(evil) + "+ward"):
         text = (tmp_path / "fit.json").read_text().replace('"lambert"', json.dumps(label))
         (tmp_path / "other.json").write_text(text)

@@ -22,7 +22,7 @@ TAKERS = {
     "compare": lambda thing: bk.compare(bk.load("dusty_gold"), [WARD(), thing]),
     "compare to": lambda thing: bk.compare(thing, WARD()),
     "check": lambda thing: bk.check(thing, only=["reciprocity"]),
-    "fit": lambda thing: bk.fit("lambert", thing),
+    "fit": lambda thing: bk.fit(thing, "lambert"),
 }
 # The others take only what was measured
 OF_MODELS = TAKERS.keys() - {"audit", "compare to", "fit"}

@@ -98,7 +98,7 @@ def save(frame, folder):
 
 def fit(path, **mends):
     """The fit of the true model to a file, and whether it is right."""
-    found = bk.fit("ggx", bk.load(path, **mends), starts=12)
+    found = bk.fit(bk.load(path, **mends), "ggx", starts=12)
     wi, wo = from_angles(0.7, 0.0), from_angles(np.linspace(-1.2, 1.2, 9), 0.0)
     true, fitted = (
         model.eval(np.broadcast_to(wi, wo.shape), wo).mean(axis=1)
@@ -277,7 +277,7 @@ def test_a_mirrored_azimuth_is_told_on_a_grid_of_large_steps(alpha, noise):
     model = bk.models()["ggx"](diffuse_reflectance=0.5, alpha_u=alpha, alpha_v=alpha, f0=0.05)
     values = model.eval(wi, wo) * np.random.default_rng(0).normal(1, noise, (len(wi), 1))
     for turn, told in (([1, 1, 1], False), ([-1, -1, 1], True)):
-        notes = bk.fit("ggx", bk.Measured.from_samples(wi, wo * turn, values)).notes
+        notes = bk.fit(bk.Measured.from_samples(wi, wo * turn, values), "ggx").notes
         assert any("--mirror-azimuth" in note for note in notes) == told
 
 

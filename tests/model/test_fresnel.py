@@ -44,11 +44,11 @@ def test_a_metals_colours_come_back():
     )
     pairs = random_pairs(3_000, seed=1, max_degrees=80)
     data = bk.Measured.from_samples(*pairs, truth.eval(*pairs))
-    found = bk.fit("ggx:fresnel=coloured", data)
+    found = bk.fit(data, "ggx:fresnel=coloured")
     assert found.loss < 1e-6
     for name, value in truth.values.items():
         np.testing.assert_allclose(found.values[name], value, rtol=1e-4, err_msg=name)
-    assert bk.fit("ggx", data).loss > 0.003
+    assert bk.fit(data, "ggx").loss > 0.003
 
 
 def test_the_coloured_form_has_no_f0():

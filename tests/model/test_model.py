@@ -64,11 +64,11 @@ def test_equal_models_are_equal(make):
 
 def test_equal_fits_are_equal():
     data = bk.load("plaster")
-    one, other = (bk.fit("ward", data, starts=2) for _ in range(2))
+    one, other = (bk.fit(data, "ward", starts=2) for _ in range(2))
     assert one == other
     assert hash(one) == hash(other)
     assert pickle.loads(pickle.dumps(one)) == one
-    assert one != bk.fit("ward", data, starts=2, max_angle=60)
+    assert one != bk.fit(data, "ward", starts=2, max_angle=60)
 
 
 # A user's own, in another process

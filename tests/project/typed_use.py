@@ -53,17 +53,19 @@ def describe(paint: bk.Measured) -> None:
 
 def fit_and_render(paint: bk.Measured) -> None:
     """The way from a measurement to a picture."""
-    fits = [bk.fit(name, paint, bounds={"alpha_u": (0.01, 0.5)}) for name in ("ward", "ggx")]
+    fits = [bk.fit(paint, name, bounds={"alpha_u": (0.01, 0.5)}) for name in ("ward", "ggx")]
     assert_type(fits, list[bk.Fit])
-    bk.fit("ggx", paint, solver=bk.solvers.TrustRegion(starts=4))
+    bk.fit(paint, "ggx", solver=bk.solvers.TrustRegion(starts=4))
     bk.fit(
-        "ggx", paint, solver="slsqp", constraints=[bk.solvers.AlbedoAtMost(0.9), lambda m: 1 - m.f0]
+        paint, "ggx", solver="slsqp", constraints=[bk.solvers.AlbedoAtMost(0.9), lambda m: 1 - m.f0]
     )
     assert_type(fits[0].model, bk.Model)
     assert_type(bk.compare(paint, fits).best, str)
     assert_type(paint.minus(fits[0]), bk.Measured)
     assert_type(bk.uncertainty.bootstrap(fits[0], paint).standard_errors, dict[str, Floats])
-    assert_type(bk.uncertainty.profile(fits[0], paint, "alpha_u").interval, tuple[float, float])
+    assert_type(
+        bk.uncertainty.profile(fits[0], paint, parameter="alpha_u").interval, tuple[float, float]
+    )
     assert_type(bk.uncertainty.prediction_error(fits[0], paint).bias, Floats)
     rendering = bk.render([paint, *fits, ("grey", {"type": "diffuse"})], size=(64, 32))
     assert_type(rendering, bk.Rendering)

@@ -45,7 +45,7 @@ def test_lambert_ends_at_the_limit():
     """Its albedo is its reflectance; the best one within the limit is the limit."""
     data = synthetic(bk.models()["lambert"](diffuse_reflectance=[0.8, 0.6, 0.3]), noise=0.1)
     for limit in (bk.solvers.AlbedoAtMost(0.5), bk.solvers.WeightsAtMost(0.5)):
-        found, free = bk.fit("lambert", data, constraints=limit), bk.fit("lambert", data)
+        found, free = bk.fit(data, "lambert", constraints=limit), bk.fit(data, "lambert")
         own = found.values["diffuse_reflectance"]
         np.testing.assert_allclose(own[:2], 0.5, rtol=0, atol=1e-6)
         assert own[2] == pytest.approx(free.values["diffuse_reflectance"][2], rel=1e-6)
@@ -57,7 +57,7 @@ def test_lambert_ends_at_the_limit():
 def test_the_limit_is_met_from_a_perfect_fit(loss):
     """Where E is 0 without the constraint."""
     data = synthetic(bk.models()["ward"](diffuse_reflectance=0.8))
-    found = bk.fit("ward", data, loss, starts=4, constraints=bk.solvers.AlbedoAtMost(0.6))
+    found = bk.fit(data, "ward", loss=loss, starts=4, constraints=bk.solvers.AlbedoAtMost(0.6))
     assert albedos(found.model, 128).max() == pytest.approx(0.6, abs=1e-6)
     # A little less light is not better: the limit holds it
     less = found.model.changed(diffuse_reflectance=found.model.diffuse_reflectance[0] - 1e-3)
@@ -68,8 +68,8 @@ def test_the_limit_is_met_from_a_perfect_fit(loss):
 def test_what_meets_the_constraints_is_returned_as_it_is():
     data = synthetic(bk.models()["ggx"](), noise=0.1)
     found, free = (
-        bk.fit("ggx", data, constraints=[bk.solvers.AlbedoAtMost(1.0)]),
-        bk.fit("ggx", data),
+        bk.fit(data, "ggx", constraints=[bk.solvers.AlbedoAtMost(1.0)]),
+        bk.fit(data, "ggx"),
     )
     assert found.values == free.values
     assert found.notes == free.notes
@@ -91,7 +91,7 @@ def test_one_parameter_by_brute_force():
     best = minimize_scalar(error, bounds=(0, 0.3), method="bounded", options={"xatol": 1e-9})
     loss = sample_sum("log")
     found = bk.fit(
-        "ward", data, loss, fixed={"alpha_u": 0.3}, constraints=bk.solvers.AlbedoAtMost(0.3)
+        data, "ward", loss=loss, fixed={"alpha_u": 0.3}, constraints=bk.solvers.AlbedoAtMost(0.3)
     )
     assert found.loss == pytest.approx(np.sqrt(best.fun), rel=1e-9)
     assert found.values["diffuse_reflectance"][0] == pytest.approx(best.x, rel=1e-4)
@@ -110,9 +110,9 @@ def test_the_end_is_feasible_and_stationary(model, loss):
     """Kuhn and Tucker: the gradient of E² is a sum of those of active constraints and bounds, with
     factors ≥ 0; by differences of E² alone."""
     data = synthetic(bk.models()["ggx"](diffuse_reflectance=[0.5, 0.4, 0.3]), noise=0.1)
-    limit = 0.9 * albedos(bk.fit(model, data, loss, starts=8).model, 64).max()
+    limit = 0.9 * albedos(bk.fit(data, model, loss=loss, starts=8).model, 64).max()
     limits = [bk.solvers.AlbedoAtMost(limit)]
-    found = bk.fit(model, data, loss, starts=8, constraints=limits)
+    found = bk.fit(data, model, loss=loss, starts=8, constraints=limits)
     problem, constraints = setup(model, data, loss, limits)
     u = problem.space.coordinates(found.values)
     weights = np.array([found.values[name] for name in problem.model.weights()]).T
@@ -159,7 +159,7 @@ def test_a_users_function_is_a_constraint():
     truth = bk.models()["ward"](diffuse_reflectance=[0.5, 0.4, 0.1], specular_reflectance=0.1)
     data = synthetic(truth, noise=0.1)
     own, ours = (
-        bk.fit("ward", data, constraints=c) for c in (spare, bk.solvers.WeightsAtMost(0.4))
+        bk.fit(data, "ward", constraints=c) for c in (spare, bk.solvers.WeightsAtMost(0.4))
     )
     assert own.loss == pytest.approx(ours.loss, rel=1e-8)
     assert "the constraint spare is at its limit" in own.notes[0]
@@ -168,9 +168,9 @@ def test_a_users_function_is_a_constraint():
 
 def test_a_fit_that_gains_light_is_kept_from_it():
     """`ward_duer` shows blasted gold with an albedo of 1.8 at 85°; kept to 1, it fits worse."""
-    free = bk.fit("ward_duer", "blasted_gold", use_standard_error=False)
+    free = bk.fit("blasted_gold", "ward_duer", use_standard_error=False)
     limit = bk.solvers.AlbedoAtMost(1.0, theta=(0, 45, 75, 85))
-    found = bk.fit("ward_duer", "blasted_gold", use_standard_error=False, constraints=limit)
+    found = bk.fit("blasted_gold", "ward_duer", use_standard_error=False, constraints=limit)
     assert max(free.albedo.fit[-1]) > 1.5
     assert max(found.albedo.fit[-1]) == pytest.approx(1, abs=1e-4)
     assert free.loss < found.loss < 4 * free.loss

@@ -61,7 +61,7 @@ def test_squared_error_and_gradient(name, loss):
         values = problem.space.values(u[k])
         linear = dict(zip(problem.model.weights(), map(tuple, weights[k].T), strict=True))
         model = problem.model(**values, **linear)
-        expected = bk.compare(data, model, 90.0).errors[model.name][loss]
+        expected = bk.compare(data, model, max_angle=90.0).errors[model.name][loss]
         assert np.sqrt(here.error[k]) == pytest.approx(expected, rel=1e-10)
     h, shapes = 1e-6, u.shape[1]
     for j in range(here.gradient.shape[1]):
@@ -130,7 +130,7 @@ def test_settled_weights_give_the_solution_back(model, name):
     rng = np.random.default_rng(9)
     values = 0.3 + 0.1 * wi[:, 2:] * wo[:, 2:] + 0.01 * rng.standard_t(2, (600, 1))
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
-    fit = bk.fit(model, data, sample_sum("plain"), robust=name)
+    fit = bk.fit(data, model, loss=sample_sum("plain"), robust=name)
     assert fit.message.startswith("settled")
     columns, _ = lobe_values(fit.model, wi, wo)
     solution = np.ravel([fit.values[n] for n in fit.model.weights()])

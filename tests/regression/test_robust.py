@@ -76,7 +76,7 @@ def spoiled():
 @pytest.mark.parametrize("loss", losses.named.by_sample)
 def test_outliers_lose_their_say(spoiled, loss):
     truth, data = spoiled
-    plain, robust = (bk.fit("ggx", data, loss, robust=r) for r in (None, "bisquare"))
+    plain, robust = (bk.fit(data, "ggx", loss=loss, robust=r) for r in (None, "bisquare"))
     assert robust.loss > plain.loss  # which is of all samples
     assert robust.message.startswith("settled")
     wi, wo = random_pairs(1000, seed=7, max_degrees=75)
@@ -90,7 +90,7 @@ def test_few_samples_settle_where_matlabs_passes_do(name, seed):
     wi, wo = random_pairs(12, seed=seed, max_degrees=79)
     values = np.random.default_rng(seed).standard_t(2, (12, 1)) + 3
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
-    fit = bk.fit("koenderink:order=2", data, sample_sum("plain"), robust=name)
+    fit = bk.fit(data, "koenderink:order=2", loss=sample_sum("plain"), robust=name)
     columns, _ = lobe_values(fit.model, wi, wo)
     found = robust_least_squares(columns, values[:, 0], name)
     assert found.converged
@@ -113,7 +113,7 @@ def test_a_linear_fit_is_the_least_squares():
     values = np.random.default_rng(9).standard_t(2, (400, 1)) + 3
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
     for name in ("bisquare", "huber"):
-        fit = bk.fit("koenderink", data, sample_sum("plain"), robust=name)
+        fit = bk.fit(data, "koenderink", loss=sample_sum("plain"), robust=name)
         samples = select_samples(data, 80.0)
         columns, _ = lobe_values(fit.model, samples.wi, samples.wo)
         found = robust_least_squares(columns, values[:, 0], name)
@@ -126,7 +126,7 @@ def test_the_thesis_polynomial(measured_data):
     data = bk.load(measured_data / "curet" / "abrdf.dat#12")
     expected = {None: 0.011160, "bisquare": 0.0243}
     for robust, error in expected.items():
-        fit = bk.fit("pca_polynomial:degree=7", data, sample_sum("plain"), robust=robust)
+        fit = bk.fit(data, "pca_polynomial:degree=7", loss=sample_sum("plain"), robust=robust)
         samples = select_samples(data, 80.0)
         columns, _ = lobe_values(fit.model, samples.wi, samples.wo)
         weights = np.ravel([fit.values[n] for n in fit.model.weights()])
@@ -148,7 +148,7 @@ def test_one_sample_of_cayman_makes_its_error(measured_data):
     others = np.arange(len(values)) != values.sum(axis=1).argmax()
     for degree in (1, 4):
         found = bk.fit(
-            f"pca_polynomial:degree={degree}", data, "plain", robust="bisquare", max_angle=90
+            data, f"pca_polynomial:degree={degree}", loss="plain", robust="bisquare", max_angle=90
         )
         squares = (((found.eval(wi, wo) - values) * wi[:, 2:]) ** 2).sum(axis=1)
         assert np.sqrt(squares.mean()) == pytest.approx(4.9566, abs=5e-4)
@@ -165,7 +165,7 @@ def test_more_samples_than_parameters(model, samples, parameters, robust):
     wi, wo = random_pairs(samples, seed=1, max_degrees=79)
     data = bk.Measured.from_samples(wi, wo, np.full((samples, 1), 0.2), channels=("Y",))
     with pytest.raises(bk.BrdfkitError, match=f"here are {samples} and {parameters}:"):
-        bk.fit(model, data, robust=robust)
+        bk.fit(data, model, robust=robust)
     with pytest.raises(bk.BrdfkitError, match="here are 2 and 2:"):
         robust_least_squares(DESIGN[:2], Y[:2], robust)
 
@@ -175,11 +175,11 @@ def test_one_sample_more_than_parameters():
     wi, wo = random_pairs(15, seed=1, max_degrees=79)
     values = np.random.default_rng(2).uniform(0.1, 0.2, (15, 1))
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
-    found = bk.fit("koenderink:order=4", data, robust="bisquare")
+    found = bk.fit(data, "koenderink:order=4", robust="bisquare")
     assert 0 < found.loss < 0.2
 
 
 @pytest.mark.quick
 def test_an_unknown_weight_is_said():
     with pytest.raises(bk.BrdfkitError, match=r"'tukey'; there are andrews, bisquare"):
-        bk.fit("ggx", bk.load("dusty_gold"), robust="tukey")
+        bk.fit(bk.load("dusty_gold"), "ggx", robust="tukey")

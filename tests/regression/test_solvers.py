@@ -36,9 +36,9 @@ def noisy():
     ("model", "loss"), [("ward", "log"), ("ggx", "cosine"), ("cook_torrance", "cbrt")]
 )
 def test_all_solvers_end_alike(noisy, model, loss):
-    least = bk.fit(model, noisy, loss, starts=8).loss
+    least = bk.fit(noisy, model, loss=loss, starts=8).loss
     for name, fewer in QUICK.items():
-        found = bk.fit(model, noisy, loss, starts=8, solver={"name": name, **fewer})
+        found = bk.fit(noisy, model, loss=loss, starts=8, solver={"name": name, **fewer})
         assert found.loss == pytest.approx(least, rel=1e-6), name
         assert found.message == "converged", name
 
@@ -46,9 +46,9 @@ def test_all_solvers_end_alike(noisy, model, loss):
 @pytest.mark.parametrize("solver", QUICK)
 def test_all_solvers_end_alike_on_a_table(solver):
     """Of which they see parts first."""
-    least = bk.fit("cook_torrance", "satin_plastic", "cosine")
+    least = bk.fit("satin_plastic", "cook_torrance", loss="cosine")
     how = {"name": solver, **QUICK[solver]}
-    found = bk.fit("cook_torrance", "satin_plastic", "cosine", solver=how)
+    found = bk.fit("satin_plastic", "cook_torrance", loss="cosine", solver=how)
     assert found.loss == pytest.approx(least.loss, rel=1e-6)
     np.testing.assert_allclose(found.values["alpha"], least.values["alpha"], rtol=1e-4)
 
@@ -67,7 +67,7 @@ def test_slsqp_ends_where_scipy_does_by_itself(noisy):
     start = [0.3, *[0.4] * 3, *[0.2] * 3]
     bounds = [(0.001, 1), *[(0, None)] * 6]
     direct = minimize(error, start, method="SLSQP", bounds=bounds, options={"ftol": 1e-14})
-    found = bk.fit("ward_duer", noisy, sample_sum("log"), solver=bk.solvers.SLSQP(starts=2))
+    found = bk.fit(noisy, "ward_duer", loss=sample_sum("log"), solver=bk.solvers.SLSQP(starts=2))
     assert found.loss == pytest.approx(np.sqrt(direct.fun), rel=1e-6)
     assert found.values["alpha_u"] == pytest.approx(direct.x[0], rel=1e-3)
 
@@ -78,15 +78,15 @@ def test_differential_evolution_does_not_depend_on_its_start():
     wi, wo = random_pairs(N, seed=1, max_degrees=79)
     data = bk.Measured.from_samples(wi, wo, truth.eval(wi, wo), channels=("Y",))
     how = {"anisotropic": True, "starts": 1}
-    assert bk.fit("lafortune", data, "cosine", **how).loss > 0.005
+    assert bk.fit(data, "lafortune", loss="cosine", **how).loss > 0.005
     evolution = bk.solvers.DifferentialEvolution(population=6, iterations=20)
-    assert bk.fit("lafortune", data, "cosine", solver=evolution, **how).loss < 1e-8
+    assert bk.fit(data, "lafortune", loss="cosine", solver=evolution, **how).loss < 1e-8
 
 
 def test_a_fit_by_any_solver_is_reproducible(noisy):
     for name, fewer in QUICK.items():
         solver = {"name": name, **fewer}
-        first, second = (bk.fit("ward", noisy, solver=solver, starts=4) for _ in range(2))
+        first, second = (bk.fit(noisy, "ward", solver=solver, starts=4) for _ in range(2))
         assert first == second
 
 
@@ -103,13 +103,13 @@ def test_a_solver_is_plain_data(name):
 def test_a_saved_fit_knows_its_solver(noisy, tmp_path):
     solver = bk.solvers.SLSQP(starts=2)
     limits = [bk.solvers.AlbedoAtMost(5.0, theta=10), lambda model: 1.0]
-    found = bk.fit("lambert", noisy, solver=solver, constraints=limits)
+    found = bk.fit(noisy, "lambert", solver=solver, constraints=limits)
     bk.save(found, tmp_path / "lambert.json")
     loaded = bk.load(tmp_path / "lambert.json")
     assert loaded == found
     assert to_solver(loaded.settings["solver"]) == solver
     unconstrained = loaded.settings | {"constraints": None}
-    assert bk.fit("lambert", noisy, **unconstrained).loss == pytest.approx(found.loss, rel=1e-9)
+    assert bk.fit(noisy, "lambert", **unconstrained).loss == pytest.approx(found.loss, rel=1e-9)
 
 
 @pytest.mark.quick
@@ -118,8 +118,8 @@ def test_the_solver_that_the_documentation_shows_works(noisy):
     code = textwrap.dedent(solvers.__doc__.partition("too:\n\n")[2])
     scope = {"np": np, "End": solvers.End}
     exec(code, scope)
-    found = bk.fit("ward", noisy, solver=scope["RandomSearch"]())
-    assert found.loss < 1.1 * bk.fit("ward", noisy).loss
+    found = bk.fit(noisy, "ward", solver=scope["RandomSearch"]())
+    assert found.loss < 1.1 * bk.fit(noisy, "ward").loss
     assert bk.compare(noisy, found).errors["ward"]["cbrt"] == pytest.approx(found.loss, rel=1e-9)
     assert found.message == "as good as chance had it"
     assert found.evaluations > 10_000
@@ -133,7 +133,7 @@ def test_an_end_that_is_none_is_explained(noisy, end):
             return end
 
     with pytest.raises(BrdfkitError, match="it should return an End"):
-        bk.fit("ward", noisy, solver=Hasty())
+        bk.fit(noisy, "ward", solver=Hasty())
 
 
 @pytest.mark.quick
@@ -161,7 +161,7 @@ def test_an_end_that_is_none_is_explained(noisy, end):
 )
 def test_bad_solvers_and_constraints_are_explained(noisy, arguments, words):
     with pytest.raises(BrdfkitError) as error:
-        bk.fit("lambert", noisy, **arguments)
+        bk.fit(noisy, "lambert", **arguments)
     assert all(word in str(error.value) for word in words), error.value
 
 
@@ -197,7 +197,7 @@ def test_the_error_of_an_end_is_computed_anew(noisy):
         def minimise(self, objective):
             return solvers.End(objective.starts[0], -1.0, None)
 
-    found = bk.fit("ward", noisy, solver=Boaster())
+    found = bk.fit(noisy, "ward", solver=Boaster())
     assert found.loss == pytest.approx(bk.compare(noisy, found).errors["ward"]["cbrt"], rel=1e-9)
 
 
@@ -209,6 +209,6 @@ def test_ctrl_c_in_any_solver_keeps_the_best_point(noisy):
             raise KeyboardInterrupt
 
     with pytest.raises(bk.Interrupted) as stop:
-        bk.fit("ward", noisy, solver=Stopping())
+        bk.fit(noisy, "ward", solver=Stopping())
     best = stop.value.best
     assert best.loss == pytest.approx(bk.compare(noisy, best).errors["ward"]["cbrt"], rel=1e-9)

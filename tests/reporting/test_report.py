@@ -62,7 +62,7 @@ def material():
 
 @pytest.fixture(scope="module")
 def fits(material):
-    return [bk.fit(name, material) for name in ("lambert", "ward")]
+    return [bk.fit(material, name) for name in ("lambert", "ward")]
 
 
 @pytest.fixture(scope="module")
@@ -221,7 +221,7 @@ def test_the_light_is_shown_beside_the_measured_and_marked_where_it_is_wrong(
 
 def test_equal_fits_are_tied_and_worse_ones_are_not(material, fits):
     lambert, ward = fits
-    near = bk.fit("ward", material, max_angle=79)
+    near = bk.fit(material, "ward", max_angle=79)
     tied = [one.tied for one in fit_errors.standings(material, [ward, near, lambert], "log")]
     assert tied == [True, True, False]
 
@@ -337,7 +337,7 @@ def test_the_command_in_a_report_repeats_it(here):
 
 def test_settings_that_no_option_tells_are_named(material):
     settings = {"solver": "slsqp", "constraints": bk.solvers.AlbedoAtMost(0.9), "max_angle": 70}
-    told = bk.fit("lambert", material, **settings)
+    told = bk.fit(material, "lambert", **settings)
     how = {**SMALL, "seed": 0, "scene": "ball", "envmap": None}
     words, untold = origin.command(material, "x.npz", [told], "out/x y.html", **how)
     assert words.endswith(
@@ -345,7 +345,7 @@ def test_settings_that_no_option_tells_are_named(material):
         "--seed 0 -o 'x y.html'"
     )
     assert untold == []
-    ward = bk.fit("ward", material, "log", bounds={"alpha_u": (0.1, 0.3)}, seed=3, starts=1)
+    ward = bk.fit(material, "ward", loss="log", bounds={"alpha_u": (0.1, 0.3)}, seed=3, starts=1)
     _, untold = origin.command(material, None, [told, ward], "x.html", **how)
     assert {"loss", "bounds", "seed", "starts"} <= set(untold)
 
@@ -397,7 +397,7 @@ def test_doubts_stand_under_the_head_and_in_the_terminal(here):
     assert doubts
     for doubt in doubts:
         assert f"The measurement is doubtful: {doubt}.\n" in done.stdout
-    warnings = [f"ward: {warning}" for warning in bk.fit("ward", "bright.npz").warnings]
+    warnings = [f"ward: {warning}" for warning in bk.fit("bright.npz", "ward").warnings]
     assert warnings
     for warning in warnings:
         assert f"! {warning}\n" in done.stdout

@@ -199,7 +199,7 @@ def refitted(folder, name):
     """Median of the exponent of a fit of the model `name` over the printed one of Blinn-Phong."""
     rows = [row for row in of_model(rows_of(folder), "blinn_phong") if row.usable]
     curet = folder / "curet" / "abrdf.dat"
-    fits = [bk.fit(name, bk.load(f"{curet}#{r.sample}"), loss="kurt", starts=4) for r in rows]
+    fits = [bk.fit(bk.load(f"{curet}#{r.sample}"), name, loss="kurt", starts=4) for r in rows]
     printed = np.array([row.shapes["exponent"] for row in rows])
     return np.median(np.array([fit.values["exponent"] for fit in fits]) / printed)
 
@@ -224,7 +224,7 @@ def test_on_how_many_samples_the_polynomial_wins(loss, expected, rows, measured_
     won = 0
     for row in of_model(rows, "oren_nayar"):
         data = bk.load(measured_data / "curet" / f"abrdf.dat#{row.sample}")
-        values = bk.fit("pca_polynomial:degree=7", data, loss).eval(row.data.wi, row.data.wo)
+        values = bk.fit(data, "pca_polynomial:degree=7", loss=loss).eval(row.data.wi, row.data.wo)
         others = [r for r in rows if r.sample == row.sample]
         # To the thesis's scale: by the errors at its shape parameters, with the best weights
         ours = [r.data.error(r.data.values - r.data.solve(r.lobes) @ r.lobes) for r in others]

@@ -54,7 +54,7 @@ class Sample:
         """The `Fit` of a model; `how`: the loss and the robust weight."""
         if (label, how) not in self.fits:
             loss, robust = how
-            found = fit(label, self.data, loss, robust=robust, bounds=BOUNDS.get(label))
+            found = fit(self.data, label, loss=loss, robust=robust, bounds=BOUNDS.get(label))
             self.fits[label, how] = found
         return self.fits[label, how]
 

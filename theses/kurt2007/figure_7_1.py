@@ -88,7 +88,7 @@ def _components(wi, wo, angle):
 def _draw(data):
     from matplotlib.ticker import MaxNLocator
 
-    found = fit(f"pca_polynomial:degree={DEGREE}", data, PLAIN, robust="bisquare")
+    found = fit(data, f"pca_polynomial:degree={DEGREE}", loss=PLAIN, robust="bisquare")
     shown, angle = select_samples(data, 80), found.values["angle_1_2"]
     z, f = _components(shown.wi, shown.wo, angle), shown.values[:, 1]
     betas = weight_matrix(found.model)[:, 1]

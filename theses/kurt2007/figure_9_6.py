@@ -25,7 +25,7 @@ def run(sources, report):
     with np.load(sources.path("nbrdf_derived/merl_nbrdf.npz")) as networks:
         table = decode_network(networks[MATERIAL], CELLS)
     data = Measured.from_table(table.values, name=MATERIAL)
-    found = fit("pca_polynomial:degree=5", data, PLAIN, robust="bisquare")
+    found = fit(data, "pca_polynomial:degree=5", loss=PLAIN, robust="bisquare")
     report(1, 2)
     others = ("phong", *SEVEN.values(), "torrance_sparrow", "koenderink:order=8")
     worst = max(_difference(labels.model(name)()) for name in others)

@@ -41,7 +41,7 @@ def run(sources, report):
 
 def _error(label, data):
     """E of a bisquare fit."""
-    found = fit(label, data, PLAIN, robust="bisquare", max_angle=WIDEST)
+    found = fit(data, label, loss=PLAIN, robust="bisquare", max_angle=WIDEST)
     return error(found.model, select_samples(data, WIDEST))
 
 

@@ -58,7 +58,7 @@ def run(sources, report):
 def _fit(label, how, data):
     """A fit, and its E by eq. 5.13."""
     loss, robust = how
-    found = fit(label, data, loss, robust=robust, bounds=BOUNDS.get(label))
+    found = fit(data, label, loss=loss, robust=robust, bounds=BOUNDS.get(label))
     return found, error(found.model, select_samples(data, 80))
 
 

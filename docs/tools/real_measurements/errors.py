@@ -42,10 +42,10 @@ def measure(data):
         "fits": {},
     }
     for model in MODELS:
-        fits = [bk.fit(model, data, loss) for loss in LOSSES]
+        fits = [bk.fit(data, model, loss=loss) for loss in LOSSES]
         found["fits"][model] = {fit.loss_name: judge(fit) for fit in fits}
     best = max(found["fits"], key=lambda model: found["fits"][model]["cbrt"]["psnr"])
-    found["regions"] = judge.regions(bk.fit(best, data))
+    found["regions"] = judge.regions(bk.fit(data, best))
     return found
 
 

@@ -113,7 +113,7 @@ def compare_files(files, model, loss, part):
     also comparisons of the `inner` fits, below 70°.
     """
     (table, *others), found = files, {}
-    fit = partial(bk.fit, model, loss=loss)
+    fit = partial(bk.fit, model=model, loss=loss)
     reference = fit(files[table])
     inner = cache(lambda: Numbers(fit(files[table], max_angle=INNER)))
     own, error = Numbers(reference), part.error(reference)

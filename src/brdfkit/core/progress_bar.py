@@ -6,8 +6,11 @@ from contextlib import contextmanager
 from html import escape
 from threading import Timer
 from time import monotonic
+from typing import TypeAlias
 
 from brdfkit.core.errors import BrdfkitError
+
+Progress: TypeAlias = Callable[[int, int], object]  # called with (steps done, steps in all)
 
 PATIENCE = 1.0  # seconds until the bar shows: a bar that flashes up only disturbs
 MEMORY = 3600.0  # seconds of which the time left is estimated: one fit of a sweep may take minutes
@@ -15,7 +18,7 @@ INTERVAL = 0.1  # seconds between two pictures of the bar in a notebook
 
 
 @contextmanager
-def progress(what: str) -> Iterator[Callable[[int, int], object]]:
+def progress(what: str) -> Iterator[Progress]:
     """A bar, for the block, of how far a verb is; it goes with the block.
 
     In a notebook it is a line of HTML, which needs no widgets; else it is drawn on standard error,

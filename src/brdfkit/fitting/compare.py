@@ -1,4 +1,6 @@
-"""`compare`: how well models describe a measured material, and its light, as a table."""
+"""`compare`: a table of how well models describe a measured material, and of their albedos."""
+
+from __future__ import annotations
 
 import math
 from collections.abc import Iterable
@@ -10,6 +12,7 @@ from brdfkit.core.documents import Cell, Document, Shown, Table
 from brdfkit.core.documents.parts import STRONG
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.names import make_unique
+from brdfkit.fitting.settings import require_material_first
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.albedos import ANGLES
 from brdfkit.materials.measured.selection import select_samples
@@ -92,49 +95,50 @@ def format_error(error):
 
 
 def compare(
-    data: MaterialLike,
-    things: MaterialLike | Iterable[MaterialLike],
+    material: MaterialLike,
+    fits: MaterialLike | Iterable[MaterialLike],
+    *,
     max_angle: float = 80.0,
     spectral: bool = False,
 ) -> Comparison:
-    """Compare fits, models or other materials to a measured one, by every loss and by their light.
+    """Compare fits, models or other materials to a measured one: errors by every loss, and albedo.
 
     Parameters
     ----------
-    data : Measured, str or Path
-        The measured material, or the name or path of one.
-    things : Measured, Fit, Model, str, Path or dict, or several
+    material : Measured, str or Path
+        The measured material, or its name or path.
+    fits : Fit, Model, Measured, str, Path or dict, or several
         What is compared to it; equal names are numbered.
     max_angle : float, default 80
-        Samples with an angle to the normal at or beyond it [degrees, above 0 to 90] are left out,
+        Largest angle to the normal [degrees, above 0 to 90]; samples at or beyond it are left out,
         as in `fit`.
     spectral : bool, default False
-        Whether to compare at the measured wavelengths, which `things` should have, too, or else in
-        linear sRGB.
+        Whether to compare at the measured wavelengths, which all `fits` must have, too; otherwise
+        in linear sRGB.
 
     Returns
     -------
     Comparison
-        The errors, in the order of the cbrt loss, the best first, and the albedos; prints as a
-        table.
+        The errors, sorted by the cbrt loss, the best first, and the albedos; prints as a table.
 
     Raises
     ------
     BrdfkitError
-        Where `data` was not measured, one of `things` is no material or has other channels, or no
+        Where `material` was not measured, one of `fits` is no material or has other channels, or no
         sample is left.
 
     Examples
     --------
-    >>> print(compare("car_paint", ["ward", fit("ggx", "car_paint")]))    # doctest: +SKIP
+    >>> print(compare("car_paint", ["ward", fit("car_paint", "ggx")]))    # doctest: +SKIP
     """
-    data, found = to_measured(data), to_materials(things)
+    require_material_first("compare(material, fits)", material)
+    data, materials = to_measured(material), to_materials(fits)
     samples = select_samples(data, max_angle, spectral=spectral)
     light = (data if spectral else data.rgb).albedo
     pixels = albedo_pixels(ANGLES, FOUR if data.anisotropic else ONE)
     errors: dict[str, dict[str, float]] = {}
     albedos: dict[str, tuple[float, ...]] = {}
-    for thing in found:
+    for thing in materials:
         name, brdf = make_unique(thing.name, errors), thing if spectral else _in_rgb(thing)
         values = _evaluate(brdf, data, samples)
         errors[name] = {
@@ -142,7 +146,7 @@ def compare(
         }
         albedos[name] = _reflect(brdf, pixels)
     errors = dict(sorted(errors.items(), key=lambda item: item[1][DEFAULT]))
-    shown = told(*(thing.loss_name for thing in found if isinstance(thing, Fit)))
+    shown = told(*(thing.loss_name for thing in materials if isinstance(thing, Fit)))
     return Comparison(data.name, errors, albedos, light.means, tuple(shown))
 
 

@@ -1,22 +1,25 @@
-"""`fit`: a model fitted to a measured material."""
+"""`fit`: fits a BRDF model to a measured material."""
+
+from __future__ import annotations
 
 import inspect
 import time
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from brdfkit.core.array_types import ArrayLike
 from brdfkit.core.errors import no_such
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.threads import in_turn
+from brdfkit.core.progress_bar import Progress
 from brdfkit.core.version import versions
 from brdfkit.fitting.light_of_data import light_of_data
 from brdfkit.fitting.notes import list_notes
-from brdfkit.fitting.settings import require_plain, to_settings
+from brdfkit.fitting.settings import require_material_first, require_plain, to_settings
 from brdfkit.images.ball import draw_pixels
 from brdfkit.materials.extrapolation import note_on_extrapolation
 from brdfkit.materials.measured.selection import select_samples
@@ -30,84 +33,88 @@ from brdfkit.regression.measurement_noise import regress_noisy
 from brdfkit.regression.solvers import AlbedoAtMost, Solver, WeightsAtMost
 from brdfkit.regression.solvers.settings import to_plain
 
-Constraint = AlbedoAtMost | WeightsAtMost | Callable[[Model], ArrayLike]
+ModelLike: TypeAlias = str | Path | type[Model]
+LossLike: TypeAlias = str | Loss | Picture | Callable[..., Any]
+Constraint: TypeAlias = AlbedoAtMost | WeightsAtMost | Callable[[Model], ArrayLike]
+Bounds: TypeAlias = Mapping[str, tuple[float, float]]
 
 
 @in_turn
 def fit(
-    name: str | Path | type[Model],
-    data: MaterialLike,
-    loss: str | Loss | Picture | Callable[..., Any] = "cbrt",
+    material: MaterialLike,
+    model: ModelLike,
     *,
-    robust: str | None = None,
+    loss: LossLike = "cbrt",
     weights: ArrayLike | None = None,
     use_standard_error: bool = True,
+    robust: str | None = None,
     solver: str | Solver | None = None,
     constraints: Constraint | Iterable[Constraint] | None = None,
     starts: int | None = None,
-    bounds: Mapping[str, tuple[float, float]] | None = None,
+    bounds: Bounds | None = None,
     fixed: Mapping[str, float] | None = None,
     anisotropic: bool | None = None,
     max_angle: float = 80.0,
     spectral: bool = False,
     seed: int = 0,
-    progress: Callable[[int, int], object] | None = None,
+    progress: Progress | None = None,
 ) -> Fit:
-    """Fit a model to a measured material.
+    """Fit a BRDF model to a measured material.
 
-    Unless another solver is given, a damped Gauss-Newton search (Levenberg-Marquardt) from several
-    starts at once, in double precision with exact derivatives: the shape parameters, and the
-    weights of every channel, which follow them. Fits of several threads run one after the other.
-    Ctrl-C raises `Interrupted`, whose `best` is the best fit so far; with constraints, or before
-    any point was evaluated, a plain KeyboardInterrupt.
+    The default solver is a damped Gauss-Newton search (Levenberg-Marquardt) from several starts,
+    with exact derivatives in double precision. It searches the shape parameters; the best weights
+    of the lobes in every channel follow from these. Fits in several threads run one after the
+    other. Ctrl-C raises `Interrupted`, whose attribute `best` is the best fit so far; with
+    constraints, and before the first evaluation, it raises a plain KeyboardInterrupt.
 
     Parameters
     ----------
-    name : str, Path or class
-        The model: its label, as ``"ggx"``, ``"koenderink:order=8"`` or ``"ggx+ward"``; a file that
-        defines one; or a class derived from `Model`.
-    data : Measured, str or Path
-        The measured material, or the name or path of one.
+    material : Measured, str or Path
+        The measured material, or its name or path.
+    model : str, Path or class
+        The model: a label such as ``"ggx"``, ``"koenderink:order=8"`` or the sum ``"ggx+ward"``; a
+        Python file that defines a model; or a class derived from `Model`.
     loss : str, Loss, Picture or callable, default "cbrt"
-        What is made small: a name in `brdfkit.losses.named`, a `Loss`, a `Picture`, or your own
-        difference of a model's value from the measured one, a function (model, measured, cos_i,
-        cos_o) of Dr.Jit's arrays.
-    robust : str, optional
-        The weight by which outliers lose their say, as ``"bisquare"`` [Kurt 2007, eq. 5.14]; the
-        others are in `brdfkit.regression.robust.reweighting.WEIGHTS`. By default all samples count.
+        The error to minimise: a name in `brdfkit.losses.named`, a `Loss`, a `Picture`, or a
+        function (model, measured, cos_i, cos_o) of Dr.Jit arrays that returns the difference of a
+        model value from a measured one.
     weights : array_like, shape (n,), optional
-        Factors of the samples of the measurement; of a table, of its cells, in the table's shape or
-        flat. A sample counts by its factor times how much of the loss's measure of directions it
-        stands for. By default all factors are 1.
+        Factors of the samples, or of the cells of a table, in the table's shape or flat. They
+        multiply the share of the loss's measure of directions that each sample stands for. By
+        default all are 1.
     use_standard_error : bool, default True
-        Whether samples count by their standard errors, where the measurement states them: those
-        whose noise is more than the model's own error, less.
+        Whether samples whose stated standard error exceeds the model's own error count less. It
+        has no effect on measurements without standard errors.
+    robust : str, optional
+        Weight function that reduces the influence of outliers, such as ``"bisquare"`` [Kurt 2007,
+        eq. 5.14]; `brdfkit.regression.robust.reweighting.WEIGHTS` lists them. By default all
+        samples count.
     solver : solver or str, optional
-        What searches: `LevenbergMarquardt`, `SLSQP`, `TrustRegion` or `DifferentialEvolution`, as
-        ``SLSQP(starts=4)``, its name, as ``"slsqp"``, or an object of yours with their method. By
-        default `LevenbergMarquardt`, and `SLSQP` where there are constraints.
+        The optimiser: one of `brdfkit.solvers`, as ``SLSQP(starts=4)``, its name, as ``"slsqp"``,
+        or an object of your own with the same method. By default `LevenbergMarquardt`, or `SLSQP`
+        where there are constraints.
     constraints : constraint or several, optional
-        What the model has to meet: `AlbedoAtMost`, `WeightsAtMost`, or functions of the model with
-        its values, each of which returns one or several numbers that are not negative where it is
-        met. Derivatives of functions are taken by differences.
+        Conditions on the model: `AlbedoAtMost`, `WeightsAtMost`, or functions of the model with
+        its values that return one number or several, each of which is negative where the
+        condition is violated. Functions are differentiated by finite differences.
     starts : int, optional
-        Points from which the search begins: the defaults and others, spread over the bounds. By
-        default 16 for each searched parameter, at most 96.
+        Number of points from which the search starts: the defaults, and others spread over the
+        bounds. By default 16 for each searched parameter, at most 96.
     bounds : dict of str to (float, float), optional
         Narrower bounds of shape parameters, as ``{"alpha_u": (0.01, 0.5)}``.
     fixed : dict of str to float, optional
         Shape parameters that keep a value, as ``{"f0": 0.04}``.
     anisotropic : bool, optional
-        Whether ``alpha_v`` and its like are searched, too, or else follow ``alpha_u``. By default
-        they are where the measurement is anisotropic.
+        Whether ``alpha_v`` and similar parameters are searched; otherwise they follow
+        ``alpha_u``. By default they are searched where the measurement is anisotropic.
     max_angle : float, default 80
-        Samples with an angle to the normal at or beyond it [degrees, above 0 to 90] are left out.
+        Largest angle to the normal [degrees, above 0 to 90]; samples at or beyond it are left out.
     spectral : bool, default False
-        Whether a measurement of wavelengths is fitted at these, with a weight for each, or else as
-        linear sRGB. Every wavelength counts alike.
+        Whether to fit at the measured wavelengths, with a weight for each, all of which count
+        alike; otherwise in linear sRGB.
     seed : int, default 0
-        Seed of the starts, and of the part of a large table by which they are compared; equal seeds
-        give equal fits.
+        Seed of the starts, and of the part of a large table on which they are compared; equal
+        seeds give equal fits.
     progress : callable, optional
         Called with (steps done, steps in all).
 
@@ -121,23 +128,24 @@ def fit(
     BrdfkitError
         For an unknown model, loss, robust weight or solver; for constraints that the solver or a
         robust fit does not take, or that no parameters meet; for a parameter that is not searched,
-        or bounds and values beyond the model's; where `data` was not measured, has no wavelengths
-        for a spectral fit, or no sample is left; for a formula or loss that is not finite; for
-        weights or standard errors that do not fit; for a robust fit without more samples than
-        parameters; and for a `Picture` with robust, weights or spectral, or of a model that may be
-        negative.
+        or bounds and values beyond the model's; where `material` was not measured, has no
+        wavelengths for a spectral fit, or no sample is left; for a formula or loss that is not
+        finite; for weights or standard errors that do not fit; for a robust fit without more
+        samples than parameters; and for a `Picture` with robust, weights or spectral, or of a model
+        that may be negative.
 
     Examples
     --------
-    >>> print(fit("ward", "paint.binary"))    # doctest: +SKIP
+    >>> print(fit("paint.binary", "ward"))    # doctest: +SKIP
     """
     began = time.perf_counter()
-    model, data = labels.model(labels.read_files(name)), to_measured(data)
+    require_material_first("fit(material, model)", material)
+    model_class, data = labels.model(labels.read_files(model)), to_measured(material)
     how: dict[str, Any] = {"seed": seed, "starts": starts, "bounds": bounds, "fixed": fixed}
     how |= {"solver": solver, "constraints": constraints}
     how["anisotropic"] = data.anisotropic if anisotropic is None else anisotropic
     given = {"robust": robust, "max_angle": max_angle, "use_standard_error": use_standard_error}
-    checked = check_settings({**given, **how}, f"{model.type_name()}: ")
+    checked = check_settings({**given, **how}, f"{model_class.type_name()}: ")
     how = {name: checked[name] for name in how}
     loss = as_loss(loss)
     samples = select_samples(data, max_angle, weights, use_standard_error, spectral)
@@ -146,7 +154,7 @@ def fit(
 
     def to_fit(found):
         known = wavelengths(data) if spectral else ()
-        fitted = with_weights(model, found.shapes, found.weights, known)
+        fitted = with_weights(model_class, found.shapes, found.weights, known)
         albedo = light.judge(fitted.eval)
         warnings = [] if light.has_another_unit else albedo.warnings()
         return Fit(
@@ -190,7 +198,7 @@ def fit(
     kept = None if as_it_is else light
     try:
         return to_fit(
-            solve(model, samples, loss, robust=robust, light=kept, **how, report=progress)
+            solve(model_class, samples, loss, robust=robust, light=kept, **how, report=progress)
         )
     except Interrupted as stop:
         best = to_fit(stop.best)
@@ -203,7 +211,7 @@ def fit(
 SETTINGS = {
     name: parameter.default
     for name, parameter in inspect.signature(fit).parameters.items()
-    if name not in ("name", "data", "weights", "progress")
+    if name not in ("material", "model", "weights", "progress")
 }
 
 

@@ -1,11 +1,15 @@
 """Checks the settings of a fit: what is wrong with them for any model and any material."""
 
+import os
+from pathlib import Path
+
 from brdfkit.core.arguments import to_dictionary, to_pair, to_whole_number
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.fitting.light_of_data import light_of_data
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.measured.validation import require_max_angle
 from brdfkit.materials.resolve import to_measured
+from brdfkit.model import Model, labels
 from brdfkit.regression import Fit, as_loss
 from brdfkit.regression.refitting import Refit
 from brdfkit.regression.robust.reweighting import WEIGHTS
@@ -21,10 +25,31 @@ def refit(fit, data):
     return Refit(fit, samples, light)
 
 
+def require_material_first(call: str, material: object) -> None:
+    """Raise `BrdfkitError` where a model stands in the place of the material, as it does in
+    `fit("ggx", paint)`; `call` is the right order, as "fit(material, model)"."""
+    several = material if isinstance(material, list | tuple) else [material]
+    if several and all(map(_is_model, several)):
+        raise BrdfkitError(
+            f"{material!r:.60} is a model, where the measured material belongs: {call}."
+        )
+
+
+def _is_model(given: object) -> bool:
+    """Whether an argument can only mean a model: a fit, a model, its class, file or label."""
+    if isinstance(given, str | Path):
+        is_file = os.path.isfile(given)
+        return str(given).endswith(".py") or (not is_file and labels.is_label(str(given)))
+    return isinstance(given, Fit | Model) or (isinstance(given, type) and issubclass(given, Model))
+
+
 def fitted_samples(fit, data):
     """The `Samples` of a material that were fitted; with standard errors, where these counted."""
     if not isinstance(fit, Fit):
-        raise BrdfkitError(f"Here a Fit is needed, not a {type(fit).__name__}; make one by fit.")
+        raise BrdfkitError(
+            f"Here a Fit is needed first, then the material, not a {type(fit).__name__}; make one "
+            "by fit(material, model)."
+        )
     settings, data = fit.settings, to_measured(data)
     errors = settings.get("use_standard_error", False)
     return select_samples(

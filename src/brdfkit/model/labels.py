@@ -62,7 +62,7 @@ def model(label: str | type[Model]) -> type[Model]:
     if not isinstance(label, str):
         raise BrdfkitError(
             f"A {type(label).__name__} names no model; give a name such as 'ward', or a class, "
-            "before the material."
+            "after the material."
         )
     parts = label.removeprefix("mixture:models=")
     if "+" in parts or parts != label:

@@ -218,7 +218,7 @@ class Fit(Shown):
 
         Examples
         --------
-        >>> plot(fit("ward", paint).residuals(paint))    # doctest: +SKIP
+        >>> plot(fit(paint, "ward").residuals(paint))    # doctest: +SKIP
         """
         if not hasattr(data, "minus"):
             raise BrdfkitError(

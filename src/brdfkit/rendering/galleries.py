@@ -115,7 +115,7 @@ def gallery(
     Examples
     --------
     >>> materials = [bk.load(n) for n in ("car_paint", "brushed_aluminium")]    # doctest: +SKIP
-    >>> gallery([[m, bk.fit("ward", m), bk.fit("ggx", m)] for m in materials])    # doctest: +SKIP
+    >>> gallery([[m, bk.fit(m, "ward"), bk.fit(m, "ggx")] for m in materials])    # doctest: +SKIP
     """
     if isinstance(rows, str) or not isinstance(rows, Iterable):
         raise BrdfkitError(

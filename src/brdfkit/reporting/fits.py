@@ -45,7 +45,7 @@ def to_fit(thing, material, settings, progress=None):
     if saved and not isinstance(found, Fit):
         raise BrdfkitError(f"{thing}: is no saved fit; name one, or a model.")
     if not isinstance(found, Fit):
-        return fit(thing, material, **settings, progress=progress)
+        return fit(material, thing, **settings, progress=progress)
     if found.checksum and found.checksum != material.checksum:
         raise BrdfkitError(
             f"{found.name} was fitted to other data, {found.data}, than {material.name} has; give "

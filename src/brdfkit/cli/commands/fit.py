@@ -127,7 +127,7 @@ def fit(
             errors, interrupted = picture.errors(), picture.spp < picture.asked
             written += [exr, output / "render.png"]
     with console.progress("compare"):
-        comparison = compare(material, fits, how["max_angle"], spectral)
+        comparison = compare(material, fits, max_angle=how["max_angle"], spectral=spectral)
     print_fits(material, fits, failed, comparison, errors, written, ranking, console)
     for error in failed.values():
         say(error)
@@ -192,7 +192,7 @@ def _fit_each(names, material, how, output, console):
         for number, name in enumerate(names, 1):
             try:
                 with console.progress(f"fit {name} ({number} of {len(names)})") as progress:
-                    found = fit_model(name, material, **how, progress=progress)
+                    found = fit_model(material, name, **how, progress=progress)
             except BrdfkitError as error:
                 failed[name] = error
                 continue

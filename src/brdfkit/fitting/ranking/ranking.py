@@ -1,24 +1,28 @@
-"""`rank`: models by how well they predict what they were not fitted to, and by how they look."""
+"""`rank`: ranks models by their errors on samples left out of the fit, and by pictures."""
+
+from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
-from pathlib import Path
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.progress_bar import Progress
+from brdfkit.fitting.fit import LossLike, ModelLike
 from brdfkit.fitting.ranking.appearance import Appearance
 from brdfkit.fitting.ranking.cross_validation import cross_validate
 from brdfkit.fitting.ranking.held_out import HeldOut
 from brdfkit.fitting.ranking.ranked import rows_of
 from brdfkit.fitting.ranking.result import Ranking
+from brdfkit.fitting.settings import require_material_first
 from brdfkit.images.ball import draw_pixels
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model import Model, labels
-from brdfkit.regression import Loss, Picture, as_loss
+from brdfkit.regression import Picture, as_loss
 from brdfkit.regression.light import Light
 
 # The sums that are ranked by default: the best of docs/leaderboard.md with few and with more
@@ -27,48 +31,48 @@ SUMS = "ggx+ggx", "abc+ggx", "abc+student_t"
 
 
 def rank(
-    data: MaterialLike,
-    models: str | Path | type[Model] | Iterable[str | Path | type[Model]] | None = None,
-    loss: str | Loss | Picture | Callable[..., Any] = "cbrt",
+    material: MaterialLike,
+    models: ModelLike | Iterable[ModelLike] | None = None,
     *,
+    loss: LossLike = "cbrt",
     folds: int = 5,
     anisotropic: bool | None = None,
     max_angle: float = 80.0,
     seed: int = 0,
-    progress: Callable[[int, int], object] | None = None,
+    progress: Progress | None = None,
 ) -> Ranking:
-    """Rank models by how well each predicts a measured material where it was not fitted, and by
-    how it looks.
+    """Rank models by cross-validation on a measured material, and by pictures of their fits.
 
-    The directions are cut into blocks and these into folds. Every model is fitted to all folds but
-    one and held to that one, each in its turn. A model that is no worse than the best, within twice
-    the standard error of their difference block by block, is tied with it. And a picture of a ball
-    of each fit is compared to that of the measurement.
+    The directions are cut into blocks, and these are dealt into folds. Every model is fitted to all
+    folds but one and tested on that one, for each fold in turn. A model is tied with the best if
+    its error is no larger within twice the standard error of their difference over the blocks. A
+    picture of a ball with each fit is compared to that of the measurement, too.
 
-    Models that no other beats in both error, by more than the noise, and picture are the Pareto
-    set. Of those of it whose pictures are within 0.5 dB of the best, and of these of those that are
-    tied for the least error, the one with the fewest parameters is recommended. A model that
-    reflects more light at 85° than falls on it, or has a colour there that is no mixture of the
-    material's own with grey, is not, unless all of the set do.
+    Models that no other beats both in error, by more than the noise, and in the picture form the
+    Pareto set. The recommended model is the one with the fewest parameters among those of this set
+    whose pictures are within 0.5 dB of the best and, of these, whose errors are tied for the least.
+    A model that reflects more light at 85° than falls on it, or has a colour there that is no
+    mixture of the material's own with grey, is recommended only if all of the set do so.
 
     Large measurements are judged by a part of their samples. A model that cannot be fitted does not
     stop the others; Ctrl-C ends with the models that are finished.
 
     Parameters
     ----------
-    data : Measured, str or Path
-        The measured material, or the name or path of one.
+    material : Measured, str or Path
+        The measured material, or its name or path.
     models : str, Path, class or several, optional
         The models, as for `fit`. By default all, and the two-lobe sums that fit best most often.
     loss : str, Loss, Picture or callable, default "cbrt"
-        By which error, as for `fit`. Under a `Picture` regions of the ball are held out, too; this
-        takes several times as long, and leaves out the models that may be negative.
+        The error to minimise and to rank by, as for `fit`. Under a `Picture` regions of the ball
+        are held out, too; this takes several times as long, and leaves out the models that may be
+        negative.
     folds : int, default 5
-        How many, at least 2.
+        Number of folds, at least 2.
     anisotropic : bool, optional
-        Whether ``alpha_v`` and its like are searched, too, as for `fit`.
+        Whether ``alpha_v`` and similar parameters are searched, as for `fit`.
     max_angle : float, default 80
-        Samples with an angle to the normal at or beyond it [degrees, above 0 to 90] are left out.
+        Largest angle to the normal [degrees, above 0 to 90]; samples at or beyond it are left out.
     seed : int, default 0
         Seed of the folds, the part and the starts; equal seeds give equal rankings.
     progress : callable, optional
@@ -82,15 +86,16 @@ def rank(
     Raises
     ------
     BrdfkitError
-        For an unknown model or loss, where `data` was not measured or no sample is left, for fewer
-        blocks of directions than folds, and where no model can be fitted.
+        For an unknown model or loss, where `material` was not measured or no sample is left, for
+        fewer blocks of directions than folds, and where no model can be fitted.
 
     Examples
     --------
     >>> print(rank("paint.binary", ["ward", "ggx", "ggx+ggx"]))    # doctest: +SKIP
     """
     began = time.perf_counter()
-    data, classes = to_measured(data), _find_classes(models)
+    require_material_first("rank(material, models)", material)
+    data, classes = to_measured(material), _find_classes(models)
     folds, seed = to_whole_number("folds", folds, 2), to_whole_number("seed", seed, 0)
     chosen = as_loss(loss)
     anisotropic = data.anisotropic if anisotropic is None else anisotropic

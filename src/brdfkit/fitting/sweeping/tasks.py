@@ -70,7 +70,7 @@ def fit_models(task: Task) -> Iterator[Outcome]:
             for path in files:
                 labels.load_models(path)
             stream = io.BytesIO()
-            found = fit(label, data, **task.settings)
+            found = fit(data, label, **task.settings)
             fit_json.write(found, stream)
             judged = judge.judge(found) if judge else {}
             yield Outcome(task.material, label, text=stream.getvalue().decode(), judged=judged)

@@ -1,6 +1,7 @@
-"""`bootstrap`: how certain a fit's parameters are, by fits of samples that are drawn anew."""
+"""`bootstrap`: standard errors and intervals of a fit, from fits to resampled measurements."""
 
-from collections.abc import Callable
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from numbers import Real
 
@@ -12,6 +13,7 @@ from brdfkit.core.documents import Document, Paragraph, Shown, Table
 from brdfkit.core.documents.parts import SOFT
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
+from brdfkit.core.progress_bar import Progress
 from brdfkit.fitting.settings import refit
 from brdfkit.materials.resolve import MaterialLike
 from brdfkit.regression import Fit
@@ -19,14 +21,14 @@ from brdfkit.regression import Fit
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Bootstrap(Shown):
-    """The values that fits of redrawn samples have; prints as a table.
+    """Values of the parameters in fits to resampled measurements; prints as a table.
 
     Attributes
     ----------
     fit : Fit
-        The fit in question.
+        The fit whose uncertainty this is.
     estimates : dict of str to ndarray
-        By parameter the values (count,) of all fits; of a weight (count, channels).
+        Name of a parameter → its values (draws,) in all fits; of a weight (draws, channels).
     """
 
     fit: Fit
@@ -34,13 +36,13 @@ class Bootstrap(Shown):
 
     @property
     def standard_errors(self) -> dict[str, NDArray[np.float64]]:
-        """The standard deviation of each estimate, a number or one per channel."""
+        """The standard deviation of each parameter's estimates, a number or one per channel."""
         return {name: values.std(axis=0, ddof=1) for name, values in self.estimates.items()}
 
     def intervals(self, level: float = 0.95) -> dict[str, NDArray[np.float64]]:
-        """The percentiles (low, high) between which the share `level` of the estimates lies.
+        """Return the percentiles (low, high) that enclose the share `level` of the estimates.
 
-        >>> bootstrap(fit("ward", "plaster"), "plaster").intervals(0.9)    # doctest: +SKIP
+        >>> bootstrap(fit("plaster", "ward"), "plaster").intervals(0.9)    # doctest: +SKIP
         """
         if not isinstance(level, Real) or not 0 < level < 1:
             raise BrdfkitError(f"level = {level!r} should be a share, between 0 and 1.")
@@ -74,27 +76,29 @@ class Bootstrap(Shown):
 @in_turn
 def bootstrap(
     fit: Fit,
-    data: MaterialLike,
-    count: int = 200,
+    material: MaterialLike,
+    *,
+    draws: int = 200,
     seed: int = 0,
-    progress: Callable[[int, int], object] | None = None,
+    progress: Progress | None = None,
 ) -> Bootstrap:
-    """Standard errors and intervals of a fit by the bootstrap: no formula, only more fits.
+    """Estimate standard errors and intervals of a fit's parameters by the bootstrap.
 
-    As many samples are drawn as there are, some of them several times, with all their channels, and
-    fitted again from the end of the fit. [Efron & Tibshirani 1993]. It supposes, as the formulas of
-    `Fit.standard_errors`, that samples are independent, not that the model is nearly linear.
+    Each draw takes as many samples as there are, at random and with replacement, each with all its
+    channels, and fits them again from the end of the fit [Efron & Tibshirani 1993]. Like
+    `Fit.standard_errors`, this assumes that samples are independent; unlike them, it does not
+    assume that the model is nearly linear.
 
     Parameters
     ----------
     fit : Fit
         The fit, without ``weights`` or standard errors of the measurement.
-    data : Measured, str or Path
-        The material that was fitted, or the name or path of it.
-    count : int, default 200
-        How many fits, at least 2.
+    material : Measured, str or Path
+        The material that was fitted, or its name or path.
+    draws : int, default 200
+        Number of resampled measurements and of fits, at least 2.
     seed : int, default 0
-        Seed of what is drawn.
+        Seed of the random draws.
     progress : callable, optional
         Called with (fits done, fits in all).
 
@@ -106,23 +110,23 @@ def bootstrap(
     Raises
     ------
     BrdfkitError
-        Where `data` was not measured or no sample is left, and for a fit by standard errors.
+        Where `material` was not measured or no sample is left, and for a fit by standard errors.
 
     Examples
     --------
-    >>> print(bootstrap(fit("ward", "plaster"), "plaster"))    # doctest: +SKIP
+    >>> print(bootstrap(fit("plaster", "ward"), "plaster"))    # doctest: +SKIP
     """
-    count, seed = to_whole_number("count", count, least=2), to_whole_number("seed", seed, least=0)
-    again = refit(fit, data)
+    draws, seed = to_whole_number("draws", draws, least=2), to_whole_number("seed", seed, least=0)
+    again = refit(fit, material)
     problem, samples, rng = again.problem(), again.samples, np.random.default_rng(seed)
-    found = []
-    for number in range(1, count + 1):
+    refitted = []
+    for number in range(1, draws + 1):
         times = np.bincount(rng.integers(len(samples.wi), size=len(samples.wi)))
         (rows,) = np.nonzero(times)
         drawn = samples.at(rows)
         drawn = replace(drawn, weight=drawn.weight * times[rows])
         *end, _ = again.descend(problem.on(drawn), fit.values, again.weights, rng)
-        found.append(again.values(*end))
+        refitted.append(again.values(*end))
         if progress:
-            progress(number, count)
-    return Bootstrap(fit, {name: np.array([f[name] for f in found]) for name in found[0]})
+            progress(number, draws)
+    return Bootstrap(fit, {name: np.array([f[name] for f in refitted]) for name in refitted[0]})

@@ -1,4 +1,6 @@
-"""`prediction_error`: how far a linear model is from the truth, by noise and by bias."""
+"""`prediction_error`: variance and bias of the values that a fitted linear model predicts."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
@@ -50,27 +52,29 @@ class PredictionError:
 @in_turn
 def prediction_error(
     fit: Fit,
-    data: MaterialLike,
+    material: MaterialLike,
+    *,
     truth: MaterialLike | None = None,
     sigma: ArrayLike | None = None,
 ) -> PredictionError:
-    """The expected error of a fit's prediction: variance and bias, at the samples fitted.
+    """Compute the variance and the bias of a fit's prediction at the fitted samples.
 
-    It is known where the fit is linear in the data: a model without searched shapes, as
-    ``koenderink`` and ``pca_polynomial``, a linear loss and no robust weight. A prediction that is
-    clamped at 0, or a weight on its bound, is not linear; here it counts as if it were.
+    They are known where the fit is linear in the data: for a model without searched shape
+    parameters, such as ``koenderink`` and ``pca_polynomial``, a linear loss and no robust weight.
+    A prediction that is clamped at 0 and a weight on its bound are not linear, but are treated as
+    if they were.
 
     Parameters
     ----------
     fit : Fit
         The fit.
-    data : Measured, str or Path
-        The material that was fitted, or the name or path of it.
+    material : Measured, str or Path
+        The material that was fitted, or its name or path.
     truth : Measured, Fit, Model, str or Path, optional
-        The true BRDF η. By default the measured values: then the bias is minus the residuals.
+        The true BRDF η. By default the measured values; the bias is then minus the residuals.
     sigma : float or array_like, shape (channels,), optional
-        Standard deviation of the noise [sr⁻¹], equal at all samples. By default it follows from the
-        residuals.
+        Standard deviation of the noise [sr⁻¹], equal at all samples. By default it is estimated
+        from the residuals.
 
     Returns
     -------
@@ -80,13 +84,15 @@ def prediction_error(
     Raises
     ------
     BrdfkitError
-        For a fit that is not linear, and where `data` was not measured or `truth` is no material.
+        For a fit that is not linear, and where `material` was not measured or `truth` is no
+        material.
 
     Examples
     --------
-    >>> print(prediction_error(fit("koenderink", "plaster", "plain"), "plaster"))  # doctest: +SKIP
+    >>> linear = fit("plaster", "koenderink", loss="plain")    # doctest: +SKIP
+    >>> print(prediction_error(linear, "plaster"))    # doctest: +SKIP
     """
-    samples = fitted_samples(fit, data)
+    samples = fitted_samples(fit, material)
     _require_linear(fit, samples)
     # raises for weights, constraints and standard errors, not known here
     Refit(fit, samples).require_least()

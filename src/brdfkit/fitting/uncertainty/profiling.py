@@ -1,4 +1,6 @@
-"""`profile`: the loss over one parameter, the others being the best for each of its values."""
+"""`profile`: the least loss at each value of one parameter, and the interval that follows."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 
@@ -25,7 +27,7 @@ class Profile(Shown):
     Attributes
     ----------
     fit : Fit
-        The fit in question.
+        The fit whose uncertainty this is.
     parameter : str
         Name of the shape parameter.
     values : ndarray, shape (points,)
@@ -70,24 +72,24 @@ class Profile(Shown):
 
 
 @in_turn
-def profile(fit: Fit, data: MaterialLike, parameter: str, points: int = 25) -> Profile:
-    """The profile of the loss over a shape parameter, and the 95 % interval that it gives.
+def profile(fit: Fit, material: MaterialLike, *, parameter: str, points: int = 25) -> Profile:
+    """Compute the profile of the loss over a shape parameter, and its 95 % interval.
 
-    At each value of the parameter the loss is minimised over all others. The interval is where E²
-    is not above a level [Bates & Watts 1988]: that which the parabola of the same curvature reaches
-    at the ends of `Fit.intervals`. So it supposes of the noise what these do, and not that the
-    model is nearly linear.
+    At each value of the parameter the loss is minimised over all other parameters. The interval is
+    where E² stays below a level [Bates & Watts 1988], which a parabola of the same curvature
+    reaches at the ends of `Fit.intervals`. It makes the same assumptions about the noise as these,
+    but does not assume that the model is nearly linear.
 
     Parameters
     ----------
     fit : Fit
         The fit, without a robust weight, ``weights`` or standard errors of the measurement.
-    data : Measured, str or Path
-        The material that was fitted, or the name or path of it.
+    material : Measured, str or Path
+        The material that was fitted, or its name or path.
     parameter : str
-        A shape parameter that was searched, as ``"alpha_u"``.
+        Name of a shape parameter that was searched, as ``"alpha_u"``.
     points : int, default 25
-        How many values of the parameter, at least 5.
+        Number of values of the parameter, at least 5.
 
     Returns
     -------
@@ -98,18 +100,18 @@ def profile(fit: Fit, data: MaterialLike, parameter: str, points: int = 25) -> P
     ------
     BrdfkitError
         For a parameter that was not searched, a robust fit, one by standard errors or one that was
-        searched again for its light, where `data` was not measured, and where no number is left
+        searched again for its light, where `material` was not measured, and where no number is left
         beyond the parameters.
 
     Examples
     --------
-    >>> profile(fit("ward", "plaster"), "plaster", "alpha_u").interval    # doctest: +SKIP
+    >>> profile(fit("plaster", "ward"), "plaster", parameter="alpha_u").interval    # doctest: +SKIP
     (0.23, 0.25)
     """
     from scipy.special import stdtrit
 
     points = to_whole_number("points", points, least=5)
-    again = refit(fit, data)
+    again = refit(fit, material)
     again.require_least()
     space = again.problem().space
     if parameter not in space.names:

@@ -35,7 +35,7 @@ class AlbedoAtMost:
 
     Examples
     --------
-    >>> fit("ward", "paint.binary", constraints=[AlbedoAtMost(1.0)])    # doctest: +SKIP
+    >>> fit("paint.binary", "ward", constraints=[AlbedoAtMost(1.0)])    # doctest: +SKIP
     """
 
     limit: float = 1.0

@@ -27,7 +27,7 @@ class WeightsAtMost:
 
     Examples
     --------
-    >>> fit("ward", "paint.binary", constraints=[WeightsAtMost(1.0)])    # doctest: +SKIP
+    >>> fit("paint.binary", "ward", constraints=[WeightsAtMost(1.0)])    # doctest: +SKIP
     """
 
     limit: float = 1.0

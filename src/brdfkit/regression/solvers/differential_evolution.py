@@ -34,7 +34,7 @@ class DifferentialEvolution:
 
     Examples
     --------
-    >>> fit("ggx+ggx", "paint.binary", solver=DifferentialEvolution())    # doctest: +SKIP
+    >>> fit("paint.binary", "ggx+ggx", solver=DifferentialEvolution())    # doctest: +SKIP
     """
 
     population: int = 15

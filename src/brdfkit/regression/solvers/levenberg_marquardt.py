@@ -26,7 +26,7 @@ class LevenbergMarquardt:
 
     Examples
     --------
-    >>> fit("ggx", "paint.binary", solver=LevenbergMarquardt(iterations=50))    # doctest: +SKIP
+    >>> fit("paint.binary", "ggx", solver=LevenbergMarquardt(iterations=50))    # doctest: +SKIP
     """
 
     iterations: int = MOST_STEPS

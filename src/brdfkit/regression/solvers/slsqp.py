@@ -36,7 +36,7 @@ class SLSQP:
 
     Examples
     --------
-    >>> fit("ward", "paint.binary", solver=SLSQP(starts=4))    # doctest: +SKIP
+    >>> fit("paint.binary", "ward", solver=SLSQP(starts=4))    # doctest: +SKIP
     """
 
     iterations: int = 200

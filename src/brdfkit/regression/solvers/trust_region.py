@@ -33,7 +33,7 @@ class TrustRegion:
 
     Examples
     --------
-    >>> fit("ward", "paint.binary", solver=TrustRegion(starts=4))    # doctest: +SKIP
+    >>> fit("paint.binary", "ward", solver=TrustRegion(starts=4))    # doctest: +SKIP
     """
 
     iterations: int = 200

@@ -51,7 +51,7 @@ def standings(material, fits, loss):
     """The `Standing` of each of the `fits` to a `Measured`, in their order, by the name of a
     loss."""
     max_angle = fits[0].settings.get("max_angle", 80.0)
-    compared = [compare(material, fit, max_angle) for fit in fits]
+    compared = [compare(material, fit, max_angle=max_angle) for fit in fits]
     samples = _some(select_samples(material, max_angle))
     if not (samples.values > 0).any():
         raise BrdfkitError(
