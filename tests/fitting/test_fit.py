@@ -410,10 +410,9 @@ def test_bad_requests_are_refused(arguments, words):
     ],
 )
 def test_a_model_in_the_place_of_the_material_is_refused_with_the_order(verb, models, order):
-    with pytest.raises(
-        BrdfkitError, match=re.escape(f"where the measured material belongs: {order}")
-    ):
+    with pytest.raises(BrdfkitError) as caught:
         verb(models, "plaster")
+    assert f"is a model, where the measured material belongs: {order}." in str(caught.value)
 
 
 @pytest.mark.quick
