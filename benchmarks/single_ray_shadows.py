@@ -21,17 +21,13 @@ import occluders
 import shadow_gradients
 import single_ray_shadows_page as page
 
-from brdfkit.distance_fields.shadows.rivals import aaltonen
-from brdfkit.distance_fields.shadows.marches import base
-from brdfkit.distance_fields.shadows.convex import convex
-from brdfkit.distance_fields.shadows.dense import dense
-from brdfkit.distance_fields.shadows.marches import discrete
-from brdfkit.distance_fields.shadows.marches import linear
+from brdfkit.distance_fields.shadows.marches import convex, linear
 from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
-from brdfkit.distance_fields.shadows.rivals import quilez
 from brdfkit.distance_fields.shadows.split import split
 from brdfkit.distance_fields.shadows.tau import tau
 from brdfkit.core.json_values import rounded
+from brdfkit.theses.balint2019.dense import dense
+from brdfkit.theses.balint2019.rivals import aaltonen, base, discrete, quilez
 
 RESULTS = Path(__file__).with_suffix(".json")
 DIGITS = 4  # of numbers in it

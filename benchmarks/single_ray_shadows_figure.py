@@ -2,10 +2,10 @@
 
 import ground_scenes
 import numpy as np
+from brdfkit.theses.balint2019.rivals import quilez
 
 from brdfkit.distance_fields.shadows.marches import linear
 from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
-from brdfkit.distance_fields.shadows.rivals import quilez
 from brdfkit.distance_fields.shadows.split import split
 from brdfkit.theses.drawing import COLOURS, figure, tidy
 

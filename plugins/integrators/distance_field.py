@@ -47,11 +47,11 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields import from_json, load
 from brdfkit.distance_fields.checking import check_steps
 from brdfkit.distance_fields.shading.direct_light import SHADINGS, SHADOWS, DirectLight
-from brdfkit.distance_fields.shading.lamps import lamps_of
-from brdfkit.distance_fields.shading.parts import exposed, parts_of
-from brdfkit.distance_fields.shading.seen_point import FINEST, seen_point
-from brdfkit.distance_fields.shading.silhouettes import near_miss
-from brdfkit.distance_fields.shadows.field import sphere_about
+from brdfkit.distance_fields.shading.lamps import find_lamps
+from brdfkit.distance_fields.shading.parts import differentiable_parameters, match_bsdfs
+from brdfkit.distance_fields.shading.silhouettes import find_near_miss
+from brdfkit.distance_fields.shading.visible_point import NORMAL_STEP, find_visible_point
+from brdfkit.distance_fields.shadows.field import bounding_sphere
 from brdfkit.distance_fields.shadows.shadow import DIRECTIONS
 from brdfkit.mitsuba_bridge.check_scenes import reference_film
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
@@ -82,11 +82,11 @@ def define(mi):
             super().__init__(props)
             self.bsdfs = dict(props.objects())
             self.tree = field_of(self.filename, self.field)
-            size = sphere_about(self.tree)[1]
+            size = bounding_sphere(self.tree)[1]
             self.far = self.far or FAR * max(size, 1)
             self.precision = self.precision or PRECISION * size
-            self.parts = parts_of(self.tree, self.bsdfs, FINEST * self.precision)
-            self.values = exposed(self.tree)
+            self.parts = match_bsdfs(self.tree, self.bsdfs, NORMAL_STEP * self.precision)
+            self.values = differentiable_parameters(self.tree)
             how = "shadow", "direction", "epsilon", "rays", "shading", "samples", "far"
             self.light = DirectLight(**{name: getattr(self, name) for name in how})
             self.parameters_changed([])
@@ -99,7 +99,7 @@ def define(mi):
 
         def parameters_changed(self, keys):
             self.now = self.tree.with_parameters(self.values)
-            self.larger = self.parts.larger(self.now)
+            self.larger = self.parts.grow(self.now)
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
             refuse_scalar("distance_field")
@@ -111,27 +111,27 @@ def define(mi):
 
             # What lies before them
             end = dr.minimum(shown.t, self.far)
-            seen = seen_point(self.now, ray, end, self.precision, active)
-            light = dr.select(seen.found, self.reflected(scene, seen, sampler, active), radiance)
+            seen = find_visible_point(self.now, ray, end, self.precision, active)
+            light = dr.select(seen.found, self.reflected(scene, seen, sampler), radiance)
 
             # What comes before them as a silhouette moves
             if dr.grad_enabled(self.now.distance(ray(0))):
                 end = dr.minimum(seen.si.t, end)
-                miss = near_miss(self.now, ray, end, self.precision, active)
+                miss = find_near_miss(self.now, ray, end, self.precision, active)
                 with dr.suspend_grad():
-                    front = self.reflected(scene, miss.seen, sampler, active)
-                light = miss.covered(light, front)
+                    front = self.reflected(scene, miss.seen, sampler)
+                light = miss.add_derivatives(light, front)
             return mi.depolarizer(light), active, []
 
-        def reflected(self, scene, seen, sampler, active):
-            """The light that a `SeenPoint` sends to the camera."""
-            here, light = active & seen.found, mi.UnpolarizedSpectrum(0)
+        def reflected(self, scene, seen, sampler):
+            """The light that a `VisiblePoint` sends to the camera."""
+            light = mi.UnpolarizedSpectrum(0)
             bsdf = self.parts.bsdf(self.now, self.larger, seen.si.p)
-            for lamp in lamps_of(scene):
-                light += self.light.by_lamp(lamp, self.now, seen, bsdf, sampler, here)
+            for lamp in find_lamps(scene):
+                light += self.light.reflect_lamp(lamp, seen, bsdf, sampler)
             sky = scene.environment()
             if sky is not None:
-                light += self.light.by_sky(sky, self.now, seen, bsdf, sampler, here)
+                light += self.light.reflect_sky(sky, seen, bsdf, sampler)
             return light
 
         def to_string(self):

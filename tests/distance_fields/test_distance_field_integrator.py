@@ -406,7 +406,7 @@ def test_what_is_raised_within_a_loop_arrives_as_it_is(mi, monkeypatch, error):
     def is_free(*_):
         raise error
 
-    monkeypatch.setattr(DirectLight, "is_free", is_free)
+    monkeypatch.setattr(DirectLight, "_is_unoccluded", is_free)
     loaded = scene(mi, plane(), lit(BALL), shading="exact")
     with pytest.raises(type(error)) as found:
         Progressive({"plane": loaded}).generate("plane", 1)

@@ -274,7 +274,7 @@ def test_a_grid_has_its_values_at_the_corners_as_mitsubas(llvm_variant):
     d = mi.Vector3f((rng.uniform(0.2, 0.8, (1000, 3)) - [0.5, 0.5, 2.0]).T.astype(np.float32))
     ray = mi.Ray3f(mi.Point3f(0.5, 0.5, 2.0), dr.normalize(d))
     expected = np.array(scene.ray_intersect_preliminary(ray).t)
-    found = df.sphere_trace(
+    found = df.cone_trace(
         field.distance, ray.o, ray.d, 5.0, lipschitz=field.lipschitz, precision=1e-5
     )
     hits = np.isfinite(expected) & np.array(found.found)
@@ -423,7 +423,7 @@ SHAPES = {
 
 
 @pytest.mark.parametrize("name", SHAPES)
-@pytest.mark.parametrize("way", ["sphere_trace", "raymarch", "cone_trace"])
+@pytest.mark.parametrize("way", ["cone_trace", "raymarch"])
 def test_first_hits_are_those_of_formulas(llvm_variant, name, way):
     field, formula = SHAPES[name]
     o, d, *plain_rays = rays(llvm_variant)
@@ -451,7 +451,7 @@ def test_no_pixel_misses_a_segment(llvm_variant):
     o = mi.Point3f(0, 0, 3)
     tangent = df.pixel_tangent(fov, pixels)
     cones = df.cone_trace(line.distance, o, d, 10.0, tangent=tangent, slack=0.25)
-    axes = df.sphere_trace(line.distance, o, d, 10.0)
+    axes = df.cone_trace(line.distance, o, d, 10.0)
     on_line = np.linspace(line.a, line.b, 2000)
     seen = on_line[:, :2] / (3 - on_line[:, 2:]) / np.tan(np.radians(fov / 2))
     column, row = np.floor((seen + 1) / 2 * pixels).astype(int).T
@@ -473,7 +473,7 @@ def test_hits_move_with_the_parameters(llvm_variant):
     radius = mi.Float(1.0)
     dr.enable_grad(radius)
     ball = df.sphere(1).with_parameters({"sphere.radius": radius})
-    hit = df.sphere_trace(ball.distance, o, d, 10.0)
+    hit = df.cone_trace(ball.distance, o, d, 10.0)
     dr.backward(dr.sum(df.reattach(ball.distance, o, d, hit.t)))
     z = 3 - np.array(hit.t)
     assert np.array(dr.grad(radius))[0] == pytest.approx(-(1 / z).sum(), rel=1e-3)
@@ -513,7 +513,7 @@ def test_a_field_is_met_within_its_box(llvm_variant):
     o = o * mi.Float(np.linspace(0.2, 1, 2000))
     near, everywhere = (
         df.intersect(field, o, d, 9.0),
-        df.sphere_trace(field.distance, o, d, 9.0, steps=4096),
+        df.cone_trace(field.distance, o, d, 9.0, steps=4096),
     )
     found = np.array(near.found)
     assert (found == np.array(everywhere.found)).mean() > 0.995
@@ -532,8 +532,7 @@ def test_a_field_is_met_within_its_box(llvm_variant):
 def test_a_field_that_is_no_number_is_met_by_no_ray(llvm_variant):
     mi = llvm_variant
     o, d = mi.Point3f(0, 0, 3), mi.Vector3f(0, 0, -1)
-    for way in (df.sphere_trace, df.cone_trace):
-        assert not np.array(way(lambda p: p.x * np.nan, o, d, 9.0).found).any()
+    assert not np.array(df.cone_trace(lambda p: p.x * np.nan, o, d, 9.0).found).any()
 
 
 def test_the_mandelbulb_is_nearer_than_a_third_of_its_estimate_says():
@@ -553,7 +552,7 @@ def test_the_mandelbulb_is_nearer_than_a_third_of_its_estimate_says():
     assert np.median((f / away)[f > 0.1]) > 0.7  # and it is not far from right
 
 
-@pytest.mark.parametrize("way", ["sphere_trace", "raymarch", "cone_trace"])
+@pytest.mark.parametrize("way", ["cone_trace", "raymarch"])
 def test_rays_of_numbers_are_traced(way):
     import mitsuba as mi
 

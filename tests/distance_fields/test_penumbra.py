@@ -3,20 +3,19 @@
 import drjit as dr
 import numpy as np
 import pytest
+from brdfkit.theses.balint2019.dense import dense
+from brdfkit.theses.balint2019.rivals import aaltonen, base, discrete, quilez, tau_inverse
 from scipy.integrate import quad
 
 import brdfkit as bk
 from brdfkit import distance_fields as df
 from brdfkit.core.jit import llvm
-from brdfkit.distance_fields.shadows import LightCone, edge, light_cone, soft_shadow
-from brdfkit.distance_fields.shadows.convex import convex
-from brdfkit.distance_fields.shadows.dense import dense
+from brdfkit.distance_fields.shadows import LightCone, find_edge, light_cone, soft_shadow
 from brdfkit.distance_fields.shadows.field import pieces_of
-from brdfkit.distance_fields.shadows.marches import base, discrete, linear
+from brdfkit.distance_fields.shadows.marches import convex, linear
 from brdfkit.distance_fields.shadows.monte_carlo import halton_disc, monte_carlo, trace
-from brdfkit.distance_fields.shadows.rivals import aaltonen, quilez
-from brdfkit.distance_fields.shadows.split import cells, split
-from brdfkit.distance_fields.shadows.tau import slope, tau, tau_inverse
+from brdfkit.distance_fields.shadows.split import cell_centres, split
+from brdfkit.distance_fields.shadows.tau import tau, tau_slope
 
 if llvm.loaded_version() < llvm.OLDEST:
     pytest.skip("needs LLVM", allow_module_level=True)
@@ -126,7 +125,7 @@ def test_tau_has_finite_derivatives_everywhere():
     dr.enable_grad(r)
     dr.backward(tau(r))
     assert np.allclose(dr.grad(r), 2 / np.pi * np.sqrt([0, 0, 0.75, 1, 0.51, 0, 0]))
-    assert float(f"{slope(0.0):.9f}") == round(2 / np.pi, 9)
+    assert float(f"{tau_slope(0.0):.9f}") == round(2 / np.pi, 9)
 
 
 # The cone
@@ -143,7 +142,7 @@ def test_a_cone_touches_both_balls():
     back = cone.reversed()
     assert np.allclose(back.point(back.d), 0)
     assert np.allclose(back.radius(2.0), cone.radius(3.0))
-    x, y = cone.disc(cone.across(Float(2), Float(0.3), Float(-0.4)))
+    x, y = cone.to_disc(cone.disc_point(Float(2), Float(0.3), Float(-0.4)))
     assert (x[0], y[0]) == pytest.approx((0.3, -0.4))
 
 
@@ -176,7 +175,7 @@ def test_a_half_space_through_the_apex_has_the_share_tau():
     truth = tau(r / np.sqrt(1 - sin**2))
     assert f"{truth:.6f}" == "0.688300"
     assert monte_carlo(plane, CONE, 10_000, hit=1e-5).visible[0] == pytest.approx(truth, abs=1e-3)
-    found = edge(plane, CONE, linear(plane, CONE))
+    found = find_edge(plane, CONE, linear(plane, CONE))
     assert tau(found.offset[0]) == pytest.approx(truth, abs=1e-9)
 
 
@@ -196,7 +195,7 @@ def test_the_error_is_within_epsilon(method, n, direction):
     low, rounding = (-1 if method is discrete else 0), 2e-5 * n  # of the dense search
     assert (error >= low - rounding).all()
     assert (error <= 1 + rounding).all()
-    most = np.array((cone if direction == "A" else cone.reversed()).most_steps(1 / n))
+    most = np.array((cone if direction == "A" else cone.reversed()).max_steps(1 / n))
     assert (np.array(found.evaluations) < most).all()
 
 
@@ -275,7 +274,7 @@ def test_split_sees_several_small_and_pointed_occluders(name):
 @pytest.mark.quick
 def test_cells_are_of_equal_area_about_the_centre():
     for rings in (1, 2, 3):
-        places = np.array(cells(rings))
+        places = np.array(cell_centres(rings))
         assert len(places) == 1 + 3 * rings * (rings + 1)
         assert np.allclose(places.mean(axis=0), 0)
         # Second moments: those of the disc, less those of discs as large as the cells
@@ -302,10 +301,10 @@ def test_samples_of_a_rectangle_are_seen_as_rays_see_them():
     u, v = rng.uniform(-1, 1, (2, 5000))
     wall = Box(P(-3.1, 0, 3), P(3, 9, 0.2))
     cone = light_cone(P(0, 0, 0), P(0, 0, 6), np.hypot(0.8, 0.4), 0.02)
-    found = edge(wall, cone, linear(wall, cone, 1 / 100))
+    found = find_edge(wall, cone, linear(wall, cone, 1 / 100))
     on_light = P(Float(0.8 * u), Float(0.4 * v), 6)
     seen = np.array(found.shows(cone, on_light))
-    room, _ = trace(wall, cone, *cone.disc(on_light), 1e-4)
+    room, _ = trace(wall, cone, *cone.to_disc(on_light), 1e-4)
     assert np.mean(seen != (np.array(room) > 0)) < 0.02
     assert 0.5 < seen.mean() < 0.8
 
@@ -313,7 +312,7 @@ def test_samples_of_a_rectangle_are_seen_as_rays_see_them():
 def test_the_lit_share_of_samples_is_tau():
     x, y = (Float(q) for q in halton_disc(20_000))
     shadow = linear(SPHERE, CONE, 1 / 256)
-    share = np.mean(edge(SPHERE, CONE, shadow).lets_through(x, y))
+    share = np.mean(find_edge(SPHERE, CONE, shadow).lets_through(x, y))
     assert share == pytest.approx(shadow.visible[0], abs=2e-3)
 
 

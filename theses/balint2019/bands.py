@@ -1,9 +1,9 @@
 """Bands of a march: how many pixels of a light's shadows lie on one, by ε."""
 
 import numpy as np
+from brdfkit.theses.balint2019.dense import dense
 from brdfkit.theses.balint2019.measuring import shares
 
-from brdfkit.distance_fields.shadows.dense import dense
 from brdfkit.distance_fields.shadows.marches import linear
 
 INVERSES = 2, 4, 8, 16, 32, 64, 128, 256  # of ε

@@ -3,6 +3,8 @@
 from functools import cache
 
 import numpy as np
+from brdfkit.theses.balint2019.dense import dense
+from brdfkit.theses.balint2019.rivals import NEWTON_STEPS, tau_inverse
 from brdfkit.theses.balint2019.scenes import MARCHES
 from drjit.llvm import Array3f64, Float64
 from scipy.integrate import quad
@@ -10,9 +12,8 @@ from scipy.integrate import quad
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.distance_fields import plane, sphere
 from brdfkit.distance_fields.shadows import LightCone
-from brdfkit.distance_fields.shadows.dense import dense
 from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
-from brdfkit.distance_fields.shadows.tau import STEPS, tau, tau_inverse
+from brdfkit.distance_fields.shadows.tau import tau
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.page import Section, Table
 
@@ -110,7 +111,7 @@ def inverse_claim():
         "Newton's method cannot invert τ, because its slope is 0 at both ends.",
         "4.1",
         "bisection",
-        f"{STEPS} steps of Newton's, off by {off:.0e} at most",
+        f"{NEWTON_STEPS} steps of Newton's, off by {off:.0e} at most",
         verdict(off > 1e-6),
         "With r = ±cos(y/2) the equation is y - sin y = π - π |2 m - 1|, which Newton's method "
         "solves from the root of y³/6. Forty bisections made `base` 15 times as slow as `linear`.",

@@ -3,16 +3,17 @@
 from math import pi
 
 import numpy as np
+from brdfkit.theses.balint2019.dense import dense
+from brdfkit.theses.balint2019.rivals import tau_inverse
 from brdfkit.theses.balint2019.scenes import MARCHES
 from drjit.llvm import Array3f64, Float64
 
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.distance_fields import box, plane, sphere, union
 from brdfkit.distance_fields.shadows import light_cone
-from brdfkit.distance_fields.shadows.dense import dense
 from brdfkit.distance_fields.shadows.march import Rule
 from brdfkit.distance_fields.shadows.shadow import single_ray
-from brdfkit.distance_fields.shadows.tau import tau, tau_inverse
+from brdfkit.distance_fields.shadows.tau import tau
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.page import Section, Table
 

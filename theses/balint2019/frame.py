@@ -4,11 +4,11 @@ from functools import partial
 
 import numpy as np
 from brdfkit.theses.balint2019.measuring import rms, seconds_in_turns, shares
+from brdfkit.theses.balint2019.rivals import aaltonen, quilez
 from brdfkit.theses.balint2019.view import View
 
 from brdfkit.distance_fields.shadows.marches import linear
 from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
-from brdfkit.distance_fields.shadows.rivals import aaltonen, quilez
 from brdfkit.distance_fields.shadows.split import split
 from brdfkit.images.errors.psnr import psnr
 

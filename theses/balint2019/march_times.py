@@ -5,10 +5,10 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from brdfkit.theses.balint2019.dense import dense
 from brdfkit.theses.balint2019.measuring import rms, seconds_in_turns, shares
 from brdfkit.theses.balint2019.scenes import MARCHES
 
-from brdfkit.distance_fields.shadows.dense import dense
 from brdfkit.theses.page import Table
 
 TIMES, RADIUS = 3, 0.5

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
+from brdfkit.theses.balint2019.rivals import base, discrete
 
 from brdfkit.distance_fields import Node, box, capped_cylinder, mandelbulb, plane, sphere, union
-from brdfkit.distance_fields.shadows.convex import convex
-from brdfkit.distance_fields.shadows.marches import base, discrete, linear
+from brdfkit.distance_fields.shadows.marches import convex, linear
 
 MARCHES = {march.__name__: march for march in (base, linear, discrete, convex)}
 

@@ -24,8 +24,7 @@ from brdfkit.theses.balint2019.scenes import MARCHES
 from brdfkit.theses.balint2019.view import View
 
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.distance_fields.shadows.convex import convex
-from brdfkit.distance_fields.shadows.marches import linear
+from brdfkit.distance_fields.shadows.marches import convex, linear
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.page import Section
 

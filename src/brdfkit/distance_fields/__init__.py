@@ -1,22 +1,18 @@
-"""Surfaces given by distance functions: solids, what they are combined to, and rays that meet them.
+"""Surfaces given by distance functions: solids, their combinations, and the tracing of rays.
 
 >>> from brdfkit.distance_fields import box, sphere
 >>> field = sphere(1) | box(2).translate((1, 0, 0))
 >>> field([[0, 0, 3]])    # the distance at (0, 0, 3)
 array([2.])
 
-`shapes/solids.py`, `shapes/rods.py`, `shapes/fractals.py`, `shapes/grids.py`: what there is;
-`shapes/combinations.py`, `shapes/offsets.py`, `shapes/motions.py`, `shapes/repetition.py`,
-`shapes/circular_arrays.py`: what becomes of it, by the operators of `operators.py`; `materials.py`:
-what it is made of. They are the nodes (`node.py`) of a tree, whose formulas, made of
-`functions.py`, run on Dr.Jit's arrays of any backend, on NumPy's points (`evaluation.py`), and on
-symbols (`symbols.py`), which make GLSL (`export/glsl.py`) of them. `export/json_files.py`: files;
-`shapes/users_functions.py`: plain functions of points; `export/sampling.py`, `export/mesh.py`,
-`shapes/mesh_distances.py`: grids and meshes; `checking.py`: whether a distance is one;
-`tracing/intersecting.py`, `tracing/sphere_tracing.py`, `tracing/cone_tracing.py`,
-`tracing/raymarching.py`: where rays meet it (`tracing/hits.py`), and how that moves;
-`tracing/normals.py`. `shadows/`: soft shadows; `shading/`: pictures, for the integrator
-`distance_field`.
+A field is a tree of nodes (`node.py`). Each kind of node in `shapes/` has one formula, written with
+`functions.py`, which runs on Dr.Jit arrays, on NumPy points, and on symbols that write GLSL. The
+other folders work on any field:
+
+`tracing/`    where rays meet it, and how hits move with its parameters
+`export/`     files, meshes, grids, GLSL
+`shadows/`    soft shadows by a march along one ray
+`shading/`    pictures, by the integrator `distance_field`
 """
 
 from brdfkit.distance_fields.checking import check as check
@@ -49,10 +45,9 @@ from brdfkit.distance_fields.shapes.solids import sphere as sphere
 from brdfkit.distance_fields.shapes.solids import torus as torus
 from brdfkit.distance_fields.shapes.users_functions import from_function as from_function
 from brdfkit.distance_fields.tracing.cone_tracing import cone_trace as cone_trace
+from brdfkit.distance_fields.tracing.cone_tracing import intersect as intersect
 from brdfkit.distance_fields.tracing.cone_tracing import pixel_tangent as pixel_tangent
 from brdfkit.distance_fields.tracing.hits import Hit as Hit
+from brdfkit.distance_fields.tracing.hits import normal as normal
 from brdfkit.distance_fields.tracing.hits import reattach as reattach
-from brdfkit.distance_fields.tracing.intersecting import intersect as intersect
-from brdfkit.distance_fields.tracing.normals import normal as normal
 from brdfkit.distance_fields.tracing.raymarching import raymarch as raymarch
-from brdfkit.distance_fields.tracing.sphere_tracing import sphere_trace as sphere_trace

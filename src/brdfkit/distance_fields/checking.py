@@ -1,17 +1,19 @@
-"""Checks by samples that a distance is finite, no steeper than its bound L, and its steps safe."""
+"""Sample-based checks that a field is a distance, or at least that ray steps along it are safe."""
+
+from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.distance_fields.boxes import join
+from brdfkit.distance_fields.boxes import Box, format_point, join_boxes
 from brdfkit.distance_fields.functions import evaluate
 
-ROUNDING = 1e-9
-WITHIN = 0.999  # of the ball that should hold no surface
+ROUNDING_ERROR = 1e-9  # of the difference of two values
+BALL_SHARE = 0.999  # how much of the surface-free ball a walk uses
 
 
 def check(
@@ -22,10 +24,10 @@ def check(
     samples: int = 100_000,
     seed: int = 0,
 ) -> None:
-    """Check by pairs of points that a distance is finite, and no steeper than its bound.
+    """Check by pairs of random points that a distance is finite, and no steeper than its bound.
 
-    The points of a pair are apart by the diagonal of the box, down to 10⁻⁴ of it. That nothing is
-    found is no proof.
+    The two points of a pair are between 10⁻⁴ and 1 diagonal of the box apart. A check that finds
+    nothing is no proof.
 
     Parameters
     ----------
@@ -34,16 +36,16 @@ def check(
     low, high : three numbers
         The corners of the box in which it is checked.
     lipschitz : float, optional
-        The bound L; by default that of the node, else 1.
+        The bound L on the slope of f; by default that of the node, else 1.
     samples : integer, default 100_000
-        How many pairs are drawn.
+        The number of pairs.
     seed : integer, default 0
-        Of the random numbers.
+        Seed of the random numbers.
 
     Raises
     ------
     BrdfkitError
-        Where f is not finite, or steeper; it says where.
+        If f is not finite, or too steep, somewhere; the error says where.
 
     Examples
     --------
@@ -59,78 +61,74 @@ def check(
     step *= 10.0 ** rng.uniform(-4, 0, (samples, 1)) / np.linalg.norm(step, axis=1, keepdims=True)
     b = np.clip(a + step * np.linalg.norm(high - low), low, high)
     f, g = evaluate(distance, a), evaluate(distance, b)
-    _refuse_infinite(f, a)
+    _require_finite(f, a)
     apart = np.linalg.norm(a - b, axis=1)
-    steepness = (np.abs(f - g) - ROUNDING) / np.maximum(apart, 1e-30)
-    worst = int(np.nanargmax(steepness))
-    if steepness[worst] > lipschitz:
+    slope = (np.abs(f - g) - ROUNDING_ERROR) / np.maximum(apart, 1e-30)
+    worst = int(np.nanargmax(slope))
+    if slope[worst] > lipschitz:
         raise BrdfkitError(
-            f"the field changes by {steepness[worst]:.3g} per unit near {_place(a[worst])}, "
+            f"the field changes by {slope[worst]:.3g} per unit near {format_point(a[worst])}, "
             f"more than its bound {lipschitz:g}: no distance does; divide it by the slope."
         )
 
 
 def check_steps(node: Any, walks: int = 500, steps: int = 8, seed: int = 0) -> None:
-    """Check by random walks that no step by f / L passes the surface of a node.
+    """Check by random walks that no step of the length f / L crosses the surface of a node.
 
-    This is less than `check` asks: an estimate whose values jump, as the Mandelbulb's, may be safe.
-    Each walk steps to anywhere in the ball about it that should hold no surface, and so comes near
-    the surface soon, wherever it begins. That nothing is found is no proof.
+    `check` demands more: an estimate whose values jump, such as the Mandelbulb's, may still have
+    safe steps. Each step of a walk leads to a random point of the ball that should hold no surface,
+    so that the walk soon comes near the surface. A check that finds nothing is no proof.
 
     Parameters
     ----------
     node : distance field
-        As a scene has it.
+        The field, as a scene has it.
     walks : integer, default 500
-        How many walks there are.
+        The number of walks.
     steps : integer, default 8
-        Of each walk.
+        The number of steps in each walk.
     seed : integer, default 0
-        Of the random numbers.
+        Seed of the random numbers.
 
     Raises
     ------
     BrdfkitError
-        Where f is not finite, or a step passes the surface; it says where.
+        If f is not finite, or a step crosses the surface; the error says where.
 
     Examples
     --------
     >>> check_steps(sphere(1) | box(2).translate((1, 0, 0)))
     """
     rng = np.random.default_rng(seed)
-    low, high = join(_boxes(node) or [(-np.ones(3), np.ones(3))])
+    low, high = join_boxes(_finite_boxes(node) or [(-np.ones(3), np.ones(3))])
     spread = (high - low) * 10 ** rng.uniform(-1, 1, (walks, 1))
     a = (low + high) / 2 + spread * rng.normal(size=(walks, 3))
     f = node(a)
     for _ in range(steps):
-        _refuse_infinite(f, a)
+        _require_finite(f, a)
         n = rng.normal(size=(walks, 5))
         inside = n[:, :3] / np.linalg.norm(n, axis=1, keepdims=True)  # uniform in the unit ball
-        b = a + WITHIN * inside * (np.abs(f) / node.lipschitz)[:, None]
+        b = a + BALL_SHARE * inside * (np.abs(f) / node.lipschitz)[:, None]
         g = node(b)
         for i in np.flatnonzero(f * g < 0)[:1]:
             raise BrdfkitError(
-                f"the field is {f[i]:.3g} at {_place(a[i])}, yet its surface is within "
+                f"the field is {f[i]:.3g} at {format_point(a[i])}, yet its surface is within "
                 f"{np.linalg.norm(b[i] - a[i]):.3g} of that: it is steeper than its bound "
                 f"{node.lipschitz:g}; divide it by its slope, or state a larger lipschitz."
             )
         a, f = b, g
 
 
-def _boxes(node):
-    """The boxes of what of a node is not endless."""
+def _finite_boxes(node: Any) -> list[Box]:
+    """Return the boxes of the bounded parts of a node."""
     if np.isfinite(node.bounds()).all():
         return [node.bounds()]
-    return [box for child in node.children for box in _boxes(child)]
+    return [box for child in node.children for box in _finite_boxes(child)]
 
 
-def _refuse_infinite(f, points):
+def _require_finite(f: FloatArray, points: FloatArray) -> None:
+    """Raise `BrdfkitError` if a value f (n,) at the points (n, 3) is not finite."""
     bad = ~np.isfinite(f)
     if bad.any():
-        raise BrdfkitError(
-            f"the field is {f[bad][0]} at {_place(points[bad][0])}; a distance is finite."
-        )
-
-
-def _place(p):
-    return f"({', '.join(f'{c:.3g}' for c in p)})"
+        place = format_point(points[bad][0])
+        raise BrdfkitError(f"the field is {f[bad][0]} at {place}; a distance is finite.")

@@ -1,14 +1,16 @@
-"""The functions of which distances are made: on Dr.Jit's arrays, on numbers, and on GLSL's names.
+"""The functions that distance formulas are written with.
 
-A formula is written once, with these and with + - * / and <. Given arrays it computes; given the
-`Symbol`s of `export/glsl.py` it writes the same formula as GLSL.
+A formula is written once, with these functions and with + - * / and <. On Dr.Jit arrays and plain
+numbers it computes the distance; on the symbols of `symbols.py` it writes the formula as GLSL.
 """
 
+from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import ArrayLike, FloatArray, JitFloat, JitInt, JitMask, JitVector
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit import double_precision
 from brdfkit.core.jit.threads import in_turn
@@ -16,9 +18,9 @@ from brdfkit.distance_fields.symbols import Symbol
 
 
 @in_turn
-def evaluate(distance, points):
-    """f (n,) of a callable `distance` at `points` (n, 3)."""
-    points = np.asarray(points, float)
+def evaluate(distance: Callable[[JitVector], JitFloat], points: ArrayLike) -> FloatArray:
+    """Return the values (n,) of a distance function at `points` (n, 3), in double precision."""
+    points = np.asarray(points, dtype=float)
     if points.ndim != 2 or points.shape[1] != 3:
         raise BrdfkitError(f"points have the shape {points.shape}; it should be (n, 3).")
     if not len(points):
@@ -28,92 +30,92 @@ def evaluate(distance, points):
 
 
 class Point(NamedTuple):
-    """A point, or a vector: x, y and z are arrays, numbers or symbols."""
+    """A point or a vector, whose components are Dr.Jit arrays, numbers or symbols."""
 
     x: Any
     y: Any
     z: Any
 
 
-def _function(glsl, drjit):
-    """The function that is called `glsl` in GLSL, and `drjit` on all else."""
+def _make_function(glsl: str, drjit: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function that calls `drjit`, or writes a call of `glsl` if given symbols."""
 
-    def call(*args):
+    def call(*args: Any) -> Any:
         symbol = next((a for a in args if isinstance(a, Symbol)), None)
         return drjit(*args) if symbol is None else symbol.program.call(glsl, *args)
 
     return call
 
 
-def _root(a):
-    """√a with the derivative 0 at a = 0; `dr.safe_sqrt` has a wrong one close to it, too."""
-    nothing = a <= 0  # false of NaN, which stays
-    return dr.select(nothing, 0.0, dr.sqrt(dr.select(nothing, 1.0, a)))
+def _sqrt(a: JitFloat) -> JitFloat:
+    """Return √a with the derivative 0 at a = 0; that of `dr.safe_sqrt` is wrong near 0, too."""
+    zero = a <= 0  # false for NaN, which the result keeps
+    return dr.select(zero, 0.0, dr.sqrt(dr.select(zero, 1.0, a)))
 
 
-sqrt = _function("sqrt", _root)
-absolute = _function("abs", dr.abs)
-minimum = _function("min", dr.minimum)
-maximum = _function("max", dr.maximum)
-clip = _function("clamp", dr.clip)
-floor = _function("floor", dr.floor)
-sin = _function("sin", dr.sin)
-cos = _function("cos", dr.cos)
-acos = _function("acos", dr.safe_acos)
-atan2 = _function("atan", dr.atan2)
-log = _function("log", dr.log)
-power = _function("pow", dr.power)
+sqrt = _make_function("sqrt", _sqrt)
+absolute = _make_function("abs", dr.abs)
+minimum = _make_function("min", dr.minimum)
+maximum = _make_function("max", dr.maximum)
+clip = _make_function("clamp", dr.clip)
+floor = _make_function("floor", dr.floor)
+sin = _make_function("sin", dr.sin)
+cos = _make_function("cos", dr.cos)
+acos = _make_function("acos", dr.safe_acos)
+atan2 = _make_function("atan", dr.atan2)
+log = _make_function("log", dr.log)
+power = _make_function("pow", dr.power)
 
 
-def select(condition, a, b):
-    """`a` where the condition holds, else `b`."""
+def select(condition: JitMask, a: JitFloat, b: JitFloat) -> JitFloat:
+    """Return `a` where the condition holds, and `b` elsewhere."""
     if isinstance(condition, Symbol):
         return condition.program.select(condition, a, b)
     return dr.select(condition, a, b)
 
 
-def to_int(a):
-    """A number as a whole number, cut."""
+def to_int(a: JitFloat) -> JitInt:
+    """Return a number as an integer, without its fractional part."""
     if isinstance(a, Symbol):
         return a.to_int()
     return int(a) if isinstance(a, float) else dr.int32_array_t(type(a))(a)
 
 
-def texel(grid, i, j, k, kind):
-    """The value (i, j, k) along x, y, z of a `grid`, as an array of this kind."""
+def grid_value(grid: Any, i: JitInt, j: JitInt, k: JitInt, dtype: type) -> JitFloat:
+    """Return the value of a `grid` at the indices i, j, k along x, y, z, as an array of `dtype`."""
     if isinstance(i, Symbol):
-        return i.program.texel(grid, i, j, k)
-    across, down = (int(n) for n in grid.counts[:2])
-    index = i + across * (j + down * k)
+        return i.program.grid_value(grid, i, j, k)
+    columns, rows = (int(n) for n in grid.counts[:2])
+    index = i + columns * (j + rows * k)
     if isinstance(i, int):
         return float(grid.array(float)[index])
-    return dr.gather(kind, grid.array(kind), dr.uint32_array_t(type(i))(index))
+    return dr.gather(dtype, grid.array(dtype), dr.uint32_array_t(type(i))(index))
 
 
-def lerp(a, b, t):
-    """From `a` at t = 0 to `b` at t = 1."""
+def lerp(a: JitFloat, b: JitFloat, t: JitFloat) -> JitFloat:
+    """Interpolate linearly between `a` at t = 0 and `b` at t = 1."""
     return a + t * (b - a)
 
 
-def length(*components):
-    """√(x² + y² + ...)."""
+def length(*components: JitFloat) -> JitFloat:
+    """Return the length √(x² + y² + ...) of a vector."""
     return sqrt(sum((c * c for c in components[1:]), components[0] * components[0]))
 
 
-def dot(a, b):
-    """The dot product of two triples."""
+def dot(a: Iterable[JitFloat], b: Iterable[JitFloat]) -> JitFloat:
+    """Return the dot product of two triples."""
     (ax, ay, az), (bx, by, bz) = a, b
     return ax * bx + ay * by + az * bz
 
 
-def minus(p, q):
-    """`p` - `q`, of anything with x, y, z and a triple."""
+def subtract(p: JitVector, q: Iterable[JitFloat]) -> Point:
+    """Return `p` - `q`, where p has x, y and z, and q is a triple."""
     x, y, z = q
     return Point(p.x - x, p.y - y, p.z - z)
 
 
-def normalized(v):
-    """The triple `v`, of numbers or arrays, as a unit vector."""
+def normalize(v: Iterable[JitFloat]) -> Point:
+    """Return the unit vector along the triple `v` of numbers or arrays."""
     x, y, z = v
     size = dr.sqrt(x * x + y * y + z * z)
     return Point(x / size, y / size, z / size)

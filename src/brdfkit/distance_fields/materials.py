@@ -1,21 +1,26 @@
-"""The material of a solid, by a name, and which part of a field the surface at a point belongs to.
+"""Names of materials, and which part of a field the surface at a point belongs to.
 
-It belongs to the part that would move it there if it grew. So a point where two parts are blended
-smoothly belongs to both, with shares; a cut belongs to what was cut off.
+A point belongs to the part that would move the surface there if it grew. So a point where two parts
+are blended smoothly belongs to both, with shares; the surface of a cut belongs to the solid that
+was cut away.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.distance_fields.boxes import plain
+from brdfkit.distance_fields.boxes import Box, to_numbers
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.shapes.motions import Motion
 from brdfkit.distance_fields.shapes.offsets import dilate
 
 
-def _name(what, value, rules):
+def _check_name(what: str, value: Any, rules: Mapping[str, Any]) -> str:
+    """Return a name that a parameter of Mitsuba's can contain, else raise `BrdfkitError`."""
     if not isinstance(value, str) or not value.isidentifier():
         raise BrdfkitError(f"{what} = {value!r} should be a name, such as gold or wood_2.")
     return value
@@ -34,9 +39,9 @@ class made_of(Motion):
     """
 
     child: Node
-    material: str = field(metadata={"check": _name, "fixed": True})
+    material: str = field(metadata={"check": _check_name, "fixed": True})
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
         for name in material_names(self.child):
             raise BrdfkitError(
@@ -44,34 +49,37 @@ class made_of(Motion):
                 "already; name each part once."
             )
 
-    def distance(self, p):
+    def distance(self, p: JitVector) -> JitFloat:
         return self.child.distance(p)
 
-    def bounds(self, level=0.0):
+    def bounds(self, level: float = 0.0) -> Box:
         return self.child.bounds(level)
 
 
-def material_names(node):
-    """The names of all materials in a field, sorted."""
-    if node.kind == "made_of":
+def material_names(node: Node) -> list[str]:
+    """Return the names of all materials in a field, sorted."""
+    if isinstance(node, made_of):
         return [node.material]
     return sorted({name for child in node.children for name in material_names(child)})
 
 
-def grown(node, material, growth):
-    """The field with all parts of a `material` grown by a little, `growth`."""
+def grow_material(node: Any, material: str, growth: float) -> Any:
+    """Return the field with all parts of a `material` grown by the small length `growth`."""
     if node.kind == "made_of":
         return dilate(node.child, growth) if node.material == material else node
     if node.kind == "scale":
-        growth = growth / plain(node.factor)
+        growth = growth / to_numbers(node.factor)
     if hasattr(node, "child"):
-        return replace(node, child=grown(node.child, material, growth))
+        return replace(node, child=grow_material(node.child, material, growth))
     if node.children:
-        children = tuple(grown(child, material, growth) for child in node.children)
+        children = tuple(grow_material(child, material, growth) for child in node.children)
         return replace(node, children=children)
     return node
 
 
-def share(node, larger, p, growth):
-    """How much of the surface at p, 0 to 1, belongs to what is `grown` in the field `larger`."""
+def material_share(node: Node, larger: Node, p: JitVector, growth: float) -> JitFloat:
+    """Return the share, 0 to 1, of the surface at `p` that belongs to a material.
+
+    larger : the field with the parts of that material grown by `growth`, see `grow_material`.
+    """
     return dr.abs(larger.distance(p) - node.distance(p)) / growth

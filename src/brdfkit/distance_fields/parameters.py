@@ -1,6 +1,8 @@
-"""The parameters of nodes: fields of dataclasses that are checked when a node is made."""
+"""Parameters of distance fields: dataclass fields that are checked when a node is made."""
 
+from collections.abc import Mapping
 from dataclasses import field
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -11,58 +13,63 @@ from brdfkit.core.errors import no_such
 _KINDS: dict[str, type] = {}
 
 
-def add(cls):
-    """Make a class of nodes known by its name."""
+def register_kind(cls: type) -> None:
+    """Register a class of nodes, so that files and operators find it by its name."""
     _KINDS[cls.__name__] = cls
 
 
-def kind(name, where=""):
-    """The class of nodes of this name; `where` begins the error for a name that is none."""
+def find_kind(name: Any, where: str = "") -> type:
+    """Return the class of nodes of this name; `where` begins the error for an unknown name."""
     if not isinstance(name, str) or name not in _KINDS:
         raise no_such("node", name, sorted(_KINDS), where)
     return _KINDS[name]
 
 
-def number(default, least=None, above=None):
-    """A field that holds a number, or an array of Dr.Jit's, which may carry derivatives."""
-    return field(default=default, metadata={"check": _number, "least": least, "above": above})
+def number(default: Any, least: float | None = None, above: float | None = None) -> Any:
+    """Declare a field for a number, or for a Dr.Jit array, which may carry derivatives."""
+    return field(default=default, metadata={"check": _check_number, "least": least, "above": above})
 
 
-def vector(default, above=None, least=None, spread=False):
-    """A field of three numbers; with `spread` one number stands for three."""
-    rules = {"check": _vector, "above": above, "least": least, "spread": spread}
+def vector(
+    default: Any, above: float | None = None, least: float | None = None, spread: bool = False
+) -> Any:
+    """Declare a field for three numbers; with `spread` one number stands for three."""
+    rules = {"check": _check_vector, "above": above, "least": least, "spread": spread}
     return field(default=default, metadata=rules)
 
 
-def count(default, least=0, optional=False):
-    """A field that holds a whole number, which is no parameter; None if `optional`."""
-    rules = {"check": _count, "least": least, "optional": optional, "fixed": True}
+def count(default: Any, least: int = 0, optional: bool = False) -> Any:
+    """Declare a field for a whole number, which no optimiser may change; `optional` allows None."""
+    rules = {"check": _check_count, "least": least, "optional": optional, "fixed": True}
     return field(default=default, metadata=rules)
 
 
-def checked(what, value, rules):
-    """`value` of the parameter called `what`, as its field holds it; an error where it cannot."""
+def check_value(what: str, value: Any, rules: Mapping[str, Any]) -> Any:
+    """Return `value` as its field stores it; raise `BrdfkitError`, which names it, if invalid."""
     check = rules.get("check")
     return check(what, value, rules) if check else value
 
 
-def _number(what, value, rules):
+def _check_number(what: str, value: Any, rules: Mapping[str, Any]) -> Any:
+    """Return a Dr.Jit array as it is, and a number within its bounds as a float."""
     if dr.is_array_v(value):
         return value
     return to_number(what, value, rules["least"], above=rules["above"])
 
 
-def _vector(what, value, rules):
+def _check_vector(what: str, value: Any, rules: Mapping[str, Any]) -> tuple[Any, ...]:
+    """Return three checked numbers, from a triple, an object with x, y and z, or one number."""
     if rules["spread"] and isinstance(value, int | float | np.number):
         value = (value,) * 3
     if hasattr(value, "x"):
         value = value.x, value.y, value.z
     if not isinstance(value, tuple | list | np.ndarray) or len(value) != 3:
         raise wrong_argument(what, value, "three numbers")
-    return tuple(_number(f"{what}[{i}]", v, rules) for i, v in enumerate(value))
+    return tuple(_check_number(f"{what}[{i}]", v, rules) for i, v in enumerate(value))
 
 
-def _count(what, value, rules):
+def _check_count(what: str, value: Any, rules: Mapping[str, Any]) -> int | None:
+    """Return a whole number as an int, or None where the field is optional."""
     if value is None and rules["optional"]:
         return None
     return to_whole_number(what, value, rules["least"])

@@ -1,88 +1,92 @@
-"""Symbols: names of GLSL in the place of numbers, which write down what is computed with them."""
+"""Symbols that stand for numbers in a distance formula and record it as lines of GLSL."""
+
+from typing import Any
 
 
 class Program:
-    """The lines of GLSL that are written so far, and the grids from which they read."""
+    """A GLSL program under construction: its lines, and the grids that it reads."""
 
-    def __init__(self):
-        self.lines, self.grids = [], []
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+        self.grids: list[Any] = []
 
-    def assign(self, kind, expression):
-        """A line that names the `expression`; the `Symbol` of that name."""
+    def assign(self, kind: str, expression: str) -> "Symbol":
+        """Add a line that gives the `expression` a name, and return that name's `Symbol`."""
         name = f"v{len(self.lines)}"
         self.lines.append(f"{kind} {name} = {expression};")
         return Symbol(self, name, kind)
 
-    def call(self, function, *args):
-        """The symbol of a function's value."""
-        return self.assign("float", f"{function}({', '.join(text(a) for a in args)})")
+    def call(self, function: str, *args: Any) -> "Symbol":
+        """Add a call of a GLSL function, and return the symbol of its value."""
+        return self.assign("float", f"{function}({', '.join(to_glsl(a) for a in args)})")
 
-    def select(self, condition, a, b):
-        """The symbol of `a` where the condition holds, else `b`."""
-        return self.assign("float", f"{condition.name} ? {text(a)} : {text(b)}")
+    def select(self, condition: "Symbol", a: Any, b: Any) -> "Symbol":
+        """Add the choice of `a` where the condition holds, else `b`, and return its symbol."""
+        return self.assign("float", f"{condition.name} ? {to_glsl(a)} : {to_glsl(b)}")
 
-    def texel(self, grid, i, j, k):
-        """The symbol of the value (i, j, k) of a grid, which becomes a texture of its own."""
+    def grid_value(self, grid: Any, i: Any, j: Any, k: Any) -> "Symbol":
+        """Add the lookup of the value (i, j, k) of a grid, which becomes a texture of its own."""
         if not any(grid is known for known in self.grids):
             self.grids.append(grid)
         number = next(n for n, known in enumerate(self.grids) if known is grid)
-        indices = ", ".join(text(index, "int") for index in (i, j, k))
+        indices = ", ".join(to_glsl(index, "int") for index in (i, j, k))
         return self.assign("float", f"texelFetch(grid_{number}, ivec3({indices}), 0).r")
 
 
 class Symbol:
-    """A name in a program of GLSL, of a float, an int or a bool."""
+    """A name in a GLSL program, of a float, an int or a bool; arithmetic on it adds lines."""
 
-    def __init__(self, program, name, kind="float"):
+    def __init__(self, program: Program, name: str, kind: str = "float") -> None:
         self.program, self.name, self.kind = program, name, kind
 
-    def _with(self, sign, a, b, kind=None):
-        expression = f"{text(a, self.kind)} {sign} {text(b, self.kind)}"
+    def _operate(self, sign: str, a: Any, b: Any, kind: str | None = None) -> "Symbol":
+        """Add the line of a binary operation, and return the symbol of its result."""
+        expression = f"{to_glsl(a, self.kind)} {sign} {to_glsl(b, self.kind)}"
         return self.program.assign(kind or self.kind, expression)
 
-    def __add__(self, other):
-        return self._with("+", self, other)
+    def __add__(self, other: Any) -> "Symbol":
+        return self._operate("+", self, other)
 
-    def __radd__(self, other):
-        return self._with("+", other, self)
+    def __radd__(self, other: Any) -> "Symbol":
+        return self._operate("+", other, self)
 
-    def __sub__(self, other):
-        return self._with("-", self, other)
+    def __sub__(self, other: Any) -> "Symbol":
+        return self._operate("-", self, other)
 
-    def __rsub__(self, other):
-        return self._with("-", other, self)
+    def __rsub__(self, other: Any) -> "Symbol":
+        return self._operate("-", other, self)
 
-    def __mul__(self, other):
-        return self._with("*", self, other)
+    def __mul__(self, other: Any) -> "Symbol":
+        return self._operate("*", self, other)
 
-    def __rmul__(self, other):
-        return self._with("*", other, self)
+    def __rmul__(self, other: Any) -> "Symbol":
+        return self._operate("*", other, self)
 
-    def __truediv__(self, other):
-        return self._with("/", self, other)
+    def __truediv__(self, other: Any) -> "Symbol":
+        return self._operate("/", self, other)
 
-    def __rtruediv__(self, other):
-        return self._with("/", other, self)
+    def __rtruediv__(self, other: Any) -> "Symbol":
+        return self._operate("/", other, self)
 
-    def __neg__(self):
-        return self._with("-", 0.0, self)
+    def __neg__(self) -> "Symbol":
+        return self._operate("-", 0.0, self)
 
-    def __lt__(self, other):
-        return self._with("<", self, other, "bool")
+    def __lt__(self, other: Any) -> "Symbol":
+        return self._operate("<", self, other, "bool")
 
-    def __gt__(self, other):
-        return self._with(">", self, other, "bool")
+    def __gt__(self, other: Any) -> "Symbol":
+        return self._operate(">", self, other, "bool")
 
-    def __and__(self, other):
-        return self._with("&&", self, other, "bool")
+    def __and__(self, other: Any) -> "Symbol":
+        return self._operate("&&", self, other, "bool")
 
-    def to_int(self):
-        """The symbol of this number, cut to a whole one."""
+    def to_int(self) -> "Symbol":
+        """Add a line that cuts the number to an integer, and return the integer's symbol."""
         return self.program.assign("int", f"int({self.name})")
 
 
-def text(value, kind="float"):
-    """A symbol, or a number of this kind, as GLSL writes it."""
+def to_glsl(value: Any, kind: str = "float") -> str:
+    """Return a symbol, or a number as a literal of the given GLSL type, as text."""
     if isinstance(value, Symbol):
         return value.name
     return repr(int(value)) if kind == "int" else repr(float(value))

@@ -85,7 +85,7 @@ def render(
     from brdfkit.cli.arguments import film_file, material, picture_file
     from brdfkit.core.names import slug
     from brdfkit.distance_fields import load as load_field
-    from brdfkit.distance_fields.export.json_files import is_field
+    from brdfkit.distance_fields.export.json_files import is_field_file
     from brdfkit.lighting.environments.map_files import looks_like_map
     from brdfkit.mitsuba_bridge.registration.users_plugins import load_plugins
     from brdfkit.rendering import render_scene
@@ -109,7 +109,7 @@ def render(
             )
     if shadows and not quickly:
         raise BrdfkitError("--shadows is for --preview: path-traced pictures have them anyway.")
-    fields = [t for t in things if is_field(t)]
+    fields = [t for t in things if is_field_file(t)]
     if fields:
         if len(things) > 1 or values or scene != "ball" or envmap is not None or quickly:
             raise BrdfkitError(

@@ -1,55 +1,53 @@
-"""What a distance field becomes: JSON, a file, GLSL, a grid, a mesh."""
+"""Methods that convert a distance field to JSON, a file, GLSL, a grid or a mesh."""
 
 import re
 from os import PathLike
 from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.distance_fields import symbols
 from brdfkit.distance_fields.functions import Point
-from brdfkit.distance_fields.symbols import Program, Symbol, text
+from brdfkit.distance_fields.symbols import Program, Symbol
 
-HEAD = "uniform sampler3D grid_{number};  // values {shape} of x, y, z, not filtered"
-
-
-def to_glsl(node, name="field"):
-    """The text of ``float NAME(vec3 p)``, of GLSL 1.30 or ES 3.00 on, one operation a line.
-
-    Values of grids are read from textures ``grid_0``, ``grid_1``, ...
-    """
-    if not re.fullmatch(r"(?!gl_)[A-Za-z]\w*", name):
-        raise BrdfkitError(f"name = {name!r} should be a word of letters and digits, for GLSL.")
-    program = Program()
-    result = node.distance(Point(*(Symbol(program, f"p.{axis}") for axis in "xyz")))
-    heads = [
-        HEAD.format(number=n, shape="×".join(map(str, grid.counts)))
-        for n, grid in enumerate(program.grids)
-    ]
-    body = [f"    {line}" for line in (*program.lines, f"return {text(result)};")]
-    return "\n".join([*heads, f"float {name}(vec3 p) {{", *body, "}", ""])
+TEXTURE = "uniform sampler3D grid_{number};  // values {shape} of x, y, z, not filtered"
 
 
 class Conversions:
-    """The methods of fields that make something else of them."""
+    """The methods of fields that convert them to something else."""
 
     def to_json(self) -> str:
-        """The field as JSON, of which `from_json` makes it again."""
+        """Return the field as JSON, which `from_json` reads."""
         from brdfkit.distance_fields.export.json_files import to_json
 
         return to_json(self)
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write the field to a file as JSON, which `load` reads; not nodes of the user's own."""
+        """Write the field to a JSON file, which `load` reads; user-defined nodes are an error."""
         from brdfkit.distance_fields.export.json_files import save
 
         save(self, path)
 
     def to_glsl(self, name: str = "field") -> str:
-        """The field as ``float NAME(vec3 p)`` of GLSL."""
+        """Return the field as the GLSL function ``float NAME(vec3 p)``, one operation per line.
 
-        return to_glsl(self, name)
+        It needs GLSL 1.30 or ES 3.00. Values of grids are read from textures ``grid_0``,
+        ``grid_1``, ...
+        """
+        if not re.fullmatch(r"(?!gl_)[A-Za-z]\w*", name):
+            raise BrdfkitError(f"name = {name!r} should be a word of letters and digits, for GLSL.")
+        program = Program()
+        p = Point(*(Symbol(program, f"p.{axis}") for axis in "xyz"))
+        result = self.distance(p)  # type: ignore[attr-defined]  # `Node` has it
+        textures = [
+            TEXTURE.format(number=n, shape="×".join(map(str, grid.counts)))
+            for n, grid in enumerate(program.grids)
+        ]
+        lines = (*program.lines, f"return {symbols.to_glsl(result)};")
+        body = [f"    {line}" for line in lines]
+        return "\n".join([*textures, f"float {name}(vec3 p) {{", *body, "}", ""])
 
     def to_grid(self, resolution: int = 64, bounds: Any = None) -> Any:
-        """The field sampled on cubic cells, `resolution` of them along the longest edge of its box.
+        """Return the field sampled on cubic cells, `resolution` of them along the longest edge.
 
         The box is that of the surface and a margin, or `bounds`, (low, high). The grid differs
         from the field by at most ``field.lipschitz * grid.half_diagonal``.
@@ -59,7 +57,7 @@ class Conversions:
         return to_grid(self, resolution, bounds)
 
     def to_mesh(self, resolution: int = 64, bounds: Any = None) -> Any:
-        """The surface as triangles: `brdfkit.distance_fields.to_mesh`."""
+        """Return the surface as triangles, see `brdfkit.distance_fields.to_mesh`."""
         from brdfkit.distance_fields.export.mesh import to_mesh
 
         return to_mesh(self, resolution, bounds)

@@ -1,7 +1,7 @@
 """Distance fields as JSON: a node is an object with its kind, its parameters and its children."""
 
 import json
-from dataclasses import MISSING, fields
+from dataclasses import MISSING, Field, fields
 from os import PathLike
 from os.path import isfile
 from typing import Any
@@ -11,24 +11,24 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.files import contents, write_safely
-from brdfkit.distance_fields.boxes import plain
-from brdfkit.distance_fields.parameters import kind
+from brdfkit.distance_fields.boxes import to_numbers
+from brdfkit.distance_fields.parameters import find_kind
 
 
-def to_json(node):
-    """The text of a node."""
+def to_json(node: Any) -> str:
+    """Return a node as JSON text."""
     return json.dumps(_to_data(node))
 
 
 def from_json(text: str, where: str = "the field") -> Any:
-    """The field of which `to_json` made this text.
+    """Read a field from the JSON text that `to_json` made.
 
     Parameters
     ----------
     text : str
         JSON.
     where : str, default "the field"
-        What errors call it.
+        What errors call the text.
 
     Returns
     -------
@@ -38,7 +38,7 @@ def from_json(text: str, where: str = "the field") -> Any:
     Raises
     ------
     BrdfkitError
-        Where it is no JSON, or has nodes or parameters that there are not.
+        If the text is no JSON, or has unknown nodes or parameters.
 
     Examples
     --------
@@ -52,15 +52,15 @@ def from_json(text: str, where: str = "the field") -> Any:
     return _to_node(data, where)
 
 
-def save(node, path):
-    """Write a node to the file `path`, as JSON; `BrdfkitError` where it is of the user's Python."""
-    _require_known(node, path)
+def save(node: Any, path: str | PathLike[str]) -> None:
+    """Write a node to a JSON file; raise `BrdfkitError` if it contains user-defined Python."""
+    _require_own_kinds(node, path)
     with write_safely(path) as beside:
         beside.write_text(to_json(node), encoding="utf-8")
 
 
-def _require_known(node, path):
-    """Raise `BrdfkitError` for a kind of node that brdfkit does not have, or a function."""
+def _require_own_kinds(node: Any, path: str | PathLike[str]) -> None:
+    """Raise `BrdfkitError` for a function, or a kind of node that is not brdfkit's."""
     if not type(node).__module__.startswith("brdfkit.") or node.kind == "function":
         raise BrdfkitError(
             f"{path}: the field holds {node!r:.60}, which is Python of yours, and no file can hold "
@@ -68,11 +68,11 @@ def _require_known(node, path):
             "a mesh, field.to_mesh(128, bounds=(low, high)).write(path)."
         )
     for child in node.children:
-        _require_known(child, path)
+        _require_own_kinds(child, path)
 
 
 def load(path: str | PathLike[str]) -> Any:
-    """The field in a file that `save` wrote.
+    """Load a field from a file that its method `save` wrote.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def load(path: str | PathLike[str]) -> Any:
     Raises
     ------
     BrdfkitError
-        Where the file cannot be read, or has nodes or parameters that there are not.
+        If the file cannot be read, or has unknown nodes or parameters.
 
     Examples
     --------
@@ -99,50 +99,53 @@ def load(path: str | PathLike[str]) -> Any:
         raise BrdfkitError(f"{path}: is no text; a distance field is JSON.") from error
 
 
-def is_field(path: str | PathLike[str]) -> bool:
-    """Whether there is a file that begins as those that `save` wrote."""
+def is_field_file(path: str | PathLike[str]) -> bool:
+    """Return whether a file exists that begins like those that `save` writes."""
     if not isfile(path):
         return False
     with open(path, "rb") as file:
         return file.read(100).lstrip().startswith(b'{"kind"')
 
 
-def _to_data(value):
+def _to_data(value: Any) -> Any:
+    """Convert a node or a parameter to dictionaries, lists and numbers."""
     if hasattr(value, "kind"):
-        own = {f.name: _to_data(getattr(value, f.name)) for f in _stored(value)}
+        own = {f.name: _to_data(getattr(value, f.name)) for f in _saved_fields(value)}
         return {"kind": value.kind} | own
     if isinstance(value, tuple):
         return [_to_data(v) for v in value]
-    if value is None:  # the copies of an endless repetition
+    if value is None:  # the number of copies of an infinite repetition
         return None
     if dr.is_tensor_v(value) or isinstance(value, np.ndarray):
         return np.asarray(dr.detach(value), float).tolist()
-    return plain(value) if dr.is_array_v(value) else value
+    return to_numbers(value) if dr.is_array_v(value) else value
 
 
-def _to_node(data, where):
+def _to_node(data: Any, where: str) -> Any:
+    """Convert what `_to_data` made back to a node; `where` begins the errors."""
     if not isinstance(data, dict) or "kind" not in data:
         raise BrdfkitError(f'{where}: {str(data)[:40]!r} should be an object with a "kind".')
-    cls = kind(data["kind"], where)
-    known = {f.name: f for f in _stored(cls)}
-    given = {name: value for name, value in data.items() if name != "kind"}
-    for name in given:
+    cls = find_kind(data["kind"], where)
+    known = {f.name: f for f in _saved_fields(cls)}
+    arguments = {name: value for name, value in data.items() if name != "kind"}
+    for name in arguments:
         if name not in known:
             raise no_such(f"parameter of {data['kind']}", name, known, where)
     for name, field in known.items():
-        if name not in given and field.default is MISSING:
+        if name not in arguments and field.default is MISSING:
             raise BrdfkitError(f"{where}: {data['kind']} needs {name}; add it.")
-    if "child" in given:
-        given["child"] = _to_node(given["child"], where)
-    if "children" in given:
-        if not isinstance(given["children"], list):
+    if "child" in arguments:
+        arguments["child"] = _to_node(arguments["child"], where)
+    if "children" in arguments:
+        if not isinstance(arguments["children"], list):
             raise BrdfkitError(f"{where}: children of {data['kind']} should be a list.")
-        given["children"] = tuple(_to_node(child, where) for child in given["children"])
+        arguments["children"] = tuple(_to_node(child, where) for child in arguments["children"])
     try:
-        return cls(**given)
+        return cls(**arguments)
     except BrdfkitError as error:
         raise BrdfkitError(f"{where}: {error}") from error
 
 
-def _stored(node):
+def _saved_fields(node: Any) -> list[Field[Any]]:
+    """Return the dataclass fields of a node, or of a class of nodes, that a file stores."""
     return [f for f in fields(node) if f.init]

@@ -4,13 +4,13 @@ from os import PathLike
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import write_safely
 from brdfkit.distance_fields.export.sampling import to_grid
 
-HEAD = """ply
+HEADER = """ply
 format binary_little_endian 1.0
 element vertex {vertices}
 property float x
@@ -20,36 +20,40 @@ element face {faces}
 property list uchar int vertex_indices
 end_header
 """
-INSTALL = 'is not installed; pip install "brdfkit[distance_fields]".'
+NOT_INSTALLED = 'is not installed; pip install "brdfkit[distance_fields]".'
 
 
 class Mesh(NamedTuple):
-    """Triangles: `vertices` (n, 3), and `faces` (m, 3) that count them, seen from outside."""
+    """A triangle mesh.
 
-    vertices: NDArray
-    faces: NDArray
+    `vertices` (n, 3) are points; `faces` (m, 3) are indices of vertices, anticlockwise seen from
+    outside.
+    """
+
+    vertices: FloatArray
+    faces: IntArray
 
     def write(self, path: str | PathLike[str]) -> None:
         """Write a binary PLY file, which Mitsuba and modellers read."""
         rows = np.empty(len(self.faces), [("count", "u1"), ("corners", "<i4", 3)])
         rows["count"], rows["corners"] = 3, self.faces
-        head = HEAD.format(vertices=len(self.vertices), faces=len(rows))
+        header = HEADER.format(vertices=len(self.vertices), faces=len(rows))
         data = np.asarray(self.vertices, "<f4").tobytes() + rows.tobytes()
         with write_safely(path) as beside:
-            beside.write_bytes(head.encode() + data)
+            beside.write_bytes(header.encode() + data)
 
 
 def to_mesh(node: Any, resolution: int = 64, bounds: Any = None) -> Mesh:
-    """The surface of a field as triangles, by marching cubes on the grid that `to_grid` makes.
+    """Return the surface of a field as triangles, by marching cubes on a grid of samples.
 
     Parameters
     ----------
     node : distance field
-        Has the surface.
+        The field.
     resolution : integer, default 64
-        Cells along the longest edge of the box.
+        The number of cells along the longest edge of the box.
     bounds : (low, high), optional
-        The corners of the box; without them that of the surface and a margin.
+        The corners of the box; by default that of the surface and a margin.
 
     Returns
     -------
@@ -59,7 +63,7 @@ def to_mesh(node: Any, resolution: int = 64, bounds: Any = None) -> Mesh:
     Raises
     ------
     BrdfkitError
-        Where there is no surface in the box, or scikit-image is not installed.
+        If there is no surface in the box, or scikit-image is not installed.
 
     Examples
     --------
@@ -69,7 +73,7 @@ def to_mesh(node: Any, resolution: int = 64, bounds: Any = None) -> Mesh:
     try:
         from skimage.measure import marching_cubes
     except ImportError as error:
-        raise BrdfkitError(f"scikit-image, which makes meshes, {INSTALL}") from error
+        raise BrdfkitError(f"scikit-image, which makes meshes, {NOT_INSTALLED}") from error
 
     sampled = to_grid(node, resolution, bounds)
     values = sampled.values.transpose(2, 1, 0)

@@ -1,38 +1,42 @@
-"""A distance field sampled on a grid; its values there."""
+"""Samples a distance field on a grid of cubic cells."""
+
+from typing import Any
 
 import numpy as np
 
 from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.distance_fields.parameters import kind
+from brdfkit.distance_fields.boxes import Box, format_point
+from brdfkit.distance_fields.parameters import find_kind
 
-MARGIN = 0.05  # of the longest edge of a box, beyond the surface
+MARGIN = 0.05  # [unit of length] around the surface of a field
 
 
-def to_grid(node, resolution=64, bounds=None):
-    """The field as a `grid` of cubic cells, `resolution` of them along the longest edge of its box.
+def to_grid(node: Any, resolution: int = 64, bounds: Any = None) -> Any:
+    """Return the field as a `grid` of cubic cells, `resolution` of them along the longest edge.
 
-    They differ by at most ``node.lipschitz * grid.half_diagonal``. The box is `bounds`, (low,
-    high), or that of the node and a margin.
+    The grid differs from the field by at most ``node.lipschitz * grid.half_diagonal``. The box is
+    `bounds`, (low, high), or that of the node and a margin.
     """
-    low, high = box_around(node, bounds)
-    axes = axes_of(low, high, resolution)
+    low, high = box_to_sample(node, bounds)
+    axes = grid_axes(low, high, resolution)
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     values = node(points.reshape(-1, 3)).reshape(points.shape[:3])
     if not np.isfinite(values).all():
-        at = points[~np.isfinite(values)][0]
-        raise BrdfkitError(f"the field is not finite at {_place(at)}; check its formula.")
+        place = format_point(points[~np.isfinite(values)][0])
+        raise BrdfkitError(f"the field is not finite at {place}; check its formula.")
     if values.min() > 0 or values.max() < 0:
         side = "outside" if values.min() > 0 else "inside"
         raise BrdfkitError(
-            f"the box from {_place(low)} to {_place(high)} is all {side}: there is no surface; "
-            "give other bounds, or a finer resolution."
+            f"the box from {format_point(low)} to {format_point(high)} is all {side}: there is no "
+            "surface; give other bounds, or a finer resolution."
         )
-    return kind("grid")(values.transpose(2, 1, 0), tuple(low), tuple(a[-1] for a in axes))
+    return find_kind("grid")(values.transpose(2, 1, 0), tuple(low), tuple(a[-1] for a in axes))
 
 
-def box_around(node, bounds=None):
-    """The box (low, high) to sample: `bounds`, or that of the surface and a margin."""
+def box_to_sample(node: Any, bounds: Any = None) -> Box:
+    """Return the box (low, high) to sample: `bounds`, or that of the surface and a margin."""
     corners = node.bounds() if bounds is None else bounds
     try:
         low, high = np.asarray(corners, float).reshape(2, 3)
@@ -44,18 +48,15 @@ def box_around(node, bounds=None):
         raise BrdfkitError("the field is endless; give bounds, (low, high).")
     if not (low < high).all():
         raise BrdfkitError(
-            f"the box from {_place(low)} to {_place(high)} is empty; there is no surface in it."
+            f"the box from {format_point(low)} to {format_point(high)} is empty; there is no "
+            "surface in it."
         )
-    margin = MARGIN if bounds is None else 0.0 * (high - low).max()
+    margin = MARGIN if bounds is None else 0.0
     return low - margin, high + margin
 
 
-def axes_of(low, high, resolution):
-    """The coordinates along x, y and z of cubic cells that begin at `low` and cover the box."""
+def grid_axes(low: FloatArray, high: FloatArray, resolution: int) -> list[FloatArray]:
+    """Return the coordinates along x, y and z of cubic cells that cover a box, from `low` on."""
     step = (high - low).max() / to_whole_number("resolution", resolution, least=1)
     counts = np.ceil((high - low) / step - 1e-9).astype(int)
     return [start + step * np.arange(n + 1) for start, n in zip(low, counts, strict=True)]
-
-
-def _place(p):
-    return f"({', '.join(f'{c:g}' for c in p)})"

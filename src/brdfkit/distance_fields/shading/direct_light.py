@@ -1,25 +1,32 @@
-"""The light that lamps and an environment send to a camera by way of a field's surface.
+"""The direct light that a field's surface reflects to a camera, from lamps and an environment.
 
-split       f(ω_0) · L · (solid angle of the whole lamp) · (the share of it that is seen)
-estimated   the mean of f(ω_s) L / p(ω_s) over samples s of the lamp that the edge of the shadow,
-            found by one march, lets through
-exact       the same, with a ray of its own for each sample
+A lamp's light is found in one of three ways (`shading`):
 
-f is the BSDF times the cosine at the surface, ω_0 the direction of the lamp's middle, L the
-radiance.
+split       f(ω_0) · L · (solid angle of the whole lamp) · (its visible share)
+estimated   the mean of f(ω_s) L / p(ω_s) over samples s of the lamp; the edge that one march found
+            decides which samples are visible
+exact       the same, with a shadow ray to each sample
+
+f is the BSDF times the cosine at the surface, ω_0 the direction of the lamp's centre, ω_s that of a
+sample, p its probability density, L the radiance.
 
 [Bálint et al. 2019, equations 5.1, 5.2]
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitColour, JitMask, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.loops import recorded
-from brdfkit.distance_fields.shadows import edge, light_cone
-from brdfkit.distance_fields.shadows.by_name import METHODS, SOFT, by_name
-from brdfkit.distance_fields.tracing.sphere_tracing import sphere_trace
+from brdfkit.distance_fields.shading.lamps import Lamp
+from brdfkit.distance_fields.shading.visible_point import VisiblePoint
+from brdfkit.distance_fields.shadows import LightCone, Shadow, find_edge, light_cone
+from brdfkit.distance_fields.shadows.soft_shadow import METHODS, WITH_EDGE, shadow_by_name
+from brdfkit.distance_fields.tracing.cone_tracing import cone_trace
 
 SHADINGS = "split", "estimated", "exact"
 SHADOWS = [*METHODS, "none"]
@@ -27,7 +34,7 @@ SHADOWS = [*METHODS, "none"]
 
 @dataclass(frozen=True)
 class DirectLight:
-    """How light is found: the settings of the integrator of the same names."""
+    """The settings of the integrator `distance_field` by which direct light is computed."""
 
     shadow: str
     direction: str
@@ -37,95 +44,97 @@ class DirectLight:
     samples: int
     far: float
 
-    def __post_init__(self):
-        if self.shading == "estimated" and self.shadow not in SOFT:
+    def __post_init__(self) -> None:
+        if self.shading == "estimated" and self.shadow not in WITH_EDGE:
             raise BrdfkitError(
                 f"distance_field: shading = estimated needs the edge that one march finds, and "
-                f"shadow = {self.shadow} finds none; give one of {', '.join(SOFT)}."
+                f"shadow = {self.shadow} finds none; give one of {', '.join(WITH_EDGE)}."
             )
 
-    def by_lamp(self, lamp, field, seen, bsdf, sampler, active):
-        """The radiance of a `Lamp`'s light that a `SeenPoint` sends to the camera."""
-        if self.shading == "split" or lamp.shape is None:
-            return self.by_middle(lamp, field, seen, bsdf, active)
-        if self.shading == "exact":
-            return self.by_rays(lamp.emitter, field, seen, bsdf, sampler, active)
-        cone, found = self.shadow_of(lamp, field, seen, lamp.middle_light(seen.si, active)[0])
-        with dr.suspend_grad():
-            line = edge(field, cone, found)
-
-        def shows(ds):
-            return line.shows(cone, ds.p)
-
-        return self.by_samples(lamp.emitter, shows, seen.si, bsdf, sampler, active)
-
-    def by_middle(self, lamp, field, seen, bsdf, active):
+    def reflect_lamp(
+        self, lamp: Lamp, seen: VisiblePoint, bsdf: MitsubaObject, sampler: MitsubaObject
+    ) -> JitColour:
+        """Return the radiance of a lamp that a visible point reflects to the camera."""
         import mitsuba as mi
 
-        ds, light = lamp.middle_light(seen.si, active)
-        value = bsdf.eval(mi.BSDFContext(), seen.si, seen.si.to_local(ds.d), active)
-        visible = 1
-        if self.shadow != "none":
-            _, found = self.shadow_of(lamp, field, seen, ds)
-            visible = found.visible
+        if self.shading == "split" or lamp.shape is None:
+            return self._reflect_middle(lamp, seen, bsdf)
+        is_visible: Callable[[MitsubaObject], JitMask]
+        if self.shading == "exact":
+            is_visible = partial(self._is_unoccluded, seen)
+        else:
+            cone, shadow = self._lamp_shadow(lamp, seen, lamp.sample_middle(seen.si, seen.found)[0])
+            with dr.suspend_grad():
+                edge = find_edge(seen.field, cone, shadow)
+
+            def is_before_edge(ds: MitsubaObject) -> JitMask:
+                return edge.shows(cone, ds.p)
+
+            is_visible = is_before_edge
+
+        si, emitter = seen.si, lamp.emitter
+
+        def reflect_sample(sampler: MitsubaObject) -> JitColour:
+            ds, light = emitter.sample_direction(si, sampler.next_2d(seen.found), seen.found)
+            value = bsdf.eval(mi.BSDFContext(), si, si.to_local(ds.d), seen.found)
+            reflected = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light)
+            return dr.select(is_visible(ds), reflected, 0)
+
+        return self._average(reflect_sample, sampler, seen.found)
+
+    def _reflect_middle(self, lamp: Lamp, seen: VisiblePoint, bsdf: MitsubaObject) -> JitColour:
+        """Return the reflected light of a lamp's centre, times the visible share of the lamp."""
+        import mitsuba as mi
+
+        ds, light = lamp.sample_middle(seen.si, seen.found)
+        value = bsdf.eval(mi.BSDFContext(), seen.si, seen.si.to_local(ds.d), seen.found)
+        visible = 1 if self.shadow == "none" else self._lamp_shadow(lamp, seen, ds)[1].visible
         return mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * visible
 
     @recorded
-    def shadow_of(self, lamp, field, seen, ds):
-        """The cone to a lamp, and the `Shadow` in it.
+    def _lamp_shadow(
+        self, lamp: Lamp, seen: VisiblePoint, ds: MitsubaObject
+    ) -> tuple[LightCone, Shadow]:
+        """Return the cone to a lamp, and the `Shadow` in it.
 
-        Rays that saw nothing look at the lamp from beside it, where the march soon ends.
+        Rays that met nothing start beside the lamp, where the march soon ends.
         """
         centre, radius = lamp.sphere(seen.si, ds, self.far)
         beside = centre + type(centre)(0, 0, 1) * (2 * radius + 1)
         cone = light_cone(dr.select(seen.found, seen.middle, beside), centre, radius, seen.ball)
-        how = self.epsilon, self.direction, self.rays
-        return cone, by_name(self.shadow, field, cone, *how)
-
-    def by_rays(self, emitter, field, seen, bsdf, sampler, active):
-        """The same for any emitter, with a ray to each sample."""
-
-        def shows(ds):
-            return self.is_free(field, seen, ds, active)
-
-        return self.by_samples(emitter, shows, seen.si, bsdf, sampler, active)
+        settings = self.epsilon, self.direction, self.rays
+        return cone, shadow_by_name(self.shadow, seen.field, cone, *settings)
 
     @recorded
-    def is_free(self, field, seen, ds, active):
-        """Whether the ray to a sample of an emitter misses the field, or no shadow is wanted."""
+    def _is_unoccluded(self, seen: VisiblePoint, ds: MitsubaObject) -> JitMask:
+        """Return whether the ray to an emitter's sample misses the field; True without shadows."""
         import mitsuba as mi
 
         if self.shadow == "none":
             return mi.Bool(True)
-        settings = {"lipschitz": field.lipschitz, "precision": seen.ball / 2, "active": active}
+        f, lipschitz = seen.field.distance, seen.field.lipschitz
+        settings = {"lipschitz": lipschitz, "precision": seen.ball / 2, "active": seen.found}
         far = dr.minimum(ds.dist, self.far)
-        return ~sphere_trace(field.distance, seen.middle, ds.d, far, **settings).found
+        return ~cone_trace(f, seen.middle, ds.d, far, **settings).found
 
-    def by_samples(self, emitter, shows, si, bsdf, sampler, active):
-        """The mean over samples of an emitter of those for which `shows(ds)`."""
+    def reflect_sky(
+        self, sky: MitsubaObject, seen: VisiblePoint, bsdf: MitsubaObject, sampler: MitsubaObject
+    ) -> JitColour:
+        """Return the radiance of an environment that a visible point reflects to the camera.
+
+        As many samples of the BSDF as of the environment are combined by the balance heuristic.
+        """
         import mitsuba as mi
 
-        def one(sampler):
-            ds, light = emitter.sample_direction(si, sampler.next_2d(active), active)
-            value = bsdf.eval(mi.BSDFContext(), si, si.to_local(ds.d), active)
-            found = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light)
-            return dr.select(shows(ds), found, 0)
+        si, active, context = seen.si, seen.found, mi.BSDFContext()
 
-        return self.mean(one, sampler, active)
-
-    def by_sky(self, sky, field, seen, bsdf, sampler, active):
-        """The same for an environment, and as many samples of the BSDF, weighted by balance."""
-        import mitsuba as mi
-
-        si, context = seen.si, mi.BSDFContext()
-
-        def one(sampler):
+        def reflect_samples(sampler: MitsubaObject) -> JitColour:
             ds, light = sky.sample_direction(si, sampler.next_2d(active), active)
             wo = si.to_local(ds.d)
             value = mi.unpolarized_spectrum(bsdf.eval(context, si, wo, active))
             share = ds.pdf / (ds.pdf + bsdf.pdf(context, si, wo, active))
             by_light = value * mi.unpolarized_spectrum(light) * dr.detach(share)
-            total = dr.select(self.is_free(field, seen, ds, active), by_light, 0)
+            total = dr.select(self._is_unoccluded(seen, ds), by_light, 0)
 
             with dr.suspend_grad():
                 drawn, weight = bsdf.sample(
@@ -134,26 +143,32 @@ class DirectLight:
                 there = dr.zeros(mi.SurfaceInteraction3f, dr.width(si.p))
                 there.wavelengths, there.wi = si.wavelengths, -si.to_world(drawn.wo)
                 ds = dr.zeros(mi.DirectionSample3f, dr.width(si.p))
-                ds.d, ds.dist = -there.wi, dr.inf
+                ds.d = -there.wi
+                ds.dist = dr.inf  # type: ignore[assignment]  # Mitsuba converts it
                 mirror = mi.has_flag(drawn.sampled_type, mi.BSDFFlags.Delta)
                 other = dr.select(mirror, 0, sky.pdf_direction(si, ds, active))
-                found = (drawn.pdf > 0) & self.is_free(field, seen, ds, active)
+                visible = (drawn.pdf > 0) & self._is_unoccluded(seen, ds)
             value = mi.unpolarized_spectrum(bsdf.eval(context, si, drawn.wo, active))
             ratio = dr.select(mirror, mi.unpolarized_spectrum(weight), value / drawn.pdf)
             radiance = mi.unpolarized_spectrum(sky.eval(there, active))
             by_bsdf = ratio * radiance * drawn.pdf / (drawn.pdf + other)
-            return total + dr.select(found, by_bsdf, 0)
+            return total + dr.select(visible, by_bsdf, 0)
 
-        return self.mean(one, sampler, active)
+        return self._average(reflect_samples, sampler, active)
 
-    def mean(self, one, sampler, active):
-        """The mean of `one(sampler)` over all samples."""
+    def _average(
+        self,
+        estimate: Callable[[MitsubaObject], JitColour],
+        sampler: MitsubaObject,
+        active: JitMask,
+    ) -> JitColour:
+        """Return the mean of `estimate(sampler)` over all samples."""
         import mitsuba as mi
 
         _, _, total = dr.while_loop(
             (mi.UInt32(0), sampler, mi.UnpolarizedSpectrum(0)),
             lambda i, sampler, total: active & (i < self.samples),
-            lambda i, sampler, total: (i + 1, sampler, total + one(sampler)),
+            lambda i, sampler, total: (i + 1, sampler, total + estimate(sampler)),
             max_iterations=self.samples,
         )
         return total / self.samples

@@ -1,83 +1,92 @@
-"""The BSDF of each part of a field, by the name of its material."""
+"""The BSDF of each part of a field, found by the name of the part's material."""
 
 import warnings
+from collections.abc import Mapping
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import JitVector, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.padding import pad
-from brdfkit.distance_fields.materials import grown, material_names, share
+from brdfkit.distance_fields.materials import grow_material, material_names, material_share
+from brdfkit.distance_fields.node import Node
 
 
-def exposed(node):
-    """Name → array of every parameter of a field: `mi.Float`, `mi.Vector3f` or `mi.TensorXf`.
+def differentiable_parameters(node: Node) -> dict[str, MitsubaObject]:
+    """Return all parameters of a field by name, as `mi.Float`, `mi.Vector3f` or `mi.TensorXf`.
 
-    They are opaque: a kernel holds for all of their values. A combination that is sharp stays so:
-    its `blend` is left out.
+    They are opaque, so that one kernel serves all values. The `blend` of a sharp combination is
+    left out: it stays sharp.
     """
-    import drjit as dr
     import mitsuba as mi
 
-    found = {}
+    parameters: dict[str, MitsubaObject] = {}
     for name, value in node.parameters().items():
         if name.endswith(".blend") and value == 0:
             continue
         if isinstance(value, tuple):
-            found[name] = mi.Vector3f(*(float(v) for v in value))
+            parameters[name] = mi.Vector3f(*(float(v) for v in value))
         elif np.ndim(value) == 3:
             flat = pad(np.ravel(value).astype(np.float32))
-            found[name] = mi.TensorXf(mi.Float(flat), np.shape(value))
+            parameters[name] = mi.TensorXf(mi.Float(flat), np.shape(value))
         else:
-            found[name] = mi.Float(float(value))
-    dr.make_opaque(found)
-    return found
+            parameters[name] = mi.Float(float(value))
+    dr.make_opaque(parameters)
+    return parameters
 
 
 class Parts:
-    """The BSDFs of a field: `named`, name → BSDF, and `other`, that of all else.
+    """The BSDFs of a field: `named`, name → BSDF, and `other` for all parts without a name.
 
-    growth : less than all details [unit], and more than what single precision rounds.
+    growth : a length [unit] less than all details, and more than what single precision rounds.
     """
 
-    def __init__(self, named, other, growth):
+    def __init__(
+        self, named: Mapping[str, MitsubaObject], other: MitsubaObject, growth: float
+    ) -> None:
         self.named, self.other, self.growth = named, other, growth
 
-    def larger(self, field):
-        """Name → the field with the parts of this name grown, which `bsdf` needs."""
-        return {name: grown(field, name, self.growth) for name in self.named}
+    def grow(self, field: Node) -> dict[str, Node]:
+        """Return, by name, the field with the parts of this name grown; `bsdf` needs them."""
+        return {name: grow_material(field, name, self.growth) for name in self.named}
 
-    def bsdf(self, field, larger, p):
-        """The `mi.BSDFPtr` at points of the surface: of the part with the largest share."""
+    def bsdf(self, field: Node, larger: Mapping[str, Node], p: JitVector) -> MitsubaObject:
+        """Return the `mi.BSDFPtr` at surface points `p`: that of the part with the largest share.
+
+        larger : the result of `grow` for this field.
+        """
         import mitsuba as mi
 
         with dr.suspend_grad():
-            shares = {n: share(field, each, p, self.growth) for n, each in larger.items()}
-            found, most = mi.BSDFPtr(self.other), 1 - sum(shares.values(), mi.Float(0))
+            shares = {
+                name: material_share(field, each, p, self.growth) for name, each in larger.items()
+            }
+            bsdf, most = mi.BSDFPtr(self.other), 1 - sum(shares.values(), mi.Float(0))
             for name, here in shares.items():
-                found = dr.select(here > most, mi.BSDFPtr(self.named[name]), found)
+                bsdf = dr.select(here > most, mi.BSDFPtr(self.named[name]), bsdf)
                 most = dr.maximum(here, most)
-        return found
+        return bsdf
 
 
-def parts_of(field, bsdfs, growth):
-    """The `Parts` of a field, of the BSDFs that a scene gives: name → BSDF.
+def match_bsdfs(field: Node, bsdfs: Mapping[str, MitsubaObject], growth: float) -> Parts:
+    """Match the BSDFs of a scene, name → BSDF, with the parts of a field.
 
-    One whose name is that of no part is for all parts without a name; where there is none, they are
-    Mitsuba's `diffuse`. Raises `BrdfkitError` for a name without a BSDF, and for too many BSDFs;
-    warns of those that let light through.
+    A BSDF whose name is that of no part is for all parts without a name; without it they are
+    Mitsuba's `diffuse`. A name without a BSDF and a superfluous BSDF raise `BrdfkitError`; a BSDF
+    that transmits light causes a warning.
     """
     import mitsuba as mi
 
     names = material_names(field)
-    for name, thing in bsdfs.items():
-        if not isinstance(thing, mi.BSDF):
+    for name, bsdf in bsdfs.items():
+        if not isinstance(bsdf, mi.BSDF):
             raise BrdfkitError(f"distance_field: {name} is no bsdf; only bsdfs belong here.")
-        if mi.has_flag(thing.flags(), mi.BSDFFlags.Transmission):
+        if mi.has_flag(bsdf.flags(), mi.BSDFFlags.Transmission):
             warnings.warn(
-                f"distance_field: the bsdf {name} lets light through, but only what it reflects is "
-                "shown, the rest is dark; give one that is opaque, as plastic or roughconductor, "
-                "and cut holes into the field itself, a - b.",
+                f"distance_field: the bsdf {name} lets light through, but only the light that it "
+                "reflects is shown; give an opaque one, such as plastic or roughconductor, and cut "
+                "holes into the field itself, a - b.",
                 stacklevel=2,
             )
     for name in names:

@@ -1,13 +1,13 @@
-"""Soft shadows of distance functions from a single ray; one file is one method.
+"""Soft shadows of distance fields, by one march along a cone from a surface point to the light.
 
-Each method takes a field, a `LightCone` and its own settings, and returns a `Shadow`; they are
-called by name from `soft_shadow`, which checks arguments and result, and so runs the kernel. A
-renderer calls the methods themselves: nothing in them ends the recording of a kernel.
+Each method takes a field, a `LightCone` and its own settings, and returns a `Shadow`. `soft_shadow`
+calls a method by its name, checks arguments and result, and so runs the kernel. A renderer calls
+the methods directly, as nothing in them interrupts the recording of a kernel.
 """
 
 from brdfkit.distance_fields.shadows.cone import LightCone as LightCone
 from brdfkit.distance_fields.shadows.cone import light_cone as light_cone
 from brdfkit.distance_fields.shadows.edge import Edge as Edge
-from brdfkit.distance_fields.shadows.edge import edge as edge
+from brdfkit.distance_fields.shadows.edge import find_edge as find_edge
 from brdfkit.distance_fields.shadows.shadow import Shadow as Shadow
 from brdfkit.distance_fields.shadows.soft_shadow import soft_shadow as soft_shadow

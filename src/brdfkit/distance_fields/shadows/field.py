@@ -1,48 +1,54 @@
-"""What a field tells the shadows: its distance, its Lipschitz bound, and its convex pieces.
+"""What shadows need to know of a field: its distance, its bound L, and its convex pieces.
 
-A field is a function of points, or a node with the method `distance(p)`, which may say `lipschitz`
-and `is_convex`. One of the `kind` "union" that `is_sharp` has its pieces as `children`.
+A field is a function of points, or a node with a method `distance(p)`, and perhaps `lipschitz` and
+`is_convex`. A node whose `kind` is "union" and that `is_sharp` has its pieces as `children`.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from brdfkit.distance_fields.boxes import join
+from brdfkit.core.array_types import FloatArray
+from brdfkit.distance_fields.boxes import join_boxes
 from brdfkit.distance_fields.shapes.motions import Motion
 
-
-def distance_of(field):
-    """The function of points whose value is the distance."""
-    return getattr(field, "distance", field)
+UNIT_BOX = -np.ones(3), np.ones(3)  # of a field that has no bounded part
 
 
-def lipschitz_of(field):
-    """How much the distance may change per unit of length: 1 of an exact one."""
+def distance_of(field: Any) -> Callable[[Any], Any]:
+    """Return the function from points to distances."""
+    distance: Callable[[Any], Any] = getattr(field, "distance", field)
+    return distance
+
+
+def lipschitz_of(field: Any) -> float:
+    """Return the bound on the change of the distance per unit of length, by default 1."""
     return float(getattr(field, "lipschitz", 1.0))
 
 
-def pieces_of(field):
-    """The fields whose minimum this one is: itself, or what a union holds, within unions and moved
-    ones too."""
+def pieces_of(field: Any) -> list[Any]:
+    """Return the fields whose minimum this one is: the parts of a union, else the field alone.
+
+    Unions within unions, and moved ones, are taken apart, too.
+    """
     if getattr(field, "kind", None) == "union" and field.is_sharp:
         return [piece for child in field.children for piece in pieces_of(child)]
     if isinstance(field, Motion):
-        return [replace(field, child=piece) for piece in pieces_of(field.child)]
+        moved: Any = field
+        return [replace(moved, child=piece) for piece in pieces_of(field.child)]
     return [field]
 
 
-ENDLESS = -np.ones(3), np.ones(3)  # the box that stands for a field of nothing else
-
-
-def sphere_about(field):
-    """The middle (3,) and the radius of a sphere about what of a field is not endless, as a plane.
+def bounding_sphere(field: Any) -> tuple[FloatArray, float]:
+    """Return the centre (3,) and radius of a sphere about the bounded parts of a field.
 
     >>> from brdfkit.distance_fields import plane, sphere
-    >>> sphere_about(sphere(2).at(7, 0, 0) | plane())
+    >>> bounding_sphere(sphere(2).at(7, 0, 0) | plane())
     (array([7., 0., 0.]), 3.4641016151377544)
     """
     boxes = [piece.bounds() for piece in pieces_of(field)]
     boxes = [box for box in boxes if np.isfinite(box).all() and np.less(*box).all()]
-    low, high = join(boxes or [ENDLESS])
+    low, high = join_boxes(boxes or [UNIT_BOX])
     return (low + high) / 2, float(np.linalg.norm(high - low) / 2)

@@ -1,24 +1,32 @@
-"""The march that single-ray shadows share: a cone of shrinking relative radius along the axis.
+"""The march that single-ray shadows share: steps along the axis of a cone of light.
 
-The smallest of the ratios f / ρ, the distance over the cone's radius, says how much light comes
-through. R_T is the smallest so far; steps are so short that no ratio below R_C, which lies a little
-lower, is missed. Both may become negative, so that the march goes on through objects.
+The smallest of the ratios f / ρ, the distance over the cone's radius, gives the share of the light
+that comes through. The march keeps the smallest ratio so far, R_T, and a somewhat smaller one, R_C:
+its steps are so short that it misses no ratio below R_C. Both may become negative, so that the
+march goes on through objects.
 
 [Bálint et al. 2019, algorithms 3-5]
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat, JitMask
+from brdfkit.distance_fields.shadows.cone import LightCone
 from brdfkit.distance_fields.shadows.field import distance_of, lipschitz_of
+
+# (t, f, R_C, memory) → the length of a step, and the memory for the next one
+Step: TypeAlias = Callable[[JitFloat, JitFloat, JitFloat, Any], tuple[JitFloat, Any]]
+# (field, cone) → the step, and its first memory
+Pace: TypeAlias = Callable[[Any, LightCone], tuple[Step, Any]]
 
 
 @dataclass(frozen=True)
 class Rule:
-    """How R_T and R_C follow the ratios: what tells the methods of shadows apart.
+    """How R_T and R_C follow the ratios, which is what distinguishes the methods.
 
     first : R_T and R_C at the start.
     lower : (ratio, R_T) → the new R_T and R_C, where a ratio is below R_T.
@@ -32,37 +40,39 @@ class Rule:
 
 @dataclass(frozen=True)
 class Walk:
-    """What a march found: R_T, the t at which it became so, and the number of evaluations of f."""
+    """The result of a march: the last R_T, its place t, and the number of evaluations of f."""
 
     R_T: Any
     t: Any
     evaluations: Any
 
 
-def cone_pace(field, cone):
-    """The steps of cone tracing: the ball about a point of the axis, less the cone at its end."""
+def cone_pace(field: Any, cone: LightCone) -> tuple[Step, tuple[()]]:
+    """Return the steps of cone tracing: the ball about a point of the axis, less the cone's end."""
     lipschitz, tan = lipschitz_of(field), cone.tan
 
-    def step(t, F, R_C, memory):
+    def step(t: JitFloat, F: JitFloat, R_C: JitFloat, memory: Any) -> tuple[JitFloat, Any]:
         return (F - R_C * cone.radius(t)) / (lipschitz + dr.abs(R_C * tan)), memory
 
     return step, ()
 
 
-def march(field, cone, rule, epsilon, pace=cone_pace, active=True):
-    """The `Walk` from the start of the cone to its end, without derivatives.
-
-    `pace(field, cone)` gives the function `step(t, F, R_C, memory)`, which returns the length of a
-    step and what it remembers for the next one, and the first memory.
-    """
+def march(
+    field: Any,
+    cone: LightCone,
+    rule: Rule,
+    epsilon: float,
+    pace: Pace = cone_pace,
+    active: JitMask = True,
+) -> Walk:
+    """March from the start of the cone to its end, without derivatives, where `active`."""
     f, cone = distance_of(field), cone.detached()
     step, memory = pace(field, cone)
-    most = cone.most_steps(epsilon, lipschitz_of(field))
+    max_steps = cone.max_steps(epsilon, lipschitz_of(field))
 
-    def going_on(t, R_T, R_C, t_min, i, memory):
-        return active & (t < cone.d) & (rule.last < R_T) & (i < most)
-
-    def one_step(t, R_T, R_C, t_min, i, memory):
+    def one_step(
+        t: JitFloat, R_T: JitFloat, R_C: JitFloat, t_min: JitFloat, i: JitFloat, memory: Any
+    ) -> tuple[Any, ...]:
         F, rho = f(cone.point(t)), cone.radius(t)
         nearer = R_T * rho > F
         lower_T, lower_C = rule.lower(F / rho, R_T)
@@ -73,6 +83,11 @@ def march(field, cone, rule, epsilon, pace=cone_pace, active=True):
     with dr.suspend_grad():
         zero = 0 * cone.d
         R_T, R_C = (zero + R for R in rule.first)
-        found = dr.while_loop((zero, R_T, R_C, zero, zero, memory), going_on, one_step)
-    t, R_T, _, t_min, i, _ = found
+        t, R_T, _, t_min, i, _ = dr.while_loop(
+            (zero, R_T, R_C, zero, zero, memory),
+            lambda t, R_T, R_C, t_min, i, memory: (
+                active & (t < cone.d) & (rule.last < R_T) & (i < max_steps)
+            ),
+            one_step,
+        )
     return Walk(dr.select(dr.isnan(t), dr.nan, R_T), t_min, i)  # NaN where the field was

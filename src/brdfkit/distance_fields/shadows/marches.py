@@ -1,55 +1,74 @@
-"""`linear`: R_C lies a constant below R_T, so that τ is needed only at the end; the default.
+"""The single-ray methods `linear` (the default), `hard` and `convex`.
 
-[Bálint et al. 2019, algorithm 4]
+`linear`: R_C is below R_T by a constant, so that τ is needed only at the end. `hard`: the same for
+a light of radius 0. `convex`: longer steps in a union of convex objects. The distance f_j of a
+convex object is a convex function, so that along the axis it lies above the line through its last
+two values; the cone cannot touch the object before
+
+    Δt_j = (f_j - R_C ρ) / (R_C tan α - slope of that line)
+
+The thesis asks for such steps and leaves the formula open. They hold within objects and where
+R_C < 0, too, as the signed distance is convex there.
+
+[Bálint et al. 2019, algorithm 4 and section 4.4]
 """
 
 from math import pi
+from typing import Any
 
 import drjit as dr
 
-from brdfkit.distance_fields.shadows.march import Rule
-from brdfkit.distance_fields.shadows.shadow import single_ray
-from brdfkit.distance_fields.shadows.tau import tau, tau_inverse
+from brdfkit.core.array_types import JitFloat
+from brdfkit.distance_fields.shadows.cone import LightCone
+from brdfkit.distance_fields.shadows.field import distance_of, lipschitz_of, pieces_of
+from brdfkit.distance_fields.shadows.march import Rule, Step
+from brdfkit.distance_fields.shadows.shadow import Shadow, single_ray
 
 
-def discrete(field, cone, epsilon=1 / 20, direction="A"):
-    """The `Shadow`: |visible - τ(r_min)| ≤ ε, and visible is 1 less a multiple of ε.
-
-    Its `t` is where the last level was passed, which may be far from the minimum, so that its
-    derivatives are rough.
-    """
-
-    def lower(ratio, R_T):
-        """One level down; several where the light itself lies within an object."""
-        levels = dr.maximum(dr.ceil((tau(R_T) - tau(ratio)) / epsilon - 1), 1)
-        share = tau(R_T) - levels * epsilon
-        return tau_inverse(share), tau_inverse(share - epsilon)
-
-    rule = Rule((1.0, tau_inverse(1 - epsilon)), lower, tau_inverse(epsilon))
-    return single_ray(field, cone, rule, epsilon, direction)
-
-
-def base(field, cone, epsilon=1 / 20, direction="A"):
-    """The `Shadow`: 0 ≤ visible - τ(r_min) ≤ ε."""
-
-    def lower(ratio, R_T):
-        return ratio, tau_inverse(tau(ratio) - epsilon)
-
-    rule = Rule((1.0, tau_inverse(1 - epsilon)), lower, tau_inverse(epsilon))
-    return single_ray(field, cone, rule, epsilon, direction)
-
-
-def linear(field, cone, epsilon=1 / 20, direction="A"):
-    """The `Shadow`: 0 ≤ visible - τ(r_min) ≤ ε."""
+def linear(field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = "A") -> Shadow:
+    """Compute a shadow by the linear march, with 0 ≤ visible - τ(r_min) ≤ ε."""
     return single_ray(field, cone, linear_rule(epsilon), epsilon, direction)
 
 
-def linear_rule(epsilon):
-    """A change of ε in τ is one of e = ε π / 2 in r at least, because τ' ≤ 2 / π."""
+def linear_rule(epsilon: float) -> Rule:
+    """Return the rule of `linear`: R_C is e = ε π / 2 below R_T.
+
+    A change of ε in τ is a change of e in r at least, because τ' ≤ 2 / π.
+    """
     e = epsilon * pi / 2
     return Rule((1.0, 1 - e), lambda ratio, R_T: (ratio, ratio - e), e - 1)
 
 
-def hard(field, cone, epsilon=1 / 20, direction="A"):
-    """The `Shadow` of `linear` for a light of radius 0."""
+def hard(field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = "A") -> Shadow:
+    """Compute the shadow of `linear` for a light of radius 0."""
     return linear(field, cone.to_point(), epsilon, direction)
+
+
+def convex(field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = "A") -> Shadow:
+    """Compute a shadow by longer steps towards convex pieces, with 0 ≤ visible - τ(r_min) ≤ ε.
+
+    Pieces of a union that do not say `is_convex` are approached by the steps of `linear`.
+    """
+    return single_ray(field, cone, linear_rule(epsilon), epsilon, direction, convex_pace)
+
+
+def convex_pace(field: Any, cone: LightCone) -> tuple[Step, Any]:
+    """Return steps to the nearest piece; the memory is the last t and the distances there."""
+    pieces = pieces_of(field)
+    zero = 0 * cone.d
+
+    def step(t: JitFloat, F: JitFloat, R_C: JitFloat, memory: Any) -> tuple[JitFloat, Any]:
+        t_before, before = memory
+        rho, tan = cone.radius(t), cone.tan
+        now = tuple(distance_of(piece)(cone.point(t)) for piece in pieces)
+        dt = cone.d
+        for piece, f, f_before in zip(pieces, now, before, strict=True):
+            clearance, lipschitz = f - R_C * rho, lipschitz_of(piece)
+            closing = lipschitz + dr.abs(R_C * tan)
+            if getattr(piece, "is_convex", False):
+                line = dr.maximum((f - f_before) / (t - t_before), -lipschitz)
+                closing = R_C * tan - line
+            dt = dr.select(clearance >= dt * closing, dt, clearance / closing)
+        return dt, (t, now)
+
+    return step, (zero - 1, tuple(zero + dr.inf for _ in pieces))

@@ -1,23 +1,27 @@
-"""`monte_carlo`: hard rays through points of the disc, the truth that all others are held to.
+"""`monte_carlo`: the reference for all other methods, by hard rays through points of the disc.
 
-The points are Halton's: u, φ in bases 2 and 3, at √u from the centre. A ray leads from the section
-at the surface point to that at the light, through the apex of the cone.
+The points are Halton's, with the coordinates u and φ in bases 2 and 3, at √u from the centre. A ray
+leads from the section at the surface point to the section at the light, through the cone's apex.
 
 [Bálint et al. 2019, section 3.3]
 """
 
+from typing import Any
+
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, JitFloat, JitInt
 from brdfkit.core.jit.padding import pad
+from brdfkit.distance_fields.shadows.cone import LightCone
 from brdfkit.distance_fields.shadows.field import distance_of, lipschitz_of
 from brdfkit.distance_fields.shadows.shadow import Shadow
 
-MOST = 512  # steps of a ray
+MAX_STEPS = 512  # of a ray
 
 
-def monte_carlo(field, cone, rays=64, hit=1e-3):
-    """The `Shadow`: the share of `rays` that reach the light; `r` and `t` are those of no place.
+def monte_carlo(field: Any, cone: LightCone, rays: int = 64, hit: float = 1e-3) -> Shadow:
+    """Compute the share of `rays` that reach the light; `r` and `t` of the result are NaN.
 
     A ray meets an object where the distance is less than `hit`, over the radius of the cone.
     """
@@ -27,10 +31,10 @@ def monte_carlo(field, cone, rays=64, hit=1e-3):
     xs, ys = (Float(pad(q)) for q in halton_disc(rays))
     zero = 0 * cone.d
 
-    def one_ray(k, lit, evaluations):
+    def one_ray(k: JitInt, lit: JitFloat, evaluations: JitFloat) -> tuple[Any, ...]:
         x, y = dr.gather(Float, xs, k), dr.gather(Float, ys, k)
-        room, n = trace(field, cone, x, y, hit)
-        through = dr.select(room > 0, 1, dr.select(room <= 0, 0, dr.nan))
+        clearance, n = trace(field, cone, x, y, hit)
+        through = dr.select(clearance > 0, 1, dr.select(clearance <= 0, 0, dr.nan))
         return k + 1, lit + through, evaluations + n
 
     with dr.suspend_grad():
@@ -41,26 +45,31 @@ def monte_carlo(field, cone, rays=64, hit=1e-3):
     return Shadow(lit / rays, zero + dr.nan, zero + dr.nan, evaluations)
 
 
-def trace(field, cone, x, y, hit):
-    """The room that the ray at (x, y) of the disc has left, 0 or less where it met an object, and
-    its evaluations."""
+def trace(
+    field: Any, cone: LightCone, x: JitFloat, y: JitFloat, hit: float
+) -> tuple[JitFloat, JitFloat]:
+    """Trace the ray at (x, y) of the disc, and return its last clearance and its evaluations.
+
+    The clearance is 0 or less where the ray met an object.
+    """
     f, tan = distance_of(field), cone.tan
     speed = lipschitz_of(field) * dr.sqrt(1 + tan * tan * (x * x + y * y))
     zero = 0 * cone.d
 
-    def going_on(t, room, i):
-        return (t < cone.d) & (room > 0) & (i < MOST)
-
-    def one_step(t, room, i):
-        F = f(cone.across(t, x, y))
+    def step(t: JitFloat, clearance: JitFloat, i: JitFloat) -> tuple[JitFloat, ...]:
+        F = f(cone.disc_point(t, x, y))
         return t + dr.maximum(F, 0) / speed, F - hit * cone.radius(t), i + 1
 
-    _, room, n = dr.while_loop((zero, zero + 1, zero), going_on, one_step)
-    return room, n
+    _, clearance, n = dr.while_loop(
+        (zero, zero + 1, zero),
+        lambda t, clearance, i: (t < cone.d) & (clearance > 0) & (i < MAX_STEPS),
+        step,
+    )
+    return clearance, n
 
 
-def halton_disc(n):
-    """x and y of Halton's first n points, uniform over the unit disc."""
+def halton_disc(n: int) -> tuple[FloatArray, FloatArray]:
+    """Return x (n,) and y (n,) of the first Halton points, uniform over the unit disc."""
     from scipy.stats.qmc import Halton
 
     u, phi = Halton(2, scramble=False).random(n + 1)[1:].T  # the first is the corner (0, 0)

@@ -1,10 +1,10 @@
-"""`Shadow`, what every method returns; how a march becomes one, with derivatives.
+"""`Shadow`, the result of every method, and how a march becomes one, with derivatives.
 
-The march is not differentiated. By the envelope theorem the derivative of a minimum is that of the
-function at the place of the minimum, so f / ρ is evaluated there once more, with derivatives by
-whatever moves: the light, its radius, the surface point, the parameters of the field. The march
-stops looking within ε, so that the place is found more exactly first. Where nobody asks for
-derivatives, none of this is part of the kernel.
+The march itself is not differentiated. By the envelope theorem the derivative of a minimum is that
+of the function at the place of the minimum. So f / ρ is evaluated there once more, with derivatives
+by the light, its radius, the surface point, and the parameters of the field. As the march ends
+within ε of the minimum, the place is first refined. Where nothing carries derivatives, none of this
+is part of the kernel.
 """
 
 from dataclasses import dataclass
@@ -12,49 +12,28 @@ from typing import Any
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat, JitMask
+from brdfkit.distance_fields.shadows.cone import LightCone
 from brdfkit.distance_fields.shadows.field import distance_of
-from brdfkit.distance_fields.shadows.march import cone_pace, march
+from brdfkit.distance_fields.shadows.march import Pace, Rule, cone_pace, march
 from brdfkit.distance_fields.shadows.tau import tau
 
-GOLDEN = (5**0.5 - 1) / 2
-
-
-def ratio(field, cone, t):
-    """f / ρ at t."""
-    return distance_of(field)(cone.point(t)) / cone.radius(t)
-
-
-def nearest_minimum(field, cone, t, width, steps):
-    """The place of the minimum within `width` of t, by golden sections, without derivatives."""
-    cone = cone.detached()
-
-    def narrow(i, left, right):
-        part = GOLDEN * (right - left)
-        low, high = right - part, left + part
-        lower = ratio(field, cone, low) < ratio(field, cone, high)
-        return i + 1, dr.select(lower, left, low), dr.select(lower, high, right)
-
-    with dr.suspend_grad():
-        left, right = dr.maximum(t - width, 0), dr.minimum(t + width, cone.d)
-        found = dr.while_loop((0 * t, left, right), lambda i, left, right: i < steps, narrow)
-    _, left, right = found
-    return (left + right) / 2
-
-
 DIRECTIONS = "A", "B"  # from the surface to the light, or from the light to the surface
-# Where the minimum may be about the smallest ratio of a march, over ε ρ: two steps or so
-NEAR, REFINEMENTS = 4.0, 20
-ASIDE = 1e-3  # from the minimum to its two sides, over ρ
+GOLDEN_RATIO = (5**0.5 - 1) / 2
+# The search for the minimum about the smallest ratio of a march: its width over ε ρ, two steps or
+# so, and its number of steps
+SEARCH_WIDTH, SEARCH_STEPS = 4.0, 20
+SIDE_STEP = 1e-3  # from the minimum to the points on both sides of it, over ρ
 
 
 @dataclass(frozen=True)
 class Shadow:
-    """How much of a light is seen, and by which ratio that was told.
+    """The visible share of a light, and the ratio that it was computed from.
 
-    visible : Float, the share of the light that is seen, 0 to 1.
+    visible : Float, the share of the light that is visible, 0 to 1.
     r : Float, the smallest ratio f / ρ that was found, at most 1.
     t : Float, where on the axis it was found, from the surface point on.
-    evaluations : Float, how often the distance was evaluated.
+    evaluations : Float, the number of evaluations of the distance.
     """
 
     visible: Any
@@ -63,42 +42,80 @@ class Shadow:
     evaluations: Any
 
 
-def single_ray(field, cone, rule, epsilon, direction, pace=cone_pace, active=True):
-    """The `Shadow` of one march by a `Rule`; rays that are not `active` are lit."""
+def ratio(field: Any, cone: LightCone, t: JitFloat) -> JitFloat:
+    """Return f / ρ at t."""
+    return distance_of(field)(cone.point(t)) / cone.radius(t)
+
+
+def find_minimum_near(
+    field: Any, cone: LightCone, t: JitFloat, width: JitFloat, steps: int
+) -> JitFloat:
+    """Return where f / ρ is smallest within `width` of t, by golden-section search.
+
+    The result has no derivatives.
+    """
+    cone = cone.detached()
+
+    def narrow(i: JitFloat, left: JitFloat, right: JitFloat) -> tuple[JitFloat, ...]:
+        part = GOLDEN_RATIO * (right - left)
+        low, high = right - part, left + part
+        lower = ratio(field, cone, low) < ratio(field, cone, high)
+        return i + 1, dr.select(lower, left, low), dr.select(lower, high, right)
+
+    with dr.suspend_grad():
+        left, right = dr.maximum(t - width, 0), dr.minimum(t + width, cone.d)
+        start = (0 * t, left, right)
+        _, left, right = dr.while_loop(start, lambda i, left, right: i < steps, narrow)
+    return (left + right) / 2
+
+
+def single_ray(
+    field: Any,
+    cone: LightCone,
+    rule: Rule,
+    epsilon: float,
+    direction: str,
+    pace: Pace = cone_pace,
+    active: JitMask = True,
+) -> Shadow:
+    """Compute the shadow of one march by a `Rule`; rays that are not `active` are lit."""
     forward = direction == "A"
     walk = march(field, cone if forward else cone.reversed(), rule, epsilon, pace, active)
     d = dr.detach(cone.d)
     t = walk.t if forward else d - walk.t
     r = walk.R_T
     visible = dr.select(dr.isnan(r), r, tau(r))
-    moving = moving_minimum(r, field, cone, t, epsilon)
-    if dr.grad_enabled(moving):
-        # τ' of what the march ends at, at most ε above the minimum, would be rough
-        visible, r = dr.replace_grad(visible, tau(moving)), dr.replace_grad(r, moving)
+    minimum = attach_minimum(r, field, cone, t, epsilon)
+    if dr.grad_enabled(minimum):
+        # The slope τ' at the march's last ratio, up to ε above the minimum, would be inexact
+        attach: Any = dr.replace_grad  # Dr.Jit's own annotation says that it returns None
+        visible, r = attach(visible, tau(minimum)), attach(r, minimum)
     return Shadow(visible, r, t, walk.evaluations)
 
 
-def moving_minimum(r, field, cone, t, epsilon):
-    """The minimum of f / ρ near t, with derivatives where anything has them; `r` elsewhere.
+def attach_minimum(
+    r: JitFloat, field: Any, cone: LightCone, t: JitFloat, epsilon: float
+) -> JitFloat:
+    """Return the minimum of f / ρ near t, with derivatives; `r` if nothing carries derivatives.
 
-    At a crease of the field they jump. There the derivative of the minimum is the mean of those on
+    At a crease of the field they jump. The derivative of the minimum is then the mean of those on
     both sides, with the weights by which the slopes along the axis cancel.
     """
 
-    def moving(t):
+    def moving_ratio(t: JitFloat) -> JitFloat:
         return ratio(field, cone, t / dr.detach(cone.d) * cone.d)  # a fixed share of the axis
 
-    if not dr.grad_enabled(moving(t)):
+    if not dr.grad_enabled(moving_ratio(t)):
         return r
     with dr.suspend_grad():
         fixed = cone.detached()
         rho = fixed.radius(t)
-        t = nearest_minimum(field, cone, t, NEAR * epsilon * rho, REFINEMENTS)
+        t = find_minimum_near(field, cone, t, SEARCH_WIDTH * epsilon * rho, SEARCH_STEPS)
         before, left, right, behind = (
-            dr.clip(t + k * ASIDE * rho, 0, fixed.d) for k in (-2, -1, 1, 2)
+            dr.clip(t + k * SIDE_STEP * rho, 0, fixed.d) for k in (-2, -1, 1, 2)
         )
         falls = dr.maximum(ratio(field, fixed, before) - ratio(field, fixed, left), 0)
         rises = dr.maximum(ratio(field, fixed, behind) - ratio(field, fixed, right), 0)
         level = falls + rises == 0
         weight = dr.select(level, 0.5, rises / dr.select(level, 1, falls + rises))
-    return weight * moving(left) + (1 - weight) * moving(right)
+    return weight * moving_ratio(left) + (1 - weight) * moving_ratio(right)

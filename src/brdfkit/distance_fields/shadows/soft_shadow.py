@@ -1,31 +1,56 @@
-"""`soft_shadow`: how much of a round light each point sees between the surfaces of a field."""
+"""`soft_shadow`: the share of a round light that points see between the surfaces of a field."""
 
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any
 
 import drjit as dr
 import numpy as np
 
 from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.distance_fields.shadows.by_name import METHODS, by_name
-from brdfkit.distance_fields.shadows.cone import light_cone
+from brdfkit.distance_fields.shadows.cone import LightCone, light_cone
+from brdfkit.distance_fields.shadows.marches import convex, hard, linear
+from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
 from brdfkit.distance_fields.shadows.shadow import DIRECTIONS, Shadow
+from brdfkit.distance_fields.shadows.split import split
+
+WITH_EDGE = "linear", "base", "discrete", "convex", "split"  # methods that find a straight edge
+METHODS = (*WITH_EDGE, "hard", "quilez", "aaltonen", "monte_carlo")
+MARCHES = {"linear": linear, "convex": convex, "split": split, "hard": hard}
+
+
+def shadow_by_name(
+    name: str, field: Any, cone: LightCone, epsilon: float, direction: str, rays: int
+) -> Shadow:
+    """Compute a shadow by the method called `name`, which ignores settings that it does not have.
+
+    Methods that only serve comparison are loaded from the thesis `balint2019`.
+    """
+    if name == "monte_carlo":
+        return monte_carlo(field, cone, rays)
+    if name in MARCHES:
+        return MARCHES[name](field, cone, epsilon, direction)
+    rivals: Any = import_module("brdfkit.theses.balint2019.rivals")
+    settings = (epsilon, direction) if name in WITH_EDGE else ()
+    shadow: Shadow = getattr(rivals, name)(field, cone, *settings)
+    return shadow
 
 
 def soft_shadow(
     field: Callable[[Any], Any],
-    point: Any,
-    light: Any,
-    radius: Any,
-    ball: Any,
+    point: JitVector,
+    light: JitVector,
+    radius: JitFloat,
+    ball: JitFloat,
     *,
     shadow: str = "linear",
     epsilon: float = 1 / 20,
     direction: str = "A",
     rays: int = 64,
 ) -> Shadow:
-    """The share of a spherical light that each point sees, by one march along a cone.
+    """Compute the share of a spherical light that each point sees, by one march along a cone.
 
     It is differentiable by the light, its radius, the points and the parameters of the field.
 
@@ -33,7 +58,7 @@ def soft_shadow(
     ----------
     field : callable
         The distance [unit] at points p with arrays p.x, p.y and p.z, negative inside; or an object
-        with a method `distance` like that, and `lipschitz`, `is_convex` and `children` if it has.
+        with such a method `distance`, and optionally `lipschitz`, `is_convex` and `children`.
     point : Dr.Jit points
         Points just off the surfaces [unit], of any backend and precision.
     light : Dr.Jit points
@@ -44,18 +69,18 @@ def soft_shadow(
         The radius [unit] of a ball about each point that holds no object: half a pixel, say.
     shadow : str, default "linear"
         The method: "linear", "base", "discrete", "convex", "split" (7 cones: right for several,
-        small and thin objects), "hard", "quilez", "aaltonen", or "monte_carlo", the truth.
+        small and thin objects), "hard", "quilez", "aaltonen", or "monte_carlo", the reference.
     epsilon : float, default 0.05
         The largest error of the lit share against the method's model of the light, 0 to 0.5.
     direction : str, default "A"
         "A" marches from the surface to the light, "B" from the light to the surface.
     rays : int, default 64
-        How many rays "monte_carlo" follows for each point.
+        The number of rays that "monte_carlo" follows for each point.
 
     Returns
     -------
     Shadow
-        `visible`, the share, and what it was found by.
+        `visible`, the share, and the ratio that it was computed from.
 
     Raises
     ------
@@ -83,12 +108,12 @@ def soft_shadow(
         )
     rays = to_whole_number("rays", rays, 1)
     cone = light_cone(point, light, radius, ball)
-    found = by_name(shadow, field, cone, epsilon, direction, rays)
-    bad = dr.isnan(found.visible)
+    result = shadow_by_name(shadow, field, cone, epsilon, direction, rays)
+    bad = dr.isnan(result.visible)
     if dr.any(bad):
         first = np.flatnonzero(bad)[0]
         raise BrdfkitError(
             f"The distance is not a number somewhere between point {first} and the light; see "
             "that the field is finite everywhere."
         )
-    return found
+    return result

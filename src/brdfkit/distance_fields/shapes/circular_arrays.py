@@ -1,11 +1,11 @@
-"""Copies of a solid all around the z axis.
+"""Copies of a solid around the z axis.
 
-    f(p) = min over k of g(R(2πk/n)⁻¹ p),   R(φ) turns by φ about z
+    f(p) = min over k of g(R(2πk/n)⁻¹ p),   R(φ): rotation by φ about z
 
-Where each copy keeps to its own sector, an n-th of the full turn, those two are enough whose
-sectors' middles are on the two sides of p: to a point that turns about z, the nearest of its copies
-is the one that is least away in angle. This holds for distances, not for estimates g, of which all
-n are taken, as they are of a solid that reaches out of its sector.
+g is the solid's own field and n the number of copies. As p turns about z, the nearest copy is the
+one that is closest in angle. So where g is the exact distance and each copy stays within its own
+sector, an n-th of the full turn, only the two copies on both sides of p have to be evaluated.
+Otherwise all n are.
 """
 
 from dataclasses import dataclass
@@ -13,10 +13,12 @@ from functools import reduce
 from itertools import product
 from math import atan2 as angle_of
 from math import pi
+from operator import attrgetter
 
 import numpy as np
 
-from brdfkit.distance_fields.boxes import EVERYWHERE, join, turn
+from brdfkit.core.array_types import FloatArray, JitFloat, JitVector
+from brdfkit.distance_fields.boxes import EVERYWHERE, Box, join_boxes, rotate_box
 from brdfkit.distance_fields.functions import Point, atan2, cos, floor, minimum, sin
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.parameters import count
@@ -29,24 +31,23 @@ class circular_array(Node):
     Parameters
     ----------
     child : distance field
-        The first of them; anywhere.
-    copies : integer ≥ 1
-        How many there are.
+        The first of them, at any place.
+    copies : integer ≥ 1, default 1
+        Their number.
     """
 
     child: Node
     copies: int = count(1, least=1)
+    exact_outside = property(attrgetter("child.exact_outside"))
 
     @property
-    def exact_outside(self):
-        return self.child.exact_outside
+    def exact_inside(self) -> bool:
+        """True if the copies do not overlap, and f is exact in the child."""
+        return self.child.exact_inside and (self.copies == 1 or self._extent()[1] < self.sector / 2)
 
     @property
-    def exact_inside(self):
-        return self.child.exact_inside and (self.copies == 1 or self._reach()[1] < self.sector / 2)
-
-    @property
-    def is_convex(self):
+    def is_convex(self) -> bool:
+        """True for a single copy of a convex child."""
         return self.child.is_convex and self.copies == 1
 
     @property
@@ -54,23 +55,27 @@ class circular_array(Node):
         """The angle [rad] from each copy to the next."""
         return 2 * pi / self.copies
 
-    def distance(self, p):
-        middle, reach = self._reach()
-        if self.child.exact_outside and reach <= self.sector / 2 and self.copies > 2:
+    def distance(self, p: JitVector) -> JitFloat:
+        middle, extent = self._extent()
+        if self.child.exact_outside and extent <= self.sector / 2 and self.copies > 2:
             first = floor((atan2(p.y, p.x) - middle) / self.sector)
             angles = [first * self.sector, (first + 1.0) * self.sector]
         else:
             angles = [k * self.sector for k in range(self.copies)]
-        return reduce(minimum, [self.child.distance(turned_back(p, a)) for a in angles])
+        return reduce(minimum, [self.child.distance(rotate_back(p, a)) for a in angles])
 
-    def bounds(self, level=0.0):
+    def bounds(self, level: float = 0.0) -> Box:
         box = self.child.bounds(level)
         if not np.isfinite(box).all():
             return EVERYWHERE
-        return join([turn(box, matrix(k * self.sector)) for k in range(self.copies)])
+        matrices = [rotation_matrix(k * self.sector) for k in range(self.copies)]
+        return join_boxes([rotate_box(box, matrix) for matrix in matrices])
 
-    def _reach(self):
-        """The angles [rad] of the child's middle, and from there to its ends; π about the axis."""
+    def _extent(self) -> tuple[float, float]:
+        """Return the angles [rad] of the child's middle, and from there to its ends.
+
+        The second is π for a child that contains the axis or is unbounded.
+        """
         low, high = self.child.bounds()
         around_axis = (low <= 0)[:2].all() and (high >= 0)[:2].all()
         if around_axis or not np.isfinite([low, high]).all() or (low > high).any():
@@ -82,13 +87,13 @@ class circular_array(Node):
         return middle, max(abs((end + pi) % (2 * pi) - pi) for end in ends)
 
 
-def turned_back(p, angle):
-    """p, turned about z by the opposite `angle`."""
+def rotate_back(p: JitVector, angle: JitFloat) -> Point:
+    """Return p, rotated about z by -`angle` [rad]."""
     c, s = cos(angle), sin(angle)
     return Point(c * p.x + s * p.y, c * p.y - s * p.x, p.z)
 
 
-def matrix(angle):
-    """R(angle), (3, 3)."""
+def rotation_matrix(angle: float) -> FloatArray:
+    """Return the matrix (3, 3) of a rotation about z by `angle` [rad]."""
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])

@@ -1,16 +1,18 @@
-"""Union, intersection and difference, sharp or blended smoothly.
+"""Union, intersection and difference of solids, sharp or blended smoothly.
 
-Of sharp ones the distance is min(f, g), max(f, g), max(f, -g) [Bálint et al. 2019, theorem 1]. A
-smooth minimum is min(f, g) - b/4 max(1 - |f - g|/b, 0)², a polynomial, blended over a width b; its
-slope is between those of f and g, so that it has their bound L. It is an estimate on both sides.
+The field of a sharp one is min(f, g), max(f, g) or max(f, -g) [Bálint et al. 2019, theorem 1]. The
+smooth minimum is the polynomial min(f, g) - b/4 max(1 - |f - g|/b, 0)², blended over a width b. Its
+slope lies between those of f and g, so that their bound L holds for it. It is an estimate of the
+distance on both sides of the surface.
 """
 
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any
 
+from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.distance_fields.boxes import join, overlap, plain
+from brdfkit.distance_fields.boxes import Box, intersect_boxes, join_boxes, to_numbers
 from brdfkit.distance_fields.functions import absolute, maximum, minimum
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.parameters import number
@@ -18,20 +20,12 @@ from brdfkit.distance_fields.parameters import number
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Combination(Node):
-    """Several solids made one, blended over the width `blend`.
-
-    Parameters
-    ----------
-    children : tuple of distance fields
-        At least one.
-    blend : number ≥ 0, default 0
-        The width over which they are blended; 0 for a sharp edge.
-    """
+    """The base of nodes that make one solid of several `children`, blended over a width `blend`."""
 
     children: tuple[Node, ...] = ()
     blend: Any = number(0.0, least=0)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if isinstance(self.children, Node):
             raise BrdfkitError(f"{self.kind}: give the fields as one list, [a, b].")
         object.__setattr__(self, "children", tuple(self.children))
@@ -41,23 +35,19 @@ class Combination(Node):
 
     @property
     def is_sharp(self) -> bool:
-        """True where nothing is blended."""
+        """True if nothing is blended."""
         return isinstance(self.blend, float) and self.blend == 0
 
-    def all_are(self, quality):
-        """True if all children have a quality, and nothing is blended."""
-        return self.is_sharp and all(getattr(child, quality) for child in self.children)
-
-    def smallest(self, f, g):
-        """The minimum of two distances, smooth over the width `blend`."""
+    def _smooth_minimum(self, f: JitFloat, g: JitFloat) -> JitFloat:
+        """Return the minimum of two distances, smooth over the width `blend`."""
         if self.is_sharp:
             return minimum(f, g)
         near = maximum(1.0 - absolute(f - g) / self.blend, 0.0)
         return minimum(f, g) - 0.25 * self.blend * near * near
 
-    def largest(self, f, g):
-        """The maximum of two distances, smooth over the width `blend`."""
-        return maximum(f, g) if self.is_sharp else -self.smallest(-f, -g)
+    def _smooth_maximum(self, f: JitFloat, g: JitFloat) -> JitFloat:
+        """Return the maximum of two distances, smooth over the width `blend`."""
+        return maximum(f, g) if self.is_sharp else -self._smooth_minimum(-f, -g)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -73,15 +63,16 @@ class union(Combination):
     """
 
     @property
-    def exact_outside(self):
-        return self.all_are("exact_outside")
+    def exact_outside(self) -> bool:
+        """True if nothing is blended, and all children are exact outside."""
+        return self.is_sharp and all(child.exact_outside for child in self.children)
 
-    def distance(self, p):
-        return reduce(self.smallest, [child.distance(p) for child in self.children])
+    def distance(self, p: JitVector) -> JitFloat:
+        return reduce(self._smooth_minimum, [child.distance(p) for child in self.children])
 
-    def bounds(self, level=0.0):
-        level = level + 0.25 * plain(self.blend) * (len(self.children) - 1)
-        return join([child.bounds(level) for child in self.children])
+    def bounds(self, level: float = 0.0) -> Box:
+        level = level + 0.25 * to_numbers(self.blend) * (len(self.children) - 1)
+        return join_boxes([child.bounds(level) for child in self.children])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -97,18 +88,20 @@ class intersection(Combination):
     """
 
     @property
-    def exact_inside(self):
-        return self.all_are("exact_inside")
+    def exact_inside(self) -> bool:
+        """True if nothing is blended, and all children are exact inside."""
+        return self.is_sharp and all(child.exact_inside for child in self.children)
 
     @property
-    def is_convex(self):
+    def is_convex(self) -> bool:
+        """True if all children are convex."""
         return all(child.is_convex for child in self.children)
 
-    def distance(self, p):
-        return reduce(self.largest, [child.distance(p) for child in self.children])
+    def distance(self, p: JitVector) -> JitFloat:
+        return reduce(self._smooth_maximum, [child.distance(p) for child in self.children])
 
-    def bounds(self, level=0.0):
-        return overlap([child.bounds(level) for child in self.children])
+    def bounds(self, level: float = 0.0) -> Box:
+        return intersect_boxes([child.bounds(level) for child in self.children])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -124,13 +117,14 @@ class difference(Combination):
     """
 
     @property
-    def exact_inside(self):
+    def exact_inside(self) -> bool:
+        """True if nothing is blended, the first is exact inside and all others outside."""
         first, *others = self.children
         return self.is_sharp and first.exact_inside and all(c.exact_outside for c in others)
 
-    def distance(self, p):
+    def distance(self, p: JitVector) -> JitFloat:
         first, *others = [child.distance(p) for child in self.children]
-        return reduce(self.largest, [-other for other in others], first)
+        return reduce(self._smooth_maximum, [-other for other in others], first)
 
-    def bounds(self, level=0.0):
+    def bounds(self, level: float = 0.0) -> Box:
         return self.children[0].bounds(level)

@@ -1,31 +1,33 @@
-"""Grids of values, interpolated linearly along each axis."""
+"""Distances sampled on a regular grid and interpolated linearly along each axis."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, IntArray, JitFloat, JitInt, JitVector
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.padding import pad
-from brdfkit.distance_fields.boxes import plain
+from brdfkit.distance_fields.boxes import Box, to_numbers
 from brdfkit.distance_fields.functions import (
     Point,
     clip,
     floor,
+    grid_value,
     length,
     lerp,
     maximum,
     minimum,
-    texel,
     to_int,
 )
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.parameters import vector
 
 
-def _values(what, values, rules):
-    """The values of a grid: an array of NumPy's, or a tensor of Dr.Jit's."""
+def _check_values(what: str, values: Any, rules: Mapping[str, Any]) -> Any:
+    """Return the values of a grid as an array (z, y, x); a Dr.Jit tensor stays as it is."""
     if not dr.is_tensor_v(values):
         try:
             values = np.asarray(values, float)
@@ -42,100 +44,104 @@ def _values(what, values, rules):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class grid(Node):
-    """Values at the corners of the cells of a box, as Mitsuba's `sdfgrid` has them.
+    """Values at the corners of the cells of a box, laid out as in Mitsuba's `sdfgrid`.
 
-    Outside of its box the distance is √(e² + f²), of the distance e to the box and the value f at
-    the nearest point of it.
+    Outside of its box the distance is √(e² + f²), with the distance e to the box and the value f at
+    the nearest point of the box.
 
     Parameters
     ----------
-    values : array (z, y, x), or a tensor of Dr.Jit's
+    values : array (z, y, x), or a Dr.Jit tensor
         f; the first and the last along each axis lie on the faces of the box.
     low, high : three numbers, default 0 and 1
         The corners of the box.
     """
 
-    values: Any = field(metadata={"check": _values})
+    values: Any = field(metadata={"check": _check_values})
     low: Any = vector((0.0, 0.0, 0.0))
     high: Any = vector((1.0, 1.0, 1.0))
-    _arrays: dict = field(default_factory=dict, init=False)
+    _cache: dict[Any, Any] = field(default_factory=dict, init=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
-        if not (plain(self.low) < plain(self.high)).all():
+        if not (to_numbers(self.low) < to_numbers(self.high)).all():
             raise BrdfkitError(f"grid: low = {self.low} should be below high = {self.high}.")
 
     @property
-    def counts(self) -> np.ndarray:
-        """How many values there are along x, y and z."""
+    def counts(self) -> IntArray:
+        """The number of values (3,) along x, y and z."""
         return np.array(self.values.shape[::-1])
 
     @property
-    def spacing(self) -> np.ndarray:
+    def spacing(self) -> FloatArray:
         """The edges (3,) of a cell."""
-        return (plain(self.high) - plain(self.low)) / (self.counts - 1)
+        spacing: FloatArray = (to_numbers(self.high) - to_numbers(self.low)) / (self.counts - 1)
+        return spacing
 
     @property
     def half_diagonal(self) -> float:
-        """Half of the diagonal of a cell: values sampled of a field differ from it by L times this.
+        """Half of the diagonal of a cell, which bounds the error of sampling.
 
-        A point is that far, or less, from the corners of its cell in the mean of their weights.
+        A grid of samples of a field differs from the field by at most L times this length: no
+        point is further from the corners of its cell, in the mean with their weights.
         """
         return float(np.linalg.norm(self.spacing) / 2)
 
     @property
-    def lipschitz(self):
-        if "lipschitz" not in self._arrays:
+    def lipschitz(self) -> float:
+        """The bound L: the slope of the steepest cell."""
+        if "lipschitz" not in self._cache:
             values = np.asarray(dr.detach(self.values), float)
-            self._arrays["lipschitz"] = _largest_slope(values, self.spacing)
-        return self._arrays["lipschitz"]
+            self._cache["lipschitz"] = _compute_largest_slope(values, self.spacing)
+        bound: float = self._cache["lipschitz"]
+        return bound
 
-    def distance(self, p):
-        place, shares, beyond = [], [], []
+    def distance(self, p: JitVector) -> JitFloat:
+        cell, shares, beyond = [], [], []
         for x, low, high, n in zip((p.x, p.y, p.z), self.low, self.high, self.counts, strict=True):
             nearest = minimum(maximum(x, low), high)
             beyond.append(x - nearest)
             cells = float(n - 1)
             u = (nearest - low) * (cells / (high - low))
-            cell = clip(floor(u), 0.0, cells - 1)
-            place.append(to_int(cell))
-            shares.append(u - cell)
-        f, e = self._interpolated(place, Point(*shares)), length(*beyond)
+            first = clip(floor(u), 0.0, cells - 1)
+            cell.append(to_int(first))
+            shares.append(u - first)
+        f, e = self._interpolate(cell, Point(*shares)), length(*beyond)
         return length(e, maximum(f, 0.0)) + minimum(f, 0.0)
 
-    def _interpolated(self, place, shares):
-        """The value in the cell at `place`, at the `shares` of its edges."""
-        i, j, k = place
-        kind = type(shares.x)
+    def _interpolate(self, cell: Sequence[JitInt], shares: Point) -> JitFloat:
+        """Return the value in the cell (i, j, k), at the `shares` (0 to 1) of its edges."""
+        i, j, k = cell
+        dtype = type(shares.x)
         planes = []
         for c in (k, k + 1):
             rows = []
             for b in (j, j + 1):
-                ends = texel(self, i, b, c, kind), texel(self, i + 1, b, c, kind)
-                rows.append(lerp(*ends, shares.x))
-            planes.append(lerp(*rows, shares.y))
-        return lerp(*planes, shares.z)
+                first, second = (grid_value(self, a, b, c, dtype) for a in (i, i + 1))
+                rows.append(lerp(first, second, shares.x))
+            planes.append(lerp(rows[0], rows[1], shares.y))
+        return lerp(planes[0], planes[1], shares.z)
 
-    def array(self, kind):
-        """All values in a row, as an array of Dr.Jit's `kind`, or NumPy's for `kind` float."""
+    def array(self, dtype: type) -> Any:
+        """Return all values in a row, as a Dr.Jit array of `dtype`, or NumPy's for float."""
         if dr.is_tensor_v(self.values):
-            return np.ravel(self.values) if kind is float else kind(self.values.array)
-        if kind not in self._arrays:
+            return np.ravel(self.values) if dtype is float else dtype(self.values.array)
+        if dtype not in self._cache:
             flat = self.values.ravel()
-            self._arrays[kind] = flat if kind is float else kind(pad(flat))
-        return self._arrays[kind]
+            self._cache[dtype] = flat if dtype is float else dtype(pad(flat))
+        return self._cache[dtype]
 
-    def bounds(self, level=0.0):
-        return plain(self.low) - max(level, 0.0), plain(self.high) + max(level, 0.0)
+    def bounds(self, level: float = 0.0) -> Box:
+        return to_numbers(self.low) - max(level, 0.0), to_numbers(self.high) + max(level, 0.0)
 
 
-def _largest_slope(values, spacing):
-    """The largest slope that the interpolation may have: that of the steepest cell.
+def _compute_largest_slope(values: FloatArray, spacing: FloatArray) -> float:
+    """Return the largest slope that the interpolation may have, in the steepest cell.
 
-    Along an axis the slope of a cell is a mean of those of its four edges. Where the box cuts the
-    solid, the distance outside grows as e + f, by √(1 + L²).
+    Along an axis the slope of a cell is a mean of the slopes of its four edges. Where the box cuts
+    the solid, the distance outside grows as e + f, by √(1 + L²).
     """
-    squared = 0.0
+    squared: Any = 0.0
     for axis, step in zip((2, 1, 0), spacing, strict=True):
         slope = np.abs(np.diff(values, axis=axis)) / step
         for other in {0, 1, 2} - {axis}:
@@ -144,5 +150,5 @@ def _largest_slope(values, spacing):
         squared = squared + slope**2
     steepest = float(np.sqrt(squared.max()))
     faces = [np.take(values, (0, -1), axis) for axis in range(3)]
-    cut = min(face.min() for face in faces) < 0
-    return float(np.hypot(1, steepest)) if cut else max(1.0, steepest)
+    is_cut = min(face.min() for face in faces) < 0
+    return float(np.hypot(1, steepest)) if is_cut else max(1.0, steepest)

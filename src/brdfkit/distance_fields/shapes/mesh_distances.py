@@ -1,38 +1,43 @@
 """Grids of distances to triangle meshes."""
 
+from __future__ import annotations
+
 from os import PathLike
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from brdfkit.core.array_types import AnyArray, ArrayLike
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import contents
-from brdfkit.distance_fields.export.mesh import INSTALL
-from brdfkit.distance_fields.export.sampling import MARGIN, axes_of
+from brdfkit.distance_fields.export.mesh import NOT_INSTALLED
+from brdfkit.distance_fields.export.sampling import grid_axes
 from brdfkit.distance_fields.shapes.grids import grid
+
+MARGIN = 0.05  # around the mesh, relative to the longest edge of its box
 
 
 def from_mesh(
     mesh: str | PathLike[str] | tuple[ArrayLike, ArrayLike], resolution: int = 64
 ) -> grid:
-    """The distance to a closed mesh as a grid, by libigl; its winding number says what is inside.
+    """Compute the signed distance to a closed mesh on a grid, with libigl.
 
     Parameters
     ----------
     mesh : file, or (vertices, faces)
         OBJ, PLY, STL or OFF; or arrays (n, 3) and (m, 3).
     resolution : integer, default 64
-        Cubic cells along the longest edge of the mesh's box and a margin.
+        The number of cubic cells along the longest edge of the mesh's box and a margin.
 
     Returns
     -------
     grid
-        Whose values are exact.
+        A grid with exact distances; the mesh's winding number gives their sign.
 
     Raises
     ------
     BrdfkitError
-        Where the mesh is not closed or cannot be read, or libigl is not installed.
+        If the mesh is not closed or cannot be read, or libigl is not installed.
 
     Examples
     --------
@@ -41,46 +46,49 @@ def from_mesh(
     try:
         import igl
     except ImportError as error:
-        raise BrdfkitError(f"libigl, which measures distances to meshes, {INSTALL}") from error
+        raise BrdfkitError(
+            f"libigl, which measures distances to meshes, {NOT_INSTALLED}"
+        ) from error
 
-    vertices, faces = _welded(*_read(mesh, igl))
+    vertices, faces = _weld(*_read_mesh(mesh, igl))
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     margin = MARGIN * (high - low).max()
-    axes = axes_of(low - margin, high + margin, resolution)
+    axes = grid_axes(low - margin, high + margin, resolution)
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    kind = igl.SignedDistanceType.SIGNED_DISTANCE_TYPE_FAST_WINDING_NUMBER
-    values = igl.signed_distance(points.reshape(-1, 3), vertices, faces, kind)[0]
+    method = igl.SignedDistanceType.SIGNED_DISTANCE_TYPE_FAST_WINDING_NUMBER
+    values = igl.signed_distance(points.reshape(-1, 3), vertices, faces, method)[0]
     values = values.reshape(points.shape[:3]).transpose(2, 1, 0)
     return grid(values, tuple(low - margin), tuple(a[-1] for a in axes))
 
 
-def _read(mesh, igl):
-    """Vertices and faces, of a file or as they are given."""
+def _read_mesh(mesh: Any, igl: Any) -> tuple[AnyArray, AnyArray]:
+    """Return the vertices (n, 3) and faces (m, 3) of a file, or of a pair of arrays."""
     if isinstance(mesh, tuple):
         return np.asarray(mesh[0], float), np.asarray(mesh[1])
-    contents(mesh)  # says what is wrong with a file that cannot be read at all
+    contents(mesh)  # raises a clear error for a file that cannot be opened
     try:
-        return igl.read_triangle_mesh(str(mesh))
+        vertices, faces = igl.read_triangle_mesh(str(mesh))
     except (RuntimeError, ValueError) as error:
         raise BrdfkitError(
             f"{mesh}: cannot be read as a mesh; give OBJ, PLY, STL or OFF."
         ) from error
+    return vertices, faces
 
 
-def _welded(vertices, faces):
-    """The mesh with equal vertices made one; an error unless it is closed."""
+def _weld(vertices: AnyArray, faces: AnyArray) -> tuple[AnyArray, AnyArray]:
+    """Return the mesh with equal vertices merged; raise `BrdfkitError` unless it is closed."""
     vertices, first = np.unique(vertices, axis=0, return_inverse=True)
     faces = first.ravel()[faces.astype(np.int64)]
-    faces = faces[(faces != faces[:, [1, 2, 0]]).all(axis=1)]  # without those of no area
+    faces = faces[(faces != faces[:, [1, 2, 0]]).all(axis=1)]  # without faces of no area
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     forth, times = np.unique(edges, axis=0, return_counts=True)
     back = np.unique(edges[:, ::-1], axis=0)
-    alone = set(map(tuple, forth)) ^ set(map(tuple, back))
-    alone |= set(map(tuple, forth[times > 1]))
-    if not len(faces) or alone:
-        edges = len(set(map(frozenset, alone)))
+    unpaired = set(map(tuple, forth)) ^ set(map(tuple, back))
+    unpaired |= set(map(tuple, forth[times > 1]))
+    if not len(faces) or unpaired:
+        count = len(set(map(frozenset, unpaired)))
         raise BrdfkitError(
-            f"the mesh is not closed: {edges} edges have one face only, or faces that are turned "
+            f"the mesh is not closed: {count} edges have one face only, or faces that are turned "
             "against each other; close its holes first."
         )
     return vertices, faces

@@ -1,34 +1,29 @@
-"""Rigid motions and uniform scale: what keeps a distance a distance.
+"""Translation, rotation and uniform scaling, which keep an exact distance exact.
 
 [Bálint et al. 2019, chapter 2]
 """
 
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.distance_fields.boxes import plain, turn
-from brdfkit.distance_fields.functions import Point, cos, dot, minus, normalized, sin
+from brdfkit.distance_fields.boxes import Box, rotate_box, to_numbers
+from brdfkit.distance_fields.functions import Point, cos, dot, normalize, sin, subtract
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.parameters import number, vector
 
 
 class Motion(Node):
-    """A node that has the qualities of its child."""
+    """The base of nodes that are as exact, and as convex, as their child."""
 
-    @property
-    def exact_outside(self):
-        return self.child.exact_outside
-
-    @property
-    def exact_inside(self):
-        return self.child.exact_inside
-
-    @property
-    def is_convex(self):
-        return self.child.is_convex
+    child: Node
+    exact_outside = property(attrgetter("child.exact_outside"))
+    exact_inside = property(attrgetter("child.exact_inside"))
+    is_convex = property(attrgetter("child.is_convex"))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -39,19 +34,19 @@ class translate(Motion):
     ----------
     child : distance field
         The solid.
-    offset : three numbers
+    offset : three numbers, default (0, 0, 0)
         The vector.
     """
 
     child: Node
     offset: Any = vector((0.0, 0.0, 0.0))
 
-    def distance(self, p):
-        return self.child.distance(minus(p, self.offset))
+    def distance(self, p: JitVector) -> JitFloat:
+        return self.child.distance(subtract(p, self.offset))
 
-    def bounds(self, level=0.0):
+    def bounds(self, level: float = 0.0) -> Box:
         low, high = self.child.bounds(level)
-        return low + plain(self.offset), high + plain(self.offset)
+        return low + to_numbers(self.offset), high + to_numbers(self.offset)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -62,24 +57,24 @@ class rotate(Motion):
     ----------
     child : distance field
         The solid.
-    angle : number [rad]
-        How far, by the right-hand rule.
+    angle : number [rad], default 0
+        The angle, by the right-hand rule.
     axis : three numbers, default (0, 0, 1)
-        The axis; of any length.
+        The axis, a vector of any length.
     """
 
     child: Node
     angle: Any = number(0.0)
     axis: Any = vector((0.0, 0.0, 1.0))
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
-        if not np.any(plain(self.axis)):
+        if not np.any(to_numbers(self.axis)):
             raise BrdfkitError("rotate.axis = (0, 0, 0) has no direction; give another.")
 
-    def distance(self, p):
+    def distance(self, p: JitVector) -> JitFloat:
         # Rodrigues's formula, for the opposite angle
-        u, p = normalized(self.axis), Point(p.x, p.y, p.z)
+        u, p = normalize(self.axis), Point(p.x, p.y, p.z)
         c, s = cos(self.angle), sin(self.angle)
         along = (1 - c) * dot(u, p)
         turned = Point(
@@ -89,12 +84,12 @@ class rotate(Motion):
         )
         return self.child.distance(turned)
 
-    def bounds(self, level=0.0):
+    def bounds(self, level: float = 0.0) -> Box:
         from scipy.spatial.transform import Rotation
 
-        axis = plain(self.axis)
-        by = Rotation.from_rotvec(plain(self.angle) * axis / np.linalg.norm(axis))
-        return turn(self.child.bounds(level), by.as_matrix())
+        axis = to_numbers(self.axis)
+        rotation = Rotation.from_rotvec(to_numbers(self.angle) * axis / np.linalg.norm(axis))
+        return rotate_box(self.child.bounds(level), rotation.as_matrix())
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -105,18 +100,18 @@ class scale(Motion):
     ----------
     child : distance field
         The solid.
-    factor : number > 0
-        How many times larger it becomes.
+    factor : number > 0, default 1
+        The ratio of the new size to the old one.
     """
 
     child: Node
     factor: Any = number(1.0, above=0)
 
-    def distance(self, p):
+    def distance(self, p: JitVector) -> JitFloat:
         smaller = Point(p.x / self.factor, p.y / self.factor, p.z / self.factor)
         return self.factor * self.child.distance(smaller)
 
-    def bounds(self, level=0.0):
-        factor = plain(self.factor)
+    def bounds(self, level: float = 0.0) -> Box:
+        factor = to_numbers(self.factor)
         low, high = self.child.bounds(level / factor)
         return factor * low, factor * high

@@ -1,12 +1,14 @@
-"""Surfaces at a distance from a surface: grown, shrunk, or hollow.
+"""Solids bounded by offset surfaces: grown, shrunk, or hollow.
 
 [Bálint et al. 2019, definition 2.6.1]
 """
 
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
-from brdfkit.distance_fields.boxes import plain
+from brdfkit.core.array_types import JitFloat, JitVector
+from brdfkit.distance_fields.boxes import Box, to_numbers
 from brdfkit.distance_fields.functions import absolute
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.parameters import number
@@ -23,33 +25,34 @@ class dilate(Node):
     ----------
     child : distance field
         The solid.
-    radius : number
-        How far the surface moves out, or in where it is negative.
+    radius : number, default 0
+        The distance by which the surface moves out, or in where it is negative.
     """
 
     child: Node
     radius: Any = number(0.0)
+    is_convex = property(attrgetter("child.is_convex"))
 
     @property
-    def exact_outside(self):
-        return self.child.exact_outside and plain(self.radius) >= 0
+    def exact_outside(self) -> bool:
+        """True for a solid that is exact outside, and grown."""
+        return self.child.exact_outside and to_numbers(self.radius) >= 0
 
     @property
-    def exact_inside(self):
-        # A point outside the child and inside the grown one is covered from one side alone only
-        # where the child is convex
+    def exact_inside(self) -> bool:
+        """True for a solid that is exact inside, and shrunk or convex.
+
+        A point between the surfaces of a child and of the grown child may be reached from several
+        sides, unless the child is convex.
+        """
         grown = self.child.is_convex and self.child.exact_outside
-        return self.child.exact_inside and (grown or plain(self.radius) <= 0)
+        return self.child.exact_inside and (grown or to_numbers(self.radius) <= 0)
 
-    @property
-    def is_convex(self):
-        return self.child.is_convex
-
-    def distance(self, p):
+    def distance(self, p: JitVector) -> JitFloat:
         return self.child.distance(p) - self.radius
 
-    def bounds(self, level=0.0):
-        return self.child.bounds(level + plain(self.radius))
+    def bounds(self, level: float = 0.0) -> Box:
+        return self.child.bounds(level + to_numbers(self.radius))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -59,20 +62,21 @@ class shell(Node):
     Parameters
     ----------
     child : distance field
-        Has the surface.
-    thickness : number > 0
-        How thick the shell is.
+        The solid with that surface.
+    thickness : number > 0, default 0.1
+        The thickness of the shell.
     """
 
     child: Node
     thickness: Any = number(0.1, above=0)
 
     @property
-    def exact_outside(self):
+    def exact_outside(self) -> bool:
+        """True if the child is exact on both sides."""
         return self.child.exact_outside and self.child.exact_inside
 
-    def distance(self, p):
+    def distance(self, p: JitVector) -> JitFloat:
         return absolute(self.child.distance(p)) - 0.5 * self.thickness
 
-    def bounds(self, level=0.0):
-        return self.child.bounds(level + 0.5 * plain(self.thickness))
+    def bounds(self, level: float = 0.0) -> Box:
+        return self.child.bounds(level + 0.5 * to_numbers(self.thickness))

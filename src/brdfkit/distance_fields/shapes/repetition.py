@@ -1,16 +1,16 @@
-"""Repetition: copies of a solid in a lattice, of which only the nearest cell's is evaluated.
+"""Repetition of a solid in a lattice, where only the nearest cell's copy is evaluated.
 
-A cell's own copy has the distance g. All others lie beyond the cell's faces, each by the gap that
-its copy leaves there: so far as a point is from a face, plus half of that gap, is safe. To be
-continuous where cells meet, g is not less than the distance to a box about the copy, which leaves
-the other half:
+g is the distance to the copy in the cell of a point. All other copies lie beyond the cell's faces,
+each by the gap between a copy and the face. So a step to a face plus half of that gap is safe. To
+make f continuous where cells meet, g is limited from below by the distance b to a box around the
+copy, which takes up the other half of the gap:
 
     f = max(min(max(g, b), min_faces(e + gap/2)), B)
 
-b: distance to the copy's box, e: to a face beyond which there is a copy, B: to the box of the whole
-lattice, which makes steps long outside of it. f is an estimate, as far from right as a cell is
-large; its sign is right, and L is the child's. Derivatives by the child's parameters are right near
-the surface, where g is f; gaps and boxes have none.
+with the distance e to each face beyond which there is a copy, and the distance B to the box of the
+whole lattice, which makes steps long outside of it. f is an estimate whose error is at most about
+the size of a cell; its sign is right, and its bound L is the child's. Its derivatives by the
+child's parameters are right near the surface, where f equals g; gaps and boxes have none.
 """
 
 from dataclasses import dataclass
@@ -19,8 +19,9 @@ from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.distance_fields.boxes import plain
+from brdfkit.distance_fields.boxes import Box, to_numbers
 from brdfkit.distance_fields.functions import Point, absolute, clip, floor, maximum, minimum, select
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.parameters import count, vector
@@ -34,21 +35,21 @@ class repeat(Node):
     ----------
     child : distance field
         The solid, within the cell about the origin, and not up to its faces.
-    spacing : three numbers ≥ 0, or one for all
-        Distances of the copies; 0 along an axis where there is only one.
+    spacing : three numbers ≥ 0, or one for all, default 1
+        Distances between the copies; 0 along an axis that has only one.
     copies : integer, optional
-        Copies on each side of the first; endless without.
+        The number of copies on each side of the first; without it the lattice is infinite.
     """
 
     child: Node
     spacing: Any = vector((1.0, 1.0, 1.0), least=0, spread=True)
     copies: int | None = count(None, optional=True)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
         low, high = self.child.bounds()
         for axis in self.repeated:
-            size = plain(self.spacing)[axis]
+            size = to_numbers(self.spacing)[axis]
             if max(-low[axis], high[axis]) >= size / 2:
                 raise BrdfkitError(
                     f"repeat: the field reaches from {low[axis]:g} to {high[axis]:g} along "
@@ -58,18 +59,20 @@ class repeat(Node):
 
     @property
     def repeated(self) -> list[int]:
-        """The axes along which there are several copies."""
-        return [i for i in range(3) if plain(self.spacing)[i] > 0 and self.copies != 0]
+        """The axes (0 to 2) along which there are several copies."""
+        return [i for i in range(3) if to_numbers(self.spacing)[i] > 0 and self.copies != 0]
 
     @property
-    def lipschitz(self):
+    def lipschitz(self) -> float:
+        """The bound L of the child, or that of the distances to faces and boxes, 1."""
         return max(self.child.lipschitz, 1.0)
 
-    def distance(self, p):
+    def distance(self, p: JitVector) -> JitFloat:
         if not self.repeated:
             return self.child.distance(p)
-        (low, high), reach, gaps = self._roomy_box(), self._reach().tolist(), self._gaps().tolist()
-        low, high = low.tolist(), high.tolist()  # NumPy's numbers would make all double precision
+        # Python's numbers, for NumPy's would make all values double precision
+        low, high = (corner.tolist() for corner in self._box_with_half_gaps())
+        reach, gaps = self._lattice_reach().tolist(), self._gaps().tolist()
         local, boxes, faces, lattice = [p.x, p.y, p.z], [], [], []
         for i, x in enumerate(local):
             if not np.isfinite(high[i] - low[i]):
@@ -84,36 +87,39 @@ class repeat(Node):
                 local[i] = x - self.spacing[i] * cell
                 boxes.append(absolute(local[i] - centre) - half)
                 safe = 0.5 * (self.spacing[i] + gaps[i])
-                faces.append(self._beyond(cell, 1, safe - local[i]))
-                faces.append(self._beyond(cell, -1, safe + local[i]))
+                faces.append(self._face_distance(cell, 1, safe - local[i]))
+                faces.append(self._face_distance(cell, -1, safe + local[i]))
         own = reduce(maximum, boxes, self.child.distance(Point(*local)))
         return reduce(maximum, lattice, reduce(minimum, faces, own))
 
-    def bounds(self, level=0.0):
+    def bounds(self, level: float = 0.0) -> Box:
         low, high = self.child.bounds(level)
         if level > 0 and self.repeated:  # f may be small between the copies, too
-            low, high = self._roomy_box()
+            low, high = self._box_with_half_gaps()
             low, high = low - level, high + level
-        return low - self._reach(), high + self._reach()
+        return low - self._lattice_reach(), high + self._lattice_reach()
 
-    def _reach(self):
-        """How far (3,) the outermost copy is from the first."""
+    def _lattice_reach(self) -> FloatArray:
+        """Return the distances (3,) of the outermost copies from the first along each axis."""
         copies = np.inf if self.copies is None else self.copies
-        return np.array([copies * plain(s) if s > 0 else 0.0 for s in plain(self.spacing)])
+        return np.array([copies * s if s > 0 else 0.0 for s in to_numbers(self.spacing)])
 
-    def _gaps(self):
-        """What the child leaves (3,) free in its cell; elsewhere as much as it leaves at most."""
+    def _gaps(self) -> FloatArray:
+        """Return the gaps (3,) between the child and its cell's faces.
+
+        The gap along an axis without repetition is the largest of the others.
+        """
         low, high = self.child.bounds()
-        gaps = plain(self.spacing) / 2 - np.maximum(-low, high)
+        gaps = to_numbers(self.spacing) / 2 - np.maximum(-low, high)
         return np.array([gaps[i if i in self.repeated else self.repeated].max() for i in range(3)])
 
-    def _roomy_box(self):
-        """The box of the child, with half of the gap on each side."""
+    def _box_with_half_gaps(self) -> Box:
+        """Return the box of the child, grown by half of the gap on each side."""
         low, high = self.child.bounds()
         return low - self._gaps() / 2, high + self._gaps() / 2
 
-    def _beyond(self, cell, side, distance):
-        """The `distance` to what lies beyond a face of a cell; very far where that is nothing."""
+    def _face_distance(self, cell: JitFloat, side: int, distance: JitFloat) -> JitFloat:
+        """Return the `distance` to a face of a cell, or 1e30 where no copy lies beyond the face."""
         if self.copies is None:
             return distance
         return select(side * cell < self.copies - 0.5, distance, 1e30)

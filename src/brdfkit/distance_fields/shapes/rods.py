@@ -1,6 +1,6 @@
 """Solids about a segment from `a` to `b`: capsule, cylinder, cone. Their distances are exact.
 
-[Bálint et al. 2019, chapter 2], in which the segment is a capsule of radius 0
+[Bálint et al. 2019, chapter 2], where a segment is a capsule of radius 0
 """
 
 from dataclasses import dataclass
@@ -8,49 +8,62 @@ from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.distance_fields.boxes import around, join, plain
+from brdfkit.distance_fields.boxes import Box, bound_points, join_boxes, to_numbers
 from brdfkit.distance_fields.functions import (
-    Point,
     absolute,
     clip,
     dot,
     length,
     maximum,
     minimum,
-    minus,
     select,
+    subtract,
 )
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.parameters import number, vector
 
-FOOT, TOP = (0.0, 0.0, -0.5), (0.0, 0.0, 0.5)
 
-
+@dataclass(frozen=True, eq=False, repr=False)
 class Rod(Node):
-    """A solid about a segment from `a` to `b`, whose f is its distance."""
+    """The base of convex solids about a segment from `a` to `b`, whose distance is exact."""
 
+    a: Any = vector((0.0, 0.0, -0.5))
+    b: Any = vector((0.0, 0.0, 0.5))
     exact_outside = exact_inside = is_convex = True
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
-        if np.array_equal(plain(self.a), plain(self.b)):
+        if np.array_equal(to_numbers(self.a), to_numbers(self.b)):
             raise BrdfkitError(f"{self.kind}: a and b are one point; its ends should be two.")
 
-    def along(self, p):
-        """Where the segment is nearest to `p`: from 0 at `a` to 1 at `b`, and beyond.
+    def _project(self, p: JitVector, clipped: bool = False) -> tuple[JitFloat, JitFloat, JitFloat]:
+        """Return the position t of `p` along the segment, its distance from t, and ‖b - a‖².
 
-        Also the vectors from `a` to `p` and to `b`, and the segment's squared length.
+        t is 0 at `a` and 1 at `b`; it goes on beyond the segment's ends unless `clipped`.
         """
         ba = [b - a for a, b in zip(self.a, self.b, strict=True)]
-        pa = minus(p, self.a)
+        pa = subtract(p, self.a)
         squared = dot(ba, ba)
-        return dot(pa, ba) / squared, pa, Point(*ba), squared
+        t = dot(pa, ba) / squared
+        if clipped:
+            t = clip(t, 0.0, 1.0)
+        return t, length(*(q - t * edge for q, edge in zip(pa, ba, strict=True))), squared
+
+    def _bound_discs(self, radius_a: JitFloat, radius_b: JitFloat, level: float) -> Box:
+        """Return the box around discs at the two ends, grown by `level`."""
+        a, b = to_numbers(self.a), to_numbers(self.b)
+        axis = (b - a) / np.linalg.norm(b - a)
+        unit = np.sqrt(np.maximum(1 - axis**2, 0))  # half the extent of a unit disc across the axis
+        extents = unit * to_numbers(radius_a), unit * to_numbers(radius_b)
+        discs = zip((a, b), extents, strict=True)
+        return join_boxes([bound_points(end + e, end - e, margin=level) for end, e in discs])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class capsule(Rod):
-    """All points within a distance of a segment; the segment itself where that is 0.
+    """All points within a distance of a segment; the segment itself if the distance is 0.
 
     Parameters
     ----------
@@ -60,16 +73,14 @@ class capsule(Rod):
         The distance.
     """
 
-    a: Any = vector(FOOT)
-    b: Any = vector(TOP)
     radius: Any = number(0.25, least=0)
 
-    def distance(self, p):
-        t, pa, ba, _ = self.along(p)
-        return length(*across(pa, ba, clip(t, 0.0, 1.0))) - self.radius
+    def distance(self, p: JitVector) -> JitFloat:
+        return self._project(p, clipped=True)[1] - self.radius
 
-    def bounds(self, level=0.0):
-        return around(plain(self.a), plain(self.b), reach=plain(self.radius) + level)
+    def bounds(self, level: float = 0.0) -> Box:
+        a, b = to_numbers(self.a), to_numbers(self.b)
+        return bound_points(a, b, margin=to_numbers(self.radius) + level)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -84,23 +95,21 @@ class capped_cylinder(Rod):
         Its radius.
     """
 
-    a: Any = vector(FOOT)
-    b: Any = vector(TOP)
     radius: Any = number(0.5, above=0)
 
-    def distance(self, p):
-        t, pa, ba, squared = self.along(p)
-        x = length(*across(pa, ba, t)) - self.radius
-        y = (absolute(t - 0.5) - 0.5) * _root(squared)
+    def distance(self, p: JitVector) -> JitFloat:
+        t, x, squared = self._project(p)
+        x = x - self.radius
+        y = (absolute(t - 0.5) - 0.5) * squared**0.5
         return length(maximum(x, 0.0), maximum(y, 0.0)) + minimum(maximum(x, y), 0.0)
 
-    def bounds(self, level=0.0):
-        return _between_discs(self, (self.radius, self.radius), level)
+    def bounds(self, level: float = 0.0) -> Box:
+        return self._bound_discs(self.radius, self.radius, level)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class capped_cone(Rod):
-    """A cone, or what two cuts leave of one, with flat ends.
+    """A cone, or a truncated cone, with flat ends.
 
     Parameters
     ----------
@@ -110,53 +119,28 @@ class capped_cone(Rod):
         The radii of the ends, of which one at most is 0.
     """
 
-    a: Any = vector(FOOT)
-    b: Any = vector(TOP)
     radius_a: Any = number(0.5, least=0)
     radius_b: Any = number(0.0, least=0)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
-        if plain(self.radius_a) == plain(self.radius_b) == 0:
+        if to_numbers(self.radius_a) == to_numbers(self.radius_b) == 0:
             raise BrdfkitError("capped_cone: both radii are 0; a capsule of radius 0 is a segment.")
 
-    def distance(self, p):
-        t, pa, ba, squared = self.along(p)
-        x = length(*across(pa, ba, t))
-        widening = self.radius_b - self.radius_a
+    def distance(self, p: JitVector) -> JitFloat:
+        t, x, squared = self._project(p)
+        height, widening = squared**0.5, self.radius_b - self.radius_a
         # To the nearer end: across and along
         end_x = maximum(select(t < 0.5, x - self.radius_a, x - self.radius_b), 0.0)
-        end_y = (absolute(t - 0.5) - 0.5) * _root(squared)
+        end_y = (absolute(t - 0.5) - 0.5) * height
         # To the nearest point of the side, which is a share of the way from a to b
         share = (widening * (x - self.radius_a) + t * squared) / (widening * widening + squared)
         share = clip(share, 0.0, 1.0)
         side_x = x - self.radius_a - share * widening
-        side_y = (t - share) * _root(squared)
+        side_y = (t - share) * height
         nearest = minimum(length(end_x, end_y), length(side_x, side_y))
         inside = (side_x < 0.0) & (end_y < 0.0)
         return select(inside, -nearest, nearest)
 
-    def bounds(self, level=0.0):
-        return _between_discs(self, (self.radius_a, self.radius_b), level)
-
-
-def across(pa, ba, t):
-    """The vector to a point from the place `t` of its segment."""
-    return pa.x - t * ba.x, pa.y - t * ba.y, pa.z - t * ba.z
-
-
-def _root(value):
-    """√value of the squared length of a segment, never 0."""
-    return value**0.5
-
-
-def _between_discs(rod, radii, level):
-    """The box around two discs, the ends of `rod`, and `level` further."""
-    a, b = plain(rod.a), plain(rod.b)
-    axis = (b - a) / np.linalg.norm(b - a)
-    extent = np.sqrt(np.maximum(1 - axis**2, 0))  # of a unit disc across the axis
-    discs = [
-        around(end + extent * plain(radius), end - extent * plain(radius), reach=level)
-        for end, radius in zip((a, b), radii, strict=True)
-    ]
-    return join(discs)
+    def bounds(self, level: float = 0.0) -> Box:
+        return self._bound_discs(self.radius_a, self.radius_b, level)

@@ -3,20 +3,22 @@
 [Bálint et al. 2019, chapter 2]
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.distance_fields.boxes import around, plain
-from brdfkit.distance_fields.functions import absolute, dot, length, maximum, minimum, normalized
+from brdfkit.distance_fields.boxes import Box, bound_points, to_numbers
+from brdfkit.distance_fields.functions import absolute, dot, length, maximum, minimum, normalize
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.parameters import number, vector
 
 
 class Exact(Node):
-    """A solid whose f is its distance, inside and outside."""
+    """The base of solids whose f is the distance, inside and outside."""
 
     exact_outside = exact_inside = True
 
@@ -28,19 +30,19 @@ class plane(Exact):
     Parameters
     ----------
     normal : three numbers, default (0, 0, 1)
-        Points out of the half-space; of any length.
+        A vector of any length that points out of the half-space.
     """
 
     normal: Any = vector((0.0, 0.0, 1.0))
     is_convex = True
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
-        if not np.any(plain(self.normal)):
+        if not np.any(to_numbers(self.normal)):
             raise BrdfkitError("plane.normal = (0, 0, 0) has no direction; give another.")
 
-    def distance(self, p):
-        return dot((p.x, p.y, p.z), normalized(self.normal))
+    def distance(self, p: JitVector) -> JitFloat:
+        return dot((p.x, p.y, p.z), normalize(self.normal))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -56,11 +58,11 @@ class sphere(Exact):
     radius: Any = number(1.0, above=0)
     is_convex = True
 
-    def distance(self, p):
+    def distance(self, p: JitVector) -> JitFloat:
         return length(p.x, p.y, p.z) - self.radius
 
-    def bounds(self, level=0.0):
-        return around(np.zeros(3), reach=plain(self.radius) + level)
+    def bounds(self, level: float = 0.0) -> Box:
+        return bound_points(np.zeros(3), margin=to_numbers(self.radius) + level)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -76,16 +78,16 @@ class box(Exact):
     size: Any = vector((1.0, 1.0, 1.0), above=0, spread=True)
     is_convex = True
 
-    def distance(self, p):
+    def distance(self, p: JitVector) -> JitFloat:
         return box_distance(p, self.size)
 
-    def bounds(self, level=0.0):
-        half = plain(self.size) / 2
-        return around(half, -half, reach=level)
+    def bounds(self, level: float = 0.0) -> Box:
+        half = to_numbers(self.size) / 2
+        return bound_points(half, -half, margin=level)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class rounded_box(Exact):
+class rounded_box(box):
     """A box along the axes whose edges are round.
 
     Parameters
@@ -96,25 +98,19 @@ class rounded_box(Exact):
         Radius of the edges, at most half of the shortest.
     """
 
-    size: Any = vector((1.0, 1.0, 1.0), above=0, spread=True)
     radius: Any = number(0.1, least=0)
-    is_convex = True
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
-        if 2 * plain(self.radius) > min(plain(self.size)):
+        if 2 * to_numbers(self.radius) > min(to_numbers(self.size)):
             raise BrdfkitError(
-                f"rounded_box.radius = {plain(self.radius):g} should be at most half of the "
-                f"shortest edge, {min(plain(self.size)) / 2:g}."
+                f"rounded_box.radius = {to_numbers(self.radius):g} should be at most half of the "
+                f"shortest edge, {min(to_numbers(self.size)) / 2:g}."
             )
 
-    def distance(self, p):
+    def distance(self, p: JitVector) -> JitFloat:
         inner = [edge - 2 * self.radius for edge in self.size]
         return box_distance(p, inner) - self.radius
-
-    def bounds(self, level=0.0):
-        half = plain(self.size) / 2
-        return around(half, -half, reach=level)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -132,18 +128,21 @@ class torus(Exact):
     radius: Any = number(1.0, above=0)
     tube: Any = number(0.25, above=0)
 
-    def distance(self, p):
+    def distance(self, p: JitVector) -> JitFloat:
         return length(length(p.x, p.y) - self.radius, p.z) - self.tube
 
-    def bounds(self, level=0.0):
-        tube = plain(self.tube) + level
-        wide = plain(self.radius) + tube
-        reach = np.array([wide, wide, tube])
-        return -reach, reach
+    def bounds(self, level: float = 0.0) -> Box:
+        tube = to_numbers(self.tube) + level
+        outer = to_numbers(self.radius) + tube
+        corner = np.array([outer, outer, tube])
+        return -corner, corner
 
 
-def box_distance(p, size):
-    """The distance to a box along the axes: ‖max(q, 0)‖ + min(max(qx, qy, qz), 0), q = |p| - h."""
+def box_distance(p: JitVector, size: Iterable[JitFloat]) -> JitFloat:
+    """Return the distance from `p` to a box about the origin with edges of the lengths `size`.
+
+    It is ‖max(q, 0)‖ + min(max(qx, qy, qz), 0) with q = |p| - size/2.
+    """
     x, y, z = (absolute(c) - 0.5 * edge for c, edge in zip((p.x, p.y, p.z), size, strict=True))
     outside = length(maximum(x, 0.0), maximum(y, 0.0), maximum(z, 0.0))
     return outside + minimum(maximum(x, maximum(y, z)), 0.0)

@@ -1,4 +1,4 @@
-"""A function of points, of the user's, as a distance field."""
+"""Distance fields made from a user's own function of points."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,15 +9,17 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.core.arguments import to_positive
+from brdfkit.core.array_types import FloatArray, JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit import double_precision
-from brdfkit.distance_fields.boxes import EVERYWHERE
-from brdfkit.distance_fields.export.sampling import box_around, to_grid
+from brdfkit.distance_fields.boxes import EVERYWHERE, Box
+from brdfkit.distance_fields.export.sampling import box_to_sample, to_grid
 from brdfkit.distance_fields.node import Node
 
-# What a field's JSON names within one process, for the integrator; freed with the last field of it
+# The JSON of a field names its function, so that the integrator finds it within the same process;
+# an entry goes with the last field that uses its function
 _FUNCTIONS: WeakValueDictionary[str, Any] = WeakValueDictionary()
-SHOULD = (
+EXPECTED = (
     "it should take points p with p.x, p.y and p.z, arrays of Dr.Jit's, and give f there, as "
     "brdfkit.distance_fields.functions and drjit compute it; or take NumPy's points (n, 3) and "
     "give f (n,)"
@@ -26,18 +28,23 @@ SHOULD = (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class function(Node):
-    """What `from_function` makes of a function of Dr.Jit's arrays; it has no parameters."""
+    """The field of a user's function of Dr.Jit arrays, which has no parameters.
+
+    f : the function, or the name that another field of the same function stored it by.
+    lipschitz : the bound L on its slope.
+    box : the corners (low, high) of a box around the surface, or None.
+    """
 
     f: Any
     lipschitz: float = 1.0
     box: Any = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
         f = _FUNCTIONS.get(self.f) if isinstance(self.f, str) else self.f
         if f is None:
             raise BrdfkitError(f"{self.f} lived in another process; make the field anew there.")
-        name = self.f if isinstance(self.f, str) else f"{_name(f)} at {id(f):#x}"
+        name = self.f if isinstance(self.f, str) else f"{_name_of(f)} at {id(f):#x}"
         _FUNCTIONS[name] = f
         object.__setattr__(self, "_function", f)
         object.__setattr__(self, "f", name)
@@ -45,12 +52,14 @@ class function(Node):
         if self.box is not None:
             object.__setattr__(self, "box", tuple(tuple(map(float, c)) for c in self.box))
 
-    def distance(self, p):
-        return self._function(p)
+    def distance(self, p: JitVector) -> JitFloat:
+        return self._function(p)  # type: ignore[attr-defined]  # `__post_init__` sets it
 
-    def bounds(self, level=0.0):
-        known = self.box is not None and level <= 0
-        return tuple(map(np.array, self.box)) if known else EVERYWHERE
+    def bounds(self, level: float = 0.0) -> Box:
+        if self.box is None or level > 0:
+            return EVERYWHERE
+        low, high = map(np.array, self.box)
+        return low, high
 
 
 def from_function(
@@ -59,10 +68,10 @@ def from_function(
     bounds: Any = None,
     resolution: int = 128,
 ) -> Node:
-    """The field of a function of points: what is below 0 is inside.
+    """Make a field from a function of points that is negative inside of a solid.
 
-    A function of Dr.Jit's arrays is the field itself, with derivatives; it cannot be saved. One of
-    NumPy's is sampled on a grid, which can.
+    A function of Dr.Jit arrays becomes the field itself, with derivatives, but cannot be saved. A
+    function of NumPy arrays is sampled on a grid, which can.
 
     Parameters
     ----------
@@ -70,13 +79,13 @@ def from_function(
         f(p) of points p with p.x, p.y and p.z, arrays of Dr.Jit's, made of arithmetic, of
         `brdfkit.distance_fields.functions` or of drjit's functions; or of NumPy's points (n, 3).
     lipschitz : float, default 1
-        How much f changes per unit of length at most: 1 for a distance. Rays step by f over this;
-        where it is too small, they miss parts of the surface.
+        The most that f changes per unit of length: 1 for a distance. Rays step by f over this
+        bound; if it is too small, they miss parts of the surface.
     bounds : (low, high), optional
         Corners of a box, three numbers each, around the surface, which a picture then shows. A
         function of NumPy's needs it.
     resolution : int, default 128
-        Cells of the grid along the longest edge of the box.
+        The number of cells of the grid along the longest edge of the box.
 
     Returns
     -------
@@ -86,7 +95,7 @@ def from_function(
     Raises
     ------
     BrdfkitError
-        For what is no such function, and a box without a surface.
+        If `f` is no such function, or the box holds no surface.
 
     Examples
     --------
@@ -96,47 +105,46 @@ def from_function(
     if isinstance(f, Node):
         return f
     if not callable(f):
-        raise BrdfkitError(f"{f!r:.60} is no function; {SHOULD}.")
-    if _takes_arrays(f):
-        return function(f, lipschitz, None if bounds is None else box_around(None, bounds))
-    _require_numpy(f)
+        raise BrdfkitError(f"{f!r:.60} is no function; {EXPECTED}.")
+    if _takes_drjit_arrays(f):
+        return function(f, lipschitz, None if bounds is None else box_to_sample(None, bounds))
+    _require_numpy_function(f)
     if bounds is None:
         raise BrdfkitError(
-            f"{_name(f)} works on NumPy's arrays, which rays cannot use: make a grid of it by "
+            f"{_name_of(f)} works on NumPy's arrays, which rays cannot use: make a grid of it by "
             "brdfkit.distance_fields.from_function(f, bounds=(low, high)), or write it with p.x, "
             "p.y and p.z and the functions of drjit."
         )
-    return to_grid(_Sampled(f), resolution, bounds)
+
+    def sample(points: FloatArray) -> FloatArray:
+        """Return the values (n,) at `points` (n, 3), as `to_grid` calls a node."""
+        return np.asarray(f(points), float)
+
+    sampled: Node = to_grid(sample, resolution, bounds)
+    return sampled
 
 
-class _Sampled:
-    """A function of NumPy's points, as `to_grid` asks for it."""
-
-    def __init__(self, f):
-        self.f = f
-
-    def __call__(self, points):
-        return np.asarray(self.f(points), float)
-
-
-def _takes_arrays(f):
-    """Whether a function of p.x, p.y and p.z gives an array of Dr.Jit's, or a number."""
+def _takes_drjit_arrays(f: Callable[[Any], Any]) -> bool:
+    """Return whether f gives a Dr.Jit array, or a number, for points with p.x, p.y and p.z."""
     try:
         value = f(double_precision.vector(np.array([[0.1, 0.2, 0.3], [0.3, 0.1, 0.2]])))
-    except Exception:  # whatever a function of other points may raise
+    except Exception:  # a function of NumPy points may raise anything
         return False
-    return dr.is_array_v(value) or isinstance(value, float)
+    return bool(dr.is_array_v(value)) or isinstance(value, float)
 
 
-def _require_numpy(f):
-    """Raise `BrdfkitError` unless a function gives numbers (n,) for points (n, 3)."""
+def _require_numpy_function(f: Callable[[Any], Any]) -> None:
+    """Raise `BrdfkitError` unless f returns numbers (n,) for points (n, 3)."""
     try:
         shape = np.asarray(f(np.array([[0.1, 0.2, 0.3], [0.3, 0.1, 0.2]])), float).shape
     except Exception as error:
-        raise BrdfkitError(f"{_name(f)} is no function of points ({error}); {SHOULD}.") from error
+        raise BrdfkitError(
+            f"{_name_of(f)} is no function of points ({error}); {EXPECTED}."
+        ) from error
     if shape != (2,):
-        raise BrdfkitError(f"{_name(f)} gives {shape} for 2 points; {SHOULD}.")
+        raise BrdfkitError(f"{_name_of(f)} gives {shape} for 2 points; {EXPECTED}.")
 
 
-def _name(f):
+def _name_of(f: Any) -> str:
+    """Return the name of a function, or of a callable's type."""
     return getattr(f, "__name__", type(f).__name__)

@@ -1,9 +1,13 @@
-"""Cone tracing: where a cone, not only its axis, first meets a surface.
+"""Sphere tracing and cone tracing: where a ray, or a cone around it, first touches a surface.
 
-The distance less the cone's radius, over its own bound 1 + |tan α|, is a distance again, that
-sphere tracing takes [Bálint et al. 2019, chapter 2]:
+As f / L is at most the distance, a step of this length along a ray crosses no surface [Hart 1996];
+[Bálint et al. 2019, algorithm 2]. For a cone, the distance less the cone's radius ρ is divided by
+its own bound 1 + |tan α|, with the angle α between axis and side. The result is a distance again
+[Bálint et al. 2019, chapter 2]:
 
-    F(t) = (f(o + t d) - ρ(t)) / (1 + |tan α|),   ρ(t) = R₀ + t tan α
+    F(t) = (f(o + t d) / L - ρ(t)) / (1 + |tan α|),   ρ(t) = R₀ + t tan α
+
+A ray is a cone of radius 0.
 """
 
 from collections.abc import Callable
@@ -12,52 +16,55 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from brdfkit.distance_fields.tracing.hits import Hit, start
+from brdfkit.core.array_types import FloatArray, JitFloat, JitInt, JitMask, JitVector
+from brdfkit.distance_fields.node import Node
+from brdfkit.distance_fields.tracing.hits import Hit, start_march
 
 
 def cone_trace(
     distance: Callable[[Any], Any],
-    o: Any,
-    d: Any,
-    t_max: Any,
+    o: JitVector,
+    d: JitVector,
+    t_max: JitFloat,
     *,
-    radius: Any = 0.0,
-    tangent: Any = 0.0,
-    slack: Any = 0.0,
-    lipschitz: Any = 1.0,
-    precision: Any = 1e-4,
-    t_min: Any = 0.0,
-    steps: Any = 512,
-    active: Any = True,
+    radius: JitFloat = 0.0,
+    tangent: JitFloat = 0.0,
+    slack: JitFloat = 0.0,
+    lipschitz: JitFloat = 1.0,
+    precision: JitFloat = 1e-4,
+    t_min: JitFloat = 0.0,
+    steps: JitInt = 512,
+    active: JitMask = True,
 ) -> Hit:
-    """Where cones about rays first touch a surface, be it as thin as a line.
+    """Find where rays, or cones about them, first touch a surface, be it as thin as a line.
 
-    A cone stops where f / L ≤ (1 + slack) ρ + precision. As its steps end at ρ, nothing that
-    reaches into it is passed; what lies between ρ and (1 + slack) ρ may be found or not. `distance`
-    of the `Hit` is the radius of an empty ball there.
+    Without `radius` and `tangent` it traces rays. A cone stops where f / L ≤ (1 + slack) ρ +
+    precision, with its radius ρ. As each step ends at ρ, nothing that reaches into the cone is
+    missed; a surface between ρ and (1 + slack) ρ may be found or not. `distance` of the `Hit` is
+    the radius of an empty ball there.
 
     Parameters
     ----------
     distance : callable
-        f(p) of points, no steeper than `lipschitz`; as a node's `distance`.
+        f(p) of points, no steeper than `lipschitz`; such as a node's `distance`.
     o, d : anything with x, y, z
-        Where the rays begin, and their unit directions: arrays of Dr.Jit's, or numbers.
+        Where the rays begin, and their unit directions: Dr.Jit arrays, or numbers.
     t_max : number or array
-        Where the rays end, along them.
+        The distance along the rays at which they end.
     radius : number or array ≥ 0, default 0
-        R₀ of the cones, at t = 0.
+        R₀, the radius of the cones at t = 0.
     tangent : number or array, default 0
-        tan α, by which they widen; negative where they narrow.
+        tan α, by which cones widen; negative where they narrow.
     slack : number ≥ 0, default 0
         The share of ρ at which a cone may stop early; with more it takes fewer steps.
     lipschitz : number, default 1
-        L of f.
+        The bound L on the slope of f.
     precision : number > 0, default 1e-4
-        How close f / L has to be to ρ.
+        The difference of f / L and ρ at which a cone touches the surface.
     t_min : number or array, default 0
-        Where the rays start, along them.
+        The distance along the rays at which they start.
     steps : integer, default 512
-        The steps after which a cone is given up.
+        The number of steps after which a ray ends.
     active : bool or array, default True
         Which rays are traced.
 
@@ -73,34 +80,92 @@ def cone_trace(
     Hit(t=..., found=True, ...)
     """
     with dr.suspend_grad():
-        t, count = start(o, t_min)
+        t, count = start_march(o, t_min)
 
-        def enough(t):
+        def close(t: JitFloat) -> JitFloat:
             return (1.0 + slack) * (radius + t * tangent) + precision
 
-        def goes_on(t, f, i):
-            return active & (f > enough(t)) & (t < t_max) & (i < steps)
-
-        def step(t, f, i):
+        def step(t: JitFloat, f: JitFloat, i: JitInt) -> tuple[JitFloat, JitFloat, JitInt]:
             t = t + (f - (radius + t * tangent)) / (1.0 + abs(tangent))
             return t, distance(o + d * t) / lipschitz, i + 1
 
         first = distance(o + d * t) / lipschitz
-        t, f, count = dr.while_loop((t, first, count + 1), goes_on, step)
-        return Hit(t, active & (f <= enough(t)) & (t < t_max), f, count)
+        t, f, count = dr.while_loop(
+            (t, first, count + 1),
+            lambda t, f, i: active & (f > close(t)) & (t < t_max) & (i < steps),
+            step,
+        )
+        return Hit(t, active & (f <= close(t)) & (t < t_max), f, count)
+
+
+def intersect(
+    node: Node,
+    o: JitVector,
+    d: JitVector,
+    t_max: JitFloat,
+    *,
+    precision: JitFloat = 1e-4,
+    steps: JitInt = 512,
+    active: JitMask = True,
+) -> Hit:
+    """Find where rays first meet a field, by `cone_trace` within the field's bounding box.
+
+    Parameters
+    ----------
+    node : distance field
+        The field, which knows its bound L and its box.
+    o, d : anything with x, y, z
+        Where the rays begin, and their unit directions: Dr.Jit arrays, or numbers.
+    t_max : number or array
+        The distance along the rays at which they end.
+    precision : number > 0, default 1e-4
+        The value of f / L at which a ray meets the surface.
+    steps : integer, default 512
+        The number of steps after which a ray ends.
+    active : bool or array, default True
+        Which rays are traced.
+
+    Returns
+    -------
+    Hit
+        Where they stop, and whether a surface is there; without derivatives, see `reattach`.
+
+    Examples
+    --------
+    >>> intersect(sphere(1), mi.ScalarPoint3f(0, 0, 3), mi.ScalarVector3f(0, 0, -1), 9)
+    Hit(t=2.0, found=True, distance=0.0, steps=1)
+    """
+    near, far = clip_to_box(o, d, *node.bounds())
+    t_max, active = dr.minimum(far, t_max), active & (near < far)
+    settings = {"precision": precision, "t_min": near, "steps": steps, "active": active}
+    return cone_trace(node.distance, o, d, t_max, lipschitz=node.lipschitz, **settings)
+
+
+def clip_to_box(
+    o: JitVector, d: JitVector, low: FloatArray, high: FloatArray
+) -> tuple[JitFloat, JitFloat]:
+    """Return where rays enter and leave a box in front of `o`; a ray misses it if far < near."""
+    near, far = o.x * 0.0, o.x * 0.0 + np.inf
+    for a, v, least, most in zip((o.x, o.y, o.z), (d.x, d.y, d.z), low, high, strict=True):
+        if np.isfinite(least) and np.isfinite(most):
+            inverse = dr.rcp(dr.select(v == 0, 1e-30, v))
+            one, two = (float(least) - a) * inverse, (float(most) - a) * inverse
+            near = dr.maximum(near, dr.minimum(one, two))
+            far = dr.minimum(far, dr.maximum(one, two))
+    return near, far
 
 
 def pixel_tangent(fov: float, pixels: int) -> float:
-    """tan α of the cone that covers a pixel of a perspective picture, up to its corners.
+    """Compute tan α of the cone that covers a pixel of a perspective picture, up to its corners.
 
-    Such cones of all pixels leave no gap, so that no object between them is missed.
+    The cones of all pixels leave no gap, so that no object between them is missed.
 
     Parameters
     ----------
     fov : float [degrees]
         The angle of view across the picture.
     pixels : integer
-        How many pixels there are across it.
+        The number of pixels across the picture.
 
     Returns
     -------

@@ -1,20 +1,22 @@
-"""What a ray meets: the result of every way to trace it."""
+"""`Hit`, the result of every way to trace rays, with derivatives and normals of hits."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat, JitInt, JitVector
+
 
 class Hit(NamedTuple):
-    """Where a ray meets a surface: arrays over all rays, or numbers.
+    """Where rays meet a surface: arrays over all rays, or numbers.
 
     Attributes
     ----------
     t : distance along the ray, where it stopped
     found : bool, whether a surface is there
     distance : f at that point: no surface is nearer, so that a ball of that radius is empty
-    steps : how often f was evaluated on the way
+    steps : number of evaluations of f
     """
 
     t: Any
@@ -23,25 +25,25 @@ class Hit(NamedTuple):
     steps: Any
 
 
-def start(o, t):
-    """`t` and a count of 0, as arrays over the rays that begin at `o`."""
+def start_march(o: JitVector, t: JitFloat) -> tuple[JitFloat, JitInt]:
+    """Return `t` and a count of 0, as arrays over the rays that begin at `o`."""
     return o.x * 0.0 + t, dr.uint32_array_t(type(o.x))(0)
 
 
-def reattach(distance: Callable[[Any], Any], o: Any, d: Any, t: Any) -> Any:
-    """`t` of hits with its derivatives by all parameters of f and of the rays.
+def reattach(distance: Callable[[Any], Any], o: JitVector, d: JitVector, t: JitFloat) -> JitFloat:
+    """Give the `t` of hits their derivatives by all parameters of f and of the rays.
 
-    By the implicit function theorem dt = -df / (∇f·d), with f's slope along the ray taken by a
-    central difference. Rays that graze the surface get 0.
+    By the implicit function theorem dt = -df / (∇f·d); a central difference gives the slope of f
+    along the ray. Rays that graze the surface get 0.
 
     Parameters
     ----------
     distance : callable
-        f(p) of points, whose parameters carry derivatives; as a node's `distance`.
+        f(p) of points, whose parameters carry derivatives; such as a node's `distance`.
     o, d : anything with x, y, z
         Where the rays begin, and their unit directions.
     t : array
-        Where they were found to meet the surface; of other rays the derivatives mean nothing.
+        Where rays meet the surface; for rays that do not, the derivatives mean nothing.
 
     Returns
     -------
@@ -62,3 +64,41 @@ def reattach(distance: Callable[[Any], Any], o: Any, d: Any, t: Any) -> Any:
     grazing = dr.abs(slope) < 1e-4
     change = (f - dr.detach(f)) / dr.select(grazing, 1.0, slope)
     return t - dr.select(grazing, 0.0, change)
+
+
+CORNERS = ((1, -1, -1), (-1, -1, 1), (-1, 1, -1), (1, 1, 1))  # of a tetrahedron
+
+
+def normal(distance: Callable[[Any], Any], p: JitVector, step: float = 1e-3) -> JitVector:
+    """Compute the unit normal of a distance, the direction in which f grows.
+
+    It is made of four values of f. Automatic differentiation would be exact and takes half the
+    time. But Dr.Jit has no second derivatives, and scalar variants have none at all; these normals
+    have derivatives by every parameter of f, and are the same in all variants.
+
+    Parameters
+    ----------
+    distance : callable
+        f(p) of points; such as a node's `distance`.
+    p : anything with x, y, z
+        Points on the surface or near it.
+    step : float > 0, default 1e-3
+        Half the edge of the cube around the tetrahedron, less than the size of all details.
+
+    Returns
+    -------
+    points
+        Vectors of the same type as `p`.
+
+    Examples
+    --------
+    >>> normal(sphere(1).distance, mi.ScalarPoint3f(0, 0, 1))
+    [0, 0, 1]
+    """
+    x: Any = 0.0
+    y, z = x, x
+    for i, j, k in CORNERS:
+        f = distance(p + type(p)(i * step, j * step, k * step))
+        x, y, z = x + i * f, y + j * f, z + k * f
+    size = dr.sqrt(dr.maximum(x * x + y * y + z * z, 1e-30))
+    return type(p)(x / size, y / size, z / size)

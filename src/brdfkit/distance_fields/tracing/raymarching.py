@@ -1,4 +1,4 @@
-"""Ray marching: fixed steps until f changes its sign, then bisection; needs no bound of its slope.
+"""Ray marching by fixed steps until f changes its sign, then bisection; it needs no bound L.
 
 [Bálint et al. 2019, algorithm 1]
 """
@@ -8,26 +8,32 @@ from typing import Any
 
 import drjit as dr
 
-from brdfkit.distance_fields.tracing.hits import Hit, start
+from brdfkit.core.array_types import JitFloat, JitInt, JitMask, JitVector
+from brdfkit.distance_fields.tracing.hits import Hit, start_march
 
-BISECTIONS = 24  # a step / 2²⁴ is what single precision tells apart
+BISECTIONS = 24  # single precision does not resolve less than a step / 2²⁴
 
 
 def raymarch(
-    distance: Callable[[Any], Any], o: Any, d: Any, t_max: Any, step: Any, active: Any = True
+    distance: Callable[[Any], Any],
+    o: JitVector,
+    d: JitVector,
+    t_max: JitFloat,
+    step: JitFloat,
+    active: JitMask = True,
 ) -> Hit:
-    """Where f first changes its sign along rays, by steps of one length.
+    """Find where f first changes its sign along rays, by steps of equal length.
 
     Parameters
     ----------
     distance : callable
-        f(p) of points; as a node's `distance`.
+        f(p) of points; such as a node's `distance`.
     o, d : anything with x, y, z
-        Where the rays begin, and their unit directions: arrays of Dr.Jit's, or numbers.
+        Where the rays begin, and their unit directions: Dr.Jit arrays, or numbers.
     t_max : number or array
-        Where the rays end, along them.
+        The distance along the rays at which they end.
     step : number > 0
-        The length; what a ray crosses within a shorter way may be missed.
+        The length of a step; an object that a ray crosses in less may be missed.
     active : bool or array, default True
         Which rays are traced.
 
@@ -42,20 +48,21 @@ def raymarch(
     Hit(t=..., found=True, ...)
     """
     with dr.suspend_grad():
-        t, count = start(o, step)
+        t, count = start_march(o, step)
 
-        def goes_on(t, before, after, i):
-            return active & (before * after > 0) & (t < t_max)
-
-        def advance(t, before, after, i):
+        def advance(t: JitFloat, before: JitFloat, after: JitFloat, i: JitInt) -> tuple[Any, ...]:
             t = t + step
             return t, after, distance(o + d * t), i + 1
 
         first, second = distance(o + d * (t - step)), distance(o + d * t)
-        t, before, after, count = dr.while_loop((t, first, second, count + 2), goes_on, advance)
+        t, before, after, count = dr.while_loop(
+            (t, first, second, count + 2),
+            lambda t, before, after, i: active & (before * after > 0) & (t < t_max),
+            advance,
+        )
         found = active & (before * after <= 0)
 
-        def halve(low, high, i):
+        def halve(low: JitFloat, high: JitFloat, i: JitInt) -> tuple[JitFloat, JitFloat, JitInt]:
             middle = 0.5 * (low + high)
             same = before * distance(o + d * middle) > 0
             return dr.select(same, middle, low), dr.select(same, high, middle), i + 1

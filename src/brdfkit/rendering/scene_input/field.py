@@ -9,7 +9,7 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields.materials import material_names
-from brdfkit.distance_fields.shadows.field import sphere_about
+from brdfkit.distance_fields.shadows.field import bounding_sphere
 from brdfkit.materials.resolve import to_material
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 
@@ -27,7 +27,7 @@ def field_scene(field, size):
     """The `mitsuba.Scene` of a field, in a picture of this `size`."""
     import mitsuba as mi
 
-    middle, radius = sphere_about(field)
+    middle, radius = bounding_sphere(field)
     away = np.array(CAMERA) / np.linalg.norm(CAMERA) / np.sin(np.radians(OPENING / 2))
     look_at = mi.ScalarTransform4f().look_at
     scene = {
