@@ -7,7 +7,7 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.arguments import to_number, to_whole_number
 from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.distance_fields.shadows.cone import LightCone, light_cone
@@ -97,8 +97,7 @@ def soft_shadow(
     """
     if shadow not in METHODS:
         raise no_such("shadow", shadow, METHODS, "shadow")
-    if not (isinstance(epsilon, int | float) and 0 < epsilon <= 0.5):
-        raise BrdfkitError(f"epsilon = {epsilon!r} should be a number above 0, at most 0.5.")
+    epsilon = to_number("epsilon", epsilon, most=0.5, above=0)
     if direction not in DIRECTIONS:
         raise no_such("direction", direction, DIRECTIONS, "direction")
     if not dr.all((radius >= 0) & (ball >= 0) & (radius + ball > 0)):
