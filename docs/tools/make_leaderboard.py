@@ -91,7 +91,9 @@ def sweep(files, models, loss, output, workers):
         print(f"{output.name}: {done} of {total} fits", end="\r", file=sys.stderr)
 
     settings = {"loss": loss, "seed": SEED, "max_angle": MAX_ANGLE}
-    found = bk.sweep(files, models, settings, output=output, workers=workers, progress=tell)
+    found = bk.sweep(
+        files, models, settings=settings, folder=output, workers=workers, progress=tell
+    )
     print(f"{output.name}: {found.summary}", *found.problems, sep="\n", file=sys.stderr)
     if len(found.rows) < found.asked:
         sys.exit("interrupted; the same command goes on from there.")

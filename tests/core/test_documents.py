@@ -295,7 +295,7 @@ def contrast(grey, other):
 def test_pictures_are_legible_on_light_and_dark_grounds(kind):
     """The ground is transparent, and what is written on it stands out from white and from black."""
     if kind == "figure":
-        figure = bk.plot("ggx", [45])
+        figure = bk.plot("ggx", theta_i=[45])
         black = [text.get_color() for text in figure.findobj(Text)]
         png = to_png(figure)
         assert [text.get_color() for text in figure.findobj(Text)] == black

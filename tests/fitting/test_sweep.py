@@ -100,7 +100,7 @@ def test_rows_and_the_best(here, fitted):
 
 def test_fits_are_judged_where_they_were_not_fitted_and_by_pictures(here, fitted):
     models = ["lambert", "ward"]
-    found = bk.sweep(["chalk.npz", "paint.npz"], models, judge=True, output="out")
+    found = bk.sweep(["chalk.npz", "paint.npz"], models, judge=True, folder="out")
     judged = {(r.material, r.model): (r.held_out, r.psnr) for r in found.rows}
     for material, truth in ("chalk", "lambert"), ("paint", "ward"):  # which predict themselves
         assert judged[material, truth][0] < 1e-4
@@ -116,16 +116,16 @@ def test_fits_are_judged_where_they_were_not_fitted_and_by_pictures(here, fitted
     assert "--judge" not in text
 
     # They are kept with the fits; what was not judged is done anew
-    again = bk.sweep(["chalk.npz", "paint.npz"], models, judge=True, output="out")
+    again = bk.sweep(["chalk.npz", "paint.npz"], models, judge=True, folder="out")
     assert again.found == 4
     assert {(r.material, r.model): (r.held_out, r.psnr) for r in again.rows} == judged
-    bk.sweep(["chalk.npz"], models, output="other")
-    assert bk.sweep(["chalk.npz"], models, judge=True, output="other").found == 0
+    bk.sweep(["chalk.npz"], models, folder="other")
+    assert bk.sweep(["chalk.npz"], models, judge=True, folder="other").found == 0
 
 
 @pytest.mark.quick
 def test_fits_whose_light_is_wrong_are_marked_and_counted(here, fitted):
-    found = bk.sweep(["plaster", "red_plastic"], ["lambert", "ggx"], output="out")
+    found = bk.sweep(["plaster", "red_plastic"], ["lambert", "ggx"], folder="out")
     wrong = [row for row in found.rows if row.fit.warnings]
     assert found.warned == wrong
     assert 0 < len(wrong) < 4
@@ -150,7 +150,7 @@ def test_fits_whose_light_is_wrong_are_marked_and_counted(here, fitted):
 def test_settings_are_those_of_a_fit(here, fitted):
     settings = {"loss": "cbrt", "robust": "bisquare", "max_angle": 60, "fixed": {"alpha_u": 0.1}}
     settings |= {"solver": "trust_region"}
-    row = bk.sweep("paint.npz", "ward", settings).rows[0]
+    row = bk.sweep("paint.npz", "ward", settings=settings).rows[0]
     assert row.fit == bk.fit("paint.npz", "ward", **settings)
     assert (row.loss, row.parameters) == ("cbrt", 6)
 
@@ -210,7 +210,7 @@ def test_an_error_that_is_not_for_people_fails_one_fit(here, fitted, monkeypatch
 )
 def test_wrong_arguments_are_told_before_the_work(here, fitted, arguments, said):
     with pytest.raises(bk.BrdfkitError, match=said.replace("?", r"\?")):
-        bk.sweep(*arguments, output="new")
+        bk.sweep(*arguments[:2], settings=dict(*arguments[2:]), folder="new")
     assert fitted == []
     assert not Path("new").exists()
 
@@ -222,7 +222,7 @@ def test_wrong_arguments_are_told_before_the_work(here, fitted, arguments, said)
         ({"workers": 0}, "workers = 0"),
         ({"client": "tcp://here"}, "should be a dask.distributed.Client"),
         ({"client": "tcp://here", "workers": 2}, "either workers or a client"),
-        ({"output": "chalk.npz"}, "cannot be made a folder"),
+        ({"folder": "chalk.npz"}, "cannot be made a folder"),
     ],
 )
 def test_wrong_options_are_told_before_the_work(here, fitted, options, said):
@@ -236,7 +236,7 @@ def test_wrong_options_are_told_before_the_work(here, fitted, options, said):
 
 @pytest.mark.quick
 def test_a_later_sweep_does_the_rest(here, fitted):
-    first = bk.sweep(FILES[:2], "lambert", output="out")
+    first = bk.sweep(FILES[:2], "lambert", folder="out")
     assert tree("out") == sorted(
         ["chalk", "chalk/lambert.json", "copper", "copper/lambert.json", "index.html", "table.csv"]
     )
@@ -244,7 +244,11 @@ def test_a_later_sweep_does_the_rest(here, fitted):
     fitted.clear()
     reports = []
     more = bk.sweep(
-        FILES, LINEAR, {"loss": "cbrt"}, output="out", progress=lambda *step: reports.append(step)
+        FILES,
+        LINEAR,
+        settings={"loss": "cbrt"},
+        folder="out",
+        progress=lambda *step: reports.append(step),
     )
     assert set(fitted) == {(m, n) for m in TRUTHS for n in LINEAR} - {
         ("chalk", "lambert"),
@@ -254,7 +258,7 @@ def test_a_later_sweep_does_the_rest(here, fitted):
     assert (more.found, len(more.fits)) == (2, 6)
     assert more.rows[0] == first.rows[0]
     fitted.clear()
-    again = bk.sweep(FILES, LINEAR, output="out")
+    again = bk.sweep(FILES, LINEAR, folder="out")
     assert fitted == []
     assert again.rows == more.rows
     assert "6 of 6 fits, 6 of them saved before" in str(again)
@@ -264,7 +268,7 @@ def test_a_later_sweep_does_the_rest(here, fitted):
 def test_what_has_changed_is_fitted_again(here, fitted, monkeypatch):
     def changed(**settings):
         fitted.clear()
-        bk.sweep(FILES, "lambert", settings, output="out")
+        bk.sweep(FILES, "lambert", settings=settings, folder="out")
         return [material for material, _ in fitted]
 
     assert changed() == ["chalk", "copper", "paint"]
@@ -300,7 +304,7 @@ def test_a_model_of_ones_own_is_fitted_again_when_its_file_changes(here, fitted)
     Path("felt.py").write_text(FELT)
     for expected in (["felt"], [], ["felt+ward", "felt"]):
         fitted.clear()
-        bk.sweep("chalk.npz", ["lambert", *expected[:-1], "felt.py"], output="out")
+        bk.sweep("chalk.npz", ["lambert", *expected[:-1], "felt.py"], folder="out")
         assert [model for _, model in fitted if model != "lambert"] == expected
         if not expected:
             Path("felt.py").write_text(FELT + "\n")
@@ -335,7 +339,7 @@ def test_ctrl_c_ends_with_what_is_finished(here, fitted):
             raise KeyboardInterrupt
 
     stop = 2
-    found = bk.sweep(FILES, LINEAR, output="out", progress=progress)
+    found = bk.sweep(FILES, LINEAR, folder="out", progress=progress)
     assert (len(found.rows), found.asked) == (2, 6)
     assert "2 of 6 fits" in str(found)
     assert {"index.html", "table.csv"} < set(tree("out"))
@@ -351,7 +355,7 @@ def test_ctrl_c_ends_with_what_is_finished(here, fitted):
 def swept(here, fitted):
     """A sweep with a failure and a name that is markup."""
     Path("<i>&.npz").write_bytes(Path("paint.npz").read_bytes())
-    return bk.sweep(["chalk.npz", "<i>&.npz", "missing.npz"], LINEAR, output="out")
+    return bk.sweep(["chalk.npz", "<i>&.npz", "missing.npz"], LINEAR, folder="out")
 
 
 @pytest.mark.quick
@@ -450,7 +454,7 @@ class Deadly(Model):
 def test_a_process_that_dies_takes_nothing_with_it(here, always):
     condition = "True" if always else 'not Path("died").exists()'
     Path("deadly.py").write_text(DEADLY.replace("ALWAYS_OR_ONCE", condition))
-    found = bk.sweep("chalk.npz", ["lambert", "deadly.py", "koenderink"], workers=1, output="out")
+    found = bk.sweep("chalk.npz", ["lambert", "deadly.py", "koenderink"], workers=1, folder="out")
     assert [row.model for row in found.rows] == ["lambert", "deadly", "koenderink"]
     assert Path("died").exists()
     assert [row.model for row in found.failed] == (["deadly"] if always else [])
@@ -524,7 +528,7 @@ def test_the_command(cli):
     assert {"chalk/lambert.json", "index.html", "table.csv"} < set(tree("out"))
     record = json.loads(cli("fit", *FILES, *MODELS, "-o", "out", "--json").stdout)
     assert record["failed"] == []
-    for fit, row in zip(record["fits"], bk.sweep(FILES, LINEAR, output="out").rows, strict=True):
+    for fit, row in zip(record["fits"], bk.sweep(FILES, LINEAR, folder="out").rows, strict=True):
         assert (fit["material"], fit["model"], fit["error"]) == (row.material, row.model, row.error)
     assert set(record["written"]) == {f"out/{name}" for name in tree("out") if "." in name}
 
@@ -619,7 +623,7 @@ def test_a_cluster_loses_nothing_where_a_worker_is_killed(here, client, monkeypa
     workers = client.run(os.getpid)
     killer = threading.Thread(target=kill_the_first_that_began, args=(killed,))
     killer.start()
-    found = bk.sweep([*FILES, "missing.npz"], models, client=client, output="out")
+    found = bk.sweep([*FILES, "missing.npz"], models, client=client, folder="out")
     killer.join()
     assert killed[0] in workers.values()
     assert len(found.fits) == 12
@@ -631,7 +635,7 @@ def test_a_cluster_loses_nothing_where_a_worker_is_killed(here, client, monkeypa
         assert row.error == pytest.approx(other.error, rel=1e-10, abs=1e-10)
         for name, value in other.fit.values.items():
             assert row.fit.values[name] == pytest.approx(value, rel=1e-10, abs=1e-10)
-    assert bk.sweep(FILES, models, output="out").found == 12
+    assert bk.sweep(FILES, models, folder="out").found == 12
 
 
 @pytest.mark.parametrize("client", [(1, 0)], indirect=True)

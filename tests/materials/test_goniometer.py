@@ -207,7 +207,7 @@ def test_a_white_furnace_loses_nothing(name):
 
 def test_a_table_of_a_white_surface_integrates_to_one():
     """Within the noise and the table's coarse cells, together 2 %."""
-    table = measure(tile("gaussian", slope=0.4), WHITE, (12, 12, 16), max_bounces=50).table
+    table = measure(tile("gaussian", slope=0.4), WHITE, shape=(12, 12, 16), max_bounces=50).table
     theta, phi = (np.arange(100) + 0.5) / 100 * np.pi / 2, (np.arange(100) + 0.5) / 100 * 2 * np.pi
     wo = from_angles(*np.meshgrid(theta, phi, indexing="ij"))
     weight = wo[..., 2] * np.sin(theta)[:, None] * (np.pi / 2 / 100) * (2 * np.pi / 100)
@@ -304,7 +304,7 @@ def test_standard_errors_are_honest_and_the_values_unbiased():
     Sums over 85 or so cells, of which the channels are alike.
     """
     surface = tile("gaussian")
-    runs = [measure(surface, GOLD, (5, 5, 5), error=0.1, spp=2048, seed=s) for s in range(20)]
+    runs = [measure(surface, GOLD, shape=(5, 5, 5), error=0.1, spp=2048, seed=s) for s in range(20)]
     valid = runs[0].samples.valid
     values, errors = (
         np.array([getattr(r, a)[valid, 0] for r in runs]) for a in ("values", "standard_error")
@@ -321,7 +321,7 @@ def test_standard_errors_are_honest_and_the_values_unbiased():
 
 
 def test_the_errors_come_out_as_asked():
-    found = measure(tile("gaussian"), GREY, (6, 6, 6), error=0.02, spp=10**5)
+    found = measure(tile("gaussian"), GREY, shape=(6, 6, 6), error=0.02, spp=10**5)
     valid = found.samples.valid
     relative = found.standard_error[valid, 0] / found.values[valid, 0]
     # a pilot of 64 samples knows a standard deviation to some 20 %
@@ -331,7 +331,9 @@ def test_the_errors_come_out_as_asked():
 
 @pytest.mark.quick
 def test_equal_seeds_give_equal_values():
-    first, second, other = (measure(tile("woven"), GOLD, (3, 3, 3, 3), seed=s) for s in (4, 4, 5))
+    first, second, other = (
+        measure(tile("woven"), GOLD, shape=(3, 3, 3, 3), seed=s) for s in (4, 4, 5)
+    )
     assert first.anisotropic
     assert first.values.tobytes() == second.values.tobytes()
     assert first.standard_error.tobytes() == second.standard_error.tobytes()

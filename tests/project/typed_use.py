@@ -79,7 +79,7 @@ def fit_and_render(paint: bk.Measured) -> None:
 
 def fit_many(files: list[Path]) -> None:
     """Many materials at once."""
-    found = bk.sweep(files, ["ward", "ggx"], {"loss": "cbrt"}, output="fits", workers=2)
+    found = bk.sweep(files, ["ward", "ggx"], settings={"loss": "cbrt"}, folder="fits", workers=2)
     assert_type(found, bk.Sweep)
     assert_type(found.fits, list[bk.Fit])
     assert_type(found.best, dict[str, bk.Fit])

@@ -186,7 +186,7 @@ def test_bad_numbers_are_explained(make, words):
 @pytest.mark.quick
 def test_a_sweep_takes_no_code():
     with pytest.raises(BrdfkitError, match="<lambda> is code"):
-        bk.sweep("plaster", "lambert", {"constraints": [lambda model: 1.0]})
+        bk.sweep("plaster", "lambert", settings={"constraints": [lambda model: 1.0]})
 
 
 @pytest.mark.quick

@@ -93,7 +93,7 @@ def test_ctrl_c_keeps_what_is_finished(empty_files, tmp_path, monkeypatch):
 
     monkeypatch.setattr(figure_9_4, "run", stop)
     parts = ["appendix_3", "figure_9_4"]
-    found = bk.reproduce("kurt2007", tmp_path, data=empty_files, parts=parts)
+    found = bk.reproduce("kurt2007", path=tmp_path, data=empty_files, parts=parts)
     assert found.unfinished == ("figure_9_4",)
     assert "**Not finished**: figure_9_4." in (tmp_path / "kurt2007.md").read_text("utf-8")
 
@@ -117,7 +117,7 @@ def test_two_parts_on_real_data(measured_data, tmp_path):
     seen = []
     found = bk.reproduce(
         "kurt2007",
-        tmp_path,
+        path=tmp_path,
         data=measured_data,
         parts=["table_9_2", "energy"],
         progress=lambda done, total: seen.append(done / total),

@@ -49,7 +49,7 @@ def test_errors_of_the_model_have_their_signs(monkeypatch, tmp_path):
     monkeypatch.setattr(model_errors, "SIZE", 32)
     monkeypatch.setattr(model_errors, "RAYS", 64)
     monkeypatch.setattr(hard_edges, "SIZE", 64)
-    found = verdicts("hard_edges", "model_errors", output=tmp_path)
+    found = verdicts("hard_edges", "model_errors", path=tmp_path)
     assert set(found.values()) == {"confirmed"}
     page = (tmp_path / "balint2019.md").read_text(encoding="utf-8")
     assert "| several | Figure 6.19 |" in page

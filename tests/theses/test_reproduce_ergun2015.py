@@ -69,7 +69,10 @@ def test_convex_parts_of_a_torus_at_a_small_size(llvm_variant, monkeypatch, tmp_
     monkeypatch.setattr(moving_parts, "FRAMES", 2)
     seen = []
     found = bk.reproduce(
-        "ergun2015", tmp_path, parts=CONVEX, progress=lambda done, total: seen.append(done / total)
+        "ergun2015",
+        path=tmp_path,
+        parts=CONVEX,
+        progress=lambda done, total: seen.append(done / total),
     )
     verdicts = {claim.says: claim for claim in found.claims}
     assert verdicts["No PSNR is below 39 dB."].verdict == "not run"

@@ -115,7 +115,7 @@ def test_pictures_where_no_scan_is_at_hand(monkeypatch, tmp_path):
         },
     )
     parts = "four_renderers", "transfer_functions", "tone_mappers"
-    assert verdicts(*parts, output=tmp_path) == ["not run"] + ["confirmed"] * 3
+    assert verdicts(*parts, path=tmp_path) == ["not run"] + ["confirmed"] * 3
     assert len(list(tmp_path.glob("*.png"))) == 3
     assert "Not at hand: MRI, frog." in (tmp_path / "lesar2018.md").read_text(encoding="utf-8")
 

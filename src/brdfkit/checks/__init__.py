@@ -6,9 +6,11 @@ file of this folder. The checks of a material get a `Subject`; they are in `phys
 are in the file of their kind.
 """
 
+from __future__ import annotations
+
 import importlib
 import pkgutil
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from brdfkit.checks.material_subject import Subject
@@ -22,6 +24,7 @@ from brdfkit.core.errors import BrdfkitError, nearest, no_such
 from brdfkit.core.jit import llvm
 from brdfkit.core.jit.loops import is_interrupt
 from brdfkit.core.jit.threads import in_turn
+from brdfkit.core.progress_bar import Progress
 from brdfkit.materials.resolve import MaterialLike, to_material
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 
@@ -58,9 +61,10 @@ class Report(Shown):
 
 @in_turn
 def check(
-    thing: MaterialLike,
+    material: MaterialLike,
+    *,
     only: Iterable[str] | None = None,
-    progress: Callable[[int, int], object] | None = None,
+    progress: Progress | None = None,
 ) -> Report:
     """Check that a material, or a plugin of another kind, is what a renderer and a fit need.
 
@@ -73,8 +77,8 @@ def check(
 
     Parameters
     ----------
-    thing : Model, Fit, Measured, str, Path or dict
-        The material, or the name or path of one; the name of a plugin of another kind, or its
+    material : Model, Fit, Measured, str, Path or dict
+        The material, or its name or path; or the name of a plugin of another kind, or its
         dictionary for `mitsuba.load_dict`.
     only : list of str, optional
         Names of the checks to run; by default all there are for its kind.
@@ -99,7 +103,7 @@ def check(
         usable = llvm.loaded_version() >= llvm.OLDEST
         remedy = "set llvm_ad_rgb" if usable else llvm.remedy()
         raise BrdfkitError(f"check needs an LLVM or CUDA variant of Mitsuba; {remedy}.")
-    subject, kind, name = _subject(thing)
+    subject, kind, name = _subject(material)
     only = [only] if isinstance(only, str) else only
     names = list(checks[kind]) if only is None else list(only)
     for wanted in names:

@@ -16,10 +16,10 @@ def fit_many(files, names, settings, output, jobs, judge, console):
     from brdfkit.cli.arguments import results_folder
     from brdfkit.fitting.sweeping import sweep
 
-    options = {"output": output, "workers": jobs, "judge": judge}
+    options = {"folder": output, "workers": jobs, "judge": judge}
     what = f"fit {len(names)} models to {len(files)} materials"
     with results_folder(output), console.progress(what) as progress:
-        found = sweep(files, names, settings, **options, progress=progress)
+        found = sweep(files, names, settings=settings, **options, progress=progress)
     _print_sweep(found, output, console)
     for problem in found.problems:
         say(problem)

@@ -1,5 +1,7 @@
 """`convert`: writes a material in another file format, and finds out what that changed."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -38,7 +40,7 @@ class Conversion:
         return f"{self.path} ({'; '.join(self.changes) or 'nothing lost'})"
 
 
-def convert(thing: MaterialLike, path: str | Path) -> Conversion:
+def convert(material: MaterialLike, path: str | Path) -> Conversion:
     """Write a material in another file format, and find out what that changed.
 
     The file is read again and compared, so that no format need say what it leaves out. A model or a
@@ -46,8 +48,8 @@ def convert(thing: MaterialLike, path: str | Path) -> Conversion:
 
     Parameters
     ----------
-    thing : Measured, Fit, Model, str, Path or dict
-        The material, or the name or path of one, or a BSDF's dictionary.
+    material : Measured, Fit, Model, str, Path or dict
+        The material, its name or path, or a BSDF's dictionary.
     path : str or Path
         The file to write; its suffix chooses the format.
 
@@ -66,7 +68,7 @@ def convert(thing: MaterialLike, path: str | Path) -> Conversion:
     >>> print(convert("cayman.brdf", "cayman.npz"))    # doctest: +SKIP
     cayman.npz (nothing lost)
     """
-    thing = to_material(thing)
+    thing = to_material(material)
     if isinstance(thing, Measured):
         back = save_and_read(thing, path)
         changes = (*describe_extrapolation(thing, back), *list_changes(thing, back))

@@ -1,5 +1,7 @@
 """`evaluate` and `albedo`: the BRDF of a material, and the share of light that it reflects."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -9,13 +11,13 @@ from brdfkit.core.geometry.quadrature import directional_albedo
 from brdfkit.materials.resolve import MaterialLike, to_material
 
 
-def evaluate(brdf: MaterialLike, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
+def evaluate(material: MaterialLike, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
     """The BRDF of a material for pairs of directions, without a cosine.
 
     Parameters
     ----------
-    brdf : Measured, Fit, Model, str, Path or dict
-        The material, or the name or path of one, or a BSDF's dictionary.
+    material : Measured, Fit, Model, str, Path or dict
+        The material, its name or path, or a BSDF's dictionary.
     wi, wo : array_like, shape (n, 3)
         Unit vectors in the local frame, z along the normal; below the surface the BRDF is 0.
 
@@ -34,7 +36,7 @@ def evaluate(brdf: MaterialLike, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.flo
     >>> evaluate(models()["lambert"](), [[0, 0, 1]], [[0.6, 0, 0.8]])
     array([[0.15915494]])
     """
-    brdf = to_material(brdf)
+    brdf = to_material(material)
     wi, wo = (np.array(w, float, ndmin=2) if np.size(w) else np.empty((0, 3)) for w in (wi, wo))
     if wi.shape != wo.shape or wi.shape[-1] != 3 or wi.ndim != 2:
         raise BrdfkitError(
@@ -47,15 +49,15 @@ def evaluate(brdf: MaterialLike, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.flo
     return brdf.eval(wi, wo)
 
 
-def albedo(brdf: MaterialLike, wi: ArrayLike) -> NDArray[np.float64]:
+def albedo(material: MaterialLike, wi: ArrayLike) -> NDArray[np.float64]:
     """The directional albedo ∫ f cosθ_o dω_o of a material: what it reflects of light from `wi`.
 
     By quadrature that settles to 2e-4 of the value, of the narrowest lobes, too.
 
     Parameters
     ----------
-    brdf : Measured, Fit, Model, str, Path or dict
-        The material, or the name or path of one, or a BSDF's dictionary.
+    material : Measured, Fit, Model, str, Path or dict
+        The material, its name or path, or a BSDF's dictionary.
     wi : array_like, shape (3,)
         Where light comes from: a unit vector above the surface.
 
@@ -74,7 +76,7 @@ def albedo(brdf: MaterialLike, wi: ArrayLike) -> NDArray[np.float64]:
     >>> albedo(models()["lambert"](diffuse_reflectance=0.5), [0, 0, 1]).round(4)
     array([0.5])
     """
-    return directional_albedo(to_material(brdf, needed=("eval",)).eval, _check_incidence(wi))
+    return directional_albedo(to_material(material, needed=("eval",)).eval, _check_incidence(wi))
 
 
 def _check_incidence(wi: ArrayLike) -> NDArray[np.float64]:

@@ -1,5 +1,7 @@
 """`load` and `save`: materials and fits in files of any format, or known by name."""
 
+from __future__ import annotations
+
 import os
 from pathlib import Path
 
@@ -83,29 +85,33 @@ def read(path: Path, sample: str | None = None) -> Measured | Fit:
     return formats.read(formats.Source(path, sample, contents(path)))
 
 
-def save(obj: Measured | Fit | Model, path: str | Path) -> None:
+def save(material: Measured | Fit | Model, path: str | Path) -> None:
     """Write a material to a file in the format of its suffix, whole or not at all.
 
     Parameters
     ----------
-    obj : Measured, Fit or Model
-        What to write: a measured material in any format that holds it, a fit as ``.json``, and all
-        of them, a model with values too, as ``.bsdf`` for Mitsuba's own `measured`.
+    material : Measured, Fit or Model
+        The material: a measured one in any format that can hold it, a fit as ``.json``, and each
+        of them, or a model with values, as ``.bsdf`` for Mitsuba's own plugin `measured`.
     path : str or Path
-        The file; ``.gz`` or ``.xz`` behind the suffix compress it.
+        The file; the suffix chooses the format, and ``.gz`` or ``.xz`` after it compress.
 
     Raises
     ------
     BrdfkitError
-        Where no format writes that suffix or it cannot hold `obj`, and where the folder or the disk
-        does not take the file.
+        Where no format has that suffix, or it cannot hold `material`, and where the file cannot be
+        written.
 
     Examples
     --------
     >>> save(load("copper.astm"), "copper.binary.xz")    # doctest: +SKIP
     """
+    if not isinstance(path, str | Path):
+        raise BrdfkitError(
+            f"{path!r:.60} is no path of a file to write; the order is save(material, path)."
+        )
     with write_safely(path) as beside:
-        formats.write(obj, Path(path), beside)
+        formats.write(material, Path(path), beside)
 
 
 def save_and_read(obj: Measured, path: str | Path) -> Measured:

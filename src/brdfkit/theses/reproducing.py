@@ -1,9 +1,10 @@
 """`reproduce`: runs the claims of a thesis and writes a page of them."""
 
+from __future__ import annotations
+
 import importlib
 import pkgutil
 import sys
-from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,6 +13,7 @@ from types import ModuleType
 from brdfkit.core.documents import Document, Shown, Table
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.files import make_folder, require_writable
+from brdfkit.core.progress_bar import Progress
 from brdfkit.theses.claims import Claim, count
 from brdfkit.theses.page import write_page
 from brdfkit.theses.sources import Sources, find_sources
@@ -57,23 +59,23 @@ def theses() -> dict[str, str]:
 
 def reproduce(
     name: str,
-    output: str | Path | None = None,
     *,
+    path: str | Path | None = None,
     data: str | Path | None = None,
     tables: str | Path | None = None,
     parts: list[str] | None = None,
-    progress: Callable[[int, int], object] | None = None,
+    progress: Progress | None = None,
 ) -> Reproduction:
-    """Run the claims of a thesis, and write them as a page.
+    """Check the claims of a thesis by running them, and write the results as a page.
 
-    The measurements are third-party files, which brdfkit does not ship. Ctrl-C ends with the parts
-    that are finished.
+    The measurements are third-party files, which brdfkit does not contain. Ctrl-C ends with the
+    parts that are finished.
 
     Parameters
     ----------
     name : str
         The thesis, as ``"kurt2007"``.
-    output : str or Path, optional
+    path : str or Path, optional
         A folder for the page, ``kurt2007.md``, and its figures; by default none is written.
     data : str or Path, optional
         The folder of measurements, by default that which the variable BRDFKIT_DATA names.
@@ -97,7 +99,7 @@ def reproduce(
 
     Examples
     --------
-    >>> print(reproduce("kurt2007", "docs/reproduce"))    # doctest: +SKIP
+    >>> print(reproduce("kurt2007", path="docs/reproduce"))    # doctest: +SKIP
     """
     if name not in theses():
         raise no_such("thesis", name, theses())
@@ -107,9 +109,9 @@ def reproduce(
             raise no_such("part", part, thesis.PARTS, where=name)
     sources = find_sources(data, tables, thesis.NEEDS)
     _require_packages(thesis, sources)
-    if output is not None:
-        make_folder(output)
-        require_writable(Path(output) / f"{name}.md")
+    if path is not None:
+        make_folder(path)
+        require_writable(Path(path) / f"{name}.md")
 
     chosen = [part for part in thesis.PARTS if parts is None or part in parts]
     modules = [importlib.import_module(f"{thesis.__name__}.{part}") for part in chosen]
@@ -123,8 +125,8 @@ def reproduce(
     except KeyboardInterrupt:
         if not sections:
             raise
-    if output is not None:
-        page, left = Path(output) / f"{name}.md", chosen[len(sections) :]
+    if path is not None:
+        page, left = Path(path) / f"{name}.md", chosen[len(sections) :]
         written = write_page(page, thesis.TITLE, thesis.INTRODUCTION, sections, left)
     claims = tuple(claim for section in sections for claim in section.claims)
     return Reproduction(name, claims, tuple(written), tuple(chosen[len(sections) :]))

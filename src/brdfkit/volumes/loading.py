@@ -1,5 +1,7 @@
 """`volumes.load`: a volume from a file, a folder or a name, within the memory that there is."""
 
+from __future__ import annotations
+
 import itertools
 import math
 import os
@@ -27,6 +29,7 @@ SPARE = 1.2  # times what the voxels take, for what Python and NumPy take beside
 
 def load(
     path: str | os.PathLike[str],
+    *,
     downsample: int = 1,
     labels: bool | None = None,
     size: int | tuple[int, int, int] | None = None,

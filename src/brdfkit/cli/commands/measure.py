@@ -71,7 +71,15 @@ def measure(
     notes = {"command": words.command_line(context.params)}
     with console.progress(f"measure {geometry}") as progress:
         found = measure_surface(
-            surface, made_of, cells, error, spp, seed, output.stem, notes, progress
+            surface,
+            made_of,
+            shape=cells,
+            error=error,
+            spp=spp,
+            name=output.stem,
+            info=notes,
+            seed=seed,
+            progress=progress,
         )
     save(found, output)
     with console.progress("audit"):

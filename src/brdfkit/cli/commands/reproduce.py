@@ -54,7 +54,12 @@ def reproduce(name, output, data, tables, parts, console):
         return
     with results_folder(output), console.progress(f"reproduce {name}") as progress:
         found = run(
-            name, output, data=data, tables=tables, parts=list(parts) or None, progress=progress
+            name,
+            path=output,
+            data=data,
+            tables=tables,
+            parts=list(parts) or None,
+            progress=progress,
         )
     _print(found, console)
     if found.unfinished:

@@ -1,7 +1,9 @@
-"""`sweep`: models fitted to many materials, past bad files, on from where another one ended."""
+"""`sweep`: fits models to many materials, and continues where an earlier sweep ended."""
+
+from __future__ import annotations
 
 import time
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
+from collections.abc import Generator, Iterable, Iterator, Mapping
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
@@ -10,59 +12,60 @@ from typing import Any
 from brdfkit.core.arguments import to_dictionary, to_whole_number
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import make_folder, require_writable
-from brdfkit.fitting.fit import check_settings
+from brdfkit.core.progress_bar import Progress
+from brdfkit.fitting.fit import ModelLike, check_settings
+from brdfkit.fitting.settings import require_material_first
 from brdfkit.fitting.sweeping import saved_fits
 from brdfkit.fitting.sweeping.cluster import count_slots, run_on_cluster
 from brdfkit.fitting.sweeping.planning import plan, split
 from brdfkit.fitting.sweeping.processes import default_workers, run_in_processes
 from brdfkit.fitting.sweeping.result import Row, Sweep
 from brdfkit.fitting.sweeping.tasks import Outcome, Task, fail, fit_models
-from brdfkit.model import Model
 from brdfkit.regression import Fit
 from brdfkit.regression.solvers.settings import require_plain
 
-TABLE, PAGE = "table.csv", "index.html"  # files of the output
+TABLE, PAGE = "table.csv", "index.html"  # files in the folder
 
 
 def sweep(
-    files: str | Path | Iterable[str | Path],
-    models: str | Path | type[Model] | Iterable[str | Path | type[Model]],
-    settings: Mapping[str, Any] | None = None,
+    materials: str | Path | Iterable[str | Path],
+    models: ModelLike | Iterable[ModelLike],
     *,
-    output: str | Path | None = None,
+    settings: Mapping[str, Any] | None = None,
+    folder: str | Path | None = None,
     judge: bool = False,
     workers: int | None = None,
     client: Any = None,
-    progress: Callable[[int, int], object] | None = None,
+    progress: Progress | None = None,
 ) -> Sweep:
     """Fit several models to many materials, in several processes or on a cluster.
 
-    A file that cannot be read, or a fit that fails, does not stop the others. Where a process dies,
-    its fit is tried again once. Ctrl-C ends with the fits that are finished.
+    A file that cannot be read and a fit that fails do not stop the others. If a process dies, its
+    fit is tried once more. Ctrl-C ends with the fits that are finished.
 
     Parameters
     ----------
-    files : str, Path or several
-        The measured files, or names of materials that brdfkit knows.
+    materials : str, Path or several
+        The measured materials: their files, or their names.
     models : str, Path, class or several
-        The models, as for `fit`; one of your own is named by its file, or its class comes from one.
+        The models, as for `fit`. A model of your own is given by its file, or by a class that was
+        loaded from one.
     settings : dict of str to object, optional
         The other arguments of `fit` by name, as ``{"loss": "cbrt", "robust": "bisquare"}``.
-    output : str or Path, optional
-        A folder, to which each fit is saved as soon as it is finished; at the end the table
+    folder : str or Path, optional
+        A folder in which each fit is saved as soon as it is finished, and at the end the table
         ``table.csv`` and the page ``index.html``. Fits that an earlier sweep saved there are read
         and not repeated, unless their file, their settings or brdfkit's version changed.
     judge : bool, default False
-        Whether to tell of each fit, too, its error in directions that were held out and the PSNR of
-        its picture, as `rank` does. This takes about as long again.
+        Whether to compute for each fit its error in held-out directions and the PSNR of its
+        picture, as `rank` does. This doubles the time.
     workers : int, optional
-        How many processes; by default one for each core, as far as the memory goes.
+        Number of processes; by default one for each core, as far as the memory suffices.
     client : distributed.Client, optional
-        A cluster that fits in place of processes. The paths of the files must lead to them there,
-        too.
+        A cluster that fits in place of processes. The paths of the files must be valid there, too.
     progress : callable, optional
-        Called with (done, total) before the first and after each fit; those that were saved do not
-        count.
+        Called with (fits done, fits in all) before the first and after each fit; fits that an
+        earlier sweep saved do not count.
 
     Returns
     -------
@@ -72,8 +75,8 @@ def sweep(
     Raises
     ------
     BrdfkitError
-        For an unknown model or setting, where there is no file or no model, for an output that is
-        no folder, and for what is no client.
+        For an unknown model or setting, without a file or a model, for a `folder` that is
+        none, and for a `client` that is none.
 
     Examples
     --------
@@ -83,8 +86,9 @@ def sweep(
     settings = check_settings(to_dictionary("settings", settings))
     require_plain(settings["solver"], settings["constraints"])
     slots = _count_slots(workers, client)
-    tasks = [replace(task, judge=bool(judge)) for task in plan(files, models, settings)]
-    folder = None if output is None else Path(output)
+    tasks = [replace(task, judge=bool(judge)) for task in plan(materials, models, settings)]
+    require_material_first("sweep(materials, models)", materials)
+    folder = None if folder is None else Path(folder)
     if folder:
         make_folder(folder)
         for name in (TABLE, PAGE):

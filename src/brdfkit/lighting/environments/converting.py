@@ -1,5 +1,7 @@
 """`environments.convert`: writing an environment map in the convention of another program."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +20,7 @@ LARGEST_HEIGHT = 16_384  # rows; a user who asks for more has mistyped
 def convert(
     environment: str | Path | NDArray[Any],
     path: str | Path,
+    *,
     source: str = "mitsuba",
     target: str = "mitsuba",
     height: int | None = None,

@@ -5,6 +5,8 @@ One file answers one question. Besides, `symmetries.py` finds the samples that s
 in sentences, and `data_findings.py` has those that a fit tells, too.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -116,7 +118,7 @@ class Audit(Shown):
         """Sentences on what is doubtful."""
         return report.findings(self)
 
-    def picture(self) -> "Figure":
+    def picture(self) -> Figure:
         """A slice of the BRDF, its lobes and its albedo, as a matplotlib `Figure`.
 
         >>> load("paint.astm").audit().picture().savefig("paint.png")    # doctest: +SKIP
@@ -143,13 +145,13 @@ class Audit(Shown):
         return to_png(self.picture(), DPI)
 
 
-def audit(data: MaterialLike) -> Audit:
-    """How far a measurement reaches, how noisy it is and what is doubtful.
+def audit(material: MaterialLike) -> Audit:
+    """Audit a measured material: its coverage, its noise, and doubtful values.
 
     Parameters
     ----------
-    data : Measured, str or Path
-        The measured material, or the name or path of one.
+    material : Measured, str or Path
+        The measured material, or its name or path.
 
     Returns
     -------
@@ -165,7 +167,7 @@ def audit(data: MaterialLike) -> Audit:
     --------
     >>> print(audit("copper.astm"))    # doctest: +SKIP
     """
-    data = to_measured(data)
+    data = to_measured(material)
     samples, part = data.samples, some_samples(data)
     above = (samples.wi[:, 2] > 0) & (samples.wo[:, 2] > 0)
     values = samples.values[samples.valid]

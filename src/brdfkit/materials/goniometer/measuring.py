@@ -9,14 +9,17 @@ By reciprocity the light may come from either direction of a pair. It comes from
 then more of what the eye sees is lit, and fewer samples are 0.
 """
 
+from __future__ import annotations
+
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
+from brdfkit.core.progress_bar import Progress
 from brdfkit.core.version import __version__
 from brdfkit.materials.goniometer.microgeometry import HeightField
 from brdfkit.materials.goniometer.specimen import Specimen
@@ -38,14 +41,15 @@ MOST_SPP, LEAST_ERROR = 10**9, 1e-5  # bounds of the arguments; there, a cell ta
 def measure(
     surface: HeightField,
     facets: dict[str, Any] | Sequence[dict[str, Any]],
+    *,
     shape: Sequence[int] | None = None,
     error: float = 0.05,
     spp: int = 16384,
-    seed: int = 0,
+    max_bounces: int = 8,
     name: str = "specimen",
     info: Mapping[str, str] | None = None,
-    progress: Callable[[int, int], object] | None = None,
-    max_bounces: int = 8,
+    seed: int = 0,
+    progress: Progress | None = None,
 ) -> Measured:
     """Measure a table of a surface's BRDF, with the standard error of every cell.
 
@@ -67,16 +71,16 @@ def measure(
         The relative standard error, of the channels together, that a cell is to reach.
     spp : int, default 16384
         Samples per cell, at most.
-    seed : int, default 0
-        Seed of the samples; equal seeds give equal values on one machine.
+    max_bounces : int, default 8
+        Largest number of reflections between the facets; light that needs more is lost.
     name : str, default "specimen"
         Name of the material.
     info : dict of str to str, optional
         Notes to add to those of the measurement.
+    seed : int, default 0
+        Seed of the samples; equal seeds give equal values on one machine.
     progress : callable, optional
         Called with (paths done, paths in all).
-    max_bounces : int, default 8
-        Light that needs more bounces between the facets is lost.
 
     Returns
     -------

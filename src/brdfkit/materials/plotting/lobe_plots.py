@@ -1,5 +1,7 @@
 """`plot`: the lobes of BRDFs in the plane of incidence, measured and modelled."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable
 from itertools import cycle
@@ -54,7 +56,9 @@ DASHES = ("-", "--", "-.", ":")
 MOST_COLUMNS = 3
 
 
-def plot(things: MaterialLike | Iterable[MaterialLike], theta_i: ArrayLike | None = None) -> Figure:
+def plot(
+    materials: MaterialLike | Iterable[MaterialLike], *, theta_i: ArrayLike | None = None
+) -> Figure:
     """Polar plots of BRDFs in the plane of incidence, one panel per angle of incidence.
 
     The radius is logarithmic in the BRDF [sr⁻¹], in its luminance where it has colour; what is
@@ -64,8 +68,8 @@ def plot(things: MaterialLike | Iterable[MaterialLike], theta_i: ArrayLike | Non
 
     Parameters
     ----------
-    things : Measured, Fit, Model, str, Path or dict, or several
-        The materials, or the names or paths of them, or BSDFs' dictionaries.
+    materials : Measured, Fit, Model, str, Path or dict, or several
+        The materials, their names or paths, or BSDFs' dictionaries.
     theta_i : float or array_like, optional
         Angles of incidence [degrees], from 0 to below 90. By default 15, 45 and 75, or the nearest
         ones at which the first scattered material was measured.
@@ -85,7 +89,7 @@ def plot(things: MaterialLike | Iterable[MaterialLike], theta_i: ArrayLike | Non
     --------
     >>> plot(["car_paint", "ward"]).savefig("paint.png")    # doctest: +SKIP
     """
-    found = _find_materials(things)
+    found = _find_materials(materials)
     angles = usual_angles(found) if theta_i is None else np.atleast_1d(theta_i).astype(float)
     if angles.ndim != 1 or not angles.size or not np.all((angles >= 0) & (angles < 90)):
         raise BrdfkitError(f"plot: theta_i = {theta_i} should be angles from 0 to below 90°.")
