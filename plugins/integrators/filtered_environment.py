@@ -73,12 +73,12 @@ def define(mi):
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
             environment = _only_environment(mi, scene)
-            light = self.light.of(environment)
+            light = self.light.update(environment)
             si = scene.ray_intersect(mi.Ray3f(ray), active)
             hit = active & si.is_valid()
             if self.shadows != "none":
-                drawn = light.drawn(sampler.sample_count())
-                light = ShadowedLight(light, si, self.visible(scene, si, hit), drawn)
+                directions = light.light_directions(sampler.sample_count())
+                light = ShadowedLight(light, si, self.visible(scene, si, hit), directions)
             shown = self.shading.radiance(scene, sampler, si, light, hit)
             behind = mi.unpolarized_spectrum(environment.eval(si, active & ~hit))
             return mi.depolarizer(dr.select(hit, shown, behind)), active, []

@@ -15,11 +15,12 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.latitude_rows import solid_angles
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.lighting.filtering import paraboloid_levels as levels
-from brdfkit.lighting.filtering.filtered_light import irradiance
-from brdfkit.lighting.filtering.filtered_map import FilteredMap, LobeMaps, Mips, picture
+from brdfkit.lighting.filtering.filtered_light import filter_irradiance
+from brdfkit.lighting.filtering.filtered_map import FilteredMap, LobeMaps, Mips, make_picture
 from brdfkit.lighting.filtering.lobe_light import LobeLight
 from brdfkit.lighting.filtering.scene_bsdfs import has_matte_part, is_isotropic, is_same_everywhere
 from brdfkit.lighting.filtering.sphere_filter import azimuths, convolve, row_angles
+from brdfkit.lighting.spherical_gaussians.von_mises_fisher import log_density
 from brdfkit.rendering.previewing.cache import _measured_bsdf
 from brdfkit.rendering.previewing.staging import stage
 from brdfkit.rendering.scene_input.environment import environment
@@ -47,6 +48,11 @@ def quadrature(axes, kernel, height=256):
     return np.stack([kernel(w @ axis) @ light for axis in axes])
 
 
+def lobe(cos, kappa):
+    """The density [sr⁻¹] of a lobe at the cosine to its axis."""
+    return np.exp(log_density(cos, kappa))
+
+
 def axes(n=20):
     w = np.random.default_rng(0).normal(size=(n, 3))
     return w / np.linalg.norm(w, axis=1, keepdims=True)
@@ -63,8 +69,8 @@ def error(found, expected):
 def test_the_rule_for_levels():
     """The values that the digest of the thesis computes, for a = 0.9, κ = 100, b = 1.2, 512."""
     assert levels.BORDER == 1.2
-    assert levels.cap(100.0, 0.9) == pytest.approx(0.1446757, abs=1e-7)
-    angle = math.acos(1 - levels.cap(100.0, 0.9) / (2 * math.pi))
+    assert levels.cap_solid_angle(100.0, 0.9) == pytest.approx(0.1446757, abs=1e-7)
+    angle = math.acos(1 - levels.cap_solid_angle(100.0, 0.9) / (2 * math.pi))
     assert math.degrees(angle) == pytest.approx(12.3192, abs=1e-4)
     assert levels.texel_solid_angle(0.0, 512) == pytest.approx(2.19727e-5, rel=1e-5)
     for z, level in ((0.0, 6.34241), (0.5, 5.75745), (1.0, 5.34241)):
@@ -89,9 +95,9 @@ def test_convolution_is_that_of_the_quadrature(kappa):
     theta, phi = np.meshgrid(row_angles(128), azimuths(256), indexing="ij")
     w = from_angles(theta, phi)
     reach = math.acos(max(1 - 18 / kappa, -1))
-    filtered = convolve(picture(sky, 128), lambda cos: levels.lobe(cos, kappa), reach)
+    filtered = convolve(make_picture(sky, 128), lambda cos: lobe(cos, kappa), reach)
     some = np.random.default_rng(1).integers(0, [[128], [256]], (2, 20))
-    expected = quadrature(w[tuple(some)], lambda cos: levels.lobe(cos, kappa))
+    expected = quadrature(w[tuple(some)], lambda cos: lobe(cos, kappa))
     assert error(filtered[tuple(some)], expected) < 1e-3
 
 
@@ -99,14 +105,14 @@ def test_a_look_up_is_the_mean_over_the_lobe(module_in_llvm):
     """Of the root mean square within 1 % at the κ of a level, and 2 % halfway between two; the mips
     of graphics hardware are off by tens of per cent."""
     mi = module_in_llvm
-    found = LobeMaps(sky, picture(sky, SIDE))
+    found = LobeMaps(sky, make_picture(sky, SIDE))
     w = axes()
     direction = mi.Vector3f(w.T.astype(np.float32))
     for level, tolerance in ((2, 0.01), (3.5, 0.02), (8, 0.01), (9.5, 0.02), (12, 0.01)):
-        kappa = levels.sharpest(SIDE) / levels.STEP**level
-        expected = quadrature(w, lambda cos, kappa=kappa: levels.lobe(cos, kappa))
+        kappa = levels.sharpest_kappa(SIDE) / levels.STEP**level
+        expected = quadrature(w, lambda cos, kappa=kappa: lobe(cos, kappa))
         assert error(np.array(found.at(direction, mi.Float(kappa))).T, expected) < tolerance
-    mips = Mips(sky, picture(sky, SIDE))
+    mips = Mips(sky, make_picture(sky, SIDE))
     assert error(np.array(mips.at(direction, mi.Float(kappa))).T, expected) > 0.1
     sharp = np.array(found.at(direction, mi.Float(np.inf))).T
     np.testing.assert_allclose(sharp, np.array(mips.bilinear(direction, 0)).T, rtol=1e-6)
@@ -116,7 +122,7 @@ def test_irradiance_is_that_of_the_quadrature(module_in_llvm):
     mi = module_in_llvm
     w = axes()
     expected = quadrature(w, lambda cos: np.maximum(cos, 0) / np.pi)
-    found = FilteredMap([irradiance(picture(sky, SIDE))])
+    found = FilteredMap([filter_irradiance(make_picture(sky, SIDE))])
     values = np.array(found.bilinear(mi.Vector3f(w.T.astype(np.float32)), 0)).T
     assert error(values, expected) < 2e-3
 
@@ -124,7 +130,7 @@ def test_irradiance_is_that_of_the_quadrature(module_in_llvm):
 def test_levels_meet_at_the_rim(module_in_llvm):
     """Just above and just below the plane z = 0, where one disc ends and the other begins."""
     mi = module_in_llvm
-    found = LobeMaps(sky, picture(sky, SIDE))
+    found = LobeMaps(sky, make_picture(sky, SIDE))
     phi = np.linspace(0, 2 * np.pi, 50)
     above, below = (
         mi.Vector3f(from_angles(np.pi / 2 - tilt, phi).T.astype(np.float32))

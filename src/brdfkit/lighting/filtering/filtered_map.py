@@ -1,45 +1,49 @@
 """Filtered maps in Mitsuba: the mean radiance over a lobe, by one trilinear look-up.
 
-`LobeMaps` and `Mips` are made of the light of all directions, as a function (n, 3) → (n, 3) and as
-its `picture`, and give its mean over a von Mises-Fisher lobe: `at(axis, kappa)`.
+`LobeMaps` and `Mips` are made of the light of all directions, given as a function (n, 3) → (n, 3)
+and as its `picture`. Their method `at(axis, kappa)` returns the mean over a von Mises-Fisher lobe.
 """
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, JitColour, JitFloat, JitInt, JitVector
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.dual_paraboloid import to_disc
 from brdfkit.lighting.filtering import paraboloid_levels as levels
 from brdfkit.lighting.filtering.sphere_filter import azimuths, row_angles
 from brdfkit.mitsuba_bridge.arrays import Rows
 
+Radiance = Callable[[FloatArray], FloatArray]
+
 
 class FilteredMap:
-    """The `levels`, each of (2, side, side, 3), for any direction and number of a level."""
+    """The levels of a filtered map, each (2, side, side, 3), looked up by direction and level."""
 
-    def __init__(self, levels):
+    def __init__(self, levels: list[FloatArray]) -> None:
         sides = np.array([level.shape[1] for level in levels])
         starts = np.cumsum(2 * sides**2) - 2 * sides**2
         texels = np.concatenate([level.reshape(-1, 3) for level in levels])
-        # a fourth channel: a texel is then read in one piece
+        # A fourth channel lets a texel be read in one piece
         self.texels = Rows(np.pad(texels, ((0, 0), (0, 1))))
         self.places = Rows(np.stack([starts, sides], axis=1))
         self.count = len(levels)
 
-    def trilinear(self, direction, level):
-        """Radiance at a `level` between two whole numbers."""
+    def trilinear(self, direction: JitVector, level: JitFloat) -> JitColour:
+        """Return the radiance at a fractional `level`, interpolated between two levels."""
         import drjit as dr
         import mitsuba as mi
 
         level = dr.clip(level, 0, self.count - 1)
         lower = dr.minimum(mi.UInt32(level), max(self.count - 2, 0))
         upper = dr.minimum(lower + 1, self.count - 1)
-        values = (self.bilinear(direction, whole) for whole in (lower, upper))
-        return dr.lerp(*values, level - mi.Float(lower))
+        below, above = (self.bilinear(direction, whole) for whole in (lower, upper))
+        return dr.lerp(below, above, level - mi.Float(lower))
 
-    def bilinear(self, direction, level):
-        """Radiance at a whole `level`."""
+    def bilinear(self, direction: JitVector, level: JitInt) -> JitColour:
+        """Return the radiance at a whole `level`."""
         import drjit as dr
         import mitsuba as mi
 
@@ -57,40 +61,43 @@ class FilteredMap:
 
 
 class Mips(FilteredMap):
-    """The levels of graphics hardware, the level by the rule of [Ergun 2015, eq. 8.9]."""
+    """The levels of graphics hardware, with the level by the rule of [Ergun 2015, eq. 8.9]."""
 
-    def __init__(self, radiance, picture):
+    def __init__(self, radiance: Radiance, picture: FloatArray) -> None:
         self.side = len(picture)
-        super().__init__(levels.mips(base(radiance, self.side)))
+        super().__init__(levels.make_mips(make_base(radiance, self.side)))
 
-    def at(self, axis, kappa):
+    def at(self, axis: JitVector, kappa: JitFloat) -> JitColour:
+        """Return the mean radiance over a lobe."""
         return self.trilinear(axis, levels.mip_level(kappa, axis.z, self.side))
 
 
 class LobeMaps(FilteredMap):
-    """The map itself, and below it levels that are convolved with ever wider lobes."""
+    """The map itself, and levels below that are convolved with ever wider lobes."""
 
-    def __init__(self, radiance, picture):
-        self.sharpest = levels.sharpest(len(picture))
-        super().__init__([base(radiance, len(picture)), *levels.lobe_maps(picture, len(picture))])
+    def __init__(self, radiance: Radiance, picture: FloatArray) -> None:
+        side = len(picture)
+        self.sharpest = levels.sharpest_kappa(side)
+        super().__init__([make_base(radiance, side), *levels.convolve_with_lobes(picture, side)])
 
-    def at(self, axis, kappa):
+    def at(self, axis: JitVector, kappa: JitFloat) -> JitColour:
+        """Return the mean radiance over a lobe."""
         import drjit as dr
 
-        # Level 1 has the sharpest lobe, further ones wider by equal ratios. Level 0 has no width:
-        # before level 1, the variance 1/κ is interpolated
+        # Level 1 has the sharpest lobe, and further levels widen by equal ratios. Level 0 has no
+        # width; between it and level 1, the variance 1/κ is interpolated
         variance = self.sharpest / kappa
         level = dr.select(variance < 1, variance, 1 + dr.log2(variance) / math.log2(levels.STEP))
         return self.trilinear(axis, level)
 
 
-def base(radiance, side):
-    """The radiance (2, side, side, 3) in the directions of the texels."""
+def make_base(radiance: Radiance, side: int) -> FloatArray:
+    """Return the radiance (2, side, side, 3) in the directions of the texels."""
     directions = levels.texel_directions(side)
     return radiance(directions.reshape(-1, 3)).reshape(directions.shape)
 
 
-def picture(radiance, height):
-    """The radiance (height, 2 height, 3) by latitude and longitude, z up."""
+def make_picture(radiance: Radiance, height: int) -> FloatArray:
+    """Return the radiance (height, 2 height, 3) by latitude and longitude, z up."""
     theta, phi = np.meshgrid(row_angles(height), azimuths(2 * height), indexing="ij")
     return radiance(from_angles(theta, phi).reshape(-1, 3)).reshape(height, 2 * height, 3)

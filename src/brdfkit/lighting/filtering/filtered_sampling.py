@@ -1,68 +1,89 @@
-"""Filtered importance sampling: a few directions of a BSDF, the same everywhere, and the mean
-light about each [Colbert & Křivánek 2007].
+"""Filtered importance sampling: a few directions of a BSDF, and the mean light about each.
 
-Where a BSDF is the same all over its surface, its directions are kept for a grid of views.
+All pixels take the same ones, so that there is no noise [Colbert & Křivánek 2007]. Where a BSDF is
+the same all over its surface, its directions are stored for a grid of views.
 """
 
-from brdfkit.lighting.filtering.drawn_directions import Directions, constant_and_rest
-from brdfkit.lighting.filtering.drawn_views import DrawnViews
+from brdfkit.core.array_types import JitColour, JitInt, JitMask, MitsubaObject
+from brdfkit.lighting.filtering.bsdf_directions import Directions, split_constant
+from brdfkit.lighting.filtering.filtered_light import Light
 from brdfkit.lighting.filtering.scene_bsdfs import (
-    KeptByValues,
-    bsdfs_of,
+    CacheByValues,
+    distinct_bsdfs,
     has_matte_part,
     is_one_of,
     is_same_everywhere,
 )
+from brdfkit.lighting.filtering.view_directions import ViewDirections
 from brdfkit.mitsuba_bridge.channels import emission_of_rgb
 
 
 class FilteredSampling:
-    """Takes `count` directions of the BSDF at every pixel; its rays share them."""
+    """Lights a pixel by `count` directions of its BSDF, which its rays share."""
 
-    def __init__(self, count):
+    def __init__(self, count: int) -> None:
         self.count = count
-        self.directions = None
+        self.directions: Directions | None = None
 
-    def radiance(self, scene, sampler, si, light, active):
-        """The radiance towards `si.wi`, a spectrum of the current variant."""
+    def radiance(
+        self,
+        scene: MitsubaObject,
+        sampler: MitsubaObject,
+        si: MitsubaObject,
+        light: Light,
+        active: JitMask,
+    ) -> JitColour:
+        """Return the radiance towards `si.wi`, a spectrum of the current variant."""
         import drjit as dr
         import mitsuba as mi
 
         rays = sampler.sample_count()
-        if self.directions is None or self.directions.rays != rays:
-            self.directions = Directions(self.count, rays)
-            self.views = KeptByValues(lambda bsdf: DrawnViews(bsdf, self.directions))
-        total, bsdfs = mi.UnpolarizedSpectrum(0), bsdfs_of(scene)
-        kept = [bsdf for bsdf in bsdfs if is_same_everywhere(bsdf)]
-        for bsdf, views in self.views.of(kept):
+        directions = self.directions
+        if directions is None or directions.rays != rays:
+            directions = self.directions = Directions(self.count, rays)
+            self.views = CacheByValues(lambda bsdf: ViewDirections(bsdf, directions))
+        total, bsdfs = mi.UnpolarizedSpectrum(0), distinct_bsdfs(scene)
+        uniform = [bsdf for bsdf in bsdfs if is_same_everywhere(bsdf)]
+        for bsdf, views in self.views.get(uniform):
             here = active & (si.bsdf() == mi.BSDFPtr(bsdf))
             total = dr.select(here, views.radiance(si, light, here), total)
-        others = [bsdf for bsdf in bsdfs if bsdf not in kept]
-        for apart in (True, False):
-            group = [bsdf for bsdf in others if has_matte_part(bsdf) == apart]
+        others = [bsdf for bsdf in bsdfs if bsdf not in uniform]
+        for separate in (True, False):
+            group = [bsdf for bsdf in others if has_matte_part(bsdf) == separate]
             if group:
                 here = active & is_one_of(si.bsdf(), group)
-                total = dr.select(here, self.drawn_here(si, light, here, apart), total)
+                shown = self._draw_at_points(si, light, here, separate, directions)
+                total = dr.select(here, shown, total)
         return total
 
-    def drawn_here(self, si, light, active, apart):
-        """The radiance of BSDFs by directions that are drawn at the points `si` themselves."""
+    def _draw_at_points(
+        self,
+        si: MitsubaObject,
+        light: Light,
+        active: JitMask,
+        separate: bool,
+        directions: Directions,
+    ) -> JitColour:
+        """Return the radiance by directions that are drawn at the points `si` themselves.
+
+        `separate`: see `split_constant`.
+        """
         import drjit as dr
         import mitsuba as mi
 
-        bsdf, directions, spectrum = si.bsdf(), self.directions, emission_of_rgb()
-        c, *rest = constant_and_rest(bsdf, si, active, apart)
+        bsdf, spectrum = si.bsdf(), emission_of_rgb()
+        c, types, constant = split_constant(bsdf, si, active, separate)
 
-        def one(i, total):
-            place = directions.place(i, si)
-            wo, kappa, weight = directions.draw(place, bsdf, si, *rest, active)
-            seen = spectrum(light.over_lobe(si.to_world(wo), kappa), si)
-            return i + 1, total + weight * seen
+        def add_direction(i: JitInt, total: JitColour) -> tuple[JitInt, JitColour]:
+            index = directions.index(i, si)
+            wo, kappa, weight = directions.draw(index, bsdf, si, types, constant, active)
+            mean = spectrum(light.mean_over_lobe(si.to_world(wo), kappa), si)
+            return i + 1, total + weight * mean
 
         _, total = dr.while_loop(
             (mi.UInt32(0), mi.UnpolarizedSpectrum(0)),
             lambda i, total: active & (i < directions.per_ray),
-            one,
+            add_direction,
         )
         received = light.irradiance(si.to_world(mi.Vector3f(0, 0, dr.sign(si.wi.z))))
         total = total / directions.per_ray + dr.pi * c * spectrum(received, si)

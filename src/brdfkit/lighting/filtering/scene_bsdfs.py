@@ -1,17 +1,24 @@
-"""The BSDFs of a scene: what they are like, and what is made of them, kept between pictures."""
+"""The BSDFs of a scene: tests of their properties, and a cache of what is computed from them."""
+
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, JitMask, MitsubaModule, MitsubaObject
 from brdfkit.core.geometry.directions import rotate_z
 from brdfkit.mitsuba_bridge.bsdf.from_dictionary import eval_bsdf
 
-SAME = 1e-3  # of the largest value: differences that do not count
-KEPT = 16  # BSDFs of which something is kept between pictures
+TOLERANCE = 1e-3  # share of the largest value: smaller differences do not count
+CACHED_BSDFS = 16
 
 
-def _pairs(count=64):
-    """Direction pairs (2, count, 3) above the surface: half of them anywhere, half near the mirror
-    direction, from a thousandth of a radian to a third, where narrow lobes differ."""
+def _make_pairs(count: int = 64) -> FloatArray:
+    """Return direction pairs (2, count, 3) above the surface.
+
+    Half of them lie anywhere. Half lie near the mirror direction, from a thousandth of a radian to
+    a third, where narrow lobes differ.
+    """
     random, near = np.random.default_rng(0), count // 2
     wi, wo = random.normal(size=(2, count, 3))
     wi /= np.linalg.norm(wi, axis=-1, keepdims=True)
@@ -23,58 +30,59 @@ def _pairs(count=64):
     return pairs
 
 
-PAIRS = _pairs()  # by whose values BSDFs are compared
+PAIRS = _make_pairs()  # BSDFs are compared by their values there
 
 
-def bsdfs_of(scene):
-    """The different BSDFs of a `scene`, a list."""
+def distinct_bsdfs(scene: MitsubaObject) -> list[MitsubaObject]:
+    """Return the different BSDFs of a `scene`."""
     return list(dict.fromkeys(shape.bsdf() for shape in scene.shapes()))
 
 
-def is_one_of(bsdf, others):
-    """Whether a `BSDFPtr` points to one of the BSDFs `others`."""
+def is_one_of(bsdf: MitsubaObject, others: Iterable[MitsubaObject]) -> JitMask:
+    """Return whether a `BSDFPtr` points to one of the BSDFs `others`."""
     import mitsuba as mi
 
-    found = mi.Bool(False)
+    matches = mi.Bool(False)
     for other in others:
-        found |= bsdf == mi.BSDFPtr(other)
-    return found
+        matches |= bsdf == mi.BSDFPtr(other)
+    return matches
 
 
-def matte_and_rest(mi):
-    """The types of Mitsuba's components that are diffuse reflections, and all others."""
+def component_types(mi: MitsubaModule) -> tuple[int, int]:
+    """Return the types of Mitsuba's components that reflect diffusely, and all other types."""
     matte = int(mi.BSDFFlags.DiffuseReflection)
     return matte, int(mi.BSDFFlags.All) & ~matte
 
 
-def has_matte_part(bsdf):
-    """Whether the diffuse components of a BSDF are constant, and it takes requests for them alone.
+def has_matte_part(bsdf: MitsubaObject) -> bool:
+    """Return whether the diffuse components of a BSDF are constant and evaluated separately.
 
-    Some BSDFs give all of themselves whichever components are asked for.
+    Some BSDFs evaluate all components whichever are requested.
     """
     import mitsuba as mi
 
-    matte, rest = (eval_bsdf(bsdf, *PAIRS, types) for types in matte_and_rest(mi))
-    whole = eval_bsdf(bsdf, *PAIRS)
-    allowed = SAME * matte.max()
+    wi, wo = PAIRS
+    matte, others = (eval_bsdf(bsdf, wi, wo, types) for types in component_types(mi))
+    whole = eval_bsdf(bsdf, wi, wo)
+    allowed = TOLERANCE * matte.max()
     return bool(
         matte.max() > 0
         and np.ptp(matte, axis=0).max() < allowed
-        and np.abs(whole - matte - rest).max() < SAME * whole.max()
+        and np.abs(whole - matte - others).max() < TOLERANCE * whole.max()
     )
 
 
-def is_isotropic(bsdf):
-    """Whether the values of a BSDF stay when both directions turn about the normal."""
+def is_isotropic(bsdf: MitsubaObject) -> bool:
+    """Return whether a BSDF keeps its values when both directions turn about the normal."""
     value, turned = eval_bsdf(bsdf, *PAIRS), eval_bsdf(bsdf, *rotate_z(PAIRS, 1.0))
-    return bool(np.abs(value - turned).max() <= SAME * value.max())
+    return bool(np.abs(value - turned).max() <= TOLERANCE * value.max())
 
 
-def is_same_everywhere(bsdf):
-    """Whether the values of a BSDF at some directions say what it is at every point of a surface.
+def is_same_everywhere(bsdf: MitsubaObject) -> bool:
+    """Return whether values at a few directions describe a BSDF at every point of a surface.
 
-    So not where it has a texture, or a mirror or refracted light, which those directions miss, or
-    where derivatives by its parameters are wanted; nor in a spectral variant.
+    They do not where the BSDF has a texture, a mirror or refracted light, which those directions
+    miss, nor where derivatives by its parameters are needed, nor in a spectral variant.
     """
     import drjit as dr
     import mitsuba as mi
@@ -87,37 +95,37 @@ def is_same_everywhere(bsdf):
     return not (differentiated or _has_texture(bsdf))
 
 
-def _has_texture(thing):
-    """Whether an object of Mitsuba's, or one that it consists of, has a texture that varies."""
+def _has_texture(parent: MitsubaObject) -> bool:
+    """Return whether an object of Mitsuba's, or a part of it, has a texture that varies."""
     import mitsuba as mi
 
-    found = []
+    varies = []
 
     class Parts(mi.TraversalCallback):
-        def put(self, name, value, *_):
+        def put(self, name: str, value: Any, *_: Any) -> None:
             if isinstance(value, mi.Texture):
-                found.append(value.is_spatially_varying())
+                varies.append(value.is_spatially_varying())
             elif isinstance(value, mi.Object):
                 value.traverse(Parts())
 
-    thing.traverse(Parts())
-    return any(found)
+    parent.traverse(Parts())
+    return any(varies)
 
 
-class KeptByValues:
-    """What `make` makes of a BSDF, kept by the BSDF's values at some directions."""
+class CacheByValues:
+    """A cache of the results of `make(bsdf)`, by the values of the BSDF at some directions."""
 
-    def __init__(self, make):
-        self.make, self.known = make, {}
+    def __init__(self, make: Callable[[MitsubaObject], Any]) -> None:
+        self.make, self.results = make, dict[bytes, Any]()
 
-    def of(self, bsdfs):
-        """(BSDF, what is made of it) of each of `bsdfs`, as they are now."""
-        found = []
+    def get(self, bsdfs: list[MitsubaObject]) -> list[tuple[MitsubaObject, Any]]:
+        """Return pairs (BSDF, result) for `bsdfs` as they are now."""
+        pairs = []
         for bsdf in bsdfs:
             values = eval_bsdf(bsdf, *PAIRS).tobytes()
-            made = self.known.pop(values, None) or self.make(bsdf)
-            self.known[values] = made  # the newest comes last
-            found.append((bsdf, made))
-        for oldest in list(self.known)[: -max(KEPT, len(found))]:
-            del self.known[oldest]
-        return found
+            result = self.results.pop(values, None) or self.make(bsdf)
+            self.results[values] = result  # the newest comes last
+            pairs.append((bsdf, result))
+        for oldest in list(self.results)[: -max(CACHED_BSDFS, len(pairs))]:
+            del self.results[oldest]
+        return pairs

@@ -19,18 +19,18 @@ class ShadowedLight:
     def __init__(self, light, si, visible, drawn):
         self.light, self.si, self.visible, self.drawn = light, si, visible, drawn
 
-    def over_lobe(self, axis, kappa):
+    def mean_over_lobe(self, axis, kappa):
         """Mean radiance over a von Mises-Fisher lobe, linear sRGB."""
         import drjit as dr
 
         normal = self.si.to_world(type(axis)(0, 0, dr.sign(self.si.wi.z)))
 
         def weight(direction):
-            found = self.light.over_lobe(direction, kappa * RAYS)
+            found = self.light.mean_over_lobe(direction, kappa * RAYS)
             return dr.select(dr.dot(direction, normal) > 0, found, 0)
 
         share = visible_share(self.visible, axis, kappa, weight, RAYS)
-        return self.light.over_lobe(axis, kappa) * share
+        return self.light.mean_over_lobe(axis, kappa) * share
 
     def irradiance(self, normal):
         """What a white matte surface of this `normal` shows, linear sRGB."""
