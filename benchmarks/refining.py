@@ -14,11 +14,11 @@ import numpy as np
 
 import brdfkit as bk
 from brdfkit.core.jit.llvm import use_variant
-from brdfkit.inverse.scenes.problem.parameters import choose
-from brdfkit.inverse.scenes.problem.scene import integrator_of, load_subject
+from brdfkit.inverse.scenes.problem.parameters import choose_unknowns
+from brdfkit.inverse.scenes.problem.scene import load_scene, make_integrator
 from brdfkit.inverse.scenes.problem.targets import read_targets
 from brdfkit.inverse.scenes.problem.views import Views
-from brdfkit.inverse.scenes.search.forward_derivatives import derivatives, tangents
+from brdfkit.inverse.scenes.search.forward_derivatives import compute_derivatives, group_tangents
 from brdfkit.inverse.scenes.search.normal_equations import Equations, Residuals
 from brdfkit.model import labels
 
@@ -90,10 +90,10 @@ def views_of(model, truth, reached, size=SIZE):
     """`Views` of the corner at the truth, beside the picture that is `reached`."""
     import mitsuba as mi
 
-    scene = load_subject(corner(bsdf(model, truth), size), (size, size))
+    scene = load_scene(corner(bsdf(model, truth), size), (size, size))
     names = mi.traverse(scene)
-    unknowns = choose(names, [f"ball.bsdf.{name}" for name in truth])
-    return Views(scene, integrator_of(scene), read_targets(reached), names, unknowns)
+    unknowns = choose_unknowns(names, [f"ball.bsdf.{name}" for name in truth])
+    return Views(scene, make_integrator(scene), read_targets(reached), names, unknowns)
 
 
 def gradients():
@@ -103,11 +103,11 @@ def gradients():
     for model, truth in TRUTHS.items():
         views = views_of(model, truth, picture(corner(bsdf(model, truth)), 256))
         x, shares = views.start, {}
-        found = derivatives(views, x, spp, 3)
-        for group in tangents(views):
+        found = compute_derivatives(views, x, spp, 3)
+        for group in group_tangents(views):
             moved = np.zeros(len(x))
             moved[group] = step
-            ends = [views.residuals(x + sign * moved, spp, 3) for sign in (1, -1)]
+            ends = [views.render_residuals(x + sign * moved, spp, 3) for sign in (1, -1)]
             expected = (ends[0] - ends[1]) / (2 * step)
             share = (found[group].sum(axis=0) * expected).sum() / (expected**2).sum()
             shares[views.names[group[0]].split(".")[-1]] = f"{share:.4f}"
@@ -123,7 +123,7 @@ def steps():
         seconds = []
         for _ in range(3):  # the first compiles
             times = [time.perf_counter()]
-            views.residuals(views.start, spp, 7)
+            views.render_residuals(views.start, spp, 7)
             times.append(time.perf_counter())
             here = Residuals.at(views, views.start, spp, 8)
             times.append(time.perf_counter())
@@ -131,7 +131,7 @@ def steps():
             times.append(time.perf_counter())
             seconds.append(np.diff(times))
         one, trial, slopes = np.min(seconds[1:], axis=0)
-        searched = len(list(tangents(views)))
+        searched = len(list(group_tangents(views)))
         print(
             f"{model:18} {(trial + slopes) / one:.2f}  ({searched} derivatives "
             f"{slopes / one:.2f}, trial {trial / one:.2f}; a picture {one:.2f} s)",

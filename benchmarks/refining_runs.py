@@ -25,7 +25,7 @@ FILE = Path(__file__).with_suffix(".json")
 SIZE, NOISE = 24, 0.01
 RIGHT = 3  # standard errors
 SEEDS = range(5)
-WARNINGS = "is no noise", "not determined", "twice the samples"
+WARNINGS = "are not noise", "not determined", "twice the samples"
 RED, GREY, GREEN = (0.5, 0.15, 0.1), (0.3, 0.3, 0.3), (0.15, 0.4, 0.2)
 WIDTHS = 0.5, 0.9, 0.05, 0.01  # guesses of a roughness
 

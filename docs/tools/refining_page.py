@@ -92,8 +92,8 @@ HOW = """Four things have to be known, and whatever is wrong in them goes into t
    they light what stands on them.
 
 A search that *did not converge* says so above its numbers, and a note says where
-*what is left is no noise*: neighbouring pixels differ alike, by more than five standard errors of
-chance. Look at
+*the residuals are not noise*: neighbouring pixels differ alike, by more than five standard errors
+of chance. Look at
 `found.look()` before you believe the numbers then. Standard errors are made larger where that
 is so: the roughness alone, searched under colours that are wrong, was 16 standard errors off, and
 is 1.4 off now; with a lamp 5 % too bright, reflectances were 10 off, and are 1 off.

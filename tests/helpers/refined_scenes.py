@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from brdfkit.inverse.scenes.problem.parameters import choose
-from brdfkit.inverse.scenes.problem.scene import integrator_of, load_subject
+from brdfkit.inverse.scenes.problem.parameters import choose_unknowns
+from brdfkit.inverse.scenes.problem.scene import load_scene, make_integrator
 from brdfkit.inverse.scenes.problem.targets import read_targets
 from brdfkit.inverse.scenes.problem.views import Views
 from brdfkit.rendering.scenes._meshes import mesh_of_grid
@@ -98,10 +98,10 @@ def require_back(result, truth):
 
 def views(mi, picture, scene, parameters=None):
     """The `Views` of a scene's dictionary beside one picture."""
-    loaded = load_subject(scene, picture.shape[1::-1])
+    loaded = load_scene(scene, picture.shape[1::-1])
     names = mi.traverse(loaded)
-    chosen = choose(names, parameters)
-    return Views(loaded, integrator_of(loaded), read_targets(picture), names, chosen)
+    chosen = choose_unknowns(names, parameters)
+    return Views(loaded, make_integrator(loaded), read_targets(picture), names, chosen)
 
 
 def knot(mi, alpha, diffuse, size=16):

@@ -20,15 +20,19 @@ from scipy.ndimage import gaussian_filter
 
 import brdfkit as bk
 from brdfkit.core.jit.threads import two_threads
-from brdfkit.inverse.scenes.problem.leverage import LEAST, sum_by_block, without_leverage
-from brdfkit.inverse.scenes.problem.parameters import choose
-from brdfkit.inverse.scenes.problem.scene import integrator_of, load_subject
+from brdfkit.inverse.scenes.problem.leverage import (
+    SMALLEST_REMAINDER,
+    correct_for_leverage,
+    sum_by_block,
+)
+from brdfkit.inverse.scenes.problem.parameters import choose_unknowns
+from brdfkit.inverse.scenes.problem.scene import load_scene, make_integrator
 from brdfkit.inverse.scenes.problem.targets import read_targets
 from brdfkit.inverse.scenes.problem.views import Views
-from brdfkit.inverse.scenes.result.residual_noise import Rest
+from brdfkit.inverse.scenes.result.residual_noise import ResidualNoise
 from brdfkit.inverse.scenes.search import gauss_newton
-from brdfkit.inverse.scenes.search.forward_derivatives import derivatives
-from brdfkit.inverse.scenes.search.gauss_newton import Search, step_in_bounds
+from brdfkit.inverse.scenes.search.forward_derivatives import compute_derivatives
+from brdfkit.inverse.scenes.search.gauss_newton import solve_step
 from brdfkit.inverse.scenes.search.normal_equations import Equations, Residuals
 from brdfkit.rendering.scenes.ball import ball
 
@@ -45,10 +49,10 @@ def test_derivatives_are_those_of_finite_differences(mi, picture):
         mi, picture, corner(mi, TRUTH), ["ball.bsdf.alpha_u", "ball.bsdf.specular_reflectance"]
     )
     x, spp = found.start, 2048
-    by_number = derivatives(found, x, spp, 3)
+    by_number = compute_derivatives(found, x, spp, 3)
     for number, step in ((0, 0.01), (2, 0.05)):
         there, here = (x + sign * step * np.eye(len(x))[number] for sign in (1, -1))
-        change = found.residuals(there, spp, 3) - found.residuals(here, spp, 3)
+        change = found.render_residuals(there, spp, 3) - found.render_residuals(here, spp, 3)
         expected = change / (2 * step)
         # along the pictures of differences, so that what noise there is averages out
         along = (by_number[number] * expected).sum() / (expected**2).sum()
@@ -62,7 +66,7 @@ def test_differences_of_noisy_pictures_are_unbiased(mi, picture):
     some = [Residuals.at(found, found.start, 4, seed) for seed in range(40)]
     errors = np.array([one.error for one in some])
     assert abs(errors.mean() - exact) < 4 * errors.std() / np.sqrt(len(errors))
-    assert np.mean([one.noise(found) for one in some]) > 20 * exact
+    assert np.mean([one.compute_noise(found) for one in some]) > 20 * exact
 
 
 @pytest.fixture(scope="module")
@@ -198,7 +202,7 @@ BAD = {
     "no picture": (lambda p: [], {}, "no picture"),
     "an unknown name": (lambda p: p, {"parameters": ["ball.bsdf.alpha"]}, "did you mean"),
     "no names": (lambda p: p, {"parameters": []}, "empty"),
-    "a transform": (lambda p: p, {"parameters": ["ball.to_world"]}, "not searched"),
+    "a transform": (lambda p: p, {"parameters": ["ball.to_world"]}, "cannot be searched"),
     "wrong bounds": (lambda p: p, {"parameters": {"ball.bsdf.f0": (1, 0)}}, "bounds"),
     "no samples": (lambda p: p, {"samples": 0}, "samples = 0"),
     "a mask of another size": (
@@ -256,17 +260,17 @@ def test_pictures_that_are_not_finite_are_no_steps(mi, picture):
     x = found.start
     here, there = (
         Residuals.at(found, found.start, 4, 0),
-        Residuals.at(found, np.where(found.linear, 1e30, x), 4, 0),
+        Residuals.at(found, np.where(found.is_linear, 1e30, x), 4, 0),
     )
     assert there.error == np.inf
-    assert here.less(there)[0] == -np.inf
+    assert here.compute_gain(there)[0] == -np.inf
     numbers = len(x)
     power = np.full(numbers, 1e-25)
     hidden = Equations(
         np.full(numbers, -1e-9), 1e-25 * np.eye(numbers), np.zeros((numbers, 1)), power
     )
-    step = step_in_bounds(found, Search(here, hidden), 1e-2)
-    assert abs(step[found.linear]).max() == pytest.approx(10)
+    step = solve_step(found, here, hidden, 1e-2)
+    assert abs(step[found.is_linear]).max() == pytest.approx(10)
     with pytest.raises(bk.BrdfkitError, match="not finite where the search begins"):
         bk.refine(corner(mi, TRUTH | WHITE_OUT), picture, starts=1, samples=4)
 
@@ -332,7 +336,7 @@ def test_a_search_that_is_stuck_tries_other_samples_and_says_so(mi, picture, mon
     result = bk.refine(start, picture, ["ball.bsdf.diffuse_reflectance"], starts=1, samples=16)
     assert "no step, however short" in result.message
     # of half of the samples, and then of all
-    assert len(set(seeds)) == 2 * (gauss_newton.FRESH + 1)
+    assert len(set(seeds)) == 2 * (gauss_newton.FRESH_SAMPLES + 1)
 
 
 def test_what_is_masked_counts_nowhere(mi, picture):
@@ -359,12 +363,12 @@ def test_masks_are_weights_of_any_unit(mi, picture, tmp_path):
     file = tmp_path / "mask.png"
     with two_threads():
         mi.Bitmap(np.repeat(half[..., None] * np.uint8(255), 3, axis=2)).write(str(file))
-    scene = load_subject(corner(mi, TRUTH), (SIZE, SIZE))
+    scene = load_scene(corner(mi, TRUTH), (SIZE, SIZE))
     names = mi.traverse(scene)
 
     def seen_by(mask):
         targets = read_targets(picture, mask=mask)
-        return Views(scene, integrator_of(scene), targets, names, choose(names, None))
+        return Views(scene, make_integrator(scene), targets, names, choose_unknowns(names, None))
 
     by_half, everywhere = seen_by(half), seen_by(None)
     for same in (3.0 * half, [half], file):
@@ -440,10 +444,10 @@ def test_steps_cost_less_than_four_pictures(mi, picture):
     """By samples, of which a derivative's take as long as two or three of a picture's."""
     found = views(mi, picture, corner(mi, TRUTH))
     here = Residuals.at(found, found.start, 128, 0)
-    assert found.renders == pytest.approx(128)
+    assert found.cost == pytest.approx(128)
     Equations.at(found, here, 0)
     Residuals.at(found, found.start, 128, 0)
-    assert found.renders < 4 * 128 + 128
+    assert found.cost < 4 * 128 + 128
 
 
 def test_scores_are_without_leverage():
@@ -453,13 +457,13 @@ def test_scores_are_without_leverage():
     jacobian, residuals = rng.standard_normal((2, 18, 3)), rng.standard_normal((18, 3))
     jacobian[:, index == 2] *= 10  # a highlight
     scores = sum_by_block((jacobian * residuals).sum(axis=2), (index, 6))
-    found = without_leverage(scores, jacobian, (index, 6))
+    found = correct_for_leverage(scores, jacobian, (index, 6))
     flat = jacobian.reshape(2, -1)
     inverse = np.linalg.inv(flat @ flat.T)
     for block in range(6):
         own = jacobian[:, index == block].reshape(2, -1)
         values, vectors = np.linalg.eigh(np.eye(9) - own.T @ inverse @ own)
-        root = vectors / np.sqrt(np.maximum(values, LEAST)) @ vectors.T
+        root = vectors / np.sqrt(np.maximum(values, SMALLEST_REMAINDER)) @ vectors.T
         expected = own @ root @ residuals[index == block].ravel()
         np.testing.assert_allclose(found[:, block], expected, rtol=1e-2)
     assert (np.abs(found[:, 2]) > 2 * np.abs(scores[:, 2])).any()
@@ -468,7 +472,7 @@ def test_scores_are_without_leverage():
 def test_names_are_told_and_values_below_0_need_bounds(mi, picture):
     scene = mi.load_dict(corner(mi, TRUTH), optimize=False)
     for name in ("ball.bsdf.f0", "ball.bsdf.f0.value"):
-        (one,) = choose(mi.traverse(scene), [name])
+        (one,) = choose_unknowns(mi.traverse(scene), [name])
         assert one.name == "ball.bsdf.f0"
     low = corner(mi, TRUTH)
     low["sensor"]["principal_point_offset_x"] = -0.1
@@ -488,7 +492,7 @@ def test_what_is_left_is_noise_or_not(mi, kind):
     def judged(left):
         left[3, 5] *= 50
         halves = [(left + 0.3 * rng.standard_normal(left.shape)).reshape(-1, 3) for _ in range(2)]
-        return Rest.of(found, Residuals(found.start, *halves, 4, np.ones(1), 0.0))
+        return ResidualNoise.measure(found, Residuals(found.start, *halves, 4, np.ones(1), 0.0))
 
     def noise():
         plain = rng.standard_normal((40, 40, 3))
@@ -496,7 +500,7 @@ def test_what_is_left_is_noise_or_not(mi, kind):
 
     many = [judged(noise()) for _ in range(30)]
     assert all(one.is_noise for one in many)
-    assert 0.6 < np.std([one.sure for one in many]) < 1.5
+    assert 0.6 < np.std([one.significance for one in many]) < 1.5
     rows, columns = np.mgrid[:40, :40]
     wide = np.exp(-((rows - 20) ** 2 + (columns - 20) ** 2) / 200)[..., None]
     other = judged(noise() + 5 * wide)
@@ -515,14 +519,14 @@ def test_standard_errors_grow_where_the_scene_is_wrong(mi):
     wrong = TRUTH | {"specular_reflectance": (0.2, 0.2, 0.2), "alpha_u": 0.5}
     name = "ball.bsdf.alpha_u"
     result = bk.refine(scene(wrong), picture, [name], starts=1, samples=128)
-    (note,) = [note for note in result.notes if "is no noise" in note]
+    (note,) = [note for note in result.notes if "are not noise" in note]
     assert "χ² per degree of freedom" in note
-    assert "× as large" in note
+    assert "multiplied by" in note
     off = abs(result.values[name] - TRUTH["alpha_u"])
     assert off > 0.05
     assert off < 4 * result.standard_errors[name]
     right = bk.refine(scene(TRUTH | {"alpha_u": 0.5}), picture, [name], starts=1, samples=128)
-    assert "is no noise" not in " ".join(right.notes)
+    assert "are not noise" not in " ".join(right.notes)
     assert right.standard_errors[name] < 0.2 * result.standard_errors[name]
 
 

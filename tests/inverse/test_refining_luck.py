@@ -6,7 +6,7 @@ from refined_scenes import TRUTH, alone, bsdf_of, knot, noisy, require_back, vie
 
 import brdfkit as bk
 from brdfkit.inverse.scenes.result.conclusions import conclude_search
-from brdfkit.inverse.scenes.result.second_look import look_again
+from brdfkit.inverse.scenes.result.second_look import conclude_checked_search, take_second_look
 from brdfkit.inverse.scenes.search.gauss_newton import Search
 from brdfkit.inverse.scenes.search.normal_equations import Residuals
 
@@ -22,7 +22,7 @@ def picture(mi):
 
 def test_the_least_of_many_errors_is_luck_and_the_least_bound_is_not(mi, picture):
     found = views(mi, picture, knot(mi, 0.18, 0.3), [ALPHA])
-    narrow = found.unknowns[0].coordinates(np.array([0.004]))
+    narrow = found.unknowns[0].to_coordinates(np.array([0.004]))
     right, wrong = (
         [Residuals.at(found, x, SAMPLES, seed) for seed in range(20)] for x in (found.start, narrow)
     )
@@ -42,15 +42,15 @@ def test_searches_by_default_end_at_the_truth(mi, picture, seed):
 def end(mi, picture, alpha, start):
     """(the `Views` that begin at one roughness, a `Search` that ended at another)."""
     seen = views(mi, picture, knot(mi, start, 0.3), [ALPHA])
-    x = seen.unknowns[0].coordinates(np.array([alpha]))
+    x = seen.unknowns[0].to_coordinates(np.array([alpha]))
     return seen, Search(Residuals.at(seen, x, SAMPLES, 3), converged=True)
 
 
 def test_what_is_worse_than_the_start_is_not_returned(mi, picture):
     seen, found = end(mi, picture, alpha=0.01, start=0.25)
-    checked, second_look = look_again(seen, found, 0)
+    checked, second_look = take_second_look(seen, found, 0)
     assert second_look is None
-    np.testing.assert_array_equal(checked.here.x, seen.start)
+    np.testing.assert_array_equal(checked.residuals.x, seen.start)
     said = str(conclude_search(seen, checked, 0.0)).splitlines()
     assert "worse than the scene's own values" in said[1]
 
@@ -58,9 +58,9 @@ def test_what_is_worse_than_the_start_is_not_returned(mi, picture):
 @pytest.mark.parametrize(("alpha", "doubtful"), [(0.004, True), (0.18, False)])
 def test_twice_the_samples_say_what_few_paths_tell(mi, picture, alpha, doubtful):
     seen, found = end(mi, picture, alpha, start=alpha)
-    checked, second_look = look_again(seen, found, 0)
-    assert checked.here.spp == 2 * found.here.spp
-    result = conclude_search(seen, checked, 0.0, second_look=second_look)
+    checked, second_look = take_second_look(seen, found, 0)
+    assert checked.residuals.spp == 2 * found.residuals.spp
+    result = conclude_checked_search(seen, checked, second_look, 0.0)
     for said in (str(result), " ".join(result.notes), result._repr_html_()):
         assert ("at twice the samples" in said) == doubtful
 

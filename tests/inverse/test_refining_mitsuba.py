@@ -6,10 +6,10 @@ import pytest
 from refined_scenes import TRUTH, alone, corner, noisy, require_back, views
 
 import brdfkit as bk
-from brdfkit.inverse.scenes.problem.parameter_facts import ROUGH, SHARE
-from brdfkit.inverse.scenes.problem.parameters import choose
+from brdfkit.inverse.scenes.problem.parameters import choose_unknowns
+from brdfkit.inverse.scenes.problem.scene_parameters import ROUGHNESS_BOUNDS, SHARE_BOUNDS
 from brdfkit.inverse.scenes.search import forward_derivatives as module
-from brdfkit.inverse.scenes.search.forward_derivatives import derivatives
+from brdfkit.inverse.scenes.search.forward_derivatives import compute_derivatives
 
 GREY = {"type": "rgb", "value": [0.4, 0.3, 0.2]}
 PLASTIC = {"type": "roughplastic", "alpha": 0.2, "diffuse_reflectance": GREY}
@@ -64,9 +64,10 @@ def test_derivatives_are_those_of_finite_differences(mi, case):
     scene = with_bsdf(mi, bsdf)
     found = views(mi, np.array(mi.render(mi.load_dict(scene), spp=4)), scene, [name])
     x, step = found.start, 0.03
-    along = derivatives(found, x, 512, 3).sum(axis=0)
+    along = compute_derivatives(found, x, 512, 3).sum(axis=0)
     ends = [
-        [found.residuals(x + sign * step, 1024, seed) for sign in (1, -1)] for seed in (50, 900)
+        [found.render_residuals(x + sign * step, 1024, seed) for sign in (1, -1)]
+        for seed in (50, 900)
     ]
     one, other = ((high - low) / (2 * step) for high, low in ends)
     # two, lest their noise make their square too large
@@ -95,12 +96,12 @@ def test_roughplastic_comes_back(mi):
 
 def test_shares_and_roughnesses_of_mitsuba_have_bounds(mi):
     scene = mi.load_dict(with_bsdf(mi, PRINCIPLED), optimize=False)
-    names = {"roughness": ROUGH, "metallic": SHARE, "base_color": (0, np.inf)}
+    names = {"roughness": ROUGHNESS_BOUNDS, "metallic": SHARE_BOUNDS, "base_color": (0, np.inf)}
     for name, bounds in names.items():
-        (one,) = choose(mi.traverse(scene), [f"ball.bsdf.{name}"])
+        (one,) = choose_unknowns(mi.traverse(scene), [f"ball.bsdf.{name}"])
         assert (one.low, one.high) == bounds
-        assert not one.wrongly
-    (wider,) = choose(mi.traverse(scene), {"ball.bsdf.roughness": (0.1, 2)})
+        assert not one.has_wrong_derivatives
+    (wider,) = choose_unknowns(mi.traverse(scene), {"ball.bsdf.roughness": (0.1, 2)})
     assert (wider.low, wider.high) == (0.1, 2)
 
 

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.inverse.scenes.problem.parameters import choose
-from brdfkit.inverse.scenes.problem.scene import integrator_of, load_subject
+from brdfkit.inverse.scenes.problem.parameters import choose_unknowns
+from brdfkit.inverse.scenes.problem.scene import load_scene, make_integrator
 from brdfkit.inverse.scenes.problem.targets import read_targets
-from brdfkit.inverse.scenes.problem.tensors import roughness
 from brdfkit.inverse.scenes.problem.views import Views
 from brdfkit.inverse.scenes.search import descent
-from brdfkit.inverse.scenes.search.backward_derivatives import error_and_slopes
-from brdfkit.inverse.scenes.search.descent import _hold_out
+from brdfkit.inverse.scenes.search.backward_derivatives import compute_error_and_gradient
+from brdfkit.inverse.scenes.search.descent import _hold_out, compute_penalty
 
 SIZE = 16
 TEXTURE = "floor.bsdf.diffuse_reflectance.data"
@@ -63,28 +62,28 @@ def picture(mi):
 @pytest.mark.parametrize(("name", "number"), [(TEXTURE, 30), ("sky.data", 21), ("sky.data", 0)])
 def test_derivatives_are_those_of_finite_differences(mi, picture, name, number):
     """Of single texels, with the same samples; one of the sky's is in its first column."""
-    loaded = load_subject(scene(mi, 0.8 * TRUTH, 1.2 * LIGHT), (SIZE, SIZE))
+    loaded = load_scene(scene(mi, 0.8 * TRUTH, 1.2 * LIGHT), (SIZE, SIZE))
     names = mi.traverse(loaded)
-    targets, chosen = read_targets(picture), choose(names, [name])
-    views = Views(loaded, integrator_of(loaded), targets, names, chosen)
+    targets, chosen = read_targets(picture), choose_unknowns(names, [name])
+    views = Views(loaded, make_integrator(loaded), targets, names, chosen)
     x, spp, step = views.start, 128, 0.02
-    by_number = error_and_slopes(views, x, spp, 3, views.weights)[1][number]
+    by_number = compute_error_and_gradient(views, x, spp, 3, views.weights)[1][number]
     there, here = (x + sign * step * np.eye(len(x))[number] for sign in (1, -1))
-    a, b = (error_and_slopes(views, at, spp, 3, views.weights)[0] for at in (there, here))
+    a, b = (compute_error_and_gradient(views, at, spp, 3, views.weights)[0] for at in (there, here))
     assert by_number == pytest.approx((a - b) / (2 * step), rel=0.03)
 
 
 def test_roughness_has_its_derivatives(mi):
     names = mi.traverse(mi.load_dict(scene(mi, TRUTH), optimize=False))
-    unknowns = choose(names, [TEXTURE, "sky.data"])
-    parts = [unknown.coordinates(unknown.start) for unknown in unknowns]
-    slopes, step = roughness(unknowns, parts)[1], 1e-5
+    unknowns = choose_unknowns(names, [TEXTURE, "sky.data"])
+    parts = [unknown.to_coordinates(unknown.start) for unknown in unknowns]
+    slopes, step = compute_penalty(unknowns, parts)[1], 1e-5
     for which, number in ((0, 7), (1, 0)):
         ends = []
         for sign in (1, -1):
             moved = [part.copy() for part in parts]
             moved[which][number] += sign * step
-            ends.append(roughness(unknowns, moved)[0])
+            ends.append(compute_penalty(unknowns, moved)[0])
         row = number + which * len(parts[0])
         assert slopes[row] == pytest.approx((ends[0] - ends[1]) / (2 * step), rel=1e-4)
 
@@ -116,22 +115,22 @@ def test_a_texture_comes_back(mi, picture):
 def test_of_ten_pixels_alike_one_is_held_out(mi, picture):
     """All pixels of a highlight were on one side: then the strongest smoothing was chosen."""
     mask = np.arange(SIZE)[:, None] < np.full(SIZE, 12)
-    loaded = load_subject(scene(mi, TRUTH), (SIZE, SIZE))
+    loaded = load_scene(scene(mi, TRUTH), (SIZE, SIZE))
     names = mi.traverse(loaded)
-    targets, chosen = read_targets(picture, mask=mask), choose(names, [TEXTURE])
-    views = Views(loaded, integrator_of(loaded), targets, names, chosen)
+    targets, chosen = read_targets(picture, mask=mask), choose_unknowns(names, [TEXTURE])
+    views = Views(loaded, make_integrator(loaded), targets, names, chosen)
     held = _hold_out(views, 3)
-    bright = (views.weights * views.reached**2).sum(axis=1)
-    order = np.argsort(-np.where(views.seen, bright, -1), kind="stable")
+    bright = (views.weights * views.target_pixels**2).sum(axis=1)
+    order = np.argsort(-np.where(views.counted, bright, -1), kind="stable")
     in_tens = held[order[: mask.sum() // 10 * 10]].reshape(-1, 10)
     assert (in_tens.sum(axis=1) == 1).all()
-    assert not held[~views.seen].any()
+    assert not held[~views.counted].any()
     assert (held != _hold_out(views, 4)).any()
 
 
 def test_masked_texels_follow_their_neighbours(mi, picture, monkeypatch):
     """Whatever the masked pixels hold, smoothing by held-out pixels included."""
-    monkeypatch.setattr(descent, "FEW", 1)
+    monkeypatch.setattr(descent, "TRIAL_STEPS", 1)
     mask = np.arange(SIZE)[:, None] < np.full(SIZE, 12)
     grey = np.full(TRUTH.shape, 0.5)
     one, other = (

@@ -1,4 +1,4 @@
-"""Finds numbers from pictures: of whole scenes by `refine`, of flat samples by `svbrdf`."""
+"""Estimates parameters from pictures: `refine` of whole scenes, `svbrdf` of flat samples."""
 
 import lazy_loader
 

@@ -1,17 +1,12 @@
-"""Numbers of a scene found from pictures, by the derivatives of the path tracer.
+"""Estimates parameters of a scene from pictures of it, by differentiating the path tracer.
 
-`problem/scene.py` makes a scene of what is given, `problem/targets.py` reads the pictures,
-`problem/masks.py` which of their pixels count, `problem/parameters.py` says what is searched, of
-the `problem/scene_parameters.py` of the scene; `problem/parameter_facts.py` knows Mitsuba's own.
-`problem/views.py` renders pictures, `search/forward_derivatives.py` their derivatives,
-`search/normal_equations.py` makes of them E² to second order, and `problem/leverage.py` how certain
-that is. On it `search/gauss_newton.py` steps, from the best of the `search/far_starts.py`. Of
-thousands of numbers (`problem/tensors.py`) `search/backward_derivatives.py` has the derivatives;
-`search/descent.py` goes along them, with some `problem/roughness.py` less. `result/second_look.py`
-holds the end against the start and twice the samples. `refine.py` runs these one after the other;
-`result/refinement.py` is what it returns, `result/conclusions.py` makes it,
-`problem/unseen_parameters.py` says what no picture shows, and `result/residual_noise.py` whether
-what is left is noise.
+`refine.py` holds the public function, which runs the three parts below one after the other:
+
+- `problem/` defines what is minimised: the scene, the parameters to search, the pictures to match,
+  and the weight of each pixel.
+- `search/` minimises it. `gauss_newton.py` handles up to 32 numbers, whose derivatives are rendered
+  one picture each; `descent.py` handles textures and volumes, with thousands of numbers.
+- `result/` estimates how certain the numbers are and makes the `Refinement` that users receive.
 """
 
 from brdfkit.inverse.scenes.refine import refine as refine

@@ -1,36 +1,38 @@
-"""`refine`: numbers of a scene, found from pictures through the path tracer."""
+"""The public function `refine`, which finds parameters of a scene from pictures of it."""
 
-from __future__ import annotations  # `help` then says Pictures, and not what they are made of
+from __future__ import annotations  # so that `help` says Pictures, not what that stands for
 
 import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from brdfkit.core.arguments import to_number, to_whole_number
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.inverse.scenes.problem.parameters import MOST, choose
-from brdfkit.inverse.scenes.problem.scene import integrator_of, load_subject
-from brdfkit.inverse.scenes.problem.targets import read_targets
-from brdfkit.inverse.scenes.problem.unseen_parameters import nothing_seen
-from brdfkit.inverse.scenes.problem.views import Views, quiet_samplers
+from brdfkit.inverse.scenes.problem.parameters import PARAMETER_LIMIT, choose_unknowns
+from brdfkit.inverse.scenes.problem.scene import load_scene, make_integrator
+from brdfkit.inverse.scenes.problem.targets import Pictures, Target, read_targets
+from brdfkit.inverse.scenes.problem.unseen_parameters import no_effect_error
+from brdfkit.inverse.scenes.problem.views import Views, silence_samplers
 from brdfkit.inverse.scenes.result.conclusions import conclude_search
 from brdfkit.inverse.scenes.result.refinement import Refinement
-from brdfkit.inverse.scenes.result.second_look import look_again
-from brdfkit.inverse.scenes.search.descent import descend, usual_total
-from brdfkit.inverse.scenes.search.far_starts import BEST, start, usual_count
-from brdfkit.inverse.scenes.search.gauss_newton import search
+from brdfkit.inverse.scenes.result.second_look import (
+    SecondLook,
+    conclude_checked_search,
+    take_second_look,
+)
+from brdfkit.inverse.scenes.search.descent import count_steps, descend
+from brdfkit.inverse.scenes.search.far_starts import FINALISTS, default_start_count, find_start
+from brdfkit.inverse.scenes.search.gauss_newton import Search, run_gauss_newton
 
-STEPS = 30  # that a search may take; nearly all of them end by themselves before
-
-Pictures = NDArray | str | Path | Iterable[NDArray | str | Path]
+STEP_LIMIT = 30  # by default; nearly all searches converge before
+NO_ERRORS = "descent, the search for many numbers, gives no standard errors"
 
 
 @in_turn
@@ -48,58 +50,57 @@ def refine(
     seed: int = 0,
     progress: Callable[[int, int], object] | None = None,
 ) -> Refinement:
-    """Find numbers of a scene that make its pictures equal to those that are given.
+    """Find the parameters of a scene whose rendered pictures match given ones.
 
-    The whole renderer is differentiated: light that bounces, meshes, lights and materials. Steps
-    are those of Gauss and Newton, with the derivatives of each picture by each number; two
-    independent renderings keep their noise from biasing the result, and their samples grow until
-    it is less than what is left of the pictures' own. Ctrl-C raises `Interrupted`, whose ``best``
-    is the best `Refinement` so far.
+    The derivatives come from the whole path tracer: light that bounces, meshes, lights and
+    materials. The search takes Gauss-Newton steps. Two renderings with independent samples keep
+    noise from biasing the result, and the samples grow until rendering is quieter than the
+    difference from the pictures. Ctrl-C raises `Interrupted`, whose ``best`` is the best
+    `Refinement` so far.
 
     Parameters
     ----------
     scene : mitsuba.Scene, dict, path, Model or Fit
-        A scene of Mitsuba's, its dictionary or .xml file, with all that is known: camera, lights
-        and shapes. Or a material, to begin with, on the ball of `render`. Its integrator is one
-        with derivatives, as ``prb``, ``prbvolpath`` and those of brdfkit; ``path`` and ``volpath``
-        stand for the first two. A `mitsuba.Scene` is left with the values that were found; of
-        anything else `Refinement.put_into` makes one.
+        A Mitsuba scene, its dictionary or .xml file, with a known camera, lights and shapes; or a
+        material, which is then put on the ball of `render`. The integrator must have derivatives,
+        as ``prb``, ``prbvolpath`` and those of brdfkit do; ``path`` and ``volpath`` are replaced by
+        the first two. A `mitsuba.Scene` ends with the values that were found;
+        `Refinement.put_into` writes them into other scenes.
     pictures : ndarray or path, or several
         A picture for each sensor of the scene: linear values (height, width, channels), or an
         OpenEXR file.
     parameters : names, or dict of names to (low, high), default all of brdfkit's models
-        What is searched: numbers and colours, by the names of `mitsuba.traverse`, with or without
-        ``.value`` at the end; and ``.data``, the texels of
-        textures, environment maps and volumes, as many as there are. Bounds are by default those
-        of the model's parameter, 0 to 1 for shares and roughnesses of Mitsuba's BSDFs, and else 0
-        to infinity.
+        The parameters to search, by their names in `mitsuba.traverse`, with or without ``.value``
+        at the end: numbers, colours, and ``.data``, the texels of textures, environment maps and
+        volumes. The default bounds are those of a model's parameter, 0 to 1 for shares and
+        roughnesses of Mitsuba's BSDFs, and otherwise 0 to infinity.
     starts : int, optional
-        Points from which the search begins: the scene's own values, and others, spread over the
-        bounds of what pictures are not linear in. By default 8 for each of these numbers, at
-        most 32, and the scene's own; 1 trusts that.
+        The number of starting points: the scene's own values, and others spread over the bounds of
+        the numbers in which pictures are not linear. The default is 8 points for each such number,
+        at most 32, besides the scene's own; 1 uses these alone.
     steps : int, optional
-        Steps that the search may take after its start, at least 1; by default 30, of which numbers
-        that trade off, as those of two lobes, need most. With textures, in each of three stages of
-        growing samples: short ones, by L-BFGS-B.
+        The largest number of steps after the choice of the starting point, at least 1. The default
+        is 30; numbers that trade off, such as those of two lobes, need most of them. With textures,
+        the limit holds for the short steps of L-BFGS-B in each of three stages.
     smoothing : float, optional
-        Of textures and volumes: the weight, at least 0, of the mean squared difference of
-        neighbouring texels in the loss, in units of their bounds, or of the mean at the start where
-        there is no upper bound; more is smoother. By default the best of five for pixels that are
-        held out.
+        For textures and volumes: the weight, at least 0, of the mean squared difference of
+        neighbouring texels in the loss; more is smoother. The unit of texels is their range, or
+        their mean at the start where there is no upper bound. By default pixels that are held out
+        choose the best of five weights.
     samples : int, default 1024
-        Samples per pixel, at most, at least 4. The last steps take most of the time, which grows
-        with these and the pixels: 128 or 256 are a good beginning. A search takes half of them,
-        and all for a second look at its end; where that says otherwise it goes on with all, and
-        takes the second look with twice as many.
+        The largest number of samples per pixel, at least 4. The last steps take most of the time,
+        in proportion to it; 128 or 256 are a good beginning. The search uses half of the samples
+        and checks its end with all of them; if the check disagrees, the search goes on with all,
+        and the check uses twice as many.
     mask : ndarray or path, or several, optional
-        The pixels that count, of each picture: booleans, or weights ≥ 0 (height, width), or a
-        picture's file, white where they do; None for a picture all of which does. Pixels at 0 may
-        hold anything. An alpha channel serves as ``mask=picture[..., 3]``; by itself it is ignored.
+        The pixels of each picture that count: booleans or weights ≥ 0 (height, width), or a picture
+        file that is white there; None for a picture that counts everywhere. Masked pixels may hold
+        anything. An alpha channel is ignored unless it is passed as ``mask=picture[..., 3]``.
     linearise : bool, default False
-        Whether pictures of 8 bits are accepted, as seen by sRGB's curve.
+        Whether to accept pictures of 8 bits, by inverting sRGB's curve.
     seed : int, default 0
-        Of the samples and the starts; equal seeds give equal results, of textures but for rounding,
-        since derivatives backwards are added up in any order.
+        The seed of the samples and starting points. Equal seeds give equal results; for textures
+        they differ by rounding, as the GPU or several threads add derivatives in any order.
     progress : callable, optional
         Called with (done, total); see `brdfkit.progress`.
 
@@ -112,13 +113,13 @@ def refine(
     ------
     BrdfkitError
         For a scene that does not load, an integrator without derivatives, pictures that do not fit
-        the cameras, have 8 bits or are not finite, masks that do not fit the pictures,
-        parameters that are none, a smoothing below 0, textures of integers, and numbers on which
-        no picture depends.
+        the cameras, have 8 bits or are not finite, masks that do not fit the pictures, unknown
+        parameters, a negative smoothing, textures of integers, and parameters without any effect on
+        the pictures.
 
     Examples
     --------
-    >>> found = refine("cornell.xml", "photograph.exr", ["ball.bsdf.alpha_u"])    # doctest: +SKIP
+    >>> result = refine("cornell.xml", "photograph.exr", ["ball.bsdf.alpha_u"])    # doctest: +SKIP
     """
     began = time.perf_counter()
     variant = use_variant()
@@ -128,92 +129,95 @@ def refine(
             "llvm_ad_rgb or cuda_ad_rgb."
         )
     samples = to_whole_number("refine: samples", samples, 4)
-    for name, number in (("steps", steps), ("starts", starts)):
-        if number is not None:
-            to_whole_number(f"refine: {name}", number, 1)
+    steps = STEP_LIMIT if steps is None else to_whole_number("refine: steps", steps, 1)
+    if starts is not None:
+        to_whole_number("refine: starts", starts, 1)
     if smoothing is not None:
         to_number("refine: smoothing", smoothing, least=0)
-    views = _views(scene, read_targets(pictures, linearise, mask), parameters)
-    steps = steps or STEPS
-    if len(views.start) > MOST or any(unknown.shape for unknown in views.unknowns):
-        return _by_descent(views, smoothing, steps, samples, seed + 100, progress, began)
-    count = usual_count(views) if starts is None else starts
-    report = _counter(progress, (count + BEST if count > 1 else 0) + steps)
+    views = _make_views(scene, read_targets(pictures, linearise, mask), parameters)
+    by_descent = len(views.start) > PARAMETER_LIMIT or any(u.shape for u in views.unknowns)
+    seed_of_search = seed + 100
     try:
-        with quiet_samplers():
-            x = start(views, count, seed, report)
-            found, second_look = _search_and_check(views, x, steps, samples, seed + 100, report)
+        if by_descent:
+            report = _count_progress(progress, count_steps(smoothing, steps))
+            state, weight = descend(views, smoothing, steps, samples, seed_of_search, report)
+            how = "by held-out pixels" if smoothing is None else "as given"
+            notes: tuple[str, ...] = f"smoothing {weight:g}, {how}", NO_ERRORS
+            return conclude_search(views, state, time.perf_counter() - began, notes=notes)
+        count = default_start_count(views) if starts is None else starts
+        report = _count_progress(progress, (count + FINALISTS if count > 1 else 0) + steps)
+        with silence_samplers():
+            x = find_start(views, count, seed, report)
+            state, second_look = _search(views, x, steps, samples, seed_of_search, report)
+        return conclude_checked_search(views, state, second_look, time.perf_counter() - began)
     except Interrupted as stop:
-        best = conclude_search(views, stop.best, time.perf_counter() - began, interrupted=True)
+        notes = (NO_ERRORS,) if by_descent else ()
+        seconds = time.perf_counter() - began
+        best = conclude_search(views, stop.best, seconds, notes=notes, interrupted=True)
         raise Interrupted(best, f"refine: the best so far leaves {best.loss:.3g}") from None
-    seconds = time.perf_counter() - began
-    return conclude_search(views, found, seconds, second_look=second_look)
 
 
-def _search_and_check(views, x, steps, samples, seed, report):
-    """(the `Search` from `x`, its `SecondLook`): of half of the samples, held against all of them;
-    where these say otherwise, it goes on with all, and is held against twice as many."""
-    found = _search_without_unseen(views, x, steps - steps // 2, samples // 2, seed, report)
-    found, second_look = look_again(views, found, seed)
-    agreed = found.converged and not second_look.notes()
-    if agreed or found.steps == steps:
-        return found, second_look
-    more = _search_without_unseen(
-        views, found.here.x, steps - found.steps, samples, seed + 200, report
-    )
-    more.steps += found.steps
-    more.history[:0] = found.history
-    return look_again(views, more, seed + 200)
+def _search(
+    views: Views, x: FloatArray, steps: int, samples: int, seed: int, report: Callable[[], object]
+) -> tuple[Search, SecondLook | None]:
+    """Search from `x` with half of the samples, and check the end with all of them.
+
+    If the check disagrees, go on with all samples, and check the end with twice as many.
+    """
+    state = _search_visible(views, x, steps - steps // 2, samples // 2, seed, report)
+    state, second_look = take_second_look(views, state, seed)
+    agreed = state.converged and not (second_look and second_look.notes())
+    if agreed or state.steps == steps:
+        return state, second_look
+    left = steps - state.steps
+    longer = _search_visible(views, state.residuals.x, left, samples, seed + 200, report)
+    longer.steps += state.steps
+    longer.history[:0] = state.history
+    return take_second_look(views, longer, seed + 200)
 
 
-def _search_without_unseen(views, x, steps, samples, seed, report):
-    """The `Search` from `x`; where nothing is known, its own start means nothing."""
-    found = search(views, x, steps, samples, seed, report)
-    unseen = found.about.unseen(views, found.here.x)
+def _search_visible(
+    views: Views, x: FloatArray, steps: int, samples: int, seed: int, report: Callable[[], object]
+) -> Search:
+    """Search from `x`; numbers that have no effect on the pictures keep the scene's own values."""
+    state = run_gauss_newton(views, x, steps, samples, seed, report)
+    assert state.equations is not None
+    unseen = state.equations.find_unseen(views, state.residuals.x)
     if unseen.all():
-        raise nothing_seen(views)
-    found.here = replace(found.here, x=np.where(unseen, views.start, found.here.x))
-    return found
+        raise no_effect_error(views)
+    own = np.where(unseen, views.start, state.residuals.x)
+    state.residuals = replace(state.residuals, x=own)
+    return state
 
 
-def _by_descent(views, smoothing, steps, samples, seed, progress, began):
-    """The `Refinement` of many numbers, by derivatives backwards."""
-    report = _counter(progress, usual_total(smoothing, steps))
-    without = "descent, as for many numbers, gives no standard errors"
-    try:
-        found, chosen = descend(views, smoothing, steps, samples, seed, report)
-    except Interrupted as stop:
-        best = conclude_search(
-            views, stop.best, time.perf_counter() - began, interrupted=True, notes=(without,)
-        )
-        raise Interrupted(best, f"refine: the best so far leaves {best.loss:.3g}") from None
-    how = "by held-out pixels" if smoothing is None else "as given"
-    notes = (f"smoothing {chosen:g}, {how}", without)
-    return conclude_search(views, found, time.perf_counter() - began, notes=notes)
-
-
-def _views(scene, targets, parameters):
-    """The `Views` of what `refine` is given."""
+def _make_views(
+    scene: Any,
+    targets: list[Target],
+    parameters: Iterable[str] | Mapping[str, tuple[float, float] | None] | None,
+) -> Views:
+    """Return the `Views` of the arguments of `refine`."""
     import mitsuba as mi
 
-    loaded = load_subject(scene, targets[0].size)
-    names = mi.traverse(loaded)
-    unknowns = choose(names, parameters)
+    loaded = load_scene(scene, targets[0].size)
+    traversed = mi.traverse(loaded)
+    unknowns = choose_unknowns(traversed, parameters)
     numbers = sum(len(unknown.start) for unknown in unknowns)
     values = sum(np.count_nonzero(target.weights) for target in targets)
-    if not values or values < numbers <= MOST:
+    if not values or values < numbers <= PARAMETER_LIMIT:
         raise BrdfkitError(
             f"refine: {numbers} numbers are more than the {values} values of the pictures that "
             "count; give larger pictures, or name fewer."
         )
-    return Views(loaded, integrator_of(loaded), targets, names, unknowns)
+    return Views(loaded, make_integrator(loaded), targets, traversed, unknowns)
 
 
-def _counter(progress, total):
-    """A function that reports one more of `total`."""
+def _count_progress(
+    progress: Callable[[int, int], object] | None, total: int
+) -> Callable[[], None]:
+    """Return a function that reports one more step of `total` to `progress`."""
     done = 0
 
-    def report():
+    def report() -> None:
         nonlocal done
         done += 1
         if progress:

@@ -1,1 +1,1 @@
-"""What `refine` minimises: parameters of a scene, its views and their targets."""
+"""Defines what `refine` minimises: the scene, its parameters, and the pictures to match."""

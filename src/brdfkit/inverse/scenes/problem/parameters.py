@@ -1,186 +1,209 @@
-"""The numbers that are searched: which entries of a scene they are, and within which bounds."""
+"""Chooses which entries of a scene `refine` searches, and within which bounds."""
 
-from collections.abc import Mapping
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from brdfkit.core.arguments import to_pair
+from brdfkit.core.array_types import AnyArray, FloatArray, IntArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.inverse.scenes.problem.parameter_facts import differentiated_wrongly, usual_bounds
 from brdfkit.inverse.scenes.problem.scene_parameters import (
-    keys,
-    model_of,
-    numbers,
-    searchable,
-    short,
+    default_bounds,
+    find_model,
+    find_searchable,
+    has_wrong_derivatives,
+    read_numbers,
+    short_name,
 )
-from brdfkit.inverse.scenes.problem.tensors import is_tensor, numbers_of, places, shape_of, wraps
+from brdfkit.inverse.scenes.problem.tensors import (
+    find_shape,
+    is_tensor,
+    number_texels,
+    read_tensor,
+    wraps_around,
+)
+from brdfkit.model import Model
 
-MOST = 32  # numbers; for each of them a picture of derivatives is rendered
+PARAMETER_LIMIT = 32  # numbers; for each of them a picture of derivatives is rendered
+
+Bounds = tuple[float, float]
 
 
 @dataclass(frozen=True)
 class Unknown:
-    """An entry of a scene that is searched.
+    """An entry of a scene whose numbers `refine` searches.
 
-    key : its name in `mitsuba.traverse`.
-    name : the same, without a `.value` at its end.
-    owner : the name of the BSDF whose parameter it is; empty of others.
-    parameter : the name of the parameter within its owner.
-    model : the class of brdfkit's model whose parameter it is, or None.
-    start : its numbers (n,) where the search begins.
-    colour : whether each number changes one channel of pictures alone.
-    linear : whether pictures of direct light are linear in it.
-    low, high : its bounds; coordinates are the values themselves unless both are finite.
-    log : whether steps are relative.
-    shape : of a tensor's numbers; empty of others.
-    places : which number each of its texels shows; None of others.
-    around : whether its columns go around.
-    wrongly : whether Mitsuba's derivatives of pictures by it are wrong.
+    The search works on coordinates: between finite bounds they go from 0 to 1, otherwise they are
+    the values themselves.
+
+    key : the entry's name in `mitsuba.traverse`.
+    name : the key without ".value" at its end.
+    owner : the name of the brdfkit BSDF whose parameter the entry is, or "".
+    parameter : the parameter's name within its owner.
+    model : the class of the owner's model, or None.
+    start : the numbers (n,) where the search begins.
+    is_colour : whether each number changes only its own channel of the pictures.
+    is_linear : whether pictures of direct light are linear in the numbers.
+    low, high : the bounds of the values.
+    is_log : whether coordinates are in proportion to the logarithm of the values.
+    shape : the shape of a tensor's numbers; () for other entries.
+    texels : which number each texel of a tensor holds; None for other entries.
+    wraps : whether the last column of a tensor is beside its first one.
+    has_wrong_derivatives : whether Mitsuba's derivatives by this entry are wrong.
     """
 
     key: str
     name: str
     owner: str
     parameter: str
-    model: Any
-    start: np.ndarray
-    colour: bool
-    linear: bool
+    model: type[Model] | None
+    start: FloatArray
+    is_colour: bool
+    is_linear: bool
     low: float
     high: float
-    log: bool
+    is_log: bool
     shape: tuple[int, ...] = ()
-    places: Any = None
-    around: bool = False
-    wrongly: bool = False
+    texels: IntArray | None = None
+    wraps: bool = False
+    has_wrong_derivatives: bool = False
 
     @property
-    def names(self):
+    def names(self) -> tuple[str, ...]:
         """A name for each number."""
         if len(self.start) == 1:
             return (self.name,)
         return tuple(f"{self.name}[{i}]" for i in range(len(self.start)))
 
-    def table(self, u):
-        """Values at coordinates `u`, which go from 0 to 1 between finite bounds."""
-        if self.log:
-            return self.low * (self.high / self.low) ** u
-        return self.low + u * (self.high - self.low) if self.bounded else np.array(u)
+    def to_values(self, coordinates: FloatArray) -> FloatArray:
+        """Return the values at coordinates."""
+        if self.is_log:
+            return self.low * (self.high / self.low) ** coordinates
+        if self.is_bounded:
+            return self.low + coordinates * (self.high - self.low)
+        return np.array(coordinates)
 
-    def coordinates(self, values):
-        """The coordinates of values; the inverse of `table`."""
+    def to_coordinates(self, values: FloatArray) -> FloatArray:
+        """Return the coordinates of values; the inverse of `to_values`."""
         values = np.asarray(values)
-        if self.log:
+        if self.is_log:
             return np.log(values / self.low) / np.log(self.high / self.low)
-        return (values - self.low) / (self.high - self.low) if self.bounded else values
+        return (values - self.low) / (self.high - self.low) if self.is_bounded else values
 
-    def slopes(self, u):
-        """The derivatives of the values by their coordinates."""
-        if self.log:
-            return self.table(u) * np.log(self.high / self.low)
-        return np.full_like(u, self.high - self.low if self.bounded else 1.0)
+    def differentiate_values(self, coordinates: FloatArray) -> FloatArray:
+        """Return the derivatives of the values by their coordinates."""
+        if self.is_log:
+            return self.to_values(coordinates) * np.log(self.high / self.low)
+        return np.full_like(coordinates, self.high - self.low if self.is_bounded else 1.0)
 
-    def gathered(self, slopes):
-        """Derivatives (n,) by the numbers, of those by the entry's, which may repeat some."""
-        if self.places is None:
-            return slopes
-        return np.bincount(self.places.ravel(), weights=slopes, minlength=len(self.start))
+    def sum_copies(self, derivatives: FloatArray) -> FloatArray:
+        """Return derivatives by the numbers (n,), given those by all texels, copies included."""
+        if self.texels is None:
+            return derivatives
+        sums: AnyArray = np.bincount(self.texels.ravel(), derivatives, len(self.start))
+        return sums
 
     @property
-    def bounded(self):
+    def is_bounded(self) -> bool:
         """Whether both bounds are finite."""
         return bool(np.isfinite(self.high - self.low))
 
     @property
-    def limits(self):
-        """The least and the largest coordinate."""
-        return (0.0, 1.0) if self.bounded else (self.low, self.high)
+    def limits(self) -> Bounds:
+        """The lowest and the highest coordinate."""
+        return (0.0, 1.0) if self.is_bounded else (self.low, self.high)
 
 
-def choose(parameters, asked):
-    """The `Unknown`s among the `parameters`, what `mitsuba.traverse` says of a scene.
+def choose_unknowns(
+    parameters: MitsubaObject, requested: str | Iterable[str] | Mapping[str, Bounds | None] | None
+) -> list[Unknown]:
+    """Return the `Unknown`s that a user requested.
 
-    `asked`: names, or a dictionary of names with bounds (low, high), None for the usual ones; None
-    for all numbers of brdfkit's models. Raises `BrdfkitError` for a name that is none, one that
-    holds no numbers, for bounds that are none, and where nothing is left to search.
+    `parameters` is what `mitsuba.traverse` returns for the scene. `requested` holds names, or names
+    with their bounds (low, high), where None stands for the default bounds; if it is None itself,
+    all numbers of brdfkit's models are chosen. Raises `BrdfkitError` for unknown names, for entries
+    that cannot be searched, for wrong bounds, and where nothing is left to search.
     """
-    if isinstance(asked, str):
-        asked = [asked]
-    bounds = dict(asked) if isinstance(asked, Mapping) else dict.fromkeys(asked or ())
-    known = searchable(parameters)
-    if asked is None:
+    if isinstance(requested, str):
+        requested = [requested]
+    known = find_searchable(parameters)
+    if requested is None:
         single = {name: key for name, key in known.items() if not is_tensor(parameters[key])}
-        bounds = {name: None for name, key in single.items() if model_of(parameters, key)[0]}
-        if not bounds:
+        requested = [name for name, key in single.items() if find_model(parameters, key)[0]]
+        if not requested:
             raise BrdfkitError(
                 "the scene has no number of a brdfkit model to search; name its parameters, "
                 "as mitsuba.traverse does."
             )
+    bounds = dict(requested) if isinstance(requested, Mapping) else dict.fromkeys(requested, None)
     for name in bounds:
-        if name in keys(parameters) and short(name) not in known:
+        if name in parameters and short_name(name) not in known:
             kind = type(parameters[name]).__name__
             raise BrdfkitError(
-                f"{name}: what it holds ({kind}) is not searched; numbers, colours, vectors and "
-                "textures that Mitsuba differentiates are."
+                f"{name}: its type {kind} cannot be searched; numbers, colours, vectors and "
+                "textures that Mitsuba differentiates can."
             )
-        if short(name) not in known:
+        if short_name(name) not in known:
             raise no_such("parameter", name, known, "the scene")
     if not bounds:
         raise BrdfkitError("parameters is empty; name some, as mitsuba.traverse does.")
-    once = {known[short(name)]: limits for name, limits in bounds.items()}
-    return [_unknown(parameters, key, limits) for key, limits in once.items()]
+    once = {known[short_name(name)]: limits for name, limits in bounds.items()}
+    return [_make_unknown(parameters, key, limits) for key, limits in once.items()]
 
 
-def _unknown(parameters, key, limits):
-    """The `Unknown` of an entry, within the `limits`, None for the usual ones."""
-    value, (model, owner, parameter) = parameters[key], model_of(parameters, key)
-    tensor, colour = is_tensor(value), type(value).__name__.startswith("Color")
-    at = places(parameters, key) if tensor else None
-    start = numbers_of(value, at) if tensor else numbers(value)
-    low = -np.inf if type(value).__name__.startswith(("Point", "Vector")) else 0.0
-    high, log, linear = np.inf, False, colour
+def _make_unknown(parameters: MitsubaObject, key: str, bounds: Bounds | None) -> Unknown:
+    """Return the `Unknown` for the entry `key`; without `bounds` it has the default ones."""
+    value, (model, owner, parameter) = parameters[key], find_model(parameters, key)
+    kind = type(value).__name__
+    texels: IntArray | None = None
+    shape: tuple[int, ...] = ()
+    wraps = False
+    numbers = read_numbers(value)
+    if numbers is None:
+        texels, wraps = number_texels(parameters, key), wraps_around(parameters, key)
+        shape, numbers = find_shape(texels, wraps), read_tensor(value, texels)
+    widest = -np.inf, np.inf
     if model:
         declared = model.parameters[parameter]
-        (low, high), log, linear = declared.bounds, declared.log, declared.linear
+        low, high = widest = declared.bounds
+        is_log, is_linear = declared.log, declared.linear
     else:
-        low, high = usual_bounds(parameters, key, (low, high))
-        log = low > 0  # of a roughness
-    if limits is not None:
-        low, high = _checked(key, limits, *((low, high) if model else (-np.inf, np.inf)))
-    elif (start < low).any():
+        low = -np.inf if kind.startswith(("Point", "Vector")) else 0.0
+        low, high = default_bounds(parameters, key, (low, np.inf))
+        is_log, is_linear = low > 0, kind.startswith("Color")  # only roughnesses have low > 0
+    if bounds is not None:
+        low, high = _to_bounds(key, bounds, *widest)
+    elif (numbers < low).any():
         raise BrdfkitError(f"{key}: it begins below 0; give its bounds, as {{name: (low, high)}}.")
-    start, log = np.clip(start, low, high), log and low > 0
-    around = tensor and wraps(parameters, key)
-    shape = shape_of(at, around) if tensor else ()
     return Unknown(
         key,
-        short(key),
+        short_name(key),
         owner,
         parameter,
         model,
-        start,
-        colour,
-        linear,
+        np.clip(numbers, low, high),
+        kind.startswith("Color"),
+        is_linear,
         low,
         high,
-        log,
+        is_log and low > 0,
         shape,
-        at,
-        around,
-        differentiated_wrongly(parameters, key),
+        texels,
+        wraps,
+        has_wrong_derivatives(parameters, key),
     )
 
 
-def _checked(key, limits, least, most):
-    try:
-        low, high = map(float, limits)
-    except (TypeError, ValueError):
-        raise BrdfkitError(f"{key}: its bounds {limits!r} should be (low, high).") from None
-    if not least <= low < high <= most:
+def _to_bounds(key: str, value: Any, lowest: float, highest: float) -> Bounds:
+    """Return bounds (low, high) that a user gave, which must lie within `lowest` to `highest`."""
+    low, high = to_pair(f"{key}: bounds", value)
+    if not lowest <= low < high <= highest:
         raise BrdfkitError(
             f"{key}: the bounds {low:g} and {high:g} should be a low and a higher value within "
-            f"{least:g}..{most:g}."
+            f"{lowest:g}..{highest:g}."
         )
     return low, high

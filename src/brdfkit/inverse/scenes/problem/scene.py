@@ -1,9 +1,10 @@
-"""What is refined, as a scene of Mitsuba's whose integrator has derivatives."""
+"""Loads the scene that `refine` works on, with an integrator that can be differentiated."""
 
 import re
 from pathlib import Path
 from typing import Any
 
+from brdfkit.core.array_types import MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.resolve import to_material
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
@@ -12,7 +13,7 @@ from brdfkit.model import Model
 from brdfkit.regression import Fit
 from brdfkit.rendering.scenes.ball import ball
 
-# Integrators without derivatives of their own, and the one that sees the same with them
+# Integrators without derivatives of pictures, and the plugin that computes the same light with them
 DIFFERENTIABLE = {
     "PathIntegrator": "prb",
     "DirectIntegrator": "prb",
@@ -21,12 +22,12 @@ DIFFERENTIABLE = {
 }
 
 
-def load_subject(thing: Any, size: tuple[int, int]) -> Any:
-    """The `mitsuba.Scene` that `thing` is or stands for: a scene's dictionary or file, or a
-    material, which is put on the ball of `brdfkit.render`, seen in pictures of `size` (width,
-    height).
+def load_scene(thing: Any, size: tuple[int, int]) -> MitsubaObject:
+    """Return the `mitsuba.Scene` that `thing` is or describes.
 
-    Raises `BrdfkitError` for what Mitsuba cannot load, and for a scene without a sensor.
+    `thing` is a scene, its dictionary or .xml file, or a material, which is then put on the ball of
+    `brdfkit.render`, in pictures of `size` (width, height). Raises `BrdfkitError` for what Mitsuba
+    cannot load, and for a scene without a sensor.
     """
     import mitsuba as mi
 
@@ -35,19 +36,19 @@ def load_subject(thing: Any, size: tuple[int, int]) -> Any:
     elif isinstance(thing, str | Path) and Path(thing).suffix == SUFFIX:
         scene = load_scene_file(thing, optimize=False)
     elif isinstance(thing, dict) and thing.get("type") == "scene":
-        scene = _load(thing, "the scene")
+        scene = _load_dictionary(thing, "the scene")
     else:
-        found = to_material(thing)
-        scene = _load(ball(_coloured(found), size), found.name)
+        material = to_material(thing)
+        scene = _load_dictionary(ball(_with_coloured_weights(material), size), material.name)
     if not scene.sensors():
         raise BrdfkitError("the scene has no sensor to see it with; add one.")
     return scene
 
 
-def integrator_of(scene):
-    """The scene's integrator, or one that sees the same and has derivatives.
+def make_integrator(scene: MitsubaObject) -> MitsubaObject:
+    """Return the scene's integrator, or one that computes the same light and has derivatives.
 
-    Raises `BrdfkitError` for one that has none.
+    Raises `BrdfkitError` for integrators without such a counterpart.
     """
     import mitsuba as mi
 
@@ -56,8 +57,8 @@ def integrator_of(scene):
         raise BrdfkitError('the scene has no integrator; add {"type": "prb"}.')
     kind = integrator.class_name() if type(integrator).__module__ == "mitsuba" else ""
     if kind in DIFFERENTIABLE:
-        how = {"hide_emitters": integrator.hide_emitters, **_depths(str(integrator), kind)}
-        return mi.load_dict({"type": DIFFERENTIABLE[kind], **how})
+        options = {"hide_emitters": integrator.hide_emitters, **_read_depths(integrator, kind)}
+        return mi.load_dict({"type": DIFFERENTIABLE[kind], **options})
     if kind:
         raise BrdfkitError(
             f"the integrator {kind} has no derivatives; choose prb, prbvolpath, or one of "
@@ -66,28 +67,28 @@ def integrator_of(scene):
     return integrator
 
 
-def _depths(described, kind):
-    """The depths of an integrator, as `described` by itself."""
+def _read_depths(integrator: MitsubaObject, kind: str) -> dict[str, int]:
+    """Return the options max_depth and rr_depth of an integrator of class `kind`."""
     if kind == "DirectIntegrator":
         return {"max_depth": 2}
-    found = dict(re.findall(r"(max_depth|rr_depth) = (-?\d+)", described))
-    # Mitsuba prints an endless depth as the largest number
-    return {name: int(number) if int(number) < 2**31 else -1 for name, number in found.items()}
+    depths = dict(re.findall(r"(max_depth|rr_depth) = (-?\d+)", str(integrator)))
+    # Mitsuba prints an unlimited depth as the largest number
+    return {name: int(number) if int(number) < 2**31 else -1 for name, number in depths.items()}
 
 
-def _load(scene, name):
-    """Load a dictionary, equal BSDFs apart, lest names change."""
+def _load_dictionary(scene: dict[str, Any], name: str) -> MitsubaObject:
+    """Load a scene's dictionary; equal BSDFs stay apart, as merging would change their names."""
     import mitsuba as mi
 
     return load_by_mitsuba(
-        lambda entries, **how: mi.load_dict(entries, optimize=False, **how), scene, name
+        lambda entries, **options: mi.load_dict(entries, optimize=False, **options), scene, name
     )
 
 
-def _coloured(found):
-    """The dictionary of a material whose weights have a number for each colour."""
-    entries = found.scene_dict()
-    model = found.model if isinstance(found, Fit) else found
+def _with_coloured_weights(material: Any) -> dict[str, Any]:
+    """Return a material's dictionary in which each weight of a lobe has one number per channel."""
+    entries: dict[str, Any] = material.scene_dict()
+    model = material.model if isinstance(material, Fit) else material
     if isinstance(model, Model):
         for name in model.weights():
             if isinstance(entries.get(name), float):

@@ -1,24 +1,56 @@
-"""The entries of a scene, what `mitsuba.traverse` names: those that may be searched, what they
-hold, and whose they are."""
+"""Reads and writes the entries of a scene that `mitsuba.traverse` lists, and knows their bounds.
+
+`parameters` is always the object that `mitsuba.traverse` returns, and a `key` is a name in it.
+"""
+
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.inverse.scenes.problem.tensors import is_tensor, places, shape_of, tensor_of, wraps
+from brdfkit.inverse.scenes.problem.tensors import (
+    find_shape,
+    is_tensor,
+    make_tensor,
+    number_texels,
+    wraps_around,
+)
+from brdfkit.model import Model
+
+ROUGHNESS_BOUNDS = 0.001, 1.0  # below, samples meet the lobe as rarely as that of a mirror
+SHARE_BOUNDS = 0.0, 1.0
+MITSUBA_BOUNDS = {
+    **dict.fromkeys(("alpha", "alpha_u", "alpha_v", "roughness"), ROUGHNESS_BOUNDS),
+    # Parameters of blendbsdf and mask
+    **dict.fromkeys(("weight", "opacity"), SHARE_BOUNDS),
+    # Parameters of principled and principledthin
+    **dict.fromkeys(("anisotropic", "clearcoat", "clearcoat_gloss", "flatness"), SHARE_BOUNDS),
+    **dict.fromkeys(("metallic", "sheen", "sheen_tint", "spec_tint"), SHARE_BOUNDS),
+    **dict.fromkeys(("spec_trans", "specular"), SHARE_BOUNDS),
+}
+# Parameters by which Mitsuba's derivatives of pictures are wrong: roughplastic tabulates functions
+# of alpha and eta without derivatives, which then are 0.5 to 0.7 of the true ones; those by the
+# colour below a smooth coat are 1.1 times the true ones
+WRONG_DERIVATIVES = {"RoughPlastic": ("alpha", "eta"), "SmoothPlastic": ("diffuse_reflectance",)}
 
 
-def searchable(parameters):
-    """The keys of all numbers, colours, vectors and tensors of a scene, by name."""
+def find_searchable(parameters: MitsubaObject) -> dict[str, str]:
+    """Return the keys of all numbers, colours, vectors and tensors of a scene, by short name."""
     return {
-        short(key): key
-        for key in keys(parameters)
-        if numbers(parameters[key]) is not None or is_tensor(parameters[key])
+        short_name(key): key
+        for key in parameters.properties
+        if read_numbers(parameters[key]) is not None or is_tensor(parameters[key])
     }
 
 
-def model_of(parameters, key):
-    """(model's class, name of the BSDF, name of the parameter) of an entry; None of others."""
-    *path, parameter = short(key).removesuffix(".data").split(".")
+def find_model(parameters: MitsubaObject, key: str) -> tuple[type[Model] | None, str, str]:
+    """Return the brdfkit model whose parameter an entry is, its BSDF's name, and the parameter's.
+
+    The model is None, and the BSDF's name empty, for entries that belong to no brdfkit model.
+    """
+    *path, parameter = short_name(key).removesuffix(".data").split(".")
     texture = parameters.properties[key][2]
     parent = parameters.hierarchy.get(texture, (None, 0))[0]
     model = getattr(parent, "model", None)
@@ -27,64 +59,94 @@ def model_of(parameters, key):
     return model, ".".join(path), parameter
 
 
-def numbers(value):
-    """The numbers (n,) of an entry's value; None where it holds none, or thousands."""
+def read_numbers(value: MitsubaObject) -> FloatArray | None:
+    """Return the numbers (n,) of an entry, n ≤ 4; None for tensors and for what has no numbers."""
     import drjit as dr
 
     if isinstance(value, bool) or not (dr.is_array_v(value) and dr.is_float_v(value)):
         return None
-    held = np.array(value, float).ravel()
-    vector = type(value).__name__.startswith(("Float", "Color", "Vector", "Point"))
-    return held if vector and len(held) <= 4 else None
+    numbers = np.array(value, float).ravel()
+    is_vector = type(value).__name__.startswith(("Float", "Color", "Vector", "Point"))
+    return numbers if is_vector and len(numbers) <= 4 else None
 
 
-def keys(parameters):
-    """The names that `mitsuba.traverse` found."""
-    return list(parameters.keys())
-
-
-def short(key):
-    """A name without ".value" at its end, of which there may be two."""
+def short_name(key: str) -> str:
+    """Return a key without the ".value" at its end, which may occur twice."""
     while key.endswith(".value"):
         key = key.removesuffix(".value")
     return key
 
 
-def numbers_in(parameters, owner, model):
-    """The values of all parameters of a `model`, the BSDF `owner`, by name; None where one of them
-    is a texture."""
-    known, found = searchable(parameters), {}
+def read_model_values(
+    parameters: MitsubaObject, owner: str, model: type[Model]
+) -> dict[str, Any] | None:
+    """Return the values of all parameters of the BSDF `owner`, a brdfkit `model`, by name.
+
+    Returns None where one of the parameters is a texture.
+    """
+    known, values = find_searchable(parameters), {}
     for name, declared in model.parameters.items():
         key = known.get(f"{owner}.{name}")
-        if key is None:
-            if declared.follows:
-                continue
+        numbers = None if key is None else read_numbers(parameters[key])
+        if numbers is not None:
+            values[name] = tuple(map(float, numbers)) if len(numbers) > 1 else float(numbers[0])
+        elif key is not None or not declared.follows:
             return None
-        held = numbers(parameters[key])
-        found[name] = tuple(map(float, held)) if len(held) > 1 else float(held[0])
-    return found
+    return values
 
 
-def put_values(scene, values):
-    """Put `values`, by the names of `Unknown`s, into a scene of Mitsuba's."""
+def put_values(scene: MitsubaObject, values: Mapping[str, Any]) -> None:
+    """Write `values`, by the names of `Unknown`s, into a Mitsuba scene."""
     import mitsuba as mi
 
     parameters = mi.traverse(scene)
-    known = searchable(parameters)
+    known = find_searchable(parameters)
     for name, value in values.items():
         if name not in known:
             raise no_such("parameter", name, known)
-        parameters[known[name]] = _entry(parameters, known[name], value)
+        parameters[known[name]] = _to_entry(parameters, known[name], value)
     parameters.update()
 
 
-def _entry(parameters, key, value):
-    """A value as the entry `key` of a scene."""
+def _to_entry(parameters: MitsubaObject, key: str, value: Any) -> MitsubaObject:
+    """Convert a float, a tuple or an array to the Mitsuba type of the entry `key`."""
     kind = type(parameters[key])
     if not isinstance(value, np.ndarray):
         return kind(*value) if isinstance(value, tuple) else kind(value)
-    at = places(parameters, key)
-    shape = shape_of(at, wraps(parameters, key))
+    texels = number_texels(parameters, key)
+    shape = find_shape(texels, wraps_around(parameters, key))
     if shape != value.shape:
         raise BrdfkitError(f"{key}: it has the shape {shape}, and its values {value.shape}.")
-    return tensor_of(value, at)
+    return make_tensor(value, texels)
+
+
+def default_bounds(
+    parameters: MitsubaObject, key: str, otherwise: tuple[float, float]
+) -> tuple[float, float]:
+    """Return the bounds (low, high) of a share or a roughness of one of Mitsuba's own BSDFs.
+
+    Returns `otherwise` for all other entries.
+    """
+    owner, name = _find_mitsuba_bsdf(parameters, key)
+    return MITSUBA_BOUNDS.get(name, otherwise) if owner else otherwise
+
+
+def has_wrong_derivatives(parameters: MitsubaObject, key: str) -> bool:
+    """Return whether Mitsuba's derivatives of pictures by an entry are known to be wrong."""
+    owner, name = _find_mitsuba_bsdf(parameters, key)
+    return name in WRONG_DERIVATIVES.get(owner, ())
+
+
+def _find_mitsuba_bsdf(parameters: MitsubaObject, key: str) -> tuple[str, str]:
+    """Return the class of the Mitsuba BSDF that an entry belongs to, and the parameter's name.
+
+    The class is "" for entries that belong to something else, such as a light or a brdfkit model.
+    """
+    import mitsuba as mi
+
+    path = key.split(".")
+    owner = parameters.properties[key][2]
+    if path[-1] in ("value", "data"):  # the entry belongs to a texture, and that to the BSDF
+        owner, path = parameters.hierarchy.get(owner, (None, 0))[0], path[:-1]
+    is_bsdf = isinstance(owner, mi.BSDF) and type(owner).__module__ == "mitsuba"
+    return (owner.class_name(), path[-1]) if is_bsdf else ("", path[-1])

@@ -1,61 +1,78 @@
-"""The pictures that are to be reached: read, checked, and weighed pixel by pixel."""
+"""Reads the pictures that `refine` has to match, and weighs their pixels."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray
 from brdfkit.core.colours import from_srgb
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.inverse.scenes.problem.masks import read_masks
-from brdfkit.mitsuba_bridge.properties.picture_file import read_photograph
+from brdfkit.core.files import require_file
+from brdfkit.mitsuba_bridge.properties.picture_file import read_photograph, read_pixels
 
-DARK = 0.02  # of the mean brightness, added to a pixel's: no difference counts without end then
-WHITE = 0.99  # the share of numbers that are darker than white
-CLIPPED = 1e-3  # the share of numbers that equal the largest: not by chance
+DARK_OFFSET = 0.02  # of the mean brightness, added to a pixel's, so that weights stay finite
+WHITE_QUANTILE = 0.99  # the share of numbers that are darker than white
+CLIPPED_SHARE = 1e-3  # of the numbers: if more equal the largest one, this is not by chance
+
+Pictures = FloatArray | str | Path | Iterable[FloatArray | str | Path]
 
 
 @dataclass(frozen=True)
 class Target:
-    """A picture to reach: `pixels` (height, width, channels); their `weights` (the same shape), 0
-    where they are masked or clipped; the sum of the mask over the numbers that are not, their
-    `count`; the share that is `clipped`; `seen`, which pixels (height, width) are not masked."""
+    """A picture to match.
 
-    pixels: np.ndarray
-    weights: np.ndarray
+    pixels : linear values (height, width, channels).
+    weights : the weight of each squared difference, in the same shape; 0 where the pixel is masked
+        or clipped.
+    count : the sum of the mask over the numbers that are not clipped.
+    clipped : the share of numbers that are clipped.
+    unmasked : which pixels (height, width) the mask lets through.
+    """
+
+    pixels: FloatArray
+    weights: FloatArray
     count: float
     clipped: float
-    seen: np.ndarray
+    unmasked: BoolArray
 
     @property
-    def size(self):
-        """(width, height)."""
+    def size(self) -> tuple[int, int]:
+        """The width and height in pixels."""
         return self.pixels.shape[1], self.pixels.shape[0]
 
 
-def read_targets(pictures, linearise=False, mask=None):
-    """The `Target`s of one picture or several: arrays (height, width[, channels]) or paths.
+def read_targets(
+    pictures: Pictures, accept_8_bit: bool = False, mask: Pictures | None = None
+) -> list[Target]:
+    """Return the `Target`s of one picture or several, arrays (height, width[, channels]) or paths.
 
-    `mask`: see `read_masks`. Raises `BrdfkitError` for what is no picture, not finite, or of 8
-    bits, unless it is to `linearise` by sRGB's curve.
+    `mask` is as for `read_masks`. Raises `BrdfkitError` for what is not a picture, for pixels that
+    are not finite, and for pictures of 8 bits unless `accept_8_bit`, which inverts sRGB's curve.
     """
-    alone = isinstance(pictures, str | Path) or getattr(pictures, "ndim", 4) < 4
-    several = [pictures] if alone else list(pictures)
+    value: Any = pictures
+    alone = isinstance(value, str | Path) or getattr(value, "ndim", 4) < 4
+    several = [value] if alone else list(value)
     if not several:
-        raise BrdfkitError("there is no picture to reach; give one for each sensor.")
+        raise BrdfkitError("there is no picture to match; give one for each sensor.")
     masks = read_masks(mask, len(several))
     return [
-        _read(one, f"picture {number}", linearise, mask)
+        _read_target(one, f"picture {number}", accept_8_bit, mask)
         for number, (one, mask) in enumerate(zip(several, masks, strict=True))
     ]
 
 
-def _read(picture, name, linearise, mask):
+def _read_target(picture: Any, name: str, accept_8_bit: bool, mask: FloatArray | None) -> Target:
+    """Return the `Target` of one picture, which errors call `name`."""
     if isinstance(picture, str | Path):
-        picture, name = read_photograph(picture, linearise), str(picture)
-    pixels = np.asarray(picture)
+        picture, name = read_photograph(picture, accept_8_bit), str(picture)
+    pixels: FloatArray = np.asarray(picture)
     if pixels.dtype == np.uint8:
-        if not linearise:
+        if not accept_8_bit:
             raise BrdfkitError(
                 f"{name}: its numbers have 8 bits, behind a curve for screens; give linear pixels, "
                 "as of an OpenEXR file, or say linearise=True, for sRGB's curve."
@@ -65,62 +82,105 @@ def _read(picture, name, linearise, mask):
         pixels = pixels[..., None]
     if pixels.ndim != 3 or pixels.shape[2] not in (1, 3, 4) or not pixels.size:
         raise BrdfkitError(
-            f"{name}: its shape {pixels.shape} is no picture's; it should be (height, width, 3)."
+            f"{name}: its shape {pixels.shape} should be that of a picture, (height, width, 3)."
         )
     pixels = pixels[..., :3].astype(float)
     mask = np.ones(pixels.shape[:2]) if mask is None else mask
     if mask.shape != pixels.shape[:2]:
         raise BrdfkitError(
-            f"{name}: its mask has the shape {mask.shape}, and it {pixels.shape[:2]}: they should "
-            "be equal."
+            f"{name}: its mask has the shape {mask.shape} and the picture {pixels.shape[:2]}; they "
+            "should be equal."
         )
     pixels = np.where(mask[..., None] > 0, pixels, 0)
-    if not np.isfinite(pixels).all():
-        raise BrdfkitError(f"{name}: {_count_bad(pixels)} of its pixels are not finite.")
+    finite = np.isfinite(pixels).all(axis=2)
+    if not finite.all():
+        raise BrdfkitError(f"{name}: {(~finite).sum():,} of its pixels are not finite.")
     if not pixels.max() > 0:
         raise BrdfkitError(f"{name}: it is black; nothing can be learned from it.")
-    counts = np.broadcast_to(mask[..., None], pixels.shape)
-    clipped = _clipped(pixels, counts > 0)
-    counts = np.where(clipped, 0, counts)
-    share = clipped.sum() / (pixels.shape[2] * np.count_nonzero(mask))
-    return Target(pixels, counts * _weights(pixels, mask > 0), counts.sum(), float(share), mask > 0)
+    share = np.broadcast_to(mask[..., None], pixels.shape)
+    clipped = _find_clipped(pixels, share > 0)
+    share = np.where(clipped, 0, share)
+    return Target(
+        pixels,
+        share * _weigh_pixels(pixels, mask > 0),
+        share.sum(),
+        float(clipped.sum() / (pixels.shape[2] * np.count_nonzero(mask))),
+        mask > 0,
+    )
 
 
-def _count_bad(pixels):
-    return f"{(~np.isfinite(pixels)).any(axis=2).sum():,}"
-
-
-def _clipped(pixels, counts):
-    """Which of the numbers that count are at the end of what a camera could hold."""
-    at_end = counts & (pixels == pixels.max())
-    many = at_end.sum() > max(8, CLIPPED * counts.sum())
+def _find_clipped(pixels: FloatArray, counted: BoolArray) -> BoolArray:
+    """Return which of the `counted` numbers are clipped at the largest value of the camera."""
+    at_end = counted & (pixels == pixels.max())
+    many = at_end.sum() > max(8, CLIPPED_SHARE * counted.sum())
     return at_end if many else np.zeros_like(at_end)
 
 
-def _weights(pixels, seen):
-    """What the square of a pixel's difference counts, by the slope of sRGB's curve at the pixel, as
-    a screen shows it; relative to the pixel where it is brighter than white. White and means are
-    those of the pixels that are `seen` (height, width).
+def _weigh_pixels(pixels: FloatArray, unmasked: BoolArray) -> FloatArray:
+    """Return the weight of each squared difference, in the shape of `pixels`.
 
-    The curve itself would bias what is rendered with noise; its slope at the picture does not.
+    The weight is the squared slope of sRGB's curve at the pixel's brightness, so that differences
+    count as a screen shows them; for pixels brighter than white, relative differences count. The
+    curve itself would bias noisy renderings, but its slope at the target picture does not. White
+    level and means are taken over the `unmasked` pixels (height, width).
     """
-    white = white_of(pixels[seen])
-    x = (_neighbourhood(pixels, seen) + DARK * pixels[seen].mean()) / white
+    white = find_white(pixels[unmasked])
+    x = (_average_neighbours(pixels, unmasked) + DARK_OFFSET * pixels[unmasked].mean()) / white
     shown = np.minimum(x, 1)
     slope = np.where(shown <= 0.0031308, 12.92, 1.055 / 2.4 * shown ** (1 / 2.4 - 1))
     return (slope / (white * np.maximum(x, 1))) ** 2
 
 
-def white_of(pixels):
-    """What is white among the `pixels` that are seen: the largest, where nearly all are black."""
-    return np.quantile(pixels, WHITE) or pixels.max()
+def find_white(pixels: AnyArray) -> Any:
+    """Return the white level, exceeded by 1 % of the numbers; the largest if that is 0."""
+    return np.quantile(pixels, WHITE_QUANTILE) or pixels.max()
 
 
-def _neighbourhood(pixels, seen):
-    """Means over those of 5 by 5 pixels that are `seen`, the others 0: weights that went with a
-    pixel's own noise would mislead."""
+def _average_neighbours(pixels: FloatArray, unmasked: BoolArray) -> FloatArray:
+    """Return the mean of the `unmasked` pixels within 5 × 5 pixels around each.
+
+    Weights from single pixels would correlate with the pixels' noise and bias the result.
+    """
     from scipy.ndimage import uniform_filter
 
-    seen = seen[..., None].astype(float)
-    total, share = (uniform_filter(a, size=(5, 5, 1), mode="nearest") for a in (pixels, seen))
+    share = unmasked[..., None].astype(float)
+    total, share = (uniform_filter(a, size=(5, 5, 1), mode="nearest") for a in (pixels, share))
     return np.maximum(total / np.maximum(share, 1 / 25), 0)
+
+
+def read_masks(mask: Any, count: int) -> list[FloatArray | None]:
+    """Return a mask (height, width) of weights for each of `count` pictures.
+
+    `mask` is None, an array or a path if there is one picture, or a sequence of these. A result of
+    None means that all pixels count. Raises `BrdfkitError` for a wrong number of masks, and for a
+    mask that is not a picture of weights ≥ 0, or is 0 everywhere.
+    """
+    if mask is None:
+        return [None] * count
+    alone = isinstance(mask, str | Path) or (count == 1 and isinstance(mask, np.ndarray))
+    several = [mask] if alone else list(mask)
+    if len(several) != count:
+        raise BrdfkitError(
+            f"refine: there should be one mask for each picture: {len(several)} for {count}."
+        )
+    return [None if one is None else _read_mask(one, number) for number, one in enumerate(several)]
+
+
+def _read_mask(value: Any, number: int) -> FloatArray:
+    """Return a mask (height, width) from an array or a path; `number` names it in errors."""
+    name = f"refine: mask {number}"
+    if isinstance(value, str | Path):
+        name = str(value)
+        value = read_pixels(require_file(value), name).mean(axis=2)
+    mask: AnyArray = np.asarray(value)
+    if mask.ndim != 2 or mask.dtype.kind not in "biuf":
+        raise BrdfkitError(
+            f"{name}: its shape {mask.shape} of {mask.dtype} should be (height, width) of booleans "
+            "or weights."
+        )
+    weights = mask.astype(float)
+    if not (np.isfinite(weights) & (weights >= 0)).all():
+        raise BrdfkitError(f"{name}: its weights should be finite numbers ≥ 0.")
+    if not weights.any():
+        raise BrdfkitError(f"{name}: it is 0 everywhere; no pixel would count.")
+    return weights

@@ -1,99 +1,67 @@
-"""Tensors that are searched: texels of textures and environment maps, voxels of volumes."""
+"""Converts between tensors of a scene, such as textures and volumes, and their independent numbers.
+
+Mitsuba's environment maps store their first and last column twice, once at each end. A search has
+to move a texel together with its copy, so it works on the independent numbers only.
+"""
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray, IntArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 
 
-def roughness(unknowns, parts):
-    """(the sum of it over all tensors, its derivatives (n,)) at coordinates, the `parts`.
-
-    Coordinates without an upper bound count relative to the mean at the start. Numbers that are no
-    tensors have no neighbours.
-    """
-    total, slopes = 0.0, []
-    for unknown, part in zip(unknowns, parts, strict=True):
-        if unknown.shape:
-            scale = _scale(unknown)
-            one, slope = _of_one(part.reshape(unknown.shape) / scale, unknown.around)
-            total += one
-            slopes.append(slope.ravel() / scale)
-        else:
-            slopes.append(np.zeros(len(part)))
-    return total, np.concatenate(slopes)
-
-
-def _scale(unknown):
-    if np.isfinite(unknown.high):
-        return 1.0
-    return max(float(np.abs(unknown.coordinates(unknown.start)).mean()), 1e-6)
-
-
-def _of_one(values, around):
-    """Of one tensor (..., channels), its second axis a circle where it goes `around`."""
-    total, slope = 0.0, np.zeros_like(values)
-    for axis in range(values.ndim - 1):
-        change = np.roll(values, -1, axis) - values
-        if not (around and axis == 1):
-            np.moveaxis(change, axis, 0)[-1] = 0
-        total += (change**2).sum() / values.size
-        slope += 2 * (np.roll(change, 1, axis) - change) / values.size
-    return total, slope
-
-
-def is_tensor(value):
-    """Whether an entry of a scene is a tensor."""
+def is_tensor(value: MitsubaObject) -> bool:
+    """Return whether the value of a scene entry is a tensor."""
     import drjit as dr
 
     return bool(dr.is_tensor_v(value))
 
 
-def places(parameters, key):
-    """Which number (height, width, ...) each texel of the tensor `key` shows.
+def number_texels(parameters: MitsubaObject, key: str) -> IntArray:
+    """Return the index of the independent number that each texel of the tensor `key` holds.
 
-    Mitsuba's environment maps repeat their last column before the first, and their first one
-    after the last; of others every texel is a number of its own.
-
-    Raises `BrdfkitError` for a tensor that is not of 32-bit floats.
+    The result has the tensor's shape. Only environment maps of Mitsuba hold a number twice: their
+    last column is repeated before the first one, and their first column after the last one. Raises
+    `BrdfkitError` for a tensor that is empty or does not consist of 32-bit floats.
     """
     import mitsuba as mi
 
     value = parameters[key]
     if type(value) is not mi.TensorXf:
         raise BrdfkitError(
-            f"{key}: its texels ({type(value).__name__}) are no numbers of 32 bits to search; load "
-            'the texture from a mitsuba.Bitmap of floats, or with "format": "fp32".'
+            f"{key}: its texels ({type(value).__name__}) are not 32-bit floats, which a search "
+            'needs; load the texture from a mitsuba.Bitmap of floats, or with "format": "fp32".'
         )
     if not np.prod(value.shape):
         raise BrdfkitError(f"{key}: it is empty.")
-    if not wraps(parameters, key):
+    if not wraps_around(parameters, key):
         return np.arange(np.prod(value.shape)).reshape(value.shape)
     height, width, channels = value.shape
     inner = np.arange(height * (width - 2) * channels).reshape(height, width - 2, channels)
     return np.pad(inner, ((0, 0), (1, 1), (0, 0)), mode="wrap")
 
 
-def wraps(parameters, key):
-    """Whether the columns of a tensor go around: those of Mitsuba's environment maps."""
+def wraps_around(parameters: MitsubaObject, key: str) -> bool:
+    """Return whether a tensor is an environment map, whose last column is beside its first."""
     owner = parameters.properties[key][2]
     return hasattr(owner, "class_name") and owner.class_name() == "EnvironmentMapEmitter"
 
 
-def numbers_of(value, places):
-    """The numbers (n,) of a tensor."""
-    found = np.empty(places.max() + 1)
-    found[places.ravel()] = np.array(value, float).ravel()
-    return found
+def read_tensor(value: MitsubaObject, texels: IntArray) -> FloatArray:
+    """Return the independent numbers (n,) of a tensor; `texels` is from `number_texels`."""
+    numbers: FloatArray = np.empty(texels.max() + 1)
+    numbers[texels.ravel()] = np.array(value, float).ravel()
+    return numbers
 
 
-def shape_of(places, around):
-    """The shape of the numbers, without what is repeated."""
-    height, width, *rest = places.shape
-    return (height, width - 2, *rest) if around else places.shape
-
-
-def tensor_of(numbers, places):
-    """Mitsuba's tensor of numbers (n,)."""
+def make_tensor(numbers: AnyArray, texels: IntArray) -> MitsubaObject:
+    """Return the Mitsuba tensor that holds independent numbers, in total n, in its texels."""
     import mitsuba as mi
 
-    return mi.TensorXf(np.float32(np.ravel(numbers)[places]))
+    return mi.TensorXf(np.ravel(numbers)[texels].astype(np.float32))
+
+
+def find_shape(texels: IntArray, wraps: bool) -> tuple[int, ...]:
+    """Return the shape of a tensor without the two columns that an environment map repeats."""
+    height, width, *others = texels.shape
+    return (height, width - 2, *others) if wraps else texels.shape

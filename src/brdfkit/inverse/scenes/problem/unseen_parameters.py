@@ -1,38 +1,49 @@
-"""Numbers that no picture shows, and the weights of 0 that may hide them."""
+"""Explains why the pictures do not depend on a parameter: often a lobe's weight is 0."""
+
+from collections.abc import Collection
 
 import numpy as np
 
+from brdfkit.core.array_types import MitsubaObject
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.inverse.scenes.problem.scene_parameters import numbers_in
+from brdfkit.inverse.scenes.problem.parameters import Unknown
+from brdfkit.inverse.scenes.problem.scene_parameters import read_model_values
+from brdfkit.inverse.scenes.problem.views import Views
 
 
-def nothing_seen(views):
-    """The `BrdfkitError` for numbers on which no picture depends."""
+def no_effect_error(views: Views) -> BrdfkitError:
+    """Return the error for parameters of which none has an effect on any picture."""
     names = ", ".join(unknown.name for unknown in views.unknowns)
-    zero = {name for unknown in views.unknowns for name in _hiding(views.parameters, unknown)}
+    zero = {name for u in views.unknowns for name in _find_zero_weights(views.parameters, u)}
     hidden = f"{', '.join(sorted(zero))} = 0 hides it, " if zero else ""
     return BrdfkitError(
-        f"no picture changes with {names}: either {hidden}nothing of it is seen, or the integrator "
+        f"no picture changes with {names}: either {hidden}it is not in view, or the integrator "
         "does not differentiate it."
     )
 
 
-def notes_on_weights(views, certainty):
-    """What weights that ended at 0 hide of the numbers that are not determined."""
-    known = certainty.names
-    hidden = [u for u in views.unknowns if not u.shape and not any(n in known for n in u.names)]
-    zero = dict.fromkeys(name for u in hidden for name in _hiding(views.parameters, u))
+def describe_zero_weights(views: Views, determined: Collection[str]) -> tuple[str, ...]:
+    """Return a sentence for each weight that ended at 0 and hides parameters of its lobe.
+
+    `determined` holds the names of the numbers that the pictures determine.
+    """
+    hidden = [
+        u for u in views.unknowns if not u.shape and not any(n in determined for n in u.names)
+    ]
+    zero = dict.fromkeys(name for u in hidden for name in _find_zero_weights(views.parameters, u))
     return tuple(
-        f"{name} = 0 hides what it multiplies; begin above 0, or with more starts, to see it"
+        f"{name} = 0 hides what it multiplies; to find it, begin above 0, or with more starts"
         for name in zero
     )
 
 
-def _hiding(parameters, unknown):
-    """The names of the weights of an unknown's model that are 0, which may hide what they multiply;
-    none of a weight itself, and of no model's number."""
-    if not unknown.model or unknown.linear:
+def _find_zero_weights(parameters: MitsubaObject, unknown: Unknown) -> list[str]:
+    """Return the names of the weights that are 0 in the BSDF of an unknown shape parameter.
+
+    Weights themselves are not hidden by others, and only brdfkit's models have known weights.
+    """
+    if not unknown.model or unknown.is_linear:
         return []
-    known = numbers_in(parameters, unknown.owner, unknown.model) or {}
-    weights = [name for name in unknown.model.weights() if name in known]
-    return [f"{unknown.owner}.{name}" for name in weights if not np.any(known[name])]
+    values = read_model_values(parameters, unknown.owner, unknown.model) or {}
+    weights = [name for name in unknown.model.weights() if name in values]
+    return [f"{unknown.owner}.{name}" for name in weights if not np.any(values[name])]

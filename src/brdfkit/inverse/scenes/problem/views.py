@@ -1,148 +1,145 @@
-"""The pictures of a scene at given parameters, beside those to reach."""
+"""Renders a scene at given parameters and compares its pictures with the target pictures."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.loops import first_error
 from brdfkit.inverse.scenes.problem.leverage import number_blocks
-from brdfkit.inverse.scenes.problem.tensors import tensor_of
+from brdfkit.inverse.scenes.problem.parameters import Unknown
+from brdfkit.inverse.scenes.problem.targets import Target
+from brdfkit.inverse.scenes.problem.tensors import make_tensor
 
-ON_BOUND = 1e-6  # a coordinate so near to a bound is on it
+BOUND_DISTANCE = 1e-6  # a coordinate that is closer to a bound counts as being on it
 
 
 class Views:
-    """A scene of Mitsuba's, seen by its sensors, beside a picture to reach for each.
+    """A scene, the parameters to search in it, and a target picture for each of its sensors.
 
-    scene, integrator : Mitsuba's.
+    The n numbers of all unknowns form one vector of coordinates `x` (n,), which all methods take.
+    The pixels of all sensors form one axis.
+
+    scene, integrator : Mitsuba's objects.
     targets : a `Target` for each sensor.
-    parameters : what `mitsuba.traverse` says of the scene.
-    unknowns : `Unknown`s; their coordinates are the `x` (n,) of all methods.
-    seen : which pixels (pixels,) count.
+    parameters : what `mitsuba.traverse` returns for the scene.
+    unknowns : the entries to search.
+    target_pixels, weights : the targets' pixels and weights, (pixels, channels).
+    counted : which pixels (pixels,) have a weight above 0.
+    blocks : the blocks of pixels whose noise is correlated, from `number_blocks`.
+    cost : samples per pixel rendered so far; derivatives count by the time that they take.
     """
 
-    def __init__(self, scene, integrator, targets, parameters, unknowns):
+    def __init__(
+        self,
+        scene: MitsubaObject,
+        integrator: MitsubaObject,
+        targets: list[Target],
+        parameters: MitsubaObject,
+        unknowns: list[Unknown],
+    ) -> None:
         self.scene, self.integrator = scene, integrator
         self.targets, self.parameters, self.unknowns = targets, parameters, unknowns
         self.ends = np.cumsum([len(unknown.start) for unknown in unknowns])
-        _require_fit(scene, targets)
-        self.reached = self.joined([target.pixels for target in targets])
-        self.weights = self.joined([target.weights for target in targets])
+        _check_sizes(scene, targets)
+        self.target_pixels = self.join_pictures([target.pixels for target in targets])
+        self.weights = self.join_pictures([target.weights for target in targets])
         self.weights /= sum(target.count for target in targets)
-        self.seen = (self.weights > 0).any(axis=1)
-        self.blocks = number_blocks(scene, self.seen)
-        self.renders = 0.0  # samples per pixel, those of derivatives counted by their time
+        self.counted: BoolArray = np.any(self.weights > 0, axis=1)
+        self.blocks = number_blocks(scene, self.counted)
+        self.cost = 0.0
 
-    def values(self, x):
-        """The numbers of each unknown at the coordinates `x`."""
-        return [unknown.table(u) for unknown, u in zip(self.unknowns, self.parts(x), strict=True)]
+    def to_values(self, x: FloatArray) -> list[FloatArray]:
+        """Return the numbers of each unknown at the coordinates `x`."""
+        return [u.to_values(part) for u, part in zip(self.unknowns, self.split(x), strict=True)]
 
-    def slopes(self, x):
-        """The derivatives (n,) of the values by their coordinates."""
-        parts = zip(self.unknowns, self.parts(x), strict=True)
-        return np.concatenate([unknown.slopes(u) for unknown, u in parts])
+    def differentiate_values(self, x: FloatArray) -> FloatArray:
+        """Return the derivatives (n,) of the values by their coordinates."""
+        parts = zip(self.unknowns, self.split(x), strict=True)
+        return np.concatenate([unknown.differentiate_values(part) for unknown, part in parts])
 
-    def is_on_bound(self, x):
-        """Whether (n,) coordinates are on a bound, but for rounding."""
-        return (x <= self.least + ON_BOUND) | (x >= self.most - ON_BOUND)
+    def is_on_bound(self, x: FloatArray) -> BoolArray:
+        """Return which coordinates (n,) are on a bound, up to rounding."""
+        return (x <= self.lower_bounds + BOUND_DISTANCE) | (x >= self.upper_bounds - BOUND_DISTANCE)
 
-    def parts(self, x):
-        """Numbers (n,) as those of each unknown."""
+    def split(self, x: AnyArray) -> list[AnyArray]:
+        """Return an array (n,) split into the parts that belong to each unknown."""
         return np.split(np.asarray(x), self.ends[:-1])
 
     @property
-    def start(self):
-        """The coordinates of the scene as it is given."""
-        return np.concatenate([unknown.coordinates(unknown.start) for unknown in self.unknowns])
+    def start(self) -> FloatArray:
+        """The coordinates (n,) of the scene's own values, where the search begins."""
+        return np.concatenate([unknown.to_coordinates(unknown.start) for unknown in self.unknowns])
 
     @property
-    def least(self):
-        """The least coordinates."""
-        return self._limits(0)
+    def lower_bounds(self) -> FloatArray:
+        """The lower bounds (n,) of the coordinates."""
+        return self._repeat(unknown.limits[0] for unknown in self.unknowns)
 
     @property
-    def most(self):
-        """The largest coordinates."""
-        return self._limits(1)
+    def upper_bounds(self) -> FloatArray:
+        """The upper bounds (n,) of the coordinates."""
+        return self._repeat(unknown.limits[1] for unknown in self.unknowns)
 
-    def _limits(self, end):
-        return self._of_each(unknown.limits[end] for unknown in self.unknowns)
-
-    def _of_each(self, values):
-        """Those of the unknowns, as of each of their numbers (n,)."""
+    def _repeat(self, values: Iterable[Any]) -> AnyArray:
+        """Return one value per unknown, repeated for each of its numbers: (n,)."""
         return np.repeat(list(values), [len(unknown.start) for unknown in self.unknowns])
 
     @property
-    def names(self):
-        """A name for each number."""
+    def names(self) -> tuple[str, ...]:
+        """A name for each of the n numbers."""
         return tuple(name for unknown in self.unknowns for name in unknown.names)
 
     @property
-    def linear(self):
-        """Whether (n,) pictures of direct light are linear in a number."""
-        return self._of_each(unknown.linear for unknown in self.unknowns)
+    def is_linear(self) -> BoolArray:
+        """Whether pictures of direct light are linear in each number (n,)."""
+        return self._repeat(unknown.is_linear for unknown in self.unknowns)
 
     @property
-    def wrongly(self):
-        """Whether (n,) Mitsuba's derivatives by a number are wrong."""
-        return self._of_each(unknown.wrongly for unknown in self.unknowns)
+    def is_nonlinear_share(self) -> BoolArray:
+        """Whether each number (n,) has two finite bounds, and pictures are not linear in it."""
+        return self._repeat(u.is_bounded and not u.is_linear for u in self.unknowns)
 
     @property
-    def endless(self):
-        """Whether (n,) a number is a weight of a model, of which there is no largest."""
-        return self._of_each(bool(u.model) and u.linear and not u.bounded for u in self.unknowns)
+    def is_unlimited_weight(self) -> BoolArray:
+        """Whether each number (n,) is the weight of a model's lobe, without an upper bound."""
+        return self._repeat(
+            u.model is not None and u.is_linear and not u.is_bounded for u in self.unknowns
+        )
 
     @property
-    def curved(self):
-        """Whether (n,) a number lies between two bounds, and pictures are not linear in it."""
-        return self._of_each(unknown.bounded and not unknown.linear for unknown in self.unknowns)
+    def has_wrong_derivatives(self) -> BoolArray:
+        """Whether Mitsuba's derivatives by each number (n,) are wrong."""
+        return self._repeat(unknown.has_wrong_derivatives for unknown in self.unknowns)
 
-    def residuals(self, x, spp, seed):
-        """Rendered less reached pixels (pixels, channels), by `spp` samples of a `seed`."""
+    def render_residuals(self, x: FloatArray, spp: int, seed: int) -> FloatArray:
+        """Return rendered minus target pixels (pixels, channels) at `x`, with `spp` samples."""
         self.put(x)
-        return self._render(spp, seed) - self.reached
+        self.cost += spp
+        with first_error():
+            pictures = [
+                self.integrator.render(self.scene, sensor=sensor, seed=int(seed) + i, spp=int(spp))
+                for i, sensor in enumerate(self.scene.sensors())
+            ]
+            return self.join_pictures(pictures) - self.target_pixels
 
-    def as_pictures(self, pixels):
-        """Pixels (pixels, channels) as a picture (height, width, channels) for each sensor."""
-        found = []
+    def split_pictures(self, pixels: AnyArray) -> list[AnyArray]:
+        """Return pixels (pixels, channels) as a picture (height, width, channels) per sensor."""
+        pictures = []
         for target in self.targets:
             count = np.prod(target.size)
-            found.append(pixels[:count].reshape(target.pixels.shape))
+            pictures.append(pixels[:count].reshape(target.pixels.shape))
             pixels = pixels[count:]
-        return found
+        return pictures
 
-    def put(self, x):
-        """Put the values at `x` into the scene, and leave them there."""
-        self.put_entries(self.entries(x))
-
-    def entries(self, x):
-        """What the scene holds of each unknown at the coordinates `x`."""
-        values = zip(self.unknowns, self.values(x), strict=True)
-        return [_entry(self.parameters, unknown, value) for unknown, value in values]
-
-    def put_entries(self, entries):
-        """Put what `entries` of the unknowns hold into the scene."""
-        for unknown, entry in zip(self.unknowns, entries, strict=True):
-            self.parameters[unknown.key] = entry
-        with first_error():
-            self.parameters.update()
-
-    def _render(self, spp, seed):
-        self.renders += spp
-        with first_error():
-            return self.joined(
-                [
-                    self.integrator.render(
-                        self.scene, sensor=sensor, seed=int(seed) + i, spp=int(spp)
-                    )
-                    for i, sensor in enumerate(self.scene.sensors())
-                ]
-            )
-
-    def joined(self, pictures):
-        """Pictures as one array (pixels, channels)."""
+    def join_pictures(self, pictures: Iterable[Any]) -> FloatArray:
+        """Return one picture per sensor as pixels (pixels, channels); the inverse of the above."""
         arrays = [np.array(picture, float) for picture in pictures]
         channels = self.targets[0].pixels.shape[2]
         films = {min(a.shape[2], 3) for a in arrays}
@@ -153,10 +150,31 @@ class Views:
             )
         return np.concatenate([a[..., :channels].reshape(-1, channels) for a in arrays])
 
+    def put(self, x: FloatArray) -> None:
+        """Write the values at `x` into the scene."""
+        self.put_entries(self.to_entries(x))
+
+    def to_entries(self, x: FloatArray) -> list[MitsubaObject]:
+        """Return the values at `x` as Mitsuba's arrays or tensors, one per unknown."""
+        entries = []
+        for unknown, values in zip(self.unknowns, self.to_values(x), strict=True):
+            if unknown.texels is not None:
+                entries.append(make_tensor(values, unknown.texels))
+            else:
+                entries.append(make_opaque(type(self.parameters[unknown.key]), values))
+        return entries
+
+    def put_entries(self, entries: list[MitsubaObject]) -> None:
+        """Write entries from `to_entries` into the scene."""
+        for unknown, entry in zip(self.unknowns, entries, strict=True):
+            self.parameters[unknown.key] = entry
+        with first_error():
+            self.parameters.update()
+
 
 @contextmanager
-def quiet_samplers():
-    """Without Mitsuba's warnings: samplers round the number of samples up, and say so each time."""
+def silence_samplers() -> Iterator[None]:
+    """Suppress Mitsuba's warnings in the block: samplers warn whenever they round up a count."""
     import mitsuba as mi
 
     level = mi.log_level()
@@ -167,23 +185,19 @@ def quiet_samplers():
         mi.set_log_level(level)
 
 
-def _entry(parameters, unknown, values):
-    """What a scene holds of an unknown's values."""
-    if unknown.shape:
-        return tensor_of(values, unknown.places)
-    return opaque(type(parameters[unknown.key]), values)
+def make_opaque(kind: type, values: AnyArray) -> MitsubaObject:
+    """Return a Dr.Jit array of type `kind` whose numbers do not become constants of kernels.
 
-
-def opaque(kind, values):
-    """An array of Dr.Jit's whose numbers are no part of kernels."""
+    All values then share one kernel, which is compiled once.
+    """
     import mitsuba as mi
 
     numbers = [dr.opaque(mi.Float, float(v)) for v in values]
     return numbers[0] if len(numbers) == 1 and kind is mi.Float else kind(*numbers)
 
 
-def _require_fit(scene, targets):
-    """Raise `BrdfkitError` unless there is a picture of the right size for each sensor."""
+def _check_sizes(scene: MitsubaObject, targets: list[Target]) -> None:
+    """Raise `BrdfkitError` unless there is a target of the right size for each sensor."""
     sensors = scene.sensors()
     if len(sensors) != len(targets):
         raise BrdfkitError(

@@ -1,1 +1,1 @@
-"""What `refine` returns, and what it says of how certain the numbers are."""
+"""Makes the result of `refine`: values, standard errors, and notes about doubtful findings."""

@@ -1,132 +1,152 @@
-"""What the end of a search says of the numbers: a `Refinement`."""
+"""Makes the `Refinement` from the end of a search: values, standard errors and notes."""
+
+from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.version import versions
-from brdfkit.inverse.scenes.problem.scene_parameters import numbers_in
-from brdfkit.inverse.scenes.problem.unseen_parameters import notes_on_weights
-from brdfkit.inverse.scenes.result.refinement import Refinement
-from brdfkit.inverse.scenes.result.residual_noise import Rest
-from brdfkit.inverse.scenes.search.gauss_newton import free_of_bounds, step_in_bounds
+from brdfkit.inverse.scenes.problem.parameters import Unknown
+from brdfkit.inverse.scenes.problem.scene_parameters import read_model_values
+from brdfkit.inverse.scenes.problem.unseen_parameters import describe_zero_weights
+from brdfkit.inverse.scenes.problem.views import Views
+from brdfkit.inverse.scenes.result.refinement import Refinement, Value
+from brdfkit.inverse.scenes.result.residual_noise import ResidualNoise
+from brdfkit.inverse.scenes.search.gauss_newton import Search, find_free, solve_step
+from brdfkit.inverse.scenes.search.normal_equations import Residuals
 from brdfkit.regression import Fit
 from brdfkit.regression.certainty import Certainty, conclude
 
 
-def conclude_search(views, found, seconds, interrupted=False, notes=(), second_look=None):
-    """The `Refinement` of a `Search` on `Views`, after so many `seconds`; the scene is left at its
-    end.
+def conclude_search(
+    views: Views,
+    state: Search,
+    seconds: float,
+    x: FloatArray | None = None,
+    notes: tuple[str, ...] = (),
+    interrupted: bool = False,
+) -> Refinement:
+    """Return the `Refinement` of a search, and leave the scene with its values.
 
-    `notes` come before those of its own, and before those those of a `SecondLook`.
+    `x` holds the coordinates to return, if they are not those of the search's end. `notes` precede
+    the notes that are made here.
     """
-    here, rest = found.here, Rest.of(views, found.here)
-    certainty = certify(views, found, rest)
-    x = second_look.mean(views, here.x) if second_look else here.x
+    here, noise = state.residuals, ResidualNoise.measure(views, state.residuals)
+    certainty = estimate_certainty(views, state, noise)
+    x = here.x if x is None else x
     views.put(x)
     values = {
-        unknown.name: _value(unknown, part)
-        for unknown, part in zip(views.unknowns, views.values(x), strict=True)
+        unknown.name: _to_value(unknown, part)
+        for unknown, part in zip(views.unknowns, views.to_values(x), strict=True)
     }
-    bounds = _on_bounds(views, x)
-    left = float(np.sqrt(max(here.error, 0)))
-    message = _message(found, interrupted)
     result = Refinement(
         values=values,
-        loss=left,
-        noise=float(np.sqrt(here.noise(views))),
+        loss=float(np.sqrt(max(here.error, 0))),
+        noise=float(np.sqrt(here.compute_noise(views))),
         samples=2 * here.spp,
-        steps=found.steps,
-        cost=views.renders,
+        steps=state.steps,
+        cost=views.cost,
         seconds=seconds,
-        message=message,
-        converged=found.converged and not interrupted,
-        history=tuple((int(spp), float(error)) for spp, error in found.history),
-        at_bounds=bounds,
+        message=_describe_end(state, interrupted),
+        converged=state.converged and not interrupted,
+        history=tuple((int(spp), float(error)) for spp, error in state.history),
+        at_bounds=_find_on_bounds(views, x),
         notes=(
             *notes,
-            *(second_look.notes() if second_look else ()),
             *certainty.undetermined,
             *certainty.trades,
-            *notes_on_weights(views, certainty),
-            *_notes_on_pictures(views),
-            *_notes_on_noise(views, here),
-            *_notes_on_rest(views, found, rest),
+            *describe_zero_weights(views, certainty.names),
+            *_describe_clipping(views),
+            *_describe_rendering_noise(views, here),
+            *_describe_residuals(state, noise),
         ),
         certainty=certainty,
         fits={},
-        reached=tuple(np.where(t.seen[..., None], t.pixels, np.nan) for t in views.targets),
-        pictures=tuple(views.as_pictures((here.a + here.b) / 2 + views.reached)),
+        targets=tuple(np.where(t.unmasked[..., None], t.pixels, np.nan) for t in views.targets),
+        pictures=tuple(views.split_pictures((here.a + here.b) / 2 + views.target_pixels)),
     )
-    return replace(result, fits=_fits(views, result))
+    return replace(result, fits=_make_fits(views, result))
 
 
-def _value(unknown, part):
-    """What an unknown is in `Refinement.values`."""
+def _to_value(unknown: Unknown, numbers: FloatArray) -> Value:
+    """Return the numbers of an unknown as an array for tensors, else as a tuple or a float."""
     if unknown.shape:
-        return np.array(part).reshape(unknown.shape)
-    return tuple(map(float, part)) if len(part) > 1 else float(part[0])
+        return np.array(numbers).reshape(unknown.shape)
+    return tuple(map(float, numbers)) if len(numbers) > 1 else float(numbers[0])
 
 
-def certify(views, found, rest):
-    """The `Certainty` of the values, by blocks of pixels as samples; with the `Rest` that is no
-    noise, and with the way that was still to go."""
-    slopes = views.slopes(found.here.x)
+def estimate_certainty(views: Views, state: Search, noise: ResidualNoise) -> Certainty:
+    """Return the `Certainty` of the values, with blocks of pixels as independent samples.
+
+    The covariance grows where the residuals are not `noise`, and by the next step where the search
+    has not converged. Tensors have no standard errors.
+    """
+    here, equations = state.residuals, state.equations
+    slopes = views.differentiate_values(here.x)
     nothing = Certainty((), (), (), (), (), 0, len(slopes))
     tensors = any(unknown.shape for unknown in views.unknowns)
-    if tensors or found.about is None or _blocks_lack(found):
+    if tensors or equations is None or _has_too_few_blocks(state):
         return nothing
-    free = free_of_bounds(views, found) & ~views.is_on_bound(found.here.x)
+    free = find_free(views, here, equations) & ~views.is_on_bound(here.x)
     if not free.any():
         return nothing
-    hessian, scores = found.about.hessian[np.ix_(free, free)], found.about.scores[free]
-    unseen = found.about.unseen(views, found.here.x)[free]
+    hessian, scores = equations.hessian[np.ix_(free, free)], equations.scores[free]
+    unseen = equations.find_unseen(views, here.x)[free]
     hessian[unseen] = hessian[:, unseen] = scores[unseen] = 0
     scale = 1 / np.sqrt(np.where(np.diagonal(hessian) > 0, np.diagonal(hessian), 1))
     blocks = scores.shape[1]
-    at = np.concatenate(views.values(found.here.x))
     certainty = conclude(
         views.names,
         free,
-        at,
+        np.concatenate(views.to_values(here.x)),
         scores * scale[:, None],
         hessian * np.outer(scale, scale),
         scale * slopes[free],
         int(np.count_nonzero(views.weights)),
         max(1, blocks - len(slopes)),
     )
-    matrix = certainty.matrix() * (1 if rest.is_noise else rest.area)
-    if not found.converged:
-        away = dict(zip(views.names, slopes * step_in_bounds(views, found, 0), strict=True))
-        ahead = np.array([away[name] for name in certainty.names])
-        matrix = matrix + np.outer(ahead, ahead)
-    return replace(certainty, covariance=tuple(map(tuple, matrix.tolist())))
+    covariance = certainty.matrix() * (1 if noise.is_noise else noise.area)
+    if not state.converged:
+        step = slopes * solve_step(views, here, equations, damping=0)
+        by_name = dict(zip(views.names, step, strict=True))
+        ahead = np.array([by_name[name] for name in certainty.names])
+        covariance = covariance + np.outer(ahead, ahead)
+    return replace(certainty, covariance=tuple(map(tuple, covariance.tolist())))
 
 
-def _on_bounds(views, x):
-    """The names of the unknowns of which a number is on a bound."""
-    on = views.is_on_bound(x)
+def _find_on_bounds(views: Views, x: FloatArray) -> tuple[str, ...]:
+    """Return the names of the unknowns with a number on a bound, except for tensors."""
+    on_bound = views.split(views.is_on_bound(x))
     return tuple(
         unknown.name
-        for unknown, part in zip(views.unknowns, views.parts(on), strict=True)
-        if part.any() and not unknown.shape  # of a tensor, some texels always are
+        for unknown, part in zip(views.unknowns, on_bound, strict=True)
+        if part.any() and not unknown.shape  # some texels of a tensor always are
     )
 
 
-def _message(found, interrupted):
+def _has_too_few_blocks(state: Search) -> bool:
+    """Return whether the pictures have too few blocks of pixels to estimate errors."""
+    equations = state.equations
+    return equations is not None and equations.scores.shape[1] <= len(equations.scores)
+
+
+def _describe_end(state: Search, interrupted: bool) -> str:
+    """Return why the search ended."""
     if interrupted:
         return "interrupted: the best so far"
-    if found.converged:
+    if state.converged:
         return "no step gains more than the noise"
-    if found.worse:
-        return "all that was found is worse than the scene's own values, which these are"
-    if found.stuck:
+    if state.worse:
+        return "the search ended worse than the scene's own values, which these are"
+    if state.stuck:
         return "no step, however short, is a gain: other starts or more samples may find better"
-    return f"stopped after {found.steps} steps: more of them may gain"
+    return f"stopped after {state.steps} steps: more of them may gain"
 
 
-def _notes_on_pictures(views):
-    """What one should know of the pictures."""
+def _describe_clipping(views: Views) -> tuple[str, ...]:
+    """Return a sentence on clipped pixels of the targets, if there are any."""
     clipped = [target.clipped for target in views.targets]
     if max(clipped) == 0:
         return ()
@@ -136,69 +156,65 @@ def _notes_on_pictures(views):
     )
 
 
-def _notes_on_noise(views, here):
-    """What one should know of the rendering's own noise."""
-    if here.noise(views) < max(here.error, 0):
+def _describe_rendering_noise(views: Views, here: Residuals) -> tuple[str, ...]:
+    """Return a sentence if rendering is noisier than the residuals."""
+    if here.compute_noise(views) < max(here.error, 0):
         return ()
-    return ("rendering is noisier than what is left; with more samples, errors would be smaller",)
+    return ("rendering is noisier than the residuals; more samples would make errors smaller",)
 
 
-def _blocks_lack(found):
-    """Whether the pictures have too few blocks of pixels to tell how the gradient varies."""
-    return found.about.scores.shape[1] <= len(found.about.scores)
-
-
-def _notes_on_rest(views, found, rest):
-    """What one should know of what is left."""
-    if found.about is not None and _blocks_lack(found):
+def _describe_residuals(state: Search, noise: ResidualNoise) -> tuple[str, ...]:
+    """Return a sentence if there are too few pixels, or the residuals are more than noise."""
+    if _has_too_few_blocks(state):
         return ("the pictures have too few pixels for standard errors",)
-    if rest.is_noise:
+    if noise.is_noise:
         return ()
-    larger = "" if found.about is None else f"; standard errors are {rest.area**0.5:.2g} × as large"
+    early = "" if state.converged else "the search is not at its end, or "
+    grown = f"; standard errors are multiplied by {noise.area**0.5:.2g}"
     return (
-        f"what is left is no noise (χ² per degree of freedom at least {rest.chi2:.2g}, "
-        f"{rest.sure:.0f} standard errors above chance), for neighbouring pixels differ alike: "
-        f"{'' if found.converged else 'the search is not at its end, or '}"
-        "the material is none that the model can be, or the camera, a light or a shape is off"
-        f"{larger}",
+        "the residuals are not noise, as those of neighbouring pixels agree (χ² per degree of "
+        f"freedom at least {noise.chi2:.2g}, {noise.significance:.0f} standard errors above "
+        f"chance): {early}the model cannot describe the material, or the camera, a light or a "
+        f"shape is off{'' if state.equations is None else grown}",
     )
 
 
-def _fits(views, result):
-    """A `Fit` for each model whose parameters were searched."""
-    found = {}
+def _make_fits(views: Views, result: Refinement) -> dict[str, Fit]:
+    """Return a `Fit` for each model whose parameters were searched, by the name of its BSDF."""
+    fits = {}
     for owner in dict.fromkeys(unknown.owner for unknown in views.unknowns if unknown.model):
         own = [unknown for unknown in views.unknowns if unknown.owner == owner]
         model = own[0].model
-        known = numbers_in(views.parameters, owner, model)
-        if known is None:
+        assert model is not None
+        values = read_model_values(views.parameters, owner, model)
+        if values is None:
             continue
         names = {unknown.name: unknown.parameter for unknown in own}
-        values = known | {names[name]: result.values[name] for name in names}
-        found[owner] = Fit(
+        values |= {names[name]: result.values[name] for name in names}
+        fits[owner] = Fit(
             model=model(**values),
             data="pictures of the scene",
             loss_name="rendered",
             loss=result.loss,
-            samples=int(views.seen.sum()),
+            samples=int(views.counted.sum()),
             evaluations=result.steps,
             seconds=result.seconds,
             message=result.message,
             at_bounds=tuple(names[name] for name in result.at_bounds if name in names),
             notes=tuple(note.replace(f"{owner}.", "") for note in result.notes),
-            certainty=_of_model(result.certainty, owner),
+            certainty=_select_model(result.certainty, owner),
             versions=dict(versions()),
         )
-    return found
+    return fits
 
 
-def _of_model(certainty, owner):
-    """The part of a `Certainty` that speaks of the parameters of a BSDF, by their own names."""
+def _select_model(certainty: Certainty, owner: str) -> Certainty:
+    """Return the part of a `Certainty` about the BSDF `owner`, with short parameter names."""
     rows = [row for row, name in enumerate(certainty.names) if name.startswith(f"{owner}.")]
-    matrix = certainty.matrix()[np.ix_(rows, rows)]
+    covariance = certainty.matrix()[np.ix_(rows, rows)]
     return replace(
         certainty,
         names=tuple(certainty.names[row].removeprefix(f"{owner}.") for row in rows),
-        covariance=tuple(map(tuple, matrix.tolist())),
+        covariance=tuple(map(tuple, covariance.tolist())),
         freedom=tuple(certainty.freedom[row] for row in rows),
     )

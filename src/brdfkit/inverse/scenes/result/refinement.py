@@ -1,80 +1,82 @@
-"""`Refinement`, what `refine` returns: numbers of a scene, and how they were found."""
+"""Defines `Refinement`, the result of `refine`: values, standard errors, and how it got there."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.documents import Cell, Document, Paragraph, Picture, Shown, Table
 from brdfkit.core.documents.parts import BAD, SOFT
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.inverse.scenes.problem.targets import white_of
+from brdfkit.inverse.scenes.problem.targets import find_white
 from brdfkit.regression import Fit
 from brdfkit.regression.certainty import Certainty, intervals
 from brdfkit.rendering.montage import TILE
 from brdfkit.rendering.result import WIDEST, Rendering
 
-Value = float | tuple[float, ...] | NDArray[np.float64]
+Value = float | tuple[float, ...] | FloatArray
 
 
 @dataclass(frozen=True, repr=False)
 class Refinement(Shown):
-    """Numbers of a scene that make its pictures those that are given; prints as a table.
+    """Parameters of a scene whose rendered pictures match the given ones; prints as a table.
 
     Attributes
     ----------
-    values : dict
-        What was found, by the names of `mitsuba.traverse` without a ``.value`` at the end; a
-        colour or a vector is a tuple, a texture or a volume an array, (height, width, channels) or
-        (depth, height, width, channels).
+    values : dict of str to float, tuple or ndarray
+        The values that were found, by the names of `mitsuba.traverse` without ``.value`` at the
+        end. A colour or a vector is a tuple; a texture is an array (height, width, channels), a
+        volume an array (depth, height, width, channels).
     loss : float
-        E, the RMS difference of pixels as a screen shows them, by the slope of sRGB's curve, in
-        shares of white (the brightest hundredth), the noise of rendering taken out; 0 where nothing
-        else is left.
+        The RMS difference E between rendered and given pixels, in shares of white (the brightest
+        hundredth). Differences are weighted by the slope of sRGB's curve, as a screen shows them,
+        and the noise of rendering is subtracted; 0 means that nothing but noise is left.
     noise : float
         The RMS noise of the last rendering, in units of the loss.
     samples : int
         Samples per pixel of the last rendering.
     steps : int
-        Steps of Gauss and Newton, after the start.
+        Gauss-Newton or descent steps after the choice of the starting point.
     cost : float
-        Samples per pixel of all renderings, derivatives counted by their time.
+        Samples per pixel of all renderings; derivatives count by the time they took.
     seconds : float
         Wall-clock time.
     message : str
         Why the search stopped.
     converged : bool
-        Whether no step would gain more than the noise. Otherwise the values are on their way: it
-        says so above the table, and the step that came next is in the standard errors.
+        Whether no step would gain more than the noise. Otherwise a line above the table says that
+        the values are not final, and standard errors include the next step.
     history : tuple of (int, float)
-        Samples per pixel and E² of each step; E² may be below 0, by noise.
+        Samples per pixel and E² of each step; noise may make E² negative.
     at_bounds : tuple of str
-        Values that ended on a bound.
+        Names of the values that ended on a bound.
     notes : tuple of str
-        What else one should know.
+        Sentences about doubtful findings.
     certainty : Certainty
-        What the pictures say of the values, as of a `Fit`.
+        How well the pictures determine the values; the same class as for a `Fit`.
     fits : dict of str to Fit
         A fit for each of brdfkit's models in the scene whose parameters were searched, by the name
         of its BSDF in the scene.
     pictures : tuple of ndarray
         The last rendering of each sensor, (height, width, channels).
-    reached : tuple of ndarray
-        What `refine` was given for each of them, linear; NaN where it is masked.
+    targets : tuple of ndarray
+        The given picture of each sensor, in linear values; NaN where it is masked.
 
     Notes
     -----
-    Standard errors hold the noise of the pictures and of rendering, and what the scene cannot
-    explain, as far as it differs from one block of pixels to the next, which is as wide as the
-    camera's filter. Where blocks beside each other differ alike, what is left is no noise: a note
-    says by how many standard errors, with the least χ² per degree of freedom, and as many blocks
-    as are alike count as one, which makes the standard errors larger by the root of their number.
-    A camera or a light that is off moves the values by more than that, if it looks like them.
+    Standard errors cover the noise of the pictures and of rendering, and model errors as far as
+    they differ between blocks of pixels as wide as the camera's filter. Where neighbouring blocks
+    agree, the residuals are not noise: a note gives the significance and a lower estimate of χ² per
+    degree of freedom. Blocks that agree count as one, which multiplies the standard errors by the
+    square root of their number. A camera or a light that is wrong may move the values by more than
+    that, if its effect resembles theirs.
 
-    The end of a search is looked at with twice its samples, other ones. Where both agree, the
-    values are the mean of both; where they do not, a note says so. If the end is worse than the
-    scene's own values, these are returned, and the message says so.
+    The end of a search is checked with twice its samples. Where both agree, the values are the
+    average of both; otherwise a note says so. If the end is worse than the scene's own values,
+    these are returned, and the message says so.
     """
 
     values: dict[str, Value]
@@ -91,14 +93,14 @@ class Refinement(Shown):
     notes: tuple[str, ...]
     certainty: Certainty
     fits: dict[str, Fit]
-    pictures: tuple[NDArray[np.float64], ...] = field(compare=False)
-    reached: tuple[NDArray[np.float64], ...] = field(compare=False)
+    pictures: tuple[FloatArray, ...] = field(compare=False)
+    targets: tuple[FloatArray, ...] = field(compare=False)
 
     @property
     def fit(self) -> Fit:
-        """The fit of the only model that was searched.
+        """The fit of the model, if exactly one was searched.
 
-        Raises `BrdfkitError` where there are none or several: see ``fits``.
+        Raises `BrdfkitError` where there is none or several; ``fits`` has all of them.
         """
         if len(self.fits) != 1:
             known = ", ".join(self.fits) or "none"
@@ -107,71 +109,71 @@ class Refinement(Shown):
 
     @property
     def standard_errors(self) -> dict[str, Value]:
-        """The standard errors of `values`; NaN for what is on a bound or undetermined."""
+        """The standard errors of `values`; NaN for values that are on a bound or undetermined."""
         return self._by_value(self.certainty.standard_errors())
 
     @property
     def intervals(self) -> dict[str, Any]:
-        """The 95 % confidence intervals (low, high) of `values`, by Student's t."""
+        """The 95 % confidence intervals (low, high) of `values`, from Student's t distribution."""
         return intervals(self.values, self._by_value(self.certainty.half_widths()))
 
     @property
-    def covariance(self) -> NDArray[np.float64]:
-        """The covariance (n, n) of ``certainty.names``."""
+    def covariance(self) -> FloatArray:
+        """The covariance matrix (n, n) of the values in ``certainty.names``."""
         return self.certainty.matrix()
 
     @property
-    def correlation(self) -> NDArray[np.float64]:
-        """The correlation (n, n) of ``certainty.names``."""
+    def correlation(self) -> FloatArray:
+        """The correlation matrix (n, n) of the values in ``certainty.names``."""
         return self.certainty.correlation()
 
     def look(self, sensor: int = 0) -> Rendering:
-        """The picture that was given beside the one that was found, and how they differ.
+        """Return the given and the rendered picture of a sensor, to compare them.
 
         Parameters
         ----------
         sensor : int, default 0
-            The number of the picture.
+            The number of the sensor.
 
         Returns
         -------
         Rendering
-            Both in shares of white, the brightest hundredth of what was given, black where it is
-            masked; a notebook shows them over their difference in colour (CIEDE2000), ``write``
-            writes that as PNG or EXR, and ``errors`` compares them. A notebook shows a `Refinement`
-            with all of them.
+            Both pictures in units of white, the brightest hundredth of the given one; masked pixels
+            are black. A notebook shows them above their colour difference (CIEDE2000); ``write``
+            makes a PNG or EXR file, and ``errors`` computes error measures. A notebook shows a
+            `Refinement` with the comparisons of all sensors.
 
         Raises
         ------
         BrdfkitError
-            For a number that no picture has.
+            For a sensor that does not exist.
 
         Examples
         --------
-        >>> found.look().write("look.png")    # doctest: +SKIP
+        >>> result.look().write("look.png")    # doctest: +SKIP
         """
         if not 0 <= sensor < len(self.pictures):
             raise BrdfkitError(
                 f"look: sensor = {sensor!r} should be 0 to {len(self.pictures) - 1}."
             )
-        reached, found = self.reached[sensor], self.pictures[sensor]
-        seen = np.asarray(np.isfinite(reached).all(axis=2))
-        white = white_of(reached[seen])
+        target, picture = self.targets[sensor], self.pictures[sensor]
+        unmasked = np.asarray(np.isfinite(target).all(axis=2))
+        white = find_white(target[unmasked])
         shown = {
-            name: np.where(seen[..., None], picture / white, 0) * np.ones(3, np.float32)
-            for name, picture in (("given", reached), ("found", found))
+            name: np.where(unmasked[..., None], pixels / white, 0) * np.ones(3, np.float32)
+            for name, pixels in (("given", target), ("found", picture))
         }
-        return Rendering(shown, self.samples, self.seconds, mask=seen)
+        return Rendering(shown, self.samples, self.seconds, mask=unmasked)
 
     def put_into(self, scene: Any) -> Any:
-        """Give a scene the values, to render it or to go on with it.
+        """Write the values into a scene, to render it or to refine it further.
 
         Parameters
         ----------
         scene : mitsuba.Scene, dict or path
-            What `refine` was given, or another scene with parameters of these names. A
-            `mitsuba.Scene` has those of `refine` if it was loaded with ``optimize=False``, lest
-            Mitsuba merge equal materials; dictionaries and files are loaded so here.
+            The scene that `refine` received, or another one with parameters of the same names.
+            Load a `mitsuba.Scene` with ``optimize=False``; otherwise Mitsuba merges equal
+            materials, and names are missing. Dictionaries and files are loaded so.
 
         Returns
         -------
@@ -181,22 +183,22 @@ class Refinement(Shown):
         Raises
         ------
         BrdfkitError
-            For a scene that does not load, or is without one of them.
+            For a scene that does not load, or that lacks one of the parameters.
 
         Examples
         --------
-        >>> mitsuba.render(found.put_into("scene.xml"), spp=256)    # doctest: +SKIP
+        >>> mitsuba.render(result.put_into("scene.xml"), spp=256)    # doctest: +SKIP
         """
-        from brdfkit.inverse.scenes.problem.scene import load_subject
+        from brdfkit.inverse.scenes.problem.scene import load_scene
         from brdfkit.inverse.scenes.problem.scene_parameters import put_values
 
         height, width = self.pictures[0].shape[:2]
-        scene = load_subject(scene, (width, height))
+        scene = load_scene(scene, (width, height))
         put_values(scene, self.values)
         return scene
 
     def __eq__(self, other: object) -> bool:
-        """Whether all but times and pictures is equal."""
+        """Return whether all but times, costs and pictures is equal."""
         if not isinstance(other, Refinement):
             return NotImplemented
         plain = [f.name for f in fields(self) if f.compare and f.name != "values"]
@@ -208,7 +210,8 @@ class Refinement(Shown):
 
     __hash__ = None  # type: ignore[assignment]
 
-    def _by_value(self, known):
+    def _by_value(self, known: dict[str, float]) -> dict[str, Any]:
+        """Return numbers known by name, such as errors, in the form of `values`; NaN if missing."""
         nan = float("nan")
         return {
             name: np.full(value.shape, nan)
@@ -219,19 +222,19 @@ class Refinement(Shown):
             for name, value in self.values.items()
         }
 
-    def _picture(self, sensor):
-        """That of `look`, drawn when it is shown."""
+    def _picture(self, sensor: int) -> Picture:
+        """Return the picture of `look` for a notebook, which draws it when it is shown."""
         width = min(WIDEST, 2 * max(self.pictures[sensor].shape[1], TILE))
-        says = f"given and found pictures {sensor}, and their difference"
-        return Picture(lambda: self.look(sensor).drawn(), says, width)
+        alt_text = f"given and found pictures {sensor}, and their difference"
+        return Picture(lambda: self.look(sensor).drawn(), alt_text, width)
 
     def document(self) -> Document:
-        """The values with their standard errors, notes, and how they were found."""
+        """Return the values with their standard errors, the pictures, and the notes."""
         errors = self.standard_errors
         rows = tuple(
             (
                 name,
-                Cell(_numbers(value, errors[name]), colour=_colour(value)),
+                Cell(_format_numbers(value, errors[name]), colour=_to_colour(value)),
                 Cell("on its bound", kind=BAD) if name in self.at_bounds else "",
             )
             for name, value in self.values.items()
@@ -239,7 +242,7 @@ class Refinement(Shown):
         several = "s" * (self.steps != 1)
         early = f"Not converged, and the values are not final: {self.message}."
         return Document(
-            f"Refined: what is left is {100 * self.loss:.2g} % of white (RMS)",
+            f"Refined: the residual is {100 * self.loss:.2g} % of white (RMS)",
             (
                 *(Paragraph(early, kind=BAD) for _ in range(not self.converged)),
                 Table(rows),
@@ -254,7 +257,8 @@ class Refinement(Shown):
         )
 
 
-def _numbers(value, error):
+def _format_numbers(value: Any, error: Any) -> str:
+    """Return a value with its standard errors as text; of an array its shape and range."""
     if isinstance(value, np.ndarray):
         shape = " × ".join(map(str, value.shape))
         return f"{shape}, {value.min():.3g} to {value.max():.3g}, mean {value.mean():.4g}"
@@ -262,5 +266,6 @@ def _numbers(value, error):
     return "  ".join(f"{v:.5g}" if np.isnan(e) else f"{v:.5g} ± {e:.2g}" for v, e in pairs)
 
 
-def _colour(value):
+def _to_colour(value: Value) -> tuple[float, ...]:
+    """Return a value to show as a colour chip, if it is one; else ()."""
     return value if isinstance(value, tuple) and len(value) == 3 and min(value) >= 0 else ()

@@ -1,97 +1,135 @@
-"""A second look at the end of a search, with samples that it has not seen: whether it is worse than
-the scene's own values, and where twice the samples move the numbers."""
+"""Checks the end of a search with twice the samples, and with samples that the search did not use.
+
+The check tells whether the end is worse than the scene's own values, and whether the new samples
+would move the numbers by more than chance.
+"""
+
+from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from brdfkit.inverse.scenes.result.conclusions import certify
-from brdfkit.inverse.scenes.result.residual_noise import Rest
-from brdfkit.inverse.scenes.search.gauss_newton import Search, few_samples, step_in_bounds
-from brdfkit.inverse.scenes.search.normal_equations import SHARE, SURE, Equations, Residuals
+from brdfkit.core.array_types import FloatArray
+from brdfkit.inverse.scenes.problem.views import Views
+from brdfkit.inverse.scenes.result.conclusions import conclude_search, estimate_certainty
+from brdfkit.inverse.scenes.result.refinement import Refinement
+from brdfkit.inverse.scenes.result.residual_noise import ResidualNoise
+from brdfkit.inverse.scenes.search.gauss_newton import Search, choose_initial_samples, solve_step
+from brdfkit.inverse.scenes.search.normal_equations import (
+    CONFIDENCE,
+    DERIVATIVE_SHARE,
+    Equations,
+    Residuals,
+)
 
-TWICE = 2  # times the samples of the search's end
-FAR = 4  # standard errors, farther than which other samples move no number by chance
-CARRIED = 0.5  # of the power of a number's derivatives, what two renderings should agree on
-SEED = 7_000  # beyond the search's own
+SAMPLE_FACTOR = 2  # the samples of the check, over those of the search's end
+CHANCE_LIMIT = 4  # standard errors: other samples move no number farther by chance
+AGREEMENT_SHARE = 0.5  # of the power of derivatives, on which two renderings should agree
+SEED_OFFSET = 7_000  # so that no seed of the search is used again
 
 
 @dataclass(frozen=True)
 class SecondLook:
-    """What twice the samples say of the end of a search.
+    """What twice the samples say about the end of a search.
 
-    step : where they would go from there, in coordinates (n,); 0 for what is not certain.
-    moves : by name, how far that moves a number, in standard errors.
-    apart : how far E² is from that of the search, in standard deviations.
-    few : the numbers whose derivatives few paths carry.
+    step : the step (n,) that the new equations suggest, in coordinates; 0 for uncertain numbers.
+    moves : the size of this step for each number, by name, in standard errors.
+    error_change : how far E² is from that of the search, in standard deviations.
+    poorly_sampled : the names of numbers whose derivatives depend on few light paths.
     """
 
-    step: np.ndarray
+    step: FloatArray
     moves: dict[str, float]
-    apart: float
-    few: tuple[str, ...]
+    error_change: float
+    poorly_sampled: tuple[str, ...]
 
-    def mean(self, views, x):
-        """The coordinates (n,) of both, each by its samples; `x`, those of the search, where they
-        differ by more than chance."""
-        if max(self.moves.values(), default=0) > FAR:
+    def average(self, views: Views, x: FloatArray) -> FloatArray:
+        """Return the coordinates (n,) averaged over both searches, weighted by their samples.
+
+        Where they differ by more than chance, this is `x`, the end of the search itself.
+        """
+        if max(self.moves.values(), default=0) > CHANCE_LIMIT:
             return x
-        return np.clip(x + TWICE / (1 + TWICE) * self.step, views.least, views.most)
+        mean = x + SAMPLE_FACTOR / (1 + SAMPLE_FACTOR) * self.step
+        return np.clip(mean, views.lower_bounds, views.upper_bounds)
 
-    def notes(self):
-        """What one should know: numbers that move, an E² that differs, and derivatives that few
-        paths carry; nothing where twice the samples say the same."""
-        said = [
-            f"{name} moves by {far:.2g} standard errors"
-            for name, far in self.moves.items()
-            if far > FAR
+    def notes(self) -> tuple[str, ...]:
+        """Return a sentence on what differs with twice the samples, if anything does."""
+        differences = [
+            f"{name} moves by {size:.2g} standard errors"
+            for name, size in self.moves.items()
+            if size > CHANCE_LIMIT
         ]
-        if self.apart > FAR:
-            said.append(f"what is left differs by {self.apart:.2g} standard deviations")
-        if self.few:
-            said.append(f"few paths tell of {', '.join(self.few)}")
-        how = "at twice the samples, {}: take more samples, or other starts"
-        return (how.format("; ".join(said)),) if said else ()
+        if self.error_change > CHANCE_LIMIT:
+            differences.append(
+                f"the residual differs by {self.error_change:.2g} standard deviations"
+            )
+        if self.poorly_sampled:
+            differences.append(f"few light paths determine {', '.join(self.poorly_sampled)}")
+        if not differences:
+            return ()
+        text = "; ".join(differences)
+        return (f"at twice the samples, {text}: take more samples, or other starts",)
 
 
-def look_again(views, found, seed):
-    """(`found`, a `Search`, with pictures and equations of twice the samples; its `SecondLook`).
+def take_second_look(views: Views, state: Search, seed: int) -> tuple[Search, SecondLook | None]:
+    """Return the `Search` with pictures and equations of twice the samples, and the comparison.
 
-    Where it is worse than the scene's own values: (a `Search` at these, not converged; None).
+    If its end is worse than the scene's own values, return a `Search` at these, marked as `worse`,
+    and None.
     """
-    spp = 2 * TWICE * found.here.spp
-    there = Residuals.at(views, found.here.x, spp, seed + SEED)
-    if _is_worse(views, there, seed):
-        own = Residuals.at(views, views.start, spp, seed + SEED)
-        return Search(own, None, found.steps, found.history, worse=True), None
-    about = Equations.at(views, there, seed + SEED, SHARE / TWICE)
-    end = replace(found, here=there, about=about)
-    return end, _compare(views, found, end)
+    spp = 2 * SAMPLE_FACTOR * state.residuals.spp
+    there = Residuals.at(views, state.residuals.x, spp, seed + SEED_OFFSET)
+    if _is_worse_than_start(views, there, seed):
+        own = Residuals.at(views, views.start, spp, seed + SEED_OFFSET)
+        return Search(own, None, state.steps, state.history, worse=True), None
+    equations = Equations.at(views, there, seed + SEED_OFFSET, DERIVATIVE_SHARE / SAMPLE_FACTOR)
+    end = replace(state, residuals=there, equations=equations)
+    return end, _compare(views, state.residuals, end, equations)
 
 
-def _compare(views, found, end):
-    """The `SecondLook` of two `Search`es with one end, `found` and of other samples."""
-    errors = certify(views, end, Rest.of(views, end.here)).standard_errors()
+def _compare(views: Views, before: Residuals, end: Search, equations: Equations) -> SecondLook:
+    """Return the `SecondLook` of one point: `before` of the search, `end` of other samples."""
+    here = end.residuals
+    certainty = estimate_certainty(views, end, ResidualNoise.measure(views, here))
+    errors = certainty.standard_errors()
     certain = np.array([name in errors for name in views.names])
-    step = step_in_bounds(views, end, damping=0)
-    moved = dict(zip(views.names, np.abs(views.slopes(end.here.x) * step), strict=True))
-    # the search's E² is the least of its own samples: what the step gains is no difference
-    apart = abs(end.here.error - found.here.error) - max(end.about.gain(step), 0)
-    deviation = np.hypot(end.here.deviation, found.here.deviation)
-    share = np.diagonal(end.about.hessian) / np.maximum(end.about.power, 1e-300)
-    few = [name for name, part in zip(views.names, share, strict=True) if part < CARRIED]
+    step = solve_step(views, here, equations, damping=0)
+    moved = dict(zip(views.names, np.abs(views.differentiate_values(here.x) * step), strict=True))
+    # The search minimised E² of its own samples, so the gain of the step is not a difference
+    change = abs(here.error - before.error) - max(equations.predict_gain(step), 0)
+    deviation = np.hypot(here.deviation, before.deviation)
+    share = np.diagonal(equations.hessian) / np.maximum(equations.power, 1e-300)
     return SecondLook(
         np.where(certain, step, 0),
         {name: float(moved[name] / max(error, 1e-300)) for name, error in errors.items()},
-        float(apart / max(deviation, 1e-300)),
-        tuple(name for name in few if name in errors),
+        float(change / max(deviation, 1e-300)),
+        tuple(
+            name
+            for name, part in zip(views.names, share, strict=True)
+            if part < AGREEMENT_SHARE and name in errors
+        ),
     )
 
 
-def _is_worse(views, there, seed):
-    """Whether E² is larger than at the scene's own values, for sure."""
-    for spp in (few_samples(views), 2 * there.spp):
-        own = Residuals.at(views, views.start, spp, seed + SEED)
-        if own.error == np.inf or own.error - SURE * own.deviation > there.bound:
+def _is_worse_than_start(views: Views, there: Residuals, seed: int) -> bool:
+    """Return whether E² is certainly larger than at the scene's own values.
+
+    Few samples often suffice to tell that it is not.
+    """
+    for spp in (choose_initial_samples(views), 2 * there.spp):
+        own = Residuals.at(views, views.start, spp, seed + SEED_OFFSET)
+        if own.error == np.inf or own.error - CONFIDENCE * own.deviation > there.bound:
             return False
-    return there.bound > own.bound + SURE * own.deviation
+    return there.bound > own.bound + CONFIDENCE * own.deviation
+
+
+def conclude_checked_search(
+    views: Views, state: Search, second_look: SecondLook | None, seconds: float
+) -> Refinement:
+    """Return the `Refinement` of a search and its second look, both from `take_second_look`."""
+    if second_look is None:
+        return conclude_search(views, state, seconds)
+    x = second_look.average(views, state.residuals.x)
+    return conclude_search(views, state, seconds, x, second_look.notes())

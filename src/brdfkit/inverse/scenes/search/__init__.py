@@ -1,1 +1,1 @@
-"""Searches the parameters of a scene: starts, steps and the look at the end."""
+"""Searches for the parameters of a scene: starting points, derivatives and steps."""

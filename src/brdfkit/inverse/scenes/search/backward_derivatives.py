@@ -1,54 +1,64 @@
-"""E² of rendered pictures, and its derivatives by thousands of numbers: renderings backwards.
+"""Computes E² of rendered pictures and its derivatives by thousands of numbers at once.
 
-Of two halves I_A, I_B of independent samples beside a picture J,
+E² compares a target picture J with two renderings I_A and I_B, whose samples are independent so
+that noise does not bias it (see `normal_equations.py`). With a weight w for each pixel,
 
-    E² = Σ w (I_A - J)(I_B - J),    ∂E²/∂I_A = w (I_B - J)
+    E² = Σ w (I_A - J)(I_B - J),    ∂E²/∂I_A = w (I_B - J).
 
-and what goes backwards through the samples of one half is made of the other: so the derivatives are
-those of the same samples, and right in the mean. See `normal_equations.py`.
+Mitsuba renders backwards: it propagates ∂E²/∂I_A through the samples of I_A to the parameters, and
+likewise for I_B. The derivatives are then exact for these samples, and unbiased.
 """
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray, MitsubaObject
 from brdfkit.core.jit.loops import first_error
-from brdfkit.inverse.scenes.search.forward_derivatives import DERIVATIVE_COST, differentiated
+from brdfkit.inverse.scenes.problem.views import Views
+from brdfkit.inverse.scenes.search.forward_derivatives import DERIVATIVE_COST, track_derivatives
 
 
-def error_and_slopes(views, x, spp, seed, weights):
-    """(E², its derivatives (n,) by the coordinates `x`), of `spp` samples for each half."""
-    a, b = (views.residuals(x, spp, seed + 1000 * half) for half in (0, 1))
+def compute_error_and_gradient(
+    views: Views, x: FloatArray, spp: int, seed: int, weights: FloatArray
+) -> tuple[float, FloatArray]:
+    """Return E² and its gradient (n,) by the coordinates `x`.
+
+    Each of the two renderings has `spp` samples; `weights` (pixels, channels) are those of E².
+    """
+    a, b = (views.render_residuals(x, spp, seed + 1000 * half) for half in (0, 1))
     gradient = np.zeros(len(x))
     for half, other in ((0, b), (1, a)):
-        for number, onto in enumerate(views.as_pictures(weights * other)):
-            gradient += _backwards(views, x, number, onto, spp, seed + 1000 * half)
-    views.renders += 2 * DERIVATIVE_COST * spp
-    return float((weights * a * b).sum()), gradient * views.slopes(x)
+        for number, adjoint in enumerate(views.split_pictures(weights * other)):
+            gradient += _render_backward(views, x, number, adjoint, spp, seed + 1000 * half)
+    views.cost += 2 * DERIVATIVE_COST * spp
+    return float((weights * a * b).sum()), gradient * views.differentiate_values(x)
 
 
-def _backwards(views, x, number, onto, spp, seed):
-    """The derivatives (n,) of Σ `onto` · I by the values, I the picture of sensor `number`."""
+def _render_backward(
+    views: Views, x: FloatArray, number: int, adjoint: AnyArray, spp: int, seed: int
+) -> FloatArray:
+    """Return the derivatives (n,) of Σ `adjoint` · I by the values, I the picture of one sensor."""
     import mitsuba as mi
 
     sensor = views.scene.sensors()[number]
-    height, width = onto.shape[:2]
-    given = np.zeros((height, width, _channels(sensor)), np.float32)
-    given[..., : onto.shape[2]] = onto
-    with first_error(), differentiated(views, x) as leaves:
+    height, width = adjoint.shape[:2]
+    padded = np.zeros((height, width, _count_channels(sensor)), np.float32)
+    padded[..., : adjoint.shape[2]] = adjoint
+    with first_error(), track_derivatives(views, x) as entries:
         views.integrator.render_backward(
             views.scene,
             views.parameters,
-            mi.TensorXf(given),
+            mi.TensorXf(padded),
             sensor=sensor,
             seed=int(seed) + number,
             spp=int(spp),
         )
-        found = [np.array(dr.grad(leaf), float).ravel() for leaf in leaves]
-    parts = zip(views.unknowns, found, strict=True)
-    return np.concatenate([unknown.gathered(slopes) for unknown, slopes in parts])
+        by_entry = [np.array(dr.grad(entry), float).ravel() for entry in entries]
+    parts = zip(views.unknowns, by_entry, strict=True)
+    return np.concatenate([unknown.sum_copies(part) for unknown, part in parts])
 
 
-def _channels(sensor):
-    """How many channels the pictures of a sensor have."""
+def _count_channels(sensor: MitsubaObject) -> int:
+    """Return how many channels the pictures of a sensor have, such as 4 with alpha."""
     sensor.film().prepare([])
-    return sensor.film().develop().shape[2]
+    return int(sensor.film().develop().shape[2])

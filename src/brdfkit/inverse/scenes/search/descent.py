@@ -1,113 +1,190 @@
-"""Descent along derivatives that go backwards, for thousands of numbers: L-BFGS-B on fixed samples,
-[Byrd et al. 1995], with more and fresh samples in each stage."""
+"""Minimises E² over thousands of numbers, such as the texels of textures.
+
+The gradient comes from renderings backwards, and L-BFGS-B [Byrd et al. 1995] steps along it with
+fixed samples. Several stages follow each other, each with more and with other samples.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.interrupts import Interrupted
-from brdfkit.inverse.scenes.problem.tensors import roughness
-from brdfkit.inverse.scenes.problem.unseen_parameters import nothing_seen
-from brdfkit.inverse.scenes.search.backward_derivatives import error_and_slopes
+from brdfkit.inverse.scenes.problem.parameters import Unknown
+from brdfkit.inverse.scenes.problem.unseen_parameters import no_effect_error
+from brdfkit.inverse.scenes.problem.views import Views
+from brdfkit.inverse.scenes.search.backward_derivatives import compute_error_and_gradient
 from brdfkit.inverse.scenes.search.gauss_newton import Search
 from brdfkit.inverse.scenes.search.normal_equations import Residuals
 
-SAMPLES = 4, 16, 64  # per pixel and half, of one stage after another
-STRENGTHS = 0.3, 0.03, 0.003, 0.0003, 0.00003  # of smoothing, of which held-out pixels choose
-FEW = 8  # steps for each of these
-HELD_OUT = 10  # of so many pixels, one
+STAGE_SAMPLES = 4, 16, 64  # per pixel and half, of the stages
+SMOOTHNESS_TRIALS = 0.3, 0.03, 0.003, 0.0003, 0.00003  # weights among which held-out pixels choose
+TRIAL_STEPS = 8  # for each of these weights
+HELD_OUT_INTERVAL = 10  # one of so many pixels is held out
 
 
-def usual_total(smoothing, steps):
-    """How many steps a descent may take, for its progress."""
-    return (FEW * len(STRENGTHS) if smoothing is None else 0) + steps * len(SAMPLES)
+def count_steps(smoothness: float | None, steps: int) -> int:
+    """Return how many steps a descent may take in total, for its progress."""
+    trials = TRIAL_STEPS * len(SMOOTHNESS_TRIALS) if smoothness is None else 0
+    return trials + steps * len(STAGE_SAMPLES)
 
 
-def descend(views, smoothing, steps, samples, seed, report=lambda: None):
-    """(the `Search` from the scene's own values, the strength of smoothing).
+def descend(
+    views: Views,
+    smoothness: float | None,
+    steps: int,
+    samples: int,
+    seed: int,
+    report: Callable[[], object] = lambda: None,
+) -> tuple[Search, float]:
+    """Return the `Search` from the scene's own values, and the weight of the smoothness penalty.
 
-    `steps`: of L-BFGS-B, at most, in each stage. `report()` is called after each step. On Ctrl-C
-    `Interrupted` has the `Search` so far.
+    `steps` is the limit of L-BFGS-B steps in each stage, `samples` that of samples per pixel.
+    Without a `smoothness`, held-out pixels choose it. `report()` is called after each step. On
+    Ctrl-C `Interrupted` holds the `Search` so far.
     """
-    x, found = views.start, Search(None)
-    stages = [spp for spp in SAMPLES if 2 * spp <= samples] or [max(1, samples // 2)]
+    x = views.start
+    # Replaced before it is read: every stage ends with residuals of its own
+    state = Search(residuals=None)  # type: ignore[arg-type]
+    stages = [spp for spp in STAGE_SAMPLES if 2 * spp <= samples] or [max(1, samples // 2)]
     try:
-        if smoothing is None:
-            x, smoothing = _choose_smoothing(views, x, stages[0], seed, found, report)
+        if smoothness is None:
+            x, smoothness = _choose_smoothness(views, x, stages[0], seed, state, report)
         for stage, spp in enumerate(stages):
-            x = _stage(
-                views, x, spp, seed + 10 * stage, views.weights, smoothing, steps, found, report
-            )
-            found.here = Residuals.at(views, x, 2 * spp, seed + 10 * stage + 5)
-            found.history.append((2 * spp, found.here.error))
+            own_seed = seed + 10 * stage
+            x = _run_stage(views, x, spp, own_seed, views.weights, smoothness, steps, state, report)
+            state.residuals = Residuals.at(views, x, 2 * spp, own_seed + 5)
+            state.history.append((2 * spp, state.residuals.error))
     except KeyboardInterrupt as stop:
         best = stop.best if isinstance(stop, Interrupted) else x
-        found.here = Residuals.at(views, best, 2 * stages[0], seed + 5)
-        raise Interrupted(found) from None
-    return found, smoothing
+        state.residuals = Residuals.at(views, best, 2 * stages[0], seed + 5)
+        raise Interrupted(state) from None
+    return state, smoothness
 
 
-def _choose_smoothing(views, x, spp, seed, found, report):
-    """(coordinates, the strength) that leave the least of the pixels that were held out.
+def _choose_smoothness(
+    views: Views, x: FloatArray, spp: int, seed: int, state: Search, report: Callable[[], object]
+) -> tuple[FloatArray, float]:
+    """Return the weight of the penalty that predicts held-out pixels best, and its coordinates.
 
-    From strong to weak, each from the end of the one before; all are tried, for what is blurred may
-    leave as much until a light is sharp.
+    The trials go from strong to weak smoothness, each from the end of the one before. All of them
+    are made: until a small light is sharp, a weaker weight may not improve the prediction.
     """
-    held = _hold_out(views, seed)
-    seen, hidden = views.weights * ~held[:, None], views.weights * held[:, None]
-    best, least = None, np.inf
-    for strength in STRENGTHS:
-        x = _stage(views, x, spp, seed, seen, strength, FEW, found, report)
-        a, b = (views.residuals(x, 4 * spp, seed + 7 + 1000 * half) for half in (0, 1))
-        left = float((hidden * a * b).sum())
-        if left < least:
-            best, least = (x, strength), left
+    held_out = _hold_out(views, seed)
+    fitted, hidden = views.weights * ~held_out[:, None], views.weights * held_out[:, None]
+    best, least = (x, SMOOTHNESS_TRIALS[0]), np.inf
+    for weight in SMOOTHNESS_TRIALS:
+        x = _run_stage(views, x, spp, seed, fitted, weight, TRIAL_STEPS, state, report)
+        a, b = (views.render_residuals(x, 4 * spp, seed + 7 + 1000 * half) for half in (0, 1))
+        error = float((hidden * a * b).sum())
+        if error < least:
+            best, least = (x, weight), error
     return best
 
 
-def _hold_out(views, seed):
-    """Which pixels (pixels,) are held out: one of ten that are next to each other in brightness, so
-    that the few of a highlight are not all of one kind."""
-    bright = (views.weights * views.reached**2).sum(axis=1)
-    order = np.nonzero(views.seen)[0]
-    order = order[np.argsort(-bright[order], kind="stable")]
-    first = np.arange(0, len(order), HELD_OUT)
-    chosen = first + np.random.default_rng(seed).integers(0, HELD_OUT, len(first))
-    held = np.zeros(len(bright), bool)
-    held[order[chosen[chosen < len(order)]]] = True
-    return held
+def _hold_out(views: Views, seed: int) -> BoolArray:
+    """Return which pixels (pixels,) are held out: one of every ten of similar brightness.
+
+    So the few pixels of a highlight are never all held out or all fitted.
+    """
+    brightness = (views.weights * views.target_pixels**2).sum(axis=1)
+    order = np.nonzero(views.counted)[0]
+    order = order[np.argsort(-brightness[order], kind="stable")]
+    first = np.arange(0, len(order), HELD_OUT_INTERVAL)
+    chosen = first + np.random.default_rng(seed).integers(0, HELD_OUT_INTERVAL, len(first))
+    held_out = np.zeros(len(brightness), bool)
+    held_out[order[chosen[chosen < len(order)]]] = True
+    return held_out
 
 
-def _stage(views, x, spp, seed, weights, smoothing, steps, found, report):
-    """The coordinates after at most so many `steps` from `x`, on the samples of a `seed`."""
+def _run_stage(
+    views: Views,
+    x: FloatArray,
+    spp: int,
+    seed: int,
+    weights: FloatArray,
+    smoothness: float,
+    steps: int,
+    state: Search,
+    report: Callable[[], object],
+) -> FloatArray:
+    """Return the coordinates after at most `steps` L-BFGS-B steps from `x` with fixed samples.
+
+    On Ctrl-C `Interrupted` holds the coordinates so far.
+    """
     from scipy.optimize import minimize
 
     last = x
 
-    def loss(x):
-        error, slopes = error_and_slopes(views, x, spp, seed, weights)
-        rough, uphill = roughness(views.unknowns, views.parts(x))
-        return error + smoothing * rough, slopes + smoothing * uphill
+    def compute_loss(x: FloatArray) -> tuple[float, FloatArray]:
+        """Return E² plus the smoothness penalty, and the gradient of the sum."""
+        error, gradient = compute_error_and_gradient(views, x, spp, seed, weights)
+        penalty, slope = compute_penalty(views.unknowns, views.split(x))
+        return error + smoothness * penalty, gradient + smoothness * slope
 
-    def after(x):
+    def count_step(x: FloatArray) -> None:
         nonlocal last
         last = x.copy()
-        found.steps += 1
+        state.steps += 1
         report()
 
-    _, slopes = loss(x)
-    if not slopes.any():
-        raise nothing_seen(views)
-    scale = 1 / max(abs(slopes).max(), 1e-300)  # a first step of L-BFGS is as long as its gradient
+    _, gradient = compute_loss(x)
+    if not gradient.any():
+        raise no_effect_error(views)
+    # The first step of L-BFGS is as long as the gradient, so that is scaled to 0.1 at most
+    scale = 1 / max(abs(gradient).max(), 1e-300)
     try:
         result = minimize(
-            lambda x: tuple(scale * 0.1 * part for part in loss(x)),
+            lambda x: tuple(scale * 0.1 * part for part in compute_loss(x)),
             x,
             jac=True,
             method="L-BFGS-B",
-            bounds=list(zip(views.least, views.most, strict=True)),
-            callback=after,
+            bounds=list(zip(views.lower_bounds, views.upper_bounds, strict=True)),
+            callback=count_step,
             options={"maxiter": steps, "maxfun": 2 * steps, "maxls": 6, "ftol": 0, "gtol": 0},
         )
     except KeyboardInterrupt:
         raise Interrupted(last) from None
-    found.converged = result.status != 1  # of L-BFGS-B: it ended before its steps did
-    return result.x
+    state.converged = result.status != 1  # status 1 means that the steps were used up
+    end: FloatArray = result.x
+    return end
+
+
+def compute_penalty(
+    unknowns: Sequence[Unknown], parts: Sequence[FloatArray]
+) -> tuple[float, FloatArray]:
+    """Return the smoothness penalty of all tensors, and its gradient (n,).
+
+    The penalty is the mean squared difference of neighbouring texels. `parts` holds the coordinates
+    of each unknown. Where there is no upper bound, differences are relative to the mean value at
+    the start. Numbers that belong to no tensor have no neighbours and add nothing.
+    """
+    total, gradient = 0.0, []
+    for unknown, part in zip(unknowns, parts, strict=True):
+        if unknown.shape:
+            unit = 1.0
+            if not np.isfinite(unknown.high):
+                unit = max(float(np.abs(unknown.to_coordinates(unknown.start)).mean()), 1e-6)
+            penalty, slope = _penalise_tensor(part.reshape(unknown.shape) / unit, unknown.wraps)
+            total += penalty
+            gradient.append(slope.ravel() / unit)
+        else:
+            gradient.append(np.zeros(len(part)))
+    return total, np.concatenate(gradient)
+
+
+def _penalise_tensor(values: FloatArray, wraps: bool) -> tuple[float, FloatArray]:
+    """Return the smoothness penalty of one tensor (..., channels), and its gradient.
+
+    If it `wraps`, the last column is a neighbour of the first one.
+    """
+    total, gradient = 0.0, np.zeros_like(values)
+    for axis in range(values.ndim - 1):
+        change = np.roll(values, -1, axis) - values
+        if not (wraps and axis == 1):
+            np.moveaxis(change, axis, 0)[-1] = 0
+        total += float((change**2).sum()) / values.size
+        gradient += 2 * (np.roll(change, 1, axis) - change) / values.size
+    return total, gradient

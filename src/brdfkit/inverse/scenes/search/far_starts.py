@@ -1,100 +1,116 @@
-"""Where a search begins: at the best of many points, of which few samples tell enough.
+"""Chooses where a search begins, among many points spread over the bounds.
 
-A wide lobe beside a narrow highlight is a valley of its own; no descent leaves it.
+A wide lobe in place of a narrow highlight is a local minimum that no descent leaves. So many points
+are tried with few samples, and the best ones take a few steps.
 """
+
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray, IntArray
 from brdfkit.core.interrupts import Interrupted
-from brdfkit.inverse.scenes.search.forward_derivatives import share, tangents
-from brdfkit.inverse.scenes.search.gauss_newton import Search, few_samples, search
+from brdfkit.inverse.scenes.problem.views import Views
+from brdfkit.inverse.scenes.search.forward_derivatives import group_tangents, store_by_channel
+from brdfkit.inverse.scenes.search.gauss_newton import (
+    Search,
+    choose_initial_samples,
+    run_gauss_newton,
+)
 from brdfkit.inverse.scenes.search.normal_equations import Residuals
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.search.starting_points import start_points
 
-BEST = 3  # points that go on
-FEW = 2  # steps that they take
-MORE = 2  # times as many samples judge where they came to
-PER_NUMBER = 8  # points for each number in which pictures are not linear
+FINALISTS = 3  # points that take steps
+FINALIST_STEPS = 2
+JUDGE_FACTOR = 2  # times the samples that chose the finalists, with which they are compared
+POINTS_PER_NUMBER = 8  # for each number in which pictures are not linear
+POINT_LIMIT = 32  # besides the scene's own values
 
 
-def start(views, count, seed, report):
-    """The coordinates of the best of `count` points after some steps; the scene's own is one.
+def default_start_count(views: Views) -> int:
+    """Return how many points a search tries by default, the scene's own values included."""
+    return 1 + min(POINTS_PER_NUMBER * int(views.is_nonlinear_share.sum()), POINT_LIMIT)
 
-    `report()` is called after each point. Without any that pictures are not linear in, the scene's
-    own point is best. On Ctrl-C `Interrupted` has a `Search` at the best so far.
+
+def find_start(views: Views, count: int, seed: int, report: Callable[[], object]) -> FloatArray:
+    """Return the coordinates where the search should begin, the best of `count` points.
+
+    The scene's own values are one of the points; they are returned at once where pictures are
+    linear in all numbers. `report()` is called after each point. On Ctrl-C `Interrupted` holds a
+    `Search` at the best point so far.
     """
-    curved = views.curved
-    if count == 1 or not curved.any():
+    nonlinear = views.is_nonlinear_share
+    if count == 1 or not nonlinear.any():
         return views.start
-    spread = start_points(None, views.start[None, curved][0], count, seed)
-    spp, tried, ends = few_samples(views), [], []
+    points = start_points(None, views.start[None, nonlinear][0], count, seed)
+    spp = choose_initial_samples(views)
+    tried: list[Residuals] = []
+    finalists: list[Residuals] = []
     try:
-        for coordinates in spread:
+        for coordinates in points:
             point = views.start.copy()
-            point[curved] = coordinates
-            tried.append(_solve_linear(views, point, spp // 2, seed))
+            point[nonlinear] = coordinates
+            tried.append(_solve_linear_numbers(views, point, spp // 2, seed))
             report()
         tried.sort(key=lambda residuals: residuals.bound)
-        for residuals in tried[:BEST]:
-            ends.append(search(views, residuals.x, FEW, spp, seed).here)
+        for residuals in tried[:FINALISTS]:
+            end = run_gauss_newton(views, residuals.x, FINALIST_STEPS, spp, seed)
+            finalists.append(end.residuals)
             report()
     except KeyboardInterrupt:
         if not tried:
             raise
-        raise Interrupted(Search(_best(ends or tried))) from None
-    return _best(_judge(views, [views.start, *(end.x for end in ends)], spp, seed)).x
+        raise Interrupted(Search(_find_best(finalists or tried))) from None
+    # Samples that chose none of the points compare them without favour
+    candidates = [views.start, *(end.x for end in finalists)]
+    return _find_best(Residuals.at(views, x, JUDGE_FACTOR * spp, seed + 50) for x in candidates).x
 
 
-def _judge(views, points, spp, seed):
-    """The `Residuals` at several points, by more samples, which chose none of them."""
-    return [Residuals.at(views, x, MORE * spp, seed + 50) for x in points]
+def _find_best(points: Iterable[Residuals]) -> Residuals:
+    """Return the `Residuals` with the smallest upper bound of E²."""
+    return min(points, key=lambda residuals: residuals.bound)
 
 
-def _best(several):
-    """The `Residuals` that are least for sure."""
-    return min(several, key=lambda residuals: residuals.bound)
+def _solve_linear_numbers(views: Views, x: FloatArray, spp: int, seed: int) -> Residuals:
+    """Return the `Residuals` at `x` after least squares for the numbers that enter linearly.
 
-
-def _solve_linear(views, x, spp, seed):
-    """The `Residuals` at `x`, its linear numbers those of the least squares, for direct light."""
-    linear = np.nonzero(views.linear)[0]
+    The solution is exact for direct light.
+    """
+    linear = np.nonzero(views.is_linear)[0]
     if not len(linear):
         return Residuals.at(views, x, spp, seed)
-    dark = np.where(views.linear, 0, x)
-    (a, reached_a), (b, reached_b) = (
-        _steps_from(views, dark, linear, spp // 2, seed + 1000 * half) for half in (0, 1)
+    dark = np.where(views.is_linear, 0, x)
+    (a, residuals_a), (b, residuals_b) = (
+        _render_unit_changes(views, dark, linear, spp // 2, seed + 1000 * half) for half in (0, 1)
     )
     weighed = views.weights * a
     hessian = weighed.reshape(len(a), -1) @ b.reshape(len(b), -1).T.astype(float)
-    gradient = (weighed * reached_b + views.weights * b * reached_a).sum(axis=(1, 2)) / 2
+    gradient = (weighed * residuals_b + views.weights * b * residuals_a).sum(axis=(1, 2)) / 2
     hessian = (hessian + hessian.T) / 2
     hessian += 1e-3 * np.diag(np.maximum(np.diagonal(hessian), 1e-30))
-    box = views.least[None, linear], views.most[None, linear]
-    found = minimise_in_box(hessian[None], gradient[None], *box)[0]
+    box = views.lower_bounds[None, linear], views.upper_bounds[None, linear]
     x = dark.copy()
-    x[linear] = found
+    x[linear] = minimise_in_box(hessian[None], gradient[None], *box)[0]
     return Residuals.at(views, x, spp, seed)
 
 
-def _steps_from(views, x, numbers, spp, seed):
-    """(what each of the `numbers` adds to the pixels, from 0 to 1; the residuals without them).
+def _render_unit_changes(
+    views: Views, x: FloatArray, numbers: IntArray, spp: int, seed: int
+) -> tuple[AnyArray, FloatArray]:
+    """Return how the pixels change as each of the `numbers` goes from 0 to 1, and the residuals.
 
-    Those of a colour change their own channels, and are taken in one picture.
+    The changes are (numbers, pixels, channels); the residuals (pixels, channels) are those with all
+    `numbers` at 0, which `x` must hold.
     """
-    without = views.residuals(x, spp, seed)
-    found = np.zeros((len(numbers), *without.shape), np.float32)
+    residuals = views.render_residuals(x, spp, seed)
+    changes = np.zeros((len(numbers), *residuals.shape), np.float32)
     rows = {number: row for row, number in enumerate(numbers)}
-    for group in tangents(views):
+    for group in group_tangents(views):
         if not rows.keys() >= set(group):
             continue
         moved = np.array(x, float)
         moved[group] = 1
-        change = views.residuals(moved, spp, seed) - without
-        share(change, found, [rows[number] for number in group])
-    return found, without
-
-
-def usual_count(views):
-    """How many points a search begins at."""
-    return 1 + min(PER_NUMBER * int(views.curved.sum()), 32)
+        change = views.render_residuals(moved, spp, seed) - residuals
+        store_by_channel(change, changes, [rows[number] for number in group])
+    return changes, residuals

@@ -1,56 +1,59 @@
-"""The derivatives of rendered pictures by few numbers: a picture for each of them."""
+"""Computes derivatives of rendered pictures by few numbers, one picture of derivatives for each."""
 
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray, MitsubaObject
 from brdfkit.core.jit.loops import first_error
-from brdfkit.inverse.scenes.problem.views import opaque
+from brdfkit.inverse.scenes.problem.views import Views, make_opaque
 
-DERIVATIVE_COST = 2.3  # of a picture of derivatives, in pictures
-STEP = 0.05  # of differences, in coordinates, or of what has no bounds relative to it
-BACKWARD = "PRBVolpathIntegrator", "BasicVolumetricPrimitiveRadianceFieldIntegrator"
-UNATTACHED = "not attached to the AD graph"  # what Mitsuba says of a picture without derivatives
-
-
-def derivatives(views, x, spp, seed):
-    """The derivatives (n, pixels, channels) of the pixels of `Views` by the coordinates `x`, by
-    `spp` samples of a `seed`."""
-    found = np.zeros((len(x), *views.reached.shape), np.float32)
-    for numbers in tangents(views):
-        share(_derivative(views, x, numbers, spp, seed), found, numbers)
-    return found
+DERIVATIVE_COST = 2.3  # the time for a picture of derivatives, over that for a picture
+DIFFERENCE_STEP = 0.05  # of finite differences: in coordinates, or relative if without bounds
+BACKWARD_ONLY = "PRBVolpathIntegrator", "BasicVolumetricPrimitiveRadianceFieldIntegrator"
+NOT_ATTACHED = "not attached to the AD graph"  # in Mitsuba's error if nothing has a derivative
 
 
-def tangents(views):
-    """The numbers of which one picture has the derivatives: those of a colour, or one."""
+def compute_derivatives(views: Views, x: FloatArray, spp: int, seed: int) -> AnyArray:
+    """Return the derivatives (n, pixels, channels) of all pixels by the coordinates `x`."""
+    derivatives = np.zeros((len(x), *views.target_pixels.shape), np.float32)
+    for numbers in group_tangents(views):
+        picture = _compute_derivative(views, x, numbers, spp, seed)
+        store_by_channel(picture, derivatives, numbers)
+    return derivatives
+
+
+def group_tangents(views: Views) -> Iterator[list[int]]:
+    """Yield the indices of numbers whose derivatives fit into one picture.
+
+    The three numbers of a colour each change their own channel alone, so they share a picture. All
+    other numbers need a picture each.
+    """
     for end, unknown in zip(views.ends, views.unknowns, strict=True):
         rows = list(range(end - len(unknown.start), end))
-        yield from [rows] if unknown.colour else [[row] for row in rows]
+        yield from [rows] if unknown.is_colour else [[row] for row in rows]
 
 
-def share(picture, found, rows):
-    """Put a picture (pixels, channels) into the `rows` of `found` (n, pixels, channels): whole, or
-    to each number of a colour its own channel, for it changes no other."""
+def store_by_channel(picture: AnyArray, derivatives: AnyArray, rows: list[int]) -> None:
+    """Copy a picture (pixels, channels) into the `rows` of `derivatives` (n, pixels, channels).
+
+    A single row receives all channels; each of several rows receives only its own channel.
+    """
     for channel, row in enumerate(rows):
         own = [channel] if 1 < len(rows) == picture.shape[1] else slice(None)
-        found[row][:, own] = picture[:, own]
-
-
-def integrator_is_backward(views):
-    """Whether the integrator has derivatives only backwards."""
-    return type(views.integrator).__name__ in BACKWARD
+        derivatives[row][:, own] = picture[:, own]
 
 
 @contextmanager
-def differentiated(views, x):
-    """The values at `x`, in the scene, with derivatives; yields the entries of the unknowns.
+def track_derivatives(views: Views, x: FloatArray) -> Iterator[list[MitsubaObject]]:
+    """Let Dr.Jit track derivatives by the unknowns at `x` in the block; yield their entries.
 
-    They are without derivatives afterwards, whatever happens: Dr.Jit's loops go through the BSDFs
-    of all scenes, and would fail in every other one for what is left here.
+    Tracking ends with the block, even after an error: Dr.Jit's loops visit the BSDFs of all scenes,
+    so entries that were still tracked would make every other scene fail.
     """
-    entries = views.entries(x)
+    entries = views.to_entries(x)
     dr.enable_grad(entries)
     try:
         views.put_entries(entries)
@@ -59,31 +62,38 @@ def differentiated(views, x):
         views.put(x)
 
 
-def _derivative(views, x, numbers, spp, seed):
-    """That of the pixels where the `numbers` move together: by differences where Mitsuba knows
-    none, as of the place of a lamp, or wrong ones."""
-    known = not views.wrongly[numbers].any() and not integrator_is_backward(views)
-    picture = _forward(views, x, numbers, spp, seed) if known else None
-    if picture is None or not picture.any():
-        return _differences(views, x, numbers, spp, seed)
-    return picture
+def _compute_derivative(
+    views: Views, x: FloatArray, numbers: list[int], spp: int, seed: int
+) -> FloatArray:
+    """Return the derivative (pixels, channels) of the pixels as the `numbers` move together.
+
+    Finite differences replace Mitsuba's derivative where it is wrong or missing, such as that by
+    the position of a lamp.
+    """
+    wrong = views.has_wrong_derivatives[numbers].any()
+    if not wrong and type(views.integrator).__name__ not in BACKWARD_ONLY:
+        picture = _render_derivative(views, x, numbers, spp, seed)
+        if picture is not None and picture.any():
+            return picture
+    return _compute_differences(views, x, numbers, spp, seed)
 
 
-def _forward(views, x, numbers, spp, seed):
-    """The derivative of the pixels where the `numbers` move together; None where the integrator
-    finds nothing to differentiate."""
-    views.renders += DERIVATIVE_COST * spp
+def _render_derivative(
+    views: Views, x: FloatArray, numbers: list[int], spp: int, seed: int
+) -> FloatArray | None:
+    """Render the derivative of the pixels; None if Mitsuba finds nothing to differentiate."""
+    views.cost += DERIVATIVE_COST * spp
     tangent = np.zeros(len(x))
-    tangent[numbers] = views.slopes(x)[numbers]
+    tangent[numbers] = views.differentiate_values(x)[numbers]
     try:
-        # of all unknowns, 0 of those that rest, so that all derivatives share one kernel
-        with first_error(), differentiated(views, x) as entries:
-            for entry, along in zip(entries, views.parts(tangent), strict=True):
-                dr.set_grad(entry, opaque(type(entry), along))
-            # on to what plugins make of their parameters: no loop reaches beyond itself
+        # Every unknown has a tangent, though most are 0, so that all derivatives share one kernel
+        with first_error(), track_derivatives(views, x) as entries:
+            for entry, part in zip(entries, views.split(tangent), strict=True):
+                dr.set_grad(entry, make_opaque(type(entry), part))
+            # Propagate to what plugins computed from their parameters, as loops do not reach there
             dr.enqueue(dr.ADMode.Forward, entries)
             dr.traverse(dr.ADMode.Forward, flags=dr.ADFlag.ClearEdges)
-            return views.joined(
+            return views.join_pictures(
                 [
                     views.integrator.render_forward(
                         views.scene,
@@ -96,18 +106,20 @@ def _forward(views, x, numbers, spp, seed):
                 ]
             )
     except Exception as error:
-        if UNATTACHED not in str(error):
+        if NOT_ATTACHED not in str(error):
             raise
         return None
 
 
-def _differences(views, x, numbers, spp, seed):
-    """The same by differences of equal samples."""
+def _compute_differences(
+    views: Views, x: FloatArray, numbers: list[int], spp: int, seed: int
+) -> FloatArray:
+    """Return the derivative of the pixels by central differences of pictures with equal samples."""
     ends = np.array([x, x], float)
-    step = STEP * np.maximum(np.abs(x), STEP)
-    step[views.most - views.least == 1] = STEP
+    step = DIFFERENCE_STEP * np.maximum(np.abs(x), DIFFERENCE_STEP)
+    step[views.upper_bounds - views.lower_bounds == 1] = DIFFERENCE_STEP
     ends[:, numbers] += np.outer([-1, 1], step[numbers])
-    ends = np.clip(ends, views.least, views.most)
-    low, high = (views.residuals(end, spp, seed) for end in ends)
+    ends = np.clip(ends, views.lower_bounds, views.upper_bounds)
+    low, high = (views.render_residuals(end, spp, seed) for end in ends)
     width = (ends[1] - ends[0])[numbers]
     return (high - low) / (width if len(width) == high.shape[1] else width[0])

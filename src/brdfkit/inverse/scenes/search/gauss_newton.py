@@ -1,150 +1,171 @@
-"""Gauss-Newton on rendered pictures: few steps, each with all derivatives, and no more samples than
-the noise demands. [Levenberg 1944]; [Marquardt 1963]."""
+"""Minimises E² by Gauss-Newton steps on rendered pictures.
 
+A step needs all derivatives, which take most of the time, so there are few steps; the samples grow
+only as far as the noise of rendering demands. Damping is that of [Levenberg 1944] and
+[Marquardt 1963].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.interrupts import Interrupted
-from brdfkit.inverse.scenes.search.normal_equations import SURE, Equations, Residuals
+from brdfkit.inverse.scenes.problem.views import Views
+from brdfkit.inverse.scenes.search.normal_equations import CONFIDENCE, Equations, Residuals
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 
-RAYS = 2**18  # of the first pictures: rays are cheap beside beginning one
-FEW_SAMPLES = 8, 128  # per pixel, the least and the most that they have
-GROWTH = 4, 16  # the least and the most by which the samples grow at once
-WITHIN = 0.1  # of the variance of the numbers: a step that is shorter gains less than the noise
-QUIET = 0.25  # of the error that is left: noise of rendering that is less adds 12 % to the errors
-REACH = 0.25  # of the way between bounds: farther off no derivative speaks of what is not linear
-STRETCH = 10  # times a model's weight, or 1, how far it goes at once: hidden ones knew no end
-FRESH = 3  # times that other samples are tried where none of a step's is a gain
-NOISIER = 2  # times as noisy, a trial may have less E² by luck: single samples hit its highlights
-DAMPING = 1e-2, 1e-6, 1e4  # the first, the least and the most
-BETTER, WORSE = 0.1, 8  # factors of the damping
+INITIAL_RAYS = 2**18  # of the first pictures: rays are cheap compared with starting a kernel
+INITIAL_SAMPLES = 8, 128  # per pixel, the fewest and the most of the first pictures
+GROWTH = 4, 16  # factors, the smallest and the largest by which the samples grow at once
+CONVERGED_GRADIENT = 0.1  # of its variance: a shorter gradient promises less than the noise
+QUIET_SHARE = 0.25  # of E²: less noise of rendering adds at most 12 % to the standard errors
+NONLINEAR_REACH = (
+    0.25  # of the range: farther away the derivatives of nonlinear numbers mean little
+)
+WEIGHT_REACH = 10  # times a weight or 1, the longest step: hidden weights have no other limit
+FRESH_SAMPLES = 3  # times that other samples are tried where no step is a gain
+NOISE_JUMP = 2  # times the noise: a trial that is so much noisier may have a small E² by luck
+DAMPING = 1e-2, 1e-6, 1e4  # the first, the smallest and the largest
+BETTER, WORSE = 0.1, 8  # factors of the damping after a good and a bad step
 
 
 @dataclass
 class Search:
-    """Where a search is: `here`, its `Residuals`; `about`, the `Equations` there; how many `steps`
-    it took; the `history` of (samples per pixel, E²); `converged`, whether no step would gain more
-    than the noise; `stuck`, whether one should, but none, however short, is a gain; `worse`,
-    whether all that was found is worse than the scene's own values, which these are."""
+    """The state of a search.
 
-    here: Residuals
-    about: Equations | None = None
+    residuals : the `Residuals` at the current point.
+    equations : the `Equations` there, if computed.
+    steps : how many steps were taken.
+    history : (samples per pixel, E²) of each step.
+    converged : whether no step would gain more than the noise.
+    stuck : whether a step should gain, but none does, however short.
+    worse : whether the search ended worse than the scene's own values, which then replace its end.
+    """
+
+    residuals: Residuals
+    equations: Equations | None = None
     steps: int = 0
-    history: list = field(default_factory=list)
+    history: list[tuple[int, float]] = field(default_factory=list)
     converged: bool = False
     stuck: bool = False
     worse: bool = False
 
 
-def few_samples(views):
-    """The samples per pixel of the first steps."""
-    return int(np.clip(RAYS / len(views.reached), *FEW_SAMPLES))
+def choose_initial_samples(views: Views) -> int:
+    """Return the samples per pixel of the first steps."""
+    return int(np.clip(INITIAL_RAYS / len(views.target_pixels), *INITIAL_SAMPLES))
 
 
-def search(views, x, steps, samples, seed, report=lambda: None):
-    """The `Search` from the coordinates `x` in at most so many `steps`, with at most so many
-    `samples` per pixel.
+def run_gauss_newton(
+    views: Views,
+    x: FloatArray,
+    steps: int,
+    samples: int,
+    seed: int,
+    report: Callable[[], object] = lambda: None,
+) -> Search:
+    """Search from the coordinates `x`, with at most `steps` steps and `samples` per pixel.
 
-    `report()` is called after each step. On Ctrl-C `Interrupted` has the `Search` so far.
+    `report()` is called after each step. On Ctrl-C `Interrupted` holds the `Search` so far.
     """
-    spp, damping, tries = min(few_samples(views), samples), DAMPING[0], 0
-    found = Search(Residuals.at(views, x, spp, seed))
-    if found.here.error == np.inf:
+    spp, damping, tries = min(choose_initial_samples(views), samples), DAMPING[0], 0
+    state = Search(Residuals.at(views, x, spp, seed))
+    if state.residuals.error == np.inf:
         raise BrdfkitError("the scene's pictures are not finite where the search begins.")
-    found.history.append((spp, found.here.error))
+    state.history.append((spp, state.residuals.error))
     try:
         while True:
-            found.about = Equations.at(views, found.here, seed)
-            grown = _grow(views, found.here, spp, samples)
-            at_rest = _is_within_noise(views, found)
+            state.equations = equations = Equations.at(views, state.residuals, seed)
+            grown = _grow_samples(views, state.residuals, spp, samples)
+            free = find_free(views, state.residuals, equations)
+            at_rest = not free.any() or equations.test_gradient(free) < CONVERGED_GRADIENT
             if at_rest and grown == spp:
-                found.converged = True
+                state.converged = True
                 break
             if not at_rest:
-                if found.steps == steps:
+                if state.steps == steps:
                     break
-                step, damping = _find_step(views, found, damping, seed, grown == spp)
+                step, damping = _find_step(views, state, damping, seed, grown == spp)
                 at_rest = step is None or damping >= DAMPING[2]
                 if at_rest and grown == spp:
-                    tries += 1  # of fresh samples: these had no step, however short, that gains
-                    found.stuck = tries > FRESH
-                    if found.stuck:
+                    # With these samples no step gains, however short; others may differ
+                    tries += 1
+                    state.stuck = tries > FRESH_SAMPLES
+                    if state.stuck:
                         break
-            if at_rest:
+            if at_rest or step is None:
                 spp, seed, damping = grown, seed + 1, min(damping, DAMPING[0])
-                found.here = Residuals.at(views, found.here.x, spp, seed)
+                state.residuals = Residuals.at(views, state.residuals.x, spp, seed)
             else:
-                found.here, found.steps = step, found.steps + 1
-                found.history.append((spp, found.here.error))
+                state.residuals, state.steps = step, state.steps + 1
+                state.history.append((spp, step.error))
                 report()
     except KeyboardInterrupt:
-        raise Interrupted(found) from None
-    return found
+        raise Interrupted(state) from None
+    return state
 
 
-def _find_step(views, found, damping, seed, last):
-    """(the `Residuals` after a step, the damping to go on with); None for the former where noise
-    hides whether any is a gain, and these are not the `last` samples.
+def _find_step(
+    views: Views, state: Search, damping: float, seed: int, is_last: bool
+) -> tuple[Residuals | None, float]:
+    """Return the `Residuals` after a step that reduces E², and the damping for the next one.
 
-    With these it is taken all the same: the equations know more of a small gain than two pictures,
-    whose samples move with the parameters.
+    The residuals are None where noise hides whether any step is a gain. With the last, largest
+    number of samples (`is_last`) such a step is taken all the same: the equations know more about a
+    small gain than two pictures do, whose samples move with the parameters.
     """
+    here, equations = state.residuals, state.equations
+    assert equations is not None
     while True:
-        step = step_in_bounds(views, found, damping)
-        trial = Residuals.at(views, found.here.x + step, 2 * found.here.spp, seed)
-        won, noise = found.here.less(trial)
-        if _is_luck(found.here, trial):
-            won = -np.inf
-        gain = found.about.gain(step)
-        hidden = gain < SURE * noise and won > -SURE * noise
-        if won > 0 or hidden or damping >= DAMPING[2]:
-            well = hidden or won > 0.75 * gain
-            damping = max(damping * (BETTER if well else 1), DAMPING[1])
-            return trial if won > 0 or (last and hidden) else None, damping
+        step = solve_step(views, here, equations, damping)
+        trial = Residuals.at(views, here.x + step, 2 * here.spp, seed)
+        gain, noise = here.compute_gain(trial)
+        if _may_be_luck(here, trial):
+            gain = -np.inf
+        predicted = equations.predict_gain(step)
+        hidden = predicted < CONFIDENCE * noise and gain > -CONFIDENCE * noise
+        if gain > 0 or hidden or damping >= DAMPING[2]:
+            is_good = hidden or gain > 0.75 * predicted
+            damping = max(damping * (BETTER if is_good else 1), DAMPING[1])
+            return trial if gain > 0 or (is_last and hidden) else None, damping
         damping *= WORSE
 
 
-def _is_luck(here, trial):
-    """Whether noise that grew may be all that a trial gains."""
-    return trial.deviation > NOISIER * here.deviation and trial.bound > here.bound
+def _may_be_luck(here: Residuals, trial: Residuals) -> bool:
+    """Return whether the gain of a trial may come from its larger noise alone."""
+    return trial.deviation > NOISE_JUMP * here.deviation and trial.bound > here.bound
 
 
-def step_in_bounds(views, found, damping):
-    """The best step within the bounds by the damped equations."""
-    hessian, scale = found.about.scaled()
+def solve_step(views: Views, here: Residuals, equations: Equations, damping: float) -> FloatArray:
+    """Return the step (n,) that minimises the damped quadratic model within the bounds."""
+    hessian, scale = equations.scale_hessian()
     damped = hessian + damping * np.eye(len(scale))
-    reach = np.where(views.curved, REACH, np.inf)
-    far = STRETCH * np.maximum(abs(found.here.x), 1)
-    reach = np.where(views.endless, far, reach)
-    low = np.maximum(views.least - found.here.x, -reach)
-    high = np.minimum(views.most - found.here.x, reach)
+    reach = np.where(views.is_nonlinear_share, NONLINEAR_REACH, np.inf)
+    reach = np.where(views.is_unlimited_weight, WEIGHT_REACH * np.maximum(abs(here.x), 1), reach)
+    low = np.maximum(views.lower_bounds - here.x, -reach)
+    high = np.minimum(views.upper_bounds - here.x, reach)
     step = minimise_in_box(
-        damped[None],
-        (found.about.gradient * scale)[None],
-        (low / scale)[None],
-        (high / scale)[None],
+        damped[None], (equations.gradient * scale)[None], (low / scale)[None], (high / scale)[None]
     )[0]
     return np.clip(step * scale, low, high)
 
 
-def free_of_bounds(views, found):
-    """Which numbers (n,) may move downhill: those that are on no bound, or leave it."""
-    x, g = found.here.x, found.about.gradient
-    return ~((x <= views.least) & (g >= 0)) & ~((x >= views.most) & (g <= 0))
+def find_free(views: Views, here: Residuals, equations: Equations) -> BoolArray:
+    """Return which numbers (n,) may move downhill: those on no bound, or that leave it."""
+    x, gradient = here.x, equations.gradient
+    at_low = (x <= views.lower_bounds) & (gradient >= 0)
+    return ~at_low & ~((x >= views.upper_bounds) & (gradient <= 0))
 
 
-def _is_within_noise(views, found):
-    free = free_of_bounds(views, found)
-    return not free.any() or found.about.surprise(free) < WITHIN
-
-
-def _grow(views, here, spp, samples):
-    """The samples per pixel that go on: as many as make rendering quieter than what is left."""
-    noise, left = here.noise(views), max(here.error, 0)
-    if noise <= QUIET * left:
+def _grow_samples(views: Views, here: Residuals, spp: int, samples: int) -> int:
+    """Return the next samples per pixel, so many that rendering is quieter than E²."""
+    noise, error = here.compute_noise(views), max(here.error, 0)
+    if noise <= QUIET_SHARE * error:
         return spp
-    wanted = spp * noise / (QUIET * left) if left else np.inf
+    wanted = spp * noise / (QUIET_SHARE * error) if error else np.inf
     return int(min(samples, spp * np.clip(wanted / spp, *GROWTH)))

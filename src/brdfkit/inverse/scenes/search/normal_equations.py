@@ -1,145 +1,175 @@
-"""The normal equations of Gauss and Newton by rendered pictures, without the bias of their noise.
+"""Computes the Gauss-Newton equations from rendered pictures, without bias from their noise.
 
-A square of noisy differences is too large by the noise's variance, and its least value lies where
-the noise is least. So two pictures I_A, I_B are rendered, of samples that are independent, beside a
-picture J to reach:
+The square of a noisy difference is too large by the variance of the noise, so its minimum would lie
+where the noise is smallest. Therefore two pictures I_A and I_B with independent samples are
+rendered and compared with the target picture J. With a weight w per pixel that depends on J alone,
 
     E² = Σ w (I_A - J)(I_B - J)
-    g = ½ Σ w (∂I_A (I_B - J) + ∂I_B (I_A - J))
-    H = ½ Σ w (∂I_A ∂I_Bᵀ + ∂I_B ∂I_Aᵀ)
+    g = ½ Σ w (∂I_A (I_B - J) + ∂I_B (I_A - J))          half of the gradient of E²
+    H = ½ Σ w (∂I_A ∂I_Bᵀ + ∂I_B ∂I_Aᵀ)                  half of its Hessian
 
-are right in the mean, however few the samples; w goes with the picture to reach alone.
+are unbiased for any number of samples.
 
-Where single samples hit a highlight, it is bright in one half and missing in the other, and E² far
-below 0: of many points, the one with most luck has the least. So points are compared by a bound, E²
-and twice its standard deviation
+If single samples hit a highlight, it is bright in one picture and missing in the other, and E² is
+far below 0. Among many points, the luckiest one would then win. Points are therefore compared by an
+upper bound, E² plus twice its standard deviation. The deviation is estimated as
 
-    ½ √Σ (w (I_A - J)² - w (I_B - J)²)²
+    ½ √Σ (w (I_A - J)² - w (I_B - J)²)²,
 
-whose square is right in the mean. For a highlight that was hit once it is more than E² is below 0.
+whose square is unbiased; for a highlight that was hit once, it exceeds the amount by which E² is
+below 0.
 """
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.inverse.scenes.problem.leverage import sum_by_block, without_leverage
-from brdfkit.inverse.scenes.search.forward_derivatives import DERIVATIVE_COST, derivatives, tangents
+from brdfkit.inverse.scenes.problem.leverage import correct_for_leverage, sum_by_block
+from brdfkit.inverse.scenes.problem.views import Views
+from brdfkit.inverse.scenes.search.forward_derivatives import (
+    DERIVATIVE_COST,
+    compute_derivatives,
+    group_tangents,
+)
 
-SHARE = 2.0  # of the cost of a step's pictures, what its derivatives may cost
-ROUNDING = 1e-6  # of white, of pictures in single precision
-QUIETEST = 0.1  # of the power of derivatives, what may be left of it without their noise
-SURE = 2  # deviations, beyond which a difference is no chance
-SMALLEST = 1e-5  # eigenvalue of H, of unit diagonal, below which there is noise
+DERIVATIVE_SHARE = 2.0  # the cost of all derivatives at most, over that of the residuals
+ROUNDING = 1e-6  # of white: the rounding of pictures in single precision
+NOISE_FLOOR = 0.1  # of the power of derivatives: the smallest diagonal of H that is trusted
+CONFIDENCE = 2  # standard deviations, beyond which a difference is not by chance
+SMALLEST_EIGENVALUE = 1e-5  # of H with unit diagonal: smaller ones are noise
 
 
 @dataclass(frozen=True)
 class Residuals:
-    """Two halves `a`, `b` (pixels, channels) of rendered less reached pixels, at coordinates `x`,
-    by `spp` samples each; weighed, the `terms` of the pixels that count add up to E², which has the
-    standard `deviation` by the noise of rendering."""
+    """Rendered minus target pixels at coordinates `x`, in two pictures with independent samples.
 
-    x: np.ndarray
-    a: np.ndarray
-    b: np.ndarray
+    a, b : the residuals (pixels, channels) of the two pictures.
+    spp : the samples per pixel of each picture.
+    terms : the contributions to E² of the pixels that count.
+    deviation : the standard deviation of E² due to the noise of rendering.
+    """
+
+    x: FloatArray
+    a: FloatArray
+    b: FloatArray
     spp: int
-    terms: np.ndarray
+    terms: FloatArray
     deviation: float
 
     @classmethod
-    def at(cls, views, x, spp, seed):
-        """Of the `Views` at `x`, by half of `spp` samples each."""
+    def at(cls, views: Views, x: FloatArray, spp: int, seed: int) -> Residuals:
+        """Render the residuals at `x`, with half of `spp` samples for each of the two pictures."""
         half = max(1, spp // 2)
-        a, b = views.residuals(x, half, seed), views.residuals(x, half, seed + 1000)
+        a, b = (views.render_residuals(x, half, seed + offset) for offset in (0, 1000))
         terms, apart = ((views.weights * t).sum(axis=1) for t in (a * b, (a - b) * (a + b)))
-        deviation = float(np.sqrt((apart[views.seen] ** 2).sum()) / 2)
-        return cls(x, a, b, half, terms[views.seen], deviation)
+        deviation = float(np.sqrt((apart[views.counted] ** 2).sum()) / 2)
+        return cls(x, a, b, half, terms[views.counted], deviation)
 
     @property
-    def error(self):
-        """E², of the weights' mean; it may be below 0 where it is less than the noise. Infinite
-        where a picture is not finite, as of light that multiplies from one bounce to the next."""
-        total = self.terms.sum()
+    def error(self) -> float:
+        """E², which noise may make negative.
+
+        Infinite if a picture is not finite, as where each bounce of light makes it brighter.
+        """
+        total = float(self.terms.sum())
         return total if np.isfinite(total) else np.inf
 
     @property
-    def bound(self):
-        """What E² of more samples exceeds by chance alone."""
-        return self.error + SURE * self.deviation if np.isfinite(self.error) else np.inf
+    def bound(self) -> float:
+        """The upper bound of E² within the confidence of two standard deviations."""
+        return self.error + CONFIDENCE * self.deviation if np.isfinite(self.error) else np.inf
 
-    def less(self, other):
-        """(how much less E² is in `other`, of the same samples; its standard error)."""
+    def compute_gain(self, other: Residuals) -> tuple[float, float]:
+        """Return how much smaller E² is in `other`, and the standard error of this gain.
+
+        Both need the same number of samples.
+        """
         if other.error == np.inf:
             return -np.inf, 0.0
         change = self.terms - other.terms
-        return change.sum(), change.std() * np.sqrt(len(change))
+        return float(change.sum()), float(change.std() * np.sqrt(len(change)))
 
-    def noise(self, views):
-        """What rendering adds to E² in a picture of both halves."""
+    def compute_noise(self, views: Views) -> float:
+        """Return the variance that rendering adds to E² of the mean of both pictures."""
         return float((views.weights * (self.a - self.b) ** 2).sum() / 4)
 
 
 @dataclass(frozen=True)
 class Equations:
-    """E² to second order: `gradient` (n,), half of E²'s, `hessian` (n, n), and `scores`
-    (n, blocks), what blocks of pixels add to the gradient, without their leverage; `power` (n,),
-    the hessian's diagonal with the noise of the derivatives, which is never below 0."""
+    """The quadratic approximation of E² around a point.
 
-    gradient: np.ndarray
-    hessian: np.ndarray
-    scores: np.ndarray
-    power: np.ndarray
+    gradient : half of the gradient (n,).
+    hessian : half of the Gauss-Newton Hessian (n, n).
+    scores : the contributions (n, blocks) of blocks of pixels to the gradient, corrected for
+        leverage.
+    power : the diagonal (n,) of the Hessian including the noise of the derivatives, so never < 0.
+    """
+
+    gradient: FloatArray
+    hessian: FloatArray
+    scores: FloatArray
+    power: FloatArray
 
     @classmethod
-    def at(cls, views, here, seed, share=SHARE):
-        """About `Residuals`; `share`: of their cost, what the derivatives may cost."""
-        pictures = len(list(tangents(views)))
+    def at(
+        cls, views: Views, here: Residuals, seed: int, share: float = DERIVATIVE_SHARE
+    ) -> Equations:
+        """Render derivatives at the point of `here`, at no more than `share` of its cost."""
+        pictures = len(list(group_tangents(views)))
         spp = max(1, round(here.spp * min(1, share / (DERIVATIVE_COST * pictures))))
-        a, b = (derivatives(views, here.x, spp, seed + 1000 * half) for half in (0, 1))
-        _require_finite(views, a + b)
+        a, b = (compute_derivatives(views, here.x, spp, seed + 1000 * half) for half in (0, 1))
+        _check_finite(views, a + b)
         weighed = views.weights * a
         hessian = weighed.reshape(len(a), -1) @ b.reshape(len(a), -1).T.astype(float)
         per_pixel = (weighed * here.b).sum(axis=2) + (views.weights * b * here.a).sum(axis=2)
         scores = sum_by_block(per_pixel / 2, views.blocks)
-        lone = without_leverage(scores, (a + b) / 2 * np.sqrt(views.weights), views.blocks)
+        jacobian = (a + b) / 2 * np.sqrt(views.weights)
+        corrected = correct_for_leverage(scores, jacobian, views.blocks)
         power = ((weighed * a).sum(axis=(1, 2)) + (views.weights * b * b).sum(axis=(1, 2))) / 2
-        return cls(scores.sum(axis=1), (hessian + hessian.T) / 2, lone, power)
+        return cls(scores.sum(axis=1), (hessian + hessian.T) / 2, corrected, power)
 
-    def unseen(self, views, x):
-        """Whether (n,) the pictures about `x` change with a number by no more than rounding."""
-        bounded = np.isfinite(views.most - views.least)
-        extent = np.where(bounded, 1, np.maximum(abs(x), 1))
+    def find_unseen(self, views: Views, x: FloatArray) -> BoolArray:
+        """Return which numbers (n,) have no effect on the pictures around `x` beyond rounding."""
+        is_bounded = np.isfinite(views.upper_bounds - views.lower_bounds)
+        extent = np.where(is_bounded, 1, np.maximum(abs(x), 1))
         return np.sqrt(self.power) * extent <= ROUNDING
 
-    def gain(self, step):
-        """How much less E² should be after a step (n,)."""
+    def predict_gain(self, step: FloatArray) -> float:
+        """Return by how much a step (n,) should reduce E²."""
         return -float(2 * self.gradient @ step + step @ self.hessian @ step)
 
-    def scaled(self):
-        """(H, scale): H of unit diagonal, or less where derivatives are noise, its negative
-        eigenvalues, of noise, too, lifted."""
-        least = np.maximum(QUIETEST * self.power, 1e-30)
+    def scale_hessian(self) -> tuple[FloatArray, FloatArray]:
+        """Return the Hessian in units that make its diagonal 1, and the units (n,).
+
+        The diagonal is less than 1 where the derivatives are mostly noise. Eigenvalues that noise
+        made negative are raised to a small positive one.
+        """
+        least = np.maximum(NOISE_FLOOR * self.power, 1e-30)
         scale = 1 / np.sqrt(np.maximum(np.diagonal(self.hessian), least))
         values, vectors = np.linalg.eigh(self.hessian * np.outer(scale, scale))
-        lifted = np.maximum(values, SMALLEST)
-        return (vectors * lifted) @ vectors.T, scale
+        return (vectors * np.maximum(values, SMALLEST_EIGENVALUE)) @ vectors.T, scale
 
-    def surprise(self, free):
-        """How far the gradient is from 0, in standard errors, a mean square over what is `free`."""
-        g, scores = self.gradient[free], self.scores[free]
+    def test_gradient(self, free: BoolArray) -> float:
+        """Return the mean squared distance of the gradient from 0, in standard errors.
+
+        Only the numbers that are `free` (n,) enter. The value is about 1 if only noise is left.
+        """
+        gradient, scores = self.gradient[free], self.scores[free]
         centred = scores - scores.mean(axis=1, keepdims=True)
         scale = 1 / np.sqrt(np.maximum((centred**2).sum(axis=1), 1e-300))
         covariance = (centred * scale[:, None]) @ (centred * scale[:, None]).T
-        g = g * scale
-        return float(
-            g @ np.linalg.pinv(covariance, rcond=1e-6, hermitian=True) @ g / max(1, len(g))
-        )
+        gradient = gradient * scale
+        inverse = np.linalg.pinv(covariance, rcond=1e-6, hermitian=True)
+        return float(gradient @ inverse @ gradient / max(1, len(gradient)))
 
 
-def _require_finite(views, found):
+def _check_finite(views: Views, derivatives: AnyArray) -> None:
     """Raise `BrdfkitError` for derivatives (n, pixels, channels) that are not finite."""
-    bad = ~np.isfinite(found).all(axis=(1, 2))
+    bad = ~np.isfinite(derivatives).all(axis=(1, 2))
     if bad.any():
         raise BrdfkitError(
             f"the pictures' derivatives by {views.names[int(np.argmax(bad))]} are not finite; "
