@@ -1,38 +1,40 @@
-"""ABC: the facets' distribution of smooth surfaces, a power with a flat top, in V-grooves.
+"""ABC: a microfacet model for smooth surfaces, whose distribution is a power law with a flat top.
 
     f = k_d / π + D G F / (π (N·L)(N·V)),   D = A / (1 + B (1 - N·H))^C
 
-The microfacet ABC model [Löw et al. 2012, eq. 15], with the 1/π of the fits that its authors
-published. The specular weight is A. D is not normalised: the albedo is roughly proportional to A/B.
-As in the paper, F is that of a dielectric in unpolarised light; F and G have the form of
-[Cook & Torrance 1982]. With C = 2 the peak is about that of GGX with width √(2/B). Shows polished
-metals, paints and plastics, whose tails may be longer or shorter than GGX's; no anisotropy, no
+N, L, V and H are the normal, the directions of light and view, and the half vector. This is the
+microfacet ABC model [Löw et al. 2012, eq. 15], with the factor 1/π of the fits that its authors
+published. Its weight `specular_reflectance` is A. The distribution D is not normalised: the albedo
+is roughly proportional to A/B. F is the Fresnel reflectance of a dielectric in unpolarised light,
+as in the paper, and G the shadowing of V-grooves, both in the form of [Cook & Torrance 1982]. With
+C = 2 the peak is close to a GGX peak of width α = √(2/B). It shows polished metals, paints and
+plastics, whose highlights may have longer or shorter tails than with GGX; no anisotropy, no
 retro-reflection.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.geometry.vectors import half_vector
 from brdfkit.model import Model, shape, weight
-from brdfkit.model.lobes import HalfVector, factored, lambertian
+from brdfkit.model.lobes import HalfVector, Lobe, factored, lambertian
 from brdfkit.model.microfacet import Visible, v_groove
 from brdfkit.model.numerics import expm1, log1p
 
 
 @dataclass(frozen=True)
 class PowerOfHeight:
-    """Normals with a density per solid angle of (1 + B (1 - cosθ_h))^-C."""
+    """Normals at the angle θ_h to the surface's, with a density ∝ (1 + B (1 - cosθ_h))^-C."""
 
-    B: Any
-    C: Any
+    B: JitFloat
+    C: JitFloat
 
-    def power(self, h):
+    def power(self, h: JitVector) -> JitFloat:
         return dr.exp(-self.C * self._log(h))
 
-    def sample(self, wi, u):
+    def sample(self, wi: JitVector, u: JitVector) -> JitVector:
         # x = log(1 + B (1 - cosθ)) has the density exp(q x)
         q = self._q()
         x = log1p(u.x * expm1(q * log1p(self.B))) / q
@@ -41,33 +43,39 @@ class PowerOfHeight:
         sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.y)
         return type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, 1 - complement)
 
-    def pdf(self, wi, h, cos_d):
+    def pdf(self, wi: JitVector, h: JitVector, cos_d: JitFloat) -> JitFloat:
         return dr.exp((self._q() - 1) * self._log(h)) / self.integral()
 
-    def integral(self):
-        """The integral of `power` over the hemisphere."""
+    def integral(self) -> JitFloat:
+        """Return the integral of `power` over the hemisphere."""
         q = self._q()
         return 2 * dr.pi / self.B * expm1(q * log1p(self.B)) / q
 
-    def _q(self):
-        """1 - C, kept away from 0, where the integral is a logarithm: near enough for sampling."""
+    def _q(self) -> JitFloat:
+        """Return 1 - C, but 0.001 near 0, where the integral is a logarithm.
+
+        The error is small enough for sampling.
+        """
         q = 1 - self.C
         return dr.select(abs(q) < 1e-3, 1e-3, q)
 
-    def _log(self, h):
-        """log(1 + B (1 - cosθ_h))."""
+    def _log(self, h: JitVector) -> JitFloat:
+        """Return log(1 + B (1 - cosθ_h)), accurate near the normal."""
         return log1p(self.B * (h.x * h.x + h.y * h.y) / (1 + h.z))
 
 
-def fresnel(ior, cos_theta):
-    """Reflectance of a dielectric for unpolarised light [Cook & Torrance 1982]."""
+def fresnel(ior: JitFloat, cos_theta: JitFloat) -> JitFloat:
+    """Return the reflectance of a dielectric in unpolarised light [Cook & Torrance 1982].
+
+    `ior`: the index of refraction; `cos_theta`: the cosine of the angle of incidence.
+    """
     g = dr.sqrt(ior * ior - 1 + cos_theta * cos_theta)
     a = (g - cos_theta) / (g + cos_theta)
     b = (cos_theta * (g + cos_theta) - 1) / (cos_theta * (g - cos_theta) + 1)
     return 0.5 * a * a * (1 + b * b)
 
 
-# The ball of its page: a polished surface that scatters a little everywhere
+# The ball on the model's page: a polished surface that also scatters a little in all directions
 PICTURE = {
     "diffuse_reflectance": [0.1, 0.02, 0.14],
     "specular_reflectance": 300.0,
@@ -83,16 +91,16 @@ class ABC(Model):
     c = shape(1.5, (0.05, 5.0), "C: steepness of its tails", log=True)
     ior = shape(1.5, (1.01, 100.0), "η: index of refraction", log=True)
 
-    def geometry(self, wi, wo):
+    def geometry(self, wi: JitVector, wo: JitVector) -> JitFloat:
         return v_groove(wi, wo, half_vector(wi, wo)) / (dr.pi * wi.z * wo.z)
 
-    def lobes(self):
+    def lobes(self) -> tuple[Lobe, ...]:
         heights = PowerOfHeight(self.b, self.c)
 
-        def facets(h, cos_d):
+        def facets(h: JitVector, cos_d: JitFloat) -> JitFloat:
             return heights.power(h) * fresnel(self.ior, cos_d)
 
-        def energy(wi):
+        def energy(wi: JitVector) -> JitFloat:
             return 4 / dr.pi * heights.integral() * fresnel(self.ior, wi.z)
 
         sampling = HalfVector(Visible(heights))

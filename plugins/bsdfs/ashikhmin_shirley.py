@@ -1,4 +1,4 @@
-"""Ashikhmin-Shirley: Phong-like facets with Fresnel reflectance, isotropic or elliptic.
+"""Ashikhmin-Shirley: a microfacet model with a Phong-like distribution, isotropic or elliptic.
 
     f = f_d + k_s √((n_u + 1)(n_v + 1)) / 8π (N·H)^(n_u cos²φ_h + n_v sin²φ_h) F
               / ((V·H) max(N·L, N·V)),     F = F₀ + (1 - F₀)(1 - V·H)⁵
@@ -6,21 +6,23 @@
     diffuse=lambert   f_d = k_d / π
     diffuse=coupled   f_d = 28 k_d / 23π (1 - F₀) (1 - (1 - N·L/2)⁵) (1 - (1 - N·V/2)⁵)
 
-[Ashikhmin & Shirley 2000]; [Kurt 2007, eqs. 3.13-3.17]. The paper has the coupled f_d, which dims
-as the highlight brightens, and no k_s. With fresnel=coloured, the factor 1 - F₀ of f_d is in k_d.
-Shows metals, brushed or not, and varnished surfaces; no retro-reflection. Where F₀ is about 1,
-measurements determine only the product k_s F₀.
+N, L, V and H are the normal, the directions of light and view, and the half vector, φ_h its
+azimuth. [Ashikhmin & Shirley 2000]; [Kurt 2007, eqs. 3.13-3.17]. The paper has no k_s, and the
+coupled f_d, which becomes darker where the highlight becomes brighter. With fresnel=coloured, k_d
+includes the factor 1 - F₀ of f_d. It shows metals, brushed or not, and varnished surfaces; no
+retro-reflection. Where F₀ is about 1, measurements determine only the product k_s F₀.
 """
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.geometry.vectors import cos_theta_d
 from brdfkit.model import follows, option, shape, weight
 from brdfkit.model.fresnel import FresnelModel
 from brdfkit.model.lobes import Cosine, HalfVector, Lobe, lambertian
 from brdfkit.model.microfacet import CosinePower, Visible, fifth_power
 
-# The ball of its page: brushed copper
+# The ball on the model's page: brushed copper
 PICTURE = {
     "diffuse_reflectance": 0.02,
     "specular_reflectance": [0.95, 0.64, 0.54],
@@ -40,20 +42,20 @@ class AshikhminShirley(FresnelModel):
     exponent_v = follows("exponent_u", exponent_u, "n_v: sharpness of the highlight along y")
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def coupled_diffuse(self, wi, wo):
+    def coupled_diffuse(self, wi: JitVector, wo: JitVector) -> JitFloat:
         return 28 / (23 * dr.pi) * self.rest() * entering_share(wi.z) * entering_share(wo.z)
 
-    def coupled_albedo(self, wi):
+    def coupled_albedo(self, wi: JitVector) -> JitFloat:
         return self.rest() * entering_share(wi.z)
 
-    def rest(self):
-        """1 - F₀, which k_d includes where F is coloured."""
+    def rest(self) -> JitFloat:
+        """Return 1 - F₀, or 1 where F is coloured and k_d includes this factor."""
         return 1 - self.f0 if self.fresnel == "schlick" else 1
 
-    def geometry(self, wi, wo):
+    def geometry(self, wi: JitVector, wo: JitVector) -> JitFloat:
         return 1 / (4 * cos_theta_d(wi, wo) * dr.maximum(wi.z, wo.z))
 
-    def lobes(self):
+    def lobes(self) -> tuple[Lobe, ...]:
         powers = CosinePower(self.exponent_u, self.exponent_v)
         diffuse = lambertian()
         if self.diffuse == "coupled":
@@ -62,6 +64,6 @@ class AshikhminShirley(FresnelModel):
         return diffuse, *self.fresnel_lobes(powers.density, self.geometry, sampling)
 
 
-def entering_share(cosine):
-    """The share of light at this cosine that enters the diffuse base."""
+def entering_share(cosine: JitFloat) -> JitFloat:
+    """Return the share of light that enters the diffuse base, at this cosine to the normal."""
     return 1 - fifth_power(1 - cosine / 2)

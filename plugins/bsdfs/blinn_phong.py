@@ -5,20 +5,21 @@
     normalisation=printed   c = (n + 2) / 2π
     normalisation=exact     c = (n + 2)(n + 4) / (8π (2^(-n/2) + n))
 
-n + 2 stands for √((n_u + 2)(n_v + 2)) where the exponents differ. [Blinn 1977]; [Kurt 2007,
-eq. 3.4]. The printed constant is Phong's: with the half vector the lobe reflects up to four times
-k_s, so that energy is conserved only for about k_d + 4 k_s ≤ 1; with the exact one k_s is the
-albedo at normal incidence.
-Shows plastics; no Fresnel effect, no retro-reflection.
+N and H are the normal and the half vector, φ_h the azimuth of H. Where the exponents n_u and n_v
+differ, n + 2 stands for √((n_u + 2)(n_v + 2)). [Blinn 1977]; [Kurt 2007, eq. 3.4]. The printed
+constant is made for the Phong model: with the half vector the lobe reflects up to four times k_s,
+so that energy is conserved only for about k_d + 4 k_s ≤ 1. With the exact constant, k_s is the
+albedo of the lobe at normal incidence. It shows plastics; no Fresnel effect, no retro-reflection.
 """
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.model import Model, follows, option, shape, weight
-from brdfkit.model.lobes import HalfVector, factored, lambertian
+from brdfkit.model.lobes import HalfVector, Lobe, factored, lambertian
 from brdfkit.model.microfacet import CosinePower, Visible
 
-# The ball of its page: blue lacquer
+# The ball on the model's page: blue lacquer
 PICTURE = {
     "diffuse_reflectance": [0.03, 0.08, 0.4],
     "specular_reflectance": 0.12,
@@ -35,16 +36,16 @@ class BlinnPhong(Model):
     )
     exponent_v = follows("exponent", exponent, "n_v: sharpness along y")
 
-    def constant(self):
+    def constant(self) -> JitFloat:
         n = dr.sqrt((self.exponent + 2) * (self.exponent_v + 2)) - 2
         if self.normalisation == "printed":
             return (n + 2) / (2 * dr.pi)
         return (n + 2) * (n + 4) / (8 * dr.pi * (dr.exp(-n / 2 * dr.log(2.0)) + n))
 
-    def facets(self, h, cos_d):
+    def facets(self, h: JitVector, cos_d: JitFloat) -> JitFloat:
         return self.constant() * CosinePower(self.exponent, self.exponent_v).power(h)
 
-    def lobes(self):
+    def lobes(self) -> tuple[Lobe, ...]:
         sampling = HalfVector(Visible(CosinePower(self.exponent, self.exponent_v)))
         brightest = 4 if self.normalisation == "printed" else 1
         return lambertian(), factored(

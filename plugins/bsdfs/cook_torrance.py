@@ -1,19 +1,22 @@
-"""Cook-Torrance: Beckmann's facets in V-grooves, with Fresnel reflectance.
+"""Cook-Torrance: a microfacet model with Beckmann's distribution and V-groove shadowing.
 
     f = k_d / π + k_s / π · D G F / ((N·L)(N·V)),   D = exp[-(tanθ_h / m)²] / (m² cos⁴θ_h)
 
-[Cook & Torrance 1982]; [Kurt 2007, eqs. 3.28, 3.29], with Schlick's F (3.16). As printed, the term
-is four times today's D G F / 4(N·L)(N·V): energy is conserved only for about k_d + 4 k_s ≤ 1. Shows
-metals and plastics of one roughness; no anisotropy.
+N, L and V are the normal and the directions of light and view, θ_h is the angle between N and the
+half vector, G the shadowing of V-grooves. [Cook & Torrance 1982]; [Kurt 2007, eqs. 3.28, 3.29],
+with Schlick's Fresnel reflectance F (3.16). The printed term is four times D G F / 4(N·L)(N·V), the
+form in use today: energy is conserved only for about k_d + 4 k_s ≤ 1. It shows metals and plastics
+of one roughness; no anisotropy.
 """
 
+from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.geometry.vectors import half_vector
 from brdfkit.model import shape, weight
 from brdfkit.model.fresnel import FresnelModel
-from brdfkit.model.lobes import HalfVector, lambertian
+from brdfkit.model.lobes import HalfVector, Lobe, lambertian
 from brdfkit.model.microfacet import Beckmann, Visible, v_groove
 
-# The ball of its page: cast bronze
+# The ball on the model's page: cast bronze
 PICTURE = {
     "diffuse_reflectance": [0.06, 0.04, 0.02],
     "specular_reflectance": [0.35, 0.22, 0.1],
@@ -28,10 +31,10 @@ class CookTorrance(FresnelModel):
     alpha = shape(0.2, (0.001, 1.0), "m: rms slope of the facets", log=True, width=1)
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def geometry(self, wi, wo):
+    def geometry(self, wi: JitVector, wo: JitVector) -> JitFloat:
         return v_groove(wi, wo, half_vector(wi, wo)) / (wi.z * wo.z)
 
-    def lobes(self):
-        slopes = Beckmann(self.alpha, self.alpha)  # its D holds the 1/π of (3.28)
+    def lobes(self) -> tuple[Lobe, ...]:
+        slopes = Beckmann(self.alpha, self.alpha)  # its D includes the factor 1/π of eq. 3.28
         sampling = HalfVector(Visible(slopes))
         return lambertian(), *self.fresnel_lobes(slopes.D, self.geometry, sampling, albedo=4)

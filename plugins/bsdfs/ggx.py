@@ -1,17 +1,20 @@
-"""GGX: Trowbridge-Reitz facets with Smith's height-correlated shadowing, today's reference.
+"""GGX: the microfacet model in common use, with the Trowbridge-Reitz distribution.
 
     f = k_d / π + k_s D G₂ F / (4 (N·L)(N·V))
 
-D is that of [Walter et al. 2007], G₂ that of [Heitz 2014], F Schlick's. Shows most metals, paints
-and plastics, by its long tails; no retro-reflection, no scattering between facets.
+N, L and V are the normal and the directions of light and view. The distribution of normals D is
+given by [Walter et al. 2007], Smith's height-correlated shadowing G₂ by [Heitz 2014], the Fresnel
+reflectance F by Schlick. It shows most metals, paints and plastics, by its long tails; no
+retro-reflection, no scattering between facets.
 """
 
+from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.model import follows, shape, weight
 from brdfkit.model.fresnel import FresnelModel
-from brdfkit.model.lobes import HalfVector, lambertian
+from brdfkit.model.lobes import HalfVector, Lobe, lambertian
 from brdfkit.model.microfacet import TrowbridgeReitz
 
-# The ball of its page: polished gold, with a haze about its highlights
+# The ball on the model's page: polished gold, with a haze about its highlights
 PICTURE = {
     "diffuse_reflectance": 0.0,
     "specular_reflectance": [1.0, 0.77, 0.34],
@@ -27,10 +30,10 @@ class GGX(FresnelModel):
     alpha_v = follows("alpha_u", alpha_u, "α_v: width of the slopes along y")
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def lobes(self):
+    def lobes(self) -> tuple[Lobe, ...]:
         slopes = TrowbridgeReitz(self.alpha_u, self.alpha_v)
 
-        def geometry(wi, wo):
+        def geometry(wi: JitVector, wo: JitVector) -> JitFloat:
             return slopes.G2(wi, wo) / (4 * wi.z * wo.z)
 
         return lambertian(), *self.fresnel_lobes(slopes.D, geometry, HalfVector(slopes))

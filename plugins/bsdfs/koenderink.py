@@ -1,4 +1,4 @@
-"""Koenderink: an orthonormal basis of Zernike polynomials over both hemispheres, all linear.
+"""Koenderink: a sum of Zernike polynomials over both hemispheres, whose parameters are all linear.
 
     isotropic    f = Σ a_nml I_nml,
                  I_nml = 1/2π √((n+1)(m+1)/A) cos lΔφ
@@ -6,25 +6,31 @@
     anisotropic  f = Σ a_nkml H_nkml,
                  H_nkml = [K_n^k(i) K_m^l(r) + K_n^k(r) K_m^l(i)] / √(2 + 2δ_nm δ_kl)
 
-with ρ = √2 sin(θ/2), A = (1 if l > 0 else 2)(1 if n ≠ m else 2), and the hemisphere's basis
-K_n^l = √((n+1)/2π) R_n^|l|(ρ) {√2 cos lφ, 1, √2 sin |l|φ}; m ≤ n ≤ `order`, n - l even. The orders
-2, 4 and 8 have 5, 14 and 55 isotropic weights, and 21, 120 and 1035 anisotropic ones. Order 0 is
-Lambert with a_0_0_0 = 2 k_d. Weights may be negative; a sum below 0 is clamped at 0.
+The directions of light (i) and view (r) have the angle θ to the normal and the azimuth φ;
+Δφ = φ_i - φ_r, ρ = √2 sin(θ/2), and R are Zernike's radial polynomials.
+A = (1 if l > 0 else 2)(1 if n ≠ m else 2). The basis of one hemisphere is
+K_n^l = √((n+1)/2π) R_n^|l|(ρ) {√2 cos lφ, 1, √2 sin |l|φ}, for l > 0, l = 0 and l < 0. The sum is
+over m ≤ n ≤ `order` with n - l even. The orders 2, 4 and 8 have 5, 14 and 55 isotropic weights, and
+21, 120 and 1035 anisotropic ones. Order 0 is Lambert with a_0_0_0 = 2 k_d. Weights may be negative;
+a sum below 0 is clamped at 0.
 
-[Koenderink et al. 1996]; [Koenderink & van Doorn 1998]; [Kurt 2007, section 3.1]. Shows rough,
+[Koenderink et al. 1996]; [Koenderink & van Doorn 1998]; [Kurt 2007, section 3.1]. It shows rough,
 diffuse and retro-reflecting surfaces; a highlight needs infinitely many terms.
 """
 
 import math
+from collections.abc import Callable
 from functools import cache
 from math import factorial
 
 import drjit as dr
 
-from brdfkit.model import Model, option, weight
+from brdfkit.core.array_types import JitFloat, JitVector
+from brdfkit.model import Model, Parameter, option, weight
 from brdfkit.model.lobes import Cosine, Lobe
 
-# A cloth that reflects some light back and shines at its rim: Burley's, fitted
+# The ball on the model's page: a cloth of the Burley model, fitted; it reflects some light back and
+# is brighter at its rim
 PICTURE = {
     "a_0_0_0": [1.006, 0.179, 0.268],
     "a_1_1_1": [0.091, 0.016, 0.024],
@@ -34,11 +40,11 @@ PICTURE = {
 }
 
 
-def isotropic_term(n, m, l, wi, wo):
-    """I_nml. ρ^l cos lΔφ is the real part of a power, smooth at the normal."""
+def isotropic_term(n: int, m: int, l: int, wi: JitVector, wo: JitVector) -> JitFloat:
+    """Return the isotropic term I_nml, smooth at the normal, where azimuths are undefined."""
     a = (1 if l > 0 else 2) * (1 if n != m else 2)
     i, r = disc(wi), disc(wo)
-    # (ρ_i ρ_r)^l cos lΔφ by the recurrence of Re u^l, u = p_i · conj(p_r)
+    # (ρ_i ρ_r)^l cos lΔφ is the real part of u^l, u = p_i · conj(p_r), which has a recurrence
     re, square = i[0] * r[0] + i[1] * r[1], i[2] * r[2]
     harmonic, before = (re, 1.0) if l > 0 else (1.0, None)
     for _ in range(l - 1):
@@ -48,14 +54,14 @@ def isotropic_term(n, m, l, wi, wo):
     return math.sqrt((n + 1) * (m + 1) / a) / (2 * math.pi) * radial * harmonic
 
 
-def anisotropic_term(n, k, m, l, wi, wo):
-    """H_nkml."""
+def anisotropic_term(n: int, k: int, m: int, l: int, wi: JitVector, wo: JitVector) -> JitFloat:
+    """Return the anisotropic term H_nkml."""
     both = mode(n, k, wi) * mode(m, l, wo) + mode(n, k, wo) * mode(m, l, wi)
     return both / math.sqrt(4 if (n, k) == (m, l) else 2)
 
 
-def mode(n, l, w):
-    """K_n^l, orthonormal over the hemisphere."""
+def mode(n: int, l: int, w: JitVector) -> JitFloat:
+    """Return K_n^l at a direction, a function of the basis of one hemisphere."""
     x, y, square = disc(w)
     re, im = 1.0, 0.0
     for _ in range(abs(l)):
@@ -64,14 +70,14 @@ def mode(n, l, w):
     return math.sqrt((n + 1) / (2 * math.pi)) * radial_part(n, abs(l), square) * azimuth
 
 
-def disc(w):
-    """(x, y, ρ²) of the equal-area image of a direction on the unit disc."""
+def disc(w: JitVector) -> tuple[JitFloat, JitFloat, JitFloat]:
+    """Return (x, y, ρ²) of a direction's point on the unit disc, by an equal-area map."""
     s = dr.rsqrt(1 + w.z)
     return w.x * s, w.y * s, 1 - w.z
 
 
-def radial_part(n, l, square):
-    """R_n^l(ρ) / ρ^l, a polynomial in ρ² = `square`."""
+def radial_part(n: int, l: int, square: JitFloat) -> JitFloat:
+    """Return R_n^l(ρ) / ρ^l, a polynomial in ρ² = `square`."""
     value = 0.0
     for c in _coefficients(n, l):
         value = value * square + c
@@ -79,8 +85,8 @@ def radial_part(n, l, square):
 
 
 @cache
-def _coefficients(n, l):
-    """The coefficients of ρ^(n-l), ρ^(n-l-2), ..., 1 in `radial_part`."""
+def _coefficients(n: int, l: int) -> list[float]:
+    """Return the coefficients of ρ^(n-l), ρ^(n-l-2), ..., 1 in `radial_part`."""
     return [
         (-1) ** s
         * factorial(n - s)
@@ -90,7 +96,8 @@ def _coefficients(n, l):
 
 
 @cache
-def _isotropic(order):
+def _list_isotropic(order: int) -> list[tuple[int, ...]]:
+    """Return (n, m, l) of the isotropic terms up to an order."""
     return [
         (n, m, l)
         for n in range(order + 1)
@@ -100,12 +107,14 @@ def _isotropic(order):
 
 
 @cache
-def _anisotropic(order):
+def _list_anisotropic(order: int) -> list[tuple[int, ...]]:
+    """Return (n, k, m, l) of the anisotropic terms up to an order."""
     modes = [(n, l) for n in range(order + 1) for l in range(-n, n + 1, 2)]
     return [(*a, *b) for j, a in enumerate(modes) for b in modes[: j + 1]]
 
 
-def _lobe(term, index, cosine):
+def _make_lobe(term: Callable[..., JitFloat], index: tuple[int, ...], cosine: Cosine) -> Lobe:
+    """Return the lobe of one term; only the constant one contributes to the energy."""
     constant = not any(index)
     albedo = 0.5 if constant else 0.0
     return Lobe(lambda wi, wo: term(*index, wi, wo), cosine, energy=lambda wi: albedo, diffuse=True)
@@ -113,14 +122,16 @@ def _lobe(term, index, cosine):
 
 class Koenderink(Model):
     order = option(2, tuple(range(17)), "N, the highest degree of the polynomials")
-    symmetry = option("isotropic", ("isotropic", "anisotropic"), "whether the azimuth counts")
+    symmetry = option(
+        "isotropic", ("isotropic", "anisotropic"), "whether f changes as the surface turns"
+    )
 
     @classmethod
-    def anisotropic(cls):
+    def anisotropic(cls) -> bool:
         return cls.symmetry == "anisotropic"
 
     @classmethod
-    def more_parameters(cls):
+    def more_parameters(cls) -> dict[str, Parameter | None]:
         return {
             "a_" + "_".join(str(k).replace("-", "m") for k in index): weight(
                 float(not any(index)), f"weight of the term {index}", (-math.inf, math.inf)
@@ -129,11 +140,12 @@ class Koenderink(Model):
         }
 
     @classmethod
-    def indices(cls):
-        """(n, m, l) of the isotropic terms, (n, k, m, l) of the anisotropic ones."""
-        return _isotropic(cls.order) if cls.symmetry == "isotropic" else _anisotropic(cls.order)
+    def indices(cls) -> list[tuple[int, ...]]:
+        """Return (n, m, l) of all terms, or (n, k, m, l) where the model is anisotropic."""
+        list_terms = _list_isotropic if cls.symmetry == "isotropic" else _list_anisotropic
+        return list_terms(cls.order)
 
-    def lobes(self):
+    def lobes(self) -> tuple[Lobe, ...]:
         term = isotropic_term if self.symmetry == "isotropic" else anisotropic_term
         cosine = Cosine()
-        return tuple(_lobe(term, index, cosine) for index in self.indices())
+        return tuple(_make_lobe(term, index, cosine) for index in self.indices())

@@ -1,23 +1,26 @@
-"""Lafortune: generalised cosine lobes, about the mirror direction, off it or back to the light.
+"""Lafortune: cosine lobes about the mirror direction, about others, or back towards the light.
 
     f = k_d / π + Σ_j k_s (n + 2) / 2π [C_x l_x v_x + C_y l_y v_y + C_z l_z v_z]₊ⁿ
                       / max(|C_x|, |C_y|, |C_z|)ⁿ
 
-[Lafortune et al. 1997]; [Kurt 2007, eqs. 3.10-3.12]. Only the ratios of the C count.
--C_x = -C_y = C_z is Phong's lobe, C_z < -C_x peaks below the mirror direction, C_x > 0 reflects
-back, C_x ≠ C_y is anisotropic; `lobe_count` sums several. k_s is the albedo of a mirror lobe at
-normal incidence; other lobes reflect less. Shows off-specular and retro-reflection of rough
-surfaces; highlights are round, never elliptic, and there is no Fresnel effect.
+l and v are the directions of light and view, with z along the normal. [Lafortune et al. 1997];
+[Kurt 2007, eqs. 3.10-3.12]. Only the ratios of C_x, C_y and C_z matter: with -C_x = -C_y = C_z the
+lobe is Phong's, with C_z < -C_x it peaks below the mirror direction, with C_x > 0 it reflects back
+to the light, and with C_x ≠ C_y it is anisotropic. The option `lobe_count` is the number of lobes
+in the sum. The weight k_s is the albedo of a mirror lobe at normal incidence; other lobes reflect
+less. It shows off-specular and retro-reflection of rough surfaces; highlights are round, never
+elliptic, and there is no Fresnel effect.
 """
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.geometry.vectors import dot
-from brdfkit.model import Model, follows, option, shape, weight
+from brdfkit.model import Model, Parameter, follows, option, shape, weight
 from brdfkit.model.lobes import Lobe, PowerLobe, lambertian
 from brdfkit.model.numerics import cosine_power
 
-# The ball of its page: reflective tape, which sends light back
+# The ball on the model's page: reflective tape, which sends light back
 PICTURE = {
     "diffuse_reflectance": [0.3, 0.22, 0.02],
     "specular_reflectance": 0.6,
@@ -31,18 +34,18 @@ class Lafortune(Model):
     lobe_count = option(1, (1, 2, 3), "S: the number of lobes")
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.3, "k_s: strength of the lobe")
-    # Only ratios count: these bounds allow all up to 1000. C_z > 0 keeps the lobe's axis above the
-    # surface, and the C from being 0 together
+    # These bounds allow all ratios up to 1000. With C_z > 0 the lobe's axis is above the surface,
+    # and C_x, C_y and C_z are never 0 together
     c_x = shape(-0.7, (-1.0, 1.0), "C_x: below 0 towards the mirror direction, above 0 back")
-    c_y = follows("c_x", c_x, "C_y: the same along y")
-    c_z = shape(0.68, (0.001, 1.0), "C_z: along the normal; the ratios to C_x, C_y count")
+    c_y = follows("c_x", c_x, "C_y: like C_x, along y")
+    c_z = shape(0.68, (0.001, 1.0), "C_z: along the normal; only the ratios to C_x and C_y matter")
     exponent = shape(30.0, (0.1, 1e4), "n: sharpness of the lobe", log=True, width=-0.5)
 
     @classmethod
-    def more_parameters(cls):
-        more = {}
+    def more_parameters(cls) -> dict[str, Parameter | None]:
+        more: dict[str, Parameter | None] = {}
         for j in range(2, cls.lobe_count + 1):
-            # Equal lobes would be a saddle point of the fit: each begins wider than the one before
+            # Equal lobes would be a saddle point of the fit, so each starts wider than the last
             more |= {
                 f"specular_reflectance_{j}": weight(0.1, f"k_s: strength of lobe {j}"),
                 f"c_x_{j}": (c_x := shape(-0.7, (-1.0, 1.0), f"C_x of lobe {j}")),
@@ -54,28 +57,28 @@ class Lafortune(Model):
             }
         return more
 
-    def lobes(self):
+    def lobes(self) -> tuple[Lobe, ...]:
         endings = ["", *(f"_{j}" for j in range(2, self.lobe_count + 1))]
         names = ("c_x", "c_y", "c_z", "exponent")
-        return lambertian(), *(lobe(*(getattr(self, n + e) for n in names)) for e in endings)
+        return lambertian(), *(make_lobe(*(getattr(self, n + e) for n in names)) for e in endings)
 
 
-def lobe(c_x, c_y, c_z, n):
-    """One term of the sum."""
+def make_lobe(c_x: JitFloat, c_y: JitFloat, c_z: JitFloat, n: JitFloat) -> Lobe:
+    """Return the lobe of one term of the sum, with the exponent `n`."""
     largest = dr.maximum(dr.maximum(dr.abs(c_x), dr.abs(c_y)), c_z)
     a_x, a_y, a_z = (ratio(c, largest) for c in (c_x, c_y, c_z))
 
-    def value(wi, wo):
-        # 1 - bracket, accurate where it is small
+    def value(wi: JitVector, wo: JitVector) -> JitFloat:
+        # 1 minus the bracket of the formula, accurate where it is small
         complement = defect(a_x, wi.x, wo.x) + defect(a_y, wi.y, wo.y) + defect(a_z, wi.z, wo.z)
         return (n + 2) / (2 * dr.pi) * cosine_power(complement, n)
 
-    def axis(wi):
+    def axis(wi: JitVector) -> JitVector:
         c = type(wi)(a_x * wi.x, a_y * wi.y, a_z * wi.z)
         return c * dr.rsqrt(dot(c, c))
 
-    def energy(wi):
-        # The bracket is |(a_x l_x, a_y l_y, a_z l_z)| times the cosine to the axis
+    def energy(wi: JitVector) -> JitFloat:
+        # The bracket is |(a_x l_x, a_y l_y, a_z l_z)| times the cosine of the angle to the axis
         x, y, z = wi.x * wi.x, wi.y * wi.y, wi.z * wi.z
         lost = (1 - a_x * a_x) * x + (1 - a_y * a_y) * y + (1 - a_z * a_z) * z
         return cosine_power(lost, n / 2) * sampling.energy(wi)
@@ -84,14 +87,14 @@ def lobe(c_x, c_y, c_z, n):
     return Lobe(value, sampling, energy)
 
 
-def ratio(c, largest):
-    """c / largest; for the largest itself ±1, without its derivatives, which would cancel."""
+def ratio(c: JitFloat, largest: JitFloat) -> JitFloat:
+    """Return c / largest, or ±1 without derivatives, which would cancel, if c is the largest."""
     sign = dr.select(c < 0, -1, 1)
     return dr.select(dr.abs(c) == largest, sign, c / largest)
 
 
-def defect(a, l, v):
-    """(l² + v²)/2 - a l v, as two terms that are both small where a ≈ ±1 and l ≈ ±v."""
+def defect(a: JitFloat, l: JitFloat, v: JitFloat) -> JitFloat:
+    """Return (l² + v²)/2 - a l v, as two terms that are both small where a ≈ ±1 and l ≈ ±v."""
     sign = dr.select(a < 0, -1, 1)
     d = l - sign * v
     return 0.5 * d * d + (sign - a) * l * v

@@ -1,14 +1,15 @@
-"""Lambert: light scattered evenly, whatever the directions.
+"""Lambert: a matte surface that looks equally bright from every direction.
 
     f = k_d / π
 
-[Lambert 1760]; [Kurt 2007, eq. 3.1]. Shows chalk and matte paper; nothing that depends on the view.
+[Lambert 1760]; [Kurt 2007, eq. 3.1]. It shows chalk and matte paper; nothing that depends on the
+direction of view.
 """
 
 from brdfkit.model import Model, weight
-from brdfkit.model.lobes import lambertian
+from brdfkit.model.lobes import Lobe, lambertian
 
-# The ball of its page: chalk
+# The ball on the model's page: chalk
 PICTURE = {
     "diffuse_reflectance": [0.75, 0.73, 0.68],
 }
@@ -17,5 +18,5 @@ PICTURE = {
 class Lambert(Model):
     diffuse_reflectance = weight(0.5, "k_d: albedo")
 
-    def lobes(self):
+    def lobes(self) -> tuple[Lobe, ...]:
         return (lambertian(),)

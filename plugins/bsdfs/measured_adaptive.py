@@ -1,23 +1,26 @@
-"""Adaptive parameterisation: a measured BRDF of the RGL database, looked up as its file stores it.
+"""Adaptive parameterisation: a measured BRDF of the RGL database, in the layout of its file.
 
     {"type": "measured_adaptive", "filename": "paper_white_rgb.bsdf"}
 
-takes a `.bsdf` file, also one beside the scene's file, as for a bitmap; `Measured.scene_dict()`
-passes the arrays of its file directly. The BRDF is that of Mitsuba's own `measured`, but in every
-variant, for files with colours and with spectra. In spectral variants measured wavelengths are
-kept, and colours become smooth spectra. Negative values, of colours out of gamut, become 0.
+The plugin reads a `.bsdf` file, whose path may be relative to the scene's file;
+`Measured.scene_dict()` passes the arrays of a file directly. The BRDF equals Mitsuba's own
+`measured`, but is available in every variant, for files with colours and with spectra. In spectral
+variants measured wavelengths are kept, and colours become smooth spectra. Negative values, which
+come from colours out of gamut, become 0.
 
-A file stores f cosθ_o, finite up to the horizon, over a unit square that is warped to the normals
-that are visible from wi. Directions are drawn by the file's luminance over the square and this
-warp; a fiftieth of them are drawn by the cosine, as either may be 0. The diffuse reflectance (as in
-an albedo image) is the albedo, linear between the file's incidences: nobody can tell which part of
-a measurement is diffuse.
+A file stores f cosθ_o, where θ_o is the angle between the outgoing direction and the normal: this
+stays finite up to the horizon. The values lie on a unit square, which is warped to the normals that
+are visible from the incident direction. Outgoing directions are drawn by the luminance on the
+square and this warp. A fiftieth of them are drawn in proportion to the cosine, because the other
+densities may be 0. Albedo images show the albedo, linear between the incident directions of the
+file, because nobody can tell which part of a measurement is diffuse.
 
 [Dupuy & Jakob 2018]; https://rgl.epfl.ch/materials
 """
 
 import numpy as np
 
+from brdfkit.core.array_types import JitColour, JitVector, MitsubaModule, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.bsdf.adaptive_lookup import AdaptiveLookup
 from brdfkit.mitsuba_bridge.bsdf.measured_base import measured_frame
@@ -29,11 +32,13 @@ FLAGS = "isotropic", "parts", "divided"
 COSINE_SHARE = 0.02
 
 
-def define(mi):
-    """The class of `mi.BSDF` for the current variant."""
+def define(mi: MitsubaModule) -> type:
+    """Return the class derived from `mi.BSDF`, for the current variant."""
 
-    class MeasuredAdaptive(measured_frame(mi)):
-        def __init__(self, props):
+    Frame: MitsubaObject = measured_frame(mi)
+
+    class MeasuredAdaptive(Frame):
+        def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             props = _read(props)
             arrays = {name: np.array(props[name], np.float32) for name in ARRAYS}
@@ -46,22 +51,22 @@ def define(mi):
             self.draw_by(self.lookup, not props["isotropic"], COSINE_SHARE)
             self.shape = props["values"].shape
 
-        def brdf(self, wi, wo, si):
+        def brdf(self, wi: JitVector, wo: JitVector, si: MitsubaObject) -> JitColour:
             return self.values.mean(self.lookup.corners(wi, wo), si)
 
-        def albedo(self, wi, si):
+        def albedo(self, wi: JitVector, si: MitsubaObject) -> JitColour:
             return self.albedos.mean(self.lookup.incidences(wi), si)
 
-        def to_string(self):
+        def to_string(self) -> str:
             return f"MeasuredAdaptive[shape = {self.shape}]"
 
     return MeasuredAdaptive
 
 
-def _read(props):
-    """The arrays and flags of an RGL file: `props`, or those of the file that they name."""
+def _read(props: MitsubaObject) -> MitsubaObject:
+    """Return the arrays and flags of an RGL file: `props`, or read from the file named there."""
     if "filename" in props:
-        from brdfkit.materials.loading import load  # only here: listing the plugins should be quick
+        from brdfkit.materials.loading import load  # slow: plugins are listed without it
 
         name, props = props["filename"], load(resolve_file(props["filename"])).scene_dict()
         if "density" not in props:

@@ -1,20 +1,23 @@
-"""A measured BRDF, looked up: a table over half/difference coordinates (MERL's cells).
+"""Measured table: a measured BRDF, as a table over half and difference angles like MERL's.
 
     {"type": "measured_table", "filename": "gold-metallic-paint.binary"}
 
-takes any file that `brdfkit.load` reads, also one beside the scene's file, as for a bitmap;
-`Measured.scene_dict()` passes its table directly. Values are interpolated multilinearly between the
-cells' centres, and periodically in the azimuths. A table is isotropic, or has an axis for the
-azimuth phi_h.
-In spectral variants measured wavelengths are kept, and colours become smooth spectra.
+The plugin reads any file that `brdfkit.load` reads, whose path may be relative to the scene's file;
+`Measured.scene_dict()` passes the table directly. Values are interpolated linearly along each axis
+between the centres of the cells, and periodically in the azimuths. A table is isotropic, or has an
+axis for the azimuth phi_h of the half vector. In spectral variants measured wavelengths are kept,
+and colours become smooth spectra.
 
-Directions are drawn from a table of the material's own half vectors, and a share of them by the
-cosine. The diffuse reflectance (as in an albedo image) is the albedo at the incidence: nobody can
-tell which part of a measurement is diffuse.
+Outgoing directions are drawn from a table of half vectors, made for the material, and a share of
+them in proportion to the cosine. Albedo images show the albedo at the angle of incidence, because
+nobody can tell which part of a measurement is diffuse.
 """
+
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, JitColour, JitVector, MitsubaModule, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.bsdf.half_vector_table import HalfVectorTable
 from brdfkit.mitsuba_bridge.bsdf.measured_base import measured_frame
@@ -23,17 +26,19 @@ from brdfkit.mitsuba_bridge.channels import channels
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
 from brdfkit.model.samples import Table
 
-# The size of the table of half vectors; a larger one would take seconds
+# The size of the table of half vectors of an anisotropic material; a larger one would take seconds
 ANISOTROPIC = {"azimuths": 24, "angles": 16, "cells": (60, 32), "points": 1}
 
 
-def define(mi):
-    """The class of `mi.BSDF` for the current variant."""
+def define(mi: MitsubaModule) -> type:
+    """Return the class derived from `mi.BSDF`, for the current variant."""
 
-    class MeasuredTable(measured_frame(mi)):
-        def __init__(self, props):
+    Frame: MitsubaObject = measured_frame(mi)
+
+    class MeasuredTable(Frame):
+        def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
-            self.table, wavelengths = _table(props)
+            self.table, wavelengths = _read(props)
             cells = self.table.filled_values
             self.values = channels(cells.reshape(-1, cells.shape[-1]), wavelengths)
             size = ANISOTROPIC if self.table.anisotropic else {}
@@ -41,33 +46,33 @@ def define(mi):
             self.albedos = channels(half_vectors.albedo, wavelengths)
             self.draw_by(half_vectors, self.table.anisotropic)
 
-        def look_up(self, wi, wo):
-            """`brdf` in NumPy. Cells may be negative; a negative mean of cells becomes 0."""
+        def look_up(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
+            """Return `brdf` in NumPy. Cells may be negative; a negative mean of cells becomes 0."""
             return np.maximum(self.table.eval(wi, wo), 0)
 
-        def brdf(self, wi, wo, si):
+        def brdf(self, wi: JitVector, wo: JitVector, si: MitsubaObject) -> JitColour:
             return self.values.mean(corners(self.table, wi, wo), si)
 
-        def albedo(self, wi, si):
+        def albedo(self, wi: JitVector, si: MitsubaObject) -> JitColour:
             return self.albedos.mean(self.sampling.incidences(wi), si)
 
-        def to_string(self):
+        def to_string(self) -> str:
             return f"MeasuredTable[shape = {self.table.shape}]"
 
     return MeasuredTable
 
 
-def example():
-    """A table of brdfkit's own, for the checks."""
-    from brdfkit.core import catalogue  # only here: listing the plugins should be quick
+def example() -> dict[str, Any]:
+    """Return a measured table for the checks: a material that brdfkit brings."""
+    from brdfkit.core import catalogue  # slow: plugins are listed without it
 
     return {"type": "measured_table", "filename": str(catalogue.path("plaster"))}
 
 
-def _table(props):
-    """The `Table`, and its wavelengths [nm], None where the channels are colours."""
+def _read(props: MitsubaObject) -> tuple[Table, FloatArray | None]:
+    """Return the `Table`, and its wavelengths [nm], None where the channels are colours."""
     if "filename" in props:
-        from brdfkit.materials.loading import load  # only here: listing the plugins should be quick
+        from brdfkit.materials.loading import load  # slow: plugins are listed without it
 
         measured = load(resolve_file(props["filename"]))
         props = getattr(measured, "tabulated", measured).scene_dict()

@@ -1,21 +1,23 @@
-"""Mixture: the diffuse term of one model and the lobes of several, fitted and rendered as one.
+"""Mixture: the diffuse term of one model and the highlights of several, fitted and rendered as one.
 
     f = f_1 + Σ_{j>1} (f_j without its diffuse term)
 
-The option `models` names them, as in "ggx+ggx" or "lambert+ward+cook_torrance"; wherever a model
-is named, such a sum may stand. The first model gives the diffuse term. The parameters of the j-th
-model are named after the model and j: ggx_2_alpha_u. Shows metals and glossy plastics, by two lobes
-better than by one; measurements seldom tell three apart. [Ngan et al. 2005]; [Kurt 2007, eqs. 3.12,
-3.30].
+The option `models` names the models, as in "ggx+ggx" or "lambert+ward+cook_torrance"; such a sum
+may stand wherever brdfkit takes the name of a model. The first model gives the diffuse term. The
+parameters of the j-th model are named after the model and j, such as ggx_2_alpha_u. It shows metals
+and glossy plastics, by two lobes better than by one; measurements seldom tell three apart.
+[Ngan et al. 2005]; [Kurt 2007, eqs. 3.12, 3.30].
 """
 
 from dataclasses import replace
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.model import Model, labels, option
+from brdfkit.model import Model, Parameter, labels, option
+from brdfkit.model.lobes import Lobe
+from brdfkit.model.samples import Samples
 
-# Each further lobe of the same model begins narrower by this factor: equal lobes would be a saddle
-# point of the fit
+# Equal lobes would be a saddle point of the fit, so each further lobe of the same model starts
+# narrower by this factor
 NARROWER = 3.0
 
 
@@ -23,12 +25,12 @@ class Mixture(Model):
     models = option("ggx+ggx", None, "the models, joined by +")
 
     @classmethod
-    def label(cls):
+    def label(cls) -> str:
         return cls.models
 
     @classmethod
-    def parts(cls):
-        """(prefix of its parameters, model, names of the weights that it brings) of every term."""
+    def parts(cls) -> list[tuple[str, type[Model], list[str]]]:
+        """Return (prefix of its parameters, model, names of its weights in the sum) by term."""
         named, parts = cls.models.split("+"), []
         if len(named) < 2:
             raise BrdfkitError(
@@ -46,40 +48,42 @@ class Mixture(Model):
         return parts
 
     @classmethod
-    def made_of(cls):
+    def made_of(cls) -> tuple[type[Model], ...]:
         return (Mixture, *(part for _, model, _ in cls.parts() for part in model.made_of()))
 
     @classmethod
-    def more_parameters(cls):
-        parameters, seen = {}, []
+    def more_parameters(cls) -> dict[str, Parameter | None]:
+        parameters: dict[str, Parameter | None] = {}
+        earlier: list[type[Model]] = []
         parts = cls.parts()
         for prefix, model, brought in parts:
             for name, parameter in model.parameters.items():
                 if parameter.linear and name not in brought:
                     continue
-                # Where a fit begins: lobes of different widths, weights that share the light
+                # A fit starts at the defaults: with lobes of different widths, and with weights
+                # that share the light
                 default = parameter.default
-                if parameter.width and not parameter.follows:
-                    default = default * NARROWER ** (-seen.count(model) / parameter.width)
+                if default is not None and parameter.width:
+                    default = default * NARROWER ** (-earlier.count(model) / parameter.width)
                     default = min(max(default, parameter.bounds[0]), parameter.bounds[1])
-                elif parameter.linear and name != "diffuse_reflectance":
+                elif default is not None and parameter.linear and name != "diffuse_reflectance":
                     default = default / len(parts)
                 follows = parameter.follows and prefix + parameter.follows
                 own = name if name == "diffuse_reflectance" else prefix + name
                 parameters[own] = replace(parameter, default=default, follows=follows)
-            seen.append(model)
+            earlier.append(model)
         return parameters
 
     @classmethod
-    def determined(cls, samples):
-        """The shape parameters of the terms that are computed from the measured directions."""
+    def determined(cls, samples: Samples) -> dict[str, float]:
+        """Return the terms' shape parameters that are computed from the measured directions."""
         return {
             prefix + name: value
             for prefix, model, _ in cls.parts()
             for name, value in model.determined(samples).items()
         }
 
-    def lobes(self):
+    def lobes(self) -> tuple[Lobe, ...]:
         lobes = []
         for prefix, model, brought in self.parts():
             shapes = {n: getattr(self, prefix + n) for n in model.shapes(anisotropic=True)}

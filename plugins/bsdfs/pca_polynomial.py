@@ -1,28 +1,32 @@
-"""PCA polynomial: a polynomial of the principal components of products of the directions.
+"""PCA polynomial: a polynomial in the principal components of products of the two directions.
 
     isotropic    f = β_0 + Σ_k (β_{2k-1} Z_1^k + β_{2k} Z_2^k)
                  Z = W U,  W_1 = l_x v_x + l_y v_y,  W_2 = l_z v_z
     anisotropic  f = β_0 + Σ_k (β_{3k-2} Z_1^k + β_{3k-1} Z_2^k + β_{3k} Z_3^k)
                  Z = X U,  X_1 = l_x v_x,  X_2 = l_y v_y,  X_3 = l_z v_z
 
-k = 1 ... `degree`. U rotates the products to their principal axes over the measured directions. A
-fit computes U from these directions, and U belongs to the fitted material; it is given by angles
-[rad]. Weights may be negative; a sum below 0 is clamped at 0. Interactions Z_1^j Z_2^k are left
-out, as printed, although uncorrelated components may well interact.
+l and v are the directions of light and view, with z along the normal; k = 1 ... `degree`. The
+matrix U rotates the products to their principal axes over the measured directions. A fit computes U
+from these directions, and the fitted material keeps it as angles [rad]. Weights may be negative; a
+sum below 0 is clamped at 0. The interactions Z_1^j Z_2^k are left out, as in the paper, although
+uncorrelated components may well interact.
 
-[Öztürk et al. 2008]; [Kurt 2007, eqs. 7.4, 7.5]. Shows diffuse and rough materials; a highlight
+[Öztürk et al. 2008]; [Kurt 2007, eqs. 7.4, 7.5]. It shows diffuse and rough materials; a highlight
 needs a high degree, with which the polynomial swings below 0 elsewhere.
 """
 
 import math
+from collections.abc import Sequence
 
 import drjit as dr
 import numpy as np
 
-from brdfkit.model import Model, option, shape, weight
+from brdfkit.core.array_types import FloatArray, JitFloat, JitVector
+from brdfkit.model import Model, Parameter, option, shape, weight
 from brdfkit.model.lobes import Cosine, Lobe
+from brdfkit.model.samples import Samples
 
-# A dull metal: GGX of alpha 0.55, fitted
+# The ball on the model's page: a dull metal, GGX of alpha 0.55, fitted
 PICTURE = {
     "beta_0": [0.141, 0.099, 0.051],
     "beta_1": [-0.14, -0.096, -0.047],
@@ -37,14 +41,14 @@ PICTURE = {
 PLANES = {2: ((0, 1),), 3: ((0, 1), (0, 2), (1, 2))}
 
 
-def products(wi, wo, components):
-    """The products of two directions: the two components of W, or the three of X."""
+def products(wi: JitVector, wo: JitVector, components: int) -> list[JitFloat]:
+    """Return the products of two directions: the two components of W, or the three of X."""
     x, y, z = wi.x * wo.x, wi.y * wo.y, wi.z * wo.z
     return [x + y, z] if components == 2 else [x, y, z]
 
 
-def rotate(products, angles):
-    """Z: the products along the axes that the `angles` give."""
+def rotate(products: Sequence[JitFloat], angles: Sequence[JitFloat]) -> list[JitFloat]:
+    """Return Z, the `products` along the axes that the `angles` [rad] give."""
     z = list(products)
     for (a, b), angle in zip(PLANES[len(z)], angles, strict=True):
         sine, cosine = dr.sin(angle), dr.cos(angle)
@@ -52,9 +56,9 @@ def rotate(products, angles):
     return z
 
 
-def angles_of(axes):
-    """The angles [rad] by which `rotate` leads to `axes`, the rows of an orthonormal matrix."""
-    if np.linalg.det(axes) < 0:  # the sign of a component is free
+def find_angles(axes: FloatArray) -> list[float]:
+    """Return the angles [rad] with which `rotate` projects on `axes` (n, n), orthonormal rows."""
+    if np.linalg.det(axes) < 0:  # the sign of a component is arbitrary
         axes = np.vstack([axes[:-1], -axes[-1]])
     angles = [math.atan2(axes[0, 1], axes[0, 0])]
     if len(axes) == 3:
@@ -65,27 +69,29 @@ def angles_of(axes):
 
 class PCAPolynomial(Model):
     degree = option(3, tuple(range(1, 17)), "p, the degree")
-    symmetry = option("isotropic", ("isotropic", "anisotropic"), "whether the azimuth counts")
+    symmetry = option(
+        "isotropic", ("isotropic", "anisotropic"), "whether f changes as the surface turns"
+    )
 
     @classmethod
-    def components(cls):
+    def components(cls) -> int:
         return 2 if cls.symmetry == "isotropic" else 3
 
     @classmethod
-    def angle_names(cls):
+    def angle_names(cls) -> list[str]:
         return [f"angle_{a + 1}_{b + 1}" for a, b in PLANES[cls.components()]]
 
     @classmethod
-    def powers(cls):
-        """(component j from 0, exponent k) of β_1, β_2, ..."""
+    def powers(cls) -> list[tuple[int, int]]:
+        """Return (component j from 0, exponent k) of β_1, β_2, ..."""
         return [(j, k) for k in range(1, cls.degree + 1) for j in range(cls.components())]
 
     @classmethod
-    def anisotropic(cls):
+    def anisotropic(cls) -> bool:
         return cls.symmetry == "anisotropic"
 
     @classmethod
-    def more_parameters(cls):
+    def more_parameters(cls) -> dict[str, Parameter | None]:
         signed = (-math.inf, math.inf)
         constant = {"beta_0": weight(0.15, "β_0: constant", signed)}
         betas = {
@@ -99,22 +105,22 @@ class PCAPolynomial(Model):
         return constant | betas | angles
 
     @classmethod
-    def determined(cls, samples):
-        """The angles of the principal axes of the products of the measured directions."""
+    def determined(cls, samples: Samples) -> dict[str, float]:
+        """Return the angles of the principal axes of the products of the measured directions."""
         data = samples.wi * samples.wo
         if cls.components() == 2:
             data = np.stack([data[:, 0] + data[:, 1], data[:, 2]], axis=1)
         variances, axes = np.linalg.eigh(np.cov(data.T, ddof=0))
         axes = axes[:, np.argsort(-variances)].T
         axes = axes * np.sign(axes[range(len(axes)), np.abs(axes).argmax(axis=1)])[:, None]
-        return dict(zip(cls.angle_names(), angles_of(axes), strict=True))
+        return dict(zip(cls.angle_names(), find_angles(axes), strict=True))
 
-    def lobes(self):
+    def lobes(self) -> tuple[Lobe, ...]:
         cosine = Cosine()
         angles = [getattr(self, name) for name in self.angle_names()]
 
-        def power(j, k):
-            def value(wi, wo):
+        def power(j: int, k: int) -> Lobe:
+            def value(wi: JitVector, wo: JitVector) -> JitFloat:
                 return rotate(products(wi, wo, self.components()), angles)[j] ** k
 
             return Lobe(value, cosine, lambda wi: 0.0, diffuse=True)

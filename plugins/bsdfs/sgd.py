@@ -1,52 +1,58 @@
-"""Shifted Gamma (SGD): facets between a power law and a Gaussian, with Smith's shadowing.
+"""Shifted Gamma (SGD): a microfacet model whose slopes follow a power law that ends in a Gaussian.
 
     f = ρ_d / π + ρ_s / π · D G₁(N·L) G₁(N·V) F / ((N·L)(N·V))
     D = P₂₂(tan²θ_h) / (π cos⁴θ_h),   P₂₂(s) = K x^-p exp(-x) with x = α + s / α
     K = 1 / (α Γ(1 - p, α)), so that ∫ D cosθ_h dω = 1
 
-[Bagher et al. 2012]. D is flat up to the slope α, a power law up to the slope √α and a Gaussian
-beyond; p = 0 is Beckmann's D of width √α. G₁ is Smith's, integrated here; the paper approximates it
-within 2e-3 by 1 + λ (1 - exp(c (θ - θ₀)^k)), with four more numbers per material. F is Schlick's,
-without the paper's further term -F₁ V·H, by which F may fall below 0. As printed, the term is 4/π
-times today's D G F / 4(N·L)(N·V): energy is conserved for about ρ_d + 4/π ρ_s ≤ 1.
-Shows paints, plastics and metals, whose tails are longer than Beckmann's and end before GGX's; no
-anisotropy, no retro-reflection. A fit takes twice as long as with GGX.
+N, L, V and H are the normal, the directions of light and view, and the half vector at the angle θ_h
+to N; s = tan²θ_h is the squared slope of a facet. [Bagher et al. 2012]. The distribution D is flat
+up to the slope α, a power law up to the slope √α and a Gaussian beyond; with p = 0 it is Beckmann's
+of width √α. Smith's shadowing G₁ is integrated numerically; the paper approximates it within 2e-3
+by 1 + λ (1 - exp(c (θ - θ₀)^k)), with four more numbers per material. The Fresnel reflectance F is
+Schlick's, without the paper's further term -F₁ V·H, which can make F negative. The printed term is
+4/π times D G F / 4(N·L)(N·V), the form in use today: energy is conserved for about
+ρ_d + 4/π ρ_s ≤ 1. It shows paints, plastics and metals, with tails that are longer than Beckmann's
+and end before GGX's; no anisotropy, no retro-reflection. A fit takes twice as long as with GGX.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.model import shape, weight
 from brdfkit.model.fresnel import FresnelModel
-from brdfkit.model.lobes import HalfVector, lambertian
+from brdfkit.model.lobes import HalfVector, Lobe, lambertian
 from brdfkit.model.microfacet import Visible
 from brdfkit.model.numerics import expm1, log1p
 
-# Gauss-Legendre; the integrals over slopes end where the Gaussian has fallen to exp(-END)
+# Gauss-Legendre nodes and weights; integrals over slopes end where the Gaussian is exp(-END)
 POINTS, GAUSS = np.polynomial.legendre.leggauss(12)
 END = 10
 
 
 @dataclass(frozen=True)
 class ShiftedGamma:
-    """Slopes whose squares s have the density P₂₂ = (1 + s/α²)^-p exp(-s/α) / (α² I)."""
+    """Facets whose squared slopes s have the density P₂₂ = (1 + s/α²)^-p exp(-s/α) / (α² I).
 
-    alpha: Any
-    p: Any
+    I is the integral that normalises it.
+    """
 
-    def D(self, h):
-        # Slopes beyond 1000 have no mass, but derivatives beyond the range of single precision
+    alpha: JitFloat
+    p: JitFloat
+
+    def D(self, h: JitVector) -> JitFloat:
+        # Slopes beyond 1000 do not occur, but have derivatives beyond the range of single precision
         s = dr.minimum(_slope_squared(h), 1e6)
         power = dr.exp(-self.p * log1p(s / (self.alpha * self.alpha)) - s / self.alpha)
         I = sum(mass for _, mass in self._slopes())
         return power * (1 + s) * (1 + s) / (dr.pi * self.alpha * self.alpha * I)
 
-    def G1(self, w):
-        """Smith's 1 / (1 + Λ), Λ = ∫ P₂₂ (y - arctan y) / π ds over y² = s tan²θ - 1 > 0."""
-        # As wide as w: else Dr.Jit would sum derivatives over all w at each of the nodes
+    def G1(self, w: JitVector) -> JitFloat:
+        """Return Smith's 1 / (1 + Λ), Λ = ∫ P₂₂ (y - arctan y) / π ds over y² = s tan²θ - 1 > 0."""
+        # Parameters as wide as w, or Dr.Jit would sum derivatives over all w at each of the nodes
         wide = dr.zeros(type(w.z), dr.width(w.z))
         slopes = ShiftedGamma(self.alpha + wide, self.p + wide)
         scale = self.alpha * self.alpha * _slope_squared(w)
@@ -56,10 +62,10 @@ class ShiftedGamma:
             above, total = above + mass * (y - dr.atan(y)), total + mass
         return 1 / (1 + above / (dr.pi * total))
 
-    def _slopes(self):
-        """(s/α², its part of the integral I over s/α²) at nodes between 0 and END in s/α.
+    def _slopes(self) -> Iterator[tuple[JitFloat, JitFloat]]:
+        """Yield (s/α², its part of the integral I over s/α²) at the nodes of an integral over s.
 
-        They are Gauss-Legendre nodes in log(1 + s/α²).
+        They are Gauss-Legendre nodes in log(1 + s/α²), with s/α between 0 and END.
         """
         end = log1p(END / self.alpha)
         for point, gauss in zip(POINTS.tolist(), GAUSS.tolist(), strict=True):
@@ -67,8 +73,8 @@ class ShiftedGamma:
             s = dr.exp(t) - 1
             yield s, gauss / 2 * end * dr.exp((1 - self.p) * t - self.alpha * s)
 
-    def sample(self, wi, u):
-        """A normal whose squared slope s has a density close to P₂₂.
+    def sample(self, wi: JitVector, u: JitVector) -> JitVector:
+        """Draw a normal whose squared slope s has a density close to P₂₂.
 
         The density is a power law up to s = α, mixed with an exponential that equals it there.
         """
@@ -81,7 +87,7 @@ class ShiftedGamma:
         sin_theta = tangent * cos_theta
         return type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
 
-    def pdf(self, wi, h, cos_d):
+    def pdf(self, wi: JitVector, h: JitVector, cos_d: JitFloat) -> JitFloat:
         s, share, q = _slope_squared(h), self._share(), self._q()
         alpha_2, end = self.alpha * self.alpha, log1p(1 / self.alpha)
         near = dr.exp((q - 1) * log1p(s / alpha_2)) * q / (alpha_2 * expm1(q * end))
@@ -89,24 +95,27 @@ class ShiftedGamma:
         density += (1 - share) * dr.exp(-s / self.alpha) / self.alpha
         return density / (dr.pi * h.z * h.z * h.z)
 
-    def _share(self):
-        """The share of samples that `sample` draws by the power law."""
+    def _share(self) -> JitFloat:
+        """Return the share of samples that `sample` draws by the power law."""
         q, end = self._q(), log1p(1 / self.alpha)
         near = self.alpha * expm1(q * end) / q
         return near / (near + dr.exp((q - 1) * end))
 
-    def _q(self):
-        """1 - p, kept away from 0, where the integral is a logarithm: near enough for sampling."""
+    def _q(self) -> JitFloat:
+        """Return 1 - p, but 0.001 near 0, where the integral is a logarithm.
+
+        The error is small enough for sampling.
+        """
         q = 1 - self.p
         return dr.select(abs(q) < 1e-3, 1e-3, q)
 
 
-def _slope_squared(w):
-    """tan²θ of a direction."""
+def _slope_squared(w: JitVector) -> JitFloat:
+    """Return tan²θ of a direction at the angle θ to the normal."""
     return (w.x * w.x + w.y * w.y) / (w.z * w.z)
 
 
-# The ball of its page: green car paint
+# The ball on the model's page: green car paint
 PICTURE = {
     "diffuse_reflectance": [0.02, 0.1, 0.04],
     "specular_reflectance": [0.3, 0.6, 0.35],
@@ -123,10 +132,10 @@ class SGD(FresnelModel):
     p = shape(0.5, (0.0, 2.0), "p: fall of the power law between α and √α")
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def lobes(self):
+    def lobes(self) -> tuple[Lobe, ...]:
         slopes = ShiftedGamma(self.alpha, self.p)
 
-        def geometry(wi, wo):
+        def geometry(wi: JitVector, wo: JitVector) -> JitFloat:
             return slopes.G1(wi) * slopes.G1(wo) / (dr.pi * wi.z * wo.z)
 
         sampling = HalfVector(Visible(slopes))

@@ -1,55 +1,58 @@
-"""Student's t: facets whose slopes have tails from longer than GGX's down to Beckmann's.
+"""Student's t: a microfacet model with any tails from longer than GGX's to Beckmann's.
 
     f = k_d / π + k_s D G₂ F / (4 (N·L)(N·V))
     D = 1 / (π α² cos⁴θ_h) [1 + tan²θ_h / ((γ - 1) α²)]^-γ
 
-The STD of [Ribardière et al. 2017]: the slopes follow Student's t-distribution with 2γ - 2 degrees
-of freedom. γ = 2 is GGX, γ → ∞ Beckmann. G₂ is Smith's, height-correlated [Heitz 2014], of which
-the paper has an approximation by fitted rational functions; here is another one, whose G₁ is within
-2e-4 of the integral for every α, γ and direction, and exact where γ = 2. F is Schlick's. Where the
-slopes vary along x and y, tan²θ_h / α² is tan²θ_h (cos²φ_h / α_u² + sin²φ_h / α_v²).
-Shows metals, paints and plastics, polished or rough, brushed or not; no retro-reflection, no
-scattering between facets. Where a highlight is broad, measurements hardly tell α and γ apart.
+N, L and V are the normal and the directions of light and view, θ_h and φ_h the angle of the half
+vector to N and its azimuth. This is the distribution STD of [Ribardière et al. 2017]: slopes follow
+Student's t-distribution with 2γ - 2 degrees of freedom. γ = 2 is GGX, γ → ∞ Beckmann. G₂ is Smith's
+height-correlated shadowing [Heitz 2014]. The paper approximates it by fitted rational functions;
+the approximation here has a G₁ within 2e-4 of the integral for every α, γ and direction, and is
+exact at γ = 2. F is Schlick's Fresnel reflectance. Where the widths along x and y differ, tan²θ_h
+(cos²φ_h / α_u² + sin²φ_h / α_v²) takes the place of tan²θ_h / α². It shows metals, paints and
+plastics, polished or rough, brushed or not; no retro-reflection, no scattering between facets.
+Where a highlight is broad, measurements hardly tell α and γ apart.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.model import follows, shape, weight
 from brdfkit.model.fresnel import FresnelModel
-from brdfkit.model.lobes import HalfVector, lambertian
+from brdfkit.model.lobes import HalfVector, Lobe, lambertian
 from brdfkit.model.microfacet import Visible
 from brdfkit.model.numerics import expm1, log1p
 
 
 @dataclass(frozen=True)
 class StudentSlopes:
-    """Slopes with tails of the exponent γ, of width `alpha_u` along x, `alpha_v` along y."""
+    """Facets whose slopes have tails of the exponent γ, and widths `alpha_u` and `alpha_v`."""
 
-    alpha_u: Any
-    alpha_v: Any
-    gamma: Any
+    alpha_u: JitFloat
+    alpha_v: JitFloat
+    gamma: JitFloat
 
-    def D(self, h):
+    def D(self, h: JitVector) -> JitFloat:
         x, y, cos_2 = h.x / self.alpha_u, h.y / self.alpha_v, dr.maximum(h.z * h.z, 1e-12)
-        # The bracket times cos²θ_h, which is neither 0 nor infinite anywhere
+        # s is the bracket of the formula times cos²θ_h, which is neither 0 nor infinite anywhere
         s = cos_2 + (x * x + y * y) / (self.gamma - 1)
         power = dr.exp((self.gamma - 2) * dr.log(cos_2) - self.gamma * dr.log(s))
         return power / (dr.pi * self.alpha_u * self.alpha_v)
 
-    def Lambda(self, w):
-        """Smith's auxiliary function ∫ (t - cotθ)⁺ P(t) dt / cotθ over slopes t towards w.
+    def Lambda(self, w: JitVector) -> JitFloat:
+        """Return Smith's auxiliary function ∫ (t - cotθ)⁺ P(t) dt / cotθ over slopes t towards w.
 
-        P is Student's in one dimension. With a = √(γ - 1) α tanθ, v² = 1 / (1 + a²), z² = 1 - v²,
-        n = 2γ - 3 and c = Γ(γ - 1/2) / (√π Γ(γ - 1)), integration by parts gives
+        θ is the angle of w to the normal, P Student's density in one dimension. With
+        a = √(γ - 1) α tanθ, v² = 1 / (1 + a²), z² = 1 - v², n = 2γ - 3 and
+        c = Γ(γ - 1/2) / (√π Γ(γ - 1)), integration by parts gives
 
             Λ = a zⁿ c/n (1 - n v / W),   1/W = z^(-n-1) ∫ zⁿ dz / √(1 - z²) from 0 to z.
 
         The approximation W = A v + √(4c² + B v + C v²) has the right value and slope, 2c and 4c²,
-        at v = 0 (grazing), and the right value n + 1 at v = 1. A remains: its line in n keeps the
-        error of G₁ within 2e-4.
+        at v = 0 (grazing), and the right value n + 1 at v = 1. This leaves A free: a linear
+        function of n keeps the error of G₁ within 2e-4.
         """
         n, c_2 = 2 * self.gamma - 3, self._double_c()
         x, y = self.alpha_u * w.x, self.alpha_v * w.y
@@ -62,18 +65,21 @@ class StudentSlopes:
         a_z_n = dr.sqrt(a_2) * dr.exp(0.5 * n * dr.log(a_2 * v_2))
         return 0.5 * a_z_n * c_2 * (1 / n - v / W)
 
-    def _double_c(self):
-        """2c = 2 Γ(γ - 1/2) / (√π Γ(γ - 1)) by Brouncker's continued fraction, one step up."""
+    def _double_c(self) -> JitFloat:
+        """Return 2c = 2 Γ(γ - 1/2) / (√π Γ(γ - 1)), by Brouncker's continued fraction.
+
+        The fraction is taken at γ + 1, where it converges faster.
+        """
         x = self.gamma - 1
         s = 8 * x + 6
         gammas = (s + 2 / (s + 9 / (s + 25 / (s + 49 / s)))) / 8
         return 2 / dr.sqrt(dr.pi) * x / (x + 0.5) * dr.sqrt(gammas)
 
-    def G2(self, wi, wo):
-        """Height-correlated shadowing and masking [Heitz 2014, eq. 99]."""
+    def G2(self, wi: JitVector, wo: JitVector) -> JitFloat:
+        """Return the height-correlated shadowing and masking [Heitz 2014, eq. 99]."""
         return 1 / (1 + self.Lambda(wi) + self.Lambda(wo))
 
-    def sample(self, wi, u):
+    def sample(self, wi: JitVector, u: JitVector) -> JitVector:
         x = self.gamma - 1
         tangent = dr.sqrt(x * expm1(-log1p(-u.x) / x))
         sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.y)
@@ -81,11 +87,11 @@ class StudentSlopes:
         inverse = dr.rsqrt(1 + x * x + y * y)
         return type(wi)(x * inverse, y * inverse, inverse)
 
-    def pdf(self, wi, h, cos_d):
+    def pdf(self, wi: JitVector, h: JitVector, cos_d: JitFloat) -> JitFloat:
         return self.D(h) * h.z
 
 
-# The ball of its page: a coat with tails longer than GGX's
+# The ball on the model's page: a coat with tails longer than GGX's
 PICTURE = {
     "diffuse_reflectance": [0.02, 0.02, 0.03],
     "specular_reflectance": [0.8, 0.85, 0.95],
@@ -103,10 +109,10 @@ class StudentT(FresnelModel):
     gamma = shape(3.0, (1.51, 40.0), "γ: fall of the tails", log=True)
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def lobes(self):
+    def lobes(self) -> tuple[Lobe, ...]:
         slopes = StudentSlopes(self.alpha_u, self.alpha_v, self.gamma)
 
-        def geometry(wi, wo):
+        def geometry(wi: JitVector, wo: JitVector) -> JitFloat:
             return slopes.G2(wi, wo) / (4 * wi.z * wo.z)
 
         sampling = HalfVector(Visible(slopes))

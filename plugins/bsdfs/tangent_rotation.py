@@ -1,72 +1,101 @@
-"""A material turned about the normal, by an angle from a texture: the grain of wood, brushed metal.
+"""Tangent rotation: an anisotropic material, such as brushed metal, turned by a texture of angles.
 
     {"type": "tangent_rotation", "angle": {"type": "bitmap", ...}, "bsdf": {"type": "ward", ...}}
 
-The material may be any of Mitsuba's or brdfkit's; `alpha_u` is along the turned u. Within
-`normalmap` the normal is the map's.
+The material may be any BSDF of Mitsuba or brdfkit. It is turned about the normal: its width
+`alpha_u` applies along the turned u axis. Within a `normalmap`, the normal is the one of the map.
 """
 
+from typing import Any
+
+from brdfkit.core.array_types import (
+    JitColour,
+    JitFloat,
+    JitMask,
+    JitVector,
+    MitsubaModule,
+    MitsubaObject,
+)
 from brdfkit.mitsuba_bridge.properties.declarations import bsdf, declared, texture
 
 PARAMETERS = {
-    "angle": texture(0.0, "of the material's u from the surface's, counterclockwise [radians]"),
-    "bsdf": bsdf("the material that is turned; in a scene file name it so"),
+    "angle": texture(0.0, "from the surface's u axis to the material's, counterclockwise [rad]"),
+    "bsdf": bsdf("the material to turn; in a scene file it needs this name"),
 }
 
 
-def define(mi):
-    """The class of `mi.BSDF` for the current variant."""
+def define(mi: MitsubaModule) -> type:
+    """Return the class derived from `mi.BSDF`, for the current variant."""
     import drjit as dr
 
-    class TangentRotation(declared(mi.BSDF, PARAMETERS)):
-        def __init__(self, props):
+    Base: MitsubaObject = declared(mi.BSDF, PARAMETERS)
+
+    class TangentRotation(Base):
+        def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             count = self.bsdf.component_count()
             self.m_components = [self.bsdf.flags(k) for k in range(count)]
             self.m_flags = self.bsdf.flags()
 
-        def turned(self, si, active):
-            """(the interaction as the nested material sees it, cosine and sine of the angle)."""
+        def turn_interaction(
+            self, si: MitsubaObject, active: JitMask
+        ) -> tuple[MitsubaObject, JitFloat, JitFloat]:
+            """Return the interaction in the material's frame, and cosine and sine of the angle."""
             sine, cosine = dr.sincos(self.angle.eval_1(si, active))
             inside = mi.SurfaceInteraction3f(si)
             inside.wi = turn(si.wi, cosine, -sine)
             return inside, cosine, sine
 
-        def sample(self, ctx, si, sample1, sample2, active=True):
-            inside, cosine, sine = self.turned(si, active)
-            found, weight = self.bsdf.sample(ctx, inside, sample1, sample2, active)
-            found.wo = dr.detach(turn(found.wo, cosine, sine))
+        def sample(
+            self,
+            ctx: MitsubaObject,
+            si: MitsubaObject,
+            sample1: JitFloat,
+            sample2: JitVector,
+            active: JitMask = True,
+        ) -> tuple[MitsubaObject, JitColour]:
+            inside, cosine, sine = self.turn_interaction(si, active)
+            drawn, weight = self.bsdf.sample(ctx, inside, sample1, sample2, active)
+            drawn.wo = dr.detach(turn(drawn.wo, cosine, sine))
             if not dr.is_diff_v(mi.Float):  # Dr.Jit's replace_grad crashes with Python's numbers
-                return found, weight
-            # the direction has no derivatives: where it stays, the material turns beneath it
-            smooth = active & (found.pdf > 0) & mi.has_flag(found.sampled_type, mi.BSDFFlags.Smooth)
-            value = self.bsdf.eval(ctx, inside, turn(found.wo, cosine, -sine), smooth)
-            pdf = dr.select(smooth, dr.detach(found.pdf), 1)
-            return found, dr.select(smooth, dr.replace_grad(weight, value / pdf), weight)
+                return drawn, weight
+            # The direction has no derivatives: it stays where it is while the material turns
+            smooth = active & (drawn.pdf > 0) & mi.has_flag(drawn.sampled_type, mi.BSDFFlags.Smooth)
+            value = self.bsdf.eval(ctx, inside, turn(drawn.wo, cosine, -sine), smooth)
+            pdf = dr.select(smooth, dr.detach(drawn.pdf), 1)
+            # Dr.Jit's stub knows no result of this function
+            weight_of_value = dr.replace_grad(weight, value / pdf)  # type: ignore[func-returns-value]
+            return drawn, dr.select(smooth, weight_of_value, weight)
 
-        def eval(self, ctx, si, wo, active=True):
-            inside, cosine, sine = self.turned(si, active)
+        def eval(
+            self, ctx: MitsubaObject, si: MitsubaObject, wo: JitVector, active: JitMask = True
+        ) -> JitColour:
+            inside, cosine, sine = self.turn_interaction(si, active)
             return self.bsdf.eval(ctx, inside, turn(wo, cosine, -sine), active)
 
-        def pdf(self, ctx, si, wo, active=True):
-            inside, cosine, sine = self.turned(si, active)
+        def pdf(
+            self, ctx: MitsubaObject, si: MitsubaObject, wo: JitVector, active: JitMask = True
+        ) -> JitFloat:
+            inside, cosine, sine = self.turn_interaction(si, active)
             return self.bsdf.pdf(ctx, inside, turn(wo, cosine, -sine), active)
 
-        def eval_pdf(self, ctx, si, wo, active=True):
-            inside, cosine, sine = self.turned(si, active)
+        def eval_pdf(
+            self, ctx: MitsubaObject, si: MitsubaObject, wo: JitVector, active: JitMask = True
+        ) -> tuple[JitColour, JitFloat]:
+            inside, cosine, sine = self.turn_interaction(si, active)
             return self.bsdf.eval_pdf(ctx, inside, turn(wo, cosine, -sine), active)
 
-        def eval_diffuse_reflectance(self, si, active=True):
-            return self.bsdf.eval_diffuse_reflectance(self.turned(si, active)[0], active)
+        def eval_diffuse_reflectance(self, si: MitsubaObject, active: JitMask = True) -> JitColour:
+            return self.bsdf.eval_diffuse_reflectance(self.turn_interaction(si, active)[0], active)
 
-    def turn(w, cosine, sine):
-        """A direction turned about z, counterclockwise."""
+    def turn(w: JitVector, cosine: JitFloat, sine: JitFloat) -> JitVector:
+        """Return the direction `w` turned about z, counterclockwise."""
         return mi.Vector3f(cosine * w.x - sine * w.y, sine * w.x + cosine * w.y, w.z)
 
     return TangentRotation
 
 
-def example():
-    """Brushed metal, for the checks."""
+def example() -> dict[str, Any]:
+    """Return brushed metal, for the checks."""
     brushed = {"type": "ward", "alpha_u": 0.4, "alpha_v": 0.1, "specular_reflectance": 0.5}
     return {"type": "tangent_rotation", "angle": 0.5, "bsdf": brushed}

@@ -1,62 +1,64 @@
-"""Torrance-Sparrow: facets in V-grooves, their inclination distributed like a Gaussian.
+"""Torrance-Sparrow: a microfacet model of V-grooves with a Gaussian distribution of inclinations.
 
     f = k_d / π + k_s D G F / (4 (N·L)(N·V)),   D = exp(-θ_h² / m²) / (π m²)
     G = min(1, 2 (N·H)(N·V) / (V·H), 2 (N·H)(N·L) / (V·H))
 
-[Torrance & Sparrow 1967]; [Kurt 2007, eqs. 3.25-3.27], with Schlick's F (3.16). The constant of D
-[Ramamoorthi & Hanrahan 2001] normalises D for small m: ∫ D cosθ_h dω is 0.974 at m = 0.2 and 0.548
-at m = 1, so that rough surfaces come out too dark, never too bright. Shows metals and plastics of
-one roughness and their off-specular peaks; no long tails, no anisotropy.
+N, L, V and H are the normal, the directions of light and view, and the half vector at the angle θ_h
+to N. [Torrance & Sparrow 1967]; [Kurt 2007, eqs. 3.25-3.27], with Schlick's Fresnel reflectance F
+(3.16). The constant of the distribution D [Ramamoorthi & Hanrahan 2001] normalises D only for small
+m: ∫ D cosθ_h dω is 0.974 at m = 0.2 and 0.548 at m = 1, so that rough surfaces are too dark, never
+too bright. It shows metals and plastics of one roughness and their off-specular peaks; no long
+tails, no anisotropy.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.geometry.vectors import half_vector
 from brdfkit.model import shape, weight
 from brdfkit.model.fresnel import FresnelModel
-from brdfkit.model.lobes import HalfVector, lambertian
+from brdfkit.model.lobes import HalfVector, Lobe, lambertian
 from brdfkit.model.microfacet import Visible, v_groove
 from brdfkit.model.numerics import log1p
 
 
 @dataclass(frozen=True)
 class GaussianAngle:
-    """Normals whose inclination θ_h has the density θ_h exp(-θ_h²/m²) up to the horizon."""
+    """A distribution of normals whose inclination θ_h has the density θ_h exp(-θ_h²/m²)."""
 
-    m: Any
+    m: JitFloat
 
-    def D(self, h):
+    def D(self, h: JitVector) -> JitFloat:
         x = _angle(h) / self.m
         return dr.exp(-x * x) / (dr.pi * self.m * self.m)
 
-    def sample(self, wi, u):
+    def sample(self, wi: JitVector, u: JitVector) -> JitVector:
         theta = self.m * dr.sqrt(-log1p(-u.x * self._share()))
         sin_theta, cos_theta = dr.sincos(theta)
         sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.y)
         return type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
 
-    def pdf(self, wi, h, cos_d):
+    def pdf(self, wi: JitVector, h: JitVector, cos_d: JitFloat) -> JitFloat:
         # D θ/sinθ, and θ/sinθ = 1 at the normal
         return self.D(h) * _angle(h) / (_sine(h) * self._share())
 
-    def _share(self):
-        """The share of the Gaussian in the plane that lies within the radius π/2."""
+    def _share(self) -> JitFloat:
+        """Return the share of the Gaussian in the plane that lies within the radius π/2."""
         end = dr.pi / 2 / self.m
         return 1 - dr.exp(-end * end)
 
 
-def _sine(h):
+def _sine(h: JitVector) -> JitFloat:
     return dr.sqrt(dr.maximum(h.x * h.x + h.y * h.y, 1e-14))
 
 
-def _angle(h):
+def _angle(h: JitVector) -> JitFloat:
     return dr.atan2(_sine(h), h.z)
 
 
-# The ball of its page: glazed porcelain
+# The ball on the model's page: glazed porcelain
 PICTURE = {
     "diffuse_reflectance": [0.7, 0.7, 0.72],
     "specular_reflectance": 1.0,
@@ -71,10 +73,10 @@ class TorranceSparrow(FresnelModel):
     alpha = shape(0.2, (0.001, 1.0), "m: rms inclination of the facets [rad]", log=True, width=1)
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def geometry(self, wi, wo):
+    def geometry(self, wi: JitVector, wo: JitVector) -> JitFloat:
         return v_groove(wi, wo, half_vector(wi, wo)) / (4 * wi.z * wo.z)
 
-    def lobes(self):
+    def lobes(self) -> tuple[Lobe, ...]:
         angles = GaussianAngle(self.alpha)
         sampling = HalfVector(Visible(angles))
         return lambertian(), *self.fresnel_lobes(angles.D, self.geometry, sampling)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from brdfkit.core.discovery import plugin_files
 from brdfkit.core.references import works
 
-SHOWS = re.compile(r"\bShows .*?\.(?=\s|$)")
+SHOWS = re.compile(r"\b(?:It s|S)(hows .*?\.)(?=\s|$)")
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Page:
     def shows(self):
         """Which materials a model shows, and what it does not: the sentence that begins so."""
         found = SHOWS.search(" ".join(self.lines))
-        return found.group() if found else ""
+        return f"S{found.group(1)}" if found else ""
 
     @property
     def references(self):
