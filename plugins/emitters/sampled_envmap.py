@@ -1,17 +1,28 @@
-"""Environment map by the usual samplers: to compare them with `kdtree_envmap`, and each other.
+"""Environment map with common samplers: an environment light to compare with `kdtree_envmap`.
 
     {"type": "sampled_envmap", "filename": "studio.exr", "sampler": "alias"}
 
-takes the place of Mitsuba's `envmap`, as `kdtree_envmap` does. `sampler` says how points of the map
-are drawn: `cdf`, by cumulative sums and binary search, a row and then a cell; `mip`, by descending
-mip levels, as `envmap` itself does; `alias`, by alias tables of the rows and of the cells of each
-row [Vose 1991]. `compensated`: only for integrators that also sample surfaces, the density leaves
-out what is below the map's mean [Karlík et al. 2019].
+It takes the place of Mitsuba's `envmap`, like `kdtree_envmap`. `sampler` says how points of the map
+are drawn: `cdf` finds a row and then a cell by binary search in cumulative sums; `mip` descends mip
+levels, as `envmap` itself does; `alias` has alias tables of the rows and of the cells of each row
+[Vose 1991]. With `compensated`, for integrators that also sample BSDFs, the density leaves out
+everything below the mean of the map [Karlík et al. 2019].
 """
+
+from typing import Any
 
 import numpy as np
 
-from brdfkit.core.array_types import FloatArray, IntArray, JitFloat, JitInt, JitMask, JitVector
+from brdfkit.core.array_types import (
+    FloatArray,
+    IntArray,
+    JitFloat,
+    JitInt,
+    JitMask,
+    JitVector,
+    MitsubaModule,
+    MitsubaObject,
+)
 from brdfkit.lighting.sampling.emitter import MAP_PARAMETERS, environment_emitter, make_small_sky
 from brdfkit.lighting.sampling.power_map import cell_power, pixel_power
 from brdfkit.mitsuba_bridge.arrays import Integers, Rows, cell
@@ -156,16 +167,17 @@ SAMPLERS = {"cdf": Cdf, "mip": Mip, "alias": Alias}
 PARAMETERS = MAP_PARAMETERS | {"sampler": word(SAMPLERS, "how points of the map are drawn")}
 
 
-def define(mi):
-    """The class of `mi.Emitter` for the current variant."""
+def define(mi: MitsubaModule) -> type:
+    """Return the class derived from `mi.Emitter`, for the current variant."""
+    Base: MitsubaObject = environment_emitter(mi, PARAMETERS)
 
-    class SampledEnvmap(environment_emitter(mi, PARAMETERS)):
-        def make_sampler(self, brightness):
+    class SampledEnvmap(Base):
+        def make_sampler(self, brightness: FloatArray) -> Any:
             return SAMPLERS[self.sampler](brightness)
 
     return SampledEnvmap
 
 
-def example():
-    """A small sky with a sun, for the checks."""
+def example() -> dict[str, Any]:
+    """Return a small sky with a sun, for the checks."""
     return {"type": "sampled_envmap", "bitmap": make_small_sky()}

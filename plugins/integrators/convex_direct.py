@@ -1,35 +1,47 @@
-"""Direct light with shadows of convex parts: those of meshes, which may move between pictures.
+"""Convex shadows: direct light, with shadows of convex parts of meshes, which may move.
 
     L = L_e + Σ_s ρ(ω_s, ω_o) L(ω_s) V(ω_s) cosθ_s / (p_b(ω_s) + p_e(ω_s))
 
-with two directions ω_s per sample of a pixel, one drawn by the BSDF (density p_b) and one by the
-lights (p_e): the balance heuristic. V is 0 where a convex part lies in the way. Every mesh that
-encloses a volume is cut into nearly convex parts when the scene is first rendered, which takes
-seconds to minutes and is kept in the user's cache folder (it needs coacd: `pip install
-'brdfkit[visibility]'`); `concavity` says how far a part may be from its hull. Each part has a map
-of its faces by direction, in which a ray finds where it enters the part in two look-ups or so.
-Other shapes (spheres, grounds, lamps) cast their own shadows. Camera rays meet the surfaces as they
-are.
+L is the radiance in the direction ω_o to the camera, L_e the emission of the surface, ρ its BRDF. A
+sample of a pixel has two directions ω_s, one drawn by the BSDF (density p_b) and one by the lights
+(p_e), combined by the balance heuristic. V is 0 where a convex part blocks the light. Every mesh
+that encloses a volume is cut into nearly convex parts when the scene is first rendered. This takes
+seconds to minutes, is stored in the user's cache folder, and needs coacd: `pip install
+'brdfkit[visibility]'`. `concavity` says how far a part may be from its convex hull. Each part has a
+map of its faces by direction, in which a ray finds its entry into the part in about two look-ups.
+Other shapes, such as spheres, grounds and lamps, cast exact shadows. Camera rays meet the exact
+surfaces.
 
-[Ergun 2015, section 7.2]. A picture is the mean of its passes: more passes with other seeds refine
-it. Shadows are approximate: too large where a hull is thicker than the mesh, and missing on a point
-from what is nearer than 1.5 % of the mesh's size. The light should be an environment, such as
-`kdtree_envmap`; other lights are sampled by themselves alone. There is no indirect light, and what
-comes back is unpolarised.
+[Ergun 2015, section 7.2]. Passes with different seeds can be averaged to reduce the noise. Shadows
+are approximate: they are too large where a hull is thicker than the mesh, and objects cast no
+shadow on points nearer than 1.5 % of the mesh's size. The light should be an environment, such as
+`kdtree_envmap`; other lights are sampled only by themselves, not by the BSDF. There is no indirect
+light, and the light is unpolarised.
 
-In Python an object is moved without a new tree over its triangles, by a matrix from its first
-place: `integrator.occluders(scene).move(id, matrix)`. That moves its shadow; what the camera sees
-is moved as ever in Mitsuba.
+In Python an object can move without rebuilding the tree over its triangles, by a matrix from its
+first place: `integrator.occluders(scene).move(id, matrix)`. This moves its shadow; the visible
+object is moved as usual in Mitsuba.
 """
 
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import (
+    FloatArray,
+    JitColour,
+    JitFloat,
+    JitMask,
+    JitVector,
+    MitsubaModule,
+    MitsubaObject,
+)
 from brdfkit.lighting.visibility.casters import Casters
 from brdfkit.lighting.visibility.decomposition import CONCAVITY
-from brdfkit.lighting.visibility.occluders import RESOLUTION
+from brdfkit.lighting.visibility.occluders import RESOLUTION, Occluders
 from brdfkit.mitsuba_bridge.check_scenes import reference_film
 from brdfkit.mitsuba_bridge.properties.declarations import count, declared, plain_number
 
@@ -39,46 +51,73 @@ PARAMETERS = {
 }
 
 
-def define(mi):
-    """The class of `mi.SamplingIntegrator` for the current variant."""
+def define(mi: MitsubaModule) -> type:
+    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    Base: MitsubaObject = declared(mi.SamplingIntegrator, PARAMETERS)
 
-    class ConvexDirect(declared(mi.SamplingIntegrator, PARAMETERS)):
-        def __init__(self, props):
+    class ConvexDirect(Base):
+        def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             self.casters = Casters(self.concavity, self.resolution)
 
-        def occluders(self, scene):
-            """The `Occluders` of the scene's meshes, None where no mesh encloses a volume."""
+        def occluders(self, scene: MitsubaObject) -> Occluders | None:
+            """Return the `Occluders` of the scene's meshes, None if no mesh encloses a volume."""
             return self.casters.of(scene)[0]
 
-        def sample(self, scene, sampler, ray, medium=None, active=True):
-            # What the camera sees, and its own light
+        def sample(
+            self,
+            scene: MitsubaObject,
+            sampler: MitsubaObject,
+            ray: MitsubaObject,
+            medium: MitsubaObject = None,
+            active: JitMask = True,
+        ) -> tuple[JitColour, JitMask, list[JitFloat]]:
+            # The visible surface and its own light
             si = scene.ray_intersect(mi.Ray3f(ray), active)
-            seen = active & si.is_valid()
+            hit = active & si.is_valid()
             emitter = si.emitter(scene)
             radiance = mi.UnpolarizedSpectrum(0)
             if emitter is not None:
                 radiance += mi.unpolarized_spectrum(emitter.eval(si, active))
 
             bsdf = si.bsdf()
-            radiance += self.light_by_emitters(scene, si, bsdf, sampler.next_2d(), seen)
+            radiance += self.light_by_emitters(scene, si, bsdf, sampler.next_2d(), hit)
             samples = sampler.next_1d(), sampler.next_2d()
-            radiance += self.light_by_bsdf(scene, si, bsdf, *samples, seen)
+            radiance += self.light_by_bsdf(scene, si, bsdf, *samples, hit)
             return mi.depolarizer(dr.select(active, radiance, 0)), active, []
 
-        def light_by_emitters(self, scene, si, bsdf, sample, active):
+        def light_by_emitters(
+            self,
+            scene: MitsubaObject,
+            si: MitsubaObject,
+            bsdf: MitsubaObject,
+            sample: JitVector,
+            active: JitMask,
+        ) -> JitColour:
+            """Return the reflected light of one direction that the lights draw, with its weight."""
             active = active & mi.has_flag(bsdf.flags(), mi.BSDFFlags.Smooth)
             ds, light = scene.sample_emitter_direction(si, sample, False, active)
             active = active & (ds.pdf > 0)
             wo = si.to_local(ds.d)
             value, pdf = bsdf.eval_pdf(mi.BSDFContext(), si, wo, active)
             infinite = mi.has_flag(ds.emitter.flags(), mi.EmitterFlags.Infinite)
-            pdf = dr.select(infinite, dr.select(ds.delta, 0, pdf), 0)  # 0: by the BSDF never drawn
+            # The BSDF samples only the environment, so its density for other lights is 0
+            pdf = dr.select(infinite, dr.select(ds.delta, 0, pdf), 0)
             weight = ds.pdf / dr.select(active, ds.pdf + pdf, 1)
-            found = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * weight
-            return dr.select(self.casters.visible(scene, si.spawn_ray_to(ds.p), active), found, 0)
+            reflected = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * weight
+            visible = self.casters.visible(scene, si.spawn_ray_to(ds.p), active)
+            return dr.select(visible, reflected, 0)
 
-        def light_by_bsdf(self, scene, si, bsdf, sample1, sample2, active):
+        def light_by_bsdf(
+            self,
+            scene: MitsubaObject,
+            si: MitsubaObject,
+            bsdf: MitsubaObject,
+            sample1: JitFloat,
+            sample2: JitVector,
+            active: JitMask,
+        ) -> JitColour:
+            """Return the environment's reflected light of one direction that the BSDF draws."""
             environment = scene.environment()
             if environment is None:
                 return mi.UnpolarizedSpectrum(0)
@@ -88,26 +127,24 @@ def define(mi):
 
             # The environment in this direction, and its density
             far = mi.SurfaceInteraction3f(si)
-            far.t, far.wi = dr.inf, -ray.d  # beyond all surfaces
+            far.t, far.wi = dr.inf, -ray.d
             ds = mi.DirectionSample3f(scene, far, si)
             pdf = scene.pdf_emitter_direction(si, ds, active)
             pdf = dr.select(mi.has_flag(bs.sampled_type, mi.BSDFFlags.Delta), 0, pdf)
             light = mi.unpolarized_spectrum(environment.eval(far, active))
-            found = (
-                mi.unpolarized_spectrum(value)
-                * light
-                * (bs.pdf / dr.select(active, bs.pdf + pdf, 1))
-            )
-            return dr.select(self.casters.visible(scene, ray, active), found, 0)
+            weight = bs.pdf / dr.select(active, bs.pdf + pdf, 1)
+            reflected = mi.unpolarized_spectrum(value) * light * weight
+            return dr.select(self.casters.visible(scene, ray, active), reflected, 0)
 
     return ConvexDirect
 
 
-def reference():
-    """A scene, and the radiance (3,) of each of its pixels: (1 - F) L times the albedo.
+def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
+    """Return a scene for the checks, and the radiance (3,) of each pixel, albedo · (1 - F) L.
 
-    A ground under an even sky, right below the middle of a cube. F is the share of the sky that the
-    cube's lower face hides, by the cosine: the form factor of four rectangles with a corner above.
+    It shows the ground below the centre of a cube, under a sky of constant radiance L. F is the
+    cosine-weighted share of the sky that the lower face of the cube hides: the form factor of four
+    rectangles with a corner above the point.
     """
     import mitsuba as mi
 

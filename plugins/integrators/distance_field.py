@@ -1,56 +1,73 @@
-"""Distance field: direct light on surfaces that are given by distances, with soft shadows.
+"""Distance field: direct light and soft shadows on surfaces that a signed distance function gives.
 
     {"type": "distance_field", "filename": "scene.json"}
 
-renders a field of `brdfkit.distance_fields`, from a file that `field.save` wrote, or, in Python,
-`"field": field.to_json()`. The lights are those of the scene: area emitters on spheres, rectangles
-and disks, whose shadows are soft, and points, spots and directions, whose are sharp. A bsdf within
-the integrator is the material; a bsdf with a name is that of the parts that `field.made_of(NAME)`
-names. Textures have u = x and v = y; the tangent of anisotropic materials is the x axis laid onto
-the surface, or the z axis where that stands upright.
+It renders a field of `brdfkit.distance_fields`, from a file that `field.save` wrote, or in Python
+from `"field": field.to_json()`. The scene's lights are area emitters on spheres, rectangles and
+disks, with soft shadows, and point, spot and directional lights, with sharp shadows. A bsdf within
+the integrator is the material of the field; a bsdf with a name is the material of the parts that
+`field.made_of(NAME)` names. Textures have u = x and v = y. The tangent of anisotropic materials is
+the x axis projected onto the surface, or the z axis where the x axis is normal to the surface.
 
-`shadow` says how the share of a lamp that a point sees is found: by one march along a cone
-(`linear`; `base`, `discrete`; `convex`, longer steps in unions of convex solids), which takes all
-that is in the way for one half-plane; by 7 of them (`split`), right for several, small and thin
-objects; to the middle of the lamp (`hard`); by two formulas that are known from games (`quilez`,
-`aaltonen`); by `rays` rays (`monte_carlo`); or not at all (`none`). `direction` A leads from the
-surface to the lamp, B back; `epsilon` is the largest error of that share, within the method's idea
-of what is in the way.
+`shadow` is the method that finds the visible share of a lamp. Most march along a cone, which treats
+everything in the cone as one half-plane: `linear`, `base`, `discrete`, and `convex`, which takes
+longer steps in unions of convex solids. `split` marches 7 times, and is correct for several, small
+and thin objects. `hard` follows one ray to the lamp's centre, `quilez` and `aaltonen` are two
+formulas known from games, `monte_carlo` follows a number of `rays`, and `none` omits shadows. With
+`direction` A the march leads from the surface to the lamp, with B back. `epsilon` is the largest
+error of the share, within the assumptions of the method.
 
-`shading` = `split`: the BSDF towards the lamp's middle, the radiance, a solid angle (π (r/d)² of a
-sphere, A cosθ / d² of other lamps) and the share: no noise. Shiny materials show a large lamp as a
-small one then: of rough metal with α = 0.1 beside a lamp with r/d = 0.2 a picture is 9 % too dark,
-with r/d = 0.1 2 %; highlights are right within 6 % up to r/d = α/2 (the gallery has the table).
-`estimated`: `samples` samples of the lamp, of which the shadow's edge lets some through: highlights
-in the lamp's shape, and rectangles and disks instead of the spheres about them. `exact`: a ray to
-every sample; `shadow` is not asked. A sky, `constant` or `envmap`, is always sampled so, and by the
-bsdf as well.
+`shading` is the method that sums up the light of a lamp. `split` has no noise: it multiplies the
+BSDF towards the lamp's centre, the radiance, a solid angle (π (r/d)² of a sphere with the radius r
+at the distance d, A cosθ / d² of other lamps with the area A) and the visible share. On shiny
+materials a large lamp then looks like a small one: rough metal with α = 0.1 is 9 % too dark beside
+a lamp with r/d = 0.2, 2 % with r/d = 0.1; highlights are correct within 6 % up to r/d = α/2 (the
+gallery has the table). `estimated` draws `samples` points of the lamp, and the edge of the shadow
+lets some of them through: highlights have the lamp's shape, and rectangles and disks are exact
+instead of the spheres about them. `exact` follows a ray to every sample and ignores `shadow`. A
+sky, `constant` or `envmap`, is always sampled in this way, and by the bsdf as well.
 
-Derivatives go to all parameters of the field (`mi.traverse` lists them, by the names of
-`field.parameters()`), to bsdfs and to lamps, through what is seen, its silhouettes and soft
-shadows, where Mitsuba's `prb` has none. Silhouettes are taken ε/2 outside of where they are, with
-ε = 2.8 pixels over the root of the samples per pixel. The silhouettes of lamps, and the shadows of
-`estimated`, `exact` and the sky, are missing. The derivative of a shadow is that of its exact
-minimum, whatever `epsilon` is: finite differences of a picture whose `epsilon` is 0.05 are wrong
-instead, at single points by 40 %.
+Derivatives flow to all parameters of the field (`mi.traverse` lists them, by the names of
+`field.parameters()`), to bsdfs and to lamps, through visible surfaces, their silhouettes and soft
+shadows. Mitsuba's `prb` has none of the latter two. Silhouettes are evaluated ε/2 outside of their
+true place, with ε = 2.8 pixels over the root of the samples per pixel. Derivatives do not include
+the silhouettes of lamps, nor the shadows of `estimated`, `exact` and the sky. The derivative of a
+shadow is exact for any `epsilon`; finite differences of a picture with `epsilon` = 0.05 are wrong
+at single points by 40 %.
 
-A field whose steps are not safe, or that is not finite, is refused, as far as random walks find out
-(`check_steps`); the bound of the Mandelbulb is measured, not proven, so that rays and shadows may
-miss some detail of it. There is no light between surfaces; mirrors show the sky, but no lamp; what
-passes through a bsdf, as `dielectric` and `mask`, is dark, with a warning; a lamp casts no shadow;
-other shapes of Mitsuba's are refused.
+A field with unsafe steps or values that are not finite is refused, if random walks find them
+(`check_steps`). The bound of the Mandelbulb is measured, not proven, so that rays and shadows may
+miss some detail of it. Limits: there is no light between surfaces; mirrors show the sky, but no
+lamp; light that passes through a bsdf, such as `dielectric` and `mask`, is missing, with a warning;
+a lamp casts no shadow; other shapes of Mitsuba are refused.
 
 [Bálint et al. 2019]; [Wang et al. 2024]
 """
 
+from collections.abc import Sequence
+from typing import Any
+
+from brdfkit.core.array_types import (
+    FloatArray,
+    JitColour,
+    JitFloat,
+    JitMask,
+    MitsubaModule,
+    MitsubaObject,
+)
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields import from_json, load
 from brdfkit.distance_fields.checking import check_steps
+from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.shading.direct_light import SHADINGS, SHADOWS, DirectLight
 from brdfkit.distance_fields.shading.lamps import find_lamps
 from brdfkit.distance_fields.shading.parts import differentiable_parameters, match_bsdfs
 from brdfkit.distance_fields.shading.silhouettes import find_near_miss
-from brdfkit.distance_fields.shading.visible_point import NORMAL_STEP, find_visible_point
+from brdfkit.distance_fields.shading.visible_point import (
+    NORMAL_STEP,
+    VisiblePoint,
+    find_visible_point,
+)
 from brdfkit.distance_fields.shadows.field import bounding_sphere
 from brdfkit.distance_fields.shadows.shadow import DIRECTIONS
 from brdfkit.mitsuba_bridge.check_scenes import reference_film
@@ -61,109 +78,124 @@ from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
 PARAMETERS = {
     "filename": text("", "file of the field, as JSON"),
     "field": text("", "or the field itself, by `field.to_json()`"),
-    "shadow": word(SHADOWS, "how shadows are found"),
-    "direction": word(DIRECTIONS, "where marches begin"),
-    "epsilon": plain_number(0.05, (1e-3, 0.5), "largest error of the share of a lamp"),
+    "shadow": word(SHADOWS, "the method that finds shadows"),
+    "direction": word(DIRECTIONS, "where marches start"),
+    "epsilon": plain_number(0.05, (1e-3, 0.5), "largest error of the visible share of a lamp"),
     "rays": count(64, (1, 65_536), "rays of monte_carlo"),
-    "shading": word(SHADINGS, "how light is summed up"),
-    "samples": count(4, (1, 65_536), "samples of a lamp or the sky, each time"),
-    "far": plain_number(0.0, (0, 1e9), "where rays end [unit]; 0: by the size of the field"),
+    "shading": word(SHADINGS, "the method that sums up light"),
+    "samples": count(4, (1, 65_536), "samples of each lamp and of the sky"),
+    "far": plain_number(0.0, (0, 1e9), "length of rays [unit]; 0: by the size of the field"),
     "precision": plain_number(0.0, (0, 1e3), "radius of the thinnest rays [unit]; 0: by the size"),
 }
-FAR, PRECISION = 1e3, 1e-4  # in radii of a sphere about the field; FAR in units if that is more
+# Defaults in radii of a sphere about the field; the length of rays is at least 1000 units
+RAY_LENGTH, PRECISION = 1e3, 1e-4
 
 
-def define(mi):
-    """The class of `mi.SamplingIntegrator` for the current variant."""
+def define(mi: MitsubaModule) -> type:
+    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
     import drjit as dr
 
-    class DistanceField(declared(mi.SamplingIntegrator, PARAMETERS)):
-        def __init__(self, props):
+    Base: MitsubaObject = declared(mi.SamplingIntegrator, PARAMETERS)
+
+    class DistanceField(Base):
+        def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             self.bsdfs = dict(props.objects())
-            self.tree = field_of(self.filename, self.field)
+            self.tree = read_field(self.filename, self.field)
             size = bounding_sphere(self.tree)[1]
-            self.far = self.far or FAR * max(size, 1)
-            self.precision = self.precision or PRECISION * size
+            self.far: float = self.far or RAY_LENGTH * max(size, 1)
+            self.precision: float = self.precision or PRECISION * size
             self.parts = match_bsdfs(self.tree, self.bsdfs, NORMAL_STEP * self.precision)
             self.values = differentiable_parameters(self.tree)
             how = "shadow", "direction", "epsilon", "rays", "shading", "samples", "far"
             self.light = DirectLight(**{name: getattr(self, name) for name in how})
             self.parameters_changed([])
 
-        def traverse(self, callback):
+        def traverse(self, callback: MitsubaObject) -> None:
             for name, value in self.values.items():
                 callback.put(name, value, mi.ParamFlags.Differentiable)
             for name, bsdf in self.bsdfs.items():
                 callback.put(name, bsdf, mi.ParamFlags.Differentiable)
 
-        def parameters_changed(self, keys):
+        def parameters_changed(self, keys: Sequence[str]) -> None:
             self.now = self.tree.with_parameters(self.values)
             self.larger = self.parts.grow(self.now)
 
-        def sample(self, scene, sampler, ray, medium=None, active=True):
+        def sample(
+            self,
+            scene: MitsubaObject,
+            sampler: MitsubaObject,
+            ray: MitsubaObject,
+            medium: MitsubaObject = None,
+            active: JitMask = True,
+        ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             refuse_scalar("distance_field")
-            # What the camera sees of lamps and the sky
-            shown = scene.ray_intersect(mi.Ray3f(ray), active)
-            emitter, radiance = shown.emitter(scene), mi.UnpolarizedSpectrum(0)
+            # Lamps and the sky in the background
+            background = scene.ray_intersect(mi.Ray3f(ray), active)
+            emitter, radiance = background.emitter(scene), mi.UnpolarizedSpectrum(0)
             if emitter is not None:
-                radiance = mi.unpolarized_spectrum(emitter.eval(shown, active))
+                radiance = mi.unpolarized_spectrum(emitter.eval(background, active))
 
-            # What lies before them
-            end = dr.minimum(shown.t, self.far)
-            seen = find_visible_point(self.now, ray, end, self.precision, active)
-            light = dr.select(seen.found, self.reflected(scene, seen, sampler), radiance)
+            # The field in front of them
+            end = dr.minimum(background.t, self.far)
+            point = find_visible_point(self.now, ray, end, self.precision, active)
+            light = dr.select(point.found, self.reflected(scene, point, sampler), radiance)
 
-            # What comes before them as a silhouette moves
+            # Derivatives of silhouettes: the field just beside the ray, which would cover it
             if dr.grad_enabled(self.now.distance(ray(0))):
-                end = dr.minimum(seen.si.t, end)
+                end = dr.minimum(point.si.t, end)
                 miss = find_near_miss(self.now, ray, end, self.precision, active)
                 with dr.suspend_grad():
                     front = self.reflected(scene, miss.seen, sampler)
                 light = miss.add_derivatives(light, front)
             return mi.depolarizer(light), active, []
 
-        def reflected(self, scene, seen, sampler):
-            """The light that a `VisiblePoint` sends to the camera."""
+        def reflected(
+            self, scene: MitsubaObject, point: VisiblePoint, sampler: MitsubaObject
+        ) -> JitColour:
+            """Return the light that a `VisiblePoint` sends to the camera."""
             light = mi.UnpolarizedSpectrum(0)
-            bsdf = self.parts.bsdf(self.now, self.larger, seen.si.p)
+            bsdf = self.parts.bsdf(self.now, self.larger, point.si.p)
             for lamp in find_lamps(scene):
-                light += self.light.reflect_lamp(lamp, seen, bsdf, sampler)
+                light += self.light.reflect_lamp(lamp, point, bsdf, sampler)
             sky = scene.environment()
             if sky is not None:
-                light += self.light.reflect_sky(sky, seen, bsdf, sampler)
+                light += self.light.reflect_sky(sky, point, bsdf, sampler)
             return light
 
-        def to_string(self):
+        def to_string(self) -> str:
             return f"DistanceField[{self.tree}]"
 
     return DistanceField
 
 
-def field_of(filename, field):
-    """The field of a file, or of a text; `BrdfkitError` for none, both, and what is no distance."""
+def read_field(filename: str, field: str) -> Node:
+    """Return the field of a file, or of a text as `field.to_json()` makes it.
+
+    Raises `BrdfkitError` if both or neither are given, and for a field whose steps are not safe.
+    """
     if bool(filename) == bool(field):
         raise BrdfkitError(
             "distance_field: give the field as a filename, or in Python as field.to_json()."
         )
     where = filename or "distance_field: field"
-    found = load(resolve_file(filename)) if filename else from_json(field, where)
+    tree = load(resolve_file(filename)) if filename else from_json(field, where)
     try:
-        check_steps(found)
+        check_steps(tree)
     except BrdfkitError as error:
         raise BrdfkitError(f"{where}: {error}") from error
-    return found
+    return tree
 
 
-def example():
-    """A plane, for the checks."""
+def example() -> dict[str, Any]:
+    """Return a plane, for the checks."""
     return {"type": "distance_field", "field": '{"kind": "plane"}'}
 
 
-def reference():
-    """A scene, and the radiance (3,) of each of its pixels: albedo / π · π (r/d)² L.
+def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
+    """Return a scene for the checks, and the radiance (3,) of each pixel, albedo / π · π (r/d)² L.
 
-    A matte ground below a lamp, whose cone nothing is in.
+    It shows a matte ground below a lamp with the radiance L, which nothing hides.
     """
     import mitsuba as mi
 

@@ -1,34 +1,49 @@
-"""Filtered environment: direct light from all around, without noise, by default without shadows.
+"""Filtered environment: direct light of an environment without noise, by default without shadows.
 
     {"type": "filtered_environment", "method": "gmm"}
 
-The light is filtered once, at `resolution` texels across a hemisphere. Then every mean of it over a
-lobe is one look-up, and a pixel takes some of them, the same ones everywhere:
+The light is filtered once, at `resolution` texels across a hemisphere. After that, the mean of the
+light over a lobe is one look-up, and every pixel adds up some of these means:
 
     L(o) ≈ π c E + Σ (f(i, o) - c) cosθ / (N p(i)) · L about i        filtered_sampling
     L(o) ≈ d(o) E + Σ w_k(o) · L about μ_k(o)                         the other methods
 
-E is the irradiance. `filtered_sampling` takes N = `samples` directions i of the BSDF; the fewer of
-them, by their density p, the wider the lobe about each [Colbert & Křivánek 2007]. It takes any
-BSDF at once. The others fit spherical Gaussians to each BSDF first, which takes seconds, and
-interpolate them between views [Ergun 2015, chapter 8]: `gmm` a mixture of `lobes`, the most exact;
-`warped` one lobe, `kde` and `elliptic` sharper ones in its place, spread over a circle or an
-ellipse. They see no textures and no mirrors, and run in RGB and mono variants.
+o is the direction of view, f the BRDF and c its constant part, E the irradiance divided by π, d the
+diffuse albedo, and w_k the weights of lobes about the directions μ_k. `filtered_sampling` draws
+N = `samples` directions i from the BSDF; the lower their density p, the wider the lobe about each
+[Colbert & Křivánek 2007]. It works with any BSDF at once. The other methods first fit spherical
+Gaussians to each BSDF, which takes seconds, and interpolate them between views [Ergun 2015, chapter
+8]: `gmm` fits a mixture of `lobes`, and is the most exact; `warped` fits one lobe; `kde` and
+`elliptic` replace it by sharper lobes, spread over a circle or an ellipse. These methods support no
+textures and no mirrors, and run in RGB and mono variants.
 
-`filter` = "lobes": levels of the light that are convolved with von Mises-Fisher lobes; "mips":
-boxes of texels, as graphics hardware has them, by the rule of [Ergun 2015, eq. 8.9]. The scene has
-one environment, of any kind, and no other lights. Light between surfaces is missing.
+With `filter` = "lobes", levels of the light are convolved with von Mises-Fisher lobes; with "mips"
+they are boxes of texels, like the mip levels of graphics hardware, chosen by [Ergun 2015, eq. 8.9].
+The scene has one environment, of any kind, and no other lights. Light between surfaces is missing.
 
-`shadows` = "shapes" dims the light of every lobe, and the irradiance, by the share that is visible:
-that of a few directions, each of which counts by the light that comes from it. They are the same
-ones at every point, so that soft shadows have fine steps in place of noise. They are 500 rays per
-pixel, and a picture takes 10 to 20 times as long. With "convex", convex parts of meshes cast the
-shadows, found once, and other shapes, as in `convex_direct`: they may move, but take twice the
-time, and minutes for the parts of a mesh that is new. By default, "none", surfaces hide nothing.
+With `shadows` = "none", the default, surfaces hide no light. With "shapes", the light of every lobe
+and the irradiance are multiplied by their visible share, found from a few directions that count by
+the light from there. These directions are the same at every point, so that soft shadows have fine
+steps in place of noise. There are 500 such rays per pixel, and a picture takes 10 to 20 times as
+long. With "convex", convex parts of meshes cast the shadows, as in `convex_direct`, and other
+shapes their own: meshes may move, but pictures take twice the time again, and the parts of a new
+mesh take minutes.
 """
+
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import drjit as dr
 
+from brdfkit.core.array_types import (
+    FloatArray,
+    JitColour,
+    JitFloat,
+    JitMask,
+    JitVector,
+    MitsubaModule,
+    MitsubaObject,
+)
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.lighting.filtering.filtered_light import FILTERS, FilteredLight
 from brdfkit.lighting.filtering.filtered_sampling import FilteredSampling
@@ -46,10 +61,10 @@ METHODS = "filtered_sampling", *LOBES
 PARAMETERS = {
     "method": text(METHODS[0], ", ".join(METHODS)),
     "samples": count(
-        64, (1, 65_536), "directions per pixel, of all its rays, of filtered_sampling"
+        64, (1, 65_536), "directions of filtered_sampling, for all rays of a pixel together"
     ),
-    "lobes": count(32, (1, 1024), "lobes per view, of gmm, kde and elliptic"),
-    "filter": text("lobes", "lobes, or mips as of graphics hardware"),
+    "lobes": count(32, (1, 1024), "lobes per view in gmm, kde and elliptic"),
+    "filter": text("lobes", "lobes, or mips like graphics hardware"),
     "resolution": count(512, (32, 1024), "texels across a hemisphere of the light"),
     "shadows": word(("none", "shapes", "convex"), "what casts shadows"),
     "concavity": plain_number(
@@ -58,40 +73,52 @@ PARAMETERS = {
 }
 
 
-def define(mi):
-    """The class of `mi.SamplingIntegrator` for the current variant."""
+def define(mi: MitsubaModule) -> type:
+    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    Base: MitsubaObject = declared(mi.SamplingIntegrator, PARAMETERS)
 
-    class FilteredEnvironment(declared(mi.SamplingIntegrator, PARAMETERS)):
-        def __init__(self, props):
+    class FilteredEnvironment(Base):
+        def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             for name, known in (("method", METHODS), ("filter", FILTERS)):
                 if getattr(self, name) not in known:
                     raise no_such(name, getattr(self, name), known, where="filtered_environment")
-            self.shading = _shading(mi, self.method, self.samples, self.lobes)
+            self.shading = _choose_shading(mi, self.method, self.samples, self.lobes)
             self.light = FilteredLight(FILTERS[self.filter], self.resolution)
             self.casters = Casters(self.concavity, RESOLUTION, self.shadows == "convex")
 
-        def sample(self, scene, sampler, ray, medium=None, active=True):
-            environment = _only_environment(mi, scene)
+        def sample(
+            self,
+            scene: MitsubaObject,
+            sampler: MitsubaObject,
+            ray: MitsubaObject,
+            medium: MitsubaObject = None,
+            active: JitMask = True,
+        ) -> tuple[JitColour, JitMask, list[JitFloat]]:
+            environment = _require_one_environment(mi, scene)
             light = self.light.update(environment)
             si = scene.ray_intersect(mi.Ray3f(ray), active)
             hit = active & si.is_valid()
             if self.shadows != "none":
                 directions = light.light_directions(sampler.sample_count())
                 light = ShadowedLight(light, si, self.visible(scene, si, hit), directions)
-            shown = self.shading.radiance(scene, sampler, si, light, hit)
+            reflected = self.shading.radiance(scene, sampler, si, light, hit)
             behind = mi.unpolarized_spectrum(environment.eval(si, active & ~hit))
-            return mi.depolarizer(dr.select(hit, shown, behind)), active, []
+            return mi.depolarizer(dr.select(hit, reflected, behind)), active, []
 
-        def visible(self, scene, si, active):
-            """Whether the light from a direction reaches the points `si`."""
+        def visible(
+            self, scene: MitsubaObject, si: MitsubaObject, active: JitMask
+        ) -> Callable[[JitVector], JitMask]:
+            """Return a function that tells whether light from a direction reaches the points."""
             return lambda w: self.casters.visible(scene, si.spawn_ray(w), active)
 
     return FilteredEnvironment
 
 
-def _shading(mi, method, samples, lobes):
-    """What lights a surface, by the name of the `method`."""
+def _choose_shading(
+    mi: MitsubaModule, method: str, samples: int, lobes: int
+) -> FilteredSampling | LobeLight:
+    """Return the object that computes the light on surfaces, by the name of the `method`."""
     if method == METHODS[0]:
         return FilteredSampling(samples)
     if mi.is_spectral:
@@ -102,8 +129,8 @@ def _shading(mi, method, samples, lobes):
     return LobeLight(method, lobes)
 
 
-def _only_environment(mi, scene):
-    """The environment of a `scene`; `BrdfkitError` where it has none, or other lights."""
+def _require_one_environment(mi: MitsubaModule, scene: MitsubaObject) -> MitsubaObject:
+    """Return the environment of a `scene`; raise `BrdfkitError` for none or other lights."""
     refuse_scalar("filtered_environment")
     if scene.environment() is None:
         raise BrdfkitError(
@@ -117,8 +144,8 @@ def _only_environment(mi, scene):
     return scene.environment()
 
 
-def reference():
-    """A scene, and the radiance (3,) of each of its pixels: a matte wall in even light."""
+def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
+    """Return a scene for the checks, a matte wall in even light, and its radiance (3,)."""
     import mitsuba as mi
 
     albedo, radiance = 0.4, 0.7

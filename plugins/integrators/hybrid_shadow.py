@@ -1,21 +1,27 @@
-"""Direct light of point, spot and directional lights, shadowed by volumes out of depth maps.
+"""Hybrid shadow: direct light with shadow volumes that are made from the lights' depth maps.
 
     L = Σ_lights ρ(ω_l, ω_o) cosθ_l E_l V,   V = 1 where a ray enters as many volumes as it leaves
 
-Before each picture a depth map of `resolution`² texels is made for every light. Where its depths
-jump by more than `jump` texels' widths there is a silhouette. Walls from there bound the shadow;
-each ray of the camera counts those before the point that it sees (depth-pass) [McCool 2000].
+L is the radiance in the direction ω_o to the camera, ρ the BRDF, ω_l the direction of a light and
+E_l its irradiance. Before each picture a depth map of `resolution`² texels is made for every light.
+A silhouette lies where its depths jump by more than `jump` widths of a texel. Walls that start
+there bound the shadow; each camera ray counts the walls in front of the visible point (depth-pass)
+[McCool 2000].
 
-Any shape casts shadows so, with or without triangles, and the time depends on the map, not on
-meshes. Borders are those of texels, some pixels off and jagged; shadows thinner than a texel are
-lost, and surfaces that the light grazes are torn. As by depth-pass in `shadow_volume`, all is wrong
-where the eye is in a shadow. [Ergun 2008, section 2.3] leaves the kind out for such faults; this is
-to see them. There is no indirect light, and no derivative of the shadows; other lights than these
-three are refused, and cameras that are not perspective.
+Any shape casts shadows in this way, with or without triangles, and the time depends on the map, not
+on meshes. The borders of shadows are jagged, like the texels, and off by some pixels; shadows
+thinner than a texel are lost, and surfaces at grazing angles to the light are torn. If the camera
+is in a shadow, the whole picture is wrong, as with depth-pass in `shadow_volume`. [Ergun 2008,
+section 2.3] rejects the technique for such faults; this plugin shows them. There is no indirect
+light, and no derivative of the shadows. Lights must be point, spot or directional lights, cameras
+perspective; others are refused.
 """
 
+from collections.abc import Callable, Sequence
 from functools import partial
+from typing import Any
 
+from brdfkit.core.array_types import FloatArray, MitsubaModule, MitsubaObject
 from brdfkit.mitsuba_bridge.check_scenes import beside_a_shadow
 from brdfkit.mitsuba_bridge.direct_light import shadowed
 from brdfkit.mitsuba_bridge.properties.declarations import count, plain_number
@@ -27,17 +33,20 @@ PARAMETERS = {
 }
 
 
-def define(mi):
-    """The class of `mi.SamplingIntegrator` for the current variant."""
+def define(mi: MitsubaModule) -> type:
+    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    Base: MitsubaObject = shadowed(mi, PARAMETERS)
 
-    class HybridShadows(shadowed(mi, PARAMETERS)):
-        def shadow_of(self, scene, sensor):
+    class HybridShadows(Base):
+        def shadow_of(
+            self, scene: MitsubaObject, sensor: MitsubaObject
+        ) -> Callable[[MitsubaObject], Any]:
             how = {"resolution": self.resolution, "jump": self.jump}
             return partial(hybrid_shadow, scene, sensor, **how)
 
     return HybridShadows
 
 
-def reference():
-    """See `beside_a_shadow`."""
+def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
+    """Return the scene of `beside_a_shadow` for the checks, and its radiance (3,)."""
     return beside_a_shadow({"type": "hybrid_shadow", "resolution": 64})

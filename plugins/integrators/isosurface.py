@@ -1,28 +1,39 @@
-"""Isosurface: the surface on which a volume has one value, of any material, in direct light.
+"""Isosurface: direct light on the surface where a volume has a given value, of any material.
 
     {"type": "isosurface", "volume": {...}, "level": 110.0, "bsdf": {"type": "ggx"}}
 
-Inside is where F = V - `level` > 0; of a volume of the type `transfer_function`, where its A is
-above the level. The first point of a ray that is inside is looked for at the ends of `steps` equal
-parts of its way through the volume's box, and then refined, so that no picture shows the parts:
-without that the surface lies half a part too deep, and D / (N + 1) of a way D with N random points,
-as in [Lesar 2018, eq. 6.2]. What is thinner than a part may be missed. A box that cuts the solid
-shows its face.
+The inside of the surface is where F = V - `level` > 0, with the value V of the volume, or with A
+for a volume of the type `transfer_function`. A ray is cut into `steps` equal parts within the box
+of the volume. The first end of a part that lies inside is refined to the exact crossing, so that no
+picture shows the parts. Without this refinement the surface would lie half a part too deep, or with
+N random points on a length D, as in [Lesar 2018, eq. 6.2], by D / (N + 1). Details that are thinner
+than a part may be missed. Where the box cuts through the inside, its face is visible.
 
-The normal is -∇F, by differences of a voxel to each side, which is smoother than the derivative of
-the interpolated values. `bsdf` is the material, white and matte by default; u and v are x and y,
-the tangent is the x axis laid onto the surface. Every light of the scene lights it, drawn by the
-lights and by the bsdf. With `shadows` the surface, too, hides lights from itself; shapes do in any
-case, and are seen by their own light alone.
+The normal is -∇F, computed by differences over a voxel to each side, which is smoother than the
+derivative of the interpolated values. `bsdf` is the material, white and matte by default. Textures
+have u = x and v = y, the tangent is the x axis projected onto the surface. All lights of the scene
+are sampled, by the lights and by the bsdf. With `shadows` the surface hides lights from itself.
+Other shapes always hide lights; they are visible only by the light that they emit.
 
-Derivatives go to the values, the level, the transfer function, the bsdf and the lights: the
-surface moves as F changes. What appears or vanishes at a silhouette or at the edge of a shadow is
-missing in them.
+Derivatives flow to the values, the level, the transfer function, the bsdf and the lights, including
+the motion of the surface. They do not include changes at silhouettes and at the edges of shadows.
 """
+
+from collections.abc import Sequence
+from typing import Any
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import (
+    FloatArray,
+    JitColour,
+    JitFloat,
+    JitMask,
+    JitVector,
+    MitsubaModule,
+    MitsubaObject,
+)
 from brdfkit.mitsuba_bridge.check_scenes import through_unit_cube
 from brdfkit.mitsuba_bridge.properties.declarations import (
     bsdf,
@@ -40,54 +51,64 @@ from brdfkit.volumes.rays.first_crossing import first_above, first_crossing, rea
 from brdfkit.volumes.rays.normals import face_normal, facing, gradient, per_voxel
 
 PARAMETERS = {
-    "volume": volume(1.0, "the values, or of the type transfer_function", False, least=-np.inf),
-    "level": number(0.5, (-1e9, 1e9), "value, or A, above which is inside"),
+    "volume": volume(1.0, "the values, or a transfer_function", False, least=-np.inf),
+    "level": number(0.5, (-1e9, 1e9), "larger values, or A, are inside"),
     "steps": count(256, (1, 1_000_000), "parts that a ray is cut into"),
     "bsdf": bsdf("the material"),
     "shadows": flag(False, "whether the surface hides lights from itself"),
 }
 
 
-def define(mi):
-    """The class of `mi.SamplingIntegrator` for the current variant."""
+def define(mi: MitsubaModule) -> type:
+    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    Base: MitsubaObject = declared(mi.SamplingIntegrator, PARAMETERS)
 
-    class Isosurface(declared(mi.SamplingIntegrator, PARAMETERS)):
-        def f(self, p, active=True):
-            """F at points."""
+    class Isosurface(Base):
+        def f(self, p: JitVector, active: JitMask = True) -> JitFloat:
+            """Return F, which is above 0 inside the surface, at points."""
             it = mi.Interaction3f()
             it.p = p
             if hasattr(self.volume, "rgba"):
                 return self.volume.rgba(it, active)[1] - self.level
             return self.volume.eval_1(it, active) - self.level
 
-        def sample(self, scene, sampler, ray, medium=None, active=True):
+        def sample(
+            self,
+            scene: MitsubaObject,
+            sampler: MitsubaObject,
+            ray: MitsubaObject,
+            medium: MitsubaObject = None,
+            active: JitMask = True,
+        ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             refuse_scalar("isosurface")
             end, behind = light_behind(scene, ray, active)
             near, far = within(ray, self.volume)
             far = dr.minimum(far, end)
             crossed = active & (far > near)
-            t, found = first_crossing(
+            t, hit = first_crossing(
                 lambda t: self.f(ray(t), crossed), near, far, self.steps, crossed
             )
-            si = self.surface(ray, dr.select(found, t, 0), near, found)
-            lit = direct_light(scene, si, self.bsdf, sampler, self.is_free, found)
-            return mi.depolarizer(dr.select(active, dr.select(found, lit, behind), 0)), active, []
+            si = self.surface(ray, dr.select(hit, t, 0), near, hit)
+            lit = direct_light(scene, si, self.bsdf, sampler, self.is_free, hit)
+            return mi.depolarizer(dr.select(active, dr.select(hit, lit, behind), 0)), active, []
 
-        def surface(self, ray, t, near, found):
-            """The `mi.SurfaceInteraction3f` where a ray meets the surface."""
+        def surface(
+            self, ray: MitsubaObject, t: JitFloat, near: JitFloat, hit: JitMask
+        ) -> MitsubaObject:
+            """Return the `mi.SurfaceInteraction3f` where a ray meets the surface, at `t`."""
             on_face = t <= near
             with dr.suspend_grad():
-                step = 0.02 / dr.norm(dr.select(found, per_voxel(ray.d, self.volume), 1))
+                step = 0.02 / dr.norm(dr.select(hit, per_voxel(ray.d, self.volume), 1))
                 slope = (self.f(ray(t + step)) - self.f(ray(t - step))) / (2 * step)
             t = reattach(lambda t: self.f(ray(t)), t, dr.select(on_face, 0, slope))
             outwards = -gradient(self.f, ray(t), self.volume)
             flat = dr.squared_norm(outwards) == 0
             n = dr.normalize(dr.select(flat, -ray.d, outwards))
             n = dr.select(on_face, face_normal(ray(t), self.volume), n)
-            return interaction(ray, t, ray(t), facing(n, ray.d), found)
+            return interaction(ray, t, ray(t), facing(n, ray.d), hit)
 
-        def is_free(self, ray, active):
-            """Whether the surface leaves light through, from where the ray begins to its end."""
+        def is_free(self, ray: MitsubaObject, active: JitMask) -> JitMask:
+            """Return whether the surface does not block a ray between its origin and its end."""
             if not self.shadows:
                 return active
             near, far = within(ray, self.volume)
@@ -101,11 +122,8 @@ def define(mi):
     return Isosurface
 
 
-def reference():
-    """A scene, and the radiance (3,) of each of its pixels: albedo L.
-
-    A matte level plane below an even sky.
-    """
+def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
+    """Return a scene for the checks, a matte plane under an even sky, and its radiance (3,)."""
     import mitsuba as mi
 
     albedo, radiance = [0.6, 0.5, 0.2], 0.7

@@ -1,24 +1,37 @@
-"""Maximum intensity: the colour of the largest value along each ray.
+"""Maximum intensity: a projection of a volume that shows the largest value along each ray.
 
     L = A RGB + (1 - A) L_behind,   (RGB, A) = T(v),   v = max V(t) along the ray
 
-with the transfer function T of a `volume` of the type `transfer_function`, as in angiography and
-for PET. Of a colour map alone, A is 1: `TransferFunction.from_colormap(name, range, [(0, 1), (1,
-1)])`. Another volume is shown in grey: L = v. L_behind is the emission of the first surface, which
-ends the ray, or of the environment.
+T is the transfer function of a `volume` of the type `transfer_function`, as in angiography and PET.
+For a colour map alone, with A = 1, use `TransferFunction.from_colormap(name, range, [(0, 1), (1,
+1)])`. Any other volume is shown in grey: L = v. L_behind is the emission of the first surface,
+which ends the ray, or of the environment.
 
-The largest value is looked for in each of `steps` equal parts of the part of the ray within the
-volume's box, at one random share of all of them, and then nearer and nearer about the largest
-found. It is never above the true one, and comes near as the steps become shorter than the voxels.
-So each ray has its maximum, and a pixel is the mean of its rays, over all passes.
+The ray is cut into `steps` equal parts within the box of the volume. Each part is read at one
+point, at a random share of its length that is the same for all parts; then the largest value is
+refined in the neighbourhood of its point. It is never above the true maximum, and approaches it as
+the steps become shorter than the voxels. Each ray has its own maximum, and a pixel is the mean of
+its rays, over all passes.
 
-[Lesar 2018, eq. 6.1]. Derivatives are those of the colour by the largest value, and of that by the
-values about it.
+[Lesar 2018, eq. 6.1]. Derivatives flow from the colour to the largest value, and from there to the
+values of the grid about it.
 """
+
+from collections.abc import Sequence
+from typing import Any
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import (
+    FloatArray,
+    JitColour,
+    JitFloat,
+    JitMask,
+    JitVector,
+    MitsubaModule,
+    MitsubaObject,
+)
 from brdfkit.mitsuba_bridge.channels import emission_of_rgb
 from brdfkit.mitsuba_bridge.check_scenes import through_unit_cube
 from brdfkit.mitsuba_bridge.properties.declarations import count, declared, flag, volume
@@ -27,39 +40,47 @@ from brdfkit.volumes.rays.largest_value import largest_along
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 
 PARAMETERS = {
-    "volume": volume(0.0, "of the type transfer_function, or one that is shown in grey", False),
+    "volume": volume(0.0, "a transfer_function, or any other volume in grey", False),
     "steps": count(256, (1, 1_000_000), "parts that a ray is cut into"),
     "jitter": flag(True, "whether the place in each part is random"),
 }
 
 
-def define(mi):
-    """The class of `mi.SamplingIntegrator` for the current variant."""
+def define(mi: MitsubaModule) -> type:
+    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    Base: MitsubaObject = declared(mi.SamplingIntegrator, PARAMETERS)
 
-    class MaximumIntensity(declared(mi.SamplingIntegrator, PARAMETERS)):
-        def __init__(self, props):
+    class MaximumIntensity(Base):
+        def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             self.light = emission_of_rgb()
             self.has_colours = hasattr(self.volume, "optics")
 
-        def value(self, it, active):
+        def value(self, it: MitsubaObject, active: JitMask) -> JitFloat:
             if self.has_colours:
                 return self.volume.places(it, active)[0]
             return self.volume.eval_1(it, active)
 
-        def colour(self, it, active):
-            """RGB and A."""
+        def colour(self, it: MitsubaObject, active: JitMask) -> tuple[JitVector, JitFloat]:
+            """Return RGB in linear sRGB, and A."""
             if self.has_colours:
                 return self.volume.rgba(it, active)
             return mi.Color3f(self.volume.eval_1(it, active)), 1
 
-        def sample(self, scene, sampler, ray, medium=None, active=True):
+        def sample(
+            self,
+            scene: MitsubaObject,
+            sampler: MitsubaObject,
+            ray: MitsubaObject,
+            medium: MitsubaObject = None,
+            active: JitMask = True,
+        ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             end, behind = light_behind(scene, ray, active)
             near, far = within(ray, self.volume)
             far = dr.minimum(far, end)
             inside = active & (far > near)
 
-            def at(t):
+            def at(t: JitFloat) -> MitsubaObject:
                 it = mi.Interaction3f()
                 it.p, it.wavelengths = ray(t), ray.wavelengths
                 return it
@@ -76,10 +97,10 @@ def define(mi):
     return MaximumIntensity
 
 
-def reference():
-    """A scene, and the radiance (3,) of each of its pixels: A RGB + (1 - A) L of the largest value.
+def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
+    """Return a scene for the checks, and the radiance (3,) of each of its pixels.
 
-    Between two voxels the values of a volume rise to its middle one.
+    The values of its volume rise to the middle voxel, whose A RGB + (1 - A) L_behind is visible.
     """
     import mitsuba as mi
 

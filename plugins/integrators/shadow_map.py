@@ -1,28 +1,34 @@
-"""Direct light of point, spot and directional lights, shadowed by shadow maps.
+"""Shadow map: direct light of point, spot and directional lights, with shadow maps.
 
-    L = Σ_lights ρ(ω_l, ω_o) cosθ_l E_l V,   V from a map of what the light sees
+    L = Σ_lights ρ(ω_l, ω_o) cosθ_l E_l V,   V: visibility of the light, read from a shadow map
 
-Before each picture every light gets its maps: depths, ray-traced through a `projection`, for each
-part of a `partition` of the scene. V is what the `filter` reads there. So the picture has all
-faults of the technique, and no others: compare it with `direct`, whose V is a ray to the light.
+L is the radiance in the direction ω_o to the camera, ρ the BRDF, ω_l the direction of a light and
+E_l its irradiance. Before each picture, every light gets one map for each part of a `partition` of
+the scene: depths, ray-traced through a `projection`. The `filter` reads V from these maps. The
+picture shows all faults of the technique, and no others: compare it with Mitsuba's `direct`, which
+follows a ray to the light.
 
-The techniques are those of [Ergun 2008, section 2.2], and some that came later; each is a file of
-`src/brdfkit/shadows/maps/`, in the folder of its kind, which has its formula and what it is good
-and bad at. Their settings are parameters here, of which those of other techniques are not asked.
+The techniques are from [Ergun 2008, section 2.2] and later work. Each one is a file in
+`src/brdfkit/shadows/maps/`, in the folder of its kind, and the file explains its formula, strengths
+and weaknesses. Their settings are parameters here; settings of techniques that are not in use are
+ignored.
 
 A bias keeps lit surfaces out of their own shadow. By default each texel is compared with the depth
-of the surface's own plane in its middle (`plane_bias`), less `bias` of the light's way through the
-scene: of the biases that were tried, the one with the least wrong light over low suns, curved
-objects, a street and foliage. `slope_bias` and `normal_offset` are what games use in its place.
+of the surface's tangent plane at the texel's centre (`plane_bias`), less the share `bias` of the
+light's way through the scene. This bias had the fewest wrong pixels in tests with low suns, curved
+objects, a street and foliage. `slope_bias` and `normal_offset` are common in games instead.
 
-Derivatives by the geometry go through `variance`, `exponential_variance` and `moment`, silhouettes
-included; those through filters that compare are 0. Derivatives by a light's place or direction are
-those of the shading alone, as if its maps stood still. There is no indirect light, and other lights
-than these three are refused.
+Derivatives by the geometry flow through the filters `variance`, `exponential_variance` and
+`moment`, including silhouettes; through filters that compare depths they are 0. Derivatives by the
+position or direction of a light include the shading, but not the change of its maps. There is no
+indirect light, and other kinds of lights are refused.
 """
 
+from collections.abc import Callable, Sequence
 from functools import partial
+from typing import Any
 
+from brdfkit.core.array_types import FloatArray, MitsubaModule, MitsubaObject
 from brdfkit.mitsuba_bridge.check_scenes import beside_a_shadow
 from brdfkit.mitsuba_bridge.direct_light import shadowed
 from brdfkit.mitsuba_bridge.properties.declarations import count, flag, plain_number, word
@@ -32,28 +38,33 @@ from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.techniques import FILES, all_settings, settings_of
 
 PARAMETERS = {
-    "projection": word(FILES["projection"], "how a map sees the scene", "focused"),
+    "projection": word(FILES["projection"], "how a map projects the scene", "focused"),
     "filter": word(FILES["filter"], "how a map is read", "depth"),
-    "partition": word(FILES["partition"], "how maps share the scene", "whole"),
+    "partition": word(FILES["partition"], "how the scene is divided among maps", "whole"),
     "resolution": count(1024, (1, 16384), "texels along a side of each map"),
-    "bias": plain_number(AUTOMATIC.constant, (0.0, 1.0), "over the light's way through the scene"),
-    "depth": word(DEPTHS, "what a map holds"),
-    "slope_bias": plain_number(0.0, (0.0, 100.0), "in steps of depth from texel to texel"),
-    "normal_offset": plain_number(0.0, (0.0, 100.0), "along the normal [texels]"),
-    "plane_bias": flag(AUTOMATIC.plane, "whether texels are compared with the surface's plane"),
+    "bias": plain_number(AUTOMATIC.constant, (0.0, 1.0), "share of the light's way in the scene"),
+    "depth": word(DEPTHS, "the kind of depth that a map holds"),
+    "slope_bias": plain_number(0.0, (0.0, 100.0), "bias in steps of depth from texel to texel"),
+    "normal_offset": plain_number(0.0, (0.0, 100.0), "bias along the normal [texels]"),
+    "plane_bias": flag(AUTOMATIC.plane, "whether texels are compared with the tangent plane"),
     **all_settings(),
 }
 
 
-def define(mi):
-    """The class of `mi.SamplingIntegrator` for the current variant."""
+def define(mi: MitsubaModule) -> type:
+    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    Base: MitsubaObject = shadowed(mi, PARAMETERS)
 
-    class ShadowMapped(shadowed(mi, PARAMETERS)):
-        def shadow_of(self, scene, sensor):
-            return partial(self.shadow, scene, sensor)
+    class ShadowMapped(Base):
+        def shadow_of(
+            self, scene: MitsubaObject, sensor: MitsubaObject
+        ) -> Callable[[MitsubaObject], LightShadow]:
+            return partial(self.make_shadow, scene, sensor)
 
-        def shadow(self, scene, sensor, emitter):
-            """The `LightShadow` of an `emitter` of the scene."""
+        def make_shadow(
+            self, scene: MitsubaObject, sensor: MitsubaObject, emitter: MitsubaObject
+        ) -> LightShadow:
+            """Return the `LightShadow` of an `emitter` of the scene."""
             names = {kind: getattr(self, kind) for kind in FILES}
             settings = [n for kind, name in names.items() for n in settings_of(kind, name)]
             return LightShadow(
@@ -69,6 +80,6 @@ def define(mi):
     return ShadowMapped
 
 
-def reference():
-    """See `beside_a_shadow`."""
+def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
+    """Return the scene of `beside_a_shadow` for the checks, and its radiance (3,)."""
     return beside_a_shadow({"type": "shadow_map", "resolution": 64})

@@ -1,32 +1,37 @@
-"""Direct light of point, spot and directional lights, shadowed by stencil shadow volumes.
+"""Shadow volume: direct light of point, spot and directional lights, with stencil shadow volumes.
 
     L = Σ_lights ρ(ω_l, ω_o) cosθ_l E_l V,   V = 1 where a ray enters as many volumes as it leaves
 
-Before each picture the shapes become volumes: walls from their silhouettes away from the light, and
-caps that close them [Crow 1977]. Each ray of the camera then counts their faces, as the stencil
-buffer of a graphics card does for each sample of a pixel [Heidmann 1991]: those before the point
-that it sees (`depth_pass`) or those behind it (`depth_fail`). Entering adds 1, leaving takes 1.
+L is the radiance in the direction ω_o to the camera, ρ the BRDF, ω_l the direction of a light and
+E_l its irradiance. Before each picture, shapes are extruded to volumes: walls from their
+silhouettes away from the light, and caps that close them [Crow 1977]. Each camera ray then counts
+the faces of the volumes, as the stencil buffer of a graphics card does for each sample of a pixel
+[Heidmann 1991]: the faces in front of the visible point (`depth_pass`) or behind it (`depth_fail`).
+Faces that the ray enters count 1, faces that it leaves -1.
 
-`depth_fail` [Everitt & Kilgard 2002] gives the shadows that rays give. `depth_pass` does so where
-the eye is in no shadow, the near plane cuts none, and no light goes through surfaces; `near_cap`
-mends the first two: it counts the casters between the near plane and the light, seen from there
-through the plane [Hornus et al. 2005]. The other settings are those of [Ergun 2008, section 2.1],
-with their faults:
+`depth_fail` [Everitt & Kilgard 2002] gives the same shadows as rays to the light. `depth_pass` does
+so if the camera is not in shadow, the near plane cuts no volume, and no light passes through
+surfaces. `near_cap` removes the first two conditions: it counts the casters between the near plane
+and the light, rendered from the light through the plane [Hornus et al. 2005]. The other settings
+are from [Ergun 2008, section 2.1], with their faults:
 
-`extrusion` ends the walls: what is farther behind an object than that is lit. `far_plane` = finite
-clips what is beyond the camera's: shadows break where a volume goes on. `casters` are the triangles
-that make the volumes: `all` takes open shapes, a light within them and triangles turned anyhow;
-`light_facing` and `facing_away` make half as many caps, and refuse what is not closed, a ground
-among them; so does `shared_edges`.
+`extrusion` is the length of the walls; points that are farther behind an object are lit.
+`far_plane` = finite clips volumes at the camera's far plane, and shadows break there. `casters` are
+the triangles that make the volumes: `all` takes open shapes, lights inside them and triangles of
+any orientation; `light_facing` and `facing_away` make half as many caps, and refuse shapes that are
+not closed, such as a ground. So does `silhouettes` = shared_edges.
 
-Spheres, cylinders and disks become meshes of 128 steps around; instances, curves and signed
-distances are refused. A pixel takes as long as it has faces before or behind it: shadow rays are
-faster where there are many. There is no indirect light, and no derivative of the shadows; other
-lights than these three are refused, and cameras that are not perspective.
+Spheres, cylinders and disks become meshes with 128 steps around; instances, curves and signed
+distances are refused. The time of a pixel is proportional to its faces: shadow rays are faster
+where there are many. There is no indirect light, and no derivative of the shadows. Other kinds of
+lights are refused, and cameras that are not perspective.
 """
 
+from collections.abc import Callable, Sequence
 from functools import partial
+from typing import Any
 
+from brdfkit.core.array_types import FloatArray, MitsubaModule, MitsubaObject
 from brdfkit.core.projective.light import Light
 from brdfkit.mitsuba_bridge.check_scenes import beside_a_shadow
 from brdfkit.mitsuba_bridge.direct_light import shadowed
@@ -40,25 +45,30 @@ from brdfkit.shadows.volumes.volume import BACK_CAPS
 
 PARAMETERS = {
     "method": word(METHODS, "which faces count"),
-    "near_cap": flag(False, "whether depth_pass begins with what shadows the near plane"),
-    "extrusion": plain_number(0.0, (0.0, 1e9), "length of the walls [unit]; 0: without an end"),
+    "near_cap": flag(False, "whether depth_pass starts with the shadows on the near plane"),
+    "extrusion": plain_number(0.0, (0.0, 1e9), "length of the walls [unit]; 0: infinite"),
     "far_plane": word(FAR_PLANES, "where faces are clipped"),
     "casters": word(CASTERS, "which triangles make the volumes"),
-    "silhouettes": word(SILHOUETTES, "how their edges are found"),
+    "silhouettes": word(SILHOUETTES, "how their silhouettes are found"),
     "back_cap": word(BACK_CAPS, "how volumes end"),
 }
 
 
-def define(mi):
-    """The class of `mi.SamplingIntegrator` for the current variant."""
+def define(mi: MitsubaModule) -> type:
+    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    Base: MitsubaObject = shadowed(mi, PARAMETERS)
 
-    class ShadowVolumes(shadowed(mi, PARAMETERS)):
-        def shadow_of(self, scene, sensor):
+    class ShadowVolumes(Base):
+        def shadow_of(
+            self, scene: MitsubaObject, sensor: MitsubaObject
+        ) -> Callable[[MitsubaObject], LightVolumes]:
             meshes = [Mesh.of_shape(shape) for shape in scene.shapes()]
-            return partial(self.shadow, meshes, sensor)
+            return partial(self.make_shadow, meshes, sensor)
 
-        def shadow(self, meshes, sensor, emitter):
-            """The `LightVolumes` of an `emitter`."""
+        def make_shadow(
+            self, meshes: Sequence[Mesh], sensor: MitsubaObject, emitter: MitsubaObject
+        ) -> LightVolumes:
+            """Return the `LightVolumes` of an `emitter` of the scene."""
             return LightVolumes(
                 meshes,
                 Light.of_emitter(emitter),
@@ -76,6 +86,6 @@ def define(mi):
     return ShadowVolumes
 
 
-def reference():
-    """See `beside_a_shadow`."""
+def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
+    """Return the scene of `beside_a_shadow` for the checks, and its radiance (3,)."""
     return beside_a_shadow({"type": "shadow_volume"})

@@ -1,44 +1,58 @@
-"""Single scattering: volumes in the light of a scene, by random collisions, without bias.
+"""Single scattering: volumes in the light of a scene, path-traced without bias.
 
     L = T(0, d) L_behind + ∫ T(0, s) [e(s) + σ(s) α(s) ∫ p(ω, ω') L_in(s, ω') dω'] ds
     T(0, s) = exp(-∫ σ dt) from 0 to s
 
-`extinction` σ, times `scale`, `albedo` α and `emission` e, radiance per length, are volumes; all is
-within the box of σ, which lies along the world's axes unless σ is a `transfer_function`. Such a one
-has a colour as well: α is the albedo times it, or σ times it is added to e. In spectral variants e
-is multiplied by D65. `phase` p is any phase function. L_in is what emitters send straight through
-the volume.
+L is the radiance along a ray, T the transmittance. `extinction` σ, which is multiplied by `scale`,
+`albedo` α and `emission` e [radiance/unit] are volumes. The medium fills the box of σ, which is
+aligned with the world's axes unless σ is a `transfer_function`. The colour of a transfer function
+is multiplied with the albedo, or, if it is an emission, σ times the colour is added to e. In
+spectral variants e is multiplied by D65. `phase` p is any phase function. L_in is the light that
+emitters send straight through the volume.
 
-Every emitter shines: points, directions, surfaces, environments. A surface before, in or behind
-the volume shows what it emits, and by its BSDF the light of the emitters that reaches it through
-the volume; it casts a shadow, also where its BSDF lets light pass. Behind all is the environment.
+All emitters are supported: points, directions, surfaces, environments. Surfaces in front of, inside
+or behind the volume show their emission and, by their BSDF, the light of the emitters that reaches
+them through the volume. They cast shadows, even if their BSDF transmits light. The environment is
+behind everything.
 
-Ratio tracking along a ray finds both the share of light that comes through and a collision of the
-rest: each sample has what is seen behind the volume, and light that is scattered in it. Likewise it
-finds what comes through to an emitter, once towards a sample of the emitters, of several mostly the
-brightest of two, once in a direction that the phase function or the BSDF draws; the power heuristic
-weights the two. `majorants` are the bounds of σ by which it steps: `local`, those of coarse cells,
-several times faster for scans with much that is empty, or `global`, one for all. They are found
-anew when parameters change; an extinction above them is an error, and were one missed, a pixel that
-is no number.
+Ratio tracking along a ray finds both the transmitted share of light and a collision for the rest:
+each sample includes the light from behind the volume and light that is scattered in it. Emitters
+are sampled twice, by the power heuristic: in a direction that the emitters draw (from two samples,
+mostly the brighter one is followed) and in a direction that the phase function or the BSDF draws.
+`majorants` are the bounds of σ that determine the steps: `local` has one for each coarse cell,
+which is several times faster for scans with much empty space, `global` has a single one. They are
+computed again when parameters change. An extinction above them is an error; if an error goes
+unnoticed, the pixel is NaN.
 
-`max_depth` is that of Mitsuba's `volpath`: 1 for what shines by itself, seen through the volume, 2
-for single scattering, more for multiple scattering. The means are equal, but for what `volpath`
-loses: 1.3e-4 σ of the light of thick media, and some light of spheres that are near.
+`max_depth` counts as in Mitsuba's `volpath`: 1 for emitted light through the volume, 2 for single
+scattering, more for multiple scattering. The means are equal to `volpath`, except for light that
+`volpath` loses: 1.3e-4 σ of the light of thick media, and some light of spheres that are near.
 
-Derivatives go to the volumes, the phase function, the BSDFs and the emitters' radiance, at any
-`max_depth`, without bias where σ is above 0; where it is 0, the light that more of it would scatter
-is missing in them, so that a search for a volume begins above 0. What appears or vanishes at a
-surface's edge is missing, too.
+Derivatives flow to the volumes, the phase function, the BSDFs and the emitters' radiance, at any
+`max_depth`, and are unbiased where σ is above 0. Where σ is 0, they do not include the light that a
+larger σ would scatter, so a search for a volume should start above 0. They do not include changes
+at the edges of surfaces either.
 
 [Lesar 2018, chapter 6]; [Woodcock et al. 1965]; [Novák et al. 2014]; [Veach & Guibas 1995].
 """
 
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import (
+    FloatArray,
+    JitColour,
+    JitFloat,
+    JitInt,
+    JitMask,
+    JitVector,
+    MitsubaModule,
+    MitsubaObject,
+)
 from brdfkit.mitsuba_bridge.check_scenes import through_unit_cube
 from brdfkit.mitsuba_bridge.properties.declarations import (
     count,
@@ -53,41 +67,58 @@ from brdfkit.volumes.light import emitters
 from brdfkit.volumes.light.medium import Medium
 from brdfkit.volumes.light.vertex import Vertex, medium_interaction
 
-ROULETTE = 5  # scatterings after which faint paths end at random
-LEAST_CHANCE = 0.05  # of going on then, and of being one of two
+ROULETTE_DEPTH = 5  # scatterings after which dark paths end at random
+SMALLEST_CHANCE = 0.05  # for a path to survive, and for a sample to be chosen from two
 
 PARAMETERS = {
     "extinction": volume(1.0, "σ: collisions per unit of length", coloured=False),
     "scale": number(1.0, (0.0, math.inf), "what σ is multiplied by"),
-    "albedo": volume(1.0, "α: the share of what collides that is scattered"),
+    "albedo": volume(1.0, "α: share of the collisions that scatter light"),
     "emission": volume(0.0, "e: radiance that is added per unit of length"),
-    "phase": phase("p: where light is scattered to, by default evenly anywhere"),
-    "max_depth": count(2, (1, 1_000_000), "segments of a path at most, 2 for single scattering"),
+    "phase": phase("p: the directions of scattered light, by default uniform"),
+    "max_depth": count(2, (1, 1_000_000), "largest number of segments of a path"),
     "majorants": word(("local", "global"), "bounds of σ: of coarse cells, or one for all"),
 }
 
 
-def define(mi):
-    """The class of `mi.SamplingIntegrator` for the current variant."""
+def define(mi: MitsubaModule) -> type:
+    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    Base: MitsubaObject = declared(mi.SamplingIntegrator, PARAMETERS)
 
-    class SingleScattering(declared(mi.SamplingIntegrator, PARAMETERS)):
-        def __init__(self, props):
+    class SingleScattering(Base):
+        def __init__(self, props: MitsubaObject) -> None:
             self.name, self.emits = props.plugin_name(), "emission" in props
             super().__init__(props)
             self.medium = Medium(self.extinction, self.scale, self.albedo, self.emission)
             self.parameters_changed()
 
-        def parameters_changed(self, keys=()):
+        def parameters_changed(self, keys: Sequence[str] = ()) -> None:
             if not mi.variant().startswith("scalar"):
                 self.medium.bound(self.majorants == "local")
 
-        def sample(self, scene, sampler, ray, medium=None, active=True):
+        def sample(
+            self,
+            scene: MitsubaObject,
+            sampler: MitsubaObject,
+            ray: MitsubaObject,
+            medium: MitsubaObject = None,
+            active: JitMask = True,
+        ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             refuse_scalar(self.name)
 
-            def goes_on(depth, ray, throughput, *_):
+            def goes_on(
+                depth: JitInt, ray: MitsubaObject, throughput: JitColour, *_: Any
+            ) -> JitMask:
                 return active & (depth < self.max_depth) & dr.any(throughput != 0)
 
-            def step(depth, ray, throughput, radiance, density, sampler):
+            def step(
+                depth: JitInt,
+                ray: MitsubaObject,
+                throughput: JitColour,
+                radiance: JitColour,
+                density: JitFloat,
+                sampler: MitsubaObject,
+            ) -> tuple[Any, ...]:
                 going = goes_on(depth, ray, throughput)
                 light, vertex, weight = self.segment(scene, ray, density, sampler, going)
                 radiance += throughput * light
@@ -107,22 +138,34 @@ def define(mi):
             radiance += throughput * self.last_segment(scene, ray, density, sampler, going)
             return mi.depolarizer(dr.select(active, radiance, 0)), active, []
 
-        def segment(self, scene, ray, density, sampler, active):
-            """Follow rays to where they collide and where they end: the light found, one of the
-            two as the vertex, and the share of light that is scattered there."""
+        def segment(
+            self,
+            scene: MitsubaObject,
+            ray: MitsubaObject,
+            density: JitFloat,
+            sampler: MitsubaObject,
+            active: JitMask,
+        ) -> tuple[JitColour, Vertex, JitColour]:
+            """Follow rays to a collision and to their end.
+
+            Return the light of emitters, one of the two ends as the vertex where the path
+            continues, and the weight of the path after it.
+            """
             si = scene.ray_intersect(ray, active)
             share, collided, t = self.medium.divide(ray, si.t, sampler, active)
             light = share * emitters.seen(scene, ray, si, density, active)
 
-            # From one of the two ends the path goes on: the collision, or a surface behind it
+            # The path continues from one of two ends: the collision, or a surface behind it
             passed = dr.select(si.is_valid(), dr.detach(share), 0)
             in_medium = active & (sampler.next_1d(active) * (collided + passed) < collided)
             mei = medium_interaction(ray, t)
             sigma, albedo, own = self.medium.matter(mei, in_medium)
-            # 1, with the derivatives of σ T at a collision, of T at a surface
+            # `one` has the derivatives of σ T at a collision and of T at a surface
             depth = self.medium.depth(ray, dr.select(in_medium, t, si.t), sampler, active)
             log_sigma = dr.log(dr.select(in_medium, sigma, 1))
-            weight = (collided + passed) * dr.replace_grad(mi.Float(1), log_sigma - depth)
+            # Dr.Jit's stub knows no result of this function
+            one = dr.replace_grad(mi.Float(1), log_sigma - depth)  # type: ignore[func-returns-value]
+            weight = (collided + passed) * one
             light += dr.select(in_medium, weight * own, 0)
             if self.emits:
                 light += self.medium.glow(ray, si.t, sampler, active)
@@ -130,16 +173,17 @@ def define(mi):
             vertex = Vertex(self.phase, mei, in_medium, si, on_surface)
             return light, vertex, weight * dr.select(in_medium, albedo, 1)
 
-        def direct(self, scene, vertex, sampler):
-            """Light of the emitters that is scattered into the rays at a vertex.
+        def direct(self, scene: MitsubaObject, vertex: Vertex, sampler: MitsubaObject) -> JitColour:
+            """Return the light of emitters that is scattered into the rays at a vertex.
 
-            Of several emitters, two halves have a sample each, of which one is followed.
+            With several emitters there are two samples, one from each half, of which one is
+            followed.
             """
             u = sampler.next_2d(vertex.active)
             if len(scene.emitters()) > 1:
                 halves = [mi.Point2f((u.x + k) / 2, u.y) for k in range(2)]
-                both = [self.unshadowed(scene, vertex, half) for half in halves]
-                ray, light, lit = one_of(*both, sampler.next_1d(vertex.active))
+                first, second = (self.unshadowed(scene, vertex, half) for half in halves)
+                ray, light, lit = choose_brighter(first, second, sampler.next_1d(vertex.active))
             else:
                 ray, light, lit = self.unshadowed(scene, vertex, u)
             with dr.suspend_grad():
@@ -147,17 +191,28 @@ def define(mi):
             share = self.medium.transmittance(ray, ray.maxt, sampler, lit)
             return dr.select(lit, light * share, 0)
 
-        def unshadowed(self, scene, vertex, u):
-            """The ray to a sample of the emitters, the light that would be scattered, and whether
-            there is a sample."""
+        def unshadowed(
+            self, scene: MitsubaObject, vertex: Vertex, u: JitVector
+        ) -> tuple[MitsubaObject, JitColour, JitMask]:
+            """Return the ray to a sample of the emitters, its scattered light, and if it exists.
+
+            The light is computed as if nothing were in its way.
+            """
             it = vertex.interaction
             ds, light, there = emitters.sampled(scene, it, u, vertex.active)
             value, pdf = vertex.eval_pdf(ds.d)
             weight = dr.select(ds.delta, 1, emitters.power_heuristic(ds.pdf, dr.detach(pdf)))
             return emitters.ray_to(it, ds), value * light * weight, there
 
-        def last_segment(self, scene, ray, density, sampler, active):
-            """The light that comes through along rays."""
+        def last_segment(
+            self,
+            scene: MitsubaObject,
+            ray: MitsubaObject,
+            density: JitFloat,
+            sampler: MitsubaObject,
+            active: JitMask,
+        ) -> JitColour:
+            """Return the light that rays receive without a further scattering."""
             si = scene.ray_intersect(ray, active)
             comes = active & emitters.are_met(scene, si)
             light = emitters.seen(scene, ray, si, density, comes)
@@ -170,32 +225,39 @@ def define(mi):
     return SingleScattering
 
 
-def one_of(first, second, u):
-    """Of two (ray, light, mask) mostly the brighter one; its light stands for the mean of both."""
+def choose_brighter(
+    first: tuple[MitsubaObject, JitColour, JitMask],
+    second: tuple[MitsubaObject, JitColour, JitMask],
+    u: JitFloat,
+) -> tuple[MitsubaObject, JitColour, JitMask]:
+    """Choose one of two samples (ray, light, mask), mostly the brighter one, by the number `u`.
+
+    Its light is weighted to have the mean of both.
+    """
     brightness = [dr.detach(dr.max(light)) for _, light, _ in (first, second)]
     both = brightness[0] + brightness[1]
     chance = dr.select(both > 0, brightness[0] / both, 0.5)
-    chance = dr.clip(chance, LEAST_CHANCE, 1 - LEAST_CHANCE)
+    chance = dr.clip(chance, SMALLEST_CHANCE, 1 - SMALLEST_CHANCE)
     is_first = u < chance
     ray, light, mask = (dr.select(is_first, a, b) for a, b in zip(first, second, strict=True))
     return ray, light / (2 * dr.select(is_first, chance, 1 - chance)), mask
 
 
-def roulette(depth, throughput, sampler):
-    """The throughput of paths of which faint ones end at random, and others stand for them.
+def roulette(depth: JitInt, throughput: JitColour, sampler: MitsubaObject) -> JitColour:
+    """Return the throughput of paths after Russian roulette, which ends dark paths at random.
 
-    Paths as bright as at first all go on: in white clouds, where they are long, a few that stand
-    for very many would else be missed, and pictures be too dark.
+    A path that is still as bright as at its start always continues. Otherwise few samples would
+    stand for very many in white clouds, where paths are long, and most pictures would miss them.
     """
-    chance = dr.clip(dr.max(dr.detach(throughput)), LEAST_CHANCE, 1)
-    chance = dr.select(depth < ROULETTE, 1, chance)
+    chance = dr.clip(dr.max(dr.detach(throughput)), SMALLEST_CHANCE, 1)
+    chance = dr.select(depth < ROULETTE_DEPTH, 1, chance)
     return dr.select(sampler.next_1d() < chance, throughput / chance, 0)
 
 
-def reference():
-    """A scene, and the radiance (3,) of each of its pixels.
+def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
+    """Return a scene for the checks, and the radiance (3,) of each of its pixels.
 
-    An even cube in the sun, which is behind the camera.
+    It shows a homogeneous cube in the light of the sun, which is behind the camera.
     """
     sigma, albedo, g, irradiance = 2.0, 0.5, -0.3, np.array([0.9, 0.6, 0.3])
     colour = {"type": "rgb", "value": irradiance.tolist()}

@@ -1,38 +1,50 @@
-"""BSDF as phase function: a volume that scatters light as surfaces do, where its density changes.
+"""BSDF as phase function: a volume that scatters light like a surface where its density changes.
 
     p(x, ωi, ωo) = f(ωi, ωo) |n·ωo|,   n = -∇ρ / |∇ρ|
 
-n is the normal of the surface of equal density ρ through x, towards where ρ falls. The gradient is
-by central differences over one voxel of the grid each way; where it vanishes, light is scattered
-evenly. A BSDF that does not transmit scatters on both sides of that surface.
+f is a BSDF, ωi and ωo are the directions of light. n is the normal of the surface of equal density
+ρ through the point x, and points to smaller densities. The gradient is computed by central
+differences over one voxel of the grid to each side. Where it is 0, light is scattered evenly in all
+directions. A BSDF that does not transmit scatters on both sides of the surface of equal density.
 
-It shows skin and bone of CT scans with highlights, without a surface to cut out. p integrates to
-the BSDF's albedo, at most 1, and what a medium scatters is its own albedo times that: give the
-colour to one of them, and 1 to the other. The exchange of ωi and ωo changes p, by their cosines.
-Directions are drawn as the BSDF draws them. Textures are read at u = v = 0; tangents point
-anywhere, so an anisotropic BSDF has no use; a mirror, whose light leaves in one direction, is
+It shows skin and bone of CT scans with highlights, without extracting a surface. p integrates to
+the albedo of the BSDF, at most 1, and a medium scatters its own albedo times this: give the colour
+to one of the two albedos, and 1 to the other. p is not reciprocal, because of the cosine.
+Directions are drawn as the BSDF draws them. Textures are read at u = v = 0. Tangents are arbitrary,
+so an anisotropic BSDF has no use. A mirror, which reflects light into a single direction, is
 refused.
 
 [Lesar 2018, eq. 4.57].
 """
 
+from typing import Any
+
 import drjit as dr
 
+from brdfkit.core.array_types import (
+    JitColour,
+    JitFloat,
+    JitMask,
+    JitVector,
+    MitsubaModule,
+    MitsubaObject,
+)
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.properties.declarations import bsdf, declared, volume
 
 PARAMETERS = {
-    "bsdf": bsdf("f, by default white and matte; in a scene file name it so"),
-    "density": volume(1.0, "ρ, whose gradient counts: the medium's grid, given here again"),
+    "bsdf": bsdf("f, by default white and matte; in a scene file it needs this name"),
+    "density": volume(1.0, "ρ, which has the gradient: the same grid as the medium's"),
 }
-LEAST = 1e-5  # of a change of ρ, relative to ρ: less is rounding
+ROUNDING = 1e-5  # changes of ρ below this share of ρ are rounding
 
 
-def define(mi):
-    """The class of `mi.PhaseFunction` for the current variant."""
+def define(mi: MitsubaModule) -> type:
+    """Return the class derived from `mi.PhaseFunction`, for the current variant."""
+    Base: MitsubaObject = declared(mi.PhaseFunction, PARAMETERS)
 
-    class BsdfPhase(declared(mi.PhaseFunction, PARAMETERS)):
-        def __init__(self, props):
+    class BsdfPhase(Base):
+        def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             flags, has = self.bsdf.flags(), mi.has_flag
             if has(flags, mi.BSDFFlags.Delta):
@@ -42,12 +54,19 @@ def define(mi):
                 )
             self.m_flags = mi.PhaseFunctionFlags.Anisotropic
             self.one_sided = not has(flags, mi.BSDFFlags.Transmission)
-            # refraction scales radiance, but within a medium the refractive index is one
+            # Refraction scales radiance, but within a medium the refractive index is 1
             self.context = mi.BSDFContext(mi.TransportMode.Importance)
             box, cells = self.density.bbox(), self.density.resolution()
             self.voxel = [box.extents()[i] / cells[i] for i in range(3)]
 
-        def sample(self, ctx, interaction, sample1, sample2, active=True):
+        def sample(
+            self,
+            ctx: MitsubaObject,
+            interaction: MitsubaObject,
+            sample1: JitFloat,
+            sample2: JitVector,
+            active: JitMask = True,
+        ) -> tuple[JitVector, JitColour, JitFloat]:
             si, there = self.surface(interaction, active)
             drawn, _ = self.bsdf.sample(self.context, si, sample1, sample2, active & there)
             lost = there & (drawn.pdf <= 0)  # below the surface, for instance
@@ -55,17 +74,25 @@ def define(mi):
             # Neither the direction nor its density in the weight has derivatives
             wo = dr.detach(dr.select(drawn.pdf > 0, si.to_world(drawn.wo), even))
             value, pdf = self.eval_pdf(ctx, interaction, wo, active)
-            weight = value / dr.detach(dr.select(pdf > 0, pdf, 1))  # the value is 0 where pdf is
+            weight = value / dr.detach(dr.select(pdf > 0, pdf, 1))  # where pdf is 0, value is 0
             return wo, dr.select(lost, 0, weight), dr.select(lost, 0, pdf)
 
-        def eval_pdf(self, ctx, interaction, wo, active=True):
+        def eval_pdf(
+            self,
+            ctx: MitsubaObject,
+            interaction: MitsubaObject,
+            wo: JitVector,
+            active: JitMask = True,
+        ) -> tuple[JitColour, JitFloat]:
             si, there = self.surface(interaction, active)
             value, pdf = self.bsdf.eval_pdf(self.context, si, si.to_local(wo), active & there)
             value, even = mi.unpolarized_spectrum(value), 1 / (4 * dr.pi)
             return mi.depolarizer(dr.select(there, value, even)), dr.select(there, pdf, even)
 
-        def surface(self, interaction, active):
-            """The surface of equal density, and whether there is one."""
+        def surface(
+            self, interaction: MitsubaObject, active: JitMask
+        ) -> tuple[MitsubaObject, JitMask]:
+            """Return the interaction on the surface of equal density, and whether it exists."""
             gradient, there = self.gradient(interaction, active)
             n = dr.normalize(dr.select(there, -gradient, mi.Vector3f(0, 0, 1)))
             if self.one_sided:
@@ -76,8 +103,10 @@ def define(mi):
             si.wi = si.to_local(interaction.wi)
             return si, there
 
-        def gradient(self, interaction, active):
-            """∇ρ, and whether it is more than rounding."""
+        def gradient(
+            self, interaction: MitsubaObject, active: JitMask
+        ) -> tuple[JitVector, JitMask]:
+            """Return ∇ρ, and whether it is more than rounding."""
             it = mi.Interaction3f()
             it.time, it.wavelengths = interaction.time, interaction.wavelengths
             change, total = mi.Vector3f(0), mi.Float(0)
@@ -91,13 +120,13 @@ def define(mi):
                 low, high = ends
                 change[axis] = (high - low) / (2 * h)
                 total += (high + low) / (2 * h)
-            return change, dr.norm(change) > LEAST * total
+            return change, dr.norm(change) > ROUNDING * total
 
     return BsdfPhase
 
 
-def example():
-    """A white BSDF in a density that falls along z, for the checks."""
+def example() -> dict[str, Any]:
+    """Return a white BSDF in a density that falls along z, for the checks."""
     import mitsuba as mi
     import numpy as np
 

@@ -1,23 +1,27 @@
-"""Mie, hazy: light scattered by droplets, thin haze: half evenly, half about straight on.
+"""Mie, hazy: the phase function of thin haze, which scatters half evenly and half forward.
 
     p(μ) = (1 + 9 ((1 + μ) / 2)⁸) / 8π,   μ = cosine of the angle by which light is deflected
 
-μ = 1 is straight on. Sampled exactly: one half is even in μ, of the other the distribution function
-has an inverse. The mean cosine is 2/5.
+Light with μ = 1 goes straight on. Sampling is exact: one half is uniform in μ, and the cumulative
+distribution of the other half has an inverse. The mean cosine is 2/5.
 
 [Nishita et al. 1987]; [Lesar 2018, eq. 4.62].
 """
 
+from typing import Any
+
+from brdfkit.core.array_types import MitsubaModule, MitsubaObject
 from brdfkit.mitsuba_bridge.phase_functions import even_and_forward
 
-PARAMETERS = {}
-N = 8
+PARAMETERS: dict[str, Any] = {}
+EXPONENT = 8
 
 
-def define(mi):
-    """The class of `mi.PhaseFunction` for the current variant."""
+def define(mi: MitsubaModule) -> type:
+    """Return the class derived from `mi.PhaseFunction`, for the current variant."""
+    Base: MitsubaObject = even_and_forward(mi, EXPONENT)
 
-    class MieHazy(even_and_forward(mi, N)):
+    class MieHazy(Base):
         pass
 
     return MieHazy

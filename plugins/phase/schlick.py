@@ -1,20 +1,23 @@
-"""Schlick: a phase function close to Henyey-Greenstein's, without a power.
+"""Schlick: a phase function close to Henyey-Greenstein's, which needs no power.
 
     p(μ) = (1 - k²) / (4π (1 - kμ)²),   μ = cosine of the angle by which light is deflected
 
-μ = 1 is straight on: light goes forward for k > 0, back for k < 0, and evenly for k = 0. Its mean
-cosine is 1/k - (1 - k²)/(2k²) ln((1 + k)/(1 - k)), about 2k/3 for small k; the usual
-k = 1.55 g - 0.55 g³ makes it resemble Henyey-Greenstein's of the mean cosine g, although its own
-mean cosine differs. |k| < 1, which that formula leaves for |g| > 0.938.
+Light with μ = 1 goes straight on: most goes forward for k > 0 and back for k < 0, and it goes
+evenly in all directions for k = 0. The mean cosine is 1/k - (1 - k²)/(2k²) ln((1 + k)/(1 - k)),
+about 2k/3 for small k. With the common choice k = 1.55 g - 0.55 g³ the function resembles
+Henyey-Greenstein's with the mean cosine g, although its own mean cosine differs. |k| has to be
+below 1, which this formula exceeds for |g| > 0.938.
 
-Use it where Henyey-Greenstein's power costs too much; Mitsuba's own `hg` is the exact one, its own
-`rayleigh` is that of air, and `blendphase` mixes any two.
+Use it where the power in Henyey-Greenstein's function costs too much. Mitsuba itself has
+Henyey-Greenstein's function as `hg`, the phase function of air as `rayleigh`, and `blendphase`,
+which mixes any two.
 
-[Blasi et al. 1993]; its inverse distribution function is exact.
+[Blasi et al. 1993]; directions are drawn exactly, by the inverse of the cumulative distribution.
 """
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat, MitsubaModule, MitsubaObject
 from brdfkit.mitsuba_bridge.phase_functions import deflection
 from brdfkit.mitsuba_bridge.properties.declarations import number
 
@@ -23,24 +26,25 @@ PARAMETERS = {
 }
 
 
-def density(k, mu):
-    """p(μ) [sr⁻¹]."""
+def density(k: JitFloat, mu: JitFloat) -> JitFloat:
+    """Return the phase function p(μ) [sr⁻¹] at the cosine `mu`."""
     return (1 - k * k) / (4 * dr.pi * dr.square(1 - k * mu))
 
 
-def cosine(k, u):
-    """The μ below which the share `u` of the scattered light lies."""
+def cosine(k: JitFloat, u: JitFloat) -> JitFloat:
+    """Return the cosine μ below which the share `u` of the scattered light lies."""
     return (2 * u + k - 1) / (2 * k * u - k + 1)
 
 
-def define(mi):
-    """The class of `mi.PhaseFunction` for the current variant."""
+def define(mi: MitsubaModule) -> type:
+    """Return the class derived from `mi.PhaseFunction`, for the current variant."""
+    Base: MitsubaObject = deflection(mi, PARAMETERS)
 
-    class Schlick(deflection(mi, PARAMETERS)):
-        def density(self, mu):
+    class Schlick(Base):
+        def density(self, mu: JitFloat) -> JitFloat:
             return density(self.k, mu)
 
-        def cosine(self, lobe, u):
+        def cosine(self, lobe: JitFloat, u: JitFloat) -> JitFloat:
             return cosine(self.k, u)
 
     return Schlick

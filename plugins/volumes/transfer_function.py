@@ -1,32 +1,45 @@
-"""Transfer function: colours and extinction of a volume's values, for any medium or integrator.
+"""Transfer function: a volume of colours and extinctions, looked up from the values of another one.
 
     values v, and where the function has them, gradient magnitudes g → RGB, A
     output = extinction: σ_t = extinction · A(v, g)        output = colour: RGB(v, g)
 
 `transfer` is the name of a preset, such as "ct_bone", a file that `TransferFunction.save` wrote, or
-its text, by `to_json()`. A preset over shares of the range, as for MRI, is scaled to the least and
-the largest value. `values` is a gridvolume, of any values, with `"raw": True`; that of a function
-of gradient magnitudes has these as its second channel (`Volume.gradient_magnitude`). Labels have
-`"filter_type": "nearest"`. Values are interpolated first, and looked up then.
+the text of such a file, from `to_json()`. A preset over shares of the range, such as for MRI, is
+scaled to the smallest and largest value. `values` is a gridvolume with `"raw": True`. If the
+function depends on gradient magnitudes, these are the second channel of the grid
+(`Volume.gradient_magnitude`). Labels need `"filter_type": "nearest"`. Values are interpolated
+before they are looked up.
 
-`Volume.scene_dict(transfer)` makes all of this. So Mitsuba's own integrators render a scan:
+`Volume.scene_dict(transfer)` writes all of this. For Mitsuba's own integrators, a scan is the
+medium
 
     {"type": "heterogeneous", "albedo": {..., "output": "colour"}, "sigma_t": {...}}
 
-both of this type, with the same `values`, within a cube of the same `to_world`. That is by default
-the box of the values; an oblique grid needs its own, `Volume.cube_to_world`, in both. Integrators
-of brdfkit take one such volume and look σ_t and RGB up at once. Derivatives go to the function's
-table, to its extinction and to the values.
+where both are volumes of this type, with the same `values`, within a cube of the same `to_world`.
+By default this cube is the box of the values; an oblique grid needs `Volume.cube_to_world` in both.
+Integrators of brdfkit take one such volume and look up σ_t and RGB at once. Derivatives flow to the
+function's table, to its extinction and to the values.
 
 [Lesar 2018, chapter 6]; [Kniss et al. 2002]. RGB is linear sRGB; in spectral variants it becomes
-the sum of three basis spectra [Mallett & Yuksel 2019], times D65 where it is an emission.
+the sum of three basis spectra [Mallett & Yuksel 2019], times D65 if it is an emission.
 """
 
+from collections.abc import Callable, Sequence
 from functools import cached_property
+from typing import Any
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import (
+    FloatArray,
+    JitColour,
+    JitFloat,
+    JitMask,
+    JitVector,
+    MitsubaModule,
+    MitsubaObject,
+)
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.channels import emission_of_rgb, spectrum_of_rgb
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
@@ -43,103 +56,108 @@ from brdfkit.volumes.transfer.windows import fitted
 
 CHANNELS = {1: "values alone", 2: "values and gradient magnitudes"}
 PARAMETERS = {
-    "values": volume(0.0, "what the function is a function of", least=-np.inf),
+    "values": volume(0.0, "the values to look up", least=-np.inf),
     "transfer": text("ct_bone", "the function: a preset, a file, or its text"),
-    "output": word(("extinction", "colour"), "what Mitsuba's media and textures get"),
+    "output": word(("extinction", "colour"), "what Mitsuba's media and textures read"),
 }
 
 
-def define(mi):
-    """The class of `mi.Volume` for the current variant."""
+def define(mi: MitsubaModule) -> type:
+    """Return the class derived from `mi.Volume`, for the current variant."""
+    Base: MitsubaObject = declared(mi.Volume, PARAMETERS)
 
-    class TransferFunctionVolume(declared(mi.Volume, PARAMETERS)):
-        def __init__(self, props):
+    class TransferFunctionVolume(Base):
+        def __init__(self, props: MitsubaObject) -> None:
             refuse_scalar("transfer_function")
             values = props.get("values", 0)
             if "to_world" not in props and isinstance(values, mi.Volume):
-                props["to_world"] = box_of(mi, values)
+                props["to_world"] = find_box(mi, values)
             super().__init__(props)
             to_world = np.array(props.get("to_world", mi.ScalarTransform4f()).matrix)
             self.to_local = mi.Transform4f(np.linalg.inv(to_world))
             dr.make_opaque(self.to_local)
-            self.function = function_of(self.transfer, self.values)
+            self.function = read_function(self.transfer, self.values)
             self.lookup = TransferLookup(self.function)
 
-        def traverse(self, callback):
+        def traverse(self, callback: MitsubaObject) -> None:
             super().traverse(callback)
             callback.put("table", self.lookup.table, mi.ParamFlags.Differentiable)
             callback.put("extinction", self.lookup.extinction, mi.ParamFlags.Differentiable)
 
-        def parameters_changed(self, keys=()):
+        def parameters_changed(self, keys: Sequence[str] = ()) -> None:
             self.lookup.changed()
             self.__dict__.pop("majorants", None)
 
-        def optics(self, it, active=True):
-            """σ_t, and RGB in linear sRGB, from one look-up."""
+        def optics(self, it: MitsubaObject, active: JitMask = True) -> tuple[JitFloat, JitColour]:
+            """Return σ_t, and RGB in linear sRGB, from one look-up."""
             rgb, a = self.rgba(it, active)
             return self.lookup.extinction * a, rgb
 
-        def is_missed_by(self, steps):
-            """Whether the function has peaks or jumps that so many steps of a ray would jump over.
+        def is_missed_by(self, steps: int) -> bool:
+            """Return whether rays with this number of `steps` would miss peaks of the function.
 
-            Then `integrals` and `mean_optics` see them. Never of labels or gradient magnitudes.
+            Then `integrals` and `mean_optics` include them. False for functions of labels or
+            gradient magnitudes.
             """
             data = data_of(self.values)
             if data is None or self.function.gradients is not None:
                 return False
             low, high = self.function.range
-            change = typical(data) * max(1, max(data.shape) / steps)  # of the value, in a step
+            change = typical(data) * max(1, max(data.shape) / steps)  # of the values within a step
             reach = change / (high - low) * self.lookup.integrals.steps
             thin = is_thin(np.array(self.lookup.table), reach)
             return thin and is_trilinear(self.values, data, self.to_local)
 
-        def integrals(self, it, active=True):
-            """At an end of a part of a ray, for `mean_optics`; of a function of values alone."""
+        def integrals(self, it: MitsubaObject, active: JitMask = True) -> JitVector:
+            """Return the function's integrals up to the value at `it`, an end for `mean_optics`.
+
+            The function must depend on values alone.
+            """
             return self.lookup.integrals_at(self.values.eval_1(it, active))
 
-        def mean_optics(self, front, back):
-            """The means of σ_t and of σ_t RGB between two ends."""
+        def mean_optics(self, front: JitVector, back: JitVector) -> tuple[JitFloat, JitColour]:
+            """Return the means of σ_t and of σ_t RGB between two ends."""
             rgb, a = self.lookup.mean_between(front, back)
             return self.lookup.extinction * a, self.lookup.extinction * rgb
 
-        def rgba(self, it, active=True):
-            """RGB in linear sRGB, and A."""
+        def rgba(self, it: MitsubaObject, active: JitMask = True) -> tuple[JitVector, JitFloat]:
+            """Return RGB in linear sRGB, and A."""
             return self.lookup(self.places(it, active), active)
 
-        def places(self, it, active=True):
-            """[value], or [value, gradient magnitude]."""
+        def places(self, it: MitsubaObject, active: JitMask = True) -> Sequence[JitFloat]:
+            """Return [value], or [value, gradient magnitude], where the function is looked up."""
             if self.function.gradients is None:
                 return [self.values.eval_1(it, active)]
             return self.values.eval_n(it, active)
 
-        def eval_1(self, it, active=True):
+        def eval_1(self, it: MitsubaObject, active: JitMask = True) -> JitFloat:
             sigma, rgb = self.optics(it, active)
             return sigma if self.output == "extinction" else mi.luminance(rgb)
 
-        def eval(self, it, active=True):
+        def eval(self, it: MitsubaObject, active: JitMask = True) -> JitColour:
             sigma, rgb = self.optics(it, active)
             if self.output == "extinction":
                 return mi.UnpolarizedSpectrum(sigma)
             return self.spectrum(rgb, it)
 
-        def max(self):
+        def max(self) -> float:
             rows = self.lookup.table_over_values()
             if self.output == "colour":
                 return float(rows[:, :3].max())
             return float(self.majorants.max())
 
-        def resolution(self):
+        def resolution(self) -> JitVector:
             return self.values.resolution()
 
         @cached_property
-        def spectrum(self):
-            """A function (rgb, it) → spectrum, of what RGB means."""
+        def spectrum(self) -> Callable[..., JitColour]:
+            """A function (rgb, it) → spectrum, for reflectances or emission, as RGB means."""
             emits = self.function.colour == "emission"
             return emission_of_rgb() if emits else spectrum_of_rgb()
 
         @cached_property
-        def majorants(self):
-            """(kz, ky, kx) in NumPy: a bound of σ_t in each of as many equal blocks of the box."""
+        def majorants(self) -> FloatArray:
+            """Upper bounds of σ_t (kz, ky, kx), one for each of as many equal blocks of the box."""
             rows = self.lookup.table_over_values()[:, 3] * self.lookup.extinction[0]
             data = data_of(self.values)
             if data is None:
@@ -149,34 +167,35 @@ def define(mi):
     return TransferFunctionVolume
 
 
-def box_of(mi, values):
-    """The transform from the unit cube to the box of a volume along the world's axes."""
+def find_box(mi: MitsubaModule, values: MitsubaObject) -> MitsubaObject:
+    """Return the transform from the unit cube to the box of a volume along the world's axes."""
     box = values.bbox()
     return mi.ScalarTransform4f().translate(box.min).scale(box.extents())
 
 
-def function_of(transfer, values):
-    """The `TransferFunction` of a preset, a file or a text, for a volume of `values`.
+def read_function(transfer: str, values: MitsubaObject) -> TransferFunction:
+    """Return the `TransferFunction` of a preset, a file or a text, scaled to a volume of `values`.
 
-    Raises `BrdfkitError` where there is none, and for values without their gradient magnitudes.
+    Raises `BrdfkitError` where there is none, and for values without the gradient magnitudes that
+    the function needs.
     """
     if transfer.lstrip().startswith("{"):
         function = files.from_json(TransferFunction, transfer, "transfer_function: transfer")
     else:
         function = TransferFunction.load(resolve_file(transfer))
     channels = 1 if function.gradients is None else 2
-    given = values.channel_count() or 1  # a constvolume says 0
-    if given != channels:
+    count = values.channel_count() or 1  # a constvolume says 0
+    if count != channels:
         raise BrdfkitError(
             f"transfer_function: the function {function.name} is one of {CHANNELS[channels]}, and "
-            f"the volume's number of channels is {given}; it should be {channels}."
+            f"the volume's number of channels is {count}; it should be {channels}."
         )
     data = data_of(values)
     return function if data is None else fitted(function, data)
 
 
-def example():
-    """A hill of values in the middle of the cube, for the checks."""
+def example() -> dict[str, Any]:
+    """Return a hill of values in the middle of the cube, for the checks."""
     import mitsuba as mi
 
     values = np.pad(np.full((1, 1, 1, 1), 2.0, np.float32), ((1, 1), (1, 1), (1, 1), (0, 0)))
