@@ -32,7 +32,7 @@ from brdfkit.mitsuba_bridge.properties.declarations import word
 
 
 class Mip:
-    """Mitsuba's `Hierarchical2D0` of the power of pixels, bilinear between them."""
+    """A sampler with Mitsuba's `Hierarchical2D0` of the power of pixels, bilinear between them."""
 
     def __init__(self, brightness: FloatArray) -> None:
         import mitsuba as mi
@@ -50,11 +50,12 @@ class Mip:
     def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
         import mitsuba as mi
 
-        return self.warp.eval(mi.Point2f(x / self.columns, y / self.rows), active=active)
+        point: JitVector = mi.Point2f(x / self.columns, y / self.rows)
+        return self.warp.eval(point, active=active)
 
 
 class Cdf:
-    """Mitsuba's `DiscreteDistribution2D` of the power of cells."""
+    """A sampler with Mitsuba's `DiscreteDistribution2D` of the power of cells."""
 
     def __init__(self, brightness: FloatArray) -> None:
         import mitsuba as mi
@@ -79,18 +80,18 @@ class Cdf:
 
 
 class Alias:
-    """Alias tables of the rows, and of the cells of each row: two reads for each.
+    """A sampler with alias tables of the rows and of the cells of each row.
 
-    Every entry of a table is drawn equally often. It stands for itself below its threshold, and for
-    one other entry, its alias, above. One table of all cells would use up the bits of a uniform
-    number in single precision.
+    Every entry of a table is drawn equally often. It stands for itself if a second number is below
+    its threshold, and otherwise for one other entry, its alias. A single table of all cells would
+    use up the bits of a random number in single precision.
     """
 
     def __init__(self, brightness: FloatArray) -> None:
         power = cell_power(brightness)
         self.rows, self.columns = power.shape
-        tables = [alias_table(row) for row in power]
-        self.by_row = AliasTable(*alias_table(power.sum(axis=1)))
+        tables = [make_alias_table(row) for row in power]
+        self.by_row = AliasTable(*make_alias_table(power.sum(axis=1)))
         self.by_cell = AliasTable(*(np.concatenate(part) for part in zip(*tables, strict=True)))
         self.densities = Rows(power.ravel() / power.mean())
         self.nbytes = 4 * power.size + self.by_row.nbytes + self.by_cell.nbytes
@@ -109,7 +110,7 @@ class Alias:
 
 
 class AliasTable:
-    """Alias tables, one after the other: `thresholds` (n,) and `aliases` (n,) of their entries."""
+    """Alias tables in a row, with the `thresholds` (n,) and `aliases` (n,) of their entries."""
 
     def __init__(self, thresholds: FloatArray, aliases: IntArray) -> None:
         self.thresholds, self.aliases = Rows(thresholds), Integers(aliases)
@@ -120,7 +121,7 @@ class AliasTable:
     ) -> tuple[JitInt, JitFloat]:
         """Draw an entry of the table of `count` entries that begins at `first`.
 
-        Returns the entry's index within its table, and a new uniform number that is left of `u`.
+        Return the index of the entry within its table, and a new random number made from `u`.
         """
         import drjit as dr
         import mitsuba as mi
@@ -134,31 +135,31 @@ class AliasTable:
         return dr.select(own, entry, self.aliases.at(first + entry, active)), dr.clip(left, 0, 1)
 
 
-def alias_table(weights: FloatArray) -> tuple[FloatArray, IntArray]:
+def make_alias_table(weights: FloatArray) -> tuple[FloatArray, IntArray]:
     """Return thresholds (n,) and aliases (n,) of `weights` (n,) ≥ 0; equal weights if all are 0.
 
-    Light entries, below the mean, are filled up by heavy ones in order. Cumulative sums of what is
-    missing from the light and of the excess of the heavy entries thus tell which one fills which.
+    Light entries, below the mean, are filled up by heavy ones, in order. Cumulative sums of the
+    deficits below the mean and of the excesses above it tell which entry fills which.
 
-    >>> [part.tolist() for part in alias_table(np.array([1.0, 3.0]))]
+    >>> [part.tolist() for part in make_alias_table(np.array([1.0, 3.0]))]
     [[0.5, 1.0], [1, 1]]
     """
     n, total = len(weights), weights.sum()
     share = weights * (n / total) if total > 0 else np.ones(n)
     thresholds, aliases = np.ones(n), np.arange(n)
     light, heavy = np.flatnonzero(share < 1), np.flatnonzero(share >= 1)
-    if min(len(light), len(heavy)) == 0:  # equal weights, but for rounding
+    if min(len(light), len(heavy)) == 0:  # equal weights, except for rounding
         return thresholds, aliases
-    missing, excess = np.cumsum(1 - share[light]), np.cumsum(share[heavy] - 1)
+    deficit, excess = np.cumsum(1 - share[light]), np.cumsum(share[heavy] - 1)
     last = len(heavy) - 1
-    # A light entry is filled up by the first heavy one that is not used up yet
+    # A light entry is filled up by the first heavy entry with some excess left
     thresholds[light] = share[light]
-    turn = np.searchsorted(excess, missing - (1 - share[light]), side="right")
+    turn = np.searchsorted(excess, deficit - (1 - share[light]), side="right")
     aliases[light] = heavy[np.minimum(turn, last)]
-    # The light entry that uses up a heavy one leaves it short, and the next heavy one fills it up
-    by = np.searchsorted(missing, excess, side="right")
+    # A heavy entry whose excess ends within a light entry is short, and the next heavy one fills it
+    by = np.searchsorted(deficit, excess, side="right")
     short = np.flatnonzero((by < len(light)) & (np.arange(last + 1) < last))
-    thresholds[heavy[short]] = 1 - (missing[by[short]] - excess[short])
+    thresholds[heavy[short]] = 1 - (deficit[by[short]] - excess[short])
     aliases[heavy[short]] = heavy[short + 1]
     return thresholds.clip(0, 1), aliases
 

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from brdfkit.plugins.emitters.sampled_envmap import Alias, Cdf, Mip, alias_table
+from brdfkit.plugins.emitters.sampled_envmap import Alias, Cdf, Mip, make_alias_table
 
 import brdfkit as bk
 from brdfkit.checks import directions
@@ -94,7 +94,7 @@ def test_a_scalar_variant_draws_the_same(name, llvm_variant):
 def test_an_alias_table_holds_its_weights(seed):
     random = np.random.default_rng(seed)
     weights = random.gamma(0.2, size=random.integers(1, 60)) * (random.random() > 0.1)
-    thresholds, aliases = alias_table(weights)
+    thresholds, aliases = make_alias_table(weights)
     n = len(weights)
     found = (thresholds + np.bincount(aliases, 1 - thresholds, n)) / n
     expected = weights / weights.sum() if weights.sum() > 0 else np.full(n, 1 / n)
