@@ -45,7 +45,7 @@ from brdfkit.core.array_types import (
     MitsubaObject,
 )
 from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.lighting.filtering.filtered_light import FILTERS, FilteredLight
+from brdfkit.lighting.filtering.filtered_light import FILTERS, FilteredLight, Light
 from brdfkit.lighting.filtering.filtered_sampling import FilteredSampling
 from brdfkit.lighting.filtering.lobe_light import LobeLight
 from brdfkit.lighting.spherical_gaussians.lobe_table import METHODS as LOBES
@@ -96,12 +96,13 @@ def define(mi: MitsubaModule) -> type:
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             environment = _require_one_environment(mi, scene)
-            light = self.light.update(environment)
+            unshadowed = self.light.update(environment)
+            light: Light = unshadowed
             si = scene.ray_intersect(mi.Ray3f(ray), active)
             hit = active & si.is_valid()
             if self.shadows != "none":
-                directions = light.light_directions(sampler.sample_count())
-                light = ShadowedLight(light, si, self.visible(scene, si, hit), directions)
+                directions = unshadowed.light_directions(sampler.sample_count())
+                light = ShadowedLight(unshadowed, si, self.visible(scene, si, hit), directions)
             reflected = self.shading.radiance(scene, sampler, si, light, hit)
             behind = mi.unpolarized_spectrum(environment.eval(si, active & ~hit))
             return mi.depolarizer(dr.select(hit, reflected, behind)), active, []

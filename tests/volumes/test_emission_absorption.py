@@ -287,9 +287,9 @@ def test_a_bright_colour_is_not_clipped(llvm_variant, variant, request):
 @pytest.mark.parametrize(
     ("name", "value", "said"),
     [
-        ("extinction", float("nan"), "should be a number at least 0"),
-        ("extinction", -1.0, "should be a number at least 0"),
-        ("emission", float("inf"), "should be a number at least 0"),
+        ("extinction", float("nan"), "a gridvolume, or a number"),
+        ("extinction", -1.0, "should be a number, at least 0"),
+        ("emission", float("inf"), "a gridvolume, a number or a colour"),
         ("extinction", {"type": "rgb", "value": [1, 2, 3]}, "a gridvolume, or a number"),
         ("emission", {"type": "rgb", "value": [1, -2, 3]}, "a colour of finite values"),
         ("extinction", np.ones((2, 2, 2, 3)), "should be a volume of one channel"),

@@ -25,7 +25,7 @@ from brdfkit.mitsuba_bridge.arrays import Rows
 IRRADIANCE_SIDE = 64  # texels: irradiance is smooth
 WAVELENGTHS = 96  # evenly spaced, at which a spectral variant is evaluated
 LIGHT_DIRECTIONS = 256  # that represent all the light where it may be hidden
-FILTERS = {"lobes": LobeMaps, "mips": Mips}
+FILTERS: dict[str, type[LobeMaps | Mips]] = {"lobes": LobeMaps, "mips": Mips}
 
 
 class Light(Protocol):
