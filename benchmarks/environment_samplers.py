@@ -324,7 +324,7 @@ def main():
     assert bk.check(example("kdtree_envmap"), only=["weights"])  # and Mitsuba is awake
     out = Console(stderr=True)
     found, sizes = {}, {}
-    with threads.two_threads():
+    with threads.use_two_threads():
         for name, bitmap in maps(arguments.maps).items():
             out.print(f"{name} ...")
             repeats = [measure(bitmap, repeat) for repeat in range(arguments.repeats)]

@@ -16,7 +16,7 @@ from rich.table import Table as Printed
 import brdfkit as bk
 from brdfkit.checks.material_subject import INCIDENCES, Subject, incidences
 from brdfkit.checks.sampling import spread
-from brdfkit.core.discovery.plugin_pages import page
+from brdfkit.core.discovery.plugin_pages import read_page
 from brdfkit.core.jit import llvm
 from brdfkit.model.samples import Table
 
@@ -24,7 +24,7 @@ MERL = (90, 90, 180)
 ROUNDS = 5
 SIZE, SPP = 256, 64
 # The models of Kurt 2007; the others are of later papers
-THESIS = [n for n, m in bk.models().items() if n != "mixture" and "[Kurt 2007" in str(page(m))]
+THESIS = [n for n, m in bk.models().items() if n != "mixture" and "[Kurt 2007" in str(read_page(m))]
 
 
 def full_table():

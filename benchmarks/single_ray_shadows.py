@@ -25,7 +25,7 @@ from brdfkit.distance_fields.shadows.marches import convex, linear
 from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
 from brdfkit.distance_fields.shadows.split import split
 from brdfkit.distance_fields.shadows.tau import tau
-from brdfkit.core.json_values import rounded
+from brdfkit.core.json_values import round_numbers
 from brdfkit.theses.balint2019.dense import dense
 from brdfkit.theses.balint2019.rivals import aaltonen, base, discrete, quilez
 
@@ -118,7 +118,7 @@ def main():
     for name, measure in parts().items():
         if name not in results:
             print(name, flush=True)
-            results[name] = rounded(measure(), DIGITS)
+            results[name] = round_numbers(measure(), DIGITS)
             RESULTS.write_text(json.dumps(results, indent=1, ensure_ascii=False) + "\n")
     page.write(results)
 

@@ -9,7 +9,7 @@ from docutils import nodes
 from sphinx.transforms import SphinxTransform
 from sphinx.util.osutil import relative_uri
 
-from brdfkit.core.references import CITATION, references
+from brdfkit.core.references import CITATION, read_references
 
 PAGE = "references"
 FOUND = re.compile(rf"{CITATION.pattern}|(?P<address>https?://[^\s)]*[\w/])")
@@ -40,7 +40,7 @@ class Citations(SphinxTransform):
         for found in FOUND.finditer(text):
             key = " ".join((found[1] or "").split())
             uri = found["address"]
-            if key in references() and not here:
+            if key in read_references() and not here:
                 page = relative_uri(f"{self.env.docname}.html", f"{PAGE}.html")
                 uri = f"{page}#{nodes.make_id(key)}"
             if uri:

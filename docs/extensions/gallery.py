@@ -14,7 +14,7 @@ class Gallery(SphinxDirective):
     """Links to the pages of the materials, each with two pictures."""
 
     def run(self):
-        figures = [self.figure(name, m.title) for name, m in catalogue.materials().items()]
+        figures = [self.figure(name, m.title) for name, m in catalogue.list_materials().items()]
         return [nodes.container("", *figures, classes=["gallery"])]
 
     def figure(self, name, title):

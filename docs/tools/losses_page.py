@@ -7,7 +7,7 @@ from statistics import mean, median
 from leaderboard.page import made_with
 from make_models import paragraphs, table
 
-from brdfkit.core.names import listed
+from brdfkit.core.names import join_words
 from brdfkit.regression.losses.named_losses import DEFAULT
 from brdfkit.theses.drawing import COLOURS, figure, tidy
 
@@ -31,7 +31,7 @@ def write_page(rows, until, size):
     """Write the page of `rows`, dictionaries of material, model, loss, floor and errors."""
     found = by_fit(rows)
     facts = {
-        "losses": listed([f"`{loss}`" for loss in dict.fromkeys(row["loss"] for row in rows)]),
+        "losses": join_words([f"`{loss}`" for loss in dict.fromkeys(row["loss"] for row in rows)]),
         "count": len({row["material"] for row in rows}),
         "until": until,
         "floor": min(row["floor"] for row in rows),

@@ -17,7 +17,7 @@ from brdfkit.lighting.environments.map_files import read_map
 
 PAGE = Path(__file__).parents[1] / "environments.md"
 COMPASS = PAGE.parent / "how_to" / "compass.jpg"
-SHOWN = [name for name in catalogue.environments() if name != "compass"]
+SHOWN = [name for name in catalogue.list_environments() if name != "compass"]
 BALLS = ("red_plastic", "car_paint", "blasted_gold")
 HEIGHT, SPP, LINE, GAP = 192, 256, 30, 8
 TEXT = """They come with brdfkit, are free to use, and are found by their names where a map is
@@ -37,7 +37,7 @@ def page():
     """The text of the page."""
     rows = []
     for name in SHOWN:
-        map, found = catalogue.environments()[name], bk.environments.audit(name)
+        map, found = catalogue.list_environments()[name], bk.environments.audit(name)
         share, stops = found.brightest_share, np.log2(found.largest / found.median)
         rows.append((f"`{name}`", map.what, f"{share:.0%}".replace("%", " %"), f"{stops:.0f}"))
     figures = table("map, what it is, light in 1 %, stops from median to max", rows)
@@ -52,7 +52,7 @@ def picture():
     for row, name in enumerate(SHOWN):
         top = row * (HEIGHT + GAP + LINE)
         draw.text((4, top + LINE // 2), name, "black", font, anchor="lm")
-        rgb = read_map(catalogue.environment_path(name))
+        rgb = read_map(catalogue.find_environment_file(name))
         exposure = 0.18 / np.exp(np.log(luminance(rgb) + 1e-4).mean())
         sheet.paste(image(rgb * exposure).resize((2 * HEIGHT, HEIGHT)), (0, top + LINE))
         balls = bk.render(BALLS, spp=SPP, size=HEIGHT, envmap=name).pictures.values()
@@ -69,5 +69,5 @@ def image(linear):
 if __name__ == "__main__":
     PAGE.write_text(page(), encoding="utf-8")
     picture().save(PAGE.with_suffix(".jpg"), quality=88, optimize=True)
-    compass = image(read_map(catalogue.environment_path("compass")))
+    compass = image(read_map(catalogue.find_environment_file("compass")))
     compass.resize((768, 384), Image.Resampling.NEAREST).save(COMPASS, quality=90, optimize=True)

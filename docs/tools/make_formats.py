@@ -14,7 +14,7 @@ from make_models import paragraphs, table
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
-from brdfkit.core.references import works
+from brdfkit.core.references import find_cited_works
 from brdfkit.materials.formats import formats
 
 FOLDER = Path(__file__).parents[1] / "formats"
@@ -83,7 +83,7 @@ def page(module, found):
     source = f"{folder}/rgl/__init__.py" if hasattr(module, "__path__") else None
     source = source or f"{folder}/{file_name(module).replace('.md', '.py')}"
     rows = [(name, words) for name, (_, words) in found.items()]
-    cited = "\n".join(f"- {work}" for work in works(module.__doc__))
+    cited = "\n".join(f"- {work}" for work in find_cited_works(module.__doc__))
     return paragraphs(
         f"# {module.NAME}",
         first,

@@ -36,7 +36,7 @@ def index():
     """The text of the page of all materials."""
     rows = [
         (f"[{m.title}]({m.name}.md)", f"`{m.name}`", image(m.name, m.name, SIZE // 2), m.what)
-        for m in catalogue.materials().values()
+        for m in catalogue.list_materials().values()
     ]
     return paragraphs("# The materials", INDEX, table("material, name, measured, what it is", rows))
 
@@ -85,7 +85,7 @@ def write(linear, path):
 
 def montage():
     """One picture of all materials: the measured balls over those of the fits."""
-    names, font = list(catalogue.materials()), ImageFont.load_default(BALL // 8)
+    names, font = list(catalogue.list_materials()), ImageFont.load_default(BALL // 8)
     sheet = Image.new("RGB", (BALL * len(names), 2 * BALL + 3 * LINE), "white")
     draw = ImageDraw.Draw(sheet)
     for row, (suffix, word) in enumerate({"": "measured", "_fit": "fitted"}.items()):
@@ -103,7 +103,7 @@ def montage():
 if __name__ == "__main__":
     FOLDER.mkdir(exist_ok=True)
     (FOLDER / "README.md").write_text(index(), encoding="utf-8")
-    for name in sys.argv[1:] or catalogue.materials():
-        make(catalogue.materials()[name])
+    for name in sys.argv[1:] or catalogue.list_materials():
+        make(catalogue.list_materials()[name])
         print(name, flush=True)
     montage()

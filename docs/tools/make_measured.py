@@ -46,7 +46,7 @@ in units of an analytic Ward's. *doubts*: how many things `brdfkit info` finds t
 
 def files(folder):
     """What `brdfkit.load` takes, of every measurement."""
-    names = list(catalogue.materials())
+    names = list(catalogue.list_materials())
     for path in sorted(p for p in Path(folder).rglob("*") if p.is_file()):
         suffix = path.name.removesuffix(".xz").rpartition(".")[2]
         if path.name == "abrdf.dat":

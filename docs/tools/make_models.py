@@ -14,7 +14,7 @@ from PIL import Image
 
 import brdfkit as bk
 from brdfkit.cli.commands.models import choices, example
-from brdfkit.core.discovery.plugin_pages import page as plugin_page
+from brdfkit.core.discovery.plugin_pages import read_page as plugin_page
 from brdfkit.model import labels
 
 FOLDER = Path(__file__).parents[1] / "models"

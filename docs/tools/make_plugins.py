@@ -39,8 +39,12 @@ def pages():
 
 def shipped(kind):
     """brdfkit's own plugins of a kind, without those of a user's that were loaded."""
-    found = plugin_files.sources(kind).items()
-    return {n: s for n, s in found if plugin_files.module(s).__name__.startswith(plugin_files.OWN)}
+    found = plugin_files.find_plugins(kind).items()
+    return {
+        n: s
+        for n, s in found
+        if plugin_files.import_plugin(s).__name__.startswith(plugin_files.OWN)
+    }
 
 
 def is_model(kind, source):
@@ -50,7 +54,7 @@ def is_model(kind, source):
 def page(kind, name, source):
     """The text of a plugin's page."""
     title, sentence, text = docstring(source)
-    settings = getattr(plugin_files.module(source), "PARAMETERS", {})
+    settings = getattr(plugin_files.import_plugin(source), "PARAMETERS", {})
     rows = [(f"`{n}`", default(s), *bounds(s), s.meaning) for n, s in settings.items()]
     return paragraphs(
         *(f"# {title}", sentence, text),

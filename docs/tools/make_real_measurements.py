@@ -35,7 +35,7 @@ from brdfkit.core import catalogue
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.files import write_safely
 from brdfkit.core.jit.threads import use_threads
-from brdfkit.core.json_values import rounded
+from brdfkit.core.json_values import round_numbers
 from brdfkit.model.samples.neural import decode_network
 
 RESULTS = Path(__file__).parents[1] / "real_measurements.json"
@@ -71,7 +71,7 @@ def measurements(folder):
 
 def materials(folder):
     """The names of what is written as five files."""
-    own = [name for name in catalogue.materials() if not bk.load(name).anisotropic]
+    own = [name for name in catalogue.list_materials() if not bk.load(name).anisotropic]
     return own + list(RECONSTRUCTIONS) * (folder / NETWORKS).is_file()
 
 
@@ -112,7 +112,7 @@ def run(part, folder, results, given):
     with ProcessPoolExecutor(given.workers, get_context("spawn")) as pool:
         futures = {pool.submit(work, name, folder): name for name in missing}
         for future in as_completed(futures):
-            found[futures[future]] = rounded(future.result(), DIGITS)
+            found[futures[future]] = round_numbers(future.result(), DIGITS)
             results[part] = {name: found[name] for name in names if name in found}
             write(results)
             done += 1

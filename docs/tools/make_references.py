@@ -5,7 +5,7 @@ python docs/tools/make_references.py
 
 from pathlib import Path
 
-from brdfkit.core.references import references
+from brdfkit.core.references import read_references
 
 PAGE = Path(__file__).parents[1] / "references.md"
 HEAD = """# References
@@ -18,7 +18,7 @@ of [`references.toml`](../src/brdfkit/core/references.toml), of which `make docs
 
 def text():
     """The page."""
-    return HEAD + "".join(f"- {reference}\n" for reference in references().values())
+    return HEAD + "".join(f"- {reference}\n" for reference in read_references().values())
 
 
 if __name__ == "__main__":

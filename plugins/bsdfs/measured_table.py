@@ -66,7 +66,7 @@ def example() -> dict[str, Any]:
     """Return a measured table for the checks: a material that brdfkit brings."""
     from brdfkit.core import catalogue  # slow: plugins are listed without it
 
-    return {"type": "measured_table", "filename": str(catalogue.path("plaster"))}
+    return {"type": "measured_table", "filename": str(catalogue.find_material_file("plaster"))}
 
 
 def _read(props: MitsubaObject) -> tuple[Table, FloatArray | None]:

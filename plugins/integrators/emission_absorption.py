@@ -40,7 +40,7 @@ from brdfkit.core.array_types import (
     MitsubaModule,
     MitsubaObject,
 )
-from brdfkit.core.jit.loops import recorded
+from brdfkit.core.jit.loops import record_loops
 from brdfkit.mitsuba_bridge.channels import emission_of_rgb, white
 from brdfkit.mitsuba_bridge.check_scenes import through_unit_cube
 from brdfkit.mitsuba_bridge.properties.declarations import count, declared, flag, volume
@@ -87,7 +87,7 @@ def define(mi: MitsubaModule) -> type:
                 glow = sigma * rgb
             return sigma, e + self.light(glow, it)
 
-        @recorded
+        @record_loops
         def sample(
             self,
             scene: MitsubaObject,

@@ -68,7 +68,7 @@ def test_every_check_in_other_variants(name, variant):
     import mitsuba as mi
 
     mi.set_variant(variant)
-    measured = name in catalogue.materials()
+    measured = name in catalogue.list_materials()
     channels = None if name == "koenderink" else 3
     thing = bk.load(name) if measured else random_model(labels.model(name), 2, channels)
     # a table is reciprocal where its file is; beyond 80° some measurements gain energy

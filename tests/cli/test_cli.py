@@ -101,7 +101,7 @@ def test_page_of_a_model(cli, model):
 def test_info(cli):
     listed = cli("info")
     assert_fine(listed)
-    assert all(name in listed.stdout for name in catalogue.materials())
+    assert all(name in listed.stdout for name in catalogue.list_materials())
     shown = cli("info", "paint.binary")
     assert_fine(shown)
     assert "6×4×8 table" in shown.stdout
@@ -199,7 +199,7 @@ def test_fit_and_render(cli):
 @pytest.mark.quick
 def test_a_folder_may_have_the_name_of_a_material(cli):
     """`fit car_paint --render` makes such a folder; the next `fit car_paint` reads the table."""
-    name = next(iter(catalogue.materials()))
+    name = next(iter(catalogue.list_materials()))
     Path(name).mkdir()
     Path("ward").mkdir()
     assert_fine(cli("info", name))

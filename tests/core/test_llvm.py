@@ -107,9 +107,9 @@ def test_bundled_before_system_and_named_before_bundled(machine, monkeypatch):
 
 @pytest.mark.quick
 def test_the_advice_is_to_install_or_to_import_in_another_order(machine):
-    assert llvm.remedy().startswith("install karellen-llvm-core")
+    assert llvm.describe_remedy().startswith("install karellen-llvm-core")
     machine.add_bundled()
-    assert llvm.remedy() == "start Python anew and import brdfkit before mitsuba and drjit"
+    assert llvm.describe_remedy() == "start Python anew and import brdfkit before mitsuba and drjit"
 
 
 @pytest.mark.quick
@@ -131,15 +131,15 @@ def test_a_check_without_llvm_says_what_to_do(monkeypatch, loaded, found, advice
 
 @pytest.mark.quick
 def test_prepare(machine, monkeypatch):
-    llvm.prepare()
+    llvm.choose_library()
     assert os.environ[llvm.VARIABLE] == llvm.NO_LIBRARY
-    llvm.prepare()  # a child process that inherits it is not told off
+    llvm.choose_library()  # a child process that inherits it is not told off
     bundled = machine.add_bundled()
-    llvm.prepare()
+    llvm.choose_library()
     assert os.environ[llvm.VARIABLE] == bundled
     monkeypatch.setenv(llvm.VARIABLE, "/nowhere/libLLVM-15.so")
     with pytest.warns(UserWarning, match=f"/nowhere/libLLVM-15.so, {REPLACED}; {bundled} is used"):
-        llvm.prepare()
+        llvm.choose_library()
     assert os.environ[llvm.VARIABLE] == bundled
 
 
@@ -147,7 +147,7 @@ def test_prepare(machine, monkeypatch):
 def test_prepare_leaves_other_systems_alone(machine):
     machine.fake.platform = "darwin"
     machine.add_bundled()
-    llvm.prepare()
+    llvm.choose_library()
     assert os.environ[llvm.VARIABLE] == ""
 
 

@@ -56,7 +56,7 @@ def test_directions_at_the_end_of_memory(n):
     assert mprotect(start + size, mmap.PAGESIZE, 0) == 0
     w = np.frombuffer(memory, float, size // 8)[-{n} * 3 :].reshape(3, {n}).T
     w[:] = 1.0
-    v = double_precision.vector(w)
+    v = double_precision.to_vector(w)
     assert float(np.asarray(dr.sum(v.x * v.y * v.z))[0]) == {n}
     """
     command = [sys.executable, "-c", textwrap.dedent(code)]

@@ -342,15 +342,15 @@ def test_derivatives_by_all_parameters_are_those_of_differences():
     """
     import drjit as dr
 
-    if not double_precision.differentiable():
+    if not double_precision.has_derivatives():
         pytest.skip("no derivatives here")
-    field, points, t = everything(), points_about(1000), double_precision.scalar(0.0)
+    field, points, t = everything(), points_about(1000), double_precision.to_scalar(0.0)
     for _ in range(3):
         points = points - values(field, points)[:, None] * gradients(field, points)
     points = points[np.abs(values(field, points)) < 0.01]
     assert len(points) > 500
     dr.enable_grad(t)
-    f = moved(field, t).distance(double_precision.vector(points))
+    f = moved(field, t).distance(double_precision.to_vector(points))
     dr.forward(t)
     low, middle, high = (values(moved(field, h), points) for h in (-1e-6, 0.0, 1e-6))
     smooth = np.abs(high - 2 * middle + low) < 1e-9

@@ -13,7 +13,7 @@ from PIL import Image, ImageDraw, ImageFont
 import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.core import catalogue
-from brdfkit.core.references import citations, references
+from brdfkit.core.references import find_citations, read_references
 from brdfkit.materials.formats import formats
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -64,7 +64,7 @@ def test_the_pages_of_materials_are_what_the_index_says():
     """Otherwise: python docs/tools/make_materials.py"""
     make = import_module("make_materials")
     assert (make.FOLDER / "README.md").read_text(encoding="utf-8") == make.index()
-    for name, material in catalogue.materials().items():
+    for name, material in catalogue.list_materials().items():
         text = (make.FOLDER / f"{name}.md").read_text(encoding="utf-8")
         assert text.startswith(make.head(material)), name
 
@@ -91,7 +91,7 @@ def test_every_cited_work_is_known_and_every_known_work_is_cited():
     files = [*ROOT.glob("src/**/*.py"), *ROOT.glob("plugins/**/*.py"), *PAGES]
     listed = ROOT / "docs" / "references.md"
     texts = [f.read_text(encoding="utf-8") for f in files if f != listed and f.name != OWN]
-    assert {key for text in texts for key in citations(text)} == set(references())
+    assert {key for text in texts for key in find_citations(text)} == set(read_references())
     assert listed.read_text(encoding="utf-8") == import_module("make_references").text()
 
 
@@ -104,7 +104,7 @@ CITING = {
 @pytest.mark.parametrize("name", CITING)
 def test_a_page_ends_with_the_works_that_it_cites(name):
     page = CliRunner().invoke(main, ["plugins", name]).output
-    assert page.rstrip().endswith("\n".join(str(references()[key]) for key in CITING[name]))
+    assert page.rstrip().endswith("\n".join(str(read_references()[key]) for key in CITING[name]))
 
 
 def test_every_model_has_a_page_and_two_pictures(make):

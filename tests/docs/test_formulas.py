@@ -8,11 +8,11 @@ from docutils.utils.math.latex2mathml import tex2mathml
 
 from brdfkit.core.discovery import plugin_files
 from brdfkit.core.discovery.plugin_files import KINDS
-from brdfkit.core.discovery.plugin_pages import page
+from brdfkit.core.discovery.plugin_pages import read_page
 
 pytestmark = pytest.mark.quick
 
-SOURCES = {n: s for kind in KINDS for n, s in plugin_files.sources(kind).items()}
+SOURCES = {n: s for kind in KINDS for n, s in plugin_files.find_plugins(kind).items()}
 
 
 @pytest.mark.parametrize(
@@ -39,7 +39,7 @@ def test_the_example():
 
 @pytest.mark.parametrize("name", SOURCES)
 def test_every_formula_of_a_plugin_is_tex_that_the_site_can_set(name):
-    text = formulas.set_formulas("\n".join(page(SOURCES[name]).lines))
+    text = formulas.set_formulas("\n".join(read_page(SOURCES[name]).lines))
     for tex in text.split("$$")[1::2]:
         tex2mathml(tex.strip(), True)  # raises an error where it is no TeX
     plain = [line for line in text.split("$$")[::2] for line in line.splitlines()]

@@ -73,7 +73,7 @@ def own_plugins():
 def test_there_is_a_page_of_everything(site):
     wanted = {
         "models": {n for n, m in bk.models().items() if m.__module__.startswith(plugin_files.OWN)},
-        "materials": set(catalogue.materials()),
+        "materials": set(catalogue.list_materials()),
         "formats": {module.__name__.rpartition(".")[2] for module in formats()},
         "plugins": {page.removesuffix(".md") for page in own_plugins()},
         "commands": set(main.commands),

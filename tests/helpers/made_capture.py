@@ -4,7 +4,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter
 
 import brdfkit as bk
-from brdfkit.core.jit.threads import two_threads
+from brdfkit.core.jit.threads import use_two_threads
 from brdfkit.inverse.photographs.capture.pinhole import corners_of
 from brdfkit.inverse.photographs.maps.scene import bsdf_dict
 
@@ -110,7 +110,7 @@ def write_capture(capture, folder, by_corners=False):
         capture.cameras,
         strict=True,
     ):
-        with two_threads():
+        with use_two_threads():
             mi.Bitmap(np.float32(picture)).write(str(folder / name))
         lines.append(f'[[light]]\npicture = "{name}"\nintensity = {power.tolist()}')
         if by_corners:

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from brdfkit.core.projective.body import box
+from brdfkit.core.projective.body import make_box
 from brdfkit.core.projective.camera import Camera
-from brdfkit.core.projective.homogeneous import axes_about, rigid
+from brdfkit.core.projective.homogeneous import make_axes, make_rigid
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.placement import Placement
 
@@ -27,11 +27,11 @@ VIEWS = {
 def camera(eye, target, near=0.1, far=1e3, slope=0.4):
     """A `Camera` whose y is about the world's z."""
     eye, back = np.array(eye, float), np.subtract(eye, target)
-    axes = axes_about(back / np.linalg.norm(back), [0, 0, 1])
-    return Camera(rigid(axes, eye), slope, slope, near, far)
+    axes = make_axes(back / np.linalg.norm(back), [0, 0, 1])
+    return Camera(make_rigid(axes, eye), slope, slope, near, far)
 
 
 def placement(camera, light, low=LOW, high=HIGH, nearest=0.0):
     """A `Placement`, as `Placement.of_scene` makes it."""
     low, high = np.array(low, float), np.array(high, float)
-    return Placement(camera.fitted(box(low, high).corners), light, low, high, nearest)
+    return Placement(camera.fitted(make_box(low, high).corners), light, low, high, nearest)

@@ -11,7 +11,7 @@ from scipy.ndimage import minimum_filter
 
 import brdfkit as bk
 from brdfkit.cli import main
-from brdfkit.core.jit.threads import two_threads
+from brdfkit.core.jit.threads import use_two_threads
 from brdfkit.inverse.photographs.arguments import to_numbers
 from brdfkit.inverse.photographs.capture.camera_from_corners import camera_from_corners
 from brdfkit.inverse.photographs.capture.downsampling import shrunk
@@ -449,7 +449,7 @@ def test_a_folder_that_is_missing_is_said(tmp_path):
 def test_bad_folders_are_one_sentence_and_status_2(mi, case, tmp_path):
     text, sentence = FILES[case]
     (tmp_path / "a.jpg").write_bytes(b"")
-    with two_threads():
+    with use_two_threads():
         mi.Bitmap(np.zeros((8, 8, 3), np.float32)).write(str(tmp_path / "a.exr"))
     if text is not None:
         (tmp_path / "capture.toml").write_text(text.replace("P\n", f"{PLACES}\n"))

@@ -19,7 +19,7 @@ from refined_scenes import (
 from scipy.ndimage import gaussian_filter
 
 import brdfkit as bk
-from brdfkit.core.jit.threads import two_threads
+from brdfkit.core.jit.threads import use_two_threads
 from brdfkit.inverse.scenes.problem.leverage import (
     SMALLEST_REMAINDER,
     correct_for_leverage,
@@ -361,7 +361,7 @@ def test_what_is_masked_counts_nowhere(mi, picture):
 def test_masks_are_weights_of_any_unit(mi, picture, tmp_path):
     half = np.arange(SIZE * SIZE).reshape(SIZE, SIZE) % SIZE < SIZE // 2
     file = tmp_path / "mask.png"
-    with two_threads():
+    with use_two_threads():
         mi.Bitmap(np.repeat(half[..., None] * np.uint8(255), 3, axis=2)).write(str(file))
     scene = load_scene(corner(mi, TRUTH), (SIZE, SIZE))
     names = mi.traverse(scene)
@@ -430,7 +430,7 @@ def test_a_material_begins_on_the_ball_of_render(mi, tmp_path):
     truth = {"diffuse_reflectance": (0.4, 0.2, 0.1)}
     named = bsdf_of("lambert", truth)
     clean = np.array(mi.render(mi.load_dict(ball(named, (16, 16))), spp=512, seed=8))
-    with two_threads():
+    with use_two_threads():
         mi.Bitmap(clean.astype(np.float32)).write(str(tmp_path / "ball.exr"))
     model = bk.models()["lambert"](diffuse_reflectance=0.7)
     result = bk.refine(model, tmp_path / "ball.exr", samples=256)

@@ -11,27 +11,27 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.cli import main
-from brdfkit.core import catalogue, index
+from brdfkit.core import catalogue
 from brdfkit.core.colours import luminance
 from brdfkit.lighting.environments.conventions import LAYOUTS, NAMED, parse_convention
 from brdfkit.lighting.environments.light_distribution import pixel_solid_angles
 from brdfkit.lighting.environments.map_files import read_map, write_map
 from brdfkit.lighting.environments.resampling import look_up, resample
 
-MAPS = sorted(catalogue.environments())
+MAPS = sorted(catalogue.list_environments())
 RANDOM = np.random.default_rng(5).normal(size=(400, 3))
 DIRECTIONS = RANDOM / np.linalg.norm(RANDOM, axis=1, keepdims=True)
 
 
 @pytest.fixture(scope="module")
 def maps():
-    return {name: read_map(catalogue.environment_path(name)) for name in MAPS}
+    return {name: read_map(catalogue.find_environment_file(name)) for name in MAPS}
 
 
 @pytest.fixture(scope="module")
 def make():
     """The program that makes the maps, as a module."""
-    file = index.folder(index.ENVIRONMENTS) / "make.py"
+    file = catalogue.find_folder(catalogue.ENVIRONMENTS) / "make.py"
     spec = importlib.util.spec_from_file_location("make_environments", file)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -58,7 +58,7 @@ def map_of(radiance, name, height):
 @pytest.mark.parametrize("name", MAPS)
 def test_shipped(maps, name):
     """Small, clean, and bright enough; no pixel is a firefly, far above all around it."""
-    entry, file = catalogue.environments()[name], catalogue.environment_path(name)
+    entry, file = catalogue.list_environments()[name], catalogue.find_environment_file(name)
     assert file.stat().st_size <= 200_000
     assert (entry.name, entry.file, entry.licence) == (name, f"{name}.exr", "BSD-3-Clause")
     rgb = maps[name]
@@ -73,8 +73,8 @@ def test_shipped(maps, name):
 
 
 def test_the_folder_holds_what_the_index_names():
-    files = {file.name for file in index.folder(index.ENVIRONMENTS).glob("*.exr")}
-    assert files == {entry.file for entry in catalogue.environments().values()}
+    files = {file.name for file in catalogue.find_folder(catalogue.ENVIRONMENTS).glob("*.exr")}
+    assert files == {entry.file for entry in catalogue.list_environments().values()}
 
 
 def test_the_program_makes_what_is_shipped(maps, make, module_in_llvm):
@@ -427,7 +427,7 @@ def test_eight_bit_pictures_are_said_to_be(tmp_path):
 
 def test_a_name_lights_a_picture(module_in_llvm):
     by_name = bk.render("lambert", 4, 16, envmap="sky").pictures["lambert"]
-    file = catalogue.environment_path("sky")
+    file = catalogue.find_environment_file("sky")
     assert np.allclose(by_name, bk.render("lambert", 4, 16, envmap=file).pictures["lambert"], 1e-4)
 
 
@@ -464,7 +464,7 @@ def test_public_maps(capsys):
     named = json.loads(out)["environment maps"]
     assert {"polyhaven", "debevec", "usc"} <= set(named)
     assert "Convention: usc" in run(capsys, "data", "list", "usc")[1]
-    for name, found in catalogue.collections().items():
+    for name, found in catalogue.list_map_collections().items():
         assert found.page.startswith("http")
         assert found.page in named[name]["page"]
         if " " not in found.convention:

@@ -7,7 +7,7 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.core.geometry.directions import from_angles, normalize
-from brdfkit.core.geometry.quadrature import directional_albedo, ring_rule
+from brdfkit.core.geometry.quadrature import directional_albedo, make_ring_rule
 from brdfkit.lighting.spherical_gaussians import LobeTable, gmm, lobe_table, mixture, single_lobe
 from brdfkit.lighting.spherical_gaussians import von_mises_fisher as vmf
 from brdfkit.lighting.spherical_gaussians.elliptic import fit_anisotropic
@@ -267,7 +267,7 @@ class AnisotropicGaussian:
 
 def above_the_horizon(view):
     """Directions (n, 3) dense about the mirror direction of a view, and their solid angles."""
-    x, cosine = ring_rule(view, 128)
+    x, cosine = make_ring_rule(view, 128)
     return x, cosine / x[:, 2]
 
 
@@ -354,7 +354,7 @@ def test_a_lobe_of_light_warps_back():
 def relative_error(table, brdf, theta, phi=0.0):
     """∫ |BRDF × cosine - lobes| over ∫ BRDF × cosine, seen from (θ, φ)."""
     view = from_angles(theta, phi)
-    x, cosine = ring_rule(view, 40)
+    x, cosine = make_ring_rule(view, 40)
     wo = np.broadcast_to(view, x.shape)
     expected = brdf(x, wo) * x[:, 2:]
     off = np.abs(table.eval(x, wo) - expected).sum(axis=1)

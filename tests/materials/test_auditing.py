@@ -16,7 +16,7 @@ from brdfkit import models
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.cli.commands.info import record
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.core.json_values import plain
+from brdfkit.core.json_values import to_json
 from brdfkit.materials.auditing import symmetries
 from brdfkit.materials.auditing.albedos import Albedo, albedo_of_samples
 from brdfkit.materials.auditing.cosine import suspected_cosine
@@ -537,7 +537,7 @@ def test_it_prints_and_is_json():
         assert text.startswith(data.name)
         assert "nan" not in text.lower()
         assert all(heading in text for heading in audit.rows())
-        back = json.loads(json.dumps(plain(record(audit, []))), parse_constant=pytest.fail)
+        back = json.loads(json.dumps(to_json(record(audit, []))), parse_constant=pytest.fail)
         assert back["valid"] == audit.valid
         assert back["coverage"]["measured"] == audit.coverage.measured
 

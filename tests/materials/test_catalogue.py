@@ -7,27 +7,27 @@ import shutil
 import numpy as np
 import pytest
 
-from brdfkit.core import catalogue, index
+from brdfkit.core import catalogue
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.files import contents
+from brdfkit.core.files import read_bytes
 from brdfkit.core.geometry.directions import from_angles, to_half_difference
 from brdfkit.materials.loading import load
 
-NAMES = sorted(catalogue.materials())
-TABULATED = [n for n in NAMES if catalogue.materials()[n].file.endswith(".binary.xz")]
+NAMES = sorted(catalogue.list_materials())
+TABULATED = [n for n in NAMES if catalogue.list_materials()[n].file.endswith(".binary.xz")]
 MEASURED = [n for n in NAMES if n not in TABULATED]
 LIMIT = 400_000  # bytes: they are in the repository and in the wheel
 
 
 @pytest.fixture(scope="module")
 def measured():
-    return {name: load(catalogue.path(name)) for name in NAMES}
+    return {name: load(catalogue.find_material_file(name)) for name in NAMES}
 
 
 @pytest.fixture(scope="module")
 def make():
     """The program that made the tables, as a module."""
-    spec = importlib.util.spec_from_file_location("make", index.folder() / "make.py")
+    spec = importlib.util.spec_from_file_location("make", catalogue.find_folder() / "make.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -37,8 +37,8 @@ def make():
 def copy(tmp_path, monkeypatch):
     """A copy of the folder, to spoil."""
     folder = tmp_path / "measured"
-    shutil.copytree(index.folder(), folder)
-    monkeypatch.setattr(index, "folder", lambda kind=index.MEASURED: folder)
+    shutil.copytree(catalogue.find_folder(), folder)
+    monkeypatch.setattr(catalogue, "find_folder", lambda kind=catalogue.MEASURED: folder)
     return folder
 
 
@@ -77,24 +77,24 @@ def assert_same(values, errors, others, other_errors):
 
 @pytest.mark.quick
 def test_index_and_files_are_one_to_one(make):
-    files = {file.name for file in index.folder().glob("*.xz")}
-    entries = [material.file for material in catalogue.materials().values()]
+    files = {file.name for file in catalogue.find_folder().glob("*.xz")}
+    entries = [material.file for material in catalogue.list_materials().values()]
     assert sorted(entries) == sorted(files)
     assert sorted(make.TABULATED) == TABULATED
     assert sorted(make.MEASURED) == MEASURED
-    readme = (index.folder() / "README.md").read_text(encoding="utf-8")
+    readme = (catalogue.find_folder() / "README.md").read_text(encoding="utf-8")
     assert all(f"| `{name}` |" in readme for name in NAMES)
 
 
 @pytest.mark.quick
 @pytest.mark.parametrize("name", NAMES)
 def test_entries_say_all_and_checksums_are_right(name):
-    material = catalogue.materials()[name]
+    material = catalogue.list_materials()[name]
     assert material.name == name == material.file.split(".")[0]
     assert material.licence == "BSD-3-Clause"
     assert material.source.endswith(f"make.py {name}")
     assert all(text in str(material) for text in (name, material.title, material.what))
-    file = catalogue.path(name)
+    file = catalogue.find_material_file(name)
     assert hashlib.sha256(file.read_bytes()).hexdigest() == material.sha256
     assert file.stat().st_size <= LIMIT
 
@@ -102,22 +102,22 @@ def test_entries_say_all_and_checksums_are_right(name):
 @pytest.mark.quick
 def test_a_name_that_is_none():
     with pytest.raises(BrdfkitError, match=r"no material 'gold'; there are .*dusty_gold"):
-        catalogue.path("gold")
+        catalogue.find_material_file("gold")
 
 
 @pytest.mark.quick
 def test_a_changed_or_missing_file_is_refused(copy):
-    file = catalogue.path("car_paint")
+    file = catalogue.find_material_file("car_paint")
     assert file.parent == copy
     spoilt = bytearray(file.read_bytes())
     spoilt[len(spoilt) // 2] ^= 1
     file.write_bytes(spoilt)
     with pytest.raises(BrdfkitError, match=r"checksum differs.*install brdfkit again\.$"):
-        catalogue.path("car_paint")
+        catalogue.find_material_file("car_paint")
     file.unlink()
     with pytest.raises(BrdfkitError, match=r"'car_paint' is missing"):
-        catalogue.path("car_paint")
-    assert catalogue.path("dusty_gold").exists()
+        catalogue.find_material_file("car_paint")
+    assert catalogue.find_material_file("dusty_gold").exists()
 
 
 @pytest.mark.quick
@@ -190,7 +190,7 @@ def test_albedo_is_at_most_one(measured, name, theta_i):
 def test_encoded_again_the_content_is_the_same(measured, make, name):
     material = measured[name]
     again = make.packed(material) if name in MEASURED else make.encoded(material.table.values)
-    assert again == contents(catalogue.path(name))
+    assert again == read_bytes(catalogue.find_material_file(name))
 
 
 @pytest.mark.quick

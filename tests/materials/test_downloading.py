@@ -14,7 +14,7 @@ from click.testing import CliRunner
 from small_files import curet, curet_table, merl
 
 from brdfkit.cli import main
-from brdfkit.core import index
+from brdfkit.core import catalogue
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import sha256
 from brdfkit.materials.collections import public
@@ -82,7 +82,7 @@ def cache(tmp_path, monkeypatch):
 @pytest.fixture
 def lab(server, cache, monkeypatch):
     """A function that makes `lab` the only collection, with one file, which is on the server."""
-    own, read = index.entries(), index.entries
+    own, read = catalogue.read_index(), catalogue.read_index
 
     def put(file="grey.binary", data=TABLE, **entry):
         url = f"http://127.0.0.1:{server.server_port}/{{file}}"
@@ -98,10 +98,10 @@ def lab(server, cache, monkeypatch):
         }
         entries = own | {"collections": {"lab": collection | entry}}
 
-        def entries_of(kind=index.MEASURED):
-            return copy.deepcopy(entries) if kind == index.MEASURED else read(kind)
+        def entries_of(kind=catalogue.MEASURED):
+            return copy.deepcopy(entries) if kind == catalogue.MEASURED else read(kind)
 
-        monkeypatch.setattr(index, "entries", entries_of)
+        monkeypatch.setattr(catalogue, "read_index", entries_of)
         return cache / "lab" / file
 
     return put

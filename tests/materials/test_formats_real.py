@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from brdfkit.core.colours import RGB
-from brdfkit.core.files import contents
+from brdfkit.core.files import read_bytes
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.formats import HEAD, formats
 from brdfkit.materials.loading import load, save
@@ -26,7 +26,7 @@ EVERY = [p for p in EVERY if p.stem != "CHECKSUMS"]  # a table, but of no sample
 
 @pytest.mark.parametrize("path", EVERY, ids=lambda path: path.name)
 def test_every_file_is_read_by_one_format(path):
-    head = contents(path)[:HEAD]
+    head = read_bytes(path)[:HEAD]
     assert sum(module.sniff(head) for module in formats()) == 1
     material = load(f"{path}#1" if path.name == "abrdf.dat" else path)
     valid = material.samples.at(material.samples.valid)

@@ -53,7 +53,7 @@ def test_what_is_no_material_is_refused(taker, thing, said, llvm_variant):
 def test_a_name_stands_for_its_material(taker, llvm_variant, tmp_path, monkeypatch):
     """That of a model, of a material that comes with brdfkit, or a path, as on the command line."""
     monkeypatch.chdir(tmp_path)
-    shutil.copy(catalogue.path("red_plastic"), "mine.binary.xz")
+    shutil.copy(catalogue.find_material_file("red_plastic"), "mine.binary.xz")
     for name in ("red_plastic", Path("mine.binary.xz"), *(["ward"] if taker in OF_MODELS else [])):
         TAKERS[taker](name)
 

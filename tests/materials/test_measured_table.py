@@ -13,7 +13,7 @@ from brdfkit.checks.material_subject import INCIDENCES, Subject, incidences, ran
 from brdfkit.checks.registry import checks
 from brdfkit.checks.sampling import spread
 from brdfkit.core import catalogue
-from brdfkit.core.colours import colour_science
+from brdfkit.core.colours import import_colour
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.mitsuba_bridge.arrays import Rows
 from brdfkit.mitsuba_bridge.bsdf.half_vector_table import _draw_cell
@@ -128,7 +128,7 @@ def test_in_every_variant(name, label, variant):
 
 def colour_of(spectrum):
     """Linear sRGB under D65 of a reflectance, `spectrum` of four wavelengths at a time."""
-    colour = colour_science()
+    colour = import_colour()
 
     nm = np.arange(380.0, 780.0, 5.0)
     values = np.concatenate([spectrum(list(map(float, four))) for four in nm.reshape(-1, 4)])
@@ -235,7 +235,7 @@ def cosine_spread(material, degrees):
     return weights.std() / weights.mean()
 
 
-@pytest.mark.parametrize("name", [*catalogue.materials(), "brushed"])
+@pytest.mark.parametrize("name", [*catalogue.list_materials(), "brushed"])
 def test_weights_of_samples_vary_little(name, llvm_variant):
     """Standard deviation ≤ 0.5 of the mean at every incidence, and never worse than by cosine."""
     material = MATERIALS.get(name, lambda: bk.load(name))()

@@ -9,8 +9,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from brdfkit import models
 from brdfkit.core.colours import luminance
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.figures import Plot
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.core.plots import Plot
 from brdfkit.images.thumbnails.lobes import Radius
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.plotting import plot

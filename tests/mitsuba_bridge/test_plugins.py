@@ -13,12 +13,12 @@ import brdfkit as bk
 from brdfkit.checks.plugin_subject import example
 from brdfkit.checks.registry import checks
 from brdfkit.core.discovery import plugin_files
-from brdfkit.core.discovery.plugin_files import KINDS, MODELS, sources
-from brdfkit.core.discovery.plugin_pages import page
+from brdfkit.core.discovery.plugin_files import KINDS, MODELS, find_plugins
+from brdfkit.core.discovery.plugin_pages import read_page
 
 quick = functools.partial(pytest.param, marks=pytest.mark.quick)
 VARIANTS = (quick("llvm_ad_rgb"), "llvm_ad_mono", "llvm_ad_spectral_polarized", "scalar_rgb")
-OTHERS = {name: kind for kind in KINDS if kind != MODELS for name in sources(kind)}
+OTHERS = {name: kind for kind in KINDS if kind != MODELS for name in find_plugins(kind)}
 
 
 # brdfkit's own
@@ -27,8 +27,8 @@ OTHERS = {name: kind for kind in KINDS if kind != MODELS for name in sources(kin
 @pytest.mark.quick
 def test_every_plugin_has_a_page():
     for kind in KINDS:
-        for name, source in sources(kind).items():
-            found = page(source)
+        for name, source in find_plugins(kind).items():
+            found = read_page(source)
             assert found.title, name
             assert found.sentence.endswith("."), name
 
@@ -59,7 +59,7 @@ def test_passes_the_checks(name, check, chosen, variant):
 
 def settings(name):
     """The declared parameters of a plugin."""
-    return plugin_files.module(sources(OTHERS[name])[name]).PARAMETERS
+    return plugin_files.import_plugin(find_plugins(OTHERS[name])[name]).PARAMETERS
 
 
 BOUNDED = [(n, p) for n in OTHERS for p, setting in settings(n).items() if setting.bounds]

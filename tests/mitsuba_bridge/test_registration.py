@@ -107,7 +107,7 @@ def test_no_name_is_a_built_in_plugin():
     built_in = {file.stem for file in Path(mi.__file__).with_name("plugins").iterdir()}
     assert {"diffuse", "roughconductor", "path"} < built_in
     kinds = plugin_files.KINDS
-    assert not built_in & {name for kind in kinds for name in plugin_files.sources(kind)}
+    assert not built_in & {name for kind in kinds for name in plugin_files.find_plugins(kind)}
 
 
 # Parameters

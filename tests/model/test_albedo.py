@@ -342,7 +342,7 @@ def projected(D):
     x, w = gauss_legendre(2000)
     low, high = np.log(1e-9), np.log(np.pi / 2)
     theta, w = np.exp(low + (x + 1) / 2 * (high - low)), w * (high - low) / 2
-    values = np.array(D(double_precision.vector(from_angles(theta, 0.0))))
+    values = np.array(D(double_precision.to_vector(from_angles(theta, 0.0))))
     return np.sum(2 * np.pi * values * np.cos(theta) * np.sin(theta) * theta * w)
 
 
@@ -356,13 +356,13 @@ def test_constants_of_the_distributions():
     for m, expected in zip(
         (0.1, 0.2, 0.3, 0.6, 1.0), (0.9934, 0.9738, 0.9421, 0.7913, 0.5477), strict=True
     ):
-        width = double_precision.scalar(m)
+        width = double_precision.to_scalar(m)
         assert projected(Beckmann(width, width).D) == pytest.approx(1, abs=1e-6)
         gaussian = file_of("torrance_sparrow").GaussianAngle(width)
         assert projected(gaussian.D) == pytest.approx(expected, abs=1e-3)
     for alpha in (1e-4, 1.0):
         for p in (0.0, 1.0, 2.0):
-            facets = file_of("sgd").ShiftedGamma(*map(double_precision.scalar, (alpha, p)))
+            facets = file_of("sgd").ShiftedGamma(*map(double_precision.to_scalar, (alpha, p)))
             assert projected(facets.D) == pytest.approx(1, abs=2e-3)
     for alpha in (0.01, 1.0):
         for gamma in (1.8, 3.0, 40.0):
@@ -370,7 +370,7 @@ def test_constants_of_the_distributions():
 
 
 def student_slopes(alpha, gamma):
-    alpha, gamma = double_precision.scalar(alpha), double_precision.scalar(gamma)
+    alpha, gamma = double_precision.to_scalar(alpha), double_precision.to_scalar(gamma)
     return file_of("student_t").StudentSlopes(alpha, alpha, gamma)
 
 
@@ -382,7 +382,9 @@ def test_shadowing_of_students_slopes(gamma):
     theta = np.radians([1, 10, 30, 50, 70, 80, 85, 88, 89])
     for alpha in (0.01, 0.1, 0.3, 1.0):
         distribution = stats.t(2 * gamma - 2, scale=alpha / np.sqrt(2))
-        found = student_slopes(alpha, gamma).Lambda(double_precision.vector(from_angles(theta, 1)))
+        found = student_slopes(alpha, gamma).Lambda(
+            double_precision.to_vector(from_angles(theta, 1))
+        )
         above = np.exp(logs)
         cot = 1 / np.tan(theta)[:, None]
         expected = (above**2 * distribution.pdf(cot + above) / cot) @ w * 50
@@ -397,7 +399,7 @@ def test_students_slopes_end_at_ggx_and_beckmann():
         ggx = bk.models()["ggx"](**shape).eval(wi, wo)
         student = bk.models()["student_t"](gamma=2, **shape).eval(wi, wo)
         np.testing.assert_allclose(student, ggx, rtol=5e-6)
-    h = double_precision.vector(from_angles(np.arctan(np.linspace(0, 0.6, 50)), 0.4))
+    h = double_precision.to_vector(from_angles(np.arctan(np.linspace(0, 0.6, 50)), 0.4))
     beckmann = np.array(Beckmann(0.3, 0.3).D(h))
     for gamma, tolerance in ((40.0, 0.2), (4000.0, 0.002)):
         np.testing.assert_allclose(student_slopes(0.3, gamma).D(h), beckmann, rtol=tolerance)
@@ -410,13 +412,13 @@ def test_shifted_gamma_is_the_published_one():
         (0.0171547, 0.769726, 25.8231, 1.20095, 1.02768e-07, 51.5975, 0.218049),
         (0.678586, 1.2402, 3.91532, 2.09871, 0.0378525, 6.8689, 0.166634),
     ):
-        facets = file_of("sgd").ShiftedGamma(*map(double_precision.scalar, (alpha, p)))
-        normal = double_precision.vector(from_angles([0.0], [0.0]))
+        facets = file_of("sgd").ShiftedGamma(*map(double_precision.to_scalar, (alpha, p)))
+        normal = double_precision.to_vector(from_angles([0.0], [0.0]))
         published = K * np.exp(-alpha) / alpha**p / np.pi
         assert np.array(facets.D(normal))[0] == pytest.approx(published, rel=1e-3)
         theta = np.radians([0, 30, 50, 70, 80, 85, 88])
         G1 = 1 + Lambda * (1 - np.exp(c * np.maximum(theta - theta_0, 0) ** k))
-        found = np.array(facets.G1(double_precision.vector(from_angles(theta, 0.0))))
+        found = np.array(facets.G1(double_precision.to_vector(from_angles(theta, 0.0))))
         np.testing.assert_allclose(found, G1, atol=3e-3)
 
 

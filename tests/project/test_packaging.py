@@ -79,10 +79,10 @@ def test_works_without_the_checkout(installed, tmp_path):
 
     where = """
 import brdfkit
-from brdfkit.core import index
+from brdfkit.core import catalogue
 from brdfkit.core.discovery import plugin_files as discovery
-folders = map(index.folder, (index.MEASURED, index.ENVIRONMENTS))
-for path in (brdfkit.__file__, *folders, *discovery.sources('bsdfs').values()):
+folders = map(catalogue.find_folder, (catalogue.MEASURED, catalogue.ENVIRONMENTS))
+for path in (brdfkit.__file__, *folders, *discovery.find_plugins('bsdfs').values()):
     print(path)
 """
     places = python("-c", where).split()

@@ -10,7 +10,7 @@ import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.cli import main
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.core.geometry.quadrature import ring_rule
+from brdfkit.core.geometry.quadrature import make_ring_rule
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
 from brdfkit.regression import losses
@@ -35,7 +35,7 @@ def albedos(model, points=400):
     found = []
     for theta in ANGLES:
         wi = from_angles(np.radians(theta), 0.0)
-        wo, rule = ring_rule(wi, points)
+        wo, rule = make_ring_rule(wi, points)
         found.append(rule @ model.eval(np.broadcast_to(wi, wo.shape), wo))
     return np.array(found)
 

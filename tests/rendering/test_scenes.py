@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline
 import brdfkit as bk
 from brdfkit.core.colours import luminance
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.jit.threads import two_threads
+from brdfkit.core.jit.threads import use_two_threads
 from brdfkit.rendering.galleries import draw_grid
 from brdfkit.rendering.scene_input import environment, mesh_file
 from brdfkit.rendering.scenes import _meshes, _studio, knot, material_ball, scene, scene_names, vase
@@ -152,7 +152,7 @@ def files(tmp_path, monkeypatch):
     below_zero, inf = grey.copy(), grey.copy()
     below_zero[12, 3], inf[12, 3] = -1, np.inf
     maps = {"grey": grey, "night": 0 * grey, "below_zero": below_zero, "inf": inf}
-    with two_threads():
+    with use_two_threads():
         for name, pixels in maps.items():
             mi.Bitmap(pixels).write(f"{name}.exr")
     flat = CUBE.partition("f ")[0]
@@ -249,7 +249,7 @@ def test_the_light_of_a_map_is_its_irradiance(files, rows):
     """Of radiance 1 from everywhere it is π, in a map of any number of rows."""
     import mitsuba as mi
 
-    with two_threads():
+    with use_two_threads():
         mi.Bitmap(np.ones((rows, 2 * rows, 3), np.float32)).write("white.exr")
     scale = environment.environment("white.exr")["scale"]
     assert environment.ILLUMINANCE / scale == pytest.approx(np.pi, rel=1e-6)

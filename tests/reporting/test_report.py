@@ -22,7 +22,7 @@ from PIL import Image
 
 import brdfkit as bk
 from brdfkit.cli import main
-from brdfkit.core.jit.threads import two_threads
+from brdfkit.core.jit.threads import use_two_threads
 from brdfkit.images.errors.metrics import METRICS
 from brdfkit.model.samples import Table
 from brdfkit.regression.robust.reweighting import WEIGHTS
@@ -371,7 +371,7 @@ def test_the_page_says_which_model_was_chosen_and_why(here, monkeypatch):
 def test_another_scene_and_light(here, material):
     import mitsuba as mi
 
-    with two_threads():
+    with use_two_threads():
         mi.Bitmap(np.ones((4, 8, 3), np.float32)).write("grey.exr")
     mi.load_dict({"type": "cube"}).write_ply("cube.ply")
     place = {"scene": "cube.ply", "envmap": "grey.exr"}

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from placements import LIGHTS, SUN, VIEWS, camera, placement
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.projective.homogeneous import axes_about, project_all
+from brdfkit.core.projective.homogeneous import make_axes, project_all
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.light_depth import LightDepth
 from brdfkit.shadows.maps.light_shadow import LightShadow
@@ -128,7 +128,7 @@ N_T = [[4, -4 / 15, 0, -0.04], [0, 8 / 3, 0, -0.6], [0, 0, 1, 0], [0, -4 / 3, 0,
 def test_a_trapezoid_becomes_the_map(angle):
     """Acceptance checks 3 and 4: the printed N_T, wherever the trapezoid lies."""
     sides = [(-0.8, -0.9), (0.7, -0.9), (0.3, 0.6), (-0.2, 0.6)]
-    turn, shift = axes_about([0, 0, 1.0], [np.sin(angle), np.cos(angle), 0]), [3, -5, 0]
+    turn, shift = make_axes([0, 0, 1.0], [np.sin(angle), np.cos(angle), 0]), [3, -5, 0]
     # the line of sight begins at the narrow side, through the apex (0.1, 1.35) of the others
     to_sight = np.array([[-1, 0, 0, 0.1], [0, -1, 0, 0.6], [0, 0, 1, 0], [0, 0, 0, 1]])
     placed = np.eye(4)

@@ -7,7 +7,7 @@ from drjit.llvm import Float64
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.projective.camera import Camera
-from brdfkit.core.projective.homogeneous import axes_about, project_all, rigid
+from brdfkit.core.projective.homogeneous import make_axes, make_rigid, project_all
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.filters.bilinear_percentage_closer import Lookup
 from brdfkit.shadows.maps.moments.chebyshev import most_lit
@@ -42,7 +42,9 @@ def run(sources, report):
 def looking(eye, target, near=1.0, far=100.0, slope=1.0):
     """A `Camera`."""
     back = np.subtract(eye, target) / np.linalg.norm(np.subtract(eye, target))
-    return Camera(rigid(axes_about(back, [0, 0, 1]), np.array(eye, float)), slope, slope, near, far)
+    return Camera(
+        make_rigid(make_axes(back, [0, 0, 1]), np.array(eye, float)), slope, slope, near, far
+    )
 
 
 def agreed(says, where, expected, found, shown="{:.6f}"):

@@ -5,7 +5,7 @@ from brdfkit.theses.ergun2008.printed import mean_and_relative, printed
 from brdfkit.theses.ergun2008.trapezoid import CORNERS, SQUARE, trapezoid_to_square
 
 from brdfkit.core.projective.camera import Camera
-from brdfkit.core.projective.homogeneous import axes_about, project_all, rigid
+from brdfkit.core.projective.homogeneous import make_axes, make_rigid, project_all
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.resolution import magnification
@@ -127,7 +127,7 @@ def footprint_area():
     ground, areas = ((0.0, 0, 0), (0.0, 0, 1)), []
     for place in np.array([(0, 3, 2), (0, 6, 4)], float):
         back = place / np.linalg.norm(place)
-        camera = Camera(rigid(axes_about(back, [0, 0, 1]), place), 1.0, 1.0, 1.0, 100.0)
+        camera = Camera(make_rigid(make_axes(back, [0, 0, 1]), place), 1.0, 1.0, 1.0, 100.0)
         light = Light(np.append(place, 1))
         areas.append(1 / magnification(Projection.by(camera.matrix, light), *ground))
     growth = areas[1] / areas[0]

@@ -7,7 +7,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from brdfkit.core.files import contents
+from brdfkit.core.files import read_bytes
 from brdfkit.rendering.scene_input import mesh_file
 from brdfkit.rendering.scenes._meshes import mesh, mesh_of_grid, revolve
 from brdfkit.rendering.scenes._studio import studio
@@ -57,7 +57,7 @@ def unpacked(file):
     """The `Shape` of a compressed mesh."""
     with TemporaryDirectory() as folder:
         plain = Path(folder) / file.stem
-        plain.write_bytes(contents(file))
+        plain.write_bytes(read_bytes(file))
         buffers = mesh_file.read(plain)
     points, _, _, faces = buffers
     return Shape(lambda bsdf, size: studio(size) | {"mesh": mesh(*buffers, bsdf)}, points, faces)

@@ -102,8 +102,8 @@ def lobes_at(name, shapes, wi, wo):
 
     The thesis lets exponents be 0.
     """
-    bound = labels.model(name).bind({n: double_precision.scalar(v) for n, v in shapes.items()})
-    wi, wo = double_precision.vector(wi), double_precision.vector(wo)
+    bound = labels.model(name).bind({n: double_precision.to_scalar(v) for n, v in shapes.items()})
+    wi, wo = double_precision.to_vector(wi), double_precision.to_vector(wo)
     values = [np.asarray(lobe.eval(wi, wo)) for _, lobe in bound.terms()]
     return np.stack([np.broadcast_to(v, len(np.asarray(wi.x))) for v in values], axis=1)
 

@@ -7,7 +7,7 @@ from functools import cache, partial
 import drjit as dr
 import numpy as np
 
-from brdfkit.core.jit.loops import first_error
+from brdfkit.core.jit.loops import raise_first_cause
 from brdfkit.volumes import TransferFunction
 from brdfkit.volumes.made import make
 
@@ -83,7 +83,7 @@ def iteration(spp=1):
         if state["recorded"]:
             try:
                 # Ctrl-C is no reason to render once more
-                with first_error(), without_collection():
+                with raise_first_cause(), without_collection():
                     return recorded(scene, mi.UInt32(seed))
             except RuntimeError:
                 state["recorded"] = False

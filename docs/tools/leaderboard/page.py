@@ -7,7 +7,7 @@ from statistics import mean, median
 
 from make_models import paragraphs, table
 
-from brdfkit.core.version import versions
+from brdfkit.core.version import find_versions
 from brdfkit.theses.drawing import COLOURS, figure, tidy
 
 PAGE = Path(__file__).parents[2] / "leaderboard.md"
@@ -54,7 +54,7 @@ def write_page(scores, seconds, full, restarts, facts):
 
 def made_with():
     """The versions of brdfkit, of Python and of what the numbers depend on, in words."""
-    own, *others = (f"{name} {number}" for name, number in versions().items())
+    own, *others = (f"{name} {number}" for name, number in find_versions().items())
     return ", ".join([own, f"Python {platform.python_version()}", *others])
 
 

@@ -128,7 +128,7 @@ def draw_picture(name, data):
 def light_of(name):
     """The light of a map that brdfkit brings: a function of directions (n, 3), z up, to grey
     radiances (n,)."""
-    grey = luminance(map_files.read_map(catalogue.environment_path(name)))[..., None]
+    grey = luminance(map_files.read_map(catalogue.find_environment_file(name)))[..., None]
     own = parse_convention("mitsuba")
     parts = label_parts(own.layout, *grey.shape[:2])
 

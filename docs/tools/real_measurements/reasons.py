@@ -4,7 +4,7 @@ from collections import Counter
 from itertools import pairwise
 from statistics import median
 
-from brdfkit.core.names import listed
+from brdfkit.core.names import join_words
 
 DEFAULT = "cbrt"
 UNKNOWN = "No reason was found."
@@ -57,10 +57,10 @@ def grazing(files):
             groups.setdefault(" ".join(why(found, off)), []).append((found["name"], off))
     lines = [flat(files)]
     for sentences, rows in groups.items():
-        names = listed([name for name, _ in rows])
+        names = join_words([name for name, _ in rows])
         fits = [row for _, off in rows for row in off]
         losses = Counter(loss for _, loss, _ in fits)
-        counts = listed([f"{count} by `{loss}`" for loss, count in losses.most_common()])
+        counts = join_words([f"{count} by `{loss}`" for loss, count in losses.most_common()])
         factor = max((factor for *_, factor in fits), key=lambda f: max(f, 1 / f))
         lines.append(f"- **{names}** ({counts}; ×{factor:.2f} at most). {sentences or UNKNOWN}")
     return "\n".join(lines)
@@ -115,7 +115,7 @@ def _name(off):
     models = {}
     for model, loss, factor in off:
         models.setdefault(model, []).append(f"`{loss}` ×{factor:.2f}")
-    return ", ".join(f"`{model}` by {listed(losses)}" for model, losses in models.items())
+    return ", ".join(f"`{model}` by {join_words(losses)}" for model, losses in models.items())
 
 
 def why(found, off):

@@ -101,7 +101,7 @@ def check(
     """
     if llvm.use_variant().startswith("scalar"):
         usable = llvm.loaded_version() >= llvm.OLDEST
-        remedy = "set llvm_ad_rgb" if usable else llvm.remedy()
+        remedy = "set llvm_ad_rgb" if usable else llvm.describe_remedy()
         raise BrdfkitError(f"check needs an LLVM or CUDA variant of Mitsuba; {remedy}.")
     subject, kind, name = _subject(material)
     only = [only] if isinstance(only, str) else only
@@ -124,7 +124,7 @@ def _subject(thing):
     if isinstance(thing, str) and is_no_model(thing):
         thing = example(thing)
     name = thing.get("type") if isinstance(thing, dict) else None
-    kind = plugin_files.kind_of(name) if isinstance(name, str) else None
+    kind = plugin_files.find_kind(name) if isinstance(name, str) else None
     if kind not in (None, MODELS):
         return PluginSubject(kind, thing), kind, name
     found = _material(thing)
@@ -140,7 +140,7 @@ def _material(thing):
     try:
         return to_material(thing)
     except BrdfkitError:
-        others = [n for kind in KINDS if kind != MODELS for n in plugin_files.sources(kind)]
+        others = [n for kind in KINDS if kind != MODELS for n in plugin_files.find_plugins(kind)]
         if isinstance(thing, str) and nearest(thing, others):
             raise no_such("plugin", thing, others) from None
         raise

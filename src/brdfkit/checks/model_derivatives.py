@@ -15,9 +15,11 @@ def free_shapes(model):
 
 def has_effect(model, name):
     """Whether any lobe is computed from the parameter."""
-    values = {n: double_precision.scalar(getattr(model, n)) for n in model.shapes(anisotropic=True)}
+    values = {
+        n: double_precision.to_scalar(getattr(model, n)) for n in model.shapes(anisotropic=True)
+    }
     dr.enable_grad(values[name])
-    wi, wo = (double_precision.vector(w) for w in random_pairs(2, seed=6))
+    wi, wo = (double_precision.to_vector(w) for w in random_pairs(2, seed=6))
     lobes = [lobe for _, lobe in model.bind(values).terms()]
     terms = [lobe.eval(wi, wo) for lobe in lobes]
     terms += [lobe.quadratic(wi, wo) for lobe in lobes if lobe.quadratic]
@@ -47,10 +49,10 @@ def _lobe_slopes(model, name, wi, wo):
 
     The first is of the factors of the weights, the second of the factors of the weights' squares.
     """
-    values = double_precision.shapes(model)
+    values = double_precision.to_shape_scalars(model)
     dr.enable_grad(values[name])
-    directions = double_precision.vector(wi), double_precision.vector(wo)
-    Float64 = double_precision.float64()
+    directions = double_precision.to_vector(wi), double_precision.to_vector(wo)
+    Float64 = double_precision.float_type()
     terms = model.bind(values).terms()
     plain = [Float64(lobe.eval(*directions)) for _, lobe in terms]
     squared = [Float64(lobe.quadratic(*directions) if lobe.quadratic else 0) for _, lobe in terms]

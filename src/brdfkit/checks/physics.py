@@ -55,7 +55,7 @@ def defined(subject):
     wi = from_angles(theta, AZIMUTH)
     wi, wo = np.concatenate([wi, wi]), np.concatenate([wi * [-1, -1, 1], wi])
     shapes = {name: getattr(model, name) for name in model.shapes(anisotropic=True)}
-    directions = double_precision.vector(wi), double_precision.vector(wo)
+    directions = double_precision.to_vector(wi), double_precision.to_vector(wo)
     plain, _ = lobe_values(model, wi, wo)
     try:
         require_finite(model, plain.T, *directions)

@@ -25,7 +25,7 @@ class PluginSubject:
     @property
     def source(self):
         """The file of the plugin."""
-        return plugin_files.sources(self.kind)[self.name]
+        return plugin_files.find_plugins(self.kind)[self.name]
 
     @property
     def module(self):
@@ -42,9 +42,9 @@ class PluginSubject:
 
 def is_no_model(name):
     """Whether `name` is that of a plugin which is no `Model`, but may be another BSDF."""
-    kind = plugin_files.kind_of(name)
+    kind = plugin_files.find_kind(name)
     return kind is not None and (
-        kind != MODELS or labels.model_in(plugin_files.sources(MODELS)[name]) is None
+        kind != MODELS or labels.model_in(plugin_files.find_plugins(MODELS)[name]) is None
     )
 
 
@@ -64,7 +64,7 @@ def example(name, **values):
 
 
 def _module(name):
-    return plugin_files.module(plugin_files.sources(plugin_files.kind_of(name))[name])
+    return plugin_files.import_plugin(plugin_files.find_plugins(plugin_files.find_kind(name))[name])
 
 
 @check_of(*(kind for kind in KINDS if kind != MODELS))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from brdfkit.core.colours import LUMINANCE, RGB, colour_science
+from brdfkit.core.colours import LUMINANCE, RGB, import_colour
 from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
 
 WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)  # nm, at which spectral variants are checked
@@ -33,7 +33,7 @@ def in_variant(values, material):
         return (values @ LUMINANCE)[:, None]
     if not mi.is_spectral:
         return values
-    basis = colour_science().recovery.MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019
+    basis = import_colour().recovery.MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019
     spectra = [np.interp(WAVELENGTHS, basis.wavelengths, column) for column in basis.values.T]
     return values @ np.array(spectra)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from brdfkit.cli import tables
-from brdfkit.core.json_values import plain
+from brdfkit.core.json_values import to_json
 from brdfkit.core.progress_bar import progress
 
 NARROWEST, WIDEST = 20, 10_000  # characters
@@ -38,7 +38,7 @@ class Console:
 
     def json(self, record):
         """Print a result as JSON; `record`: dictionaries, lists, arrays, paths and dataclasses."""
-        print(json.dumps(plain(record), indent=2))
+        print(json.dumps(to_json(record), indent=2))
 
     def table(self, columns, *sections, title=None):
         """Print a table. `columns`: their names; `sections`: lists of rows of texts.

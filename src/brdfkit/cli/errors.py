@@ -12,7 +12,7 @@ from brdfkit.cli.outputs import refuse_to_replace, remember
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.files import watch_writing
 from brdfkit.core.interrupts import exit_status, is_stopped, stop_on_signals
-from brdfkit.core.names import printable
+from brdfkit.core.names import to_printable
 
 NO_ROOM = errno.ENOSPC, errno.EDQUOT, errno.EIO  # writing to standard output, a file, failed
 OF_FITS = "--fix", "--bound", "--tie"
@@ -121,7 +121,7 @@ def _drop_output():
 
 def say(message):
     """Print one sentence for people on standard error; what a file makes too long is cut."""
-    text = printable(" ".join(str(message).split()))
+    text = to_printable(" ".join(str(message).split()))
     if len(text) > LONGEST:
         text = f"{text[: LONGEST // 2]} … {text[-LONGEST // 4 :]}"
     click.echo(f"brdfkit: {text}", err=True)

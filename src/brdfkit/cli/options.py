@@ -213,7 +213,7 @@ def scene_options(command, files=SCENE_FILES):
     # by the names of their files: to import the scenes takes a second
     folder = Path(brdfkit.__file__).with_name("rendering") / "scenes"
     names = ", ".join(sorted(file.stem for file in folder.glob("[!_]*.py")))
-    maps = ", ".join(catalogue.environments())
+    maps = ", ".join(catalogue.list_environments())
 
     @functools.wraps(command)
     def with_scene(*args, scene, up, **kwargs):

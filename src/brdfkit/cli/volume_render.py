@@ -81,7 +81,7 @@ def _refuse_nearly_made(word):
     from brdfkit.model import labels
     from brdfkit.volumes import made
 
-    known = [*labels.models(), *catalogue.materials(), *made.names()]
+    known = [*labels.models(), *catalogue.list_materials(), *made.names()]
     if word in known or labels.is_label(word) or Path(word).suffix or Path(word).exists():
         return
     if nearest(word, known) in made.names():

@@ -1,10 +1,26 @@
 """What comes with brdfkit, materials and environment maps: their origin, licence and files."""
 
+import tomllib
 from dataclasses import dataclass
+from pathlib import Path
 
-from brdfkit.core import index
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.files import sha256
+
+MEASURED, ENVIRONMENTS = "measured", "environments"
+
+
+def read_index(kind=MEASURED):
+    """The content of an index, a dictionary by name; "collections" holds those of others."""
+    with (find_folder(kind) / "index.toml").open("rb") as stream:
+        return tomllib.load(stream)
+
+
+def find_folder(kind=MEASURED):
+    """The folder of an index: in the installed package, or at the top of a checkout."""
+    package = Path(__file__).resolve().parents[1]
+    installed, checkout = (place / "data" / kind for place in (package, package.parents[1]))
+    return installed if installed.is_dir() else checkout
 
 
 @dataclass(frozen=True)
@@ -29,13 +45,13 @@ class MapCollection:
         )
 
 
-def collections():
+def list_map_collections():
     """The public collections of environment maps by name.
 
-    >>> collections()["debevec"].convention
+    >>> list_map_collections()["debevec"].convention
     'debevec'
     """
-    entries = index.entries(index.ENVIRONMENTS)["collections"]
+    entries = read_index(ENVIRONMENTS)["collections"]
     return {name: MapCollection(**entry) for name, entry in entries.items()}
 
 
@@ -60,47 +76,47 @@ class Shipped:
         return f"{self.name}: {self.title}; {self.what}\n  {self.source} ({self.licence})"
 
 
-def materials():
+def list_materials():
     """The materials that come with brdfkit, by name.
 
-    >>> print(materials()["dusty_gold"].title)
+    >>> print(list_materials()["dusty_gold"].title)
     Dusty gold
     """
-    return _shipped(index.MEASURED)
+    return _list_shipped(MEASURED)
 
 
-def environments():
+def list_environments():
     """The environment maps that come with brdfkit, by name.
 
-    >>> print(environments()["studio"].file)
+    >>> print(list_environments()["studio"].file)
     studio.exr
     """
-    return _shipped(index.ENVIRONMENTS)
+    return _list_shipped(ENVIRONMENTS)
 
 
-def path(name):
+def find_material_file(name):
     """The path of a shipped material's file, after its checksum was verified.
 
     Raises `BrdfkitError` for an unknown name, and for a file that is missing or was changed.
 
-    >>> path("dusty_gold").name
+    >>> find_material_file("dusty_gold").name
     'dusty_gold.binary.xz'
     """
-    return _verified_path("material", name, materials(), index.folder(index.MEASURED))
+    return _verified_path("material", name, list_materials(), find_folder(MEASURED))
 
 
-def environment_path(name):
+def find_environment_file(name):
     """The same of a shipped environment map.
 
-    >>> environment_path("studio").name
+    >>> find_environment_file("studio").name
     'studio.exr'
     """
-    folder = index.folder(index.ENVIRONMENTS)
-    return _verified_path("environment map", name, environments(), folder)
+    folder = find_folder(ENVIRONMENTS)
+    return _verified_path("environment map", name, list_environments(), folder)
 
 
-def _shipped(kind):
-    entries = index.entries(kind).items()
+def _list_shipped(kind):
+    entries = read_index(kind).items()
     return {name: Shipped(name, **entry) for name, entry in entries if name != "collections"}
 
 

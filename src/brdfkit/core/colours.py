@@ -46,14 +46,14 @@ def from_srgb(values):
     return np.where(y <= 0.04045, y / 12.92, ((y + 0.055) / 1.055) ** 2.4)
 
 
-def colour_science():
+def import_colour():
     """The package `colour`, imported without its change of how NumPy prints arrays."""
     with np.printoptions():
         import colour
     return colour
 
 
-def rgb_of_wavelengths(wavelengths, name):
+def compute_rgb_weights(wavelengths, name):
     """Weights (n, 3) of the reflectance at each of the `wavelengths` [nm] in linear R, G, B.
 
     Reflectance is linear between the wavelengths and constant beyond them; every column sums to 1.
@@ -66,7 +66,7 @@ def rgb_of_wavelengths(wavelengths, name):
             f"nm, do not span {NEEDED[0]} to {NEEDED[1]} nm and give no colour; "
             "choose one channel with `mix_channels`."
         )
-    colour = colour_science()
+    colour = import_colour()
     observer = colour.MSDS_CMFS[OBSERVER]
     light = np.interp(
         observer.wavelengths,

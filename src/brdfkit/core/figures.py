@@ -4,6 +4,7 @@ import io
 from contextlib import contextmanager
 
 import numpy as np
+from matplotlib.figure import Figure
 
 # A grey of a contrast of 4 to white, and of 4.5 to the ground of dark notebooks
 INK = 0.49
@@ -17,19 +18,29 @@ COLOURS = {
 }  # of what is drawn, by the names of matplotlib's classes
 
 
+class Plot(Figure):
+    """A matplotlib `Figure` that is not pyplot's: it has no window and no global state.
+
+    Notebooks show it even if pyplot has not told them how.
+    """
+
+    def _repr_png_(self):
+        return to_png(self)
+
+
 def to_png(figure, dpi=100):
     """The bytes of a matplotlib `Figure` as a PNG that is legible on white and on black.
 
     Its ground is transparent; what is black or grey is a middle grey. The figure stays as it is.
     """
     png = io.BytesIO()
-    with _on_any_ground(figure):
+    with _with_visible_greys(figure):
         figure.savefig(png, format="png", dpi=dpi, facecolor="none")
     return png.getvalue()
 
 
 @contextmanager
-def _on_any_ground(figure):
+def _with_visible_greys(figure):
     """Within the block the greys of a `figure` are legible on any ground."""
     figure.draw_without_rendering()  # which makes the labels of the ticks
     before = [
@@ -40,14 +51,14 @@ def _on_any_ground(figure):
     ]
     try:
         for artist, name, colour in before:
-            getattr(artist, f"set_{name}")(_on_any(colour))
+            getattr(artist, f"set_{name}")(_to_visible(colour))
         yield
     finally:
         for artist, name, colour in before:
             getattr(artist, f"set_{name}")(colour)
 
 
-def _on_any(colours):
+def _to_visible(colours):
     """`colours` of matplotlib, black and greys as a middle grey, the fainter the lighter they were;
     white is transparent."""
     from matplotlib.colors import to_rgba_array

@@ -30,7 +30,7 @@ def write_safely(path):
     ...     beside.write_text("{}")
     """
     target = require_writable(path)
-    with _in_utf8(target.parent) as folder:
+    with _utf8_path(target.parent) as folder:
         beside = folder / f".brdfkit-{os.urandom(4).hex()}{target.suffix}"
         try:
             beside.touch(exist_ok=False)
@@ -40,7 +40,8 @@ def write_safely(path):
                 after(target)
         except OSError as error:
             raise BrdfkitError(
-                f"{path}: cannot be written ({_reason(error)}); choose another folder or make room."
+                f"{path}: cannot be written ({_describe(error)}); choose another folder or make "
+                "room."
             ) from error
         finally:
             with suppress(OSError):
@@ -48,7 +49,7 @@ def write_safely(path):
 
 
 @contextmanager
-def _in_utf8(folder):
+def _utf8_path(folder):
     """The path of a folder in UTF-8, as native libraries take it: where it is not, of a link."""
     if is_utf8(folder):
         yield folder
@@ -83,7 +84,7 @@ def make_folder(path):
             raise PermissionError("it is write-protected")
     except OSError as error:
         raise BrdfkitError(
-            f"{path}: cannot be made a folder for results ({_reason(error)}); name another."
+            f"{path}: cannot be made a folder for results ({_describe(error)}); name another."
         ) from error
 
 
@@ -110,7 +111,7 @@ def require_writable(path):
             before(target)
     except OSError as error:
         raise BrdfkitError(
-            f"{path}: cannot be written ({_reason(error)}); choose another folder or name."
+            f"{path}: cannot be written ({_describe(error)}); choose another folder or name."
         ) from error
     except UnicodeEncodeError:
         raise BrdfkitError(
@@ -134,14 +135,14 @@ def watch_writing(before, after):
         _watchers.reset(token)
 
 
-def contents(path):
+def read_bytes(path):
     """The bytes of a file, decompressed where it is gzip or xz by its name or its first bytes.
 
     Raises `BrdfkitError` when it is missing, no regular file, unreadable, empty, damaged, or larger
     than `LIMIT` bytes. A plain file that is too large is not read at all; decompression stops at
     the limit.
 
-    >>> contents("gold.binary.xz")[:4]  # doctest: +SKIP
+    >>> read_bytes("gold.binary.xz")[:4]  # doctest: +SKIP
     b'Z\\x00\\x00\\x00'
     """
     path = require_file(path)
@@ -171,7 +172,7 @@ def _reading(path):
         yield
     except OSError as error:
         raise BrdfkitError(
-            f"{path}: cannot be read ({_reason(error)}); check its permissions."
+            f"{path}: cannot be read ({_describe(error)}); check its permissions."
         ) from error
 
 
@@ -202,7 +203,7 @@ def _read(path):
         if first and (path.suffix.lower() == suffix or first.startswith(magic)):
             return _decompress(path, suffix)
     if path.stat().st_size > LIMIT:
-        raise _too_large(path)
+        raise _size_error(path)
     return path.read_bytes()
 
 
@@ -218,21 +219,21 @@ def _decompress(path, suffix):
             while chunk := stream.read(CHUNK):
                 data += chunk
                 if len(data) > LIMIT:
-                    raise _too_large(path)
+                    raise _size_error(path)
     except (gzip.BadGzipFile, zlib.error, lzma.LZMAError, EOFError) as error:
         raise BrdfkitError(
-            f"{path}: the compressed data are damaged or cut short ({_reason(error)}); "
+            f"{path}: the compressed data are damaged or cut short ({_describe(error)}); "
             "fetch the file again."
         ) from error
     return bytes(data)
 
 
-def _too_large(path):
+def _size_error(path):
     return BrdfkitError(
         f"{path}: holds more than {LIMIT:,} bytes, which no BRDF file needs; "
         "check that it is the right file."
     )
 
 
-def _reason(error):
+def _describe(error):
     return getattr(error, "strerror", None) or str(error).strip().rstrip(".") or "unknown cause"

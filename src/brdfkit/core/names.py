@@ -29,33 +29,33 @@ def format_percent(percent):
     return f"{percent:.2g} %" if percent < 10 else f"{percent:.0f} %"
 
 
-def printable(text, keep=""):
+def to_printable(text, keep=""):
     """`text` without control characters, by which a file could steer the terminal.
 
     The control characters in `keep` stay. Bytes of a file's name that are no UTF-8, which Python
     has as lone surrogates, become question marks.
 
-    >>> printable("gold\\x1b[2J")
+    >>> to_printable("gold\\x1b[2J")
     'gold[2J'
     """
     shown = "".join(c for c in str(text) if c in keep or c not in CONTROL)
     return shown.encode(errors="replace").decode()
 
 
-def listed(words):
+def join_words(words):
     """Words as a list in a sentence.
 
-    >>> listed(["log", "cbrt", "plain"])
+    >>> join_words(["log", "cbrt", "plain"])
     'log, cbrt and plain'
     """
     *first, last = words
     return f"{', '.join(first)} and {last}" if first else last
 
 
-def slug(name):
+def to_file_stem(name):
     """A file name without suffix for a material's `name`: not empty, not too long, in no folder.
 
-    >>> slug("../gold: matte")
+    >>> to_file_stem("../gold: matte")
     '-gold- matte'
     """
     fit = "".join("-" if c in RESERVED or not c.isprintable() else c for c in name)
@@ -63,10 +63,10 @@ def slug(name):
     return short.rstrip(". ") or "material"
 
 
-def fit_file(folder, label):
+def to_fit_path(folder, label):
     """The path in `folder` of a saved fit; no colons, which some file systems refuse.
 
-    >>> fit_file("copper", "koenderink:order=8").name
+    >>> to_fit_path("copper", "koenderink:order=8").name
     'koenderink-order=8.json'
     """
     return Path(folder) / f"{label.replace(':', '-')}.json"

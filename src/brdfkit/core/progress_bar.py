@@ -48,7 +48,7 @@ def progress(what: str) -> Iterator[Progress]:
         raise BrdfkitError(
             f"progress: what = {what!r} should be text, as in: with progress('fit') as bar."
         )
-    with (_notebook if _in_notebook() else _terminal)(what) as bar:
+    with (_show_in_notebook if _in_notebook() else _show_in_terminal)(what) as bar:
         yield bar
 
 
@@ -59,7 +59,7 @@ def _in_notebook():
 
 
 @contextmanager
-def _notebook(what):
+def _show_in_notebook(what):
     from IPython.display import HTML, display
 
     handle, drawn = None, monotonic() + PATIENCE - INTERVAL
@@ -86,7 +86,7 @@ def _notebook(what):
 
 
 @contextmanager
-def _terminal(what):
+def _show_in_terminal(what):
     """The bar appears from a thread of its own: also where its function is not called yet."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn

@@ -31,22 +31,22 @@ class Reference:
 
 
 @cache
-def references():
+def read_references():
     """All `Reference`s by key, in alphabetical order."""
     entries = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
     keys = sorted(entries, key=lambda key: normalize("NFKD", key))  # Ö beside O
     return {key: Reference(key, **entries[key]) for key in keys}
 
 
-def citations(text):
+def find_citations(text):
     """The keys of the works that a text cites, each once, in their order.
 
-    >>> citations("Lambert's law [Lambert 1760]; [Kurt 2007, eq. 3.1].")
+    >>> find_citations("Lambert's law [Lambert 1760]; [Kurt 2007, eq. 3.1].")
     ['Lambert 1760', 'Kurt 2007']
     """
     return list(dict.fromkeys(" ".join(key.split()) for key in CITATION.findall(text)))
 
 
-def works(text):
+def find_cited_works(text):
     """The `Reference`s that a text cites; keys that are not in `references.toml` are left out."""
-    return [references()[key] for key in citations(text) if key in references()]
+    return [read_references()[key] for key in find_citations(text) if key in read_references()]

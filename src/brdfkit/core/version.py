@@ -8,7 +8,7 @@ LIBRARIES = "mitsuba", "drjit", "numpy", "scipy"
 
 
 @cache
-def versions():
+def find_versions():
     """The versions of brdfkit and of the libraries on which its numbers depend, by name."""
     from importlib import metadata  # only here: `--help` should be instant
 

@@ -25,7 +25,7 @@ def evaluate(distance: Callable[[JitVector], JitFloat], points: ArrayLike) -> Fl
         raise BrdfkitError(f"points have the shape {points.shape}; it should be (n, 3).")
     if not len(points):
         return np.zeros(0)
-    values = np.asarray(distance(double_precision.vector(points)), float)
+    values = np.asarray(distance(double_precision.to_vector(points)), float)
     return np.broadcast_to(values, len(points)).copy()
 
 

@@ -16,7 +16,7 @@ from brdfkit.core.errors import no_such
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.progress_bar import Progress
-from brdfkit.core.version import versions
+from brdfkit.core.version import find_versions
 from brdfkit.fitting.light_of_data import light_of_data
 from brdfkit.fitting.notes import list_notes
 from brdfkit.fitting.settings import require_material_first, require_plain, to_settings
@@ -185,7 +185,7 @@ def fit(
                 "constraints": list(map(to_plain, how["constraints"])),
             },
             checksum=data.checksum,
-            versions=dict(versions()),
+            versions=dict(find_versions()),
         )
 
     solve = regress if samples.errors is None else regress_noisy

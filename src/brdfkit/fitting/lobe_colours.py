@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.core.geometry.directions import cos_theta_h
-from brdfkit.core.names import listed
+from brdfkit.core.names import join_words
 from brdfkit.materials.measured import Measured
 from brdfkit.model import Model
 from brdfkit.model.samples import Samples
@@ -45,7 +45,7 @@ def note_on_lobe_colours(
     if highlight.min() < 2 * PURE * highlight.max():
         return []
     return [
-        f"{listed(names)} have pure colours that the highlight has not: only the sum of these "
+        f"{join_words(names)} have pure colours that the highlight has not: only the sum of these "
         "lobes means something; fit one lobe fewer to read it"
     ]
 

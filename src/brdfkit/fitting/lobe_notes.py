@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.core.names import listed
+from brdfkit.core.names import join_words
 from brdfkit.fitting.lobe_colours import note_on_lobe_colours, note_on_rim
 from brdfkit.fitting.lobe_widths import half_widths, lobes_of, notes_on_widths, width_power
 from brdfkit.materials.measured import Measured
@@ -135,7 +135,7 @@ def _list_bounds(
             by_meaning.setdefault(meaning, []).append(name)
     notes = []
     for meaning, names in by_meaning.items():
-        values = listed([f"{name} = {getattr(fitted, name):.3g}" for name in names])
+        values = join_words([f"{name} = {getattr(fitted, name):.3g}" for name in names])
         what = "its bound" if len(names) == 1 else "their bounds"
         notes.append(f"{values} ended on {what}: {meaning}")
     return notes

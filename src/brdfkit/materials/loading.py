@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from brdfkit.core import catalogue, index
+from brdfkit.core import catalogue
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.files import contents, write_safely
+from brdfkit.core.files import read_bytes, write_safely
 from brdfkit.core.locate import find_file_or_name, split_part
 from brdfkit.materials import formats
 from brdfkit.materials.collections import public
@@ -74,15 +74,15 @@ def locate(path: str | Path) -> tuple[Path, str | None]:
         raise BrdfkitError("The path is empty; name a file, or a material that brdfkit knows.")
     file, sample = split_part(path)
     collection, slash, _ = file.as_posix().partition("/")
-    if slash and collection in index.entries()["collections"] and not os.path.isfile(file):
+    if slash and collection in catalogue.read_index()["collections"] and not os.path.isfile(file):
         return public.path(file.as_posix()), sample
-    place = find_file_or_name(file, "material", catalogue.materials())
-    return (catalogue.path(place) if isinstance(place, str) else place), sample
+    place = find_file_or_name(file, "material", catalogue.list_materials())
+    return (catalogue.find_material_file(place) if isinstance(place, str) else place), sample
 
 
 def read(path: Path, sample: str | None = None) -> Measured | Fit:
     """What the file at `path` holds; `sample`: which one, of a file that holds many."""
-    return formats.read(formats.Source(path, sample, contents(path)))
+    return formats.read(formats.Source(path, sample, read_bytes(path)))
 
 
 def save(material: Measured | Fit | Model, path: str | Path) -> None:
@@ -123,7 +123,7 @@ def save_and_read(obj: Measured, path: str | Path) -> Measured:
     with write_safely(path) as beside:
         formats.write(obj, Path(path), beside)
         try:
-            return formats.read(formats.Source(Path(path), None, contents(beside)))
+            return formats.read(formats.Source(Path(path), None, read_bytes(beside)))
         except BrdfkitError as error:
             reason = str(error).removeprefix(f"{beside}: ").removeprefix(f"{path}: ")
             raise BrdfkitError(

@@ -103,7 +103,7 @@ def _find(name: str) -> Material:
     except BrdfkitError:
         if not looks_like_name(name):
             raise
-    raise no_such("file, model or material", name, [*labels.models(), *catalogue.materials()])
+    raise no_such("file, model or material", name, [*labels.models(), *catalogue.list_materials()])
 
 
 def _describe(thing: object) -> str:

@@ -7,7 +7,7 @@ about 0 averages out; a mean below 0 becomes 0, as in `Measured.eval`.
 
 import numpy as np
 
-from brdfkit.core.colours import LUMINANCE, colour_science
+from brdfkit.core.colours import LUMINANCE, import_colour
 from brdfkit.mitsuba_bridge.arrays import Nodes, Rows, bracket
 
 
@@ -81,7 +81,7 @@ class SmoothSpectrum:
     """
 
     def __init__(self):
-        basis = colour_science().recovery.MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019
+        basis = import_colour().recovery.MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019
         self.first, self.step = float(basis.shape.start), float(basis.shape.interval)
         self.count, self.basis = len(basis.values), Rows(basis.values)
 

@@ -69,7 +69,7 @@ class Declaration:
         """
         model, name = cls.unconfigured(), cls.type_name()
         if not cls.in_plugin_file() and _find_source(name) is not model:
-            plugin_files.add(plugin_files.MODELS, {name: model})
+            plugin_files.add_plugins(plugin_files.MODELS, {name: model})
 
     @classmethod
     def type_name(cls):
@@ -133,7 +133,7 @@ class Declaration:
 
 def _find_source(name):
     """The file or class of the model of that name, None where there is none."""
-    return plugin_files.sources(plugin_files.MODELS).get(name)
+    return plugin_files.find_plugins(plugin_files.MODELS).get(name)
 
 
 @cache

@@ -59,8 +59,8 @@ def lobe_values(model, wi, wo):
     The first holds the values of each `Lobe.eval`, the second those of each `Lobe.quadratic`, 0 for
     a lobe without.
     """
-    terms = model.bind(double_precision.shapes(model)).terms()
-    wi, wo = double_precision.vector(wi), double_precision.vector(wo)
+    terms = model.bind(double_precision.to_shape_scalars(model)).terms()
+    wi, wo = double_precision.to_vector(wi), double_precision.to_vector(wo)
     plain = [lobe.eval(wi, wo) for _, lobe in terms]
     squared = [lobe.quadratic(wi, wo) if lobe.quadratic else 0.0 for _, lobe in terms]
     dr.eval(plain, squared)  # in one kernel: one for each lobe takes six times as long

@@ -12,7 +12,7 @@ from typing import Any
 
 from brdfkit.core.discovery import plugin_files
 from brdfkit.core.discovery.plugin_files import MODELS
-from brdfkit.core.discovery.plugin_pages import page
+from brdfkit.core.discovery.plugin_pages import read_page
 from brdfkit.core.documents import Cell, Document, Shown, Table
 from brdfkit.core.documents.parts import STRONG
 from brdfkit.core.errors import BrdfkitError, no_such
@@ -27,7 +27,7 @@ class Models(Shown, dict[str, type[Model]]):
 
     def document(self) -> Document:
         """The models by name, with one sentence on each."""
-        rows = tuple((Cell(name, kind=STRONG), page(m).sentence) for name, m in self.items())
+        rows = tuple((Cell(name, kind=STRONG), read_page(m).sentence) for name, m in self.items())
         return Document(f"{len(self)} BRDF models", (Table(rows),))
 
 
@@ -45,7 +45,7 @@ def models() -> Models:
     >>> models()["ward"](alpha_u=0.1)
     ward(diffuse_reflectance=0.4, specular_reflectance=0.2, alpha_u=0.1, alpha_v=0.1)
     """
-    found = {name: model_in(source) for name, source in plugin_files.sources(MODELS).items()}
+    found = {name: model_in(source) for name, source in plugin_files.find_plugins(MODELS).items()}
     return Models((name, model) for name, model in found.items() if model is not None)
 
 
@@ -128,15 +128,15 @@ def load_models(path: str | Path) -> dict[str, type[Model]]:
     >>> load_models("my_models/")    # doctest: +SKIP
     {'velvet': <class 'brdfkit.user_plugins.velvet.Velvet'>}
     """
-    files = plugin_files.files_in(path)
+    files = plugin_files.find_python_files(path)
     loaded: dict[str, type[Model]] = {}
     for file in files:
-        plugin_files.require_free(file.stem, file)
+        plugin_files.require_free_name(file.stem, file)
         defined = model_in(file)
         if defined is None:
             raise BrdfkitError(f"{file} defines no class derived from brdfkit.Model.")
         loaded[file.stem] = defined
-    plugin_files.add(MODELS, {file.stem: file for file in files})
+    plugin_files.add_plugins(MODELS, {file.stem: file for file in files})
     return loaded
 
 
@@ -147,7 +147,7 @@ def model_in(source: Path | type | None) -> type[Model] | None:
     """
     if isinstance(source, type):
         return source
-    module = plugin_files.module(source)
+    module = plugin_files.import_plugin(source)
     own = [
         value
         for value in vars(module).values()
@@ -162,7 +162,7 @@ def model_in(source: Path | type | None) -> type[Model] | None:
 
 def _find_model(name: str) -> type[Model]:
     """The model of that name; raises `BrdfkitError`, which proposes the nearest."""
-    source = plugin_files.sources(MODELS).get(name)
+    source = plugin_files.find_plugins(MODELS).get(name)
     found = source and model_in(source)
     if not found:
         raise no_such("model", name, models())

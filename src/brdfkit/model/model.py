@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from brdfkit.core.discovery.plugin_pages import page
+from brdfkit.core.discovery.plugin_pages import read_page
 from brdfkit.core.documents import Document, Folded, Shown
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.thumbnails import thumbnails
@@ -200,7 +200,7 @@ class Model(Shown, Declaration):
 
     def document(self) -> Document:
         """What the model tells of itself: its look, its values and its page."""
-        shown = page(type(self))
+        shown = read_page(type(self))
         return Document(
             f"{self.label()}: {shown.sentence}",
             (

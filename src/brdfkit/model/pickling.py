@@ -29,7 +29,7 @@ class UsersClass:
         Warns where the file has changed since, raises `BrdfkitError` where it is missing.
         """
         path = Path(self.path)
-        file = plugin_files.sources(plugin_files.MODELS).get(path.stem, path)
+        file = plugin_files.find_plugins(plugin_files.MODELS).get(path.stem, path)
         if not file.is_file():
             raise BrdfkitError(
                 f"{path}: the file of the model {path.stem!r} is missing; load it from where it "
@@ -41,8 +41,8 @@ class UsersClass:
                 "mean something else now.",
                 stacklevel=4,
             )
-        plugin_files.add(plugin_files.MODELS, {path.stem: file})
-        return getattr(plugin_files.module(file), self.name)
+        plugin_files.add_plugins(plugin_files.MODELS, {path.stem: file})
+        return getattr(plugin_files.import_plugin(file), self.name)
 
 
 def reduce_model(model):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from brdfkit.core.colours import rgb_of_wavelengths
+from brdfkit.core.colours import compute_rgb_weights
 from brdfkit.core.errors import BrdfkitError
 
 CHANNELS = 1, 3  # how many a weight may have without wavelengths: achromatic, linear sRGB
@@ -50,7 +50,7 @@ def rgb_values(model):
 
     A colour outside sRGB is clipped to the bounds of its weight.
     """
-    mix, values = rgb_of_wavelengths(model.wavelengths, model.name), dict(model.free_values)
+    mix, values = compute_rgb_weights(model.wavelengths, model.name), dict(model.free_values)
     for name, value in values.items():
         if isinstance(value, tuple) and len(value) > 1:
             low, high = model.parameters[name].bounds

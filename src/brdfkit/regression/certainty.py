@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from brdfkit.core.names import listed
+from brdfkit.core.names import join_words
 from brdfkit.regression.problem.parameter_space import join, of_channel
 from brdfkit.regression.problem.subset import draw_part
 
@@ -241,7 +241,7 @@ def _describe_trade(names, share):
         what = "their product" if share < 0 else "their ratio"
     if len(names) > 4:
         names = [*names[:3], f"{len(names) - 3} other parameters"]
-    return f"{listed(names)} trade off: only {what} is determined"
+    return f"{join_words(names)} trade off: only {what} is determined"
 
 
 def _plain(name):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.core.geometry.quadrature import directional_albedo, ring_rule
+from brdfkit.core.geometry.quadrature import directional_albedo, make_ring_rule
 from brdfkit.images.ball import Pixels
 
 # The factor between the albedos of a fit and its data beyond which the fit is searched once more,
@@ -34,7 +34,7 @@ def albedo_pixels(theta_i: tuple[float, ...], azimuths: tuple[float, ...] = ONE)
     """The quadrature by which `Pixels.look` gives the albedos (n, channels) of a BRDF for light
     from angles `theta_i` [degrees] (n,), the mean over `azimuths` [rad]; without values."""
     rules = [
-        [(wi, *ring_rule(wi, POINTS)) for wi in from_angles(np.radians(theta), azimuths)]
+        [(wi, *make_ring_rule(wi, POINTS)) for wi in from_angles(np.radians(theta), azimuths)]
         for theta in theta_i
     ]
     pairs = max(sum(len(weight) for *_, weight in rule) for rule in rules)

@@ -50,13 +50,13 @@ def find_shares(samples, loss, values, error):
 
 def _variance(samples, loss, model, measured, sigma):
     """The variances (n,) of a channel's differences, at the `model`'s values (n,)."""
-    cos_i, cos_o = (double_precision.array(w[:, 2]) for w in (samples.wi, samples.wo))
-    measured = double_precision.array(measured)
+    cos_i, cos_o = (double_precision.to_array(w[:, 2]) for w in (samples.wi, samples.wo))
+    measured = double_precision.to_array(measured)
 
     def difference(value):
         return loss.difference(value, measured, cos_i, cos_o)
 
-    _, slope = differentiate(difference, double_precision.array(model))
+    _, slope = differentiate(difference, double_precision.to_array(model))
     # No spread was seen, as where no ray came: σ is not 0, but as the least known
     known = sigma[sigma > 0]
     return (np.array(slope) * np.maximum(sigma, known.min() if len(known) else 0)) ** 2

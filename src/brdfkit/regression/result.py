@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from brdfkit.core.discovery.plugin_pages import page
+from brdfkit.core.discovery.plugin_pages import read_page
 from brdfkit.core.documents import Document, Folded, Paragraph, Shown
 from brdfkit.core.documents.parts import BAD, SOFT
 from brdfkit.core.errors import BrdfkitError
@@ -244,7 +244,7 @@ class Fit(Shown):
                 *(Paragraph(note, BAD if note in self.warnings else "") for note in self.notes),
                 *(Paragraph(note) for note in old),
                 Paragraph(f"{self.message}; {self._effort()}", kind=SOFT),
-                Folded(f"the page of {self.model.type_name()}", str(page(type(self.model)))),
+                Folded(f"the page of {self.model.type_name()}", str(read_page(type(self.model)))),
             ),
         )
 

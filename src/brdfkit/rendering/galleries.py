@@ -8,9 +8,8 @@ from brdfkit.core.colours import to_srgb
 from brdfkit.core.documents import Document, Paragraph, Picture, Shown, Table
 from brdfkit.core.documents.parts import SOFT
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.figures import to_png
 from brdfkit.core.files import write_safely
-from brdfkit.core.names import make_unique, printable
+from brdfkit.core.names import make_unique, to_printable
 from brdfkit.rendering.render_materials import SceneLike, render
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scene_input.arguments import Renderable, as_list, identify
@@ -73,6 +72,8 @@ class Gallery(Shown):
 
     def _draw(self):
         """The grid as a PNG for notebooks."""
+        from brdfkit.core.figures import to_png  # only here: it imports matplotlib
+
         return to_png(draw_grid(self.rows), DPI)
 
 
@@ -160,9 +161,9 @@ def draw_grid(rows):
             axes.set_xlabel(f"{psnr[name]:.1f} dB" if name in psnr else "", fontsize=8, labelpad=3)
             plain = {"fontsize": 9, "parse_math": False}  # names may have dollar signs
             if i == 0:
-                axes.set_title(printable(name) if j else "reference", pad=4, **plain)
+                axes.set_title(to_printable(name) if j else "reference", pad=4, **plain)
             if j == 0:
-                axes.set_ylabel(printable(material), labelpad=4, **plain)
+                axes.set_ylabel(to_printable(material), labelpad=4, **plain)
     return figure
 
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.json_values import plain
-from brdfkit.core.names import printable
+from brdfkit.core.json_values import to_json
+from brdfkit.core.names import to_printable
 from brdfkit.core.version import __version__
 from brdfkit.images.errors.colour_difference import ciede2000
 
@@ -49,12 +49,12 @@ def write_exr(rendering, path):
             "spp": rendering.spp,
             "seed": rendering.seed,
             "brdfkit": __version__,
-            "parameters": json.dumps(plain(rendering.parameters.get(name, {}))),
+            "parameters": json.dumps(to_json(rendering.parameters.get(name, {}))),
         }
         if isfinite(rendering.noise_floor):
             header["noise_floor"] = rendering.noise_floor
         channels = {c: np.ascontiguousarray(picture[..., i]) for i, c in enumerate("RGB")}
-        parts.append(OpenEXR.Part(header, channels, printable(title)))
+        parts.append(OpenEXR.Part(header, channels, to_printable(title)))
     try:
         OpenEXR.File(parts).write(str(path))
     except RuntimeError as error:  # a full disk, for instance
@@ -143,7 +143,7 @@ def draw_caption(draw, corner, name, below, width, size, inks):
     """Draw the name, shortened in its middle where it is too long, and the line `below` it."""
     x, y = corner
     bold = _font(size, bold=True)
-    shown = name = printable(name)  # Pillow cannot measure several lines
+    shown = name = to_printable(name)  # Pillow cannot measure several lines
     keep = len(name)
     while bold.getlength(shown) > width and keep > 2:
         keep -= 1

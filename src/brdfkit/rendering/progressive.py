@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.core.jit.loops import first_error
+from brdfkit.core.jit.loops import raise_first_cause
 from brdfkit.images.errors.noise import Accumulated
 
 
@@ -54,7 +54,7 @@ class Progressive:
         seed = np.random.SeedSequence(self.seed).generate_state(number + 1)[number]
         scene = self.scenes[name]
         # not mi.render: it turns Ctrl-C into a RuntimeError. drjit.freeze makes it no faster
-        with first_error():
+        with raise_first_cause():
             return rgb(scene.integrator().render(scene, seed=mi.UInt32(int(seed)), spp=spp))
 
     def pictures(self) -> dict[str, NDArray[np.float32]]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.names import make_unique
-from brdfkit.core.pages.images import halved, jpeg
+from brdfkit.core.pages.images import encode_jpeg, halve
 from brdfkit.core.version import __version__
 from brdfkit.fitting.ranking.result import COLUMNS
 from brdfkit.materials.auditing import audit
@@ -92,7 +92,7 @@ def describe(material, fits, rendering, file, path, scene, envmap, ranking):
         "command": command,
         "untold": untold,
         "names": names,
-        "stills": [jpeg(picture) for picture in pictures],
+        "stills": [encode_jpeg(picture) for picture in pictures],
         "size": size,
         "shown": origin.scene_in_words(scene, envmap),
         "captions": [_caption(errors, place) for place in range(len(names))],
@@ -124,7 +124,7 @@ def describe(material, fits, rendering, file, path, scene, envmap, ranking):
         [*errors.values()],
         found.findings(),
         [*chain(*warnings)],
-        [jpeg(halved(picture)) for picture in pictures[:2]],
+        [encode_jpeg(halve(picture)) for picture in pictures[:2]],
         rendering.spp,
         rendering.asked,
     )

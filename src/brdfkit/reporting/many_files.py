@@ -5,7 +5,7 @@ from pathlib import Path
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import make_folder, require_writable
-from brdfkit.core.names import make_unique, printable, slug
+from brdfkit.core.names import make_unique, to_file_stem, to_printable
 from brdfkit.core.pages import page
 from brdfkit.core.version import __version__
 from brdfkit.fitting.compare import format_error
@@ -76,7 +76,9 @@ def report_many(files, things, folder, settings, progress=None, **pictures):
                 progress(number, len(files))
             try:
                 material = to_measured(file)
-                name = make_unique(slug(material.name), {*entries, PAGE.removesuffix(".html")})
+                name = make_unique(
+                    to_file_stem(material.name), {*entries, PAGE.removesuffix(".html")}
+                )
                 path = folder / f"{name}.html"
                 require_writable(path)
                 fits, failed = fit_each(things, material, settings)
@@ -102,7 +104,7 @@ def report_many(files, things, folder, settings, progress=None, **pictures):
 def _write_page(found):
     """Write the page of a `Reports`."""
     columns, rows = found.table()
-    page.write(
+    page.write_page(
         "gallery.html",
         found.folder / PAGE,
         entries=[
@@ -110,6 +112,6 @@ def _write_page(found):
             for entry, row in zip(found.entries, rows, strict=True)
         ],
         columns=columns,
-        problems=[printable(problem) for problem in found.problems],
+        problems=[to_printable(problem) for problem in found.problems],
         version=__version__,
     )

@@ -4,7 +4,7 @@ import shlex
 from pathlib import Path
 
 from brdfkit.core.files import sha256
-from brdfkit.core.version import versions
+from brdfkit.core.version import find_versions
 from brdfkit.fitting.fit import SETTINGS
 from brdfkit.materials.loading import locate
 from brdfkit.regression.solvers import AlbedoAtMost
@@ -20,7 +20,7 @@ def facts(material, file, spp, size, seed, scene, envmap):
     found["SHA-256 of its data"] = material.checksum
     how = f"{size}×{size} pixels, {spp} samples per pixel, seed {seed}"
     found["pictures"] = f"{scene_in_words(scene, envmap)}; {how}"
-    found["made with"] = ", ".join(f"{name} {number}" for name, number in versions().items())
+    found["made with"] = ", ".join(f"{name} {number}" for name, number in find_versions().items())
     return found
 
 

@@ -5,7 +5,7 @@ import json
 import numpy as np
 
 from brdfkit.core.colours import RGB
-from brdfkit.core.json_values import plain, rounded
+from brdfkit.core.json_values import round_numbers, to_json
 from brdfkit.model.value_table import MOST
 
 DIGITS = 9  # of numbers in JSON: enough to build the model, and the same on every machine
@@ -18,7 +18,7 @@ def describe(fit, told=()):
         "rows": [_row(fit, name) for name in fit.values],
         "remarks": [*(note for note in fit.notes if note not in told), fit.message],
         "warnings": fit.warnings,
-        "json": json.dumps(rounded(_record(fit), DIGITS), indent=2, ensure_ascii=False),
+        "json": json.dumps(round_numbers(_record(fit), DIGITS), indent=2, ensure_ascii=False),
         "samples": f"{fit.samples:,}",
         "evaluations": fit.evaluations,
         "loss": f"{fit.loss_label} {fit.loss:.5g}",
@@ -59,7 +59,7 @@ def _short(value, digits):
 
 def _record(fit):
     """The fit for JSON; without its time, which is another one each time."""
-    return plain(
+    return to_json(
         {
             "model": fit.model.label(),
             "material": fit.data,

@@ -7,7 +7,7 @@ from typing import Any
 from brdfkit.core.arguments import to_dictionary
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import require_writable
-from brdfkit.core.names import slug
+from brdfkit.core.names import to_file_stem
 from brdfkit.core.pages import page
 from brdfkit.fitting.fit import check_settings
 from brdfkit.fitting.ranking import Ranking
@@ -109,13 +109,13 @@ def write_report(
     """
     rendering = render_pictures(material, fits, scene=scene, envmap=envmap, **pictures)
     contents = describe(material, fits, rendering, file, path, scene, envmap, ranking)
-    page.write("report.html", path, fit_class=fit_class, **contents.said)
+    page.write_page("report.html", path, fit_class=fit_class, **contents.said)
     return contents
 
 
 def page_of(material: Measured) -> str:
     """The file of a material's report, where none is named."""
-    return f"{slug(material.name)}-report.html"
+    return f"{to_file_stem(material.name)}-report.html"
 
 
 def require_page(path: str | Path) -> Path:

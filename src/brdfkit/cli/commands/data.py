@@ -21,7 +21,7 @@ def data(context, console):
 
     Downloads are kept in your cache folder. Only `brdfkit data get` downloads anything.
     """
-    from brdfkit.core.catalogue import collections as map_collections
+    from brdfkit.core.catalogue import list_map_collections as map_collections
     from brdfkit.materials.collections.public import collections
 
     if context.invoked_subcommand is None:
@@ -36,7 +36,7 @@ def data_list(collection, console):
     from brdfkit.core import catalogue
     from brdfkit.materials.collections import public
 
-    maps = catalogue.collections().get(collection)
+    maps = catalogue.list_map_collections().get(collection)
     if maps is None:
         _print_collection(public.collection(collection), console)
     elif console.as_json:
@@ -83,11 +83,11 @@ def _print_all(collections, map_collections, console):
 
 def _print_collections(collections, console):
     """Print the materials that come with brdfkit, and the public collections."""
-    from brdfkit.core.catalogue import materials
+    from brdfkit.core.catalogue import list_materials
 
     columns = "collection", "what it is", ">here", ">to download", "licence"
-    licence = next(iter(materials().values())).licence
-    rows = [("brdfkit's own", ", ".join(materials()), str(len(materials())), "", licence)]
+    licence = next(iter(list_materials().values())).licence
+    rows = [("brdfkit's own", ", ".join(list_materials()), str(len(list_materials())), "", licence)]
     for name, c in collections.items():
         here, download = len(c.files_on_disk()), sum(bool(f.url) for f in c.files.values())
         rows.append((name, c.title, str(here), str(download or "by hand"), c.licence))
@@ -96,10 +96,10 @@ def _print_collections(collections, console):
 
 def _print_map_collections(collections, console):
     """Print the environment maps that come with brdfkit, and where there are others."""
-    from brdfkit.core.catalogue import environments
+    from brdfkit.core.catalogue import list_environments
 
-    licence = next(iter(environments().values())).licence
-    rows = [("brdfkit's own", ", ".join(environments()), "--envmap NAME", licence)]
+    licence = next(iter(list_environments().values())).licence
+    rows = [("brdfkit's own", ", ".join(list_environments()), "--envmap NAME", licence)]
     rows += [(name, c.title, c.page, c.licence) for name, c in collections.items()]
     console.table(("environment maps", "what they are", "where", "licence"), rows)
 

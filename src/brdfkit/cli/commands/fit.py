@@ -81,7 +81,7 @@ def fit(
     from brdfkit.cli.many_files import fit_many
     from brdfkit.cli.rank_output import BEST, print_ranking, recommend, refuse_best
     from brdfkit.core.memory import require_memory
-    from brdfkit.core.names import fit_file, slug
+    from brdfkit.core.names import to_file_stem, to_fit_path
     from brdfkit.fitting.compare import compare
     from brdfkit.model import labels
     from brdfkit.rendering.scene_input.loading import SIZE, require_scene
@@ -112,13 +112,13 @@ def fit(
     if rendered:
         require_scene(scene, envmap)
         require_memory((size, size) if size else SIZE, 1 + len(names))
-        output = output or Path(slug(material.name))
+        output = output or Path(to_file_stem(material.name))
 
     errors = None  # of pictures
     with results_folder(output):
         _require_files(output, names, rendered)
         fits, failed, interrupted = _fit_each(names, material, how, output, console)
-        files = [fit_file(output, f.name) for f in fits] if output else []
+        files = [to_fit_path(output, f.name) for f in fits] if output else []
         written = [file for file in files if file.is_file()]
         if rendered and not interrupted:
             shown, exr = [material, *fits], output / "render.exr"
@@ -139,12 +139,12 @@ def _require_files(folder, names, rendered):
     """Raise `BrdfkitError` where a file cannot be written to `folder`, unless it is None."""
     from brdfkit.cli.arguments import picture_file
     from brdfkit.core.files import require_writable
-    from brdfkit.core.names import fit_file
+    from brdfkit.core.names import to_fit_path
     from brdfkit.model import labels
 
     if folder is not None:
         for name in names:
-            require_writable(fit_file(folder, labels.model(name)().name))
+            require_writable(to_fit_path(folder, labels.model(name)().name))
     if rendered:
         picture_file(folder / "render.exr")
 
@@ -183,7 +183,7 @@ def _fit_each(names, material, how, output, console):
     the last one, with what another one had come to. Where no model can be fitted, the first error
     is raised.
     """
-    from brdfkit.core.names import fit_file
+    from brdfkit.core.names import to_fit_path
     from brdfkit.fitting.fit import fit as fit_model
     from brdfkit.materials.loading import save
 
@@ -197,7 +197,7 @@ def _fit_each(names, material, how, output, console):
                 failed[name] = error
                 continue
             if output is not None:
-                save(found, fit_file(output, found.name))
+                save(found, to_fit_path(output, found.name))
             fits.append(found)
     except Interrupted as stop:
         say(f"interrupted; {len(fits)} of {len(names)} fits are finished, the last one is not.")

@@ -51,7 +51,7 @@ def info(file, output, downsample, transfer, labels, mends, console):
     if file is None and mends:
         raise BrdfkitError("--mirror-azimuth and --divide-by-cos mend a measurement: name a FILE.")
     if file is None:
-        _print_shipped(catalogue.materials(), catalogue.environments(), console)
+        _print_shipped(catalogue.list_materials(), catalogue.list_environments(), console)
         return
     if transfer and not (output and looks_like_volume(file)):
         raise BrdfkitError("--transfer is drawn over a volume: name a VOLUME, and an --output.")

@@ -24,24 +24,24 @@ def models(name, console):
 
 
 def _print_list(models, console):
-    from brdfkit.core.discovery.plugin_pages import page
+    from brdfkit.core.discovery.plugin_pages import read_page
 
     if console.as_json:
         console.json({name: _parameters(model) for name, model in models.items()})
         return
-    rows = [(name, page(m).sentence, ", ".join(m.parameters)) for name, m in models.items()]
+    rows = [(name, read_page(m).sentence, ", ".join(m.parameters)) for name, m in models.items()]
     console.table(["model", "what it is", "parameters"], rows)
     console.out.print("One model's page: brdfkit models NAME")
 
 
 def print_model(model, console):
     """Print the page of a model, with its parameters and options."""
-    from brdfkit.core.discovery.plugin_pages import page
+    from brdfkit.core.discovery.plugin_pages import read_page
 
     if console.as_json:
         console.json({model.type_name(): _parameters(model)})
         return
-    console.out.print(str(page(model)))
+    console.out.print(str(read_page(model)))
     rows = []
     for name, p in model.parameters.items():
         low, high = ("" if math.isinf(v) else f"{v:g}" for v in p.bounds)
@@ -57,7 +57,7 @@ def print_model(model, console):
     console.out.print(
         f'Mitsuba: {{"type": "{model.type_name()}", ...}}; every parameter may be a texture.'
     )
-    print_references(page(model), console)
+    print_references(read_page(model), console)
 
 
 def print_references(page, console):

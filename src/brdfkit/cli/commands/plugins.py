@@ -15,26 +15,28 @@ def plugins(word, console):
 
     With a KIND, lists the plugins of that kind. FILE.py is a plugin of yours.
     """
-    from brdfkit.core.discovery.plugin_files import KINDS, kind_of, sources
+    from brdfkit.core.discovery.plugin_files import KINDS, find_kind, find_plugins
     from brdfkit.core.errors import no_such
     from brdfkit.mitsuba_bridge.registration.users_plugins import load_plugins
 
     if word and word.endswith(".py"):
         (word,) = load_plugins(word)
-    names = [name for kind in KINDS for name in sources(kind)]
+    names = [name for kind in KINDS for name in find_plugins(kind)]
     if word is None or word in KINDS:
         _print_list([word] if word else KINDS, console)
     elif word in names:
-        _print_page(kind_of(word), word, console)
+        _print_page(find_kind(word), word, console)
     else:
         raise no_such("plugin or kind of plugins", word, [*KINDS, *names])
 
 
 def _print_list(kinds, console):
-    from brdfkit.core.discovery.plugin_files import sources
-    from brdfkit.core.discovery.plugin_pages import page
+    from brdfkit.core.discovery.plugin_files import find_plugins
+    from brdfkit.core.discovery.plugin_pages import read_page
 
-    found = {kind: {n: page(s).sentence for n, s in sources(kind).items()} for kind in kinds}
+    found = {
+        kind: {n: read_page(s).sentence for n, s in find_plugins(kind).items()} for kind in kinds
+    }
     if console.as_json:
         console.json(found)
         return
@@ -49,15 +51,15 @@ def _print_list(kinds, console):
 
 def _print_page(kind, name, console):
     from brdfkit.cli.commands.models import print_model, print_references
-    from brdfkit.core.discovery.plugin_files import MODELS, module, sources
-    from brdfkit.core.discovery.plugin_pages import page
+    from brdfkit.core.discovery.plugin_files import MODELS, find_plugins, import_plugin
+    from brdfkit.core.discovery.plugin_pages import read_page
     from brdfkit.model.labels import model_in
 
-    source = sources(kind)[name]
+    source = find_plugins(kind)[name]
     if kind == MODELS and (model := model_in(source)):
         print_model(model, console)
         return
-    parameters = getattr(module(source), "PARAMETERS", {})
+    parameters = getattr(import_plugin(source), "PARAMETERS", {})
     if console.as_json:
         records = {
             n: {"default": p.default, "bounds": p.bounds, "meaning": p.meaning}
@@ -65,7 +67,7 @@ def _print_page(kind, name, console):
         }
         console.json({name: {"kind": kind, "parameters": records}})
         return
-    console.out.print(str(page(source)))
+    console.out.print(str(read_page(source)))
     if parameters:
         rows = []
         for n, p in parameters.items():
@@ -75,4 +77,4 @@ def _print_page(kind, name, console):
             )
         console.table(["parameter", ">default", ">from", ">to", "meaning"], rows)
     console.out.print(f'Mitsuba: {{"type": "{name}", ...}}')
-    print_references(page(source), console)
+    print_references(read_page(source), console)

@@ -83,7 +83,7 @@ def render(
     samples that all pictures have.
     """
     from brdfkit.cli.arguments import film_file, material, picture_file
-    from brdfkit.core.names import slug
+    from brdfkit.core.names import to_file_stem
     from brdfkit.distance_fields import load as load_field
     from brdfkit.distance_fields.export.json_files import is_field_file
     from brdfkit.lighting.environments.map_files import looks_like_map
@@ -135,7 +135,7 @@ def render(
         if scene != "ball" or quickly:
             raise BrdfkitError(f"{volume} is a volume: leave --scene and --preview out.")
         turns = "orbit" in of_volume
-        name = slug(Path(volume).name.partition(".")[0])
+        name = to_file_stem(Path(volume).name.partition(".")[0])
         output = output or Path(f"{name}.gif" if turns else f"{name}.png")
         output = film_file(output) if turns else picture_file(output)
         how = {"spp": spp, "until": until, "size": size, "seed": seed, "envmap": envmap}
@@ -148,7 +148,7 @@ def render(
         found = [material(thing, values) for thing in things]
         if values:
             _warn_of_gains(found)
-        output = picture_file(output or f"{slug(found[0].name)}.png")
+        output = picture_file(output or f"{to_file_stem(found[0].name)}.png")
         where = {"size": size, "seed": seed, "scene": scene, "envmap": envmap}
         if quickly:
             picture = _preview(found, output, spp, until, shadows, tone, **where)

@@ -17,20 +17,20 @@ from brdfkit import plugins
 from brdfkit.core.errors import BrdfkitError
 
 
-def names_in(path):
+def find_module_names(path):
     """The names, in alphabetical order, of the modules of a package with this `__path__`, without
     those that begin with an underscore.
 
     >>> import brdfkit.materials.formats
-    >>> "merl" in names_in(brdfkit.materials.formats.__path__)
+    >>> "merl" in find_module_names(brdfkit.materials.formats.__path__)
     True
     """
     return tuple(sorted(m.name for m in pkgutil.iter_modules(path) if not m.name.startswith("_")))
 
 
-def modules_in(package, path):
+def import_modules(package, path):
     """The modules of these names of a `package`, imported."""
-    return tuple(importlib.import_module(f"{package}.{name}") for name in names_in(path))
+    return tuple(importlib.import_module(f"{package}.{name}") for name in find_module_names(path))
 
 
 # Kind, the name of its folder → (Mitsuba's class, the function of `mitsuba` that registers it)
@@ -52,28 +52,28 @@ _users: dict[str, tuple[str, Path | type]] = {}
 _listeners: list[Callable[[], None]] = []
 
 
-def sources(kind):
+def find_plugins(kind):
     """Name → source of every plugin of a kind: its file, or its class if defined in a notebook.
 
-    >>> sources("bsdfs")["ward"].name
+    >>> find_plugins("bsdfs")["ward"].name
     'ward.py'
     """
-    return _own_files(kind) | {name: s for name, (k, s) in _users.items() if k == kind}
+    return _find_own_plugins(kind) | {name: s for name, (k, s) in _users.items() if k == kind}
 
 
-def kind_of(name):
+def find_kind(name):
     """The kind of the plugin `name`, None where there is no such plugin."""
-    return next((kind for kind in KINDS if name in sources(kind)), None)
+    return next((kind for kind in KINDS if name in find_plugins(kind)), None)
 
 
-def add(kind, added):
+def add_plugins(kind, added):
     """Add a user's plugins of a kind; `added`: name → file or class.
 
     A file that is added again, and a class of the same name, replaces the earlier one. Raises
     `BrdfkitError`, and adds none, where a name is taken by another plugin.
     """
     for name, source in added.items():
-        require_free(name, source)
+        require_free_name(name, source)
     if not added:
         return
     _users.update({name: (kind, source) for name, source in added.items()})
@@ -81,12 +81,12 @@ def add(kind, added):
         listener()
 
 
-def on_added(listener):
+def call_when_added(listener):
     """Call `listener()` each time that plugins have been added."""
     _listeners.append(listener)
 
 
-def files_in(path):
+def find_python_files(path):
     """The Python files at `path`: a file itself, or the files of a folder without a leading "_".
 
     Raises `BrdfkitError` where there are none.
@@ -98,13 +98,13 @@ def files_in(path):
     return files
 
 
-def module(file):
+def import_plugin(file):
     """The module of a plugin file; a user's file is imported again when it has changed.
 
     Raises `BrdfkitError` where it cannot be imported.
     """
     for kind in KINDS:
-        if _own_files(kind).get(file.stem) == file:
+        if _find_own_plugins(kind).get(file.stem) == file:
             return importlib.import_module(f"{OWN}.{kind}.{file.stem}")
     if not file.exists():
         raise BrdfkitError(f"{file} does not exist any more; write it again.")
@@ -114,7 +114,7 @@ def module(file):
 
 
 @cache
-def _own_files(kind):
+def _find_own_plugins(kind):
     """Name → file of brdfkit's own plugins of a kind."""
     files = [f for folder in plugins.__path__ for f in Path(folder, kind).glob("[!_]*.py")]
     return {file.stem: file for file in sorted(files)}
@@ -152,15 +152,15 @@ class _Loader(SourceFileLoader):
         return self.source_to_code(self.get_data(self.path), self.path)
 
 
-def require_free(name, source):
+def require_free_name(name, source):
     """Raise `BrdfkitError` where another plugin, of any kind, has the name of `source`.
 
     Mitsuba would go on using the other one.
     """
     _, known = _users.get(name, (None, source))
-    if any(name in _own_files(kind) for kind in KINDS):
+    if any(name in _find_own_plugins(kind) for kind in KINDS):
         owner = "brdfkit has a plugin"
-    elif name in _mitsuba_names():
+    elif name in _find_mitsuba_plugins():
         owner = "Mitsuba has a plugin"
     elif isinstance(known, Path) and not _is_same_file(known, source):
         owner = f"{known} is loaded as"
@@ -178,7 +178,7 @@ def _is_same_file(known, source):
 
 
 @cache
-def _mitsuba_names():
+def _find_mitsuba_plugins():
     """Names of Mitsuba's own plugins."""
     package = Path(importlib.util.find_spec("mitsuba").origin).parent
     return {file.stem for file in (package / "plugins").iterdir()}

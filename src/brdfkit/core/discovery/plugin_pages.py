@@ -9,7 +9,7 @@ import sys
 from dataclasses import dataclass
 
 from brdfkit.core.discovery import plugin_files
-from brdfkit.core.references import works
+from brdfkit.core.references import find_cited_works
 
 SHOWS = re.compile(r"\b(?:It s|S)(hows .*?\.)(?=\s|$)")
 
@@ -34,10 +34,10 @@ class Page:
     @property
     def references(self):
         """The cited works, as `Reference`s."""
-        return works(str(self))
+        return find_cited_works(str(self))
 
 
-def page(source):
+def read_page(source):
     """The `Page` of a plugin, given as its file or its class.
 
     A class that no plugin file defines has its own docstring as its page.
@@ -47,7 +47,7 @@ def page(source):
         text = sys.modules[source.__module__].__doc__ if in_file else source.__doc__
         name = source.__name__
     else:
-        text, name = plugin_files.module(source).__doc__, source.stem
+        text, name = plugin_files.import_plugin(source).__doc__, source.stem
     first, *lines = inspect.cleandoc(text or "").splitlines() or [""]
     title, colon, sentence = first.partition(": ")
     if not colon:

@@ -12,7 +12,7 @@ import numpy as np
 
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.documents.parts import SOFT, Cell, Folded, Paragraph, Picture, Table
-from brdfkit.core.names import printable
+from brdfkit.core.names import to_printable
 
 STYLE = """
 .brdfkit { font: 13px/1.45 system-ui, sans-serif; color: inherit; max-width: 62rem; }
@@ -55,41 +55,42 @@ def to_html(document):
     for kind, group in groupby(document.parts, type):
         made = [MAKERS[kind](part) for part in group]
         parts += [f'<div class="pictures">{"".join(made)}</div>'] if kind is Picture else made
-    title = f'<p class="title">{_text(document.title)}</p>'
+    title = f'<p class="title">{_escape(document.title)}</p>'
     return f'<div class="brdfkit jp-toc-ignore"><style>{STYLE}</style>{title}{"".join(parts)}</div>'
 
 
-def _table(table):
+def _format_table(table):
     sides = [' class="number"' if name.startswith(">") else "" for name in table.columns]
     heads = "".join(
-        f"<th{side}>{_text(name.removeprefix('>'))}</th>"
+        f"<th{side}>{_escape(name.removeprefix('>'))}</th>"
         for name, side in zip(table.columns, sides, strict=True)
     )
     head = f"<thead><tr>{heads}</tr></thead>" if any(table.columns) else ""
-    body = f"<tbody>{_rows(table.rows, table.columns)}</tbody>"
-    foot = f"<tfoot>{_rows(table.foot, table.columns)}</tfoot>" if table.foot else ""
+    body = f"<tbody>{_format_rows(table.rows, table.columns)}</tbody>"
+    foot = f"<tfoot>{_format_rows(table.foot, table.columns)}</tfoot>" if table.foot else ""
     return f'<div class="wide"><table>{head}{body}{foot}</table></div>'
 
 
-def _rows(rows, columns):
+def _format_rows(rows, columns):
     numeric = [name.startswith(">") for name in columns]
     found = []
     for row in rows:
         sides = numeric or [False] * len(row)
-        found.append("".join(map(_cell, row, sides)))
+        found.append("".join(map(_format_cell, row, sides)))
     return "".join(f"<tr>{cells}</tr>" for cells in found)
 
 
-def _cell(cell, is_number):
+def _format_cell(cell, is_number):
     if not isinstance(cell, Cell):
         cell = Cell(cell)
     kinds = " ".join(filter(None, ["number" if is_number else "", cell.kind]))
     attributes = f' class="{kinds}"' if kinds else ""
-    attributes += f' title="{_text(cell.hint)}"' if cell.hint else ""
-    return f"<td{attributes}>{_chip(cell.colour)}{_text(cell.text)}{_bar(cell.place)}</td>"
+    attributes += f' title="{_escape(cell.hint)}"' if cell.hint else ""
+    content = _format_chip(cell.colour) + _escape(cell.text) + _format_bar(cell.place)
+    return f"<td{attributes}>{content}</td>"
 
 
-def _chip(colour):
+def _format_chip(colour):
     """A square of a linear colour, as bright as it can be: its hue, where it is above 1."""
     if len(colour) != 3:
         return ""
@@ -98,43 +99,48 @@ def _chip(colour):
     return f'<span class="chip" style="background:rgb({red},{green},{blue})"></span>'
 
 
-def _bar(place):
+def _format_bar(place):
     """A bar with a mark at `place`, 0 to 1."""
     if place is None:
         return ""
     return f'<span class="bar"><i style="left:{100 * place:.0f}%"></i></span>'
 
 
-def _paragraph(paragraph):
+def _format_paragraph(paragraph):
     kind = f' class="{paragraph.kind}"' if paragraph.kind else ""
-    return f"<p{kind}>{'<br>'.join(map(_text, paragraph.text.splitlines()))}</p>"
+    return f"<p{kind}>{'<br>'.join(map(_escape, paragraph.text.splitlines()))}</p>"
 
 
-def _picture(picture):
+def _format_picture(picture):
     try:
         content = picture.draw()
     except Exception as error:  # what a user's model raises: the rest is shown all the same
         said = f"Not shown: {picture.says} ({type(error).__name__}: {error})."
-        return _paragraph(Paragraph(said, SOFT))
+        return _format_paragraph(Paragraph(said, SOFT))
     if isinstance(content, str):
         return content
     kind = next(kind for start, kind in KINDS.items() if content.startswith(start))
     data = base64.b64encode(content).decode()
     return (
-        f'<img src="data:image/{kind};base64,{data}" alt="{_text(picture.says)}" '
+        f'<img src="data:image/{kind};base64,{data}" alt="{_escape(picture.says)}" '
         f'width="{picture.width}">'
     )
 
 
-def _folded(folded):
-    text = "\n".join(map(_text, folded.text.splitlines()))
-    return f"<details><summary>{_text(folded.heading)}</summary><pre>{text}</pre></details>"
+def _format_folded(folded):
+    text = "\n".join(map(_escape, folded.text.splitlines()))
+    return f"<details><summary>{_escape(folded.heading)}</summary><pre>{text}</pre></details>"
 
 
-def _text(text):
+def _escape(text):
     """Any text, escaped for HTML."""
-    return escape(printable(text))
+    return escape(to_printable(text))
 
 
 KINDS = {b"\x89PNG": "png", b"RIFF": "webp", b"\xff\xd8": "jpeg"}  # of pictures' first bytes
-MAKERS = {Table: _table, Paragraph: _paragraph, Picture: _picture, Folded: _folded}
+MAKERS = {
+    Table: _format_table,
+    Paragraph: _format_paragraph,
+    Picture: _format_picture,
+    Folded: _format_folded,
+}

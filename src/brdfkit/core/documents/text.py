@@ -2,7 +2,7 @@
 
 from brdfkit.core.documents.html import to_html
 from brdfkit.core.documents.parts import BAD, Cell, Document, Paragraph, Table
-from brdfkit.core.names import printable
+from brdfkit.core.names import to_printable
 
 INDENT, BETWEEN = "  ", "  "
 MARK = "! "  # of what is bad
@@ -14,29 +14,29 @@ def to_text(document):
     lines = []
     for part in document.parts:
         if isinstance(part, Table):
-            lines += _table(part)
+            lines += _format_table(part)
         elif isinstance(part, Paragraph):
             mark = MARK if part.kind == BAD else ""
             lines += [f"{mark}{line}" for line in part.text.splitlines()]
     return "\n".join([document.title, *(INDENT + line for line in lines)])
 
 
-def plain(cell):
+def to_plain_text(cell):
     """The text of a cell, behind a mark where it is bad."""
     if not isinstance(cell, Cell):
         return cell
     return f"{MARK}{cell.text}" if cell.kind == BAD else cell.text
 
 
-def _table(table):
+def _format_table(table):
     """The lines of a `Table`: columns as wide as their longest text."""
     titles = [name.removeprefix(">") for name in table.columns]
     lines = (*([titles] if any(titles) else []), *table.rows, *table.foot)
-    rows = [[printable(plain(cell)) for cell in line] for line in lines]
+    rows = [[to_printable(to_plain_text(cell)) for cell in line] for line in lines]
     if not rows:
         return []
     if len(table.columns) > 2:
-        rows = [line for row in rows for line in _apart(row)]
+        rows = [line for row in rows for line in _split_long_name(row)]
     widths = [max(map(len, texts)) for texts in zip(*rows, strict=True)]
     if len(table.columns) > 2:
         widths[0] = min(widths[0], NAME)
@@ -48,7 +48,7 @@ def _table(table):
     ]
 
 
-def _apart(row):
+def _split_long_name(row):
     """A row of texts; two where its name is long: the name, and below it the numbers."""
     name, *others = row
     return [[name, *("" for _ in others)], ["", *others]] if len(name) > NAME else [row]

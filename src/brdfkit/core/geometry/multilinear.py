@@ -1,8 +1,8 @@
 """Multilinear interpolation: the nodes around a point on each axis, and the corners of its cell.
 
 A bracket is (lower node, upper node, share of the upper node) on one axis, whose nodes stand at
-0, 1, ... n - 1. `bracket` and `periodic_bracket` here take NumPy arrays, the functions of the same
-names in `mitsuba_bridge/arrays.py` take Dr.Jit's. `corners` takes brackets of either.
+0, 1, ... n - 1. `find_bracket` and `find_periodic_bracket` take NumPy arrays, the functions of
+`mitsuba_bridge/arrays.py` take Dr.Jit's arrays. `list_corners` takes brackets of either kind.
 """
 
 import itertools
@@ -10,26 +10,26 @@ import itertools
 import numpy as np
 
 
-def bracket(x, n):
+def find_bracket(x, n):
     """The bracket around the coordinate `x` on an axis of `n` nodes; beyond an end, the end."""
     x = np.clip(x, 0, n - 1)
     lower = np.minimum(x.astype(int), max(n - 2, 0))
     return lower, np.minimum(lower + 1, n - 1), x - lower
 
 
-def periodic_bracket(x, n):
+def find_periodic_bracket(x, n):
     """The bracket around the coordinate `x` on a periodic axis, where node n is node 0."""
     x = np.mod(x, n)
     lower = np.minimum(x.astype(int), n - 1)
     return lower, (lower + 1) % n, x - lower
 
 
-def corners(brackets):
+def list_corners(brackets):
     """(node on each axis, share) of every corner of the cell around a point.
 
     `brackets` has one bracket per axis. The shares of all corners add up to 1.
 
-    >>> list(corners([(0, 1, 0.25)]))
+    >>> list(list_corners([(0, 1, 0.25)]))
     [((0,), 0.75), ((1,), 0.25)]
     """
     for upper in itertools.product((False, True), repeat=len(brackets)):
@@ -40,7 +40,7 @@ def corners(brackets):
         yield tuple(nodes), share
 
 
-def flat_index(nodes, shape):
+def to_flat_index(nodes, shape):
     """The index of a corner in an array of `shape` that is flattened, its last axis fastest."""
     index = 0
     for node, n in zip(nodes, shape, strict=True):

@@ -25,29 +25,29 @@ def directional_albedo(f, wi):
     1024 points: the albedo of a `ward` a hundred times narrower along one axis is then known to
     2e-5.
     """
-    coarse = _sum(f, wi, POINTS[0])
+    coarse = _integrate(f, wi, POINTS[0])
     for points in POINTS[1:]:
-        fine = _sum(f, wi, points)
+        fine = _integrate(f, wi, points)
         if abs(fine.sum() - coarse.sum()) <= TOLERANCE * abs(fine.sum()):
             break
         coarse = fine
     return fine
 
 
-def _sum(f, wi, points):
+def _integrate(f, wi, points):
     """The integral (channels,) by 2 `points` rings of `points` points."""
-    wo, weight = ring_rule(wi, points)
+    wo, weight = make_ring_rule(wi, points)
     return weight @ f(np.broadcast_to(wi, wo.shape), wo)
 
 
-def ring_rule(wi, points):
+def make_ring_rule(wi, points):
     """The directions wo (n, 3) of 2 `points` rings of `points` points, for light from `wi` (3,),
     and their solid angles times cosθ_o (n,)."""
     mirror = wi * [-1, -1, 1]
     cos_theta, sin_theta = mirror[2], np.hypot(mirror[0], mirror[1])
     # Angle gamma of each ring to the mirror direction: as many rings lie wholly above the horizon
     # (gamma < whole) as cross it
-    t, weight = _gauss(points)
+    t, weight = _gauss_legendre(points)
     whole = np.arctan2(cos_theta, sin_theta)
     gamma = np.concatenate([whole * t**3, whole + (np.pi - 2 * whole) * t**2])
     width = np.concatenate([whole * 3 * t**2, (np.pi - 2 * whole) * 2 * t]) * np.tile(weight, 2)
@@ -56,7 +56,7 @@ def ring_rule(wi, points):
     half = np.arccos(np.clip(-np.cos(gamma) * cos_theta / highest, -1, 1))
 
     # Azimuth psi of each point on its ring, from the highest point, and the point's direction wo
-    t, weight = _gauss(points, pieces=4)
+    t, weight = _gauss_legendre(points, pieces=4)
     psi = np.outer(half, 2 * t - 1)
     up = normalize(np.cross(mirror, [-mirror[1], mirror[0], 0]) if sin_theta else [1.0, 0, 0])
     ring = np.cos(psi)[..., None] * up + np.sin(psi)[..., None] * np.cross(mirror, up)
@@ -69,14 +69,14 @@ def ring_rule(wi, points):
 
 
 @cache
-def _gauss(points, pieces=1):
+def _gauss_legendre(points, pieces=1):
     """Gauss-Legendre nodes and weights, each (points,), of the unit interval in equal `pieces`."""
     nodes, weights = np.polynomial.legendre.leggauss(points // pieces)
     nodes = np.arange(pieces)[:, None] + (nodes + 1) / 2
     return nodes.ravel() / pieces, np.tile(weights / 2 / pieces, pieces)
 
 
-def cosine_directions(n):
+def spread_by_cosine(n):
     """Unit vectors (n, 3), distributed as the cosine: π f averages over them to the albedo of f."""
     square = (np.arange(n) + 0.5) / n
     golden = (np.sqrt(5) - 1) / 2  # of a turn between neighbours: fills the circle most evenly

@@ -9,7 +9,7 @@ import drjit as dr
 HORIZON = 1e-6
 
 
-def above_horizon(w, active):
+def mask_below_horizon(w, active):
     """`w` and `active`; where `w` is not above the surface, the normal and False."""
     up = w.z > HORIZON
     return dr.select(up, w, type(w)(0, 0, 1)), active & up

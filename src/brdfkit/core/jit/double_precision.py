@@ -39,7 +39,7 @@ class Vector:
 
 
 @cache
-def float64():
+def float_type():
     """The array type: Dr.Jit's `Float64` of the LLVM or CUDA backend, else `ArrayXf64`."""
     import drjit as dr
 
@@ -50,41 +50,41 @@ def float64():
     return dr.scalar.ArrayXf64
 
 
-def differentiable():
+def has_derivatives():
     """True where `float64()` has derivatives."""
     import drjit as dr
 
-    return bool(dr.is_diff_v(float64()))
+    return bool(dr.is_diff_v(float_type()))
 
 
-def array(values):
+def to_array(values):
     """The NumPy array `values` (n,) as `float64()`."""
-    return float64()(pad(np.asarray(values, float)))
+    return float_type()(pad(np.asarray(values, float)))
 
 
-def vector(w):
+def to_vector(w):
     """A `Vector` of NumPy directions (n, 3)."""
-    return Vector(*(array(w[:, k]) for k in range(3)))
+    return Vector(*(to_array(w[:, k]) for k in range(3)))
 
 
-def scalar(value):
+def to_scalar(value):
     """A number as an array of size 1, opaque: a kernel does not contain it as a constant."""
     import drjit as dr
 
-    number = float64()(float(value))
+    number = float_type()(float(value))
     dr.make_opaque(number)
     return number
 
 
-def shapes(model):
-    """The free shape parameters of a model with values, by name, each a `scalar`."""
+def to_shape_scalars(model):
+    """The free shape parameters of a model with values, by name, each a `to_scalar`."""
     linear = model.weights()
-    return {name: scalar(v) for name, v in model.free_values.items() if name not in linear}
+    return {name: to_scalar(v) for name, v in model.free_values.items() if name not in linear}
 
 
 def differentiate(function, x):
     """A function of arrays at `x`, and its derivative there."""
-    if not differentiable():
+    if not has_derivatives():
         h = 1e-6 * dr.maximum(x, 1e-3)
         return function(x), (function(x + h) - function(x - h)) / (2 * h)
     dr.enable_grad(x)

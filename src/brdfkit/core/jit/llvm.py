@@ -29,7 +29,7 @@ VARIANTS = ("cuda_ad_rgb", "llvm_ad_rgb", "scalar_rgb")
 NO_LIBRARY = "no-LLVM-17-or-newer-found"
 
 
-def prepare():
+def choose_library():
     """Point Dr.Jit to a usable libLLVM; called when brdfkit is imported.
 
     Where Dr.Jit was imported before, its choice stands; a warning says so if it is a bad one.
@@ -79,7 +79,7 @@ def library_version(path):
         return 0
 
 
-def remedy():
+def describe_remedy():
     """What to do where Dr.Jit has no usable LLVM, as the end of a sentence.
 
     Where the machine has a usable one, it was not set or not installed when Dr.Jit was imported.
@@ -99,10 +99,10 @@ def loaded_version():
     return dr.detail.llvm_version()[0]
 
 
-def refuse_bad_choice(variant):
+def require_safe_variant(variant):
     """Raise `BrdfkitError` where kernels of this `variant` would abort the process."""
     if variant and variant.startswith("llvm") and 0 < loaded_version() < OLDEST:
-        raise BrdfkitError(_bad_choice())
+        raise BrdfkitError(_describe_bad_choice())
 
 
 @in_turn
@@ -120,20 +120,20 @@ def use_variant():
         if mi.variant() == "scalar_rgb":
             warnings.warn(
                 f"Mitsuba has no CUDA device and no LLVM {OLDEST} or newer: its slow variant "
-                f"scalar_rgb is used; to mend it, {remedy()}.",
+                f"scalar_rgb is used; to mend it, {describe_remedy()}.",
                 stacklevel=3,  # the caller of use_variant, above the wrapper of `in_turn`
             )
-    refuse_bad_choice(mi.variant())
+    require_safe_variant(mi.variant())
     return mi.variant()
 
 
 def _warn_of_bad_choice():
     if 0 < loaded_version() < OLDEST:
-        warnings.warn(_bad_choice(), stacklevel=4)
+        warnings.warn(_describe_bad_choice(), stacklevel=4)
 
 
-def _bad_choice():
+def _describe_bad_choice():
     return (
         f"Dr.Jit was imported before brdfkit and took LLVM {loaded_version()}, which aborts the "
-        f"process in Mitsuba's llvm variants: {remedy()}."
+        f"process in Mitsuba's llvm variants: {describe_remedy()}."
     )

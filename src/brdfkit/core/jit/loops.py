@@ -1,4 +1,4 @@
-"""`recorded`: loops in one kernel, also while a picture is differentiated.
+"""`record_loops`: loops in one kernel, also while a picture is differentiated.
 
 Mitsuba turns the recording of loops off then, because Dr.Jit goes backwards only through those of
 which it knows the `max_iterations`. Each step of a march was a kernel of its own, a thousand for a
@@ -13,7 +13,7 @@ import drjit as dr
 
 
 @contextmanager
-def first_error() -> Iterator[None]:
+def raise_first_cause() -> Iterator[None]:
     """Within the block, a RuntimeError that another error caused gives way to the first of them."""
     try:
         yield
@@ -31,7 +31,7 @@ def is_interrupt(error: BaseException | None) -> bool:
     return error is not None
 
 
-def recorded(function):
+def record_loops(function):
     """The same function, whose loops are recorded.
 
     Those that carry derivatives should have `max_iterations`, or `dr.backward` is an error; too few

@@ -27,12 +27,12 @@ def pad(values):
     left = -(values.ctypes.data + values.nbytes) % mmap.PAGESIZE  # bytes up to the page's end
     if values.ctypes.data % ALIGNMENT == 0 and left >= PACKET * values.itemsize:
         return values
-    copy = empty_rows(1, len(values), values.dtype)[0]
+    copy = make_padded_rows(1, len(values), values.dtype)[0]
     copy[:] = values
     return copy
 
 
-def empty_rows(count, n, dtype=float):
+def make_padded_rows(count, n, dtype=float):
     """An array (count, n) whose rows are aligned and followed by a packet of readable memory."""
     itemsize = np.dtype(dtype).itemsize
     step = ALIGNMENT // itemsize  # numbers between aligned addresses

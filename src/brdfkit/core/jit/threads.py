@@ -49,7 +49,7 @@ def use_threads(count: int) -> None:
 
 
 @contextmanager
-def two_threads() -> Iterator[None]:
+def use_two_threads() -> Iterator[None]:
     """Run kernels of the block in two threads at least.
 
     In one alone Mitsuba 3.9 waits for ever for the pixels of an OpenEXR file, read or written.

@@ -54,7 +54,7 @@ class Body:
         middle, size = self.corners.mean(axis=0), np.ptp(self.corners, axis=0).max()
         planes = np.vstack([self.planes, other.planes])
         planes[:, 3] = (planes[:, :3] @ middle + planes[:, 3]) / size
-        inside = _innermost(planes)
+        inside = _find_inner_centre(planes)
         if inside is None:
             raise Empty("no part of the scene is before the camera and in the light.")
         corners = HalfspaceIntersection(planes, inside).intersections
@@ -69,7 +69,7 @@ class Body:
         return Body.around(np.vstack([self.corners, self.corners + share * ways]))
 
 
-def box(low, high):
+def make_box(low, high):
     """The `Body` of an axis-aligned box; one without a thickness gets a little."""
     low, high = np.asarray(low, float), np.asarray(high, float)
     least = 1e-4 * max((high - low).max(), 1e-30)
@@ -78,7 +78,7 @@ def box(low, high):
     return Body.around([[ends[i, 0], ends[j, 1], ends[k, 2]] for i, j, k in np.ndindex(2, 2, 2)])
 
 
-def _innermost(planes):
+def _find_inner_centre(planes):
     """The centre of the largest ball within the planes, of a body of about the size 1; None where
     there is none."""
     from scipy.optimize import linprog

@@ -25,7 +25,7 @@ def project(matrix, x, y, z):
     return x / w, y / w, z / w
 
 
-def unit(x, y, z):
+def normalise(x, y, z):
     """The vector (x, y, z), of length 1."""
     length = (x * x + y * y + z * z) ** 0.5
     return x / length, y / length, z / length
@@ -36,7 +36,7 @@ def project_all(matrix, points):
     return np.column_stack(project(matrix, *np.asarray(points, float).T))
 
 
-def rigid(rotation, origin):
+def make_rigid(rotation, origin):
     """The matrix (4, 4) into a frame: `rotation` (3, 3) has its axes as rows."""
     matrix = np.eye(4)
     matrix[:3, :3] = rotation
@@ -57,7 +57,7 @@ def to_unit_cube(low, high):
     return matrix
 
 
-def axes_about(z, hint=None):
+def make_axes(z, hint=None):
     """Unit vectors x, y, z as rows (3, 3), right-handed; y is near `hint`, or else near an axis."""
     if hint is None or np.linalg.norm(np.cross(z, hint)) < 1e-6:
         hint = np.eye(3)[np.argmin(np.abs(z))]

@@ -7,7 +7,7 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.body import Body
-from brdfkit.core.projective.homogeneous import axes_about, unit
+from brdfkit.core.projective.homogeneous import make_axes, normalise
 
 NEAREST = 1e-3  # where the pyramid of a spot begins, over where it ends
 WIDEST = math.radians(80)  # half the angle of a pyramid; wider ones bound nothing
@@ -63,7 +63,7 @@ class Light:
 
     def pyramid(self, reach):
         """The `Body` of the square pyramid about a spot's cone, from 1/1000 of `reach` to it."""
-        across = axes_about(self.axis)[:2]
+        across = make_axes(self.axis)[:2]
         slope = math.tan(self.cutoff)
         ends = [
             d * (self.axis + slope * (i * across[0] + j * across[1]))
@@ -83,7 +83,7 @@ class Light:
     def direction(self, x, y, z):
         """Where light goes at a point: the components of a unit vector."""
         a, b, c = (self.point[i] for i in range(3))
-        return (-a, -b, -c) if self.is_directional else unit(x - a, y - b, z - c)
+        return (-a, -b, -c) if self.is_directional else normalise(x - a, y - b, z - c)
 
     def towards(self, points):
         """The unit vectors (n, 3) from points (n, 3) to the light."""

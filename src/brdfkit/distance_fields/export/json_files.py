@@ -10,7 +10,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.core.files import contents, write_safely
+from brdfkit.core.files import read_bytes, write_safely
 from brdfkit.distance_fields.boxes import to_numbers
 from brdfkit.distance_fields.parameters import find_kind
 
@@ -94,7 +94,7 @@ def load(path: str | PathLike[str]) -> Any:
     >>> scene = load("scene.json")
     """
     try:
-        return from_json(contents(path).decode(), str(path))
+        return from_json(read_bytes(path).decode(), str(path))
     except UnicodeDecodeError as error:
         raise BrdfkitError(f"{path}: is no text; a distance field is JSON.") from error
 

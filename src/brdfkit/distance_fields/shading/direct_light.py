@@ -21,7 +21,7 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitColour, JitMask, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.jit.loops import recorded
+from brdfkit.core.jit.loops import record_loops
 from brdfkit.distance_fields.shading.lamps import Lamp
 from brdfkit.distance_fields.shading.visible_point import VisiblePoint
 from brdfkit.distance_fields.shadows import LightCone, Shadow, find_edge, light_cone
@@ -91,7 +91,7 @@ class DirectLight:
         visible = 1 if self.shadow == "none" else self._lamp_shadow(lamp, seen, ds)[1].visible
         return mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * visible
 
-    @recorded
+    @record_loops
     def _lamp_shadow(
         self, lamp: Lamp, seen: VisiblePoint, ds: MitsubaObject
     ) -> tuple[LightCone, Shadow]:
@@ -105,7 +105,7 @@ class DirectLight:
         settings = self.epsilon, self.direction, self.rays
         return cone, shadow_by_name(self.shadow, seen.field, cone, *settings)
 
-    @recorded
+    @record_loops
     def _is_unoccluded(self, seen: VisiblePoint, ds: MitsubaObject) -> JitMask:
         """Return whether the ray to an emitter's sample misses the field; True without shadows."""
         import mitsuba as mi

@@ -21,7 +21,7 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.core.array_types import JitColour, JitFloat, JitInt, JitMask, MitsubaObject
-from brdfkit.core.jit.loops import recorded
+from brdfkit.core.jit.loops import record_loops
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.shading.visible_point import NORMAL_STEP, VisiblePoint, ray_cone
 from brdfkit.distance_fields.tracing.hits import normal
@@ -54,7 +54,7 @@ class NearMiss:
         return behind + weight * (self.gap - dr.detach(self.gap))
 
 
-@recorded
+@record_loops
 def find_near_miss(
     field: Node, ray: MitsubaObject, far: JitFloat, precision: JitFloat, active: JitMask
 ) -> NearMiss:

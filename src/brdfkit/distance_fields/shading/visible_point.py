@@ -17,7 +17,7 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitMask, MitsubaObject
-from brdfkit.core.jit.loops import recorded
+from brdfkit.core.jit.loops import record_loops
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.tracing.cone_tracing import cone_trace
 from brdfkit.distance_fields.tracing.hits import normal, reattach
@@ -45,7 +45,7 @@ class VisiblePoint:
     field: Node
 
 
-@recorded
+@record_loops
 def find_visible_point(
     field: Node, ray: MitsubaObject, far: JitFloat, precision: JitFloat, active: JitMask
 ) -> VisiblePoint:

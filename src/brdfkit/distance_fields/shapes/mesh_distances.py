@@ -9,7 +9,7 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, ArrayLike
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.files import contents
+from brdfkit.core.files import read_bytes
 from brdfkit.distance_fields.export.mesh import NOT_INSTALLED
 from brdfkit.distance_fields.export.sampling import grid_axes
 from brdfkit.distance_fields.shapes.grids import grid
@@ -65,7 +65,7 @@ def _read_mesh(mesh: Any, igl: Any) -> tuple[AnyArray, AnyArray]:
     """Return the vertices (n, 3) and faces (m, 3) of a file, or of a pair of arrays."""
     if isinstance(mesh, tuple):
         return np.asarray(mesh[0], float), np.asarray(mesh[1])
-    contents(mesh)  # raises a clear error for a file that cannot be opened
+    read_bytes(mesh)  # raises a clear error for a file that cannot be opened
     try:
         vertices, faces = igl.read_triangle_mesh(str(mesh))
     except (RuntimeError, ValueError) as error:

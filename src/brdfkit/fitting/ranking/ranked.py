@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.names import printable
+from brdfkit.core.names import to_printable
 from brdfkit.fitting.ranking.ties import beside, is_tied
 from brdfkit.regression.light import Albedo
 
@@ -100,7 +100,7 @@ def rows_of(results: Mapping[str, Any], shares: NDArray[np.float64]) -> tuple[Ra
         fit = one.parameters, one.bic, one.seconds
         rows.append(Ranked(label, error, behind, uncertainty, *looks, *fit))
     failed = [
-        Ranked(label, message=printable(str(one)))
+        Ranked(label, message=to_printable(str(one)))
         for label, one in results.items()
         if isinstance(one, BrdfkitError)
     ]

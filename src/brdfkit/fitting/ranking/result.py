@@ -3,10 +3,10 @@
 import math
 from dataclasses import dataclass, field
 
-from brdfkit.core.discovery.plugin_pages import page
+from brdfkit.core.discovery.plugin_pages import read_page
 from brdfkit.core.documents import Cell, Document, Paragraph, Shown, Table
 from brdfkit.core.documents.parts import BAD, STRONG
-from brdfkit.core.names import listed
+from brdfkit.core.names import join_words
 from brdfkit.fitting.ranking.choice import Choice
 from brdfkit.fitting.ranking.ranked import Ranked
 from brdfkit.model import labels
@@ -75,7 +75,7 @@ class Ranking(Shown):
     @property
     def suits(self) -> str:
         """Which materials the recommended model is meant for, as its page says; or nothing."""
-        sentence = page(labels.model(self.best)).shows
+        sentence = read_page(labels.model(self.best)).shows
         return f"{self.best}: {sentence}" if sentence else ""
 
     @property
@@ -86,7 +86,7 @@ class Ranking(Shown):
         for row in self.rows:
             if row.doubt:
                 models.setdefault(row.doubt, []).append(row.model)
-        return [f"Doubtful: {doubt}, of {listed(names)}." for doubt, names in models.items()]
+        return [f"Doubtful: {doubt}, of {join_words(names)}." for doubt, names in models.items()]
 
     @property
     def problems(self) -> list[str]:

@@ -7,8 +7,8 @@ from pathlib import Path
 from urllib.parse import quote
 
 from brdfkit.core.files import write_safely
-from brdfkit.core.names import listed, printable
-from brdfkit.core.pages.page import source
+from brdfkit.core.names import join_words, to_printable
+from brdfkit.core.pages.page import read_template
 from brdfkit.core.version import __version__
 from brdfkit.fitting.sweeping import tables
 from brdfkit.materials.measured.albedos import ANGLES
@@ -49,9 +49,9 @@ footer { margin-top: 2rem; font-size: .9rem; }
 """
 NUMBER = "number"  # the class of a cell
 ALBEDOS = (
-    f"Under {listed([f'{angle:g}°' for angle in ANGLES])}: the albedo of the fit, the share of the "
-    "light from that angle to the normal that it reflects, the mean over the channels; below it "
-    "that of the measurement."
+    f"Under {join_words([f'{angle:g}°' for angle in ANGLES])}: the albedo of the fit, the share of "
+    "the light from that angle to the normal that it reflects, the mean over the channels; below "
+    "it that of the measurement."
 )
 FAR = 4.0  # times the error of the best: from there a cell has no tint
 
@@ -99,7 +99,7 @@ def page(sweep, folder):
         f"<title>{title}</title><style>{STYLE}</style></head>\n<body>\n"
         + "\n".join(parts)
         + f"\n<footer>Made by brdfkit {__version__}.</footer>\n"
-        + f'<script type="module">{source("sort_tables.js")}</script></body></html>\n'
+        + f'<script type="module">{read_template("sort_tables.js")}</script></body></html>\n'
     )
 
 
@@ -225,4 +225,4 @@ def _count(things, what):
 
 def _text(text):
     """Any text, escaped for the page."""
-    return escape(printable(text))
+    return escape(to_printable(text))

@@ -10,7 +10,7 @@ from typing import Any
 from brdfkit.core.discovery import plugin_files
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import sha256
-from brdfkit.core.names import make_unique, slug
+from brdfkit.core.names import make_unique, to_file_stem
 from brdfkit.fitting.sweeping.tasks import Task
 from brdfkit.materials.formats import Source
 from brdfkit.materials.loading import locate
@@ -70,7 +70,7 @@ def _plan_file(file: Any, models: dict[str, dict[str, str]], settings: dict[str,
 
 def _name(path, behind=""):
     """The name of a file's material, fit for a folder: the file's without suffix; `behind`: it."""
-    return slug(Source(path, None, b"").name + behind)
+    return to_file_stem(Source(path, None, b"").name + behind)
 
 
 def _checksums_of_files(model: type[Model]) -> dict[str, str]:

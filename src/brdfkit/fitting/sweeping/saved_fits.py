@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.files import contents, make_folder, write_safely
-from brdfkit.core.names import fit_file
+from brdfkit.core.files import make_folder, read_bytes, write_safely
+from brdfkit.core.names import to_fit_path
 from brdfkit.fitting.sweeping.tasks import Outcome, Task
 from brdfkit.materials.formats import Source, fit_json
 from brdfkit.regression import Fit
@@ -37,7 +37,7 @@ def find(folder: Path, task: Task, label: str) -> tuple[Fit, Path, dict[str, flo
     if not task.checksums or not file.is_file():
         return None
     try:
-        data = contents(file)
+        data = read_bytes(file)
         record = json.loads(data)
         if record.get(KEY) == _identity(task, label) and (JUDGED in record or not task.judge):
             judged = record.get(JUDGED, {}) if task.judge else {}
@@ -56,7 +56,7 @@ def parse(outcome: Outcome) -> Fit:
 
 
 def _path(folder, task, label):
-    return fit_file(folder / task.material, label)
+    return to_fit_path(folder / task.material, label)
 
 
 def _identity(task: Task, label: str) -> Any:

@@ -49,15 +49,15 @@ def _least_error(data, part, loss):
     """
     angles = np.arange(TURNS) * 2 * np.pi / TURNS
     measured = np.stack([data.eval(rotate_z(part.wi, a), rotate_z(part.wo, a)) for a in angles])
-    cosines = [double_precision.array(np.tile(w[:, 2], TURNS)) for w in (part.wi, part.wo)]
+    cosines = [double_precision.to_array(np.tile(w[:, 2], TURNS)) for w in (part.wi, part.wo)]
     squares = 0.0
     for own in np.moveaxis(measured, 2, 0):
-        given = double_precision.array(own.ravel())
+        given = double_precision.to_array(own.ravel())
 
         def difference(value, given=given):
             return loss.difference(value, given, *cosines)
 
-        start = double_precision.array(np.tile(own.mean(axis=0), TURNS))
+        start = double_precision.to_array(np.tile(own.mean(axis=0), TURNS))
         d, slope = (np.array(x).reshape(own.shape) for x in differentiate(difference, start))
         gain = (d * slope).sum(axis=0) ** 2 / np.maximum((slope**2).sum(axis=0), 1e-300)
         squares = squares + ((d**2).sum(axis=0) - gain) / TURNS

@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.documents import Document, Picture, Shown
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.figures import to_png
+from brdfkit.core.figures import Plot, to_png
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.core.plots import Plot
 from brdfkit.fitting.settings import refit
 from brdfkit.materials.resolve import MaterialLike
 from brdfkit.regression import Fit

@@ -7,7 +7,7 @@ from brdfkit.core.arguments import to_dictionary, to_number, to_positive, to_who
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit import double_precision
 from brdfkit.core.jit.llvm import use_variant
-from brdfkit.core.names import listed
+from brdfkit.core.names import join_words
 from brdfkit.inverse.photographs.capture.capture import Capture
 from brdfkit.inverse.photographs.capture.capture_file import load_capture
 from brdfkit.inverse.photographs.maps.maps import pair_of
@@ -25,7 +25,7 @@ def require_variant():
         raise BrdfkitError(
             f"svbrdf: the variant {variant} makes no pictures in RGB; set llvm_ad_rgb."
         )
-    if not double_precision.differentiable():
+    if not double_precision.has_derivatives():
         raise BrdfkitError("svbrdf: it needs LLVM, for derivatives; see the README.")
 
 
@@ -50,7 +50,9 @@ def to_numbers(label, anisotropic, fixed):
     for name in fixed:
         if name not in shapes:
             model.parameter(name)
-            raise BrdfkitError(f"{label}: {name} is not searched; fixed can be {listed(shapes)}.")
+            raise BrdfkitError(
+                f"{label}: {name} is not searched; fixed can be {join_words(shapes)}."
+            )
     usual = model().values
     # also those of the parts of a sum, as ggx_1_f0
     held = {name: usual[name] for name in shapes if name == "f0" or name.endswith("_f0")}

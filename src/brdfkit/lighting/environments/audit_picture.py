@@ -6,7 +6,7 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.colours import luminance, to_srgb
-from brdfkit.core.plots import Plot
+from brdfkit.core.figures import Plot
 from brdfkit.lighting.environments.light_distribution import (
     cumulative_shares,
     pixel_directions,

@@ -9,7 +9,7 @@ from brdfkit.core import catalogue
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError, nearest
 from brdfkit.core.files import write_safely
-from brdfkit.core.jit.threads import in_turn, two_threads
+from brdfkit.core.jit.threads import in_turn, use_two_threads
 from brdfkit.core.locate import find_file_or_name
 from brdfkit.mitsuba_bridge.properties.picture_file import read_pixels
 from brdfkit.model import labels
@@ -32,8 +32,8 @@ def find_map(name: str | Path) -> Path:
     >>> find_map("studio").name
     'studio.exr'
     """
-    place = find_file_or_name(name, "environment map", catalogue.environments())
-    return catalogue.environment_path(place) if isinstance(place, str) else place
+    place = find_file_or_name(name, "environment map", catalogue.list_environments())
+    return catalogue.find_environment_file(place) if isinstance(place, str) else place
 
 
 def looks_like_map(name: str) -> bool:
@@ -44,8 +44,8 @@ def looks_like_map(name: str) -> bool:
     """
     if Path(name).suffix or "/" in name or Path(name).exists():
         return Path(name).suffix.lower() in HDR + EIGHT_BIT
-    materials = [*labels.models(), *catalogue.materials()]
-    return bool(nearest(name, catalogue.environments())) and not nearest(name, materials)
+    materials = [*labels.models(), *catalogue.list_materials()]
+    return bool(nearest(name, catalogue.list_environments())) and not nearest(name, materials)
 
 
 def load_map(source: str | Path | AnyArray) -> tuple[str, AnyArray]:
@@ -120,6 +120,6 @@ def write_map(rgb: AnyArray, path: str | Path) -> Path:
     precision = np.float16 if rgb.max() <= LARGEST_HALF_FLOAT else np.float32
     header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.PIZ_COMPRESSION}
     channels = {c: np.ascontiguousarray(rgb[..., i], precision) for i, c in enumerate("RGB")}
-    with write_safely(path) as beside, two_threads():
+    with write_safely(path) as beside, use_two_threads():
         OpenEXR.File(header, channels).write(str(beside))
     return path

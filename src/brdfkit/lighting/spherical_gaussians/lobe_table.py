@@ -16,7 +16,12 @@ from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import no_such
 from brdfkit.core.geometry.directions import normalize, rotate_z, to_angles
-from brdfkit.core.geometry.multilinear import bracket, corners, flat_index, periodic_bracket
+from brdfkit.core.geometry.multilinear import (
+    find_bracket,
+    find_periodic_bracket,
+    list_corners,
+    to_flat_index,
+)
 from brdfkit.lighting.spherical_gaussians.elliptic import elliptic
 from brdfkit.lighting.spherical_gaussians.gmm import gmm
 from brdfkit.lighting.spherical_gaussians.one_view import Brdf, sample_view
@@ -51,10 +56,10 @@ class LobeTable:
         (n, lobes).
         """
         theta, phi = to_angles(wo)
-        brackets = [bracket(theta / self.theta_o[1], len(self.theta_o))]
-        brackets += [periodic_bracket(phi / (2 * np.pi) * len(self.phi_o), len(self.phi_o))]
+        brackets = [find_bracket(theta / self.theta_o[1], len(self.theta_o))]
+        brackets += [find_periodic_bracket(phi / (2 * np.pi) * len(self.phi_o), len(self.phi_o))]
         shape = len(self.theta_o), len(self.phi_o)
-        shares = [(flat_index(nodes, shape), share) for nodes, share in corners(brackets)]
+        shares = [(to_flat_index(nodes, shape), share) for nodes, share in list_corners(brackets)]
 
         def interpolate(values: FloatArray) -> FloatArray:
             each = (-1,) + (1,) * (values.ndim - 1)

@@ -17,7 +17,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles, rotate_z
-from brdfkit.core.geometry.quadrature import ring_rule
+from brdfkit.core.geometry.quadrature import make_ring_rule
 
 Brdf = Callable[[FloatArray, FloatArray], FloatArray]
 # A method's result for a view: albedo of the diffuse part (channels,), and the lobes' integrals
@@ -71,7 +71,7 @@ class OneView:
 def sample_view(brdf: Brdf, theta: float, phi: float) -> OneView:
     """Evaluate `brdf(wi, wo)`, which gives (n, channels) [sr⁻¹], for the view at θ and φ [rad]."""
     view = from_angles(theta, 0)
-    directions, cosine = ring_rule(view, RINGS)  # solid angles times cosθ
+    directions, cosine = make_ring_rule(view, RINGS)  # solid angles times cosθ
     wi, wo = rotate_z(directions, phi), rotate_z(view, phi)
     values = np.asarray(brdf(wi, np.broadcast_to(wo, wi.shape)), float)
     if values.ndim != 2 or not np.isfinite(values).all():

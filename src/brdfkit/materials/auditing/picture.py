@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from brdfkit.core.colours import RGB, luminance
-from brdfkit.core.plots import Plot
+from brdfkit.core.figures import Plot
 from brdfkit.materials.auditing.report import percent
 from brdfkit.materials.measured.coverage import is_near
 from brdfkit.materials.measured.spectrum_to_rgb import to_rgb_or_mean

@@ -8,7 +8,7 @@ import csv
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from brdfkit.core import index
+from brdfkit.core import catalogue
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.files import sha256
 from brdfkit.materials import formats
@@ -82,7 +82,7 @@ def collections():
     >>> collections()["merl"].files["merl/alum-bronze"].file
     'alum-bronze.binary'
     """
-    entries = index.entries()["collections"]
+    entries = catalogue.read_index()["collections"]
     return {name: _make_collection(name, entry) for name, entry in entries.items()}
 
 
@@ -136,7 +136,7 @@ def _make_collection(name, entry):
     """The `Collection` of an `entry` of the index; its files are in the entry or in a table."""
     rows, url = entry.pop("files"), entry.pop("url", "")
     if isinstance(rows, str):
-        with (index.folder() / rows).open(encoding="utf-8", newline="") as stream:
+        with (catalogue.find_folder() / rows).open(encoding="utf-8", newline="") as stream:
             rows = list(csv.DictReader(stream, delimiter="\t"))
     listed = [_make_listed(name, url=row.get("url", url), row=row) for row in rows]
     return Collection(name, **entry, files={found.name: found for found in listed})

@@ -17,7 +17,7 @@ import lzma
 from contextlib import contextmanager
 from functools import cache
 
-from brdfkit.core.discovery.plugin_files import modules_in
+from brdfkit.core.discovery.plugin_files import import_modules
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import COMPRESSED, GZIP
 from brdfkit.materials.formats._source import Source as Source
@@ -29,7 +29,7 @@ HEAD = 4096  # bytes that a format's `sniff` sees
 @cache
 def formats():
     """The format modules of this folder, in alphabetical order."""
-    return modules_in(__name__, __path__)
+    return import_modules(__name__, __path__)
 
 
 def has_format(path):

@@ -9,7 +9,7 @@ import numpy as np
 
 from brdfkit.core.colours import RGB
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.files import COMPRESSED, contents
+from brdfkit.core.files import COMPRESSED, read_bytes
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured import Measured
 
@@ -77,7 +77,7 @@ class Source:
         for suffix in ("", *COMPRESSED):
             path = self.path.with_name(name + suffix)
             if path.exists():
-                return Source(path, None, contents(path))
+                return Source(path, None, read_bytes(path))
         raise self.error(f"needs {name} beside it; put the two in one folder")
 
     def parse_numbers(self, line, fields, count=None):

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.core.geometry.directions import from_angles, to_angles
-from brdfkit.core.geometry.multilinear import corners, periodic_bracket
+from brdfkit.core.geometry.multilinear import find_periodic_bracket, list_corners
 from brdfkit.materials.formats._writing import require_measured
 
 NAME = "UTIA"
@@ -92,7 +92,7 @@ class Lookup:
     def __call__(self, wi, wo):
         axes = [part for w in (wi, wo) for part in _bracket(*to_angles(w))]
         result = 0.0
-        for cells, share in corners(axes):
+        for cells, share in list_corners(axes):
             result = result + share[..., None] * self.values[cells]
         return result
 
@@ -102,4 +102,4 @@ def _bracket(theta, phi):
     theta = theta / THETA[1]
     i = np.minimum(theta.astype(int), len(THETA) - 2)
     # Beyond 75° the share exceeds 1: linear extrapolation
-    return (i, i + 1, theta - i), periodic_bracket(phi / PHI[1], len(PHI))
+    return (i, i + 1, theta - i), find_periodic_bracket(phi / PHI[1], len(PHI))

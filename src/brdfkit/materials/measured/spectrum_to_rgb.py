@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.core.colours import ILLUMINANT, OBSERVER, RGB, rgb_of_wavelengths
+from brdfkit.core.colours import ILLUMINANT, OBSERVER, RGB, compute_rgb_weights
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.measured.arithmetic import mix_channels
 from brdfkit.materials.measured.measured_data import Data, MeasuredData
@@ -25,7 +25,7 @@ def to_rgb(data: Data) -> Data:
     ('R', 'G', 'B')
     """
     nanometres = wavelengths(data)
-    weights = rgb_of_wavelengths(nanometres, data.name)
+    weights = compute_rgb_weights(nanometres, data.name)
     note = f"linear sRGB from {len(nanometres)} wavelengths under {ILLUMINANT}, {OBSERVER}"
     return mix_channels(data, weights, RGB, {**data.info, "rgb": note})
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.colours import RGB
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.names import printable
+from brdfkit.core.names import to_printable
 from brdfkit.model.samples.samples import require_some
 
 
@@ -53,7 +53,7 @@ def make_printable(
     name: str, channels: Sequence[str], info: Mapping[str, str] | None
 ) -> tuple[str, tuple[str, ...], dict[str, str]]:
     """Return the name, the channels and the notes `info` as text without control characters."""
-    return printable(name), tuple(map(printable, channels)), to_notes(info, name)
+    return to_printable(name), tuple(map(to_printable, channels)), to_notes(info, name)
 
 
 def to_notes(info: Mapping[str, str] | None, name: str) -> dict[str, str]:
@@ -63,7 +63,9 @@ def to_notes(info: Mapping[str, str] | None, name: str) -> dict[str, str]:
             f"{name}: info = {info!r:.60} should be notes by their names, as in "
             "{'instrument': 'gonioreflectometer'}."
         )
-    return {printable(key): printable(note, keep="\n\t") for key, note in (info or {}).items()}
+    return {
+        to_printable(key): to_printable(note, keep="\n\t") for key, note in (info or {}).items()
+    }
 
 
 def default_channels(values: ArrayLike, samples: int, name: str) -> tuple[str, ...]:

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.figures import Plot
 from brdfkit.core.names import make_unique
-from brdfkit.core.plots import Plot
 from brdfkit.images.thumbnails.lobes import Radius
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.plotting.plane_of_incidence import is_scattered, lobe, usual_angles

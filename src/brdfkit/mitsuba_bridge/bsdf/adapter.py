@@ -9,14 +9,14 @@ import operator
 
 import drjit as dr
 
-from brdfkit.core.geometry.quadrature import cosine_directions
+from brdfkit.core.geometry.quadrature import spread_by_cosine
 from brdfkit.mitsuba_bridge.bsdf.signed_sum import tabulate
 from brdfkit.mitsuba_bridge.bsdf.surface_response import Point
 from brdfkit.mitsuba_bridge.bsdf.textures import textured_frame
 from brdfkit.model.lobes import components_of
 
 # Outgoing directions over which `eval_diffuse_reflectance` averages
-FROM_ABOVE = cosine_directions(64)
+FROM_ABOVE = spread_by_cosine(64)
 
 
 def define(mi, model):

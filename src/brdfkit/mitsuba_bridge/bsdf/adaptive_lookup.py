@@ -40,7 +40,10 @@ class AdaptiveLookup:
         angles = self._angles(self._fold(wi, wi))
         axes = [(nodes, x) for nodes, x in zip(self.nodes, angles, strict=True) if nodes.count > 1]
         brackets, shape = [nodes.bracket(x) for nodes, x in axes], [n.count for n, _ in axes]
-        return [(multilinear.flat_index(at, shape), t) for at, t in multilinear.corners(brackets)]
+        return [
+            (multilinear.to_flat_index(at, shape), t)
+            for at, t in multilinear.list_corners(brackets)
+        ]
 
     def corners(self, wi, wo):
         """(row, factor) of stored values: the BRDF is the sum of factor times value.
@@ -55,10 +58,10 @@ class AdaptiveLookup:
             phi_i, theta_i = self._angles(wi)
             factor *= self.ndf.eval(m) / (4 * self.sigma.eval(_to_square(theta_i, phi_i)))
         n = self.n
-        for cell, share in multilinear.corners([bracket(x * (n - 1), n) for x in (u.y, u.x)]):
+        for cell, share in multilinear.list_corners([bracket(x * (n - 1), n) for x in (u.y, u.x)]):
             for incidence, weight in incidences:
                 yield (
-                    incidence * n * n + multilinear.flat_index(cell, (n, n)),
+                    incidence * n * n + multilinear.to_flat_index(cell, (n, n)),
                     weight * share * factor,
                 )
 

@@ -5,7 +5,7 @@ samples follows the cosine, so that the weight of a sample is bounded where the 
 unpolarised.
 """
 
-from brdfkit.core.geometry.vectors import above_horizon
+from brdfkit.core.geometry.vectors import mask_below_horizon
 from brdfkit.model.lobes import Cosine
 
 # Share of the samples that follow the cosine, whatever the BRDF
@@ -29,14 +29,14 @@ def frame(mi):
 
     class Frame(mi.BSDF):
         def sample(self, ctx, si, sample1, sample2, active=True):
-            wi, active = above_horizon(si.wi, active)
+            wi, active = mask_below_horizon(si.wi, active)
             here = self.at(ctx, si, wi, active)
             wo, component = here.draw(sample1, sample2)
 
             # Neither the direction nor its density in the weight has derivatives
             wo = dr.detach(wo)
             sample = dr.zeros(mi.BSDFSample3f)
-            above_wo, active = above_horizon(wo, active)
+            above_wo, active = mask_below_horizon(wo, active)
             value, pdf = here.value(above_wo) * above_wo.z, here.pdf(above_wo)
             active &= pdf > 0
             sample.wo = wo
@@ -49,8 +49,8 @@ def frame(mi):
             return sample, mi.depolarizer(weight)
 
         def eval_pdf(self, ctx, si, wo, active=True):
-            wi, active = above_horizon(si.wi, active)
-            wo, active = above_horizon(wo, active)
+            wi, active = mask_below_horizon(si.wi, active)
+            wo, active = mask_below_horizon(wo, active)
             here = self.at(ctx, si, wi, active)
             value, pdf = here.value(wo) * wo.z, here.pdf(wo)
             return mi.depolarizer(dr.select(active, value, 0)), dr.select(active, pdf, 0)

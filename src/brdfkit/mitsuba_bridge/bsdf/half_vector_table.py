@@ -12,7 +12,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.core.geometry.multilinear import corners, flat_index
+from brdfkit.core.geometry.multilinear import list_corners, to_flat_index
 from brdfkit.core.geometry.vectors import angle, azimuth, cos_theta_d, half_vector, reflect
 from brdfkit.mitsuba_bridge.arrays import BELOW_ONE, Rows, bracket, periodic_bracket
 
@@ -77,7 +77,7 @@ class HalfVectorTable:
         """(index, share) of the incidences of the table around `wi`; the shares add up to 1."""
         brackets = self._brackets(wi)
         shape = (self.azimuths, self.angles)[-len(brackets) :]
-        return [(flat_index(nodes, shape), share) for nodes, share in corners(brackets)]
+        return [(to_flat_index(nodes, shape), share) for nodes, share in list_corners(brackets)]
 
     def _brackets(self, wi):
         """The brackets of `wi` among the azimuths, if there are several, and the polar angles."""

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from brdfkit.core.geometry.vectors import above_horizon
+from brdfkit.core.geometry.vectors import mask_below_horizon
 from brdfkit.mitsuba_bridge.bsdf.base import COSINE, COSINE_SHARE, frame
 
 
@@ -33,7 +33,7 @@ def measured_frame(mi):
             return Point(mi, self, si, wi, ctx.is_enabled(flags.GlossyReflection, 0))
 
         def eval_diffuse_reflectance(self, si, active=True):
-            wi, active = above_horizon(si.wi, active)
+            wi, active = mask_below_horizon(si.wi, active)
             return mi.Spectrum(dr.select(active, self.albedo(wi, si), 0))
 
     return MeasuredFrame

@@ -19,8 +19,8 @@ def corners(table, wi, wo):
     if table.anisotropic:
         n_a = table.shape[0]
         axes.insert(0, periodic_bracket(phi_h / (2 * dr.pi) * n_a - 0.5, n_a))
-    for cells, share in multilinear.corners(axes):
-        yield multilinear.flat_index(cells, table.shape), share
+    for cells, share in multilinear.list_corners(axes):
+        yield multilinear.to_flat_index(cells, table.shape), share
 
 
 def half_difference(wi, wo):

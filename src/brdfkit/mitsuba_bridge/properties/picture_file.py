@@ -6,7 +6,7 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import is_utf8, require_file
-from brdfkit.core.jit.threads import two_threads
+from brdfkit.core.jit.threads import use_two_threads
 from brdfkit.mitsuba_bridge.properties.radiance_rows import require_rows
 
 OURS = "BrdfkitError: "
@@ -21,7 +21,7 @@ def load_by_mitsuba(function, source, name):
     if isinstance(source, str) and not is_utf8(source):
         raise BrdfkitError(f"{name}: its path is no UTF-8, as Mitsuba needs it; rename the file.")
     try:
-        with two_threads():
+        with use_two_threads():
             return function(source, parallel=False)
     except (MemoryError, IndexError, OverflowError) as error:  # of a size that no file has
         raise BrdfkitError(

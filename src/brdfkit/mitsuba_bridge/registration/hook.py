@@ -72,14 +72,14 @@ def _connect():
 
     def on_variant(before=None, variant=None):
         try:
-            llvm.refuse_bad_choice(variant)
+            llvm.require_safe_variant(variant)
         except BrdfkitError:
             mi.set_variant("scalar_rgb")  # or the refused variant would stay set
             raise
         register_all()
 
     mi.detail.add_variant_callback(on_variant)
-    plugin_files.on_added(register_all)
+    plugin_files.call_when_added(register_all)
     register_all()
 
 

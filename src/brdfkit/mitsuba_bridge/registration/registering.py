@@ -42,7 +42,7 @@ def register_all():
     for kind, (_, register) in KINDS.items():
         if kind == "volumes" and variant == "scalar_rgb":
             continue
-        for name in plugin_files.sources(kind):
+        for name in plugin_files.find_plugins(kind):
             if (variant, kind, name) not in _registered:
                 _registered.add((variant, kind, name))
                 getattr(mi, register)(name, lambda props, k=kind, n=name: _make(k, n, props))
@@ -52,10 +52,10 @@ def _make(kind, name, props):
     """An instance, in the current variant, of the class that the plugin's file defines now."""
     import mitsuba as mi
 
-    source = plugin_files.sources(kind)[name]
+    source = plugin_files.find_plugins(kind)[name]
     model = labels.model_in(source) if kind == MODELS else None
     if model is None:
-        module = plugin_files.module(source)
+        module = plugin_files.import_plugin(source)
         made, known = _define(module, mi.variant())(props), getattr(module, "PARAMETERS", None)
     else:
         options = {option: props[option] for option in model.options if option in props}

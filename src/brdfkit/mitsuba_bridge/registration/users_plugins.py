@@ -38,10 +38,10 @@ def load_plugins(path: str | Path) -> dict[str, str]:
     if not str(path):
         raise BrdfkitError("The path is empty; name a folder of plugins, or a file.")
     for file in _files(Path(path).absolute()):
-        plugin_files.require_free(file.stem, file)
+        plugin_files.require_free_name(file.stem, file)
         files[file] = _kind(file)
     for kind in KINDS:
-        plugin_files.add(kind, {file.stem: file for file, k in files.items() if k == kind})
+        plugin_files.add_plugins(kind, {file.stem: file for file, k in files.items() if k == kind})
     return {file.stem: kind for file, kind in sorted(files.items())}
 
 
@@ -50,7 +50,7 @@ def _files(path):
     _refuse_misspelt(path)
     folders = [path / kind for kind in KINDS if (path / kind).is_dir()]
     if not folders:
-        return plugin_files.files_in(path)
+        return plugin_files.find_python_files(path)
     return sorted(file for f in (path, *folders) for file in f.glob("[!_]*.py"))
 
 
@@ -67,7 +67,7 @@ def _kind(file):
 
     Raises `BrdfkitError` for a file that holds no plugin or lies in no folder of a kind.
     """
-    module = plugin_files.module(file)
+    module = plugin_files.import_plugin(file)
     if labels.model_in(file) is not None:
         return MODELS
     if file.parent.name not in KINDS:

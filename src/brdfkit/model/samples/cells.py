@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from brdfkit.core.geometry.directions import from_half_difference
-from brdfkit.core.jit.padding import empty_rows
+from brdfkit.core.jit.padding import make_padded_rows
 
 
 def least_cosine(max_angle):
@@ -38,7 +38,7 @@ def directions_within(axes, max_angle):
 def as_columns(array, rows=None):
     """An array (n, k), or its `rows`, whose columns are contiguous, and as Dr.Jit reads them."""
     taken = [values if rows is None else values[rows] for values in array.T]
-    columns = empty_rows(len(taken), len(taken[0]))
+    columns = make_padded_rows(len(taken), len(taken[0]))
     for column, values in zip(columns, taken, strict=True):
         column[:] = values
     return columns.T

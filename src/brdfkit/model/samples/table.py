@@ -13,7 +13,12 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_half_difference, half_azimuth, to_half_difference
-from brdfkit.core.geometry.multilinear import bracket, corners, flat_index, periodic_bracket
+from brdfkit.core.geometry.multilinear import (
+    find_bracket,
+    find_periodic_bracket,
+    list_corners,
+    to_flat_index,
+)
 
 LARGEST = 1e30  # 1/sr that is rendered: sums and products of a few end in single precision at 3e38
 
@@ -143,20 +148,20 @@ class Table:
         theta_h, theta_d, phi_d = to_half_difference(wi, wo)
         n_h, n_d, n_p = self.shape[-3:]
         axes = [
-            bracket(np.sqrt(theta_h / (np.pi / 2)) * n_h - 0.5, n_h),
-            bracket(theta_d / (np.pi / 2) * n_d - 0.5, n_d),
-            periodic_bracket(phi_d / self.phi_d_period * n_p - 0.5, n_p),
+            find_bracket(np.sqrt(theta_h / (np.pi / 2)) * n_h - 0.5, n_h),
+            find_bracket(theta_d / (np.pi / 2) * n_d - 0.5, n_d),
+            find_periodic_bracket(phi_d / self.phi_d_period * n_p - 0.5, n_p),
         ]
         if self.anisotropic:
             n_a = self.shape[0]
             phi_h = half_azimuth(wi, wo)
-            axes.insert(0, periodic_bracket(phi_h / (2 * np.pi) * n_a - 0.5, n_a))
+            axes.insert(0, find_periodic_bracket(phi_h / (2 * np.pi) * n_a - 0.5, n_a))
 
         # np.take of flat cells is several times as fast as an index on each axis
         values = self.filled_values.reshape(-1, self.values.shape[-1])
         result = np.zeros((*theta_h.shape, values.shape[-1]))
-        for nodes, share in corners(axes):
-            result += share[..., None] * values.take(flat_index(nodes, self.shape), axis=0)
+        for nodes, share in list_corners(axes):
+            result += share[..., None] * values.take(to_flat_index(nodes, self.shape), axis=0)
         above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
         return np.where(above[..., None], result, 0.0)
 

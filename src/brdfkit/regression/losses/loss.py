@@ -108,7 +108,7 @@ class Loss:
 @in_turn
 def squares(loss: Loss, values: Any, samples: Any) -> NDArray[np.float64]:
     """Squared differences (n,) of `values` (n, channels) from the `Samples`, channels summed."""
-    array = double_precision.array
+    array = double_precision.to_array
     cosines = [array(w[:, 2]) for w in (samples.wi, samples.wo)]
     differences = [
         loss.difference(array(value), array(measured), *cosines)
@@ -146,8 +146,8 @@ def require_working(loss: Loss) -> None:
             f"The loss {loss.name} gives {found.size} numbers for {model.size} samples; it should "
             "give one for each."
         )
-    ones = [double_precision.array(np.full(len(model), x)) for x in (0.4, 0.75, 0.5)]
-    _, slope = differentiate(lambda m: loss.difference(m, *ones), double_precision.array(model))
+    ones = [double_precision.to_array(np.full(len(model), x)) for x in (0.4, 0.75, 0.5)]
+    _, slope = differentiate(lambda m: loss.difference(m, *ones), double_precision.to_array(model))
     if not np.array(slope).any():
         raise BrdfkitError(
             f"The loss {loss.name} does not change with the model's value, or has no derivative by "
@@ -158,7 +158,7 @@ def require_working(loss: Loss) -> None:
 def _at_oblique(loss, model, measured):
     """The differences (n,) of a loss, as NumPy's, where cosθ_i is 0.75 and cosθ_o 0.5."""
     values = (model, measured + 0 * model, 0.75 + 0 * model, 0.5 + 0 * model)
-    found = loss.difference(*map(double_precision.array, values))
+    found = loss.difference(*map(double_precision.to_array, values))
     if isinstance(found, np.ndarray):
         raise TypeError("it gives an array of NumPy's")
     return np.array(found)

@@ -13,7 +13,7 @@ from functools import cached_property
 import drjit as dr
 
 from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.core.names import listed
+from brdfkit.core.names import join_words
 from brdfkit.images.ball import LIGHTS
 from brdfkit.regression.losses.loss import Loss
 
@@ -76,7 +76,7 @@ class Picture:
 
     def describe(self) -> str:
         """What is seen, in words."""
-        return f"pictures of a ball under {listed(self.lights)}"
+        return f"pictures of a ball under {join_words(self.lights)}"
 
     @cached_property
     def of_pixels(self) -> Loss:

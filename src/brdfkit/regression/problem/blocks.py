@@ -39,24 +39,24 @@ class Block:
 
         def array(values):
             part = values[rows]
-            return double_precision.array(part if count == 1 else np.tile(part, count))
+            return double_precision.to_array(part if count == 1 else np.tile(part, count))
 
         wi, wo = (
             double_precision.Vector(*map(array, np.asarray(w).T)) for w in (samples.wi, samples.wo)
         )
         size = rows.stop - rows.start
         point = np.repeat(np.arange(count, dtype=np.uint32), size)
-        index = dr.uint32_array_t(double_precision.float64())
+        index = dr.uint32_array_t(double_precision.float_type())
         measured = [array(channel) for channel in samples.values.T]
         return cls(loss, rows, count, wi, wo, measured, array(importance), index(pad(point)))
 
     def spread(self, table):
         """A list of arrays, one value per sample: the columns of `table` (count, columns)."""
-        float64, columns = double_precision.float64(), table.shape[1]
-        if not double_precision.differentiable():  # such arrays cannot be gathered from
+        float64, columns = double_precision.float_type(), table.shape[1]
+        if not double_precision.has_derivatives():  # such arrays cannot be gathered from
             size = self.rows.stop - self.rows.start
             return [float64(np.repeat(column, size)) for column in table.T]
-        flat, first = double_precision.array(table.ravel()), self.point * columns
+        flat, first = double_precision.to_array(table.ravel()), self.point * columns
         return [dr.gather(float64, flat, first + k) for k in range(columns)]
 
     def columns(self, columns, table):
@@ -67,7 +67,7 @@ class Block:
         """(wi, wo) of the samples, once."""
         return [
             double_precision.Vector(
-                *(double_precision.array(self.fold(x)[0]) for x in (w.x, w.y, w.z))
+                *(double_precision.to_array(self.fold(x)[0]) for x in (w.x, w.y, w.z))
             )
             for w in (self.wi, self.wo)
         ]

@@ -39,7 +39,7 @@ class Columns:
 
     def bind(self, shapes):
         """The model at `shapes`, one array or number for each name."""
-        fixed = {name: double_precision.scalar(value) for name, value in self.fixed.items()}
+        fixed = {name: double_precision.to_scalar(value) for name, value in self.fixed.items()}
         return self.model.bind(dict(zip(self.names, shapes, strict=True)) | fixed)
 
     def eval(self, shapes, wi, wo, factor=None):
@@ -50,7 +50,7 @@ class Columns:
         """
         if not self.slopes:
             return self.values(shapes, wi, wo, factor)
-        if not double_precision.differentiable():
+        if not double_precision.has_derivatives():
             return self.values(shapes, wi, wo) + self._differences(shapes, wi, wo)
         for shape in shapes:
             dr.enable_grad(shape)
@@ -88,11 +88,11 @@ class Columns:
 @cache
 def _trace(model, names, fixed):
     """(lobes, powers, slopes) of `Columns`, found by evaluating the model at one direction pair."""
-    constants = {name: double_precision.scalar(model().values[name]) for name in fixed}
-    up = double_precision.vector(np.array([[0.0, 0.0, 1.0]]))
+    constants = {name: double_precision.to_scalar(model().values[name]) for name in fixed}
+    up = double_precision.to_vector(np.array([[0.0, 0.0, 1.0]]))
     slopes, lobes, powers = [], [], []
     for j in range(-1, len(names)):
-        shapes = {name: double_precision.scalar(model().values[name]) for name in names}
+        shapes = {name: double_precision.to_scalar(model().values[name]) for name in names}
         if j >= 0:
             dr.enable_grad(shapes[names[j]])
         terms = [lobe for _, lobe in model.bind(shapes | constants).terms()]
@@ -101,7 +101,7 @@ def _trace(model, names, fixed):
         if j < 0:
             lobes = [*range(len(terms)), *(k for k, lobe in enumerate(terms) if lobe.quadratic)]
             powers = [1] * len(terms) + [2] * (len(lobes) - len(terms))
-        elif double_precision.differentiable():
+        elif double_precision.has_derivatives():
             slopes += [(v, j) for v, value in enumerate(values) if dr.grad_enabled(value)]
         else:
             slopes += [(v, j) for v, value in enumerate(values) if not isinstance(value, float)]

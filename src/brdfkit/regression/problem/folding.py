@@ -26,7 +26,7 @@ def fold(problem):
     """The `Folded` problem of a `Problem`, or None where it does not fold."""
     cells = problem.samples.cells
     few = len(problem.groups) == 1  # a node has the products of all channels
-    if not (problem.linear and few) or cells is None or not double_precision.differentiable():
+    if not (problem.linear and few) or cells is None or not double_precision.has_derivatives():
         return None
     pairs = _depend_on_cos_d(problem)
     if pairs is None:
@@ -41,11 +41,11 @@ def fold(problem):
 def _depend_on_cos_d(problem):
     """Whether a factor S depends on cosθ_d, beside the half vector; None where a factor A, or a
     lobe that has no factors, depends on a parameter."""
-    space, up = problem.space, double_precision.vector(np.array([[0.0, 0.0, 1.0]]))
+    space, up = problem.space, double_precision.to_vector(np.array([[0.0, 0.0, 1.0]]))
     shapes = [
-        double_precision.scalar(x) for x in space.table(np.full((1, len(space.names)), 0.5))[0]
+        double_precision.to_scalar(x) for x in space.table(np.full((1, len(space.names)), 0.5))[0]
     ]
-    cos_d = double_precision.scalar(1.0)
+    cos_d = double_precision.to_scalar(1.0)
     fixed = problem.columns.bind(shapes).lobes()
     dr.enable_grad(cos_d)
     depends = any(dr.grad_enabled(l.factors[0](up, cos_d)) for l in fixed if l.factors)
@@ -67,7 +67,7 @@ class Folded:
         self.problem, self.space, self.least = problem, problem.space, problem.least
         self.columns, self.channels = problem.columns, problem.channels
         self.wi, self.wo = (
-            double_precision.vector(np.asarray(w)[starts])
+            double_precision.to_vector(np.asarray(w)[starts])
             for w in (problem.samples.wi, problem.samples.wo)
         )
         lobes, channels = len(self.columns.lobes), self.channels
@@ -87,7 +87,7 @@ class Folded:
         """The factors κ A of the lobes, and -κ R by channel, times √w: NumPy's (..., n)."""
         columns, problem = self.columns, self.problem
         middle = self.space.table(np.full((1, len(self.space.names)), 0.5))[0]
-        lobes = columns.bind([double_precision.scalar(x) for x in middle]).lobes()
+        lobes = columns.bind([double_precision.to_scalar(x) for x in middle]).lobes()
         root, constants, differences = dr.sqrt(block.importance), [], []
         for c in range(self.channels):
             difference, kappa = problem._difference(block, 0.0, c)
@@ -118,7 +118,7 @@ class Folded:
         """The `Sums` at weights of 0."""
         points, nodes = len(u), len(self.wi.x)
         table = self.space.table(u)
-        shapes = [double_precision.array(np.repeat(x, nodes)) for x in table.T]
+        shapes = [double_precision.to_array(np.repeat(x, nodes)) for x in table.T]
         wi, wo = (
             double_precision.Vector(*(dr.tile(x, points) for x in (w.x, w.y, w.z)))
             for w in (self.wi, self.wo)

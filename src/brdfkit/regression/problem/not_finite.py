@@ -81,7 +81,7 @@ def require_finite_slopes(model, values, names, wi, wo):
     """
     # One value for each pair, so that its derivative is that of the pair, and no sum is taken
     count = len(wi.x)
-    bound = {n: double_precision.array(np.full(count, v)) for n, v in values.items()}
+    bound = {n: double_precision.to_array(np.full(count, v)) for n, v in values.items()}
     for name in names:
         dr.enable_grad(bound[name])
     lobes = [lobe.eval(wi, wo) for _, lobe in model.bind(bound).terms()]

@@ -59,6 +59,6 @@ class PixelBlocks:
 
 def _add_up(array, each):
     """The sums of every `each` numbers of an array."""
-    if double_precision.differentiable():
+    if double_precision.has_derivatives():
         return dr.block_sum(array, each)
-    return double_precision.array(np.asarray(array).reshape(-1, each).sum(axis=1))
+    return double_precision.to_array(np.asarray(array).reshape(-1, each).sum(axis=1))

@@ -147,7 +147,7 @@ class Problem:
                     difference, slope = self._difference(block, value, c)
                     importance = block.importance
                     if self.factors is not None:
-                        factors = double_precision.array(self.factors[c][block.rows])
+                        factors = double_precision.to_array(self.factors[c][block.rows])
                         importance = importance * factors
                     own.append(importance * dr.square(difference))
                     moments.append(importance * difference * slope)
@@ -206,7 +206,7 @@ class Problem:
         def extended(value):
             return clamped(value) + slope * dr.minimum(value, 0)
 
-        value = double_precision.float64()(value) + 0 * block.wi.z
+        value = double_precision.float_type()(value) + 0 * block.wi.z
         if not self.clamped:
             return differentiate(difference, value)
         if not self.extended:

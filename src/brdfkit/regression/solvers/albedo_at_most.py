@@ -9,7 +9,7 @@ import numpy as np
 from brdfkit.core.arguments import to_positive
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.core.geometry.quadrature import ring_rule
+from brdfkit.core.geometry.quadrature import make_ring_rule
 from brdfkit.core.jit import double_precision
 from brdfkit.regression.problem.expansion import combine
 from brdfkit.regression.problem.not_finite import require_finite
@@ -77,7 +77,9 @@ class AlbedoAtMost:
         """Yield for each direction of incidence the weights (n,) of the quadrature's nodes, and the
         columns (columns, n) that `evaluate` gives there."""
         wi, wo, rules = _place_nodes(self.theta, self.phi)
-        shapes = [double_precision.array(np.full(len(wi.z), x)) for x in problem.space.table(u)[0]]
+        shapes = [
+            double_precision.to_array(np.full(len(wi.z), x)) for x in problem.space.table(u)[0]
+        ]
         T = np.stack([np.asarray(column) for column in evaluate(shapes, wi, wo)])
         values = len(problem.columns.lobes)
         require_finite(problem.model, T[: problem.columns.lobes.max() + 1], wi, wo)
@@ -93,9 +95,9 @@ def _place_nodes(theta, phi):
     the weights (n,) of the nodes of each."""
     angles = np.meshgrid(np.radians(theta), np.radians(phi), indexing="ij")
     incident = from_angles(*angles).reshape(-1, 3)
-    nodes, rules = zip(*(ring_rule(wi, POINTS) for wi in incident), strict=True)
+    nodes, rules = zip(*(make_ring_rule(wi, POINTS) for wi in incident), strict=True)
     wi = np.repeat(incident, [len(rule) for rule in rules], axis=0)
-    return double_precision.vector(wi), double_precision.vector(np.concatenate(nodes)), rules
+    return double_precision.to_vector(wi), double_precision.to_vector(np.concatenate(nodes)), rules
 
 
 def _mix(problem, weights, T):

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.core.json_values import plain
+from brdfkit.core.json_values import to_json
 from brdfkit.regression.solvers.albedo_at_most import AlbedoAtMost
 from brdfkit.regression.solvers.constraints import WeightsAtMost
 from brdfkit.regression.solvers.differential_evolution import DifferentialEvolution
@@ -58,7 +58,7 @@ def to_plain(thing: Any) -> Any:
     """A solver or a constraint as JSON has it; one of a user's by its name alone."""
     for name, cls in (SOLVERS | CONSTRAINTS).items():
         if type(thing) is cls:
-            return {"name": name, **plain(thing)}
+            return {"name": name, **to_json(thing)}
     return thing and getattr(thing, "__qualname__", type(thing).__qualname__)
 
 

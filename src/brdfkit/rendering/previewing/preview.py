@@ -15,7 +15,7 @@ import numpy as np
 
 from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.jit.loops import first_error
+from brdfkit.core.jit.loops import raise_first_cause
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.memory import require_memory
 from brdfkit.lighting.environments.map_files import find_map
@@ -142,7 +142,7 @@ def _show(materials, envmap, size, scene, method, spp, shadows):
         if shadows:
             integrator.casters.set(loaded, None, shape.casters)
         seen = mask(loaded, material) if seen is None else seen
-        with first_error():
+        with raise_first_cause():
             pictures[name] = rgb(integrator.render(loaded, seed=0, spp=spp)).astype(np.float32)
     first, seconds = next(iter(pictures.values())), time.perf_counter() - start
     parameters = parameters_of(materials)

@@ -15,7 +15,7 @@ file whose name begins with an underscore is no scene: it holds what several sce
 
 import importlib
 
-from brdfkit.core.discovery.plugin_files import names_in
+from brdfkit.core.discovery.plugin_files import find_module_names
 from brdfkit.core.errors import no_such
 
 
@@ -25,7 +25,7 @@ def scene_names():
     >>> "ball" in scene_names()
     True
     """
-    return list(names_in(__path__))
+    return list(find_module_names(__path__))
 
 
 def scene(name):

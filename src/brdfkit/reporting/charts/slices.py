@@ -26,10 +26,10 @@ def slice_charts(material, fits):
     scale = scale_of(measured[known] if known.any() else measured)
 
     def draw(title, shares, palette):
-        colours = images.colours(palette, shares)
+        colours = images.apply_colour_map(palette, shares)
         colours[..., 3] = np.where(known, 1, FAINT)
         chart = Chart(title, _theta_h(), linear("θd", 0, 90, range(0, 91, 30), "°"), **SIZE)
-        chart.image(images.png(np.swapaxes(colours, 0, 1)[::-1]))  # θd upwards
+        chart.image(images.encode_png(np.swapaxes(colours, 0, 1)[::-1]))  # θd upwards
         return chart.svg
 
     def shares(values):
@@ -49,8 +49,8 @@ def slice_charts(material, fits):
         "fits": pairs,
         "least": _short(scale.vmin),
         "most": _short(scale.vmax),
-        "values_bar": images.colour_bar(VALUES),
-        "ratios_bar": images.colour_bar(RATIOS),
+        "values_bar": images.draw_colour_bar(VALUES),
+        "ratios_bar": images.draw_colour_bar(RATIOS),
         "times": f"{MOST:g}",
         "all_known": bool(known.all()),
     }

@@ -10,7 +10,7 @@ from base64 import b64encode
 
 import numpy as np
 
-from brdfkit.core.pages.images import colours
+from brdfkit.core.pages.images import apply_colour_map
 
 DARKEST = -12  # the binary logarithm of the least light above 0
 STEPS = 128  # per doubling
@@ -24,7 +24,9 @@ def for_script(names, pictures, differences):
     """What the script needs of pictures (height, width, 3), the measured first, by their names, and
     of the colour differences ΔE (height, width) of the others to it."""
     height, width = pictures[0].shape[:2]
-    palette = np.round(colours(SCALE, np.linspace(0, 1, 256))[:, :3] * 255).astype(np.uint8)
+    palette = np.round(apply_colour_map(SCALE, np.linspace(0, 1, 256))[:, :3] * 255).astype(
+        np.uint8
+    )
     return {
         "width": width,
         "height": height,

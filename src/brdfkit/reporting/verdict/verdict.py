@@ -1,6 +1,6 @@
 """The verdict of a report in words: which fit to take, why, and how far off it is."""
 
-from brdfkit.core.names import listed
+from brdfkit.core.names import join_words
 from brdfkit.reporting.verdict.picture_verdict import (
     leads_in_picture,
     nearer_in_picture,
@@ -73,7 +73,7 @@ def _is_enough(name, best, taken):
 def _leads(loss, firsts, in_picture):
     """What the best fit leads in, in words; `firsts`: the place of the best by each loss."""
     others = [name for name, place in firsts.items() if place == 0 and name != loss]
-    by = f"by the loss{'es' * bool(others)} {listed([loss, *others])}"
+    by = f"by the loss{'es' * bool(others)} {join_words([loss, *others])}"
     if len(others) + 1 == len(firsts):
         by = "by every loss"
     return f"is best {by}" + " and by its picture" * in_picture
@@ -91,12 +91,14 @@ def _others(names, standings, firsts, loss):
     tied = [names[k] for k in rest if standings[k].tied]
     verb = "is" if len(tied) == 1 else "are"
     said = (
-        [f"{listed(tied)} {verb} not distinguishable from it by the loss {loss}."] if tied else []
+        [f"{join_words(tied)} {verb} not distinguishable from it by the loss {loss}."]
+        if tied
+        else []
     )
     ahead: dict[str, list[str]] = {}
     for other, place in firsts.items():
         own, least = standings[0].errors[other], standings[place].errors[other]
         if other != loss and own > AHEAD * least:
             ahead.setdefault(names[place], []).append(other)
-    said += [f"By {listed(by)}, {name} is ahead." for name, by in ahead.items()]
+    said += [f"By {join_words(by)}, {name} is ahead." for name, by in ahead.items()]
     return said if said or told else ["Its lead over the others is more than noise."]

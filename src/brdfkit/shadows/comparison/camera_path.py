@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from brdfkit.core.projective.homogeneous import project_all, rigid
+from brdfkit.core.projective.homogeneous import make_rigid, project_all
 
 STEPS = 4
 TURN, WAY = 0.003, 0.01  # a step's turn to the right [rad], and its way over the nearest distance
@@ -21,7 +21,7 @@ def path(placement, steps=STEPS):
     for step in range(steps):
         c, s = np.cos(TURN * step), np.sin(TURN * step)
         turn = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
-        moved = rigid(turn, np.array([WAY * step * nearest, 0, 0])) @ camera.view
+        moved = make_rigid(turn, np.array([WAY * step * nearest, 0, 0])) @ camera.view
         found.append(replace(placement, camera=replace(camera, view=moved)))
     return found
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.jit.llvm import use_variant
-from brdfkit.core.jit.loops import first_error
+from brdfkit.core.jit.loops import raise_first_cause
 from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
 from brdfkit.shadows.comparison.arguments import to_names, to_scene, to_size, to_texels
 from brdfkit.shadows.comparison.comparison import ShadowComparison
@@ -98,7 +98,7 @@ def compare(
                 score_nothing(pictures, scores, techniques)
                 continue
             placement = Placement.of_scene(scene, sensor, emitter)
-            with first_error():
+            with raise_first_cause():
                 pictures.maps = pictures_of_maps(seen, placement, kinds, resolution)
                 watched = (
                     Watched.by_moving_camera(seen, placement),
@@ -106,7 +106,7 @@ def compare(
                 )
             for label, shadow_of in techniques.items():
                 report((len(found) - 1) * len(techniques) + len(scores), asked)
-                with first_error():  # Ctrl-C, for one
+                with raise_first_cause():  # Ctrl-C, for one
                     one, lit = score(seen, placement, watched, shadow_of)
                 pictures.keep(label, lit)
                 scores[label] = one

@@ -8,7 +8,7 @@ import numpy as np
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import require_writable
 from brdfkit.core.pages import page
-from brdfkit.core.pages.images import colour_bar
+from brdfkit.core.pages.images import draw_colour_bar
 from brdfkit.core.version import __version__
 from brdfkit.images.errors.flip import flip
 from brdfkit.shadows.comparison.map_pictures import CHECKS
@@ -51,7 +51,7 @@ def write_page(comparison, path, progress=None):
     has_flip = bool(np.isfinite(flips).any())
     if has_flip:
         columns, rows = (*columns, FLIP), with_flip(rows, flips)
-    page.write(
+    page.write_page(
         "shadows.html",
         path,
         best=comparison.best,
@@ -61,7 +61,7 @@ def write_page(comparison, path, progress=None):
         flip=has_flip,
         relative_columns=comparison.columns,
         relative=to_texts(comparison.relative),
-        bar=colour_bar(ERRORS),
+        bar=draw_colour_bar(ERRORS),
         places=places,
         checks=CHECKS,
         version=__version__,

@@ -3,7 +3,7 @@
 import numpy as np
 
 from brdfkit.core.colours import to_srgb
-from brdfkit.core.pages.images import colours, narrowed, webp
+from brdfkit.core.pages.images import apply_colour_map, encode_webp, shrink
 from brdfkit.shadows.comparison.map_pictures import OUTSIDE
 
 WIDEST = 320  # pixels of a picture on the page
@@ -16,7 +16,7 @@ NOTHING = (0.16, 0.2, 0.3)  # where the light sees no surface
 
 def small(picture):
     """A picture (height, width, n), halved until it is narrow enough."""
-    return narrowed(np.asarray(picture, float), WIDEST)
+    return shrink(np.asarray(picture, float), WIDEST)
 
 
 def draw_radiance(picture, white):
@@ -27,13 +27,13 @@ def draw_radiance(picture, white):
 def draw_errors(errors):
     """The address of the shares (height, width) of the light that are gained, or lost below 0."""
     shares = np.round(small(errors[..., None])[..., 0] * STEPS) / STEPS
-    return webp(colours(ERRORS, (shares + 1) / 2)[..., :3], lossless=True)
+    return encode_webp(apply_colour_map(ERRORS, (shares + 1) / 2)[..., :3], lossless=True)
 
 
 def draw_texels(maps):
     """The address of a scene under the checker of its `MapPictures`; grey where there is no map."""
     tints = np.ones((OUTSIDE + 1, 3))
-    tints[:OUTSIDE] = colours(TINTS, np.arange(OUTSIDE) % 8 / 7.99)[:, :3] ** 2
+    tints[:OUTSIDE] = apply_colour_map(TINTS, np.arange(OUTSIDE) % 8 / 7.99)[:, :3] ** 2
     return looked_at(small(maps.shade[..., None] * tints[maps.part]))
 
 
@@ -45,4 +45,4 @@ def draw_depths(depths):
 
 def looked_at(linear):
     """The address of a picture (height, width, 3) of linear sRGB, which may lose a little."""
-    return webp(to_srgb(linear), quality=QUALITY)
+    return encode_webp(to_srgb(linear), quality=QUALITY)

@@ -7,7 +7,7 @@ w p - q, for any w: a light at a place, far away, or behind an eye, where w < 0 
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.projective.homogeneous import axes_about, project_all, rigid, to_unit_cube
+from brdfkit.core.projective.homogeneous import make_axes, make_rigid, project_all, to_unit_cube
 from brdfkit.core.projective.light import NEAREST
 from brdfkit.shadows.maps.projection import Projection
 
@@ -35,7 +35,7 @@ def view(light, corners, middle):
 
     Raises `BrdfkitError` where no plane parts the light from the corners.
     """
-    to_middle = rigid(np.eye(3), middle)
+    to_middle = make_rigid(np.eye(3), middle)
     *q, w = to_middle @ light
     q = np.array(q)
     rays = w * (corners - middle) - q
@@ -47,7 +47,7 @@ def view(light, corners, middle):
             "partition='cube' or shadow volumes, or move the light out of the scene's box."
         )
     matrix = np.zeros((4, 4))
-    matrix[:3, :3] = axes_about(-q / np.linalg.norm(q))
+    matrix[:3, :3] = make_axes(-q / np.linalg.norm(q))
     matrix[3] = [*(w * axis), -axis @ q]
     matrix = matrix @ to_middle
     depths = project_all(matrix, corners)[:, 2]

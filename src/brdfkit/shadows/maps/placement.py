@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.projective.body import Body, box
+from brdfkit.core.projective.body import Body, make_box
 from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.light import Light
 
@@ -30,14 +30,14 @@ class Placement:
         low, high = (np.array(end, float).ravel() for end in (bounds.min, bounds.max))
         if not np.isfinite([low, high]).all():
             raise BrdfkitError("the scene has no shapes that could cast or take a shadow.")
-        camera = Camera.of_sensor(sensor).fitted(box(low, high).corners)
+        camera = Camera.of_sensor(sensor).fitted(make_box(low, high).corners)
         nearest = nearest_seen(scene, sensor, camera)
         return cls(camera, Light.of_emitter(emitter), low, high, nearest)
 
     @cached_property
     def scene(self):
         """S, the box of the scene, as far as the light shines: a spot's pyramid bounds it."""
-        whole = box(self.low, self.high)
+        whole = make_box(self.low, self.high)
         return whole & self.light.pyramid(self.reach) if self.light.is_bounded else whole
 
     @property
@@ -48,7 +48,7 @@ class Placement:
     @cached_property
     def reach(self):
         """A distance [unit of length] that no ray of light through the scene exceeds."""
-        corners = box(self.low, self.high).corners
+        corners = make_box(self.low, self.high).corners
         if self.light.is_directional:
             return self.size
         return float(np.linalg.norm(corners - self.light.point[:3], axis=1).max())

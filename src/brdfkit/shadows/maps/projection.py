@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from brdfkit.core.projective.homogeneous import project, transform, unit
+from brdfkit.core.projective.homogeneous import normalise, project, transform
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.light_depth import LightDepth
 
@@ -81,7 +81,7 @@ class Projection:
         *point, w = transform(self.inverse, x, y, 0.0)
         light = [self.light.point[i] for i in range(3)]
         way = [p - w * q for p, q in zip(point, light, strict=True)]
-        return light, unit(*way)
+        return light, normalise(*way)
 
     def from_map(self, x, y, z):
         """The point of the world at a place in the cube."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.core.projective.homogeneous import project, project_all, rigid, transform
+from brdfkit.core.projective.homogeneous import make_rigid, project, project_all, transform
 from brdfkit.core.projective.light import Light
 from brdfkit.mitsuba_bridge.properties.declarations import plain_number
 from brdfkit.shadows.maps.light_camera import fitted, view
@@ -87,5 +87,5 @@ def line_of_sight(placement):
     if length < 1e-6 * np.ptp(project_all(matrix, corners), axis=0)[:2].max():
         return None
     a, b = line[:2] / length
-    turned = rigid([[b, -a, 0], [a, b, 0], [0, 0, 1]], origin)
+    turned = make_rigid([[b, -a, 0], [a, b, 0], [0, 0, 1]], origin)
     return Sight(turned @ matrix, light, corners, eye, middle)

@@ -23,7 +23,7 @@ MADE_BY = {
 FILES = {
     kind: {
         file.__name__.rpartition(".")[2]: file
-        for file in plugin_files.modules_in(folder.__name__, folder.__path__)
+        for file in plugin_files.import_modules(folder.__name__, folder.__path__)
     }
     for kind, (folder, _) in MADE_BY.items()
 }

@@ -15,7 +15,7 @@ import gzip
 import zlib
 from functools import cache
 
-from brdfkit.core.discovery.plugin_files import modules_in
+from brdfkit.core.discovery.plugin_files import import_modules
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.volumes.formats import _stored
 from brdfkit.volumes.formats._stored import Stored as Stored
@@ -27,7 +27,7 @@ HEAD = 4096  # bytes that a format's `sniff` sees
 @cache
 def formats():
     """The format modules of this folder, in alphabetical order."""
-    return modules_in(__name__, __path__)
+    return import_modules(__name__, __path__)
 
 
 def has_format(name):

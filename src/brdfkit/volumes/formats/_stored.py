@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.names import printable
+from brdfkit.core.names import to_printable
 
 TIFF = ".tif", ".tiff"
 
@@ -68,7 +68,7 @@ class VolumeFile:
     def error(self, problem):
         """A `BrdfkitError` that names this file; `problem`: what is wrong and what to do, without a
         full stop. Of what it quotes from headers, ends of lines and control characters go."""
-        return BrdfkitError(f"{self.path}: {printable(' '.join(problem.split()))}.")
+        return BrdfkitError(f"{self.path}: {to_printable(' '.join(problem.split()))}.")
 
     def package(self, name, brings):
         """The package `name`, which reads this format; how to install it where it is missing."""

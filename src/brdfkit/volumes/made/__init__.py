@@ -9,13 +9,13 @@ import importlib
 import math
 from functools import cache
 
-from brdfkit.core.discovery.plugin_files import names_in
+from brdfkit.core.discovery.plugin_files import find_module_names
 
 
 @cache
 def names():
     """The names of the made volumes."""
-    return names_in(__path__)
+    return find_module_names(__path__)
 
 
 def needed(name, size):

@@ -2,12 +2,12 @@
 
 import drjit as dr
 
-from brdfkit.core.jit.loops import recorded
+from brdfkit.core.jit.loops import record_loops
 
 HALVINGS = 8  # of a step, before a last linear one
 
 
-@recorded
+@record_loops
 def first_above(f, near, far, steps, active):
     """The first of `steps` + 1 even places from `near` to `far` where `f(t)` is above 0.
 
@@ -29,7 +29,7 @@ def first_above(f, near, far, steps, active):
         )
 
 
-@recorded
+@record_loops
 def first_crossing(f, near, far, steps, active):
     """The distance from `near` to `far` where `f(t)` first rises above 0, and whether it does.
 

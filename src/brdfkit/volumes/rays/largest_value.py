@@ -2,12 +2,12 @@
 
 import drjit as dr
 
-from brdfkit.core.jit.loops import recorded
+from brdfkit.core.jit.loops import record_loops
 
 HALVINGS = 8  # of a step: its place is found to 1/256 of one, its value still nearer
 
 
-@recorded
+@record_loops
 def largest_along(value, near, far, steps, place, active):
     """The distance from `near` to `far` at which `value(t)` is largest.
 

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from brdfkit.core.geometry.multilinear import bracket, corners
+from brdfkit.core.geometry.multilinear import find_bracket, list_corners
 
 LAYERS = 16  # of which gradients are taken at a time
 
@@ -71,8 +71,8 @@ def _values(volume, indices):
 
 def _interpolated(volume, indices):
     """The trilinear interpolant, which goes on beyond the outermost centres as it is there."""
-    axes = [bracket(indices[:, axis], volume.size[axis]) for axis in (2, 1, 0)]
-    return sum(share * volume.values[cells].astype(float) for cells, share in corners(axes))
+    axes = [find_bracket(indices[:, axis], volume.size[axis]) for axis in (2, 1, 0)]
+    return sum(share * volume.values[cells].astype(float) for cells, share in list_corners(axes))
 
 
 def _differences(volume, indices):
@@ -90,7 +90,7 @@ def _slopes(volume, indices):
     """
     result = np.zeros_like(indices)
     for axis, n in enumerate(volume.size):
-        low, _, _ = bracket(indices[:, axis], n)
+        low, _, _ = find_bracket(indices[:, axis], n)
         ends = [indices.copy(), indices.copy()]
         ends[0][:, axis], ends[1][:, axis] = low, low + 1
         moves = (indices[:, axis] > 0) & (indices[:, axis] < n - 1)  # constant beyond the centres

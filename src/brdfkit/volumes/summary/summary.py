@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from brdfkit.core.documents import Document, Paragraph, Picture, Shown, Table
 from brdfkit.core.documents.parts import BAD
-from brdfkit.core.figures import to_png
 from brdfkit.volumes.summary import histograms, report
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 from brdfkit.volumes.volume import Volume
@@ -110,6 +109,8 @@ class VolumeSummary(Shown):
         )
 
     def _draw(self):
+        from brdfkit.core.figures import to_png  # only here: it imports matplotlib
+
         return to_png(self.picture(), DPI)
 
 

@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.core.files import contents, write_safely
-from brdfkit.core.names import printable
+from brdfkit.core.files import read_bytes, write_safely
+from brdfkit.core.names import to_printable
 from brdfkit.volumes.transfer import slicer_presets
 
 KIND = "brdfkit transfer function"
@@ -73,7 +73,7 @@ def _rows(value):
 
 
 def _read_json(cls, path):
-    return from_json(cls, contents(path), path)
+    return from_json(cls, read_bytes(path), path)
 
 
 def from_json(cls, text, where):
@@ -94,7 +94,7 @@ def from_json(cls, text, where):
 
 
 def _from_record(cls, record):
-    settings = {word: printable(record[word]) for word in WORDS if word in record}
+    settings = {word: to_printable(record[word]) for word in WORDS if word in record}
     settings["extinction"] = record.get("extinction", 1.0)
     if "boundaries" in record:
         given = [record.get(key) for key in ("boundaries", "thickness", "range")]

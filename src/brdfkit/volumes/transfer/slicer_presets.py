@@ -22,7 +22,7 @@ import numpy as np
 
 from brdfkit.core.colours import from_srgb
 from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.core.files import contents
+from brdfkit.core.files import read_bytes
 from brdfkit.volumes.transfer.colour_maps import places, require_order
 
 PARTS = 8  # of a segment between two colours
@@ -32,7 +32,7 @@ UNIT_DISTANCE = 1.0  # mm
 def read(cls, path, name):
     """The preset `name` of a file; the only one if the name is empty."""
     try:
-        root = ElementTree.fromstring(contents(path))
+        root = ElementTree.fromstring(read_bytes(path))
     except ElementTree.ParseError as error:
         raise BrdfkitError(f"{path}: is no XML ({error}); fetch it again.") from error
     found = {e.get("name", str(i)): e for i, e in enumerate(root.iter("VolumeProperty"))}

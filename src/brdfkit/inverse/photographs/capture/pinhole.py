@@ -8,7 +8,7 @@ from brdfkit.core.arguments import to_array
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.camera import Camera
-from brdfkit.core.projective.homogeneous import axes_about, project_all, rigid
+from brdfkit.core.projective.homogeneous import make_axes, make_rigid, project_all
 
 NEAREST, FARTHEST = 1e-2, 1e4  # what Mitsuba shows, in heights of the camera above the sample
 PARALLEL = 1e-5  # the sine of an angle in which Mitsuba sees none
@@ -54,12 +54,12 @@ class Pinhole:
     def axes(self) -> FloatArray:
         """The unit vectors (3, 3) that point right, up and backward in a picture, as rows."""
         backward = self.origin - self.target
-        return axes_about(backward / np.linalg.norm(backward), self.up / np.linalg.norm(self.up))
+        return make_axes(backward / np.linalg.norm(backward), self.up / np.linalg.norm(self.up))
 
     def camera(self, size: tuple[int, int]) -> Camera:
         """Return the camera with matrices for pictures of `size` (width, height) [pixels]."""
         slope, clips = np.tan(np.radians(self.fov) / 2), self.clips()
-        view = rigid(self.axes, self.origin)
+        view = make_rigid(self.axes, self.origin)
         return Camera(view, slope, slope * size[1] / size[0], clips["near_clip"], clips["far_clip"])
 
     def project(self, points: FloatArray, size: tuple[int, int]) -> FloatArray:

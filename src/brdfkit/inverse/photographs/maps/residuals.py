@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from brdfkit.core.names import listed
+from brdfkit.core.names import join_words
 
 MISFIT = 3  # times the noise, from which a texel is not explained
 SHARE = 0.03  # of the texels, from which it is said
@@ -38,7 +38,8 @@ def describe_misfit(misfit, noise, left, diffuse):
     odd = [name for name, value in left.items() if value > max(OUTLIER * usual, NOISY)]
     if odd:
         said.append(
-            f"Worst explained: {listed(odd)}; check the place and the intensity of the light there."
+            f"Worst explained: {join_words(odd)}; check the place and the intensity of "
+            "the light there."
         )
     share = (misfit > MISFIT).mean()
     if share > SHARE and noise:

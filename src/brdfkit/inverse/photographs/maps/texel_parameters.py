@@ -72,11 +72,11 @@ class Numbers:
         seen as `Observations`."""
         lights, texels = seen.to_light.shape[:2]
         arrays = [
-            double_precision.array(np.tile(column, lights))
+            double_precision.to_array(np.tile(column, lights))
             for column in x[:, self.shapes.start : self.normal.stop].T
         ]
-        to_light = double_precision.vector(seen.to_light.reshape(-1, 3))
-        to_camera = double_precision.vector(seen.to_camera.reshape(-1, 3))
+        to_light = double_precision.to_vector(seen.to_light.reshape(-1, 3))
+        to_camera = double_precision.to_vector(seen.to_camera.reshape(-1, 3))
         shape = (lights, texels)
         if slopes:
             for one in arrays:
@@ -114,7 +114,7 @@ class Numbers:
         lit = (wi.z > 1e-3) & (wo.z > 1e-3)
         up = double_precision.Vector(0 * x, 0 * x, 0 * x + 1)
         wi, wo_ = _where(lit, wi, up), _where(lit, wo, up)
-        values |= {name: double_precision.scalar(v) for name, v in self.fixed.items()}
+        values |= {name: double_precision.to_scalar(v) for name, v in self.fixed.items()}
         lobes = [lobe for _, lobe in self.model.bind(values).terms()]
         return [dr.select(lit, (lobe.eval(wi, wo_) + 0 * x) * wo_.z, 0) for lobe in lobes]
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from brdfkit.core.names import listed
+from brdfkit.core.names import join_words
 from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS
 
 OPEN = 1e-4  # an eigenvalue of the Hessian, of unit diagonal, below which a combination is open
@@ -31,7 +31,7 @@ def describe_open(numbers, fitted, lights):
         plain = name.partition("[")[0]
         several[plain] = max(value, several.get(plain, 0))
     worst = [name for name, value in several.items() if value > 0.25] or list(several)
-    apart = f"{listed(worst)} apart" if len(worst) > 1 else worst[0]
+    apart = f"{join_words(worst)} apart" if len(worst) > 1 else worst[0]
     said.append(
         f"In {100 * left_open.mean():.0f} % of the texels the photographs do not tell {apart}: "
         "there their neighbours decide. More lights near the mirror's direction would."

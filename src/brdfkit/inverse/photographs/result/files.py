@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from brdfkit.core.files import make_folder, require_writable, write_safely
-from brdfkit.core.jit.threads import two_threads
+from brdfkit.core.jit.threads import use_two_threads
 from brdfkit.inverse.photographs.maps.scene import scene_xml
 from brdfkit.inverse.photographs.result.report import write_report
 
@@ -55,7 +55,7 @@ def _write(path, values):
     import mitsuba as mi
 
     pixels = np.ascontiguousarray(np.atleast_3d(values), np.float32)
-    with write_safely(path) as beside, two_threads():
+    with write_safely(path) as beside, use_two_threads():
         try:
             mi.Bitmap(pixels).write(str(beside))
         except RuntimeError as error:  # a full disk, for instance

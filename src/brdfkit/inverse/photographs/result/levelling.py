@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from brdfkit.core.names import listed
+from brdfkit.core.names import join_words
 from brdfkit.inverse.photographs.capture.observations import shown_colours
 
 COLOURS = "red", "green", "blue"
@@ -14,7 +14,7 @@ def describe_capture(capture, clipped, seen):
     said = []
     dark = [name for name, lit in zip(COLOURS, shown_colours(seen), strict=True) if not lit]
     if dark:
-        said.append(f"Nothing is seen in {listed(dark)}: there the maps say nothing.")
+        said.append(f"Nothing is seen in {join_words(dark)}: there the maps say nothing.")
     texel = np.array(capture.size) / seen.shape[::-1]
     finer = float(np.median([(capture.pixel(c) / texel).max() for c in capture.cameras]))
     if finer > FINER:

@@ -4,7 +4,7 @@ them."""
 import numpy as np
 
 from brdfkit.core.pages import page
-from brdfkit.core.pages.images import colours, jpeg, narrowed, png
+from brdfkit.core.pages.images import apply_colour_map, encode_jpeg, encode_png, shrink
 from brdfkit.core.version import __version__
 from brdfkit.inverse.photographs.capture.observations import gathered
 from brdfkit.inverse.photographs.maps.residuals import MISFIT
@@ -19,7 +19,7 @@ def write_report(svbrdf, path):
     """Write the page of an `Svbrdf`."""
     document = svbrdf.document()
     table, *paragraphs = document.parts
-    page.write(
+    page.write_page(
         "svbrdf.html",
         path,
         title=document.title,
@@ -37,10 +37,13 @@ def write_report(svbrdf, path):
 def _shown_map(svbrdf, name):
     values, errors = svbrdf.maps[name], svbrdf.uncertainty.get(name)
     if name == "normal":
-        picture, said = png(narrowed((values + 1) / 2, WIDEST)), "x, y and z as red, green and blue"
+        picture, said = (
+            encode_png(shrink((values + 1) / 2, WIDEST)),
+            "x, y and z as red, green and blue",
+        )
     elif values.ndim == 3:
         white = max(1e-6, float(np.quantile(values, 0.99)))
-        picture, said = jpeg(narrowed(values / white, WIDEST)), f"white is {white:.3g}"
+        picture, said = encode_jpeg(shrink(values / white, WIDEST)), f"white is {white:.3g}"
     else:
         low, high = np.quantile(values, (0.01, 0.99))
         picture, said = _scaled(values, low, high), f"{low:.3g} (dark) to {high:.3g} (bright)"
@@ -74,8 +77,8 @@ def _photographs(svbrdf):
             {
                 "name": capture.names[k],
                 "said": f"PSNR {svbrdf.predicted[capture.names[k]]:.1f} dB",
-                "photograph": jpeg(narrowed(photograph / white, WIDEST)),
-                "prediction": jpeg(narrowed(prediction / white, WIDEST)),
+                "photograph": encode_jpeg(shrink(photograph / white, WIDEST)),
+                "prediction": encode_jpeg(shrink(prediction / white, WIDEST)),
                 "off": _scaled(off, -MOST_OFF, MOST_OFF, OFF),
             }
         )
@@ -83,5 +86,5 @@ def _photographs(svbrdf):
 
 
 def _scaled(values, low, high, scale=SCALE):
-    shares = (narrowed(values[..., None], WIDEST)[..., 0] - low) / max(high - low, 1e-12)
-    return png(colours(scale, shares)[..., :3])
+    shares = (shrink(values[..., None], WIDEST)[..., 0] - low) / max(high - low, 1e-12)
+    return encode_png(apply_colour_map(scale, shares)[..., :3])

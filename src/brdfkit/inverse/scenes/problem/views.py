@@ -11,7 +11,7 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.jit.loops import first_error
+from brdfkit.core.jit.loops import raise_first_cause
 from brdfkit.inverse.scenes.problem.leverage import number_blocks
 from brdfkit.inverse.scenes.problem.parameters import Unknown
 from brdfkit.inverse.scenes.problem.targets import Target
@@ -122,7 +122,7 @@ class Views:
         """Return rendered minus target pixels (pixels, channels) at `x`, with `spp` samples."""
         self.put(x)
         self.cost += spp
-        with first_error():
+        with raise_first_cause():
             pictures = [
                 self.integrator.render(self.scene, sensor=sensor, seed=int(seed) + i, spp=int(spp))
                 for i, sensor in enumerate(self.scene.sensors())
@@ -168,7 +168,7 @@ class Views:
         """Write entries from `to_entries` into the scene."""
         for unknown, entry in zip(self.unknowns, entries, strict=True):
             self.parameters[unknown.key] = entry
-        with first_error():
+        with raise_first_cause():
             self.parameters.update()
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray
-from brdfkit.core.version import versions
+from brdfkit.core.version import find_versions
 from brdfkit.inverse.scenes.problem.parameters import Unknown
 from brdfkit.inverse.scenes.problem.scene_parameters import read_model_values
 from brdfkit.inverse.scenes.problem.unseen_parameters import describe_zero_weights
@@ -203,7 +203,7 @@ def _make_fits(views: Views, result: Refinement) -> dict[str, Fit]:
             at_bounds=tuple(names[name] for name in result.at_bounds if name in names),
             notes=tuple(note.replace(f"{owner}.", "") for note in result.notes),
             certainty=_select_model(result.certainty, owner),
-            versions=dict(versions()),
+            versions=dict(find_versions()),
         )
     return fits
 

@@ -13,7 +13,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray, MitsubaObject
-from brdfkit.core.jit.loops import first_error
+from brdfkit.core.jit.loops import raise_first_cause
 from brdfkit.inverse.scenes.problem.views import Views
 from brdfkit.inverse.scenes.search.forward_derivatives import DERIVATIVE_COST, track_derivatives
 
@@ -44,7 +44,7 @@ def _render_backward(
     height, width = adjoint.shape[:2]
     padded = np.zeros((height, width, _count_channels(sensor)), np.float32)
     padded[..., : adjoint.shape[2]] = adjoint
-    with first_error(), track_derivatives(views, x) as entries:
+    with raise_first_cause(), track_derivatives(views, x) as entries:
         views.integrator.render_backward(
             views.scene,
             views.parameters,

@@ -7,7 +7,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray, MitsubaObject
-from brdfkit.core.jit.loops import first_error
+from brdfkit.core.jit.loops import raise_first_cause
 from brdfkit.inverse.scenes.problem.views import Views, make_opaque
 
 DERIVATIVE_COST = 2.3  # the time for a picture of derivatives, over that for a picture
@@ -87,7 +87,7 @@ def _render_derivative(
     tangent[numbers] = views.differentiate_values(x)[numbers]
     try:
         # Every unknown has a tangent, though most are 0, so that all derivatives share one kernel
-        with first_error(), track_derivatives(views, x) as entries:
+        with raise_first_cause(), track_derivatives(views, x) as entries:
             for entry, part in zip(entries, views.split(tangent), strict=True):
                 dr.set_grad(entry, make_opaque(type(entry), part))
             # Propagate to what plugins computed from their parameters, as loops do not reach there

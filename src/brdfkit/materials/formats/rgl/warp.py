@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from brdfkit.core.geometry.multilinear import bracket, corners, flat_index
+from brdfkit.core.geometry.multilinear import find_bracket, list_corners, to_flat_index
 
 
 def even_grid(n):
@@ -38,7 +38,7 @@ def find_slices(nodes, values):
             brackets.append((lower, lower + 1, t))
             shape.append(len(axis))
     first = np.zeros(np.shape(values[0]), int)
-    return [(first + flat_index(at, shape), weight) for at, weight in corners(brackets)]
+    return [(first + to_flat_index(at, shape), weight) for at, weight in list_corners(brackets)]
 
 
 def interpolate(table, u, slices=((0, 1.0),)):
@@ -50,7 +50,7 @@ def interpolate(table, u, slices=((0, 1.0),)):
     cells = [_bracket(u[:, 0], nx), _bracket(u[:, 1], ny)]
     result = 0.0
     for at, weight in slices:
-        for (x, y), share in corners(cells):
+        for (x, y), share in list_corners(cells):
             result = result + (weight * share).reshape(-1, *[1] * len(rest)) * table[at, y, x]
     return result
 
@@ -128,7 +128,7 @@ class Warp:
 def _bracket(u, n):
     """The bracket (`geometry.multilinear`) of coordinates `u` (m,) of the unit square, among `n`
     nodes from edge to edge."""
-    return bracket(u * (n - 1), n)
+    return find_bracket(u * (n - 1), n)
 
 
 def _cumulate(values):

@@ -26,7 +26,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.projective.homogeneous import axes_about, rigid, to_unit_cube, transform
+from brdfkit.core.projective.homogeneous import make_axes, make_rigid, to_unit_cube, transform
 from brdfkit.shadows.maps import split_planes
 from brdfkit.shadows.maps.cells import GUTTER
 from brdfkit.shadows.maps.partition import Part, Partition
@@ -61,7 +61,7 @@ def ends(scene, placement):
 def snapped(placement, near, far, resolution):
     """The `Projection` along the light that encloses the ball around a slice, at a whole texel."""
     light, camera = placement.light, placement.camera
-    view = rigid(axes_about(-light.point[:3]), np.zeros(3))
+    view = make_rigid(make_axes(-light.point[:3]), np.zeros(3))
     *sides, depths = transform(view, *placement.scene.corners.T)[:3]
     along, radius = ball(camera, near, far)
     centre = transform(view, *(camera.position + along * camera.direction))

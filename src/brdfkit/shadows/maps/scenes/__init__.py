@@ -6,12 +6,12 @@ the scene for `mitsuba.load_dict`: four views, V1 to V4, and two suns that are c
 shadow maps need it; for pretty pictures give the dictionary a "sky".
 """
 
-from brdfkit.core.discovery.plugin_files import modules_in
+from brdfkit.core.discovery.plugin_files import import_modules
 from brdfkit.shadows.maps.scenes._stage import LIGHTS, VIEWS
 
 SCENES = {
     module.__name__.rpartition(".")[2]: getattr(module, module.__name__.rpartition(".")[2])
-    for module in modules_in(__name__, __path__)
+    for module in import_modules(__name__, __path__)
 }
 
 
