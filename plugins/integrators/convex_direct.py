@@ -62,7 +62,7 @@ def define(mi: MitsubaModule) -> type:
 
         def occluders(self, scene: MitsubaObject) -> Occluders | None:
             """Return the `Occluders` of the scene's meshes, None if no mesh encloses a volume."""
-            return self.casters.of(scene)[0]
+            return self.casters.find(scene)[0]
 
         def sample(
             self,

@@ -336,7 +336,7 @@ def test_a_high_wall_hides_half_of_the_light(llvm_variant, bsdf):
     open_air = shown(mi.load_dict(entries | {"integrator": ours()}), spp=4).mean()
     wall = {"type": "cube", "to_world": t().translate([half + gap, 0, 0]).scale(half)}
     shaded = mi.load_dict(entries | {"wall": wall, "integrator": ours(shadows="convex")})
-    occluders, _ = shaded.integrator().casters.of(shaded)
+    occluders, _ = shaded.integrator().casters.find(shaded)
     shares = []
     for turn in (0, 90, 180, 270):
         occluders.move("wall", np.array(t().rotate([0, 0, 1], turn).matrix))
@@ -420,7 +420,7 @@ def test_a_ball_stands_in_the_shadow_and_the_light_of_its_ground(llvm_variant, m
 def test_a_changed_or_turned_mesh_casts_its_own_shadows(llvm_variant, monkeypatch, tmp_path):
     """By its triangles: no convex parts are sought, which takes minutes."""
     show_by(monkeypatch, llvm_variant, shadows="shapes", resolution=32, samples=9)
-    monkeypatch.setattr("brdfkit.lighting.visibility.of_scene.decompose", None)
+    monkeypatch.setattr("brdfkit.lighting.visibility.casters.decompose", None)
     file = tmp_path / "step.obj"
     step = "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 0 1 0\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
     pictures = []

@@ -12,21 +12,22 @@ import drjit as dr
 import numpy as np
 import psutil
 import pytest
+from brdfkit.theses.ergun2015.convex_rays import ExactPlaneMap
+from brdfkit.theses.ergun2015.height_fields import HeightFields
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull, Delaunay
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.lighting.visibility import decomposition
-from brdfkit.lighting.visibility.convex_ray import enter
+from brdfkit.lighting.visibility.convex_ray import find_entry
 from brdfkit.lighting.visibility.decomposition import decompose
-from brdfkit.lighting.visibility.height_fields import HeightFields
 from brdfkit.lighting.visibility.hierarchy import Hierarchy
-from brdfkit.lighting.visibility.hull import LEAST_THICKNESS, hull
-from brdfkit.lighting.visibility.lobes import visible_share
+from brdfkit.lighting.visibility.hull import MIN_THICKNESS, make_hull
 from brdfkit.lighting.visibility.occluders import Occluders
-from brdfkit.lighting.visibility.pieces import is_closed, solids
-from brdfkit.lighting.visibility.plane_map import ExactPlaneMap, RasterisedPlaneMap
+from brdfkit.lighting.visibility.pieces import is_closed, split_solids
+from brdfkit.lighting.visibility.plane_map import RasterisedPlaneMap
+from brdfkit.lighting.visibility.shadowed_light import visible_share
 
 RAYS = 20_000
 
@@ -34,7 +35,7 @@ RAYS = 20_000
 @pytest.fixture(autouse=True)
 def own_cache(monkeypatch, tmp_path):
     """Decompositions are kept in a folder of the test's, not in the user's."""
-    monkeypatch.setattr(decomposition, "cache", lambda: tmp_path)
+    monkeypatch.setattr(decomposition, "cache_folder", lambda: tmp_path)
 
 
 def unit_vectors(rng, n):
@@ -44,7 +45,7 @@ def unit_vectors(rng, n):
 
 def random_hull(corners, seed=0):
     rng = np.random.default_rng(seed)
-    return hull(unit_vectors(rng, corners) * rng.uniform(0.7, 1, (corners, 1)))
+    return make_hull(unit_vectors(rng, corners) * rng.uniform(0.7, 1, (corners, 1)))
 
 
 def random_rays(inside, n=RAYS, seed=1):
@@ -72,7 +73,7 @@ def clipped(found, o, d):
 def entered(mi, found, planes, o, d):
     """By Algorithm 3: (where rays enter, whether they do, look-ups), for rays in the unit frame."""
     ray = ray_of(mi, o, d)
-    return (np.array(x) for x in enter(mi, mi.Vector3f(ray.o), ray.d, planes, mi.UInt32(0)))
+    return (np.array(x) for x in find_entry(mi, mi.Vector3f(ray.o), ray.d, planes, mi.UInt32(0)))
 
 
 def in_unit_frame(found):
@@ -91,10 +92,10 @@ def in_unit_frame(found):
 def test_the_planes_enclose_the_hull_s_points_and_no_others(corners, seed, size):
     rng = np.random.default_rng(seed)
     points = rng.normal(size=(corners, 3)) * [1, 3, 0.2] * 10**size + rng.normal(size=3)
-    found = hull(points)
+    found = make_hull(points)
     if found is None:  # four corners in nearly one plane
         solid = ConvexHull(points)
-        assert solid.volume < LEAST_THICKNESS * solid.area * np.ptp(points, axis=0).max()
+        assert solid.volume < MIN_THICKNESS * solid.area * np.ptp(points, axis=0).max()
         return
     tried = rng.uniform(points.min(axis=0), points.max(axis=0), (200, 3))
     unit = tried @ found.to_unit[:, :3].T + found.to_unit[:, 3]
@@ -109,7 +110,7 @@ def test_the_planes_enclose_the_hull_s_points_and_no_others(corners, seed, size)
 @pytest.mark.quick
 @pytest.mark.parametrize("points", [np.zeros((9, 3)), np.eye(3), np.eye(9, 2) @ np.eye(2, 3)])
 def test_what_is_flat_has_no_hull(points):
-    assert hull(points) is None
+    assert make_hull(points) is None
 
 
 # Algorithm 3 [CHECK]: 0 of 20,000 rays wrong, 2.03 to 2.48 look-ups, 5 or 6 at most
@@ -145,7 +146,7 @@ def test_a_rasterised_map_errs_less_the_finer_it_is(llvm_variant):
 
 def test_a_smaller_part_has_a_smaller_map(llvm_variant):
     large = random_hull(20)
-    small = hull(large.vertices / 4)
+    small = make_hull(large.vertices / 4)
     maps = RasterisedPlaneMap([large, small], 64)
     assert np.array(maps.sides.values).tolist() == [64, 16]
     assert len(maps.atlas.values) == 4 * 2 * (64**2 + 16**2)
@@ -179,9 +180,9 @@ def test_the_tree_finds_every_box_that_a_ray_hits(llvm_variant, n):
 
 def two_objects():
     """Two objects of two parts each, beside each other."""
-    parts = [hull(random_hull(20, seed=k).vertices * 0.2) for k in range(4)]
+    parts = [make_hull(random_hull(20, seed=k).vertices * 0.2) for k in range(4)]
     at = [[-0.5, 0, 0], [-0.5, 0.4, 0], [0.4, 0, 0], [0.4, 0, 0.4]]
-    parts = [hull(p.vertices + shift) for p, shift in zip(parts, at, strict=True)]
+    parts = [make_hull(p.vertices + shift) for p, shift in zip(parts, at, strict=True)]
     return {"left": parts[:2], "right": parts[2:]}
 
 
@@ -193,7 +194,7 @@ def test_a_moved_object_blocks_where_it_is(llvm_variant):
     turn = np.array([[0.6, -0.8, 0], [0.8, 0.6, 0], [0, 0, 1.5]])
     matrix = np.block([[turn, np.array([[0.1], [-0.2], [0.3]])], [np.zeros((1, 3)), 1]])
     occluders.move("right", matrix)
-    moved = [hull(p.vertices @ turn.T + matrix[:3, 3]) for p in objects["right"]]
+    moved = [make_hull(p.vertices @ turn.T + matrix[:3, 3]) for p in objects["right"]]
     o, d = random_rays(inside=False)
     t = np.array([clipped(p, o, d) for p in [*objects["left"], *moved]])
     truth = ((t >= 0) & (t < np.inf)).any(axis=0)
@@ -220,7 +221,7 @@ def test_what_cannot_be_moved_is_said(llvm_variant):
 def test_the_visible_share_of_a_lobe_is_its_integral(llvm_variant, kappa):
     """By 40,000 directions drawn from the lobe and clipped at the hull, at three points."""
     mi, rng = llvm_variant, np.random.default_rng(0)
-    found = hull(random_hull(20).vertices)
+    found = make_hull(random_hull(20).vertices)
     points = np.array([[2.0, 0, 0], [1.2, 0.9, 0], [0, -1, 1.5]])
     axes = np.array([[-1.0, 0, 0], [-0.8, -0.36, 0.48], [0, 0.6, -0.8]])
     occluders = Occluders({"part": [found]}, resolution=256, clearance=0)
@@ -318,7 +319,9 @@ def test_the_holes_of_a_scan_are_closed():
     assert not is_closed(worn)
     for turned in (0.0, 0.1, 0.9, 1.0):
         flipped = np.random.default_rng(0).random(len(worn)) < turned
-        ((at, mended),), others = solids(points, np.where(flipped[:, None], worn[:, ::-1], worn))
+        ((at, mended),), others = split_solids(
+            points, np.where(flipped[:, None], worn[:, ::-1], worn)
+        )
         assert is_closed(mended)
         assert not len(others)
         assert solid(at, mended) == pytest.approx(solid(*torus()), rel=1e-3)
@@ -349,10 +352,10 @@ def test_an_opening_is_closed_where_the_mesh_covers_it():
     points, faces = box([0, 0, 0], [1, 1, 1])
     low = points, faces[points[faces][..., 2].min(axis=1) < 1]
     high = points * [1, 1, -1] + [0, 0, 2], low[1]  # upside down, and so inside out
-    assert len(solids(*low)[0]) == 0
-    closed, others = solids(*joined(low, (high[0] + [2, 0, 0], high[1])))
+    assert len(split_solids(*low)[0]) == 0
+    closed, others = split_solids(*joined(low, (high[0] + [2, 0, 0], high[1])))
     assert (len(closed), len(others)) == (0, 20)
-    closed, others = solids(*joined(low, high))
+    closed, others = split_solids(*joined(low, high))
     assert [solid(*piece) for piece in closed] == pytest.approx([1, 1])
     assert not len(others)
 
@@ -469,7 +472,7 @@ def test_a_moved_shadow_is_that_of_the_moved_mesh(llvm_variant, tmp_path):
     loaded, exact = pictures(mi, {"type": "convex_direct"}, corner=there)
     occluders = Occluders({"corner": decompose(points, faces)})
     occluders.move("corner", np.block([[turn, shift[:, None]], [np.eye(4)[3:]]]))
-    others = loaded.integrator().casters.of(loaded)[1]
+    others = loaded.integrator().casters.find(loaded)[1]
     loaded.integrator().casters.set(loaded, occluders, others)
     moved = np.array(loaded.integrator().render(loaded, seed=0, spp=64))
     assert np.square(moved - exact).mean() < 1e-4 * np.square(exact).max()  # 40 dB

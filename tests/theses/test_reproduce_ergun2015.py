@@ -17,7 +17,7 @@ from brdfkit.theses.ergun2015.lit_balls import FILTERS, METHODS, ROUGHNESSES
 from brdfkit.theses.ergun2015.unshadowed import unshadowed
 
 import brdfkit as bk
-from brdfkit.lighting.visibility.hull import hull
+from brdfkit.lighting.visibility.hull import make_hull
 
 CONVEX = ["convex_reads", "convex_pictures", "convex_settings", "moving_parts"]
 
@@ -53,7 +53,7 @@ def quarters(points, faces, concavity=0.03):
     count = 8 if concavity < 0.1 else 4
     edges = np.linspace(-np.pi, np.pi, count + 1)
     near = [(angle >= a - 0.05) & (angle <= b + 0.05) for a, b in pairwise(edges)]
-    return [hull(points[n]) for n in near]
+    return [make_hull(points[n]) for n in near]
 
 
 def test_convex_parts_of_a_torus_at_a_small_size(llvm_variant, monkeypatch, tmp_path):

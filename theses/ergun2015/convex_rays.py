@@ -4,9 +4,10 @@ import numpy as np
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.lighting.visibility.convex_ray import enter
-from brdfkit.lighting.visibility.hull import Hull, hull
-from brdfkit.lighting.visibility.plane_map import ExactPlaneMap, RasterisedPlaneMap
+from brdfkit.lighting.visibility.convex_ray import find_entry
+from brdfkit.lighting.visibility.hull import Hull, make_hull
+from brdfkit.lighting.visibility.plane_map import RasterisedPlaneMap
+from brdfkit.mitsuba_bridge.arrays import Integers, Rows
 from brdfkit.theses.claims import UNSTATED, Claim, verdict
 from brdfkit.theses.page import Section, Table
 
@@ -17,6 +18,36 @@ SIDES = 16, 32, 64, 128
 TEXT = f"""{RAYS:,} rays from twice the radius of the sphere around a random hull to points inside
 that sphere. The truth clips each ray at all of the hull's planes. The last columns: rays whose
 answer is wrong where the planes come from a map of so many texels by side."""
+
+
+class ExactPlaneMap:
+    """A `PlaneMap` with the true face of each part of `hulls`, found among all of its faces."""
+
+    def __init__(self, hulls):
+        self.planes = Rows(np.concatenate([hull.planes for hull in hulls]))
+        self.first = Integers(np.cumsum([0] + [len(hull.planes) for hull in hulls]))
+
+    def at(self, part, direction, active=True):
+        """Return the normal and the distance of a part's plane in a unit `direction`."""
+        import drjit as dr
+        import mitsuba as mi
+
+        def compare(i, largest, plane):
+            candidate = self.planes.at(i, mi.Vector4f, active)
+            value = dr.dot(normal(candidate), direction) / candidate.w
+            nearer = value > largest
+            return i + 1, dr.select(nearer, value, largest), dr.select(nearer, candidate, plane)
+
+        def normal(plane):
+            return mi.Vector3f(plane.x, plane.y, plane.z)
+
+        end = self.first.at(part + 1, active)
+        _, _, plane = dr.while_loop(
+            (self.first.at(part, active), mi.Float(0), mi.Vector4f(0, 0, 1, 1)),
+            lambda i, largest, plane: active & (i < end),
+            compare,
+        )
+        return normal(plane), plane.w
 
 
 @in_turn
@@ -89,7 +120,7 @@ def entered(found, planes, o, d):
     import mitsuba as mi
 
     o, d = mi.Vector3f(o.T.astype(np.float32)), mi.Vector3f(d.T.astype(np.float32))
-    _, hit, lookups = enter(mi, o, d, planes, mi.UInt32(0))
+    _, hit, lookups = find_entry(mi, o, d, planes, mi.UInt32(0))
     return np.array(hit), np.array(lookups)
 
 
@@ -104,7 +135,7 @@ def clipped(found, o, d):
 def random_hull(corners):
     """A `Hull` in its unit frame."""
     rng = np.random.default_rng(corners)
-    found = hull(unit_vectors(rng, corners) * rng.uniform(0.7, 1, (corners, 1)))
+    found = make_hull(unit_vectors(rng, corners) * rng.uniform(0.7, 1, (corners, 1)))
     vertices = found.vertices @ found.to_unit[:, :3].T + found.to_unit[:, 3]
     return Hull(vertices, np.eye(3, 4), found.planes)
 

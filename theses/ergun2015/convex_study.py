@@ -8,12 +8,12 @@ from functools import cache, cached_property
 from importlib.util import find_spec
 
 import numpy as np
+from brdfkit.theses.ergun2015.height_fields import HeightFields
 from brdfkit.theses.ergun2015.shapes import find_meshes
 
 from brdfkit.core.colours import to_srgb
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.lighting.visibility.decomposition import decompose
-from brdfkit.lighting.visibility.height_fields import HeightFields
 from brdfkit.lighting.visibility.occluders import Occluders
 from brdfkit.rendering.scene_input.environment import environment, light_by
 from brdfkit.theses.claims import least_seconds

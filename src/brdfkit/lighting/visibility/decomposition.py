@@ -1,6 +1,6 @@
-"""Cuts a triangle mesh into nearly convex parts, by the library coacd [Wei et al. 2022].
+"""Decomposition of a triangle mesh into nearly convex parts, by coacd [Wei et al. 2022].
 
-[Ergun 2015, section 7.1] used HACD, which is no longer kept. Of its parameters, coacd has these:
+[Ergun 2015, section 7.1] used HACD, which is no longer maintained. Of its parameters, coacd has:
 
 | HACD | here, and in coacd |
 | --- | --- |
@@ -9,8 +9,8 @@
 | NTargetTrianglesDecimatedMesh | none; a mesh with an opening is remeshed, as if decimated |
 | NClusters, ConnectDist, SmallClusterThreshold, AddExtraDistPoints, AddFacesPoints | none |
 
-A decomposition takes seconds to minutes. It is kept in the user's cache folder, as an .npz file
-named by the checksum of the mesh and the settings, and is made once.
+A decomposition takes seconds to minutes. It is made once, and stored in the user's cache folder as
+an .npz file that is named by the checksum of the mesh and the settings.
 """
 
 import hashlib
@@ -23,75 +23,81 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import make_folder, write_safely
 from brdfkit.core.interrupts import give_back_interrupts
-from brdfkit.lighting.visibility.hull import hull
-from brdfkit.lighting.visibility.pieces import solids
+from brdfkit.lighting.visibility.hull import Hull, make_hull
+from brdfkit.lighting.visibility.pieces import split_solids
 
 PROGRAM = Path(__file__).with_name("coacd_process.py")
-# The search for cuts: coacd's defaults (150, 20, 3 and 2000) find as many parts in 4 times the time
+# The search for cuts; coacd's defaults (150, 20, 3 and 2000) find as many parts in 4 times the time
 SEARCH = {"mcts_iterations": 20, "mcts_nodes": 10, "mcts_max_depth": 2, "resolution": 500}
-AS = "preprocess_mode"  # coacd's: "off" for a closed mesh, "on" for one that is to be made closed
+PREPROCESS = "preprocess_mode"  # coacd's: "off" for a closed mesh, "on" to close an open one
 CONCAVITY = 0.03
 HULL_VERTICES = 256
 
 
-def decompose(points, faces, concavity=CONCAVITY, hull_vertices=HULL_VERTICES):
-    """The convex parts of a mesh, a list of `Hull`; empty for a mesh that encloses nothing.
+def decompose(
+    points: FloatArray,
+    faces: IntArray,
+    concavity: float = CONCAVITY,
+    hull_vertices: int = HULL_VERTICES,
+) -> list[Hull]:
+    """Cut a mesh into convex parts; a mesh that encloses nothing has none.
 
-    points, faces : the vertices (n, 3) of the mesh, and of each triangle (m, 3) their numbers.
-    concavity : the largest distance between a part and its hull, 0.01 to 1, where the longest side
-        of the bounding box of the piece of the mesh is 2. Larger: fewer parts.
-    hull_vertices : vertices that a hull has at most, 8 to 10,000; a hull of more is simplified.
+    `points` (n, 3) are the mesh's vertices, `faces` (m, 3) the vertex numbers of its triangles.
+    `concavity` (0.01 to 1) is the largest distance between a part and its hull, relative to half of
+    the longest side of the piece's bounding box: larger values give fewer parts. `hull_vertices` (8
+    to 10,000) is the largest number of vertices of a hull; one with more is simplified.
 
-    Each closed piece of the mesh is cut by itself (`pieces.py`, which closes the holes of scans);
-    one that is convex is a part as it is. What has an opening has no inside: coacd then makes a
-    closed mesh around it, by voxels of 1/50 of its size, which is that much too thick.
+    Each closed piece of the mesh is cut separately, after the holes of scans are closed; a convex
+    piece is one part. A piece with an opening has no inside: coacd then makes a closed mesh around
+    it, by voxels of 1/50 of its size, which is that much too thick.
 
     The same mesh always has the same parts, whichever way its triangles are turned. Raises
-    `BrdfkitError` where coacd or libigl is not installed, and for settings out of range.
+    `BrdfkitError` if coacd or libigl is not installed, or a setting is out of range.
     """
     if not 0.01 <= concavity <= 1:
         raise BrdfkitError(f"concavity = {concavity:g} should be between 0.01 and 1.")
     if not 8 <= hull_vertices <= 10_000:
         raise BrdfkitError(f"hull_vertices = {hull_vertices} should be between 8 and 10000.")
     points, faces = weld(points, faces)
-    if hull(points) is None:
+    if make_hull(points) is None:
         return []
     settings = SEARCH | {"threshold": float(concavity), "max_ch_vertex": int(hull_vertices)}
-    closed, others = solids(points, faces)
-    parts = [part for piece in closed for part in _cut(*piece, settings | {AS: "off"})]
+    closed, others = split_solids(points, faces)
+    as_is, remeshed = settings | {PREPROCESS: "off"}, settings | {PREPROCESS: "on"}
+    parts = [part for piece in closed for part in _cut_piece(*piece, as_is)]
     if len(others):
-        parts += _cut(points, others, settings | {AS: "on"})
+        parts += _cut_piece(points, others, remeshed)
     return parts
 
 
-def _cut(points, faces, settings):
-    """The parts of one mesh; kept, but of one that is convex."""
-    whole = hull(points[np.unique(faces)])
+def _cut_piece(points: FloatArray, faces: IntArray, settings: dict[str, object]) -> list[Hull]:
+    """Return the parts of one piece, from the cache if it has them."""
+    whole = make_hull(points[np.unique(faces)])
     if whole is None:
         return []
-    if settings[AS] == "off" and _fills_its_hull(points, faces):
+    if settings[PREPROCESS] == "off" and _fills_its_hull(points, faces):
         return [whole]
-    file = cache() / f"{_checksum(points, faces, settings)}.npz"
+    file = cache_folder() / f"{_checksum(points, faces, settings)}.npz"
     if not file.is_file():
         _run_coacd(points, faces, settings, file)
     with np.load(file) as stored:
         parts = np.split(stored["points"], stored["ends"][:-1])
-    return [found for part in parts if (found := hull(part)) is not None]
+    return [hull for part in parts if (hull := make_hull(part)) is not None]
 
 
-def cache():
-    """The folder of the decompositions, in the user's cache folder."""
+def cache_folder() -> Path:
+    """Return the folder of the stored decompositions, in the user's cache folder."""
     import pooch
 
     return Path(pooch.os_cache("brdfkit")) / "convex_parts"
 
 
-def weld(points, faces):
-    """The mesh with one vertex where several lie at one point, in single precision, and without
-    faces of no area."""
+def weld(points: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
+    """Merge vertices that are equal in single precision, and drop faces with two equal corners."""
     points = np.asarray(points, np.float32).astype(float)
     points, number = np.unique(points, axis=0, return_inverse=True)
     faces = number.reshape(-1)[np.asarray(faces)]
@@ -99,16 +105,18 @@ def weld(points, faces):
     return points, faces[(a != b) & (b != c) & (c != a)]
 
 
-def _fills_its_hull(points, faces):
-    """Whether a closed mesh is convex: its volume is that of its hull, within a millionth."""
+def _fills_its_hull(points: FloatArray, faces: IntArray) -> bool:
+    """Return whether a closed mesh is convex: as large as its hull, within a millionth."""
     from scipy.spatial import ConvexHull
 
     corners = points[faces] - points.mean(axis=0)
     volume = abs(np.linalg.det(corners).sum()) / 6
-    return volume > (1 - 1e-6) * ConvexHull(points).volume
+    return bool(volume > (1 - 1e-6) * ConvexHull(points).volume)
 
 
-def _run_coacd(points, faces, settings, file):
+def _run_coacd(
+    points: FloatArray, faces: IntArray, settings: dict[str, object], file: Path
+) -> None:
     """Write the parts of a mesh to `file`, by a process that does not outlive this call."""
     if not find_spec("coacd"):
         raise BrdfkitError(
@@ -120,8 +128,8 @@ def _run_coacd(points, faces, settings, file):
     with TemporaryDirectory() as folder, write_safely(file) as beside:
         mesh = Path(folder) / "mesh.npz"
         np.savez(mesh, points=points, faces=faces)
-        program = [sys.executable, "-P", PROGRAM, mesh, beside, json.dumps(settings)]
-        status = _run(program)
+        command = [sys.executable, "-P", PROGRAM, mesh, beside, json.dumps(settings)]
+        status = _run(command)
         if status:
             raise BrdfkitError(
                 f"coacd could not cut a mesh of {len(faces):,} triangles (exit status {status}); "
@@ -129,10 +137,10 @@ def _run_coacd(points, faces, settings, file):
             )
 
 
-def _run(program):
-    """The exit status of a program, which ends with this call, also by Ctrl-C."""
+def _run(command: list[str | Path]) -> int:
+    """Run a program and return its exit status; Ctrl-C ends it, too."""
     give_back_interrupts()  # Mitsuba's handler, while it renders, waits for the picture
-    process = subprocess.Popen(program, stderr=subprocess.DEVNULL)
+    process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
     try:
         return process.wait()
     finally:
@@ -140,9 +148,9 @@ def _run(program):
         process.wait()
 
 
-def _checksum(points, faces, settings):
-    """The SHA-256 of a mesh and of how it is cut, in hexadecimal."""
+def _checksum(points: FloatArray, faces: IntArray, settings: dict[str, object]) -> str:
+    """Return the SHA-256 of a mesh and of the settings, in hexadecimal."""
     digest = hashlib.sha256(repr(sorted(settings.items())).encode())
-    digest.update(np.ascontiguousarray(points, "<f8"))
-    digest.update(np.ascontiguousarray(faces, "<i8"))
+    digest.update(np.asarray(points, "<f8").tobytes())
+    digest.update(np.asarray(faces, "<i8").tobytes())
     return digest.hexdigest()

@@ -1,33 +1,39 @@
-"""Objects of convex parts, which can be moved, and the rays that they block."""
+"""`Occluders`: objects of convex parts, which can be moved, and tests of the rays they block."""
+
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import JitFloat, JitInt, JitMask, MitsubaObject
 from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.lighting.visibility.convex_ray import enter
+from brdfkit.lighting.visibility.convex_ray import find_entry
 from brdfkit.lighting.visibility.hierarchy import Hierarchy
-from brdfkit.lighting.visibility.hull import Frames
+from brdfkit.lighting.visibility.hull import Frames, Hull
 from brdfkit.lighting.visibility.plane_map import RasterisedPlaneMap
 from brdfkit.mitsuba_bridge.arrays import Rows
 
-RESOLUTION = 128  # texels
+RESOLUTION = 128  # texels along a side of the largest part's map
 CLEARANCE = 0.03  # over half of the longest side of an object: as far as hulls bulge by default
 
 
 class Occluders:
     """The convex parts of objects, their plane maps, and a tree over the parts of all objects.
 
-    objects : name → list of its parts, `Hull`s; at least one part in all.
-    resolution : side of the plane map of the largest part, in texels.
-    clearance : a part that a ray enters nearer than this does not block it, as a share of half the
-        longest side of its object's bounding box.
+    `objects` maps names to lists of parts; there is at least one part in all. `resolution` is the
+    side of the plane map of the largest part [texels]. A part that a ray enters nearer than the
+    `clearance`, a share of half the longest side of its object's bounding box, does not block it.
 
     A hull bulges out of the mesh where that is hollow, and would shade the mesh beside it: without
-    the clearance, dark lines follow the seams between the parts.
-
-    An object that is moved changes its transform and the tree; its plane maps stay as they are.
+    the clearance, dark lines follow the seams between the parts. Moving an object changes its
+    transform and the tree; its plane maps stay as they are.
     """
 
-    def __init__(self, objects, resolution=RESOLUTION, clearance=CLEARANCE):
+    def __init__(
+        self,
+        objects: dict[Any, list[Hull]],
+        resolution: int = RESOLUTION,
+        clearance: float = CLEARANCE,
+    ) -> None:
         self.hulls = [hull for parts in objects.values() for hull in parts]
         if not self.hulls:
             raise BrdfkitError("There are no convex parts; give an object that encloses a volume.")
@@ -43,11 +49,13 @@ class Occluders:
         self._vertex_part = np.repeat(np.arange(len(self.hulls)), counts)
         self._to_world = np.tile(np.eye(4), (len(self.hulls), 1, 1))
         self.maps = RasterisedPlaneMap(self.hulls, resolution)
-        self.clearance = Rows(np.repeat([clearance * _half(p) for p in objects.values()], lengths))
-        self._update()
+        self.clearance = Rows(
+            np.repeat([clearance * _half_length(p) for p in objects.values()], lengths)
+        )
+        self._update_tree()
 
-    def move(self, name, to_world):
-        """Place the object `name` by a matrix (4, 4), from its first place to its new one.
+    def move(self, name: str, to_world: Any) -> None:
+        """Place the object `name` by a matrix (4, 4), from its original place to its new one.
 
         Raises `BrdfkitError` for an unknown object, and for a matrix that cannot be inverted.
         """
@@ -57,10 +65,10 @@ class Occluders:
         if matrix.shape != (4, 4) or not abs(np.linalg.det(matrix)) > 0:
             raise BrdfkitError(f"{name}: to_world should be an invertible matrix (4, 4).")
         self._to_world[self._parts[name]] = matrix
-        self._update()
+        self._update_tree()
 
-    def _update(self):
-        """Compute what depends on where the objects are."""
+    def _update_tree(self) -> None:
+        """Compute the tree and the frames, which depend on where the objects are."""
         world = self._to_world[self._vertex_part]
         placed = np.einsum("nij,nj->ni", world[:, :3, :3], self._vertices) + world[:, :3, 3]
         low = np.minimum.reduceat(placed, self._starts)
@@ -69,30 +77,32 @@ class Occluders:
         to_unit = np.stack([hull.to_unit for hull in self.hulls])
         self.frames = Frames(to_unit @ np.linalg.inv(self._to_world))
 
-    def blocked(self, ray, active=True):
-        """(whether a part lies between the ray's origin and its `maxt`, look-ups in plane maps).
+    def blocked(self, ray: MitsubaObject, active: JitMask = True) -> tuple[JitMask, JitInt]:
+        """Return whether a part lies before the ray's `maxt`, and the number of plane look-ups.
 
-        A part that holds the origin does not block: the origin lies on the surface within it.
+        A part that contains the ray's origin does not block it: the origin lies on a surface.
         """
 
-        def test(part, active):
+        def test(part: JitInt, active: JitMask) -> tuple[JitMask, JitInt]:
             t, entered, reads = self._enter(ray, part, active)
             return entered & (t >= self.clearance.at(part, active=active)) & (t < ray.maxt), reads
 
         return self.tree.any_hit(ray, test, active)
 
-    def _enter(self, ray, part, active):
-        """Where the ray enters a part, in the ray's own unit of distance; see `enter`."""
+    def _enter(
+        self, ray: MitsubaObject, part: JitInt, active: JitMask
+    ) -> tuple[JitFloat, JitMask, JitInt]:
+        """Return what `find_entry` does, with the distance in the ray's own unit."""
         import drjit as dr
         import mitsuba as mi
 
-        o, d = self.frames.ray(part, ray, active)
+        o, d = self.frames.transform_ray(part, ray, active)
         length = dr.select(active, dr.norm(d), 1)
-        t, entered, count = enter(mi, o, d / length, self.maps, part, active)
+        t, entered, count = find_entry(mi, o, d / length, self.maps, part, active)
         return t / length, entered, count
 
 
-def _half(parts):
-    """Half of the longest side of the bounding box of an object's parts; 0 where it has none."""
+def _half_length(parts: list[Hull]) -> float:
+    """Return half of the longest side of the bounding box of `parts`; 0 if there are none."""
     vertices = np.concatenate([hull.vertices for hull in parts]) if parts else np.zeros((1, 3))
-    return np.ptp(vertices, axis=0).max() / 2
+    return float(np.ptp(vertices, axis=0).max() / 2)

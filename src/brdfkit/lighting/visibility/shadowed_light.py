@@ -1,52 +1,100 @@
-"""`ShadowedLight`: a filtered light as the points of a scene see it, with shadows."""
+"""Shadows in filtered light: how much of a lobe, and of the irradiance, a point of a scene sees."""
 
-from brdfkit.lighting.visibility.lobes import visible_share
+import math
+from collections.abc import Callable
+from typing import TypeAlias
 
+from brdfkit.core.array_types import JitColour, JitFloat, JitInt, JitMask, JitVector, MitsubaObject
+from brdfkit.lighting.filtering.filtered_light import Light, LightDirections
+
+Visible: TypeAlias = Callable[[JitVector], JitMask]
+
+GOLDEN_ANGLE = math.pi * (3 - math.sqrt(5))
 RAYS = 4  # per lobe
 
 
 class ShadowedLight:
-    """A filtered `light` times its visible share: of each lobe, and of the irradiance.
+    """A filtered `light` times its visible share, for each lobe and for the irradiance.
 
-    si : the points, a `mitsuba.SurfaceInteraction3f`.
-    visible : a function of directions, `mitsuba.Vector3f`, to whether the points see that far.
-    drawn : directions from which the light comes, see `DrawnLight`.
-
-    Directions count by the light that comes from them, so that a shadow is that of the lamp which
-    is hidden; those below the surface do not count.
+    `si` are the points, a `mitsuba.SurfaceInteraction3f`, and `visible` returns whether light from
+    a direction reaches them. `directions` are those from which the light comes: they count by
+    their light, so that a shadow is that of the lamp that is hidden. Directions below the surface
+    do not count.
     """
 
-    def __init__(self, light, si, visible, drawn):
-        self.light, self.si, self.visible, self.drawn = light, si, visible, drawn
+    def __init__(
+        self, light: Light, si: MitsubaObject, visible: Visible, directions: LightDirections
+    ) -> None:
+        self.light, self.si, self.visible, self.directions = light, si, visible, directions
 
-    def mean_over_lobe(self, axis, kappa):
-        """Mean radiance over a von Mises-Fisher lobe, linear sRGB."""
+    def mean_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
+        """Return the mean visible radiance over a von Mises-Fisher lobe, linear sRGB."""
         import drjit as dr
 
         normal = self.si.to_world(type(axis)(0, 0, dr.sign(self.si.wi.z)))
 
-        def weight(direction):
-            found = self.light.mean_over_lobe(direction, kappa * RAYS)
-            return dr.select(dr.dot(direction, normal) > 0, found, 0)
+        def weight(direction: JitVector) -> JitColour:
+            radiance = self.light.mean_over_lobe(direction, kappa * RAYS)
+            return dr.select(dr.dot(direction, normal) > 0, radiance, 0)
 
         share = visible_share(self.visible, axis, kappa, weight, RAYS)
         return self.light.mean_over_lobe(axis, kappa) * share
 
-    def irradiance(self, normal):
-        """What a white matte surface of this `normal` shows, linear sRGB."""
+    def irradiance(self, normal: JitVector) -> JitColour:
+        """Return the radiance of a white matte surface of this `normal`, linear sRGB."""
         import drjit as dr
         import mitsuba as mi
 
-        ray = dr.arange(mi.UInt32, dr.width(normal)) % self.drawn.rays
+        ray = dr.arange(mi.UInt32, dr.width(normal)) % self.directions.rays
 
-        def add(i, seen, total):
-            direction, power = self.drawn.at(i, ray)
+        def add(
+            i: JitInt, seen: JitColour, total: JitColour
+        ) -> tuple[JitInt, JitColour, JitColour]:
+            direction, power = self.directions.at(i, ray)
             received = power * dr.maximum(dr.dot(direction, normal), 0)
             return i + 1, seen + dr.select(self.visible(direction), received, 0), total + received
 
         _, seen, total = dr.while_loop(
             (mi.UInt32(0), mi.Color3f(0), mi.Color3f(0)),
-            lambda i, seen, total: i < self.drawn.per_ray,
+            lambda i, seen, total: i < self.directions.per_ray,
             add,
         )
         return self.light.irradiance(normal) * dr.select(total > 0, seen / total, 1)
+
+
+def visible_share(
+    visible: Visible,
+    axes: JitVector,
+    kappa: JitFloat,
+    weight: Callable[[JitVector], JitColour],
+    rays: int = 16,
+) -> JitColour:
+    """Return the visible share (0 to 1, by channel) of lobes, to an accuracy of about 1 / rays.
+
+    The share is ∫ g(ω; μ, κ) L(ω) V(ω) dω / ∫ g(ω; μ, κ) L(ω) dω, with the von Mises-Fisher lobe g
+    of axes μ and concentrations κ > 0, the visibility V (`visible`) and the weight L (`weight`),
+    both functions of directions in the world. Where the weight is 0, all is visible. `rays`
+    directions sample each lobe, the same for every point: a spiral with equal probability between
+    its points.
+    """
+    import drjit as dr
+    import mitsuba as mi
+
+    frame = mi.Frame3f(axes)
+
+    def add(i: JitInt, seen: JitColour, total: JitColour) -> tuple[JitInt, JitColour, JitColour]:
+        # The inverse of the lobe's distribution of cosθ, at the middles of equal parts
+        x = (mi.Float(i) + 0.5) / rays
+        cos = 1 + dr.log(x + (1 - x) * dr.exp(-2 * kappa)) / kappa
+        sin = dr.safe_sqrt(1 - cos * cos)
+        sin_phi, cos_phi = dr.sincos(mi.Float(i) * GOLDEN_ANGLE)
+        direction = frame.to_world(mi.Vector3f(sin * cos_phi, sin * sin_phi, cos))
+        counted = mi.Color3f(weight(direction))
+        return i + 1, seen + dr.select(visible(direction), counted, 0), total + counted
+
+    count = mi.UInt32(rays)
+    dr.make_opaque(count)
+    _, seen, total = dr.while_loop(
+        (mi.UInt32(0), mi.Color3f(0), mi.Color3f(0)), lambda i, seen, total: i < count, add
+    )
+    return dr.select(total > 0, seen / total, 1)

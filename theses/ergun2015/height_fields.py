@@ -1,6 +1,6 @@
 """A rival of convex parts: a tree over height fields, RBVH [Novák & Dachsbacher 2012].
 
-A tree over the triangles is cut where all triangles of a node face to one side. There they become a
+A tree over the triangles ends where all triangles of a node face to one side. There they become a
 height field over the plane that they face, in which a ray marches from texel to texel. The original
 keeps triangles where a field would hold few of them; here every leaf is a field.
 """
@@ -13,8 +13,8 @@ from brdfkit.lighting.visibility.occluders import CLEARANCE
 from brdfkit.mitsuba_bridge.arrays import Rows, cell
 
 SIDE = 32  # texels
-MOST_TRIANGLES = 512  # of a field: about the number of its texels
-LEAST_COS = 0.3  # between the normal of a triangle and the direction of its field's heights
+MAX_TRIANGLES = 512  # of a field: about the number of its texels
+MIN_COS = 0.3  # between the normal of a triangle and the direction of its field's heights
 NO_SURFACE = -1e3  # the height of an empty texel, far below the field's 0 to 1
 MARGIN = 0.02  # of the box of a field around its heights, which lie within 0 and 1
 
@@ -50,7 +50,7 @@ class HeightFields:
         import mitsuba as mi
 
         # The ray in the field's frame, whose box is the unit cube, and the part of it in the box
-        o, d = self.frames.ray(field, ray, active)
+        o, d = self.frames.transform_ray(field, ray, active)
         inverse = dr.rcp(d)
         a, b = -o * inverse, (1 - o) * inverse
         near = dr.maximum(dr.max(dr.minimum(a, b)), self.clearance)
@@ -90,8 +90,8 @@ def one_sided_groups(corners):
         group = waiting.pop()
         up = normals[group].sum(axis=0)
         up = up / max(np.linalg.norm(up), 1e-30)
-        one_sided = len(group) == 1 or (units[group] @ up).min() > LEAST_COS
-        if one_sided and len(group) <= MOST_TRIANGLES:
+        one_sided = len(group) == 1 or (units[group] @ up).min() > MIN_COS
+        if one_sided and len(group) <= MAX_TRIANGLES:
             groups.append(group)
             continue
         axis = np.ptp(centres[group], axis=0).argmax()
