@@ -74,7 +74,9 @@ def decompose(
     return parts
 
 
-def _cut_piece(points: FloatArray, faces: IntArray, settings: dict[str, object]) -> list[Hull]:
+def _cut_piece(
+    points: FloatArray, faces: IntArray, settings: dict[str, int | float | str]
+) -> list[Hull]:
     """Return the parts of one piece, from the cache if it has them."""
     whole = make_hull(points[np.unique(faces)])
     if whole is None:
@@ -115,7 +117,7 @@ def _fills_its_hull(points: FloatArray, faces: IntArray) -> bool:
 
 
 def _run_coacd(
-    points: FloatArray, faces: IntArray, settings: dict[str, object], file: Path
+    points: FloatArray, faces: IntArray, settings: dict[str, int | float | str], file: Path
 ) -> None:
     """Write the parts of a mesh to `file`, by a process that does not outlive this call."""
     if not find_spec("coacd"):
@@ -148,7 +150,7 @@ def _run(command: list[str | Path]) -> int:
         process.wait()
 
 
-def _checksum(points: FloatArray, faces: IntArray, settings: dict[str, object]) -> str:
+def _checksum(points: FloatArray, faces: IntArray, settings: dict[str, int | float | str]) -> str:
     """Return the SHA-256 of a mesh and of the settings, in hexadecimal."""
     digest = hashlib.sha256(repr(sorted(settings.items())).encode())
     digest.update(np.asarray(points, "<f8").tobytes())
