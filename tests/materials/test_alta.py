@@ -115,7 +115,7 @@ TRAPS = {
     "DIM of PARAM_IN": (alta().replace(b"#DIM 3", b"#DIM 4"), "DIM says 4 .* where 3 belong"),
     "two values": (alta().replace(b"#DIM 3 1", b"#DIM 3 2"), "2 values where .* 1 or 3"),
     "no PARAM_IN": (alta().replace(b"#PARAM_IN", b"#IN"), "PARAM_IN is None"),
-    "one direction": (alta("COS_TH"), "PARAM_IN is COS_TH, which does not tell both directions"),
+    "one direction": (alta("COS_TH"), "PARAM_IN is COS_TH, which does not give both directions"),
     "energy": (alta(out="ENERGY"), "PARAM_OUT is ENERGY, which is no BRDF"),
     "binary": (alta() + b"#FORMAT binary\n", "binary form"),
     "interval": (alta().replace(b"#VS 0", b"#VS 3"), "VS is '3' where 0, 1 or 2"),

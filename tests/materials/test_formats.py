@@ -93,7 +93,7 @@ TRAPS = {
     "cornell": {
         "cut short": (cornell()[:-20], r"line 16 has 5 columns where 7 belong"),
         "too long": (cornell()[:-2] + b" 1.0\r\n", "line 16 has 8 columns"),
-        "no rows": (cornell()[:95], "no samples"),
+        "no rows": (cornell()[:95], "no rows"),
         "comments only": (b"# A paint\n", "comments only"),
         "other count": (replaced(cornell(), b"\n3", b"\n4"), "announces 4 .* list 10"),
         "no count": (replaced(cornell(), b"\n3", b"\n3.5"), "line 4 has '3.5'"),

@@ -16,7 +16,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.formats.rgl import encoding, tensor_file
 from brdfkit.materials.formats.rgl.encoding import Resolution
-from brdfkit.materials.formats.rgl.normals import Hemisphere, power_iteration
+from brdfkit.materials.formats.rgl.normals import Hemisphere, find_normals
 from brdfkit.materials.formats.rgl.warp import Warp, even_grid, find_slices
 from brdfkit.materials.loading import load, save
 from brdfkit.materials.measured import Measured
@@ -152,13 +152,13 @@ def test_warp_inverts_itself_and_follows_its_density():
 @pytest.mark.parametrize(
     ("alpha_x", "alpha_y", "n_phi"), [(0.1, 0.1, 1), (0.3, 0.3, 1), (0.2, 0.4, 64)]
 )
-def test_power_iteration_finds_the_microfacets(alpha_x, alpha_y, n_phi):
+def test_find_normals_finds_the_microfacets(alpha_x, alpha_y, n_phi):
     """f(w, w) of a GGX surface that masks what it shadows: D and σ are known in closed form."""
     hemisphere = Hemisphere(np.linspace(0, 1, 256) ** 2 * np.pi / 2, n_phi)
     x, y, z = np.moveaxis(hemisphere.directions, -1, 0)
     D = 1 / (np.pi * alpha_x * alpha_y * ((x / alpha_x) ** 2 + (y / alpha_y) ** 2 + z**2) ** 2)
     sigma = (z + np.sqrt(z**2 + (alpha_x * x) ** 2 + (alpha_y * y) ** 2)) / 2
-    found = power_iteration(0.3 * D / (4 * np.maximum(z, 1e-9) * sigma), hemisphere)
+    found = find_normals(0.3 * D / (4 * np.maximum(z, 1e-9) * sigma), hemisphere)
     near = hemisphere.theta < np.radians(80)
     np.testing.assert_allclose(found[:, near], D[:, near], rtol=5e-3)
     np.testing.assert_allclose(hemisphere.projected_area(found), sigma, atol=1e-3)

@@ -1,21 +1,25 @@
-"""The file formats: every file of this folder is one format and is found by itself.
+"""The file formats of materials: every file of this folder is one format, and is found by itself.
 
 A format's file defines
 
 - ``NAME``: the name for people; ``SUFFIXES``: such as ``(".binary",)``;
-- ``sniff(head)``: whether the first 4 kB (bytes, decompressed) look like this format;
+- ``sniff(head)``: returns whether the first 4 kB (bytes, decompressed) look like this format;
 - ``read(source)``: returns the content of a `Source` (`_source.py`), a `Measured` or a `Fit`;
 - ``write(obj, stream)``, if the format can be written: writes `obj` to a binary stream, or raises a
-  `BrdfkitError` that tells what the format cannot hold; `save` puts the path before the error;
+  `BrdfkitError` that says what the format cannot hold; `save` puts the path before the error;
 - ``MANY = True``, if one file holds many samples: ``source.sample`` names one of them.
 
-`_writing.py` and `_notes.py` have the functions that several formats share.
+`_writing.py` has the functions that several writers share, and `_delimited.py` reads tables.
 """
 
 import gzip
 import lzma
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import IO, Any
 
 from brdfkit.core.discovery.plugin_files import import_modules
 from brdfkit.core.errors import BrdfkitError
@@ -23,53 +27,55 @@ from brdfkit.core.files import COMPRESSED, GZIP
 from brdfkit.materials.formats._source import Source as Source
 from brdfkit.materials.formats._source import format_suffix
 
-HEAD = 4096  # bytes that a format's `sniff` sees
+HEAD = 4096  # bytes that the function `sniff` of a format gets
 
 
 @cache
-def formats():
-    """The format modules of this folder, in alphabetical order."""
+def formats() -> tuple[ModuleType, ...]:
+    """Return the format modules of this folder, in alphabetical order."""
     return import_modules(__name__, __path__)
 
 
-def has_format(path):
-    """Whether the suffix of a `Path` is that of a format."""
+def has_format(path: Path) -> bool:
+    """Return whether the suffix of a path is the suffix of a format."""
     return any(format_suffix(path) in module.SUFFIXES for module in formats())
 
 
-def write(obj, path, beside):
-    """Write `obj` in the format of the suffix of `path`, but to the file `beside` (both `Path`)."""
+def write(obj: Any, path: Path, beside: Path) -> None:
+    """Write `obj` in the format for the suffix of `path`, but to the temporary file `beside`."""
     writers = [module for module in formats() if hasattr(module, "write")]
-    chosen = [module for module in writers if format_suffix(path) in module.SUFFIXES]
-    if not chosen:
+    suitable = [module for module in writers if format_suffix(path) in module.SUFFIXES]
+    if not suitable:
         raise BrdfkitError(
             f"{path}: no format with this suffix; written are {_list_names(writers)}."
         )
-    with _compressing(beside) as stream:
+    with _open_for_writing(beside) as stream:
         try:
-            chosen[0].write(obj, stream)
+            suitable[0].write(obj, stream)
         except BrdfkitError as error:
             raise BrdfkitError(f"{path}: {error}") from error
 
 
-def read(source):
-    """The content of a `Source`, read by the format that recognises it."""
-    chosen = _recognise(source)
-    if source.sample is not None and not getattr(chosen, "MANY", False):
+def read(source: Source) -> Any:
+    """Return the content of a `Source`, read by the format that recognises it."""
+    module = _recognise(source)
+    if source.sample is not None and not getattr(module, "MANY", False):
         raise source.error(f"holds one material; leave '#{source.sample}' off the path")
-    return chosen.read(source)
+    return module.read(source)
 
 
-def _recognise(source):
-    """The format of a `Source`: by its content, or by its suffix where several formats, or none,
-    recognise the content."""
+def _recognise(source: Source) -> ModuleType:
+    """Return the format of a `Source`: by its content, else by its suffix.
+
+    The suffix decides where several formats, or none, recognise the content.
+    """
     sniffed = [module for module in formats() if module.sniff(source.data[:HEAD])]
     named = [m for m in sniffed or formats() if source.suffix in m.SUFFIXES]
     # Two formats have the suffix .dat: only one of them holds many samples
     named.sort(key=lambda m: getattr(m, "MANY", False) != (source.sample is not None))
     if len(sniffed) == 1:
         return sniffed[0]
-    if named:  # if none recognised the content, the format's reader tells what is wrong
+    if named:  # if none recognised the content, the format's reader says what is wrong
         return named[0]
     if sniffed:
         raise source.error(f"could be {_list_names(sniffed)}; rename it to one of these suffixes")
@@ -79,19 +85,22 @@ def _recognise(source):
     )
 
 
-def _list_names(modules):
+def _list_names(modules: Iterable[ModuleType]) -> str:
     return ", ".join(f"{module.NAME} ({' '.join(module.SUFFIXES)})" for module in modules)
 
 
 @contextmanager
-def _compressing(path):
-    """A binary stream into `path`, compressed if the suffix is; equal input gives equal bytes."""
+def _open_for_writing(path: Path) -> Iterator[IO[bytes]]:
+    """Open a binary stream to `path`, which compresses where the suffix is .gz or .xz.
+
+    Equal input gives equal bytes.
+    """
     with path.open("wb") as raw:
         if path.suffix.lower() not in COMPRESSED:
             yield raw
         elif path.suffix.lower() == GZIP:
             with gzip.GzipFile(filename="", mode="wb", fileobj=raw, mtime=0) as stream:
-                yield stream
+                yield stream  # type: ignore[misc]  # GzipFile is a binary stream, but no IO
         else:
-            with lzma.open(raw, "wb", preset=1) as stream:
-                yield stream
+            with lzma.open(raw, "wb", preset=1) as compressed:
+                yield compressed

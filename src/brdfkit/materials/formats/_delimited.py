@@ -1,15 +1,18 @@
-"""Text in columns under a line of their names, as spreadsheets write it: names and numbers.
+"""Reads tables as spreadsheets write them: a line with the names of the columns, then numbers.
 
-Tabs, semicolons, commas or blanks separate the columns; where it is not commas, numbers may have
-decimal commas, as they may in quotes.
+Tabs, semicolons, commas or blanks separate the columns. Numbers may have decimal commas where the
+separator is no comma, or in quotes.
 """
 
 import csv
 import re
+from collections.abc import Sequence
 from itertools import takewhile
+from pathlib import Path
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.materials.formats._source import Source
 from brdfkit.materials.measured.angles import DEGREES, RADIANS
 from brdfkit.materials.measured.column_names import PER_STERADIAN, are_columns, find_row_key
@@ -20,17 +23,23 @@ UNITS = {"", *DEGREES, *RADIANS, *PER_STERADIAN, "nm"}
 WHOLE = re.compile(r"[-+]?[0-9]*([eE][-+]?[0-9]+)?")
 MISSING = {"", "na", "n/a", "#n/a", "-"}  # what spreadsheets write where there is no number
 NUMERIC = re.compile(r"[-+0-9.,;eE\s]+")
+Lines = list[tuple[int, str]]  # (number of the line, text)
 
 
-def find_delimiter(head):
-    """What separates the columns in the text that begins with the bytes `head`, by its line of
-    names: one of `DELIMITERS`, " ", or None where no line names samples of a BRDF."""
-    header, _ = _find_header(Source("head", None, head))
-    return None if header is None or not are_columns(split(header)) else _delimiter(header)
+def find_delimiter(head: bytes) -> str | None:
+    """Return the separator of the columns in a text that begins with the bytes `head`.
+
+    It is one of `DELIMITERS` or " ", by the line of names; None where no line names samples of a
+    BRDF.
+    """
+    header, _ = _find_header(Source(Path("head"), None, head))
+    if header is None or not are_columns(split_fields(header)):
+        return None
+    return _choose_delimiter(header)
 
 
-def read_columns(source):
-    """The names of the columns, the numbers of the lines of the rows, and the columns (n,).
+def read_columns(source: Source) -> tuple[list[str], list[int], list[FloatArray]]:
+    """Return the names of the columns, the numbers of the rows' lines, and the columns (n,).
 
     A column without a name is left out, and so are rows without numbers. An empty field is NaN.
     Raises `BrdfkitError` for a row with other columns or with text among numbers.
@@ -42,14 +51,15 @@ def read_columns(source):
             f"{line} where the names of the columns belong; add them, as in "
             "'theta_i,phi_i,theta_o,phi_o,BRDF'"
         )
-    delimiter = _delimiter(header)
-    names = split(header)
-    names, rows = _take_units(names, rows, delimiter)
+    delimiter = _choose_delimiter(header)
+    names, rows = _take_units(split_fields(header), rows, delimiter)
     named = [k for k, name in enumerate(names) if name]  # the index that pandas writes has none
     texts = [k for k in named if find_row_key(names[k]) == "channel"]
-    lines, data, marks = [], [], {}
+    lines: list[int] = []
+    data: list[list[float]] = []
+    marks: dict[str, int] = {}
     for n, line in rows:
-        fields = split(line, delimiter)
+        fields = split_fields(line, delimiter)
         if not any(fields):  # spreadsheets end with rows of delimiters
             continue
         _refuse_split_numbers(source, n, fields, names, delimiter)
@@ -58,15 +68,15 @@ def read_columns(source):
         for k in texts:
             fields[k] = str(channel_number(fields[k]))
         lines.append(n)
-        data.append(source.parse_numbers(n, [_number(fields[k]) for k in named]))
+        data.append(source.parse_numbers(n, [_to_python_number(fields[k]) for k in named]))
     if not lines:
         raise source.error("has no rows behind the names of its columns; fetch the file again")
     return [names[k] for k in named], lines, list(np.array(data).T)
 
 
-def split(line, delimiter=None):
-    """The fields of a line without blanks and quotes around them."""
-    delimiter = delimiter or _delimiter(line)
+def split_fields(line: str, delimiter: str | None = None) -> list[str]:
+    """Return the fields of a line, without the blanks and quotes around them."""
+    delimiter = delimiter or _choose_delimiter(line)
     if delimiter == " ":
         fields = line.split()
     elif '"' in line:
@@ -76,36 +86,40 @@ def split(line, delimiter=None):
     return [field.strip(' \t"') for field in fields]
 
 
-def _find_header(source):
-    """The line of names, or None, and the lines behind it, as (number, text).
+def _find_header(source: Source) -> tuple[str | None, Lines]:
+    """Return the line of names, or None, and the lines behind it.
 
-    It is the first line that names samples, behind titles; else the first line, which is wrong; or,
-    where this has numbers, the last comment that names samples, as NumPy's `savetxt` writes it.
+    It is the first line that names samples, after any titles; else the first line, which is wrong.
+    Where the first line has numbers, it is the last comment that names samples, as NumPy's
+    `savetxt` writes it.
     """
     lines = source.whole_lines
     texts = [line for _, line in takewhile(lambda row: not NUMERIC.fullmatch(row[1]), lines)]
     if texts:
-        found = next((k for k, text in enumerate(texts) if are_columns(split(text))), 0)
-        return texts[found], lines[found + 1 :]
-    comments = [c for c in source.comments if are_columns(split(c))]
+        first = next((k for k, text in enumerate(texts) if are_columns(split_fields(text))), 0)
+        return texts[first], lines[first + 1 :]
+    comments = [c for c in source.comments if are_columns(split_fields(c))]
     return (comments[-1] if comments else None), lines
 
 
-def _delimiter(header):
+def _choose_delimiter(header: str) -> str:
+    """Return the separator of the columns by the line of their names."""
     return next((mark for mark in DELIMITERS if mark in header), " ")
 
 
-def _take_units(names, rows, delimiter):
-    """The names with their units behind them, and the rows without that of the units, if any."""
-    units = split(rows[0][1], delimiter) if rows else []
+def _take_units(names: list[str], rows: Lines, delimiter: str) -> tuple[list[str], Lines]:
+    """Return the names with their units, if the first of the `rows` states these, and the rest."""
+    units = split_fields(rows[0][1], delimiter) if rows else []
     if len(units) != len(names) or not any(units) or not UNITS.issuperset(map(str.lower, units)):
         return names, rows
     pairs = zip(names, units, strict=True)
     return [f"{n} [{u}]" if u and n[-1:] not in ")]" else n for n, u in pairs], rows[1:]
 
 
-def _refuse_split_numbers(source, line, fields, names, delimiter):
-    """Raise `BrdfkitError` where decimal commas make two fields of a number."""
+def _refuse_split_numbers(
+    source: Source, line: int, fields: Sequence[str], names: Sequence[str], delimiter: str
+) -> None:
+    """Raise `BrdfkitError` where decimal commas split numbers into two fields each."""
     few = len(names)
     many = max(count for count, field in enumerate(fields, 1) if field)
     if delimiter == "," and few < many <= 2 * few and all(map(WHOLE.fullmatch, fields)):
@@ -116,10 +130,11 @@ def _refuse_split_numbers(source, line, fields, names, delimiter):
         )
 
 
-def _require_one_mark(source, line, text, marks):
-    """Raise `BrdfkitError` where numbers have points and commas: which are of thousands?
+def _require_one_mark(source: Source, line: int, text: str, marks: dict[str, int]) -> None:
+    """Raise `BrdfkitError` where numbers have both points and commas, one of them for thousands.
 
-    `text`: the fields of line number `line`; `marks`: the mark → the line that had it first.
+    `text`: the fields of line number `line`; `marks`: the first line with each mark, to be added
+    to.
     """
     marks |= {mark: line for mark in ",." if mark in text and mark not in marks}
     if len(marks) == 2:
@@ -129,6 +144,6 @@ def _require_one_mark(source, line, text, marks):
         )
 
 
-def _number(text):
-    """The text of a number as Python reads it, NaN where nothing was measured."""
+def _to_python_number(text: str) -> str:
+    """Return the text of a number as Python reads it; nan where nothing was measured."""
     return "nan" if text.lower() in MISSING else text.replace(",", ".")

@@ -1,12 +1,15 @@
-"""`Source`: a file for a format's `read`: its bytes, lines and numbers, and errors that name it."""
+"""`Source`: a file that a format reads, with its bytes, lines and numbers, and errors about it."""
 
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import ArrayLike, BoolArray, FloatArray
 from brdfkit.core.colours import RGB
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import COMPRESSED, read_bytes
@@ -34,55 +37,74 @@ class Source:
     data: bytes = field(repr=False)
 
     @property
-    def suffix(self):
+    def suffix(self) -> str:
         """The format's suffix in lower case, without .gz or .xz."""
         return format_suffix(self.path)
 
     @property
-    def name(self):
+    def name(self) -> str:
         """The file's name without its suffixes."""
         name = _strip_compression(self.path).name
         return name[: -len(self.suffix)] if self.suffix else name
 
     @cached_property
-    def lines(self):
+    def lines(self) -> list[tuple[int, str]]:
         """The lines that are neither blank nor a '#' comment, as (number from 1, text)."""
         return [(n, line.strip()) for n, line in self.whole_lines]
 
     @cached_property
-    def whole_lines(self):
-        """As `lines`, with the blanks and tabs at their ends."""
+    def whole_lines(self) -> list[tuple[int, str]]:
+        """The same lines as `lines`, with the blanks and tabs at their ends."""
         numbered = enumerate(self._text, 1)
         return [(n, line) for n, line in numbered if line.strip()[:1] not in ("", "#")]
 
     @cached_property
-    def comments(self):
+    def comments(self) -> list[str]:
         """The texts of the '#' lines."""
         stripped = (line.strip() for line in self._text)
         return [line.strip("# ") for line in stripped if line.startswith("#")]
 
     @property
-    def _text(self):
+    def _text(self) -> list[str]:
+        """All lines of the file."""
         wide = self.data.startswith((BOM_UTF16_LE, BOM_UTF16_BE))  # "Unicode" of spreadsheets
         text = self.data.decode("utf-16" if wide else "utf-8-sig", errors="replace")
         return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
-    def error(self, problem):
-        """A `BrdfkitError` that names this file; `problem`: what is wrong and what to do, without a
-        full stop."""
+    def error(self, problem: str) -> BrdfkitError:
+        """Return a `BrdfkitError` that names this file.
+
+        `problem` says what is wrong and what to do, without a full stop.
+        """
         return BrdfkitError(f"{self.path}: {problem}.")
 
-    def open_sibling(self, name):
-        """The file `name` in the same folder, compressed or not, as a `Source`."""
+    def open_sibling(self, name: str) -> "Source":
+        """Return the file `name` in the same folder, compressed or not, as a `Source`."""
         for suffix in ("", *COMPRESSED):
             path = self.path.with_name(name + suffix)
             if path.exists():
                 return Source(path, None, read_bytes(path))
         raise self.error(f"needs {name} beside it; put the two in one folder")
 
-    def parse_numbers(self, line, fields, count=None):
-        """The texts `fields` of line number `line` as floats; there must be `count` of them, unless
-        it is None."""
+    def parse_rows(
+        self, rows: Sequence[tuple[int, str]], columns: int, delimiter: str | None = None
+    ) -> FloatArray:
+        """Return the numbers (n, columns) in `rows`, given as (number of the line, text).
+
+        Blanks separate the numbers, or the `delimiter`. Raises `BrdfkitError` where there is no
+        row, and for a row with text or with another number of columns.
+        """
+        if not rows:
+            raise self.error("has no rows behind its header; fetch the file again")
+        return np.array([self.parse_numbers(n, line.split(delimiter), columns) for n, line in rows])
+
+    def parse_numbers(
+        self, line: int, fields: Sequence[str], count: int | None = None
+    ) -> list[float]:
+        """Return the texts `fields` of line number `line` as floats.
+
+        There must be `count` of them, unless it is None.
+        """
         if count is not None:
             self.require_count(line, fields, count)
         try:
@@ -93,19 +115,20 @@ class Source:
                 f"line {line} has {wrong[:40]!r} where a number belongs; {REMEDY}"
             ) from None
 
-    def require_count(self, line, fields, count):
+    def require_count(self, line: int, fields: Sequence[str], count: int) -> None:
         """Raise `BrdfkitError` unless line number `line` has `count` `fields`."""
         if len(fields) != count:
             raise self.error(
                 f"line {line} has {len(fields)} columns where {count} belong (cut short?); {REMEDY}"
             )
 
-    def build_from_angles(self, lines, angles, values, **details):
-        """The `Measured` with `values` (n, channels) at `angles` (n, 4) [rad]: theta_i, phi_i,
-        theta_o, phi_o.
+    def build_from_angles(
+        self, lines: Sequence[int], angles: ArrayLike, values: ArrayLike, **details: Any
+    ) -> Measured:
+        """Return the `Measured` with `values` (n, channels) at `angles` (n, 4) [rad].
 
-        `lines` (n,): the numbers of the lines where they stand, for errors; `details`: see
-        `build_from_directions`.
+        The angles are theta_i, phi_i, theta_o, phi_o; `lines` (n,) are the numbers of their lines,
+        for errors; `details`: see `build_from_directions`.
         """
         angles = np.array(angles, float)
         self.require_radians(lines, angles, SPHERICAL)
@@ -114,29 +137,31 @@ class Source:
 
     def build_from_directions(
         self,
-        wi,
-        wo,
-        values,
-        valid=True,
-        channels=RGB,
-        name=None,
-        info=None,
-        standard_error=None,
-        **details,
-    ):
-        """`Measured.from_samples` with the file's name; a row with a value that is not finite is
-        marked as not measured."""
+        wi: FloatArray,
+        wo: FloatArray,
+        values: ArrayLike,
+        valid: BoolArray | bool = True,
+        channels: Sequence[str] = RGB,
+        name: str | None = None,
+        info: Mapping[str, str] | None = None,
+        standard_error: FloatArray | None = None,
+        **details: Any,
+    ) -> Measured:
+        """Return `Measured.from_samples` with the file's name, masking values that are not finite.
+
+        A note in `info` says how many rows were masked.
+        """
         values = np.array(values, float)
         finite = np.isfinite(values).all(axis=1)
         if standard_error is not None:
             finite &= np.isfinite(standard_error).all(axis=1)
             details["standard_error"] = standard_error
-        info, name = dict(info or {}), name or self.name
-        if (lost := ~finite & valid).any():  # those that the reader did not mask have no note yet
-            info["not finite"] = f"{lost.sum():,} of {len(finite):,} rows, masked"
+        notes, name = dict(info or {}), name or self.name
+        if (masked := ~finite & valid).any():  # the reader did not mask these, and wrote no note
+            notes["not finite"] = f"{masked.sum():,} of {len(finite):,} rows, masked"
         try:
             return Measured.from_samples(
-                wi, wo, values, finite & valid, channels, name, info, **details
+                wi, wo, values, finite & valid, channels, name, notes, **details
             )
         except BrdfkitError:
             raise self.error(
@@ -144,9 +169,13 @@ class Source:
                 "fetch the file again"
             ) from None
 
-    def require_radians(self, lines, angles, limits):
-        """Raise `BrdfkitError` unless `angles` (n, k) [rad], without sign, are at most the `limits`
-        (k,)."""
+    def require_radians(
+        self, lines: Sequence[int], angles: FloatArray, limits: Sequence[float]
+    ) -> None:
+        """Raise `BrdfkitError` where `angles` (n, k) [rad], of either sign, exceed `limits` (k,).
+
+        `lines` (n,) are the numbers of their lines.
+        """
         limit = np.array(limits) + ANGLE_TOLERANCE
         wrong = ~(np.abs(angles) <= limit)  # NaN is wrong, too
         if wrong.any():
@@ -157,8 +186,8 @@ class Source:
             )
 
 
-def format_suffix(path):
-    """The suffix of the format in lower case, without .gz or .xz.
+def format_suffix(path: Path) -> str:
+    """Return the suffix of the format in lower case, without .gz or .xz.
 
     >>> format_suffix(Path("copper.astm.xz"))
     '.astm'
@@ -166,17 +195,17 @@ def format_suffix(path):
     return _strip_compression(path).suffix.lower()
 
 
-def _strip_compression(path):
+def _strip_compression(path: Path) -> Path:
     return path.with_suffix("") if path.suffix.lower() in COMPRESSED else path
 
 
-def _parse_number(text):
+def _parse_number(text: str) -> float:
     if "_" in text:  # Python reads 1_0 as ten, but in a file it is damage
         raise ValueError
     return float(text)
 
 
-def _is_number(text):
+def _is_number(text: str) -> bool:
     try:
         _parse_number(text)
     except ValueError:

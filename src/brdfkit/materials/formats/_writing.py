@@ -1,16 +1,24 @@
-"""Functions that the writers of formats share: what they accept, angles, rows of text."""
+"""Functions that the writers of formats share, and notes on files of Cornell's instrument."""
+
+from collections.abc import Iterable, Sequence
+from typing import IO
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import to_angles
 from brdfkit.materials.measured import Measured
+from brdfkit.model.samples import Samples
+
+LARGEST_RATIO = 5  # of the brightest sample to the next one; above it, the sample is suspicious
 
 
-def require_measured(obj, name, anisotropic=False):
-    """`obj`, if it is a `Measured` that the format `name` can hold; otherwise a `BrdfkitError`.
+def require_measured(obj: object, name: str, anisotropic: bool = False) -> Measured:
+    """Return `obj` if it is a `Measured` that the format `name` can hold.
 
-    `anisotropic`: whether the format can hold an anisotropic material.
+    `anisotropic`: whether the format can hold an anisotropic material. Raises `BrdfkitError` for
+    any other object.
     """
     if not isinstance(obj, Measured):
         raise BrdfkitError(
@@ -25,37 +33,51 @@ def require_measured(obj, name, anisotropic=False):
     return obj
 
 
-def sample_angles(samples):
-    """theta_i, phi_i, theta_o, phi_o (4, n) [rad] of `Samples`."""
+def wrong_channels(obj: Measured, name: str, holds: str, suffix: str = ".npz") -> BrdfkitError:
+    """Return the error for a `Measured` whose channels the format `name` cannot hold.
+
+    `holds` says which channels the format holds; the error proposes another format by its `suffix`.
+    """
+    return BrdfkitError(
+        f"the format {name} holds {holds}, and {obj.name} has the channels "
+        f"{' '.join(obj.channels)[:80]}; choose another suffix, such as {suffix}."
+    )
+
+
+def compute_angles(samples: Samples) -> FloatArray:
+    """Return theta_i, phi_i, theta_o, phi_o (4, n) [rad] of `Samples`."""
     return np.stack([*to_angles(samples.wi), *to_angles(samples.wo)])
 
 
-def write_rows(stream, header, columns, delimiter=" "):
-    """Write text in UTF-8: the lines of `header`, then rows of the numbers in `columns`, with all
-    their digits.
+def write_rows(
+    stream: IO[bytes],
+    header: Iterable[str],
+    columns: Sequence[FloatArray],
+    delimiter: str = " ",
+) -> None:
+    """Write the lines of `header`, then the numbers in `columns` (n,) as rows, with all digits.
 
-    Python reads a byte of a file's name that is no UTF-8 as a surrogate; it is written as "?".
+    The text is UTF-8. Python reads a byte of a file's name that is no UTF-8 as a surrogate; such a
+    byte is written as "?".
     """
     lines = "".join(f"{line}\n" for line in header)
     stream.write(lines.encode(errors="replace"))
     np.savetxt(stream, np.stack(columns, axis=1), "%.17g", delimiter)
 
 
-SUSPICIOUS = 5  # times the next largest value
+def note_lone_point(samples: Samples) -> dict[str, str]:
+    """Return a note, by its key, if one sample at grazing mirror reflection stands out; else none.
 
-
-def note_lone_point(samples):
-    """A note, by its key, if one sample at grazing mirror reflection stands out; otherwise none.
-
-    It is more than 5 times as bright as any other. Every file of Cornell's instrument has one.
+    Such a sample is more than 5 times as bright as any other. Every file of Cornell's instrument
+    has one.
     """
     samples = samples.at(samples.valid)
     brightest = samples.values.max(axis=1)
     top = int(np.argmax(brightest))
-    theta_i, phi_i, theta_s, phi_s = np.degrees(sample_angles(samples))[:, top]
+    theta_i, phi_i, theta_s, phi_s = np.degrees(compute_angles(samples))[:, top]
     others = np.delete(brightest, top)
     near_grazing = theta_i > 79.5 and theta_s > 78.5 and abs(abs(phi_s - phi_i) - 180) < 0.5
-    if not near_grazing or not others.size or brightest[top] <= SUSPICIOUS * others.max():
+    if not near_grazing or not others.size or brightest[top] <= LARGEST_RATIO * others.max():
         return {}
     return {
         "suspicious": f"the sample at theta_i {theta_i:.0f}°, theta_s {theta_s:.0f}° in the "
@@ -63,13 +85,13 @@ def note_lone_point(samples):
     }
 
 
-def note_short_rings(samples):
-    """A note, by its key, if rings of views leave out the mirror's azimuth; otherwise none.
+def note_short_rings(samples: Samples) -> dict[str, str]:
+    """Return a note, by its key, if rings of views leave out the mirror's azimuth; else none.
 
     A ring is the samples with one theta_i and one theta_s. Cornell's instrument measured every ring
     up to Δφ = 180°. Its files are sorted so that a file that is cut short ends within a ring.
     """
-    theta_i, phi_i, theta_s, phi_s = np.round(np.degrees(sample_angles(samples)), 1)
+    theta_i, phi_i, theta_s, phi_s = np.round(np.degrees(compute_angles(samples)), 1)
     mirror = np.abs(np.mod(phi_s - phi_i, 360) - 180) < 0.5
     tilted = theta_s > 0.5
     rings = set(zip(theta_i[tilted], theta_s[tilted], strict=True))

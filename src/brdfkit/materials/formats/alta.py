@@ -1,28 +1,33 @@
 """ALTA's text, `.dat`: a header of lines ``#KEY value``, then a row of numbers per sample.
 
-[Belcour et al. 2014]. The keys are those that `sources/core/data_storage.cpp` and `params.cpp` of
-github.com/belcour/alta read:
+[Belcour et al. 2014] published ALTA. Its files `sources/core/data_storage.cpp` and `params.cpp`
+(github.com/belcour/alta) read these keys:
 
 - ``DIM``: how many coordinates and how many values a row has;
-- ``PARAM_IN``: what the coordinates are, L the light and V the view;
-- ``PARAM_OUT``: what the values are; INV_STERADIAN_COSINE_FACTOR is the BRDF times cos theta_v
+- ``PARAM_IN``: which coordinates these are, with L for the light and V for the view;
+- ``PARAM_OUT``: which values these are; INV_STERADIAN_COSINE_FACTOR is the BRDF times cos theta_v
   (divided by it, the real files are reciprocal; divided by cos theta_l, they are not);
-- ``VS``: a number per value that tells of its interval: 0 for none, 1 for one column behind the
-  values with half its width, 2 for two columns with its ends. A single number is that of the first
-  value; the others have 0. Half the width is read as the standard error; files do not state the
-  confidence level.
+- ``VS``: for each value the kind of its confidence interval: 0 for none, 1 for one column behind
+  the values with half the width, 2 for two columns with the ends. A single number belongs to the
+  first value; the others have 0. Half the width is read as the standard error, because files do not
+  state the confidence level.
 
-A file with three coordinates is isotropic; one with four is anisotropic if the second of them, an
-azimuth, varies.
+A file with three coordinates is isotropic; one with four is anisotropic if the second coordinate,
+an azimuth, varies.
 """
 
 import re
+from collections.abc import Callable, Sequence
+from typing import IO
 
 import numpy as np
 
+from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.colours import RGB
-from brdfkit.materials.formats._alta_coordinates import PARAM_IN
-from brdfkit.materials.formats._writing import require_measured, sample_angles, write_rows
+from brdfkit.core.geometry.directions import from_angles, from_half_difference
+from brdfkit.materials.formats._source import SPHERICAL, Source
+from brdfkit.materials.formats._writing import compute_angles, require_measured, write_rows
+from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.conventions import DIVIDED, find_cosines
 
 NAME = "ALTA"
@@ -31,44 +36,77 @@ SUFFIXES = (".dat",)
 CHANNELS = {1: ("Y",), 3: RGB}
 COSINE = "INV_STERADIAN_COSINE_FACTOR"
 PLAIN = ("INV_STERADIAN", "RGB_COLOR")
-UNSTATED = (None, "UNKNOWN_OUTPUT")
+UNSTATED = "UNKNOWN_OUTPUT"
 
 
-def sniff(head):
-    """Whether a line of `head` gives the dimensions, as ``#DIM 3 1``."""
+QUARTER, FULL = np.pi / 2, 2 * np.pi
+Directions = tuple[FloatArray, FloatArray]  # of the light and of the view, both (n, 3)
+
+# Functions from coordinates [rad] to directions
+
+
+def _from_projection(theta_l: FloatArray, x: FloatArray, y: FloatArray) -> Directions:
+    return from_angles(theta_l, 0), from_angles(np.hypot(x, y), np.arctan2(y, x))
+
+
+def _from_spherical(
+    theta_l: FloatArray, phi_l: FloatArray, theta_v: FloatArray, phi_v: FloatArray | float
+) -> Directions:
+    return from_angles(theta_l, phi_l), from_angles(theta_v, phi_v)
+
+
+def _from_half_difference(
+    theta_h: FloatArray, phi_h: FloatArray | float, theta_d: FloatArray, phi_d: FloatArray
+) -> Directions:
+    view, light = from_half_difference(theta_h, theta_d, phi_d, phi_h)
+    return light, view
+
+
+# By name: the limits of the coordinates [rad], and the function
+PARAM_IN: dict[str, tuple[tuple[float, ...], Callable[..., Directions]]] = {
+    "SPHERICAL_TL_PL_TV_PV": (SPHERICAL, _from_spherical),
+    "ISOTROPIC_TL_TV_PROJ_DPHI": ((QUARTER,) * 3, _from_projection),
+    "ISOTROPIC_TV_TL_DPHI": (
+        (QUARTER, QUARTER, FULL),
+        lambda theta_v, theta_l, phi: _from_spherical(theta_l, phi, theta_v, 0),
+    ),
+    "RUSIN_TH_PH_TD_PD": (SPHERICAL, _from_half_difference),
+    "RUSIN_TH_TD_PD": (
+        (QUARTER, QUARTER, FULL),
+        lambda theta_h, theta_d, phi_d: _from_half_difference(theta_h, 0, theta_d, phi_d),
+    ),
+}
+
+
+def sniff(head: bytes) -> bool:
+    """Return whether a line of `head` gives the dimensions, as ``#DIM 3 1``."""
     return re.search(rb"^#DIM\s+\d", head, re.MULTILINE) is not None
 
 
-def read(source):
-    """The samples as `Measured`, of one channel Y or of R, G, B.
+def read(source: Source) -> Measured:
+    """Read the samples as a `Measured` with one channel Y, or with R, G, B.
 
     Raises `BrdfkitError` for a binary file, a missing key, coordinates that do not give both
     directions, values that are no BRDF, or a row with other columns.
     """
-    # The header
-    header = {}
+    header: dict[str, str] = {}
     for comment in source.comments:
         key, _, text = comment.partition(" ")
         header.setdefault(key, text.strip().strip('"'))
     coordinates, channels = _read_dimensions(source, header)
     intervals = _read_intervals(source, header.get("VS", "0"), len(channels))
-    limits, directions = PARAM_IN[header["PARAM_IN"]]
-    if not source.lines:
-        raise source.error("has no rows behind its header; fetch the file again")
+    limits, to_directions = PARAM_IN[header["PARAM_IN"]]
 
     # The rows: coordinates, values, intervals
-    columns = coordinates + len(channels) + sum(intervals)
-    data = np.array([source.parse_numbers(n, line.split(), columns) for n, line in source.lines])
+    data = source.parse_rows(source.lines, coordinates + len(channels) + sum(intervals))
     where, values, ends = np.split(data, [coordinates, coordinates + len(channels)], axis=1)
     source.require_radians([n for n, _ in source.lines], where, limits)
     # The BRDF and its standard errors
-    wi, wo = directions(*where.T)
+    wi, wo = to_directions(*where.T)
     factor, valid, notes = _find_factor(source, header, wo)
-    with np.errstate(
-        over="ignore", invalid="ignore"
-    ):  # values that are not finite are masked later
+    with np.errstate(over="ignore", invalid="ignore"):  # values that are not finite are masked
         values = values / factor
-        errors = _halve(ends / factor, intervals)
+        errors = _halve_intervals(ends / factor, intervals)
     return source.build_from_directions(
         wi,
         wo,
@@ -81,26 +119,25 @@ def read(source):
     )
 
 
-def write(obj, stream):
-    """Write the valid samples of a `Measured`, in linear sRGB or achromatic, to the last digit."""
-    obj = require_measured(obj, NAME, anisotropic=True).rgb
-    samples, valid = obj.samples, obj.samples.valid
-    theta_l, phi_l, theta_v, phi_v = where = sample_angles(samples.at(valid))
+def write(obj: object, stream: IO[bytes]) -> None:
+    """Write the valid samples of a `Measured`, in linear sRGB or achromatic, with all digits."""
+    data = require_measured(obj, NAME, anisotropic=True).rgb
+    samples, valid = data.samples.at(data.samples.valid), data.samples.valid
+    theta_l, phi_l, theta_v, phi_v = where = compute_angles(samples)
     name = "SPHERICAL_TL_PL_TV_PV"
-    if not obj.anisotropic:
+    if not data.anisotropic:
         phi = phi_v - phi_l
         name = "ISOTROPIC_TL_TV_PROJ_DPHI"
-        where = theta_l, theta_v * np.cos(phi), theta_v * np.sin(phi)
-    channels = len(obj.channels)
-    columns, interval = [*where, *samples.values[valid].T], "0"
-    errors = None if obj.standard_error is None else obj.standard_error[valid]
-    if (
-        errors is not None and np.isfinite(errors).all()
-    ):  # otherwise a reader would mask the values, too
+        where = np.stack([theta_l, theta_v * np.cos(phi), theta_v * np.sin(phi)])
+    channels = len(data.channels)
+    columns, interval = [*where, *samples.values.T], "0"
+    errors = None if data.standard_error is None else data.standard_error[valid]
+    # A reader would mask the values with errors that are not finite
+    if errors is not None and np.isfinite(errors).all():
         columns += [*errors.T]
         interval = " ".join(["1"] * channels)
     header = [
-        f"SAMPLE {' '.join(obj.name.split())}",
+        f"SAMPLE {' '.join(data.name.split())}",
         f"DIM {len(where)} {channels}",
         f"VS {interval}",
         f"PARAM_IN {name}",
@@ -109,39 +146,42 @@ def write(obj, stream):
     write_rows(stream, [f"#{line}" for line in header], columns)
 
 
-def _read_dimensions(source, header):
-    """The number of coordinates, and the channels."""
+def _read_dimensions(source: Source, header: dict[str, str]) -> tuple[int, tuple[str, ...]]:
+    """Return the number of coordinates, and the channels."""
     if header.get("FORMAT") == "binary":
         raise source.error("is ALTA's binary form; save it as text with ALTA's data2data")
     dimensions = header.get("DIM", "").split()
     if len(dimensions) != 2 or not all(re.fullmatch("[0-9]{1,4}", d) for d in dimensions):
         raise source.error("has no line such as '#DIM 3 1', coordinates and values; add it")
     coordinates, values = map(int, dimensions)
-    given = header.get("PARAM_IN")
-    if given not in PARAM_IN:
+    name = header.get("PARAM_IN")
+    if name not in PARAM_IN:
         raise source.error(
-            f"PARAM_IN is {str(given)[:40]}, which does not tell both directions or is not read; "
+            f"PARAM_IN is {str(name)[:40]}, which does not give both directions or is not read; "
             f"convert it to one of {', '.join(PARAM_IN)}"
         )
-    belong = len(PARAM_IN[given][0])
+    belong = len(PARAM_IN[name][0])
     if coordinates != belong or values not in CHANNELS:
         raise source.error(
             f"DIM says {coordinates} coordinates and {values} values where {belong} belong to "
-            f"{given}, and 1 or 3 values; mend the line"
+            f"{name}, and 1 or 3 values; mend the line"
         )
     return coordinates, CHANNELS[values]
 
 
-def _read_intervals(source, text, channels):
-    """How many columns each channel has behind the values: 0, 1 or 2."""
+def _read_intervals(source: Source, text: str, channels: int) -> list[int]:
+    """Return how many columns each channel has behind the values: 0, 1 or 2."""
     kinds = text.split()
     if len(kinds) > channels or not all(kind in ("0", "1", "2") for kind in kinds):
         raise source.error(f"VS is {text[:40]!r} where 0, 1 or 2 per value belong; mend the line")
     return [int(kind) for kind in kinds] + [0] * (channels - len(kinds))
 
 
-def _halve(columns, intervals):
-    """Half the width (n, channels) of each interval; None unless every channel has one."""
+def _halve_intervals(columns: FloatArray, intervals: Sequence[int]) -> FloatArray | None:
+    """Return half the width (n, channels) of each interval; None unless every channel has one.
+
+    `intervals`: the number of `columns` of each channel, 1 for half the width or 2 for the ends.
+    """
     if not all(intervals):
         return None
     each = np.split(columns, np.cumsum(intervals)[:-1], axis=1)
@@ -149,9 +189,13 @@ def _halve(columns, intervals):
     return np.abs(np.stack(halves, axis=1))
 
 
-def _find_factor(source, header, wo):
-    """The factor (n, 1) of the BRDF in the file's values, the rows in which it can be divided out,
-    and notes."""
+def _find_factor(
+    source: Source, header: dict[str, str], wo: FloatArray
+) -> tuple[FloatArray | float, BoolArray | bool, dict[str, str]]:
+    """Return the factor (n, 1) by which the values exceed the BRDF, a mask (n,), and notes.
+
+    The mask is True for the rows where the factor can be divided out.
+    """
     stated = header.get("PARAM_OUT")
     if stated == COSINE:
         factor, low = find_cosines(wo)
@@ -161,7 +205,7 @@ def _find_factor(source, header, wo):
         return factor, ~low, notes
     if stated in PLAIN:
         return 1, True, {}
-    if stated in UNSTATED:
+    if stated is None or stated == UNSTATED:
         note = f"not stated; the values are taken for the BRDF: if they hold a cosine, add {COSINE}"
         return 1, True, {"PARAM_OUT": note}
     raise source.error(

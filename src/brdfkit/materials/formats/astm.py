@@ -12,50 +12,53 @@ In both, the mirror direction is at Δφ = 180°.
 """
 
 import re
+from collections.abc import Sequence
+from typing import IO
 
 import numpy as np
 
 from brdfkit.core.colours import RGB
-from brdfkit.core.errors import BrdfkitError
+from brdfkit.materials.formats._source import Source
 from brdfkit.materials.formats._writing import (
+    compute_angles,
     note_lone_point,
     require_measured,
-    sample_angles,
     write_rows,
+    wrong_channels,
 )
+from brdfkit.materials.measured import Measured
 
 NAME = "ASTM"
 SUFFIXES = (".astm",)
 
 ANGLES = ("theta_i", "phi_i", "theta_s", "phi_s")
-KNOWN = "R,G,B or wavelengths such as 550nm, or a single channel"
+KNOWN_CHANNELS = "R,G,B or wavelengths such as 550nm, or a single channel"
 MINI_DIFF = "Mini-Diff"
 MINI_DIFF_CHANNELS = ("630nm", "525nm", "465nm")  # as R, G, B
 MINI_DIFF_LIMIT = np.radians(75) + 1e-6
+Lines = list[tuple[int, str]]  # (number of the line, text)
 
 
-def sniff(head):
-    """Whether a line of `head` begins with VARS."""
+def sniff(head: bytes) -> bool:
+    """Return whether a line of `head` begins with VARS."""
     return re.search(rb"^VARS\s", head, re.MULTILINE) is not None
 
 
-def read(source):
-    """The samples as `Measured`, with the channels R, G, B, or those that VARS names.
+def read(source: Source) -> Measured:
+    """Read the samples as a `Measured`, with the channels R, G, B, or those that VARS names.
 
     Raises `BrdfkitError` when VARS is missing, the columns do not add up, NUM_POINTS does not
     match the rows, or text stands among numbers.
     """
-    # The header, and the names of the columns
     header, vars_line, rows = _read_header(source)
-    lines = [n for n, _ in rows]
     names, notes = _read_names(source, header["VARS"], vars_line, rows)
-    data = np.array([source.parse_numbers(n, line.split(","), len(names)) for n, line in rows])
+    data = source.parse_rows(rows, len(names), ",")
     named = tuple(name for name in names if name not in ANGLES)
     known = _find_channels(named)
     if known is None:
         raise source.error(
-            f"line {vars_line} names the channels {', '.join(named)[:80]}, but {KNOWN} belong; "
-            "mend the line"
+            f"line {vars_line} names the channels {', '.join(named)[:80]}, but {KNOWN_CHANNELS} "
+            "belong; mend the line"
         )
     channels, columns, note = known
     notes.update(note)
@@ -68,62 +71,55 @@ def read(source):
     if MINI_DIFF in header.get("SYSTEM_NAME", ""):
         valid = angles[:, 2] <= MINI_DIFF_LIMIT
         notes["masked"] = f"{(~valid).sum():,} rows beyond theta_s = 75°, not measured"
-    info = {"format": NAME, **header, **notes}
-    found = source.build_from_angles(
+    info, lines = {"format": NAME, **header, **notes}, [n for n, _ in rows]
+    measured = source.build_from_angles(
         lines, angles, values, valid=valid, channels=channels, info=info
     )
-    found.info.update(note_lone_point(found.samples))
-    return found
+    measured.info.update(note_lone_point(measured.samples))
+    return measured
 
 
-def write(obj, stream):
-    """Write the valid samples of a `Measured`, in its own channels, to the last digit."""
-    obj = require_measured(obj, NAME)
-    if not _is_writable(obj.channels):
-        raise BrdfkitError(
-            f"the format {NAME} holds {KNOWN}, and {obj.name} has the channels "
-            f"{' '.join(obj.channels)[:80]}; choose another suffix, such as .npz."
-        )
-    samples, valid = obj.samples, obj.samples.valid
+def write(obj: object, stream: IO[bytes]) -> None:
+    """Write the valid samples of a `Measured`, in its own channels, with all digits."""
+    data = require_measured(obj, NAME)
+    if not _are_writable(data.channels):
+        raise wrong_channels(data, NAME, KNOWN_CHANNELS)
+    samples = data.samples.at(data.samples.valid)
     header = [
-        f"SAMPLE_NAME {' '.join(obj.name.split())}",
-        f"NUM_POINTS {valid.sum()}",
-        f"VARS {','.join((*ANGLES, *obj.channels))}",
+        f"SAMPLE_NAME {' '.join(data.name.split())}",
+        f"NUM_POINTS {len(samples.wi)}",
+        f"VARS {','.join((*ANGLES, *data.channels))}",
     ]
-    columns = [*sample_angles(samples.at(valid)), *samples.values[valid].T]
-    write_rows(stream, header, columns, ",")
+    write_rows(stream, header, [*compute_angles(samples), *samples.values.T], ",")
 
 
-def _read_header(source):
-    """The values by key, the number of the line VARS, and the lines of the rows."""
-    header = {}
+def _read_header(source: Source) -> tuple[dict[str, str], int, Lines]:
+    """Return the values by key, the number of the line VARS, and the lines of the rows."""
+    header: dict[str, str] = {}
     for at, (n, line) in enumerate(source.lines):
         key, *value = line.split(maxsplit=1)
         header[key] = "".join(value)
         if key == "VARS":
             rows = source.lines[at + 1 :]
-            _require_count(source, header.get("NUM_POINTS"), rows)
+            announced = header.get("NUM_POINTS", str(len(rows)))
+            if rows and announced != str(len(rows)):
+                raise source.error(
+                    f"NUM_POINTS announces {announced[:20]} rows, but {len(rows)} follow; "
+                    "fetch the file again or mend the number"
+                )
             return header, n, rows
     raise source.error(
         f"has no line VARS that names its columns; add it, as in 'VARS {','.join((*ANGLES, *RGB))}'"
     )
 
 
-def _require_count(source, announced, rows):
-    if not rows:
-        raise source.error("has no rows behind its header; fetch the file again")
-    if announced is not None and announced != str(len(rows)):
-        raise source.error(
-            f"NUM_POINTS announces {announced[:20]} rows, but {len(rows)} follow; "
-            "fetch the file again or mend the number"
-        )
-
-
-def _read_names(source, text, vars_line, rows):
-    """The names of the columns, and a note if phi_s had to be inserted."""
+def _read_names(
+    source: Source, text: str, vars_line: int, rows: Lines
+) -> tuple[list[str], dict[str, str]]:
+    """Return the names of the columns, and a note if phi_s had to be inserted."""
     names = [name.strip() for name in text.split(",")]
     notes = {}
-    more = len(rows[0][1].split(",")) - len(names)
+    more = len(rows[0][1].split(",")) - len(names) if rows else 0
     if "phi_s" not in names and names[:3] == list(ANGLES[:3]) and more == 1:
         names.insert(3, "phi_s")
         notes["columns"] = "VARS leaves out phi_s, which is the fourth column"
@@ -135,9 +131,13 @@ def _read_names(source, text, vars_line, rows):
     return names, notes
 
 
-def _find_channels(columns):
-    """The names of the channels, the names of their columns, and a note if these differ; None for
-    columns that are no channels."""
+def _find_channels(
+    columns: Sequence[str],
+) -> tuple[Sequence[str], Sequence[str], dict[str, str]] | None:
+    """Return the names of the channels, of their columns, and a note if these differ.
+
+    None stands for columns that hold no channels.
+    """
     if set(columns) == set(RGB):
         return RGB, RGB, {}
     if set(columns) == set(MINI_DIFF_CHANNELS):
@@ -150,8 +150,8 @@ def _find_channels(columns):
     return None
 
 
-def _is_writable(channels):
-    """Whether VARS can name `channels` so that `read` finds them."""
+def _are_writable(channels: Sequence[str]) -> bool:
+    """Return whether VARS can name `channels` so that `read` finds them."""
     words = all(re.fullmatch(r"[^\s,]+", name) for name in channels)
     distinct = len({*ANGLES, *channels}) == len(ANGLES) + len(channels)
     return words and distinct and _find_channels(channels) is not None

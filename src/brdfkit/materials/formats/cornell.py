@@ -5,16 +5,21 @@ theta_i phi_i theta_s phi_s [rad] and one value [sr⁻¹] per wavelength. The mi
 at Δφ = 180°. https://www.graphics.cornell.edu/online/measurements/reflectance
 """
 
-import numpy as np
+from collections.abc import Sequence
+from typing import IO
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.materials.formats._source import Source
 from brdfkit.materials.formats._writing import (
+    compute_angles,
     note_lone_point,
     note_short_rings,
     require_measured,
-    sample_angles,
     write_rows,
+    wrong_channels,
 )
+from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.long_form import NANOMETRES
 from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
 
@@ -24,8 +29,8 @@ SUFFIXES = (".brdf",)
 MOST_WAVELENGTHS = 4096
 
 
-def sniff(head):
-    """Whether a whole number and a plausible wavelength follow the comments of `head`."""
+def sniff(head: bytes) -> bool:
+    """Return whether a whole number and a plausible wavelength follow the comments of `head`."""
     lines = [line for line in head.split(b"\n") if line.strip() and not line.startswith(b"#")]
     tokens = b" ".join(lines[:3]).split()
     try:
@@ -34,55 +39,49 @@ def sniff(head):
         return False
 
 
-def read(source):
-    """The samples as `Measured`, with the wavelengths as channels: ``("400nm", ...)``.
+def read(source: Source) -> Measured:
+    """Read the samples as a `Measured`, with the wavelengths as channels: ``("400nm", ...)``.
 
     Raises `BrdfkitError` for a row with too few or too many columns, text among numbers, a wrong
     number of wavelengths, or angles that are not in radians.
     """
     nanometres, rows = _read_wavelengths(source)
-    columns = 4 + len(nanometres)
-    if not rows:
-        raise source.error("has no samples behind its wavelengths; fetch the file again")
-    data = np.array([source.parse_numbers(n, line.split(), columns) for n, line in rows])
+    data = source.parse_rows(rows, 4 + len(nanometres))
     angles, values = data[:, :4], data[:, 4:]
     lines = [n for n, _ in rows]
     channels = tuple(f"{w:.10g}nm" for w in nanometres)
     info = {"format": NAME, **_read_description(source), **_note_clipping(values)}
-    found = source.build_from_angles(lines, angles, values, channels=channels, info=info)
-    found.info.update({**note_lone_point(found.samples), **note_short_rings(found.samples)})
-    return found
+    measured = source.build_from_angles(lines, angles, values, channels=channels, info=info)
+    measured.info.update(note_lone_point(measured.samples) | note_short_rings(measured.samples))
+    return measured
 
 
-def write(obj, stream):
-    """Write the valid samples of a spectral `Measured`, to the last digit."""
-    obj = require_measured(obj, NAME)
+def write(obj: object, stream: IO[bytes]) -> None:
+    """Write the valid samples of a spectral `Measured`, with all digits."""
+    data = require_measured(obj, NAME)
     try:
-        nanometres = wavelengths(obj)
+        nanometres = wavelengths(data)
     except BrdfkitError:
-        raise BrdfkitError(
-            f"the format {NAME} holds wavelengths, and {obj.name} has the channels "
-            f"{' '.join(obj.channels)[:80]}; choose another suffix, such as .astm."
-        ) from None
+        raise wrong_channels(data, NAME, "wavelengths", ".astm") from None
     if not _are_possible(nanometres):
         raise BrdfkitError(
             f"the format {NAME} holds up to {MOST_WAVELENGTHS} wavelengths of {NANOMETRES[0]} to "
-            f"{NANOMETRES[1]:,} nm, each once, not those of {obj.name}; choose another suffix."
+            f"{NANOMETRES[1]:,} nm, each once, not those of {data.name}; choose another suffix."
         )
-    samples, valid = obj.samples, obj.samples.valid
+    samples = data.samples.at(data.samples.valid)
     header = [
-        f"# {' '.join(obj.name.split())}",
+        f"# {' '.join(data.name.split())}",
         "# num wls",
         f"{len(nanometres)}",
         "# wls",
         " ".join(f"{w:.10g}" for w in nanometres),
         "# theta i  phi i  theta s  phi_s  spectral sample values",
     ]
-    write_rows(stream, header, [*sample_angles(samples.at(valid)), *samples.values[valid].T])
+    write_rows(stream, header, [*compute_angles(samples), *samples.values.T])
 
 
-def _read_wavelengths(source):
-    """The wavelengths [nm], which may stand on several lines, and the lines behind them."""
+def _read_wavelengths(source: Source) -> tuple[list[float], list[tuple[int, str]]]:
+    """Return the wavelengths [nm], which may stand on several lines, and the lines behind them."""
     if not source.lines:
         raise source.error("has comments only, no wavelengths; fetch the file again")
     first, text = source.lines[0]
@@ -91,42 +90,44 @@ def _read_wavelengths(source):
             f"line {first} has {text[:40]!r} where the number of wavelengths belongs; "
             "check that it is a Cornell file"
         )
-    count, found, used = int(text), [], 1
+    count, used = int(text), 1
+    nanometres: list[float] = []
     for n, line in source.lines[1:]:
-        if len(found) >= count:
+        if len(nanometres) >= count:
             break
-        found += source.parse_numbers(n, line.split())
+        nanometres += source.parse_numbers(n, line.split())
         used += 1
-    if len(found) != count:
+    if len(nanometres) != count:
         raise source.error(
-            f"line {first} announces {count} wavelengths, but the next lines list {len(found)}; "
-            "mend the number or fetch the file again"
+            f"line {first} announces {count} wavelengths, but the next lines list "
+            f"{len(nanometres)}; mend the number or fetch the file again"
         )
-    if not _are_possible(found):
+    if not _are_possible(nanometres):
         raise source.error(
             f"the wavelengths behind line {first} repeat or are not in nm; mend them"
         )
-    return found, source.lines[used:]
+    return nanometres, source.lines[used:]
 
 
-def _are_possible(nanometres):
-    """Whether a file may list these wavelengths: not too many, each once, all plausible."""
+def _are_possible(nanometres: Sequence[float] | FloatArray) -> bool:
+    """Return whether a file may list these wavelengths: not too many, each once, all plausible."""
     distinct = len({f"{w:.10g}" for w in nanometres}) == len(nanometres) <= MOST_WAVELENGTHS
     return distinct and all(map(_is_plausible, nanometres))
 
 
-def _is_plausible(wavelength):
+def _is_plausible(wavelength: float) -> bool:
     return NANOMETRES[0] <= wavelength <= NANOMETRES[1]
 
 
-def _read_description(source):
-    """The comments that describe the sample, as a note."""
-    told = [c for c in source.comments if c and not c.startswith(("num wls", "wls", "theta i"))]
-    return {"description": "; ".join(told)} if told else {}
+def _read_description(source: Source) -> dict[str, str]:
+    """Return the comments that describe the sample, as a note."""
+    titles = ("num wls", "wls", "theta i")
+    comments = [c for c in source.comments if c and not c.startswith(titles)]
+    return {"description": "; ".join(comments)} if comments else {}
 
 
-def _note_clipping(values):
-    """A note if values are 0 and none is negative; otherwise none."""
+def _note_clipping(values: FloatArray) -> dict[str, str]:
+    """Return a note if some values are 0 and none is negative; otherwise none."""
     zeros = (values == 0).mean()
     if not zeros or (values < 0).any():
         return {}

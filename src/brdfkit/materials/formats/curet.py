@@ -1,9 +1,12 @@
 """CUReT: `abrdf.dat`, 61 samples × 205 geometries, averaged over the channels.
 
-[Dana et al. 1999]. A row of `abrdf.dat` has a sample's number and its values [sr⁻¹]. A row of
-`table.txt`, in the same folder, has a geometry's number and its angles theta_v, phi_v, theta_i,
-phi_i [rad], those of the view first.
+[Dana et al. 1999] measured them. A row of `abrdf.dat` has a sample's number and its values [sr⁻¹].
+A row of `table.txt`, in the same folder, has a geometry's number and its angles theta_v, phi_v,
+theta_i, phi_i [rad], the view (v) before the light (i).
 """
+
+from brdfkit.materials.formats._source import Source
+from brdfkit.materials.measured import Measured
 
 NAME = "CUReT"
 SUFFIXES = (".dat",)
@@ -14,8 +17,8 @@ GEOMETRIES = 205
 TABLE = "table.txt"
 
 
-def sniff(head):
-    """Whether the first line of `head` has a sample's number and 205 values."""
+def sniff(head: bytes) -> bool:
+    """Return whether the first line of `head` has a sample's number and 205 values."""
     fields = head.lstrip().split(b"\n", 1)[0].split()
     try:
         return len(list(map(float, fields))) == 1 + GEOMETRIES and fields[0].isdigit()
@@ -23,19 +26,18 @@ def sniff(head):
         return False
 
 
-def read(source):
-    """One sample, as of ``abrdf.dat#1``, as `Measured` with the one channel Y.
+def read(source: Source) -> Measured:
+    """Read one sample, such as ``abrdf.dat#1``, as a `Measured` with the one channel Y.
 
     Raises `BrdfkitError` when no sample is named, `table.txt` is missing, or either file is not
     61 × 205.
     """
     rows = _read_rows(source, SAMPLES, GEOMETRIES)
-    sample = _sample_number(source)
+    sample = _parse_sample_number(source)
     table = source.open_sibling(TABLE)
-    geometries = _read_rows(table, GEOMETRIES, 4)
-    lines = [n for n, _ in table.lines]
-    theta_v, phi_v, theta_i, phi_i = zip(*geometries, strict=True)
+    theta_v, phi_v, theta_i, phi_i = zip(*_read_rows(table, GEOMETRIES, 4), strict=True)
     angles = list(zip(theta_i, phi_i, theta_v, phi_v, strict=True))
+    lines = [n for n, _ in table.lines]
     info = {
         "format": NAME,
         "sample": str(sample),
@@ -47,19 +49,19 @@ def read(source):
     return table.build_from_angles(lines, angles, values, channels=("Y",), name=name, info=info)
 
 
-def _sample_number(source):
-    """The number behind '#' in the path; `BrdfkitError` if it is none of a sample."""
+def _parse_sample_number(source: Source) -> int:
+    """Return the number behind '#' in the path; raise `BrdfkitError` for any other text."""
     number = source.sample or ""
     if number.isascii() and number.isdecimal() and 1 <= int(number[:9]) <= SAMPLES:
         return int(number[:9])
-    given = f", not '#{number[:20]}'" if number else ""
+    stated = f", not '#{number[:20]}'" if number else ""
     raise source.error(
-        f"holds {SAMPLES} samples; name one of 1 to {SAMPLES}{given}, as in '{source.path.name}#1'"
+        f"holds {SAMPLES} samples; name one of 1 to {SAMPLES}{stated}, as in '{source.path.name}#1'"
     )
 
 
-def _read_rows(source, count, columns):
-    """The numbers of each line, without its first, which numbers the lines 1, 2, ... `count`."""
+def _read_rows(source: Source, count: int, columns: int) -> list[list[float]]:
+    """Return the numbers of each line, without the first, which counts the lines from 1."""
     rows = [source.parse_numbers(n, line.split(), 1 + columns) for n, line in source.lines]
     if [row[0] for row in rows] != list(range(1, count + 1)):
         raise source.error(

@@ -2,10 +2,11 @@
 
 import json
 from dataclasses import fields
-from typing import get_args, get_origin
+from typing import IO, Any, get_args, get_origin, get_type_hints
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.version import __version__
+from brdfkit.materials.formats._source import Source
 from brdfkit.model import labels
 from brdfkit.regression.certainty import Certainty
 from brdfkit.regression.light import Albedo
@@ -14,30 +15,31 @@ from brdfkit.regression.result import Fit
 NAME = "brdfkit fit"
 SUFFIXES = (".json",)
 KEY = "brdfkit"
-FIELDS = [f for f in fields(Fit) if f.name not in ("model", "certainty", "albedo")]
-# What fits of earlier versions lack
+TYPES = get_type_hints(Fit)
+FIELDS = [f.name for f in fields(Fit) if f.name not in ("model", "certainty", "albedo")]
+# Fields that fits of earlier versions lack
 LATER = ("checksum", "versions", "effective_samples", "unrepresented")
-# What is raised where an entry is of another kind, or missing, or too large for a float
+# Errors for an entry of another kind, for a missing one, and for a number too large for a float
 DAMAGED = ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError
 
 
-def sniff(head):
-    """Whether `head` begins as JSON with brdfkit's version."""
+def sniff(head: bytes) -> bool:
+    """Return whether `head` begins as JSON with brdfkit's version."""
     return head.lstrip().startswith(b"{") and f'"{KEY}"'.encode() in head[:200]
 
 
-def read(source):
-    """The `Fit` that `write` wrote."""
+def read(source: Source) -> Fit:
+    """Read the `Fit` that `write` wrote."""
     try:
         record = json.loads(source.data)
         version = _to_type(str, record[KEY])
         label, values = _to_type(str, record["model"]), dict(record["parameters"])
-        given = record["fit"]
-        there = [f for f in FIELDS if f.name in given or f.name not in LATER]
-        found = {f.name: _to_type(f.type, given[f.name]) for f in there}
-        found["settings"] = _to_settings(found["settings"])
-        found["certainty"] = _to_certainty(given.get("certainty"))
-        found["albedo"] = _to_albedo(given.get("albedo"))
+        entries = record["fit"]
+        stored = [name for name in FIELDS if name in entries or name not in LATER]
+        details = {name: _to_type(TYPES[name], entries[name]) for name in stored}
+        details["settings"] = _to_settings(details["settings"])
+        details["certainty"] = _to_certainty(entries.get("certainty"))
+        details["albedo"] = _to_albedo(entries.get("albedo"))
     except DAMAGED:
         if source.data.lstrip().startswith(b'{"kind"'):
             raise source.error("is a distance field; load it by brdfkit.distance_fields") from None
@@ -47,7 +49,7 @@ def read(source):
             f"was saved by brdfkit {version[:20]}, and this is {__version__}: update brdfkit"
         )
     try:
-        return Fit(model=labels.model(label)(**values), **found)
+        return Fit(model=labels.model(label)(**values), **details)
     except (BrdfkitError, TypeError, OverflowError) as error:
         if not labels.is_label(label):
             raise source.error(
@@ -58,13 +60,13 @@ def read(source):
         raise source.error(f"cannot be restored ({reason}); fit it again") from None
 
 
-def write(fit, stream):
+def write(fit: object, stream: IO[bytes]) -> None:
     """Write a `Fit` into a binary stream."""
     if not isinstance(fit, Fit):
         raise BrdfkitError(
             f"the format {NAME} holds a fit, not a {type(fit).__name__}; choose another suffix."
         )
-    values = {f.name: getattr(fit, f.name) for f in FIELDS}
+    values = {name: getattr(fit, name) for name in FIELDS}
     record = {
         KEY: __version__,
         "model": fit.model.label(),
@@ -76,8 +78,11 @@ def write(fit, stream):
     stream.write(json.dumps(record, indent=2).encode() + b"\n")
 
 
-def _from_certainty(certainty):
-    """A `Certainty` for JSON: of its symmetric covariance a text per row, up to the diagonal."""
+def _from_certainty(certainty: Certainty | None) -> dict[str, Any] | None:
+    """Return a `Certainty` for JSON.
+
+    Each row of its symmetric covariance is a text, up to the diagonal.
+    """
     if certainty is None:
         return None
     rows = certainty.covariance
@@ -85,8 +90,8 @@ def _from_certainty(certainty):
     return {**vars(certainty), "covariance": lower}
 
 
-def _to_certainty(record):
-    """The `Certainty` of `_from_certainty`; fits of earlier versions have none."""
+def _to_certainty(record: dict[str, Any] | None) -> Certainty | None:
+    """Return the `Certainty` that `_from_certainty` wrote; fits of earlier versions have none."""
     if record is None:
         return None
     names = _to_type(tuple[str, ...], record["names"])
@@ -98,17 +103,17 @@ def _to_certainty(record):
     freedom = tuple(map(float, record["freedom"]))
     if len(freedom) != len(names):
         raise ValueError
-    said = (_to_type(tuple[str, ...], record[name]) for name in ("undetermined", "trades"))
+    sentences = (_to_type(tuple[str, ...], record[name]) for name in ("undetermined", "trades"))
     counts = (_to_type(int, record[name]) for name in ("numbers", "parameters"))
-    return Certainty(names, rows, freedom, *said, *counts)
+    return Certainty(names, rows, freedom, *sentences, *counts)
 
 
-def _to_albedo(record):
-    """The `Albedo` of its attributes; fits of earlier versions have none."""
+def _to_albedo(record: dict[str, Any] | None) -> Albedo | None:
+    """Return the `Albedo` with the attributes in `record`; fits of earlier versions have none."""
     if record is None:
         return None
     angles, fit, measured = (_to_type(tuple, record[n]) for n in ("theta_i", "fit", "measured"))
-    rows = [None if row is None else tuple(map(float, row)) for row in (*fit, *measured)]
+    rows: list[Any] = [None if row is None else tuple(map(float, row)) for row in (*fit, *measured)]
     lengths = {len(row) for row in rows if row is not None}
     if not len(angles) == len(fit) == len(measured) or len(lengths) != 1:
         raise ValueError
@@ -122,32 +127,33 @@ def _to_albedo(record):
     return Albedo(tuple(map(float, angles)), tuple(rows[: len(fit)]), tuple(rows[len(fit) :]), peak)
 
 
-def _to_settings(settings):
-    """The settings of a fit, whose bounds are pairs of numbers."""
+def _to_settings(settings: dict[str, Any]) -> dict[str, Any]:
+    """Return the settings of a fit, with the bounds as pairs of numbers."""
     if bounds := settings.get("bounds"):
         settings |= {"bounds": {n: tuple(map(float, pair)) for n, pair in bounds.items()}}
     return settings
 
 
-def _is_newer(version):
-    """Whether a version, as 1.2.3, is a later one than this."""
+def _is_newer(version: str) -> bool:
+    """Return whether a version, such as 1.2.3, is later than this one."""
     numbers = ([int(part) for part in v.split(".")[:2]] for v in (version, __version__))
     try:
         theirs, ours = numbers
-    except ValueError:  # of a version between two
+    except ValueError:  # a version between two releases
         return False
     return theirs > ours
 
 
-def _to_type(kind, value):
-    """A value of JSON as the type `kind`, which `Fit` declares, or a TypeError."""
-    origin, of = get_origin(kind) or kind, get_args(kind)
+def _to_type(kind: Any, value: Any) -> Any:
+    """Return a value from JSON as the type `kind`, which `Fit` declares; raise TypeError if it is
+    another."""
+    origin, parts = get_origin(kind) or kind, get_args(kind)
     if isinstance(value, list) and origin is tuple:
-        if of[1:] == (...,) and not all(isinstance(part, of[0]) for part in value):
+        if parts[1:] == (...,) and not all(isinstance(part, parts[0]) for part in value):
             raise TypeError
         return tuple(value)
     if origin in (int, float) and isinstance(value, int):
-        return origin(float(value))  # which a number too large for one is not
+        return origin(float(value))  # raises OverflowError for a number too large for a float
     if not isinstance(value, origin):
         raise TypeError
     return value

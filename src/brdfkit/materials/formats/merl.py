@@ -1,18 +1,21 @@
 """MERL BRDF database: `.binary` tables over half/difference angles.
 
-[Matusik et al. 2003]. Little-endian: three int32 (n_theta_h, n_theta_d, n_phi_d), then the planes
-R, G, B of float64. A cell that was not measured is negative. The phi_d cells span half the circle,
-as suffices for a reciprocal BRDF; if there are four times as many as theta_d cells, they span the
-full circle.
+[Matusik et al. 2003] measured them. A file is little-endian and has three int32 (n_theta_h,
+n_theta_d, n_phi_d), then the planes R, G, B of float64. A negative value marks a cell that was not
+measured. The phi_d cells span half the circle, which suffices for a reciprocal BRDF; where there
+are four times as many phi_d cells as theta_d cells, they span the full circle.
 """
 
 import functools
 import struct
+from collections.abc import Sequence
+from typing import IO
 
 import numpy as np
 
 from brdfkit.core.colours import RGB
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.materials.formats._source import Source
 from brdfkit.materials.formats._writing import require_measured
 from brdfkit.materials.measured import Measured
 
@@ -26,44 +29,46 @@ MOST_CELLS = 4096  # along one axis
 NOT_MEASURED = -1.0
 
 
-def sniff(head):
-    """Whether `head` begins with the dimensions of a table, in either byte order."""
+def sniff(head: bytes) -> bool:
+    """Return whether `head` begins with the dimensions of a table, in either byte order."""
     return len(head) >= HEADER and any(map(_is_plausible, _read_dimensions(head)))
 
 
-def read(source):
-    """The table as `Measured` with the channels R, G, B; NaN where a stored value is negative.
+def read(source: Source) -> Measured:
+    """Read the table as a `Measured` with the channels R, G, B; NaN where a value is negative.
 
     Raises `BrdfkitError` if header and size disagree, a value is not finite, or no cell is valid.
     """
     shape = _read_shape(source)
     raw = np.frombuffer(source.data, "<f8", offset=HEADER).reshape(3, *shape)
-    wrong = [np.flatnonzero(~np.isfinite(plane)) + k * plane.size for k, plane in enumerate(raw)]
-    if wrong := [int(i) for plane in wrong for i in plane]:
+    wrong = np.concatenate(
+        [np.flatnonzero(~np.isfinite(plane)) + k * plane.size for k, plane in enumerate(raw)]
+    )
+    if len(wrong):
         raise source.error(
             f"{len(wrong):,} values are not finite, the first at byte {HEADER + 8 * wrong[0]:,}; "
             "a MERL table holds none, so fetch the file again"
         )
-    # Before scaling: the stored sign decides
+    # Before scaling, because the stored sign decides
     unknown = functools.reduce(np.logical_or, (plane < 0 for plane in raw))
     if unknown.all():
         raise source.error("every cell is marked as not measured; fetch the file again")
     values = np.multiply(np.moveaxis(raw, 0, -1), SCALE, order="C")
     values[unknown] = np.nan
     info = {"format": NAME, "cells without a value": f"{unknown.sum():,} of {unknown.size:,}"}
-    return Measured.from_table(values, _phi_d_period(shape), RGB, source.name, info)
+    return Measured.from_table(values, _compute_phi_d_period(shape), RGB, source.name, info)
 
 
-def write(obj, stream):
+def write(obj: object, stream: IO[bytes]) -> None:
     """Write the table of a `Measured`, in linear sRGB; achromatic values are written to each plane.
 
     Samples are interpolated to the database's 90×90×180 cells, which other programs require.
     Negative values would mean "not measured" and are written as 0.
     """
-    obj = require_measured(obj, NAME).rgb
-    table = obj.table if obj.is_table else obj.resampled(SHAPE)
+    data = require_measured(obj, NAME).rgb
+    table = data.table if data.is_table else data.resampled(SHAPE)
     if not _is_plausible(table.shape) or not np.isclose(
-        table.phi_d_period, _phi_d_period(table.shape)
+        table.phi_d_period, _compute_phi_d_period(table.shape)
     ):
         raise BrdfkitError(
             f"a MERL table cannot say that {table.shape} cells span {table.phi_d_period:.3f} rad "
@@ -75,8 +80,8 @@ def write(obj, stream):
     stream.write(np.moveaxis(raw, -1, 0).astype("<f8").tobytes())
 
 
-def _read_shape(source):
-    """The shape of the table; `BrdfkitError` unless the header agrees with the size of the file."""
+def _read_shape(source: Source) -> tuple[int, ...]:
+    """Return the shape of the table; raise `BrdfkitError` if the size of the file is another."""
     size = len(source.data)
     if size < HEADER:
         raise source.error(f"has {size} bytes, fewer than a MERL header; fetch the file again")
@@ -100,18 +105,19 @@ def _read_shape(source):
     return little
 
 
-def _read_dimensions(data):
-    """The three integers of the header, as little-endian and as big-endian."""
+def _read_dimensions(data: bytes) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Return the three integers of the header, read as little-endian and as big-endian."""
     return struct.unpack_from("<3i", data), struct.unpack_from(">3i", data)
 
 
-def _is_plausible(dimensions):
+def _is_plausible(dimensions: Sequence[int]) -> bool:
     return all(1 <= n <= MOST_CELLS for n in dimensions)
 
 
-def _phi_d_period(shape):
+def _compute_phi_d_period(shape: Sequence[int]) -> float:
+    """Return the range [rad] that the phi_d cells of a table span."""
     return 2 * np.pi if shape[2] == 4 * shape[1] else np.pi
 
 
-def _format_shape(dimensions):
+def _format_shape(dimensions: Sequence[int]) -> str:
     return "×".join(map(str, dimensions))

@@ -6,10 +6,10 @@ n_phi_d, channels); samples are the members ``wi``, ``wo`` (n, 3), ``values`` (n
 and ``valid`` (n,). ``standard_error`` (n, channels) is there where it is known; for a table, n is
 the number of its cells.
 
-If a format interpolates between its samples in its own way, this is a function, which no file can
-hold. Its values at the centres of a table's cells are stored with the samples, as ``table``, and
-replace the function when the file is read: the samples keep their values, but the values between
-them are as fine as the table, and reciprocal.
+A format that interpolates between its samples in its own way does so by a function, which no file
+can hold. The function's values at the centres of a table's cells are stored with the samples, as
+``table``, and replace the function when the file is read: the samples keep their values, but the
+values between them are as fine as the table, and reciprocal.
 
 The members are not compressed, so that no small file can ask for much memory; ``.npz.xz`` is
 compressed as a whole.
@@ -21,12 +21,16 @@ import math
 import re
 import struct
 import zipfile
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import IO, Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.version import __version__
+from brdfkit.materials.formats._source import Source
 from brdfkit.materials.formats._writing import require_measured
 from brdfkit.materials.measured import Measured
 
@@ -38,8 +42,8 @@ SAMPLES = ("wi", "wo", "values", "valid")
 MEMBERS = tuple(f"{name}.npy" for name in (FIRST, "table", *SAMPLES, "standard_error"))
 EPOCH = (1980, 1, 1, 0, 0, 0)  # a fixed date, so that equal content gives equal bytes
 REMEDY = "save it again or fetch it again"
-# The header that numpy.save writes for such arrays. We do not use numpy.load: it evaluates a header
-# as Python, and allocates the memory that the header claims before it checks the data.
+# The header that numpy.save writes for such arrays. We avoid numpy.load, because it evaluates a
+# header as Python, and allocates the memory that the header claims before it checks the data.
 HEADER = re.compile(
     rb"\x93NUMPY\x01\x00..\{'descr': '(<f4|<f8|\|b1|\|u1)', 'fortran_order': False, "
     rb"'shape': \(((?:[0-9]{1,18}, ?){1,4}(?:[0-9]{1,18})?)\), \} *\n",
@@ -47,13 +51,13 @@ HEADER = re.compile(
 )
 
 
-def sniff(head):
-    """Whether `head` begins a zip archive whose first member is called about."""
+def sniff(head: bytes) -> bool:
+    """Return whether `head` begins a zip archive whose first member is called about."""
     return head.startswith(b"PK\x03\x04") and head[30:39] == b"about.npy"
 
 
-def read(source):
-    """The `Measured` that `write` wrote; the arrays may also be float32.
+def read(source: Source) -> Measured:
+    """Read the `Measured` that `write` wrote; the arrays may also be float32.
 
     Raises `BrdfkitError` for an archive that is damaged or compressed inside, and for a member
     that is missing or does not fit the others.
@@ -71,30 +75,30 @@ def read(source):
         ) from error
 
 
-def write(obj, stream):
+def write(obj: object, stream: IO[bytes]) -> None:
     """Write a `Measured`."""
-    obj = require_measured(obj, NAME, anisotropic=True)
-    about = {
+    data = require_measured(obj, NAME, anisotropic=True)
+    about: dict[str, Any] = {
         "brdfkit": __version__,
-        "name": str(obj.name),
-        "channels": [str(channel) for channel in obj.channels],
-        "info": {str(key): str(note) for key, note in obj.info.items()},
-        "anisotropic": bool(obj.anisotropic),
+        "name": str(data.name),
+        "channels": [str(channel) for channel in data.channels],
+        "info": {str(key): str(note) for key, note in data.info.items()},
+        "anisotropic": bool(data.anisotropic),
     }
-    arrays = {}
-    if obj.is_table or obj.has_lookup:
-        about["phi_d_period"] = float(obj.table.phi_d_period)
-        arrays["table"] = obj.table.values
-    if not obj.is_table:
-        arrays |= {name: getattr(obj.samples, name) for name in SAMPLES}
-    if obj.standard_error is not None:
-        arrays["standard_error"] = obj.standard_error
+    arrays: dict[str, AnyArray] = {}
+    if data.is_table or data.has_lookup:
+        about["phi_d_period"] = float(data.table.phi_d_period)
+        arrays["table"] = data.table.values
+    if not data.is_table:
+        arrays |= {name: getattr(data.samples, name) for name in SAMPLES}
+    if data.standard_error is not None:
+        arrays["standard_error"] = data.standard_error
     text = np.frombuffer(json.dumps(about).encode(), np.uint8)
     stream.write(_pack({FIRST: text, **arrays}))
 
 
-def _build(about, arrays):
-    """The `Measured`; a `ValueError`, `KeyError` or the like if members are missing or disagree."""
+def _build(about: dict[str, Any], arrays: Mapping[str, AnyArray]) -> Measured:
+    """Return the `Measured`; raise a `ValueError` or the like for missing or unfit members."""
     details = {key: about[key] for key in ("name", "channels", "info")}
     words = [about["name"], *about["channels"], *about["info"], *about["info"].values()]
     if not all(isinstance(word, str) for word in words):
@@ -109,25 +113,41 @@ def _build(about, arrays):
     )
 
 
-def _build_from_samples(about, arrays, details, errors):
-    """The `Measured` of the members of samples, with their directions to the last bit."""
+def _build_from_samples(
+    about: dict[str, Any],
+    arrays: Mapping[str, AnyArray],
+    details: dict[str, Any],
+    errors: FloatArray | None,
+) -> Measured:
+    """Return the `Measured` from the members of samples, with directions equal to the last bit.
+
+    `details` are the arguments that samples and tables share; `errors` the standard errors.
+    """
     wi, wo, values, valid = (arrays[name] for name in SAMPLES)
     if not all(((np.abs(w) < 1 + 1e-6) | np.isnan(w)).all() for w in (wi, wo)):
         raise ValueError("a direction is no unit vector")
     lookup = None
     if "table" in arrays:
         lookup = Measured.from_table(arrays["table"], float(about["phi_d_period"]), **details).table
-    rest = {"anisotropic": about["anisotropic"] is True, "standard_error": errors}
-    found = Measured.from_samples(wi, wo, values, valid, **details, **rest, lookup=lookup)
-    samples = found.samples
-    for given, unit in ((wi, samples.wi), (wo, samples.wo)):
-        if not np.allclose(given[samples.valid], unit[samples.valid], atol=1e-6):
+    measured = Measured.from_samples(
+        wi,
+        wo,
+        values,
+        valid,
+        **details,
+        anisotropic=about["anisotropic"] is True,
+        standard_error=errors,
+        lookup=lookup,
+    )
+    samples = measured.samples
+    for stored, unit in ((wi, samples.wi), (wo, samples.wo)):
+        if not np.allclose(stored[samples.valid], unit[samples.valid], atol=1e-6):
             raise ValueError("a direction is no unit vector")
-    return replace(found, _samples=replace(samples, wi=wi, wo=wo))
+    return replace(measured, _samples=replace(samples, wi=wi, wo=wo))
 
 
-def _read_members(source):
-    """The bytes of the members by name."""
+def _read_members(source: Source) -> dict[str, bytes]:
+    """Return the bytes of the members by name."""
     try:
         with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
             infos = [i for i in archive.infolist() if i.filename in MEMBERS]
@@ -143,8 +163,8 @@ def _read_members(source):
         raise source.error(f"is no whole zip archive ({str(error)[:100]}); {REMEDY}") from error
 
 
-def _parse_array(source, name, data):
-    """The array in the bytes of a member."""
+def _parse_array(source: Source, name: str, data: bytes) -> AnyArray:
+    """Return the array in the bytes of the member `name`."""
     header = HEADER.match(data)
     shape = [int(n) for n in header[2].split(b",") if n.strip()] if header else []
     dtype = np.dtype(header[1].decode()) if header else np.dtype(float)
@@ -157,8 +177,8 @@ def _parse_array(source, name, data):
         return array if dtype.kind == "u" else array.astype(float)
 
 
-def _pack(arrays):
-    """The bytes of a zip archive of the arrays; equal arrays give equal bytes."""
+def _pack(arrays: Mapping[str, AnyArray]) -> bytes:
+    """Return the bytes of a zip archive with the arrays; equal arrays give equal bytes."""
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
         for name, array in arrays.items():

@@ -1,19 +1,23 @@
-"""RGL material database: `.bsdf` files in the adaptive parameterisation (`parameterisation.py`).
+"""RGL material database: `.bsdf` files in the adaptive parameterisation of [Dupuy & Jakob 2018].
 
-[Dupuy & Jakob 2018]; https://rgl.epfl.ch/materials. Mitsuba's plugin `measured` renders these
-files: those with the field `rgb` in RGB variants, those with `spectra` in spectral variants.
+The files are at https://rgl.epfl.ch/materials. Mitsuba's plugin `measured` renders files with the
+field `rgb` in RGB variants, and files with `spectra` in spectral variants.
 
 Negative values are colours out of gamut, and are kept. A point whose luminance is 0 was not
 measured. The field `valid` is not read, because its bits mean the opposite in some of the files.
 """
 
+from collections.abc import Sequence
 from dataclasses import fields
+from typing import IO, Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.colours import RGB
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.version import __version__
+from brdfkit.materials.formats._source import Source
 from brdfkit.materials.formats.rgl import tensor_file
 from brdfkit.materials.formats.rgl.encoding import encode
 from brdfkit.materials.formats.rgl.layout import check_fields
@@ -24,52 +28,49 @@ from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
 NAME = "RGL"
 SUFFIXES = (".bsdf",)
 
-LONGEST = 1000  # bytes of a description that are read
-REMEDY = "fetch the file again"
+LONGEST_DESCRIPTION = 1000  # bytes that are read
 
 
-def sniff(head):
-    """Whether `head` begins as a tensor file."""
+def sniff(head: bytes) -> bool:
+    """Return whether `head` begins as a tensor file."""
     return head.startswith(tensor_file.MAGIC)
 
 
-def read(source):
-    """The `Measured` whose samples are the file's grid, and whose lookup is the file's own.
+def read(source: Source) -> Measured:
+    """Read a `Measured` whose samples are the file's grid, and whose lookup is the file's own.
 
     The channels are R, G, B, or wavelengths such as "400nm". Raises `BrdfkitError` if a field is
     missing, or its type, shape or values are impossible.
     """
-    # The fields
     arrays = tensor_file.read(source)
     spectral = "wavelengths" in arrays
-    found = check_fields(source, arrays, spectral)
-    # The BRDF that they define
-    parameterisation = Parameterisation(*(found[f.name] for f in fields(Parameterisation)))
-    values = np.moveaxis(found["spectra" if spectral else "rgb"], 2, -1)
-    brdf = AdaptiveTable(
-        parameterisation, values, _to_density(found["luminance"]), bool(found["jacobian"])
-    )
-    channels = tuple(map(_name_channel, found["wavelengths"])) if spectral else RGB
-    description = bytes(arrays.get("description", b""))[:LONGEST].decode("utf-8", errors="replace")
+    checked = check_fields(source, arrays, spectral)
+    # The BRDF that the fields define
+    parameterisation = Parameterisation(*(checked[f.name] for f in fields(Parameterisation)))
+    values = np.moveaxis(checked["spectra" if spectral else "rgb"], 2, -1)
+    density = _to_density(checked["luminance"])
+    brdf = AdaptiveTable(parameterisation, values, density, bool(checked["jacobian"]))
+    channels = tuple(map(_name_channel, checked["wavelengths"])) if spectral else RGB
+    text = bytes(arrays.get("description", b""))[:LONGEST_DESCRIPTION]
     wi, wo, brdf_values = brdf.stored_samples()
     try:
         return Measured.from_samples(
             wi,
             wo,
             brdf_values,
-            valid=found["luminance"].ravel() != 0,
+            valid=checked["luminance"].ravel() != 0,
             channels=channels,
             name=source.name,
-            info={"format": NAME, "description": description},
+            info={"format": NAME, "description": text.decode(errors="replace")},
             anisotropic=not parameterisation.isotropic,
             lookup=brdf,
         )
     except BrdfkitError:
-        raise source.error(f"no point of its grid was measured; {REMEDY}") from None
+        raise source.error(f"no point of its grid was measured; {tensor_file.REMEDY}") from None
 
 
-def write(obj, stream):
-    """Write a `Measured`, or anything else with `.eval(wi, wo)`: a model, a fit.
+def write(obj: Any, stream: IO[bytes]) -> None:
+    """Write a `Measured`, or any other object with `eval(wi, wo)`: a model, a fit.
 
     Wavelengths are written to the field `spectra`, other channels to `rgb`; an achromatic material
     is grey there. For Mitsuba's RGB variants save `Measured.rgb`. Negative values are lost, because
@@ -80,17 +81,20 @@ def write(obj, stream):
             f"a {type(obj).__name__} has no BRDF; save a measured material, a model or a fit."
         )
     brdf = encode(obj.eval)
-    arrays = {f.name: getattr(brdf.parameterisation, f.name) for f in fields(Parameterisation)}
-    arrays |= {"luminance": brdf.density, **_value_fields(obj, np.moveaxis(brdf.values, -1, 2))}
-    arrays = {name: array.astype(np.float32) for name, array in arrays.items()}
+    tables = {f.name: getattr(brdf.parameterisation, f.name) for f in fields(Parameterisation)}
+    tables |= {"luminance": brdf.density, **_choose_fields(obj, np.moveaxis(brdf.values, -1, 2))}
+    arrays: dict[str, AnyArray] = {name: a.astype(np.float32) for name, a in tables.items()}
     arrays["jacobian"] = np.ones(1, np.uint8)
     arrays["description"] = np.frombuffer(_describe(obj).encode(errors="replace"), np.uint8)
     tensor_file.write(stream, arrays)
 
 
-def _value_fields(obj, values):
-    """The fields `rgb`, or `wavelengths` and `spectra`, of `values` (a, b, channels, y, x)."""
-    spectral = getattr(obj, "wavelengths", ())
+def _choose_fields(obj: Any, values: FloatArray) -> dict[str, FloatArray]:
+    """Return the fields `rgb`, or `wavelengths` and `spectra`, for the BRDF of `obj`.
+
+    `values` (a, b, channels, y, x) are its table.
+    """
+    spectral: Sequence[float] = getattr(obj, "wavelengths", ())
     channels = obj.channels if isinstance(obj, Measured) else spectral or RGB
     if values.shape[2] == 1:
         return {"rgb": np.repeat(values, 3, axis=2)}
@@ -110,7 +114,8 @@ def _value_fields(obj, values):
     return {"wavelengths": nanometres[order], "spectra": values[:, :, order]}
 
 
-def _describe(obj):
+def _describe(obj: Any) -> str:
+    """Return the description that the file gets."""
     if isinstance(obj, Measured):
         what = obj.info.get("description") or obj.name
     else:
@@ -118,13 +123,15 @@ def _describe(obj):
     return f"{what}; written by brdfkit {__version__}"
 
 
-def _to_density(luminance):
-    """The luminance (a, b, y, x) as a density: not negative, and uniform for an incidence where it
-    is 0 everywhere."""
+def _to_density(luminance: FloatArray) -> FloatArray:
+    """Return the luminance (a, b, y, x) as a density, which is never negative.
+
+    It is uniform for an incidence where the luminance is 0 everywhere.
+    """
     density = np.maximum(luminance, 0)
     density[~density.any(axis=(2, 3))] = 1
     return density
 
 
-def _name_channel(wavelength):
+def _name_channel(wavelength: float) -> str:
     return np.format_float_positional(np.float32(wavelength), trim="-") + "nm"

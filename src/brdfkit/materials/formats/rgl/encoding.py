@@ -1,16 +1,18 @@
 """Encodes any BRDF in the adaptive parameterisation, for `save` to write as `.bsdf`.
 
-[Dupuy & Jakob 2018]. A BRDF is a function f(wi, wo) → (n, channels) of directions (n, 3) here. The
-mean of its channels determines the parameterisation.
+[Dupuy & Jakob 2018] describe the parameterisation. A BRDF is here a function f(wi, wo) of
+directions (n, 3) that returns values (n, channels). The mean of its channels determines the
+parameterisation.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles, from_half_difference
-from brdfkit.materials.formats.rgl.normals import Hemisphere, power_iteration
+from brdfkit.materials.formats.rgl.normals import Hemisphere, find_normals
 from brdfkit.materials.formats.rgl.parameterisation import (
     AdaptiveTable,
     Parameterisation,
@@ -18,6 +20,7 @@ from brdfkit.materials.formats.rgl.parameterisation import (
     solid_angle,
 )
 from brdfkit.materials.formats.rgl.warp import even_grid, interpolate
+from brdfkit.materials.measured.measured_data import Lookup
 
 GRAZING = np.radians(89.5)  # the last incidence: at 90° no surface is visible
 # This share of the normals is uniform, so that M is finite where there is no retro-reflection
@@ -25,17 +28,18 @@ EVEN_SHARE = 0.01
 INNERMOST = 0.003  # dm/dx dy [sr] at 0.2° from the surface's normal
 # Added to wi·m in the density of the nodes: otherwise few nodes lie near wi·m = 0, where a BRDF is
 # steepest
-LEAST_SEEN = 0.2
+GRAZING_DENSITY = 0.2
 # Below the surface the nodes become fewer, down to this depth -cosθ_o
-SUNKEN = 0.2
+LARGEST_DEPTH = 0.2
 
 
 @dataclass(frozen=True)
 class Resolution:
     """The numbers of nodes.
 
-    Of the incidences: `phi_i` in a quarter of the circle, and `theta_i`; of the normals: `phi_m` in
-    the full circle, and `theta_m`; `grid`: along an edge of the grid over u.
+    `phi_i` in a quarter of the circle and `theta_i` are those of the incidences; `phi_m` in the
+    full circle and `theta_m` those of the normals; `grid` is the number along an edge of the grid
+    over u.
     """
 
     phi_i: int
@@ -45,19 +49,19 @@ class Resolution:
     grid: int
 
 
-# They give files of 16 and 45 MB. With fewer nodes, the noise of a measured table's cells is lost
+# The files have 16 and 45 MB. With fewer nodes, the noise of a measured table's cells is lost
 ISOTROPIC = Resolution(phi_i=0, theta_i=64, phi_m=1, theta_m=256, grid=112)
 ANISOTROPIC = Resolution(phi_i=12, theta_i=20, phi_m=64, theta_m=128, grid=48)
 
 
-def encode(f):
-    """The `AdaptiveTable` of f; `BrdfkitError` if f is not finite."""
-    # Where f is tabulated
+def encode(f: Lookup) -> AdaptiveTable:
+    """Return the `AdaptiveTable` of the BRDF f; raise `BrdfkitError` if f is not finite."""
+    # The directions at which f is tabulated
     quarters = detect_symmetry(f)
     grid = build_parameterisation(f, quarters, ANISOTROPIC if quarters else ISOTROPIC)
     n = grid.vndf.shape[-1]
     wi, wo, m, factor = grid.reflect_grid(n)
-    # M there
+    # The values M there
     above = wo[..., 2] > 0
     f_cos = _evaluate(f, wi[above], wo[above]) * wo[above][:, 2:]
     M = np.zeros((*above.shape, f_cos.shape[1]))
@@ -68,14 +72,14 @@ def encode(f):
     m = m.reshape(-1, 2)
     D = interpolate(grid.ndf[None], m)
     cosines = np.linalg.norm(wi + wo, axis=-1) / 2
-    excess = (1 + _even_density(m) / D).reshape(above.shape) * (1 + LEAST_SEEN / cosines)
+    excess = (1 + _even_density(m) / D).reshape(above.shape) * (1 + GRAZING_DENSITY / cosines)
     density = np.maximum(M.mean(axis=-1), 0) / excess
     density[~density.any(axis=(2, 3))] = 1  # a black incidence
     return AdaptiveTable(grid, M, density)
 
 
-def build_parameterisation(f, quarters, size):
-    """The `Parameterisation` of f with the `Resolution` `size`.
+def build_parameterisation(f: Lookup, quarters: int, size: Resolution) -> Parameterisation:
+    """Return the `Parameterisation` of the BRDF f with the `Resolution` `size`.
 
     f repeats after `quarters` of the circle, as `detect_symmetry` gives them.
     """
@@ -88,20 +92,22 @@ def build_parameterisation(f, quarters, size):
     ndf, sigma = _compute_microfacets(f, size)
     m = even_grid(size.grid)
     density = (interpolate(ndf[None], m) + _even_density(m)) * solid_angle(m)
-    # Those that are visible from each incidence; few that reflect it below the surface
+    # The normals visible from each incidence; few of the normals that reflect it below the surface
     wi, normals = from_angles(theta_i, phi_i[:, None]), from_angles(*from_square(m))
     cosines = wi @ normals.T
     height = 2 * cosines * normals[:, 2] - wi[..., 2:]  # cosθ_o
-    seen = np.where(cosines > 0, cosines + LEAST_SEEN, 0) * np.clip(1 + height / SUNKEN, 0.02, 1)
-    vndf = (seen * density).reshape(*cosines.shape[:2], size.grid, size.grid)
+    visible = np.where(cosines > 0, cosines + GRAZING_DENSITY, 0)
+    visible *= np.clip(1 + height / LARGEST_DEPTH, 0.02, 1)
+    vndf = (visible * density).reshape(*cosines.shape[:2], size.grid, size.grid)
     return Parameterisation(phi_i, theta_i, ndf, sigma, vndf)
 
 
-def detect_symmetry(f):
-    """The number of quarters of the circle after which f repeats: 0 if it is isotropic, 1 if it
-    has the planes of symmetry x = 0 and y = 0, 2 if a half turn does not change it, otherwise 4.
+def detect_symmetry(f: Lookup) -> int:
+    """Return the number of quarters of the circle after which the BRDF f repeats.
 
-    Symmetry is detected by comparing values at 1,000 direction pairs, rotated and mirrored.
+    It is 0 if f is isotropic, 1 if f has the planes of symmetry x = 0 and y = 0, 2 if a half turn
+    does not change f, otherwise 4. Values at 1,000 direction pairs, rotated and mirrored, are
+    compared.
     """
     theta_h, theta_d, phi_d, phi_h = np.random.default_rng(0).random((4, 1000))
     # Many half vectors near the normal, where narrow lobes are, but none so near that rounding
@@ -111,41 +117,41 @@ def detect_symmetry(f):
     wi, wo = (w[(pairs[0][:, 2] > 0) & (pairs[1][:, 2] > 0)] for w in pairs)
     values = _evaluate(f, wi, wo)
 
-    def same(matrix):
+    def is_symmetric(matrix: FloatArray) -> bool:
         turned = _evaluate(f, wi @ matrix, wo @ matrix)
         # 90 % suffice: between scattered samples at equal distances, rounding chooses the nearest
-        return np.isclose(turned, values, rtol=1e-4).all(axis=1).mean() > 0.9
+        return bool(np.isclose(turned, values, rtol=1e-4).all(axis=1).mean() > 0.9)
 
-    if same(np.array([[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]])):
+    if is_symmetric(np.array([[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]])):
         return 0
-    if same(np.diag([1.0, -1, 1])) and same(np.diag([-1.0, 1, 1])):
+    if is_symmetric(np.diag([1.0, -1, 1])) and is_symmetric(np.diag([-1.0, 1, 1])):
         return 1
-    return 2 if same(np.diag([-1.0, -1, 1])) else 4
+    return 2 if is_symmetric(np.diag([-1.0, -1, 1])) else 4
 
 
-def _compute_microfacets(f, size):
-    """D and σ (y, x) over the square of directions."""
+def _compute_microfacets(f: Lookup, size: Resolution) -> list[FloatArray]:
+    """Return the distribution of normals D and their projected area σ on the square, (y, x)."""
     theta = np.linspace(0, 1, size.theta_m) ** 2 * np.pi / 2
     hemisphere = Hemisphere(theta, size.phi_m)
     w = Hemisphere(np.minimum(theta, GRAZING), size.phi_m).directions.reshape(-1, 3)
     retro = np.maximum(_evaluate(f, w, w).mean(axis=1).reshape(size.phi_m, -1), 0)
     even = np.full_like(retro, 1 / np.pi)
-    D = power_iteration(retro, hemisphere) if retro.any() else even
+    D = find_normals(retro, hemisphere) if retro.any() else even
     D = (1 - EVEN_SHARE) * D + EVEN_SHARE * even
     return [np.concatenate([x, x[:1]]) for x in (D, hemisphere.projected_area(D))]
 
 
-def _even_density(m):
-    """A density [sr⁻¹] at `m`, even over the square of directions except near the normal.
+def _even_density(m: FloatArray) -> FloatArray:
+    """Return a density [sr⁻¹] at `m`, even over the square of directions except near the normal.
 
-    It is added to the density of the normals: so half of the grid is left to the slopes of a
+    It is added to the density of the normals. So half of the grid is left to the slopes of a
     highlight, where D is small and M changes most, and narrow cells to a peak of retro-reflection.
     """
     return 1 / (solid_angle(m) + INNERMOST)
 
 
-def _evaluate(f, wi, wo):
-    """f(wi, wo); `BrdfkitError` where it is not finite."""
+def _evaluate(f: Lookup, wi: FloatArray, wo: FloatArray) -> FloatArray:
+    """Return f(wi, wo); raise `BrdfkitError` where it is not finite."""
     values = f(wi, wo)
     if not np.isfinite(values).all():
         row = np.argmin(np.isfinite(values).all(axis=1))

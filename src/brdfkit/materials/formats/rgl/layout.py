@@ -1,9 +1,16 @@
-"""The fields of an RGL file: their dimensions, their types, and which values are possible."""
+"""Checks the fields of an RGL file: their dimensions, their types and their values."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
-# The dimensions of each field: equal letters are equal numbers in all fields, a capital letter is 2
-# or more
+from brdfkit.core.array_types import AnyArray, FloatArray
+from brdfkit.materials.formats._source import Source
+from brdfkit.materials.formats.rgl.tensor_file import REMEDY, format_shape
+
+# The dimensions of each field: equal letters are equal numbers in all fields, and a capital letter
+# is at least 2
 LAYOUT = {
     "phi_i": "a",
     "theta_i": "b",
@@ -16,9 +23,8 @@ LAYOUT = {
 COLOURS = {"rgb": "abcNN"}
 SPECTRA = {"wavelengths": "c", "spectra": "abcNN"}
 RIGHT_ANGLE = np.pi / 2 + 1e-3  # rad: files round 90°
-REMEDY = "fetch the file again"
-# What must hold for a field, in words and as a function
-RULES = {
+# A condition on the values of a field, in words and as a function
+RULES: dict[str, tuple[str, Callable[[FloatArray], Any]]] = {
     "phi_i": (
         "increase within the circle",
         lambda x: (np.diff(x) > 0).all() and np.abs(x).max() < 4 * RIGHT_ANGLE,
@@ -37,25 +43,34 @@ RULES = {
 }
 
 
-def check_fields(source, arrays, spectral):
-    """The arrays of the fields of a spectral file, or of one in RGB, in double precision.
+def check_fields(
+    source: Source, arrays: Mapping[str, AnyArray], spectral: bool
+) -> dict[str, FloatArray]:
+    """Return the arrays of the fields of a `spectral` file, or of an RGB file, as float64.
 
     Raises `BrdfkitError` if a field is missing, or its type, shape or values are impossible.
     """
     layout = LAYOUT | (SPECTRA if spectral else COLOURS)
     sizes = {"1": 1} if spectral else {"1": 1, "c": 3}
-    found = {name: _check_field(source, arrays, name, layout[name], sizes) for name in layout}
+    checked = {name: _check_field(source, arrays, name, layout[name], sizes) for name in layout}
     for name, (rule, holds) in RULES.items():
-        if name in found and not holds(found[name]):
+        if name in checked and not holds(checked[name]):
             raise source.error(f"field {name!r} should {rule}; {REMEDY}")
-    return found
+    return checked
 
 
-def _check_field(source, arrays, name, letters, sizes):
-    """The array of a field in double precision; `BrdfkitError` unless it is finite and has the
-    type and the dimensions of the field.
+def _check_field(
+    source: Source,
+    arrays: Mapping[str, AnyArray],
+    name: str,
+    letters: str,
+    sizes: dict[str, int],
+) -> FloatArray:
+    """Return the array of a field as float64.
 
-    `letters`: the field's dimensions; `sizes`: their numbers by letter; new letters are added.
+    `letters` are the field's dimensions; `sizes` has their numbers by letter, and gets those of new
+    letters. Raises `BrdfkitError` unless the array is finite and has the type and the dimensions of
+    the field.
     """
     if name not in arrays:
         raise source.error(f"has no field {name!r}, which an RGL file needs; {REMEDY}")
@@ -67,7 +82,7 @@ def _check_field(source, arrays, name, letters, sizes):
     belong = tuple(sizes.get(letter, 1) for letter in letters)
     if array.shape != belong:
         raise source.error(
-            f"field {name!r} is {_format_shape(array.shape)}, where {_format_shape(belong)} "
+            f"field {name!r} is {format_shape(array.shape)}, where {format_shape(belong)} "
             f"belong; {REMEDY}"
         )
     finite = np.isfinite(array)  # before the conversion, in which a signalling NaN warns
@@ -76,7 +91,3 @@ def _check_field(source, arrays, name, letters, sizes):
             f"field {name!r} has {(~finite).sum():,} values that are not finite; {REMEDY}"
         )
     return array.astype(float)
-
-
-def _format_shape(shape):
-    return "×".join(map(str, shape))

@@ -1,13 +1,13 @@
 """Computes the distribution of microfacet normals of a BRDF from its retro-reflection.
 
-For wi = wo = w, the BRDF of a surface of microfacets is
+For wi = wo = w, the BRDF of a surface of microfacets with normals m is
 
-    f(w, w) = F(0) D(w) / (4 cosθ σ(w)),    σ(w) = ∫ D(m) max(0, w·m) dm.
+    f(w, w) = F(0) D(w) / (4 cosθ σ(w)),    σ(w) = ∫ D(m) max(0, w·m) dm,
 
-So D is an eigenvector of the linear map D → f(w, w) cosθ σ(w): the one without negative entries.
-Applying the map repeatedly converges to it.
-
-[Dupuy et al. 2015]
+where F is Fresnel's reflectance, D the distribution of the normals, θ the angle of w to the
+surface's normal and σ the projected area of the microfacets. So D is an eigenvector of the linear
+map D → f(w, w) cosθ σ(w): the one without negative entries. Applying the map repeatedly converges
+to it [Dupuy et al. 2015].
 """
 
 from dataclasses import dataclass
@@ -15,6 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.geometry.directions import from_angles
 
 MOST_ITERATIONS = 200
@@ -25,38 +26,38 @@ TOLERANCE = 1e-6
 class Hemisphere:
     """A grid of directions on the hemisphere, and integrals over it.
 
-    `theta` (n_theta,) [rad] runs from 0 to π/2; `n_phi` azimuths are evenly spaced from -π on, a
-    single one if nothing depends on the azimuth.
+    `theta` (n_theta,) [rad] runs from 0 to π/2; `n_phi` azimuths are evenly spaced from -π on, one
+    alone if nothing depends on the azimuth.
     """
 
-    theta: np.ndarray
+    theta: FloatArray
     n_phi: int
 
     @property
-    def directions(self):
+    def directions(self) -> FloatArray:
         """Unit vectors (n_phi, n_theta, 3)."""
         phi = -np.pi + 2 * np.pi * np.arange(self.n_phi) / self.n_phi
         return from_angles(self.theta, phi[:, None])
 
     @cached_property
-    def solid_angles(self):
+    def solid_angles(self) -> FloatArray:
         """The solid angle of the ring at each theta (n_theta,) [sr], by the trapezoidal rule."""
         steps = np.diff(self.theta, prepend=self.theta[0], append=self.theta[-1])
         return 2 * np.pi * np.sin(self.theta) * (steps[1:] + steps[:-1]) / 2
 
-    def area(self, D):
-        """The integral ∫ D cosθ dm of D (n_phi, n_theta)."""
+    def area(self, D: FloatArray) -> float:
+        """Return the integral ∫ D cosθ dm of a distribution D (n_phi, n_theta) of normals."""
         return D.mean(axis=0) @ (self.solid_angles * np.cos(self.theta))
 
-    def projected_area(self, D):
-        """σ (n_phi, n_theta) of D (n_phi, n_theta)."""
+    def projected_area(self, D: FloatArray) -> FloatArray:
+        """Return σ (n_phi, n_theta) for a distribution D (n_phi, n_theta) of normals."""
         # A convolution over the azimuth is a product of Fourier coefficients
         coefficients = np.fft.rfft(D * self.solid_angles, axis=0)
         projected = np.einsum("ijk,kj->ki", self._kernel, coefficients)
         return np.fft.irfft(projected, self.n_phi, axis=0)
 
     @cached_property
-    def _kernel(self):
+    def _kernel(self) -> FloatArray:
         """Fourier coefficients (n_theta, n_theta', k) over Δφ of max(0, w·m) = max(0, a + b cosΔφ).
 
         Here a = cosθ cosθ' and b = sinθ sinθ'. The function is 0 beyond φ₀ = arccos(-a/b). Its
@@ -70,8 +71,11 @@ class Hemisphere:
         return phi_0 / np.pi * (a * here + b * (before + after) / 2)
 
 
-def power_iteration(retro, hemisphere):
-    """D (n_phi, n_theta) [sr⁻¹] with ∫ D cosθ dm = 1; `retro` (n_phi, n_theta): f(w, w) ≥ 0."""
+def find_normals(retro: FloatArray, hemisphere: Hemisphere) -> FloatArray:
+    """Return D (n_phi, n_theta) [sr⁻¹] with ∫ D cosθ dm = 1, by power iteration.
+
+    `retro` (n_phi, n_theta) are the values f(w, w), which must not be negative.
+    """
     gain = retro * np.cos(hemisphere.theta)
     D = np.ones_like(gain)
     for _ in range(MOST_ITERATIONS):

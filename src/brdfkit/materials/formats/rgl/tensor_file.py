@@ -1,35 +1,40 @@
-"""The container of RGL's files: named arrays, little-endian, as Mitsuba's `TensorFile` defines it.
+"""Reads and writes the container of RGL's files: named arrays, little-endian.
 
-A file has ``tensor_file\\0``, the version (two uint8) and the number of fields (uint32); for each
-field the length of its name (uint16), its name, number of dimensions (uint16), type (uint8), offset
-(uint64) and dimensions (uint64 each); then the data.
+Mitsuba's `TensorFile` defines it. A file has ``tensor_file\\0``, the version (two uint8) and the
+number of fields (uint32); for each field the length of its name (uint16), its name, number of
+dimensions (uint16), type (uint8), offset (uint64) and dimensions (uint64 each); then the data.
 """
 
 import math
 import struct
+from collections.abc import Mapping, Sequence
+from typing import IO, Any
 
 import numpy as np
+
+from brdfkit.core.array_types import AnyArray
+from brdfkit.materials.formats._source import Source
 
 MAGIC = b"tensor_file\0"
 VERSION = 1, 0
 ALIGNMENT = 8
 MOST_DIMENSIONS = 8
-# In the order of their numbers in the file, which begin with 1
+# The types in the order of their numbers in the file, which begin with 1
 TYPES = [np.dtype(f"<{kind}{size}") for size in (1, 2, 4, 8) for kind in "ui"]
 TYPES += [np.dtype(f"<f{size}") for size in (2, 4, 8)]
 REMEDY = "fetch the file again"
 
 
-def read(source):
-    """The arrays of a `Source` by name.
+def read(source: Source) -> dict[str, AnyArray]:
+    """Return the arrays of a `Source` by name.
 
-    They are views of its bytes: no memory is allocated because a header asks for it. Raises
-    `BrdfkitError` if a field is not wholly in the file, twice there, or of an unknown type.
+    They are views of its bytes, so that no header can ask for memory. Raises `BrdfkitError` if a
+    field is not wholly in the file, comes twice, or has an unknown type.
     """
     header = _Cursor(source)
     if header.read_bytes(len(MAGIC)) != MAGIC or header.read_numbers("<BB") != VERSION:
         raise source.error("is no tensor file of version 1.0; check that it is an RGL file")
-    fields = {}
+    fields: dict[str, AnyArray] = {}
     (count,) = header.read_numbers("<I")
     for _ in range(count):
         name = header.read_bytes(*header.read_numbers("<H")).decode(
@@ -45,7 +50,7 @@ def read(source):
     return fields
 
 
-def write(stream, fields):
+def write(stream: IO[bytes], fields: Mapping[str, AnyArray]) -> None:
     """Write the arrays `fields`, by name, to a binary stream, in their order."""
     arrays = {name.encode(): np.ascontiguousarray(array) for name, array in fields.items()}
     sizes = (2 + len(name) + 2 + 1 + 8 + 8 * array.ndim for name, array in arrays.items())
@@ -63,7 +68,15 @@ def write(stream, fields):
         stream.write(part)
 
 
-def _view_array(source, name, number, offset, shape):
+def format_shape(shape: Sequence[int]) -> str:
+    """Return the dimensions of an array as text, such as 3×4."""
+    return "×".join(map(str, shape))
+
+
+def _view_array(
+    source: Source, name: str, number: int, offset: int, shape: Sequence[int]
+) -> AnyArray:
+    """Return an array whose bytes begin at `offset`; `number` stands for its type in the file."""
     if not 1 <= number <= len(TYPES):
         raise source.error(f"field {name!r} has the unknown type {number}; {REMEDY}")
     dtype, size = TYPES[number - 1], math.prod(shape)
@@ -71,19 +84,20 @@ def _view_array(source, name, number, offset, shape):
         raise source.error(f"field {name!r} is empty; {REMEDY}")
     if offset + size * dtype.itemsize > len(source.data):
         raise source.error(
-            f"field {name!r}, {'×'.join(map(str, shape))[:60]} numbers from byte {offset:,} on, "
+            f"field {name!r}, {format_shape(shape)[:60]} numbers from byte {offset:,} on, "
             f"is not within the {len(source.data):,} bytes of the file (cut short?); {REMEDY}"
         )
     return np.frombuffer(source.data, dtype, size, offset).reshape(shape)
 
 
 class _Cursor:
-    """Reads the header of a `Source` from its start on."""
+    """A position in the bytes of a `Source`, from which its header is read."""
 
-    def __init__(self, source):
+    def __init__(self, source: Source) -> None:
         self.source, self.position = source, 0
 
-    def read_bytes(self, count):
+    def read_bytes(self, count: int) -> bytes:
+        """Read the next `count` bytes."""
         start, self.position = self.position, self.position + count
         if self.position > len(self.source.data):
             raise self.source.error(
@@ -91,5 +105,6 @@ class _Cursor:
             )
         return self.source.data[start : self.position]
 
-    def read_numbers(self, layout):
+    def read_numbers(self, layout: str) -> tuple[Any, ...]:
+        """Read the next numbers, of the types that `layout` gives in the words of `struct`."""
         return struct.unpack(layout, self.read_bytes(struct.calcsize(layout)))

@@ -1,34 +1,42 @@
 """Warps the unit square to a tabulated density, and interpolates tables over the unit square.
 
 A table has its values on an even grid over the unit square, with y as the first axis, and is
-bilinear between them. It may depend on parameters: then it has a slice for each combination of
-their nodes, and is linear between the slices. The warp first inverts the marginal distribution of
-y, then that of x for this y.
+bilinear between them. If it depends on parameters, it has a slice for each combination of their
+nodes, and is linear between the slices. The warp first inverts the marginal distribution of y, then
+the distribution of x for this y.
 
 This is Mitsuba's `MarginalContinuous2D` (W. Jakob et al., Mitsuba 3, `distr_2d.h`) in double
 precision.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.geometry.multilinear import find_bracket, list_corners, to_flat_index
 
+# Slices of a table with their weights, arrays (n,) for n points, or one slice for all points
+Slices = Sequence[tuple[Any, Any]]
 
-def even_grid(n):
-    """The n × n points (n², 2), (x, y), of an even grid over the unit square, its edges included;
-    x runs fastest."""
+
+def even_grid(n: int) -> FloatArray:
+    """Return the n × n points (x, y) of an even grid over the unit square, as (n², 2).
+
+    The grid includes the edges, and x runs fastest.
+    """
     x, y = np.meshgrid(*[np.linspace(0, 1, n)] * 2)
     return np.stack([x.ravel(), y.ravel()], axis=1)
 
 
-def find_slices(nodes, values):
-    """The slices of a table to interpolate between: [(slices (n,), weights (n,)), ...].
+def find_slices(nodes: Sequence[FloatArray], values: Sequence[FloatArray]) -> Slices:
+    """Return the slices of a table to interpolate between, as pairs of slices and weights (n,).
 
-    `nodes`: one increasing array per parameter; `values`: an array (n,) per parameter, clamped to
-    the nodes. The slices are numbered with the last parameter running fastest.
+    `nodes` has one increasing array per parameter, and `values` an array (n,) per parameter, which
+    is clamped to the nodes. The slices are numbered with the last parameter running fastest.
     """
     brackets, shape = [], []
     for axis, x in zip(nodes, values, strict=True):
@@ -41,14 +49,14 @@ def find_slices(nodes, values):
     return [(first + to_flat_index(at, shape), weight) for at, weight in list_corners(brackets)]
 
 
-def interpolate(table, u, slices=((0, 1.0),)):
-    """Values (n, ...) of a `table` (slices, ny, nx, ...) at the points `u` (n, 2), (x, y).
+def interpolate(table: FloatArray, u: FloatArray, slices: Slices = ((0, 1.0),)) -> FloatArray:
+    """Return the values (n, ...) of a `table` (slices, ny, nx, ...) at points `u` (n, 2), (x, y).
 
     `slices`: as `find_slices` gives them.
     """
     _, ny, nx, *rest = table.shape
-    cells = [_bracket(u[:, 0], nx), _bracket(u[:, 1], ny)]
-    result = 0.0
+    cells = [_find_bracket(u[:, 0], nx), _find_bracket(u[:, 1], ny)]
+    result: Any = 0.0
     for at, weight in slices:
         for (x, y), share in list_corners(cells):
             result = result + (weight * share).reshape(-1, *[1] * len(rest)) * table[at, y, x]
@@ -57,19 +65,22 @@ def interpolate(table, u, slices=((0, 1.0),)):
 
 @dataclass(frozen=True, eq=False)
 class Warp:
-    """Warps the unit square to each slice of `density` (slices, ny, nx), which need not be
-    normalised.
+    """A warp of the unit square to each slice of `density` (slices, ny, nx).
+
+    The density need not be normalised.
 
     >>> Warp(np.ones((1, 2, 2))).sample(0, np.array([[0.25, 0.5]]))
     array([[0.25, 0.5 ]])
     """
 
-    density: np.ndarray
+    density: FloatArray
 
     @cached_property
-    def _tables(self):
-        """The density, the cumulative distribution along each row, and that of the rows; all
-        normalised so that the last is 1 at its end, for cells of unit area."""
+    def _tables(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """The density, the cumulative distribution along each row, and the one over the rows.
+
+        All are normalised so that the last is 1 at its end, for cells of unit area.
+        """
         along = _cumulate(self.density)
         rows = _cumulate(along[..., -1])
         total = rows[:, -1]
@@ -79,9 +90,8 @@ class Warp:
             rows / total[:, None],
         )
 
-    def sample(self, at, u):
-        """The points (n, 2) to which the warp of slice `at` takes uniform points `u` (n, 2),
-        (x, y)."""
+    def sample(self, at: int, u: FloatArray) -> FloatArray:
+        """Warp uniform points `u` (n, 2), (x, y), to the density of slice `at`."""
         density, along, rows = (table[at] for table in self._tables)
         # y from the marginal distribution
         y = np.clip(np.searchsorted(rows, u[:, 1]) - 1, 0, len(rows) - 2)
@@ -97,20 +107,26 @@ class Warp:
         tx = _invert_mass(share - before, left, right)
         return np.stack([(x + tx) / (row.shape[1] - 1), (y + ty) / (len(rows) - 1)], axis=1)
 
-    def pdf(self, points, slices):
-        """The density (n,) of `sample` at points (n, 2); `slices`: as `find_slices` gives them."""
+    def pdf(self, points: FloatArray, slices: Slices) -> FloatArray:
+        """Return the density (n,) of `sample` at points (n, 2).
+
+        `slices`: as `find_slices` gives them.
+        """
         density, _, _ = self._tables
         _, ny, nx = density.shape
         return (ny - 1) * (nx - 1) * interpolate(density, points, slices)
 
-    def invert(self, u, slices):
-        """The uniform points (n, 2) that `sample` takes to the points `u` (n, 2); `slices`: as
-        `find_slices` gives them."""
-        density, along, rows = self._tables
-        x, _, tx = _bracket(u[:, 0], density.shape[2])
-        y, _, ty = _bracket(u[:, 1], density.shape[1])
+    def invert(self, u: FloatArray, slices: Slices) -> FloatArray:
+        """Return the uniform points (n, 2) that `sample` warps to the points `u` (n, 2).
 
-        def at(table, *index):
+        `slices`: as `find_slices` gives them.
+        """
+        density, along, rows = self._tables
+        x, _, tx = _find_bracket(u[:, 0], density.shape[2])
+        y, _, ty = _find_bracket(u[:, 1], density.shape[1])
+
+        def at(table: FloatArray, *index: Any) -> Any:
+            """Interpolate a table between the slices, at an index within each."""
             return sum(weight * table[(slice_, *index)] for slice_, weight in slices)
 
         # The distribution along the row at y, up to x
@@ -125,28 +141,31 @@ class Warp:
         return np.stack([x, at(rows, y) + _mass(lower, upper, ty)], axis=1)
 
 
-def _bracket(u, n):
-    """The bracket (`geometry.multilinear`) of coordinates `u` (m,) of the unit square, among `n`
-    nodes from edge to edge."""
+def _find_bracket(u: FloatArray, n: int) -> Any:
+    """Return the bracket (`geometry.multilinear`) of coordinates `u` (m,) among `n` nodes.
+
+    The nodes span the unit square from edge to edge.
+    """
     return find_bracket(u * (n - 1), n)
 
 
-def _cumulate(values):
-    """The integrals, along the last axis, of the linear interpolant from the first node to each."""
+def _cumulate(values: FloatArray) -> FloatArray:
+    """Integrate the linear interpolant of `values` along the last axis, from the first node on."""
     steps = (values[..., 1:] + values[..., :-1]) / 2
     return np.concatenate([np.zeros_like(values[..., :1]), np.cumsum(steps, axis=-1)], axis=-1)
 
 
-def _lerp(a, b, t):
+def _lerp(a: Any, b: Any, t: FloatArray) -> Any:
+    """Interpolate linearly from a, at t = 0, to b, at t = 1."""
     return (1 - t) * a + t * b
 
 
-def _mass(a, b, t):
-    """The integral from 0 to t of the line that is a at 0 and b at 1."""
+def _mass(a: FloatArray, b: FloatArray, t: FloatArray) -> FloatArray:
+    """Return the integral from 0 to t of the line that is a at 0 and b at 1."""
     return t * (a + t / 2 * (b - a))
 
 
-def _invert_mass(mass, a, b):
-    """The t at which `_mass` is `mass`, by a formula without cancellation."""
+def _invert_mass(mass: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return the t at which `_mass` is `mass`, by a formula without cancellation."""
     divisor = a + np.sqrt(np.maximum(a * a + 2 * mass * (b - a), 0))
     return np.divide(2 * mass, divisor, out=np.zeros_like(mass), where=divisor > 0)
