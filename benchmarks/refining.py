@@ -156,7 +156,7 @@ def bounces():
             found = {'fit, "picture"': by_picture}
             for how, assumed in (("refine, direct light", 2), ("refine", depth)):
                 begin = corner(bsdf("ggx", by_picture.values), 48, assumed)
-                found[how] = bk.refine(begin, truth[0], starts=1, samples=512).fit
+                found[how] = bk.refine(begin, truth[0], starts=1, spp=512).fit
             row = []
             for how, fit in found.items():
                 pair = []
@@ -194,7 +194,7 @@ def starts():
             rng = np.random.default_rng([number, len(model)])
             noisy = clean * (1 + NOISE * rng.standard_normal(clean.shape))
             scene = corner(bsdf(model, random_start(model, truth, rng)))
-            result = bk.refine(scene, noisy, names, seed=10_000 * number)
+            result = bk.refine(scene, noisy, parameters=names, seed=10_000 * number)
             results.append(result)
             away.append(
                 np.hstack(

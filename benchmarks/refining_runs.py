@@ -165,14 +165,14 @@ def judge(name, found):
 def run(names, seeds, samples):
     """A line, and a dictionary, for each run."""
     rows = []
-    how = {} if samples is None else {"samples": samples}
+    how = {} if samples is None else {"spp": samples}
     for name in names:
         clean = photograph(name)
         for number, guess in enumerate(SCENES[name][5]):
             for seed in seeds:
                 start, searched = begin(name, guess)
                 picture = with_noise(clean, number, seed)
-                found = bk.refine(start, picture, searched, seed=seed, **how)
+                found = bk.refine(start, picture, parameters=searched, seed=seed, **how)
                 off, verdict = judge(name, found)
                 row = {"scene": name, "guess": guess, "seed": seed, "off": off, "ends": verdict}
                 rows.append(row | {"width": found.values[searched[0]], "cost": found.cost})

@@ -21,7 +21,8 @@ SHOWN = [name for name in catalogue.list_environments() if name != "compass"]
 BALLS = ("red_plastic", "car_paint", "blasted_gold")
 HEIGHT, SPP, LINE, GAP = 192, 256, 30, 8
 TEXT = """They come with brdfkit, are free to use, and are found by their names where a map is
-asked for: `bk.render("car_paint", envmap="studio")`, `brdfkit render car_paint --envmap studio`.
+asked for: `bk.render("car_paint", environment="studio")`, and on the command line
+`brdfkit render car_paint --envmap studio`.
 [How they were made](../data/environments/README.md)."""
 PICTURE = "![Each map, and balls of three materials in its light](environments.jpg)"
 BELOW = """*Light in 1 %*: the share of it that comes from the brightest 1 % of all directions, by
@@ -55,7 +56,7 @@ def picture():
         rgb = read_map(catalogue.find_environment_file(name))
         exposure = 0.18 / np.exp(np.log(luminance(rgb) + 1e-4).mean())
         sheet.paste(image(rgb * exposure).resize((2 * HEIGHT, HEIGHT)), (0, top + LINE))
-        balls = bk.render(BALLS, spp=SPP, size=HEIGHT, envmap=name).pictures.values()
+        balls = bk.render(BALLS, spp=SPP, size=HEIGHT, environment=name).pictures.values()
         for column, ball in enumerate(balls):
             place = 2 * HEIGHT + GAP + column * (HEIGHT + GAP), top + LINE
             sheet.paste(image(ball), place)

@@ -95,7 +95,7 @@ def sweep(files, models, loss, output, workers):
         files, models, settings=settings, folder=output, workers=workers, progress=tell
     )
     print(f"{output.name}: {found.summary}", *found.problems, sep="\n", file=sys.stderr)
-    if len(found.rows) < found.asked:
+    if len(found.rows) < found.requested:
         sys.exit("interrupted; the same command goes on from there.")
     return found
 

@@ -28,7 +28,7 @@ def judge(file, fits, kept):
     truth = bk.load(file)
 
     def look():
-        errors = bk.render([truth, *fits], until=UNTIL, size=SIZE, seed=SEED).errors()
+        errors = bk.render([truth, *fits], noise_floor=UNTIL, size=SIZE, seed=SEED).errors()
         return {"errors": list(errors.by_name.values()), "floor": errors.floor}
 
     key = "/".join([truth.name, *(f"{fit.name}:{fit.loss_name}:{fit.loss:.9g}" for fit in fits)])

@@ -74,7 +74,7 @@ def compare():
         fit = bk.fit(measured, model, loss="picture")
         truth = pictures(load(scene, measured.scene_dict()), seed=1)
         refined = bk.refine(
-            one_camera(load(scene, fit.scene_dict())), truth[0], samples=SAMPLES, starts=1
+            one_camera(load(scene, fit.scene_dict())), truth[0], spp=SAMPLES, starts=1
         )
         ends = [pictures(load(scene, one.scene_dict())) for one in (fit, refined.fit)]
         noise = errors(truth, pictures(load(scene, measured.scene_dict()), seed=2))
@@ -112,7 +112,7 @@ def race():
     for _ in range(2):  # the first compiles
         entries = one_camera(load("room", start))
         paths = [f"{owner(entries)}.{name}" for name in names]
-        result = bk.refine(entries, picture, paths, samples=SAMPLES, starts=1)
+        result = bk.refine(entries, picture, parameters=paths, spp=SAMPLES, starts=1)
         results.append((result.seconds, off(result.fit.values)))
     return adam(start, picture, names, off), results[-1]
 
@@ -128,7 +128,7 @@ def timings():
         entries = one_camera(load("room", start, side))
         alpha, colour = (f"{owner(entries)}.{name}" for name in ("alpha_u", COLOUR[0]))
         for samples in (64, *COUNTS):  # the first compiles
-            found = bk.refine(entries, picture, [alpha, colour], samples=samples)
+            found = bk.refine(entries, picture, parameters=[alpha, colour], spp=samples)
             relative = found.standard_errors[alpha] / found.values[alpha]
             rows.append((side, samples, found.seconds, relative))
             print(rows[-1], file=sys.stderr, flush=True)

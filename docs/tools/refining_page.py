@@ -23,7 +23,7 @@ through it step by step.
 
 ```python
 with bk.progress("refining") as bar:
-    found = bk.refine("scene.xml", "photograph.exr", ["ball.bsdf.alpha_u"], progress=bar)
+    found = bk.refine("scene.xml", "photograph.exr", parameters=["ball.bsdf.alpha_u"], progress=bar)
 print(found)  # values ± standard errors, what trades off, what is left
 found.look().write("look.png")  # what was given, what was found, and how they differ
 bk.render(found.fit)  # a fit as any other: compared, converted, written
@@ -66,13 +66,13 @@ are, too."""
 MANY = """Textures, environment maps and volumes are searched, too, by the name of their `.data`:
 thousands of numbers, by derivatives backwards and L-BFGS, again of two independent halves of the
 samples. Texels that no pixel shows follow their neighbours; how smooth, pixels decide that are held
-out, or `smoothing=`, more of which is smoother. There are no standard errors then.
+out, or `smoothness=`, more of which is smoother. There are no standard errors then.
 Of smoke of 12³ voxels, seen in five pictures of 20 × 20 pixels, the densities were 0.20 off at the
 start, and 0.03 after 42 steps,
 in 6 s:
 
 ```python
-found = bk.refine(scene, pictures, {"integrator.extinction.values.data": (0, 1)})
+found = bk.refine(scene, pictures, parameters={"integrator.extinction.values.data": (0, 1)})
 density = found.values["integrator.extinction.values.data"]
 ```
 
@@ -87,7 +87,7 @@ HOW = """Four things have to be known, and whatever is wrong in them goes into t
    with the camera. Its strength may be searched along with the material, if something of known
    reflectance is in the picture: a grey card, or a painted wall.
 3. **Linear pixels.** OpenEXR from raw files, one exposure or several merged; no tone curve.
-   `linearise=True` takes what sRGB's curve was applied to, and clipped pixels do not count.
+   `accept_8_bit=True` takes what sRGB's curve was applied to, and clipped pixels do not count.
 4. **Where light comes from in between.** Walls and ground belong into the scene, with a colour:
    they light what stands on them.
 
@@ -109,7 +109,7 @@ standard error of the roughness:
 {times}
 
 So begin with the photograph scaled to 64 or 128 pixels (`mitsuba.Bitmap.resample`, or means of
-blocks: whatever keeps it linear) and `samples=128`, see whether the scene is right, and take
+blocks: whatever keeps it linear) and `spp=128`, see whether the scene is right, and take
 more of both for the last digit. In small pictures the far starts take most of the time:
 `starts=1`, where the scene's own values are near, halved it at 64 × 48 pixels. Each further number
 is a picture more in
@@ -212,7 +212,7 @@ def times(timings):
     cells = {row[:2]: f"{row[2]:.0f} s (±{100 * row[3]:.2g} %)" for row in timings}
     sides = dict.fromkeys(side for side, *_ in timings)
     rows = [(f"{side} × {side}", *(cells[side, samples] for samples in counts)) for side in sides]
-    return table("pixels, " + ", ".join(f"samples={n}" for n in counts), rows)
+    return table("pixels, " + ", ".join(f"spp={n}" for n in counts), rows)
 
 
 def right_and_wrong():

@@ -6,7 +6,7 @@
 >>> fits = [bk.fit(paint, name) for name in ("ward", "ggx")]    # doctest: +SKIP
 >>> bk.compare(paint, fits)    # errors; bk.rank chooses among all bk.models()    # doctest: +SKIP
 >>> bk.render([paint, *fits]).write("paint.exr")    # doctest: +SKIP
->>> bk.report(paint, fits, "paint.html")    # all of it on one page    # doctest: +SKIP
+>>> bk.report(paint, fits, path="paint.html")    # all of it on one page    # doctest: +SKIP
 
 Importing brdfkit is light and sets no Mitsuba variant. It makes the models known to Mitsuba as
 BSDF plugins in every variant, and chooses the LLVM that Dr.Jit loads (`brdfkit.core.jit.llvm`).

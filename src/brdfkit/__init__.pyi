@@ -41,7 +41,6 @@ from .rendering import Rendering as Rendering
 from .rendering import gallery as gallery
 from .rendering import preview as preview
 from .rendering import render as render
-from .rendering import render_scene as render_scene
 from .rendering import render_volume as render_volume
 from .reporting.report import report as report
 from .theses import Reproduction as Reproduction

@@ -246,9 +246,9 @@ def test_render_by_a_tone_mapping(cli):
 def test_render_until_the_noise_is_low(cli):
     Path("room.xml").write_text(SCENE.format(alpha=0.3))
     for words in (["ward", "--size", "8"], ["room.xml"]):
-        record = json.loads(cli("render", *words, "--until", "30dB", "--json").stdout)
+        record = json.loads(cli("render", *words, "--noise-floor", "30dB", "--json").stdout)
         assert record["errors"]["floor"]["psnr"] >= 30
-    few = "--size", "8", "--spp", "4", "--until", "60 dB", "--force"
+    few = "--size", "8", "--spp", "4", "--noise-floor", "60 dB", "--force"
     result = cli("render", "ward", "lambert", *few)
     assert result.exit_code == 0
     assert re.search(r"The noise floor is .* dB; 60 dB take about [\d,]+ samples", result.stderr)
@@ -526,7 +526,7 @@ TRAPS = [
             ("--scene", "ball"),
             ("--envmap", "sky.exr"),
             ("--spp", "4"),
-            ("--until", "40dB"),
+            ("--noise-floor", "40dB"),
             ("--size", "8"),
         )
     ),
@@ -541,7 +541,10 @@ TRAPS = [
     ([*WARD, "-p", "diffuse_reflectance=1,2"], ["diffuse_reflectance=R,G,B"]),
     ([*WARD, "--size", "0"], ["--size", "x>=1"]),
     ([*WARD, "--size", "100000"], ["100000×100000", "2,200 GB", "give a smaller size"]),
-    ([*WARD, "--until", "loud"], ["--until", "'loud' is no noise floor; give one like 45dB"]),
+    (
+        [*WARD, "--noise-floor", "loud"],
+        ["--noise-floor", "'loud' is no noise floor; give one like 45dB"],
+    ),
     ([*LAMBERT, "--render", "--size", "100000"], ["2 pictures of 100000×100000", "smaller size"]),
     ([*WARD, "--spp", "0"], ["--spp", "x>=1"]),
     ([*WARD, "--spp", "many"], ["--spp", "many"]),

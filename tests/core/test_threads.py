@@ -18,7 +18,7 @@ import pytest
 import brdfkit as bk
 from brdfkit.core.interrupts import hold_signals
 from brdfkit.core.jit.threads import cached_in_turn, in_turn
-from brdfkit.rendering import render_materials, render_scene
+from brdfkit.rendering import render_materials
 
 THREADS = 8
 
@@ -92,7 +92,7 @@ def test_renders_of_several_threads_run_one_after_the_other(inside, tmp_path):
         <sensor type="perspective"><film type="hdrfilm"><integer name="width" value="4"/>
         <integer name="height" value="4"/></film></sensor></scene>"""
     )
-    jobs = [lambda: bk.render("lambert", size=4, spp=1), lambda: render_scene(scene)] * 2
+    jobs = [lambda: bk.render("lambert", size=4, spp=1), lambda: bk.render(scene)] * 2
     with ThreadPoolExecutor(len(jobs)) as pool:
         list(pool.map(lambda job: job(), jobs))
     assert inside == [1] * len(jobs)
@@ -196,7 +196,7 @@ def test_environment_maps_load_in_one_thread(tmp_path, monkeypatch):
         dr.set_thread_count(2)
         mi.Bitmap(np.full((16, 32, 3), 0.3, np.float32)).write("grey.exr")
         dr.set_thread_count(1)
-        bk.render("lambert", spp=1, size=8, envmap="grey.exr")
+        bk.render("lambert", spp=1, size=8, environment="grey.exr")
         assert dr.thread_count() == 1
     """
     monkeypatch.chdir(tmp_path)

@@ -71,8 +71,10 @@ def test_a_black_channel_leaves_the_others_alone(loss, robust):
     values = data.values * noise * [1, 0, 1]
     black = bk.Measured.from_samples(data.samples.wi, data.samples.wo, values)
     fit = bk.fit(black, "ward", loss=loss, robust=robust)
-    others = black.mixed(np.eye(3)[:, [0, 2]], ("R", "B"))
-    alone = bk.fit(others.mixed(np.eye(2), ("650nm", "450nm")), "ward", loss=loss, spectral=True)
+    others = black.mix_channels(np.eye(3)[:, [0, 2]], ("R", "B"))
+    alone = bk.fit(
+        others.mix_channels(np.eye(2), ("650nm", "450nm")), "ward", loss=loss, spectral=True
+    )
     assert fit.values["diffuse_reflectance"][1] == fit.values["specular_reflectance"][1] == 0
     if not robust:
         assert fit.values["alpha_u"] == pytest.approx(alone.values["alpha_u"], rel=1e-6)

@@ -86,7 +86,7 @@ def test_residuals_are_measured_less_modelled():
         assert loss.sum() == pytest.approx(fit.loss**2)
         bk.plot(left)
         assert bk.render(left, spp=1, size=4).pictures[f"{data.name} - lambert"].min() >= 0
-    turned = left.mixed(-np.eye(3), ("R", "G", "B"))
+    turned = left.mix_channels(-np.eye(3), ("R", "G", "B"))
     assert (left.eval(wi, wo) * turned.eval(wi, wo)).max() == 0
 
 
@@ -119,9 +119,9 @@ def test_what_cannot_be_subtracted_is_refused():
     with pytest.raises(BrdfkitError, match="lambert need the measured material, not a str; load"):
         fit.residuals("car_paint")
     with pytest.raises(BrdfkitError, match="3 channels cannot be subtracted from 1"):
-        data.minus(bk.load("car_paint"))
+        data.subtract(bk.load("car_paint"))
     with pytest.raises(BrdfkitError, match="max_angle = 100"):
-        data.minus(fit, 100)
+        data.subtract(fit, 100)
 
 
 WRONG = None, -1, "x", [], {}, [[1, 2]], [1], [None], 10**400, 1e308, True, "99.0"

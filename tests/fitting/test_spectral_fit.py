@@ -57,7 +57,7 @@ def test_of_known_shapes_each_wavelength_is_a_fit_of_its_own(robust):
     fit = bk.fit(data, "ward", spectral=True, **given)
     for c in (0, 7, 9):  # of two groups that one kernel evaluates
         channel = data.channels[c]
-        alone = bk.fit(data.mixed(np.eye(10)[:, [c]], [channel]), "ward", **given)
+        alone = bk.fit(data.mix_channels(np.eye(10)[:, [c]], [channel]), "ward", **given)
         for name in ("diffuse_reflectance", "specular_reflectance"):
             np.testing.assert_allclose(fit.values[name][c], alone.values[name][0], rtol=1e-6)
             own = fit.standard_errors[name][c], alone.standard_errors[name][0]

@@ -86,7 +86,7 @@ def tree(folder="."):
 def test_rows_and_the_best(here, fitted):
     found = bk.sweep(FILES, LINEAR)
     assert [(r.material, r.model) for r in found.rows] == [(m, n) for m in TRUTHS for n in LINEAR]
-    assert found.asked == len(found.fits) == 6
+    assert found.requested == len(found.fits) == 6
     assert found.failed == []
     for row in found.rows:
         assert row.fit == bk.fit(row.file, row.model)
@@ -340,7 +340,7 @@ def test_ctrl_c_ends_with_what_is_finished(here, fitted):
 
     stop = 2
     found = bk.sweep(FILES, LINEAR, folder="out", progress=progress)
-    assert (len(found.rows), found.asked) == (2, 6)
+    assert (len(found.rows), found.requested) == (2, 6)
     assert "2 of 6 fits" in str(found)
     assert {"index.html", "table.csv"} < set(tree("out"))
     stop = 0
@@ -653,5 +653,5 @@ def test_ctrl_c_leaves_nothing_to_do_on_the_cluster(here, client):
             raise KeyboardInterrupt
 
     found = bk.sweep(FILES, LINEAR, client=client, progress=interrupt)
-    assert (len(found.rows), found.asked) == (1, 6)
+    assert (len(found.rows), found.requested) == (1, 6)
     assert not any(client.processing().values())

@@ -76,7 +76,9 @@ def found(mi, picture):
     searched = ["alpha_u", "diffuse_reflectance", "specular_reflectance"]
     names = [f"ball.bsdf.{name}" for name in searched]
     done = []
-    result = bk.refine(scene, picture, names, samples=512, progress=lambda *at: done.append(at))
+    result = bk.refine(
+        scene, picture, parameters=names, spp=512, progress=lambda *at: done.append(at)
+    )
     assert done
     assert all(a <= b for a, b in done)
     return result, scene
@@ -112,7 +114,7 @@ def test_the_fit_is_the_material(mi, found):
 def test_a_light_is_a_parameter(mi, picture):
     dim = corner(mi, TRUTH)
     dim["lamp"]["emitter"]["radiance"]["value"] = [3.0, 3.0, 3.0]
-    result = bk.refine(dim, picture, {"lamp.emitter.radiance": (0, 100)}, samples=256)
+    result = bk.refine(dim, picture, parameters={"lamp.emitter.radiance": (0, 100)}, spp=256)
     error = np.array(result.standard_errors["lamp.emitter.radiance"])
     assert (np.abs(np.array(result.values["lamp.emitter.radiance"]) - RADIANCE) < 3.5 * error).all()
     assert result.fits == {}
@@ -133,7 +135,7 @@ def test_ctrl_c_keeps_the_best(mi, picture, monkeypatch):
     monkeypatch.setattr(gauss_newton.Equations, "at", stop)
     start = corner(mi, TRUTH | {"diffuse_reflectance": (0.9, 0.9, 0.9)})
     with pytest.raises(bk.Interrupted) as stopped:
-        bk.refine(start, picture, ["ball.bsdf.diffuse_reflectance"], starts=1)
+        bk.refine(start, picture, parameters=["ball.bsdf.diffuse_reflectance"], starts=1)
     best = stopped.value.best
     assert "interrupted" in best.message
     assert max(best.values["ball.bsdf.diffuse_reflectance"]) < 0.9
@@ -147,7 +149,7 @@ def test_the_place_of_a_lamp_is_found_by_differences(mi, picture):
     reached *= 1 + 0.01 * np.random.default_rng(1).standard_normal(reached.shape)
     scene["lamp"] |= {"position": [0.5, -1.5, 2.2], "intensity": 8.0}
     before = repr(scene)
-    result = bk.refine(scene, reached, ["lamp.position", "lamp.intensity"], samples=128)
+    result = bk.refine(scene, reached, parameters=["lamp.position", "lamp.intensity"], spp=128)
     error = np.array(result.standard_errors["lamp.position"])
     assert (np.abs(np.array(result.values["lamp.position"]) - [0.8, -1.2, 2.5]) < 4 * error).all()
     assert error.max() < 0.05
@@ -161,18 +163,20 @@ def test_a_far_start_does_not_fall_into_a_mirror(mi, picture):
     dim["lamp"]["emitter"]["radiance"]["value"] = [4.0] * 3
     names = [f"ball.bsdf.{name}" for name in ("alpha_u", "specular_reflectance")]
     names.append("lamp.emitter.radiance")
-    result = bk.refine(dim, picture, names, samples=64, starts=1)
+    result = bk.refine(dim, picture, parameters=names, spp=64, starts=1)
     assert result.values["ball.bsdf.alpha_u"] == pytest.approx(TRUTH["alpha_u"], abs=0.03)
 
 
 def test_a_camera_that_is_off_is_said(mi, picture):
     off = corner(mi, TRUTH)
     off["sensor"]["fov"] = 33
-    how = {"starts": 1, "samples": 16}
-    (note,) = bk.refine(off, picture, ["ball.bsdf.diffuse_reflectance"], **how).notes
+    how = {"starts": 1, "spp": 16}
+    (note,) = bk.refine(off, picture, parameters=["ball.bsdf.diffuse_reflectance"], **how).notes
     assert "the camera, a light or a shape is off" in note
     noisy = picture * (1 + 0.3 * np.random.default_rng(2).standard_normal(picture.shape))
-    result = bk.refine(corner(mi, TRUTH), noisy, ["ball.bsdf.diffuse_reflectance"], **how)
+    result = bk.refine(
+        corner(mi, TRUTH), noisy, parameters=["ball.bsdf.diffuse_reflectance"], **how
+    )
     assert result.loss > 0.02
     assert result.notes == ()
 
@@ -182,7 +186,7 @@ def test_a_crop_of_few_pixels_has_no_standard_errors(mi, picture):
     at = {"crop_width": 2, "crop_height": 1, "crop_offset_x": 8, "crop_offset_y": 9}
     scene["sensor"]["film"] |= at
     part = picture[9:10, 8:10]
-    result = bk.refine(scene, part, ["ball.bsdf.diffuse_reflectance"], samples=16)
+    result = bk.refine(scene, part, parameters=["ball.bsdf.diffuse_reflectance"], spp=16)
     assert "too few pixels for standard errors" in " ".join(result.notes)
     assert np.isnan(result.standard_errors["ball.bsdf.diffuse_reflectance"]).all()
     scene["sensor"]["film"] |= {"crop_width": 1, "crop_height": 1}
@@ -204,7 +208,7 @@ BAD = {
     "no names": (lambda p: p, {"parameters": []}, "empty"),
     "a transform": (lambda p: p, {"parameters": ["ball.to_world"]}, "cannot be searched"),
     "wrong bounds": (lambda p: p, {"parameters": {"ball.bsdf.f0": (1, 0)}}, "bounds"),
-    "no samples": (lambda p: p, {"samples": 0}, "samples = 0"),
+    "no samples": (lambda p: p, {"spp": 0}, "spp = 0"),
     "a mask of another size": (
         lambda p: p,
         {"mask": np.ones((3, 4))},
@@ -272,22 +276,22 @@ def test_pictures_that_are_not_finite_are_no_steps(mi, picture):
     step = solve_step(found, here, hidden, 1e-2)
     assert abs(step[found.is_linear]).max() == pytest.approx(10)
     with pytest.raises(bk.BrdfkitError, match="not finite where the search begins"):
-        bk.refine(corner(mi, TRUTH | WHITE_OUT), picture, starts=1, samples=4)
+        bk.refine(corner(mi, TRUTH | WHITE_OUT), picture, starts=1, spp=4)
 
 
 def test_what_weights_of_0_hide_is_said(mi, picture):
     black = TRUTH | {"specular_reflectance": (0.0,) * 3, "f0": 0.0}
     with pytest.raises(bk.BrdfkitError, match=r"ball.bsdf.specular_reflectance = 0 hides it"):
-        bk.refine(corner(mi, black), picture, ["ball.bsdf.alpha_u"], starts=1, samples=16)
+        bk.refine(corner(mi, black), picture, parameters=["ball.bsdf.alpha_u"], starts=1, spp=16)
     names = ["ball.bsdf.alpha_u", "ball.bsdf.diffuse_reflectance"]
-    result = bk.refine(corner(mi, black), picture, names, starts=1, samples=16)
+    result = bk.refine(corner(mi, black), picture, parameters=names, starts=1, spp=16)
     assert result.values["ball.bsdf.alpha_u"] == pytest.approx(TRUTH["alpha_u"])  # where it began
     assert any("specular_reflectance = 0 hides what" in note for note in result.notes)
 
 
 def test_all_numbers_may_end_on_bounds(mi, picture):
     name = "ball.bsdf.diffuse_reflectance"
-    result = bk.refine(corner(mi, TRUTH), picture, {name: (0.6, 0.9)}, samples=16, starts=1)
+    result = bk.refine(corner(mi, TRUTH), picture, parameters={name: (0.6, 0.9)}, spp=16, starts=1)
     assert result.values[name] == pytest.approx((0.6,) * 3)
     assert result.at_bounds == (name,)
     assert np.isnan(result.standard_errors[name]).all()
@@ -315,7 +319,7 @@ def test_two_lobes_that_trade_off_come_apart(mi):
     begin = truth | {"ggx_1_alpha_u": 0.3, "ggx_2_specular_reflectance": (0.2,) * 3}
     searched = [name for name in truth if name.endswith(("alpha_u", "reflectance"))]
     names = [f"ball.bsdf.{name}" for name in searched]
-    result = bk.refine(scene(begin), picture, names, samples=256, starts=1, seed=4)
+    result = bk.refine(scene(begin), picture, parameters=names, spp=256, starts=1, seed=4)
     assert "no step gains more" in result.message
     for name in searched:
         error = np.asarray(result.standard_errors[f"ball.bsdf.{name}"])
@@ -333,7 +337,9 @@ def test_a_search_that_is_stuck_tries_other_samples_and_says_so(mi, picture, mon
 
     monkeypatch.setattr(gauss_newton, "_find_step", stuck)
     start = corner(mi, TRUTH | {"diffuse_reflectance": (0.9, 0.9, 0.9)})
-    result = bk.refine(start, picture, ["ball.bsdf.diffuse_reflectance"], starts=1, samples=16)
+    result = bk.refine(
+        start, picture, parameters=["ball.bsdf.diffuse_reflectance"], starts=1, spp=16
+    )
     assert "no step, however short" in result.message
     # of half of the samples, and then of all
     assert len(set(seeds)) == 2 * (gauss_newton.FRESH_SAMPLES + 1)
@@ -347,14 +353,14 @@ def test_what_is_masked_counts_nowhere(mi, picture):
     name = "ball.bsdf.diffuse_reflectance"
     masked = ball_alone[..., None]
     bad = [np.where(masked, picture, rest) for rest in (0, 99 * picture, np.nan)]
-    how = {"mask": ball_alone, "starts": 1, "samples": 64}
-    one, *others = (bk.refine(corner(mi, start), p, [name], **how) for p in bad)
+    how = {"mask": ball_alone, "starts": 1, "spp": 64}
+    one, *others = (bk.refine(corner(mi, start), p, parameters=[name], **how) for p in bad)
     assert all(other == one for other in others)
     error = np.array(one.standard_errors[name])
     assert (np.abs(np.array(one.values[name]) - TRUTH["diffuse_reflectance"]) < 3.5 * error).all()
     assert one.fit.samples == ball_alone.sum()
     assert "off" not in " ".join(one.notes)
-    without = bk.refine(corner(mi, start), bad[0], [name], starts=1, samples=16)
+    without = bk.refine(corner(mi, start), bad[0], parameters=[name], starts=1, spp=16)
     assert "off" in " ".join(without.notes)
 
 
@@ -382,7 +388,7 @@ def test_numbers_that_nothing_shows_are_said(mi, picture):
     scene = corner(mi, TRUTH)
     scene["ball"]["center"] = [0, -50, 0]  # behind the camera
     with pytest.raises(bk.BrdfkitError, match="no picture changes"):
-        bk.refine(scene, picture, ["ball.bsdf.alpha_u"], starts=1, samples=16)
+        bk.refine(scene, picture, parameters=["ball.bsdf.alpha_u"], starts=1, spp=16)
 
 
 def test_signed_numbers_come_back(mi):
@@ -391,7 +397,7 @@ def test_signed_numbers_come_back(mi):
     bsdf = {"type": "koenderink", "order": 1, "a_0_0_0": 0.5, "a_1_1_1": -0.1}
     (picture,) = noisy(mi, alone(mi, bsdf))
     begin = alone(mi, bsdf | {"a_0_0_0": 0.8, "a_1_1_1": 0.0})
-    require_back(bk.refine(begin, picture, samples=256), truth)
+    require_back(bk.refine(begin, picture, spp=256), truth)
 
 
 def test_media_are_searched_by_differences(mi):
@@ -406,7 +412,7 @@ def test_media_are_searched_by_differences(mi):
     (picture,) = noisy(mi, smoke(), 256)
     name = "ball.interior_medium.sigma_t"
     begin = mi.load_dict(smoke(sigma_t=1.0), optimize=False)
-    result = bk.refine(begin, picture, {f"{name}.value": (0.1, 10)}, starts=1, samples=64)
+    result = bk.refine(begin, picture, parameters={f"{name}.value": (0.1, 10)}, starts=1, spp=64)
     require_back(result, {name: 2.0})
 
 
@@ -418,7 +424,7 @@ def test_two_cameras_and_what_none_of_them_sees(mi):
     pictures = noisy(mi, scene)
     alpha, hidden = "ball.bsdf.alpha_u", "hidden.bsdf.alpha_u"
     begin = {**scene, "ball": {**scene["ball"], "bsdf": {**TRUTH_BSDF, "alpha_u": 0.2}}}
-    result = bk.refine(begin, pictures, [alpha, f"{hidden}.value"], starts=1, samples=64)
+    result = bk.refine(begin, pictures, parameters=[alpha, f"{hidden}.value"], starts=1, spp=64)
     require_back(result, {alpha: TRUTH["alpha_u"]})
     assert result.values[hidden] == pytest.approx(0.2)  # where it began
     assert np.isnan(result.standard_errors[hidden])
@@ -433,7 +439,7 @@ def test_a_material_begins_on_the_ball_of_render(mi, tmp_path):
     with use_two_threads():
         mi.Bitmap(clean.astype(np.float32)).write(str(tmp_path / "ball.exr"))
     model = bk.models()["lambert"](diffuse_reflectance=0.7)
-    result = bk.refine(model, tmp_path / "ball.exr", samples=256)
+    result = bk.refine(model, tmp_path / "ball.exr", spp=256)
     error = np.array(result.fit.standard_errors["diffuse_reflectance"])
     away = np.array(result.fit.values["diffuse_reflectance"]) - truth["diffuse_reflectance"]
     assert (np.abs(away) < 3.5 * error).all()
@@ -477,7 +483,7 @@ def test_names_are_told_and_values_below_0_need_bounds(mi, picture):
     low = corner(mi, TRUTH)
     low["sensor"]["principal_point_offset_x"] = -0.1
     with pytest.raises(bk.BrdfkitError, match="give its bounds"):
-        bk.refine(low, picture, ["sensor.principal_point_offset_x"])
+        bk.refine(low, picture, parameters=["sensor.principal_point_offset_x"])
 
 
 @pytest.mark.parametrize("kind", ["box", "gaussian"])
@@ -518,14 +524,16 @@ def test_standard_errors_grow_where_the_scene_is_wrong(mi):
     (picture,) = noisy(mi, scene(TRUTH))
     wrong = TRUTH | {"specular_reflectance": (0.2, 0.2, 0.2), "alpha_u": 0.5}
     name = "ball.bsdf.alpha_u"
-    result = bk.refine(scene(wrong), picture, [name], starts=1, samples=128)
+    result = bk.refine(scene(wrong), picture, parameters=[name], starts=1, spp=128)
     (note,) = [note for note in result.notes if "are not noise" in note]
     assert "χ² per degree of freedom" in note
     assert "multiplied by" in note
     off = abs(result.values[name] - TRUTH["alpha_u"])
     assert off > 0.05
     assert off < 4 * result.standard_errors[name]
-    right = bk.refine(scene(TRUTH | {"alpha_u": 0.5}), picture, [name], starts=1, samples=128)
+    right = bk.refine(
+        scene(TRUTH | {"alpha_u": 0.5}), picture, parameters=[name], starts=1, spp=128
+    )
     assert "are not noise" not in " ".join(right.notes)
     assert right.standard_errors[name] < 0.2 * result.standard_errors[name]
 
@@ -533,8 +541,8 @@ def test_standard_errors_grow_where_the_scene_is_wrong(mi):
 def test_a_search_that_is_not_at_its_end_says_so_first(mi, picture):
     start = corner(mi, TRUTH | {"alpha_u": 0.7, "specular_reflectance": (0.1,) * 3})
     names = [f"ball.bsdf.{name}" for name in ("alpha_u", "specular_reflectance")]
-    how = {"starts": 1, "samples": 128}
-    early, late = (bk.refine(start, picture, names, steps=n, **how) for n in (1, 30))
+    how = {"starts": 1, "spp": 128}
+    early, late = (bk.refine(start, picture, parameters=names, steps=n, **how) for n in (1, 30))
     assert not early.converged
     assert late.converged
     assert "Not converged" in str(early).splitlines()[1]
@@ -548,8 +556,10 @@ def test_a_look_shows_what_was_given_beside_what_was_found(mi, picture):
     mask = np.arange(SIZE)[:, None] < np.full(SIZE, 12)
     unknown = np.where(mask[..., None], picture, np.nan)
     name = "ball.bsdf.diffuse_reflectance"
-    how = {"mask": mask, "starts": 1, "samples": 16}
-    result = bk.refine(corner(mi, TRUTH), 20 * unknown, {"lamp.emitter.radiance": (0, 900)}, **how)
+    how = {"mask": mask, "starts": 1, "spp": 16}
+    result = bk.refine(
+        corner(mi, TRUTH), 20 * unknown, parameters={"lamp.emitter.radiance": (0, 900)}, **how
+    )
     look = result.look()
     given, found = look.pictures.values()
     assert np.quantile(given[mask], 0.99) == pytest.approx(1)
@@ -559,5 +569,5 @@ def test_a_look_shows_what_was_given_beside_what_was_found(mi, picture):
     assert result._repr_html_().count("<img") == 1
     with pytest.raises(bk.BrdfkitError, match="sensor = 1 should be 0 to 0"):
         result.look(1)
-    grey = bk.refine(corner(mi, TRUTH), picture, [name], starts=1, samples=4, steps=1)
+    grey = bk.refine(corner(mi, TRUTH), picture, parameters=[name], starts=1, spp=4, steps=1)
     assert pickle.loads(pickle.dumps(grey)).look().pictures.keys() == {"given", "found"}

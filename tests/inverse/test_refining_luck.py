@@ -34,7 +34,9 @@ def test_the_least_of_many_errors_is_luck_and_the_least_bound_is_not(mi, picture
 @pytest.mark.parametrize("seed", [0, 1, 3])
 def test_searches_by_default_end_at_the_truth(mi, picture, seed):
     """They ended at 0.016 ± 0.021, on the bound 0.001, and at 0.007 ± 0.052."""
-    found = bk.refine(knot(mi, 0.5, 0.4), picture, [ALPHA, DIFFUSE], samples=SAMPLES, seed=seed)
+    found = bk.refine(
+        knot(mi, 0.5, 0.4), picture, parameters=[ALPHA, DIFFUSE], spp=SAMPLES, seed=seed
+    )
     require_back(found, {ALPHA: 0.18, DIFFUSE: (0.3,) * 3})
     assert found.converged
 
@@ -71,6 +73,6 @@ def test_a_picture_that_no_value_explains_leaves_no_more_than_the_start(mi):
     (picture,) = noisy(mi, alone(mi, truth), 256)
     start = alone(mi, bsdf_of("ggx", {"alpha_u": 0.4, "specular_reflectance": (0.1,) * 3}))
     seen = views(mi, picture, start, [ALPHA])
-    found = bk.refine(start, picture, [ALPHA, "ball.bsdf.specular_reflectance"], samples=32)
+    found = bk.refine(start, picture, parameters=[ALPHA, "ball.bsdf.specular_reflectance"], spp=32)
     own = Residuals.at(seen, seen.start, 512, 9)
     assert found.loss**2 < own.bound

@@ -81,7 +81,7 @@ def test_the_scale_of_a_sky_comes_back(mi):
     del scene["lamp"]
     (picture,) = noisy(mi, scene, 64)
     scene["sky"]["scale"] = 1.0
-    result = bk.refine(scene, picture, ["sky.scale"], samples=64)
+    result = bk.refine(scene, picture, parameters=["sky.scale"], spp=64)
     require_back(result, {"sky.scale": 1.5})
 
 
@@ -90,7 +90,7 @@ def test_roughplastic_comes_back(mi):
     (picture,) = noisy(mi, alone(mi, PLASTIC))
     begin = alone(mi, {"type": "roughplastic", "alpha": 0.4, "diffuse_reflectance": 0.5})
     begin["ball"]["bsdf"]["diffuse_reflectance"] = {"type": "rgb", "value": [0.5, 0.5, 0.5]}
-    result = bk.refine(begin, picture, names, starts=1, samples=256)
+    result = bk.refine(begin, picture, parameters=names, starts=1, spp=256)
     require_back(result, {names[0]: 0.2, names[1]: (0.4, 0.3, 0.2)})
 
 
@@ -114,9 +114,9 @@ def test_an_error_leaves_no_derivatives_behind(mi, monkeypatch):
     with monkeypatch.context() as patch:
         patch.setattr(module.dr, "traverse", lambda *how, **more: None)
         with pytest.raises(RuntimeError, match="isolate_grad"):
-            bk.refine(broken, picture, [name], starts=1, samples=16)
+            bk.refine(broken, picture, parameters=[name], starts=1, spp=16)
     assert not any(dr.grad_enabled(value) for _, value in mi.traverse(broken))
     good = with_bsdf(mi, {"type": "diffuse", "reflectance": GREY})
     names = ["ball.bsdf.reflectance"]
-    assert bk.refine(good, picture, names, starts=1, samples=16, steps=1).steps == 1
-    assert bk.refine(broken, picture, [name], starts=1, samples=16).steps
+    assert bk.refine(good, picture, parameters=names, starts=1, spp=16, steps=1).steps == 1
+    assert bk.refine(broken, picture, parameters=[name], starts=1, spp=16).steps

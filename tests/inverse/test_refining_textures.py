@@ -93,10 +93,10 @@ def test_a_texture_comes_back(mi, picture):
     found = bk.refine(
         scene(mi, grey),
         picture,
-        [TEXTURE],
+        parameters=[TEXTURE],
         steps=8,
-        samples=32,
-        smoothing=0.003,
+        spp=32,
+        smoothness=0.003,
         progress=lambda *at: done.append(at),
     )
     texture = found.values[TEXTURE]
@@ -134,7 +134,7 @@ def test_masked_texels_follow_their_neighbours(mi, picture, monkeypatch):
     mask = np.arange(SIZE)[:, None] < np.full(SIZE, 12)
     grey = np.full(TRUTH.shape, 0.5)
     one, other = (
-        bk.refine(scene(mi, grey), p, [TEXTURE], steps=1, samples=4, mask=mask)
+        bk.refine(scene(mi, grey), p, parameters=[TEXTURE], steps=1, spp=4, mask=mask)
         for p in (picture, np.where(mask[..., None], picture, np.nan))
     )
     # derivatives backwards are added up in any order
@@ -155,7 +155,7 @@ def test_an_environment_comes_back_from_a_mirror_ball(mi):
         return entries
 
     picture = np.array(mi.render(mi.load_dict(ball(light)), spp=256, seed=5))
-    found = bk.refine(ball(np.full(light.shape, 0.5)), picture, ["sky.data"], samples=32)
+    found = bk.refine(ball(np.full(light.shape, 0.5)), picture, parameters=["sky.data"], spp=32)
     sky = found.values["sky.data"]
     assert found.loss < 0.04
     assert sky[2, 4] == pytest.approx(light[2, 4], rel=0.4)
@@ -163,18 +163,18 @@ def test_an_environment_comes_back_from_a_mirror_ball(mi):
     assert np.median(np.abs(sky - light) / light) < 0.15
 
 
-@pytest.mark.parametrize("smoothing", [-1, np.nan, np.inf])
-def test_smoothing_is_a_number(mi, picture, smoothing):
-    with pytest.raises(bk.BrdfkitError, match=r"smoothing = .* should be a number"):
-        bk.refine(scene(mi, TRUTH), picture, [TEXTURE], smoothing=smoothing)
+@pytest.mark.parametrize("smoothness", [-1, np.nan, np.inf])
+def test_smoothness_is_a_number(mi, picture, smoothness):
+    with pytest.raises(bk.BrdfkitError, match=r"smoothness = .* should be a number"):
+        bk.refine(scene(mi, TRUTH), picture, parameters=[TEXTURE], smoothness=smoothness)
 
 
 def test_textures_of_integers_are_refused(mi, picture):
     with pytest.raises(bk.BrdfkitError, match=r"TensorXu8.*floats"):
-        bk.refine(scene(mi, 255 * TRUTH, kind=np.uint8), picture, [TEXTURE])
+        bk.refine(scene(mi, 255 * TRUTH, kind=np.uint8), picture, parameters=[TEXTURE])
 
 
 def test_values_fit_the_scene(mi, picture):
-    found = bk.refine(scene(mi, TRUTH), picture, [TEXTURE], steps=1, samples=4, smoothing=0)
+    found = bk.refine(scene(mi, TRUTH), picture, parameters=[TEXTURE], steps=1, spp=4, smoothness=0)
     with pytest.raises(bk.BrdfkitError, match="shape"):
         found.put_into(mi.load_dict(scene(mi, TRUTH[:2]), optimize=False))

@@ -373,7 +373,7 @@ def test_a_damaged_map_of_a_scene_file_ends_no_process(file, bad, module_in_llvm
         <emitter type="envmap"><string name="filename" value="{file}"/></emitter></scene>"""
     Path("lit.xml").write_text(scene)
     with pytest.raises(bk.BrdfkitError, match=rf"^lit.xml: {file}: its row \d is damaged"):
-        bk.render_scene("lit.xml", spp=1)
+        bk.render("lit.xml", spp=1)
 
 
 def test_bad_files(bad, module_in_llvm):
@@ -402,7 +402,9 @@ def test_bad_files(bad, module_in_llvm):
     verbs = {
         bk.environments.audit: everywhere,
         lambda file: bk.environments.convert(file, "new.exr"): everywhere | lights,
-        lambda file: bk.render("lambert", 1, 8, envmap=file): everywhere | lights | renders,
+        lambda file: bk.render("lambert", spp=1, size=8, environment=file): everywhere
+        | lights
+        | renders,
     }
     for verb, sentences in verbs.items():
         for file, sentence in sentences.items():
@@ -426,9 +428,11 @@ def test_eight_bit_pictures_are_said_to_be(tmp_path):
 
 
 def test_a_name_lights_a_picture(module_in_llvm):
-    by_name = bk.render("lambert", 4, 16, envmap="sky").pictures["lambert"]
+    by_name = bk.render("lambert", spp=4, size=16, environment="sky").pictures["lambert"]
     file = catalogue.find_environment_file("sky")
-    assert np.allclose(by_name, bk.render("lambert", 4, 16, envmap=file).pictures["lambert"], 1e-4)
+    assert np.allclose(
+        by_name, bk.render("lambert", spp=4, size=16, environment=file).pictures["lambert"], 1e-4
+    )
 
 
 def run(capsys, *words):

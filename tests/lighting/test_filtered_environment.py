@@ -437,7 +437,7 @@ def test_a_changed_or_turned_mesh_casts_its_own_shadows(llvm_variant, monkeypatc
     ("given", "said"),
     [
         ({"scene": "ball.obj#w"}, "behind the #, is x, y or z"),
-        ({"envmap": "nowhere.exr"}, "nowhere.exr"),
+        ({"environment": "nowhere.exr"}, "nowhere.exr"),
         ({"scene": "cornell_box"}, "A preview shows a shape"),
         ({"scene": "nothing.obj"}, "no such file"),
         ({"scene": 3}, "scene = 3 should be a scene's name or a mesh's file"),
@@ -475,7 +475,7 @@ def test_lobes_say_that_they_leave_mirrors_black(llvm_variant, capfd):
 
 @pytest.mark.quick
 def test_the_command_line_refuses_noise_in_a_preview():
-    for words in (["--until", "40"], ["--seed", "3"]):
+    for words in (["--noise-floor", "40"], ["--seed", "3"]):
         run = CliRunner().invoke(main, ["render", "ggx", "--preview", *words])
         assert run.exit_code == 2
         assert "A preview has no noise" in run.stderr

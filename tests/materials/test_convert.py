@@ -178,7 +178,7 @@ def test_merl_of_an_rgl_file(tmp_path, measured_data, name):
 def named(*channels):
     """Samples with these channels."""
     n = len(channels)
-    return replace(spectrum(), channels=channels, standard_error=None).mixed(
+    return replace(spectrum(), channels=channels, standard_error=None).mix_channels(
         np.ones((3, n)), channels
     )
 

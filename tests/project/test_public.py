@@ -45,7 +45,7 @@ METHODS = {
             "from_samples",
             "from_table",
             "mend",
-            "minus",
+            "subtract",
             "resampled",
         ],
         bk.Model: ["changed"],

@@ -61,7 +61,7 @@ def fit_and_render(paint: bk.Measured) -> None:
     )
     assert_type(fits[0].model, bk.Model)
     assert_type(bk.compare(paint, fits).best, str)
-    assert_type(paint.minus(fits[0]), bk.Measured)
+    assert_type(paint.subtract(fits[0]), bk.Measured)
     assert_type(bk.uncertainty.bootstrap(fits[0], paint).standard_errors, dict[str, Floats])
     assert_type(
         bk.uncertainty.profile(fits[0], paint, parameter="alpha_u").interval, tuple[float, float]
@@ -72,9 +72,11 @@ def fit_and_render(paint: bk.Measured) -> None:
     assert_type(rendering.psnr(), dict[str, float])
     assert_type(rendering.errors(), ImageErrors)
     assert_type(rendering.errors().floor, dict[str, float])
-    assert_type(bk.render_scene("kitchen.xml"), bk.Rendering)
+    assert_type(bk.render("kitchen.xml"), bk.Rendering)
     assert_type(bk.gallery([[paint, *fits]], scene="vase"), bk.Gallery)
-    assert_type(bk.report(paint, ["ward", *fits], "paint.html", {"loss": "cbrt"}), Path)
+    assert_type(
+        bk.report(paint, ["ward", *fits], path="paint.html", settings={"loss": "cbrt"}), Path
+    )
 
 
 def fit_many(files: list[Path]) -> None:

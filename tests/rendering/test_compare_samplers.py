@@ -54,7 +54,9 @@ def test_the_noise_is_the_distance_to_a_picture_of_many_samples(llvm_variant, mo
     """Of samplers that differ, each of which comes to the same picture."""
     use(monkeypatch, "envmap", "alias")
     spp, size = 16, 16
-    found = bk.rendering.compare_samplers("studio", "plaster", "ball", 8, spp, size)
+    found = bk.rendering.compare_samplers(
+        "studio", "plaster", scene="ball", rounds=8, spp=spp, size=size
+    )
     scenes = map_sampling._scenes("studio", bk.load("plaster"), "ball", size)
     truth = map_sampling._render(scenes["envmap"], 8192, 1000)
     scale = np.maximum(truth, map_sampling.DARK * truth.mean())
@@ -86,11 +88,11 @@ def test_the_command_names_the_best_and_the_chance(monkeypatch):
     ("given", "said"),
     [
         ({"rounds": 2}, "rounds = 2 should be a whole number, at least 3"),
-        ({"envmap": "nowhere.exr"}, "nowhere.exr"),
+        ({"environment": "nowhere.exr"}, "nowhere.exr"),
         ({"scene": "cornell_box"}, "lamps of its own"),
         ({"scene": 3}, "scene = 3 should be a scene's name or a mesh's file"),
     ],
 )
 def test_what_cannot_be_compared_is_said(llvm_variant, given, said):
     with pytest.raises(bk.BrdfkitError, match=said):
-        bk.rendering.compare_samplers(**{"envmap": "studio", "spp": 1, "size": 4, **given})
+        bk.rendering.compare_samplers(**{"environment": "studio", "spp": 1, "size": 4, **given})

@@ -37,7 +37,7 @@ def test_progress_counts_all_frames():
     told = []
     found = render_orbit(rod(), frames=3, progress=lambda *given: told.append(given), **LOOK)
     assert told == [(k + 1, 6) for k in range(6)]
-    assert (len(found.frames), found.asked, found.spp) == (3, 3, 2)
+    assert (len(found.frames), found.requested, found.spp) == (3, 3, 2)
 
 
 @pytest.mark.parametrize(("at", "kept"), [(1, 1), (3, 1), (4, 2)])
@@ -49,7 +49,7 @@ def test_ctrl_c_keeps_the_frames_that_are_finished(at, kept):
             raise KeyboardInterrupt
 
     found = render_orbit(rod(), frames=3, progress=stop, **LOOK)
-    assert (len(found.frames), found.asked) == (kept, 3)
+    assert (len(found.frames), found.requested) == (kept, 3)
 
 
 def ramps(count=5):

@@ -74,7 +74,7 @@ def test_the_light_of_a_known_block():
     glow = TransferFunction([0, 3], [[*rgb, 1], [*rgb, 1]], 0.6, "emission")
     look = {"azimuth": 0, "elevation": 0, "density": 2, "background": (0, 0.5, 1)}
     for renderer in ("emission_absorption", "single_scattering"):
-        more = {} if renderer == "emission_absorption" else {"albedo": 0}
+        more = {} if renderer == "emission_absorption" else {"settings": {"albedo": 0}}
         picture = seen(cube, renderer, 64, transfer=glow, **look, **more)[16, 16]
         through = exp(-0.6 * 2 * 2)
         expected = (1 - through) * np.array(rgb) + through * np.array([0, 0.5, 1])
@@ -93,7 +93,7 @@ def test_behind_a_volume_is_the_background(renderer):
 
 
 def test_the_environment_shows_without_a_background():
-    light = {"azimuth": 0, "elevation": 0, "spp": 16, "envmap": "sky"}
+    light = {"azimuth": 0, "elevation": 0, "spp": 16, "environment": "sky"}
     around = seen("sphere", "isosurface", background=None, **light)
     plain = seen("sphere", "isosurface", background=0.02, **light)
     assert around[0, 0, 1] > 5 * plain[0, 0, 1]
@@ -165,7 +165,8 @@ def test_the_level_parts_the_values_best():
 
 
 def test_a_surface_is_of_any_material():
-    black = seen("sphere", "isosurface", 4, bsdf={"type": "diffuse", "reflectance": 0.0})
+    coal = {"bsdf": {"type": "diffuse", "reflectance": 0.0}}
+    black = seen("sphere", "isosurface", 4, settings=coal)
     assert black[16, 16].max() < 1e-6
     by_name = integrator(volumes.load("sphere", size=4), None, "isosurface", {"bsdf": "lambert"})
     assert by_name["bsdf"]["type"] == "lambert"
@@ -176,7 +177,7 @@ def test_a_surface_is_of_any_material():
 
 def test_samples_are_added_for_so_long():
     found = render_volume("sphere", renderer="maximum_intensity", size=16, seconds=1e-3)
-    assert found.spp == found.asked == 4
+    assert found.spp == found.requested == 4
     assert found.standard_error is None
     assert _passes_within(10, seconds=2, done=4) == 20
     assert _passes_within(2.5, seconds=2, done=1) == 2  # the first one compiles
@@ -189,7 +190,7 @@ def test_ctrl_c_keeps_the_passes():
             raise KeyboardInterrupt
 
     found = render_volume("sphere", size=32, spp=64, progress=stop)
-    assert (found.spp, found.asked) == (8, 64)
+    assert (found.spp, found.requested) == (8, 64)
     assert found.standard_error.shape == (32, 32, 3)
     assert found.parameters["sphere"]["renderer"] == "single_scattering"
 
@@ -204,8 +205,11 @@ def test_ctrl_c_keeps_the_passes():
         ({"seconds": "1"}, "seconds"),
         ({"azimuth": np.nan}, "azimuth"),
         ({"density": 1e9}, "check the unit of length"),
-        ({"stepz": 3, "renderer": "emission_absorption"}, "'stepz'; did you mean steps?"),
-        ({"phase": "hgg"}, "hgg"),
+        (
+            {"settings": {"stepz": 3}, "renderer": "emission_absorption"},
+            "'stepz'; did you mean steps?",
+        ),
+        ({"settings": {"phase": "hgg"}}, "hgg"),
     ],
 )
 def test_what_is_wrong_is_said(how, message):

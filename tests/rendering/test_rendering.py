@@ -13,7 +13,7 @@ from brdfkit.core.colours import luminance
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields import plane, sphere
 from brdfkit.images.errors.metrics import METRICS
-from brdfkit.rendering import Rendering, render, render_scene
+from brdfkit.rendering import Rendering, render
 from brdfkit.rendering.montage import montage
 from brdfkit.rendering.scene_input.loading import load_scenes
 from brdfkit.rendering.scenes.ball import ball
@@ -161,7 +161,7 @@ def stop_at(pictures):
 def test_an_interrupted_render_keeps_what_every_picture_has():
     # two passes of 16 spp × two pictures
     kept = render([WHITE, GREY], spp=32, size=16, progress=stop_at(3))
-    assert (kept.spp, kept.asked) == (16, 32)
+    assert (kept.spp, kept.requested) == (16, 32)
     assert np.isnan(kept.noise_floor)
     for thing in (WHITE, GREY):
         alone = render(thing, spp=32, size=16, progress=stop_at(1)).pictures[thing["name"]]
@@ -172,10 +172,10 @@ def test_samples_are_added_until_the_noise_is_low_enough():
     """The guess of how many it takes comes true; the pictures are those of so many samples."""
     totals = []
     found = render(
-        [WHITE, GREY], until=38.0, size=32, progress=lambda done, total: totals.append(total)
+        [WHITE, GREY], noise_floor=38.0, size=32, progress=lambda done, total: totals.append(total)
     )
     passes = found.spp // 16
-    assert found.asked == found.spp == 16 * passes
+    assert found.requested == found.spp == 16 * passes
     assert 38 <= found.noise_floor == found.errors().floor["psnr"]
     assert len(totals) == 2 * passes
     assert totals[4] == pytest.approx(2 * passes, abs=2 + passes // 2)
@@ -186,13 +186,13 @@ def test_samples_are_added_until_the_noise_is_low_enough():
 
 
 def test_a_noise_floor_that_takes_too_many_samples_is_said_to():
-    found = render(WHITE, until=60, spp=16, size=16)
-    assert found.asked == found.spp == 16
+    found = render(WHITE, noise_floor=60, spp=16, size=16)
+    assert found.requested == found.spp == 16
     needed = 16 * 10 ** ((60 - found.noise_floor) / 10)
     assert f"60 dB take about {float(f'{needed:.2g}'):,.0f} samples" in str(found)
-    stopped = render(WHITE, until=60, spp=32, size=16, progress=stop_at(1))
-    assert (stopped.spp, stopped.asked, stopped.shortfall) == (16, 32, "")
-    hopeless = render(WHITE, until=1000, spp=2, size=8).shortfall
+    stopped = render(WHITE, noise_floor=60, spp=32, size=16, progress=stop_at(1))
+    assert (stopped.spp, stopped.requested, stopped.shortfall) == (16, 32, "")
+    hopeless = render(WHITE, noise_floor=1000, spp=2, size=8).shortfall
     assert hopeless.endswith("; 1000 dB take more than a billion samples per pixel.")
 
 
@@ -262,21 +262,21 @@ def test_what_cannot_be_written_leaves_nothing(pair, tmp_path, path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"things": []}, "nothing to render"),
-        ({"things": 5}, r"5 \(int\) is no material"),
-        ({"things": ["car_pant"]}, r"did you mean car_paint\?"),
-        ({"things": bk.models()["ward"]}, r"Ward is a model without values; call it: Ward\(\)"),
-        ({"things": {"name": "it"}}, 'no "type"'),
-        ({"things": {"type": "no_such_bsdf"}}, "no_such_bsdf: Mitsuba cannot load it"),
-        ({"things": WHITE, "spp": 0}, "spp = 0"),
-        ({"things": WHITE, "spp": float("inf")}, "spp = inf"),
-        ({"things": WHITE, "spp": 1, "until": 45}, "spp = 1 .* at least 2"),
-        ({"things": WHITE, "until": 0}, "until = 0 should be a number above 0"),
-        ({"things": WHITE, "size": 0}, "pixels above 0"),
-        ({"things": WHITE, "size": (8,)}, "pixels above 0"),
-        ({"things": WHITE, "seed": 2**31}, "out of bounds"),
-        ({"things": WHITE, "seed": -1}, "seed = -1"),
-        ({"things": sphere(1), "scene": "knot"}, "leave scene and envmap out"),
+        ({"materials": []}, "nothing to render"),
+        ({"materials": 5}, r"5 \(int\) is no material"),
+        ({"materials": ["car_pant"]}, r"did you mean car_paint\?"),
+        ({"materials": bk.models()["ward"]}, r"Ward is a model without values; call it: Ward\(\)"),
+        ({"materials": {"name": "it"}}, 'no "type"'),
+        ({"materials": {"type": "no_such_bsdf"}}, "no_such_bsdf: Mitsuba cannot load it"),
+        ({"materials": WHITE, "spp": 0}, "spp = 0"),
+        ({"materials": WHITE, "spp": float("inf")}, "spp = inf"),
+        ({"materials": WHITE, "spp": 1, "noise_floor": 45}, "spp = 1 .* at least 2"),
+        ({"materials": WHITE, "noise_floor": 0}, "noise_floor = 0 should be a number above 0"),
+        ({"materials": WHITE, "size": 0}, "pixels above 0"),
+        ({"materials": WHITE, "size": (8,)}, "pixels above 0"),
+        ({"materials": WHITE, "seed": 2**31}, "out of bounds"),
+        ({"materials": WHITE, "seed": -1}, "seed = -1"),
+        ({"materials": sphere(1), "scene": "knot"}, "leave scene and environment out"),
     ],
 )
 def test_what_cannot_be_rendered_is_said(arguments, message):
@@ -333,13 +333,13 @@ def test_a_scene_file_is_rendered(tmp_path):
       <integrator type="path"/>
       <emitter type="constant"/></scene>"""
     (tmp_path / "empty.xml").write_text(scene)
-    picture = render_scene(tmp_path / "empty.xml", spp=2).pictures["empty"]
+    picture = render(tmp_path / "empty.xml", spp=2).pictures["empty"]
     np.testing.assert_allclose(picture, np.ones((8, 12, 3)), rtol=1e-5)
     with pytest.raises(BrdfkitError, match="no such file"):
-        render_scene(tmp_path / "missing.xml")
+        render(tmp_path / "missing.xml")
     (tmp_path / "cut.xml").write_text(scene.replace('<integrator type="path"/>', ""))
     with pytest.raises(BrdfkitError, match=r"cut\.xml: the scene has no integrator; add"):
-        render_scene(tmp_path / "cut.xml")
+        render(tmp_path / "cut.xml")
 
 
 @pytest.mark.quick
@@ -355,8 +355,8 @@ def test_a_scene_has_its_own_samples_per_pixel(tmp_path, sampler, given, spp):
         <film type="hdrfilm"><integer name="width" value="4"/><integer name="height" value="4"/>
         </film></sensor></scene>"""
     )
-    rendering = render_scene(scene, **given)
-    assert (rendering.spp, rendering.asked) == (spp, spp)
+    rendering = render(scene, **given)
+    assert (rendering.spp, rendering.requested) == (spp, spp)
 
 
 @pytest.mark.quick
@@ -377,7 +377,7 @@ def test_what_is_larger_than_the_memory_is_refused_before_any_is_taken(monkeypat
         <film type="hdrfilm"><integer name="width" value="5000"/></film></sensor></scene>"""
     )
     with pytest.raises(BrdfkitError, match=r"large\.xml: a picture of 5000×.* would take about"):
-        render_scene(tmp_path / "large.xml", spp=1)
+        render(tmp_path / "large.xml", spp=1)
 
 
 OTHER_VARIANTS = "llvm_ad_mono", "llvm_ad_spectral_polarized"

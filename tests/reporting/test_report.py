@@ -338,7 +338,7 @@ def test_the_command_in_a_report_repeats_it(here):
 def test_settings_that_no_option_tells_are_named(material):
     settings = {"solver": "slsqp", "constraints": bk.solvers.AlbedoAtMost(0.9), "max_angle": 70}
     told = bk.fit(material, "lambert", **settings)
-    how = {**SMALL, "seed": 0, "scene": "ball", "envmap": None}
+    how = {**SMALL, "seed": 0, "scene": "ball", "environment": None}
     words, untold = origin.command(material, "x.npz", [told], "out/x y.html", **how)
     assert words.endswith(
         "--max-angle 70 --solver slsqp --albedo-at-most 0.9 --spp 16 --size 48 "
@@ -374,7 +374,7 @@ def test_another_scene_and_light(here, material):
     with use_two_threads():
         mi.Bitmap(np.ones((4, 8, 3), np.float32)).write("grey.exr")
     mi.load_dict({"type": "cube"}).write_ply("cube.ply")
-    place = {"scene": "cube.ply", "envmap": "grey.exr"}
+    place = {"scene": "cube.ply", "environment": "grey.exr"}
     once, again = (render_pictures(material, [], SPP, size=16, **place) for _ in range(2))
     np.testing.assert_array_equal(once.pictures[NAME], again.pictures[NAME])
     sides = once.mask.any(axis=0).sum(), once.mask.any(axis=1).sum()
@@ -407,7 +407,7 @@ def test_doubts_stand_under_the_head_and_in_the_terminal(here):
 
 
 def test_in_python_models_and_the_file_have_defaults(here):
-    assert inspect.signature(bk.report).parameters["things"].default == MODELS
+    assert inspect.signature(bk.report).parameters["models"].default == MODELS
     path = bk.report(measured("second paint"), "lambert", **SMALL)
     assert path == Path("second paint-report.html")
     assert path.is_file()
@@ -473,7 +473,7 @@ def test_ctrl_c_leaves_the_reports_that_are_finished(when, finished, here, writt
             raise KeyboardInterrupt
         path.write_text("finished")
         said = written[1]
-        return replace(said, asked=2 * said.spp) if when == "during pictures" else said
+        return replace(said, requested=2 * said.spp) if when == "during pictures" else said
 
     monkeypatch.setattr(many_files, "write_report", write)
     done = cli("report", "paint.npz", "second paint.npz", "-m", "lambert", "-o", "some")
@@ -526,7 +526,7 @@ def test_mistakes_are_said_and_nothing_is_written(here, words, said):
 
 def test_a_fit_of_other_data_is_refused(fits, tmp_path):
     with pytest.raises(bk.BrdfkitError, match="lambert was fitted to other data"):
-        bk.report(measured("other", seed=3), fits, tmp_path / "no.html", **SMALL)
+        bk.report(measured("other", seed=3), fits, path=tmp_path / "no.html", **SMALL)
 
 
 # ---- In a browser --------------------------------------------------------------------------------
@@ -756,16 +756,16 @@ def test_few_samples_in_many_bands_have_a_report(here):
     """Four samples, each in a band of incidences of its own."""
     theta = np.array([20.0, 30, 50, 70])
     few = bk.Measured.from_angles(theta, 0, theta[::-1], 180, theta / 100, name="few")
-    path = bk.report(few, ["lambert"], "few.html", spp=SPP, size=16)
+    path = bk.report(few, ["lambert"], path="few.html", spp=SPP, size=16)
     assert "Half of the measured values are met within" in Page(path).text
 
 
 def test_what_cannot_be_compared_is_refused_in_a_sentence(here):
     dark = bk.Measured.from_table(np.full((9, 9, 18, 3), -0.1), name="dark")
     with pytest.raises(bk.BrdfkitError, match="dark: no measured value is above 0"):
-        bk.report(dark, ["lambert"], "dark.html", spp=SPP, size=16)
+        bk.report(dark, ["lambert"], path="dark.html", spp=SPP, size=16)
     with pytest.raises(bk.BrdfkitError, match="spp = 0 should be"):
-        bk.report("plaster", ["lambert"], "none.html", spp=0)
+        bk.report("plaster", ["lambert"], path="none.html", spp=0)
     assert not list(here.glob("*.html"))
 
 

@@ -222,7 +222,7 @@ def test_views_in_which_nothing_is_in_the_light_do_not_count(tmp_path):
     lit, others = light("directional"), {"others": "shadow_volume"}
     alone = compare(scene([lit]), **others)
     found = compare(scene([lit, spot(*AWAY, 20)], camera(), camera(target=(8, -12, 10))), **others)
-    assert found.finished == found.asked == 8
+    assert found.finished == found.requested == 8
     for label, its in alone.means.items():
         assert found.means[label].psnr == its.psnr
         assert found.means[label].wrong == its.wrong

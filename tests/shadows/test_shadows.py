@@ -133,7 +133,7 @@ def test_a_scene_by_its_name_has_four_views_and_two_suns():
     titles = [place.title for place in found.pictures]
     assert titles[0] == "View 1 (V1), light 1 (sun_1)"
     assert titles[-1] == "View 4 (V4), light 2 (sun_2)"
-    assert found.asked == 8 == found.finished
+    assert found.requested == 8 == found.finished
     for number, view, light in ((0, "V1", 1), (5, "V3", 2)):
         alone = mi.load_dict(SCENES["objects_on_a_ground"](view, light, (24, 16)))
         seen = Seen.by(alone, alone.sensors()[0], alone.emitters()[0], (16, 24))

@@ -23,10 +23,10 @@ def fit_many(files, names, settings, output, jobs, judge, console):
     _print_sweep(found, output, console)
     for problem in found.problems:
         say(problem)
-    interrupted = len(found.rows) < found.asked
+    interrupted = len(found.rows) < found.requested
     if interrupted:
         more = "; the same command goes on from there" if output else ""
-        say(f"interrupted; {len(found.fits)} of {found.asked} fits are finished{more}.")
+        say(f"interrupted; {len(found.fits)} of {found.requested} fits are finished{more}.")
     if interrupted or found.failed:
         click.get_current_context().exit(exit_status() if interrupted else 2)
 

@@ -186,20 +186,21 @@ def writing_options(command):
 
 
 def render_options(command, spp=SPP, size="512, or what a scene file has"):
-    """Adds --spp, --until, --size and --seed to a command that renders.
+    """Adds --spp, --noise-floor, --size and --seed to a command that renders.
 
     `spp`, `size`: what they are by default, in words.
     """
     count = {"type": click.IntRange(min=1), "metavar": "N"}
     seed = {"type": click.IntRange(min=0), "metavar": "N"}
-    until = "Add samples until the noise floor, as a PSNR, is so high: 45dB is hardly seen."
+    floor = "Noise floor, as a PSNR, to reach by adding samples; 45dB is hardly visible."
     for option in (
         click.option("--seed", default=0, show_default=True, help="Seed of the samples.", **seed),
         click.option("--size", help=f"Side of a picture [pixels]. Default: {size}.", **count),
-        click.option("--until", type=Decibels(), metavar="DECIBELS", help=until),
+        click.option("--noise-floor", type=Decibels(), metavar="DECIBELS", help=floor),
         click.option(
             "--spp",
-            help=f"Samples per pixel; with --until the most. Default: {spp}, or what it takes.",
+            help="Samples per pixel; with --noise-floor the largest number. "
+            f"Default: {spp}, or what it takes.",
             **count,
         ),
     ):
@@ -226,6 +227,7 @@ def scene_options(command, files=SCENE_FILES):
     for option in (
         click.option(
             "--envmap",
+            "environment",
             metavar="NAME|FILE",
             help=f"Light by an environment map, not by the sky: {maps}; or .exr or .hdr.",
         ),

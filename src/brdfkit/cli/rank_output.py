@@ -29,9 +29,9 @@ def recommend(names, material, how, console):
     how = {name: how[name] for name in ("loss", "max_angle", "seed")}
     with console.progress(f"rank models on {material.name}") as progress:
         ranking = rank(material, **how, progress=progress)
-    if len(ranking.rows) < ranking.asked:
+    if len(ranking.rows) < ranking.requested:
         print_ranking(ranking, console)
-        say(f"interrupted; {len(ranking.rows)} of {ranking.asked} models are ranked.")
+        say(f"interrupted; {len(ranking.rows)} of {ranking.requested} models are ranked.")
         click.get_current_context().exit(exit_status())
     chosen = [ranking.best if name == BEST else name for name in names]
     return list(dict.fromkeys(chosen)), ranking

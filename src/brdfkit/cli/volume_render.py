@@ -106,7 +106,7 @@ def render_volume(name, of_volume, values, console, **how):
     _warn_of_units(volume, of_volume.get("transfer"))
     with console.progress("render") as progress:
         given = {key: value for key, value in how.items() if value is not None}
-        given |= of_volume | settings | {"progress": progress}
+        given |= of_volume | {"settings": settings, "progress": progress}
         frames = given.pop("orbit", None)
         if frames:
             return render_orbit(volume, frames=frames, **given)

@@ -198,7 +198,7 @@ class Fit(Shown):
         """What the fit leaves of a measurement: measured less modelled values, where it was fitted.
 
         They are signed, above 0 where the fit is too dark. Plots and pictures show values below 0
-        as 0; `Measured.mixed` with ``-np.eye(3)`` shows where the fit is too bright.
+        as 0; `Measured.mix_channels` with ``-np.eye(3)`` shows where the fit is too bright.
 
         Parameters
         ----------
@@ -220,13 +220,13 @@ class Fit(Shown):
         --------
         >>> plot(fit(paint, "ward").residuals(paint))    # doctest: +SKIP
         """
-        if not hasattr(data, "minus"):
+        if not hasattr(data, "subtract"):
             raise BrdfkitError(
                 f"The residuals of {self.name} need the measured material, not a "
                 f"{type(data).__name__}; load it first."
             )
         shown = data if self.wavelengths else data.rgb
-        return shown.minus(self, self.settings.get("max_angle", 80.0))
+        return shown.subtract(self, self.settings.get("max_angle", 80.0))
 
     def scene_dict(self) -> dict[str, Any]:
         """The dictionary for `mitsuba.load_dict`."""

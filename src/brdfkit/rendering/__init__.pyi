@@ -5,7 +5,6 @@ from .map_sampling import SamplerComparison as SamplerComparison
 from .map_sampling import compare_samplers as compare_samplers
 from .previewing.preview import preview as preview
 from .render_materials import render as render
-from .render_materials import render_scene as render_scene
 from .result import Rendering as Rendering
 from .volumes.orbit import render_orbit as render_orbit
 from .volumes.render_volume import render_volume as render_volume

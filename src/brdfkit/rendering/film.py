@@ -24,8 +24,8 @@ class Film:
     Attributes
     ----------
     frames : list of ndarray, shape (height, width, 3)
-        The pictures: float32, linear sRGB; fewer than `asked` after Ctrl-C.
-    asked : int
+        The pictures: float32, linear sRGB; fewer than `requested` after Ctrl-C.
+    requested : int
         Frames of a whole turn.
     spp : int
         Samples per pixel of each.
@@ -36,7 +36,7 @@ class Film:
     """
 
     frames: list[NDArray[np.float32]] = field(repr=False)
-    asked: int
+    requested: int
     spp: int
     seconds: float
     tone_mapping: ToneMapping = field(default_factory=ToneMapping)
@@ -70,7 +70,7 @@ class Film:
         images = self._images()
         if kind == "GIF":
             images = _with_one_palette(images)
-        duration = max(SHORTEST, 10 * round(100 * TURN / self.asked))
+        duration = max(SHORTEST, 10 * round(100 * TURN / self.requested))
         more = {"quality": 90} if kind == "WEBP" else {}
         with write_safely(Path(path)) as beside:
             images[0].save(

@@ -1,6 +1,8 @@
 """`gallery`: materials by models in one picture, as a grid to look at."""
 
-from collections.abc import Callable, Iterable
+from __future__ import annotations
+
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -10,6 +12,7 @@ from brdfkit.core.documents.parts import SOFT
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import write_safely
 from brdfkit.core.names import make_unique, to_printable
+from brdfkit.core.progress_bar import Progress
 from brdfkit.rendering.render_materials import SceneLike, render
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scene_input.arguments import Renderable, as_list, identify
@@ -78,28 +81,29 @@ class Gallery(Shown):
 
 
 def gallery(
-    rows: Iterable[Iterable[Renderable]],
+    materials: Iterable[Iterable[Renderable]],
+    *,
     spp: int = 64,
     size: int = 192,
-    seed: int = 0,
     scene: SceneLike = "ball",
-    progress: Callable[[int, int], object] | None = None,
+    seed: int = 0,
+    progress: Progress | None = None,
 ) -> Gallery:
-    """Path-trace materials by models into one picture, as a grid with labels.
+    """Path-trace materials and their fits into one picture: a labelled grid, a row per material.
 
     Parameters
     ----------
-    rows : iterable of iterables of Measured, Fit, Model, str, Path, dict or (str, one of these)
-        A row for each material: the material, the reference of its row, then its fits, by the same
-        models in every row.
+    materials : iterable of iterables of what `render` takes
+        A row for each material: the material itself, which is the reference of its row, then its
+        fits, by the same models in every row.
     spp : int, default 64
         Samples per pixel.
     size : int, default 192
         Side of each picture [pixels].
+    scene : str, Path or callable, default "ball"
+        The scene, as for `render`.
     seed : int, default 0
         Seed of the samples, the same in every picture.
-    scene : str, Path or callable, default "ball"
-        What is rendered, as for `render`.
     progress : callable, optional
         Called with (done, total) after each row.
 
@@ -118,11 +122,12 @@ def gallery(
     >>> materials = [bk.load(n) for n in ("car_paint", "brushed_aluminium")]    # doctest: +SKIP
     >>> gallery([[m, bk.fit(m, "ward"), bk.fit(m, "ggx")] for m in materials])    # doctest: +SKIP
     """
-    if isinstance(rows, str) or not isinstance(rows, Iterable):
+    if isinstance(materials, str) or not isinstance(materials, Iterable):
         raise BrdfkitError(
-            f"rows = {rows!r:.60} should be rows of materials, as in [[material, fit, fit]]."
+            f"materials = {materials!r:.60} should be rows of materials, as in "
+            "[[material, fit, fit]]."
         )
-    listed = [as_list(row) for row in rows]
+    listed = [as_list(row) for row in materials]
     if not listed:
         raise BrdfkitError("There is nothing to render; give at least one row.")
     columns = [[identify(thing)[0] for thing in row[1:]] for row in listed]
@@ -134,7 +139,7 @@ def gallery(
             )
     found: dict[str, Rendering] = {}
     for done, row in enumerate(listed, 1):
-        rendering = render(row, spp, size, seed, scene)
+        rendering = render(row, spp=spp, size=size, seed=seed, scene=scene)
         found[make_unique(rendering.reference, found)] = rendering
         if progress:
             progress(done, len(listed))

@@ -1,7 +1,8 @@
 """`compare_samplers`: which sampler of an environment map costs least on a user's map and mesh."""
 
+from __future__ import annotations
+
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -14,11 +15,13 @@ from brdfkit.core.colours import luminance
 from brdfkit.core.documents import Document, Paragraph, Shown, Table
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
+from brdfkit.core.progress_bar import Progress
 from brdfkit.materials import resolve
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.progressive import rgb
 from brdfkit.rendering.scene_input.arguments import mitsuba
-from brdfkit.rendering.scene_input.environment import environment, light_by
+from brdfkit.rendering.scene_input.environment import environment as load_environment
+from brdfkit.rendering.scene_input.environment import light_by
 from brdfkit.rendering.scene_input.loading import find_scene, suffix_of
 from brdfkit.rendering.scene_input.shown_material import load_material
 
@@ -44,7 +47,7 @@ class SamplerComparison(Shown):
 
     Attributes
     ----------
-    envmap, material, scene : str
+    environment, material, scene : str
         What was rendered.
     noise : dict of str to ndarray, shape (rounds,)
         The variance of a pixel over the square of its mean, in the mean over the picture.
@@ -54,7 +57,7 @@ class SamplerComparison(Shown):
         Rounds that were requested; Ctrl-C leaves fewer.
     """
 
-    envmap: str
+    environment: str
     material: str
     scene: str
     noise: dict[str, np.ndarray] = field(repr=False)
@@ -140,8 +143,8 @@ class SamplerComparison(Shown):
     def head(self) -> str:
         """What was compared, in a line."""
         return (
-            f"{self.envmap} on {self.scene} of {self.material}: {self.rounds} rounds; noise and "
-            "cost, noise × time, over Mitsuba's envmap"
+            f"{self.environment} on {self.scene} of {self.material}: {self.rounds} rounds; noise "
+            "and cost, noise × time, over Mitsuba's envmap"
         )
 
     def document(self) -> Document:
@@ -151,14 +154,15 @@ class SamplerComparison(Shown):
 
 
 def compare_samplers(
-    envmap: str | Path,
+    environment: str | Path,
     material: resolve.MaterialLike = "plaster",
+    *,
     scene: str | Path = "ball",
     rounds: int = ROUNDS,
     spp: int = SPP,
     size: int = SIZE,
     seed: int = 0,
-    progress: Callable[[int, int], object] | None = None,
+    progress: Progress | None = None,
 ) -> SamplerComparison:
     """Measure which sampler of an environment map needs least time for an equally good picture.
 
@@ -170,20 +174,20 @@ def compare_samplers(
 
     Parameters
     ----------
-    envmap : str or Path
-        The map: a name that brdfkit knows, or a file, as for `render`.
+    environment : str or Path
+        The environment map: a known name or a file, as for `render`.
     material : Measured, Fit, Model, str, Path or dict, default "plaster"
-        What is lit.
+        The material that is lit.
     scene : str or Path, default "ball"
         A scene under the sky, or a mesh (.obj, .ply; "FILE.obj#z" where z points up).
     rounds : int, default 10
-        Repeats, at least 3.
+        Number of repetitions, at least 3.
     spp : int, default 16
         Samples per pixel.
     size : int, default 96
         Side of the pictures [pixels].
     seed : int, default 0
-        Of the first picture.
+        Seed of the first picture.
     progress : callable, optional
         Called with (done, total) after each round.
 
@@ -199,7 +203,7 @@ def compare_samplers(
 
     Examples
     --------
-    >>> print(compare_samplers("probe.exr", "car_paint", "teapot.obj"))    # doctest: +SKIP
+    >>> print(compare_samplers("probe.exr", "car_paint", scene="teapot.obj"))    # doctest: +SKIP
     """
     rounds = to_whole_number("rounds", rounds, least=FEWEST)
     spp, size = to_whole_number("spp", spp, least=1), to_whole_number("size", size, least=1)
@@ -208,15 +212,15 @@ def compare_samplers(
         raise BrdfkitError(f"scene = {scene!r:.60} should be a scene's name or a mesh's file.")
     mitsuba()
     found = resolve.to_material(material)
-    noise, seconds = _measure(envmap, found, scene, rounds, spp, size, seed, progress)
-    where = str(Path(str(envmap)).name), found.name, Path(str(scene)).name
+    noise, seconds = _measure(environment, found, scene, rounds, spp, size, seed, progress)
+    where = str(Path(str(environment)).name), found.name, Path(str(scene)).name
     return SamplerComparison(*where, noise, seconds, rounds)
 
 
 @in_turn
-def _measure(envmap, found, scene, rounds, spp, size, seed, progress):
+def _measure(environment, found, scene, rounds, spp, size, seed, progress):
     """(noise, seconds) by sampler, arrays (rounds,)."""
-    lights = _scenes(envmap, found, scene, size)
+    lights = _scenes(environment, found, scene, size)
     names = list(lights)
     for loaded in lights.values():  # kernels are compiled
         _render(loaded, spp, seed)
@@ -248,11 +252,11 @@ def _measure(envmap, found, scene, rounds, spp, size, seed, progress):
     return noise, {n: np.array([took[n] for took in seconds]) for n in names}
 
 
-def _scenes(envmap, found, scene, size):
+def _scenes(environment, found, scene, size):
     """The `mitsuba.Scene` by each sampler's name."""
     import mitsuba as mi
 
-    light, is_mesh = environment(envmap), bool(suffix_of(scene))
+    light, is_mesh = load_environment(environment), bool(suffix_of(scene))
     shown = load_material(found.scene_dict(), found.name, both_sides=is_mesh)
     made, scenes = find_scene(scene)(shown, (size, size)), {}
     for name, sampler in SAMPLERS.items():

@@ -32,7 +32,7 @@ class Rendering(Shown):
     pictures : dict of str to ndarray, shape (height, width, 3)
         The pictures by name: float32, linear sRGB.
     spp : int
-        Samples per pixel that every picture has; fewer than `asked` after Ctrl-C.
+        Samples per pixel that every picture has; fewer than `requested` after Ctrl-C.
     seconds : float
         Wall-clock time.
     seed : int
@@ -41,13 +41,13 @@ class Rendering(Shown):
         The material's parameters by the picture's name, where it has any.
     mask : ndarray of bool, shape (height, width), or None
         Where the material shows; None for everywhere.
-    asked : int or None
-        Samples per pixel that were asked for; with `until`, about how many it takes.
+    requested : int or None
+        Samples per pixel that were asked for; with a noise floor, about how many it takes.
     other_seed : ndarray, shape (height, width, 3), or None
         The reference as another seed would give it: as far from it as noise is. None with one
         sample per pixel.
-    until : float or None
-        The noise floor that was asked for [dB].
+    requested_noise_floor : float or None
+        The noise floor that was requested [dB].
     standard_error : ndarray, shape (height, width, 3), or None
         Of the numbers of the reference, as its passes tell; rough for a few. None for one pass.
     shadows : str
@@ -62,9 +62,9 @@ class Rendering(Shown):
     seed: int = 0
     parameters: dict[str, dict] = field(default_factory=dict)
     mask: np.ndarray | None = field(default=None, repr=False)
-    asked: int | None = None
+    requested: int | None = None
     other_seed: np.ndarray | None = field(default=None, repr=False)
-    until: float | None = None
+    requested_noise_floor: float | None = None
     shadows: str = ""
     tone_mapping: ToneMapping = field(default_factory=ToneMapping)
     standard_error: np.ndarray | None = field(default=None, repr=False)
@@ -206,13 +206,13 @@ class Rendering(Shown):
 
     @property
     def shortfall(self) -> str:
-        """A sentence where the noise floor `until` was not reached; or nothing."""
-        floor, until = self.noise_floor, self.until
-        if until is None or not isfinite(floor) or floor >= until:
+        """A sentence where the requested noise floor was not reached; otherwise an empty text."""
+        floor, requested = self.noise_floor, self.requested_noise_floor
+        if requested is None or not isfinite(floor) or floor >= requested:
             return ""
-        needed = float(f"{samples_for(until, floor, self.spp):.2g}")
+        needed = float(f"{samples_for(requested, floor, self.spp):.2g}")
         many = f"about {needed:,.0f}" if needed < BILLION else "more than a billion"
-        return f"The noise floor is {floor:.1f} dB; {until:g} dB take {many} samples per pixel."
+        return f"The noise floor is {floor:.1f} dB; {requested:g} dB take {many} samples per pixel."
 
     def document(self) -> Document:
         """The pictures, how far they are from the reference, and how they were made."""

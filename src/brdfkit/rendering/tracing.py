@@ -28,15 +28,15 @@ class Traced:
     pictures: dict[str, np.ndarray]
     first: Accumulated
     spp: int
-    asked: int
+    requested: int
     seconds: float
 
 
-def trace(loaded, spp, seed, progress, until=None, mask=None, limit=None, most=None):
+def trace(loaded, spp, seed, progress, noise_floor=None, mask=None, limit=None, most=None):
     """The `Traced` pictures of `loaded`, scenes by name; the first is the reference.
 
     Each pass renders every picture once, of `most` samples per pixel at most, by default PASS, and
-    there are at least two, for the noise. Where a noise floor `until` [dB] is given, over the
+    there are at least two, for the noise. Where a `noise_floor` [dB] is given, over the
     `mask`, they end as soon as it is reached; `spp` is then the most; with a `limit` [s] after the
     pass in which it is over. Ctrl-C ends after the last pass that all pictures have; it is raised
     where there is none. `progress`: called with (done, total) after each picture of a pass; one
@@ -58,7 +58,7 @@ def trace(loaded, spp, seed, progress, until=None, mask=None, limit=None, most=N
                     growing.integrate(generated, count)
                     halves = growing.accumulated[reference].halves
                     expected = min(
-                        _passes_needed(passes, number + 1, halves, until, mask),
+                        _passes_needed(passes, number + 1, halves, noise_floor, mask),
                         _passes_within(limit, time.perf_counter() - start, number + 1),
                     )
                 if progress:
@@ -71,8 +71,8 @@ def trace(loaded, spp, seed, progress, until=None, mask=None, limit=None, most=N
             raise
 
     pictures = growing.pictures()
-    first, asked = growing.accumulated[reference], sum(passes[:expected])
-    return Traced(pictures, first, first.spp, asked, time.perf_counter() - start)
+    first, requested = growing.accumulated[reference], sum(passes[:expected])
+    return Traced(pictures, first, first.spp, requested, time.perf_counter() - start)
 
 
 def _of_pictures(progress, growing):
@@ -84,14 +84,14 @@ def _of_pictures(progress, growing):
     return {}
 
 
-def _passes_needed(passes, done, halves, until, mask):
-    """How many of the `passes` it takes to a noise floor of `until` [dB], `done` or more."""
-    if until is None or done == 1:
+def _passes_needed(passes, done, halves, noise_floor, mask):
+    """How many of the `passes` it takes to a noise floor of `noise_floor` [dB], `done` or more."""
+    if noise_floor is None or done == 1:
         return len(passes)
     floor = psnr(halves.picture, halves.other_seed, mask)
-    if not floor < until:  # or unknown, where nothing shows the material
+    if not floor < noise_floor:  # or unknown, where nothing shows the material
         return done
-    samples = samples_for(until, floor, sum(halves.spp))
+    samples = samples_for(noise_floor, floor, sum(halves.spp))
     needed = np.searchsorted(np.cumsum(passes), samples) + 1
     return int(np.clip(needed, done + 1, len(passes)))
 

@@ -44,7 +44,7 @@ class Contents:
     warnings: list[str]
     thumbnails: list[str]
     spp: int
-    asked: int
+    requested: int
 
     @property
     def picture_texts(self):
@@ -52,10 +52,11 @@ class Contents:
         return [error.text(error.values[0]) for error in self.picture_errors]
 
 
-def describe(material, fits, rendering, file, path, scene, envmap, ranking):
+def describe(material, fits, rendering, file, path, scene, environment, ranking):
     """The `Contents` of a report of a `Measured` and its `fits`, with the `Rendering` of both.
 
-    `file`, `path`: what was read, or None, and what is written; `scene`, `envmap`: of the pictures;
+    `file`, `path`: what was read, or None, and what is written; `scene`, `environment`: of the
+    pictures;
     `ranking`: that chose a model, or None.
     """
     loss = ranked_by(fits)
@@ -81,7 +82,7 @@ def describe(material, fits, rendering, file, path, scene, envmap, ranking):
     sigma = float(np.median(known)) if known else 0.0
     size = pictures[0].shape[0]
     how = {"spp": rendering.spp, "size": size, "seed": rendering.seed}
-    how |= {"scene": scene, "envmap": envmap}
+    how |= {"scene": scene, "environment": environment}
     command, untold = origin.command(material, file, fits, path, **how)
     lobes, noise_shown = lobe_charts(material, fits, sigma)
     said = {
@@ -94,7 +95,7 @@ def describe(material, fits, rendering, file, path, scene, envmap, ranking):
         "names": names,
         "stills": [encode_jpeg(picture) for picture in pictures],
         "size": size,
-        "shown": origin.scene_in_words(scene, envmap),
+        "shown": origin.scene_in_words(scene, environment),
         "captions": [_caption(errors, place) for place in range(len(names))],
         "picture_errors": [*errors.values()],
         "pixels": for_script([material.name, *names], pictures, differences),
@@ -126,7 +127,7 @@ def describe(material, fits, rendering, file, path, scene, envmap, ranking):
         [*chain(*warnings)],
         [encode_jpeg(halve(picture)) for picture in pictures[:2]],
         rendering.spp,
-        rendering.asked,
+        rendering.requested,
     )
 
 

@@ -37,7 +37,7 @@ class Reports:
     @property
     def finished(self):
         """How many reports have pictures of all samples that were requested."""
-        return sum(entry.contents.spp >= entry.contents.asked for entry in self.entries)
+        return sum(entry.contents.spp >= entry.contents.requested for entry in self.entries)
 
     @property
     def written(self):
@@ -61,7 +61,7 @@ class Reports:
 def report_many(files, things, folder, settings, progress=None, **pictures):
     """Write a report of each file, with the models `things`, and the page; returns the `Reports`.
 
-    `settings`: of `fit`; `pictures`: spp, until, size and seed; `progress`: called with (done,
+    `settings`: of `fit`; `pictures`: spp, noise_floor, size, seed; `progress`: called with (done,
     total) before each file. A file that cannot be read, and a model that cannot be fitted, do not
     stop the others. Ctrl-C ends with the reports that are finished.
     """
@@ -88,7 +88,7 @@ def report_many(files, things, folder, settings, progress=None, **pictures):
                 problems.append(str(error) if str(file) in str(error) else f"{file}: {error}")
                 continue
             entries[name] = Entry(name, said)
-            if said.spp < said.asked:  # Ctrl-C during its pictures, which keeps it
+            if said.spp < said.requested:  # Ctrl-C during its pictures, which keeps it
                 interrupted = True
                 break
     except KeyboardInterrupt:

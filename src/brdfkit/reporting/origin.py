@@ -12,25 +12,27 @@ from brdfkit.regression.solvers.settings import to_plain, to_solver
 from brdfkit.reporting.pictures.defaults import SCENE
 
 
-def facts(material, file, spp, size, seed, scene, envmap):
+def facts(material, file, spp, size, seed, scene, environment):
     """What was read and how, by heading; `file`: as the user named it, or None."""
     found = {"file": str(file) if file else f"{material.name}, from memory"}
     if file:
         found["SHA-256 of the file"] = sha256(locate(file)[0])
     found["SHA-256 of its data"] = material.checksum
     how = f"{size}×{size} pixels, {spp} samples per pixel, seed {seed}"
-    found["pictures"] = f"{scene_in_words(scene, envmap)}; {how}"
+    found["pictures"] = f"{scene_in_words(scene, environment)}; {how}"
     found["made with"] = ", ".join(f"{name} {number}" for name, number in find_versions().items())
     return found
 
 
-def scene_in_words(scene, envmap):
+def scene_in_words(scene, environment):
     """What the pictures show, and by which light."""
     shown = f"the mesh {Path(scene).name}" if Path(scene).suffix else f"the scene {scene}"
-    return f"{shown}, lit by {Path(envmap).name}" if envmap else f"{shown}, in its own light"
+    return (
+        f"{shown}, lit by {Path(environment).name}" if environment else f"{shown}, in its own light"
+    )
 
 
-def command(material, file, fits, output, spp, size, seed, scene, envmap):
+def command(material, file, fits, output, spp, size, seed, scene, environment):
     """The command that makes the report again, as one would type it, and the names of the settings
     of the fits that it cannot tell."""
     words = ["brdfkit", "report", str(file or "FILE")]
@@ -48,7 +50,9 @@ def command(material, file, fits, output, spp, size, seed, scene, envmap):
         elif (value or None) != (usual.get(name) or None):
             words += option
             untold |= set() if option else {name}
-    words += ["--scene", str(scene)] * (scene != SCENE) + ["--envmap", str(envmap)] * bool(envmap)
+    words += ["--scene", str(scene)] * (scene != SCENE) + ["--envmap", str(environment)] * bool(
+        environment
+    )
     words += ["--spp", str(spp), "--size", str(size), "--seed", str(seed)]
     return shlex.join([*words, "-o", Path(output).name]), sorted(untold)
 

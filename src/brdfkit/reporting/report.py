@@ -1,19 +1,22 @@
 """`report`: one HTML file that shows how well models describe a measured material."""
 
-from collections.abc import Callable, Iterable, Mapping
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from brdfkit.core.arguments import to_dictionary
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import require_writable
 from brdfkit.core.names import to_file_stem
 from brdfkit.core.pages import page
-from brdfkit.fitting.fit import check_settings
+from brdfkit.core.progress_bar import Progress
+from brdfkit.fitting.fit import ModelLike, check_settings
 from brdfkit.fitting.ranking import Ranking
+from brdfkit.fitting.settings import require_material_first
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.resolve import MaterialLike, to_measured
-from brdfkit.model import Model
 from brdfkit.regression import Fit
 from brdfkit.reporting.charts.svg import fit_class
 from brdfkit.reporting.contents import Contents, describe
@@ -21,49 +24,52 @@ from brdfkit.reporting.fits import as_list, to_fit
 from brdfkit.reporting.pictures.defaults import MODELS, SCENE, SIZE
 from brdfkit.reporting.pictures.pictures import render_pictures, require_pictures
 
+Fitted: TypeAlias = ModelLike | Fit
+
 
 def report(
     material: MaterialLike,
-    things: str | Path | type[Model] | Fit | Iterable[str | Path | type[Model] | Fit] = MODELS,
+    models: Fitted | Iterable[Fitted] = MODELS,
+    *,
     path: str | Path | None = None,
     settings: Mapping[str, Any] | None = None,
-    *,
     spp: int | None = None,
-    until: float | None = None,
     size: int = SIZE,
-    seed: int = 0,
     scene: str | Path = SCENE,
-    envmap: str | Path | None = None,
-    progress: Callable[[int, int], object] | None = None,
+    environment: str | Path | None = None,
+    noise_floor: float | None = None,
+    seed: int = 0,
+    progress: Progress | None = None,
 ) -> Path:
     """Write one HTML file that shows how well models describe a measured material.
 
-    It holds a verdict in words, the errors, path-traced pictures to compare, the lobes, slices and
-    albedo, the parameters and the audit. Any browser shows it, without a network. Equal input gives
-    an equal file. Ctrl-C during the pictures keeps the samples that all of them have.
+    It contains a verdict in words, the errors, path-traced pictures to compare, the lobes, slices
+    and albedo, the parameters and the audit. Any browser shows it, without a network. Equal input
+    gives an equal file. After Ctrl-C during the pictures, the file shows the samples that all of
+    them have.
 
     Parameters
     ----------
     material : Measured, str or Path
-        The measured material, or the name or path of one.
-    things : str, Path, class or Fit, or several, default ("ward", "ggx", "ggx+ggx")
+        The measured material, or its name or path.
+    models : str, Path, class or Fit, or several, default ("ward", "ggx", "ggx+ggx")
         The models to fit, as for `fit`, or finished fits, or the paths of saved ones, ``.json``.
     path : str or Path, optional
         The file to write, ``.html``; by default "NAME-report.html", with the material's name.
     settings : dict of str to object, optional
-        The other arguments of `fit` by name, as ``{"loss": "cbrt"}``.
+        Other arguments of `fit` by name, as ``{"loss": "cbrt"}``.
     spp : int, optional
-        Samples per pixel of the pictures, by default 256; with `until`, the most of them.
-    until : float, optional
-        The noise floor [dB] to which samples are added, as in `render`.
+        Samples per pixel of the pictures, by default 256; with `noise_floor`, the largest number.
     size : int, default 288
         Side of a picture [pixels], from 16 to 1024.
-    seed : int, default 0
-        Seed of the pictures' samples.
     scene : str or Path, default "ball"
         A scene's name or a mesh, as in `render`; no scene file.
-    envmap : str or Path, optional
+    environment : str or Path, optional
         An environment map that lights the scene, as in `render`.
+    noise_floor : float, optional
+        The noise floor [dB] to reach by adding samples, as in `render`.
+    seed : int, default 0
+        Seed of the pictures' samples.
     progress : callable, optional
         Called with (steps done, steps in all) of each fit and of the pictures, one after the other.
 
@@ -80,15 +86,18 @@ def report(
 
     Examples
     --------
-    >>> report("car_paint", ["ward", "ggx"], "car_paint.html")    # doctest: +SKIP
+    >>> report("car_paint", ["ward", "ggx"], path="car_paint.html")    # doctest: +SKIP
     """
+    require_material_first("report(material, models)", material)
     chosen = check_settings(to_dictionary("settings", settings))
-    require_pictures(size, scene, envmap)
+    require_pictures(size, scene, environment)
     data, file = to_measured(material), material if isinstance(material, str | Path) else None
     path = require_page(page_of(data) if path is None else path)
-    fits = [to_fit(thing, data, chosen, progress) for thing in as_list(things)]
-    pictures: dict[str, Any] = {"spp": spp, "until": until, "size": size, "seed": seed}
-    write_report(data, fits, path, file, **pictures, scene=scene, envmap=envmap, progress=progress)
+    fits = [to_fit(thing, data, chosen, progress) for thing in as_list(models)]
+    pictures: dict[str, Any] = {"spp": spp, "noise_floor": noise_floor, "size": size, "seed": seed}
+    write_report(
+        data, fits, path, file, **pictures, scene=scene, environment=environment, progress=progress
+    )
     return path
 
 
@@ -99,7 +108,7 @@ def write_report(
     file: str | Path | None = None,
     ranking: Ranking | None = None,
     scene: str | Path = SCENE,
-    envmap: str | Path | None = None,
+    environment: str | Path | None = None,
     **pictures: Any,
 ) -> Contents:
     """Write the report of a material and finished fits.
@@ -107,8 +116,8 @@ def write_report(
     `file`: from where the material came; `ranking`: that chose a model; `pictures`: what
     `render_pictures` takes besides. Returns what it says. Raises `BrdfkitError` as `report` does.
     """
-    rendering = render_pictures(material, fits, scene=scene, envmap=envmap, **pictures)
-    contents = describe(material, fits, rendering, file, path, scene, envmap, ranking)
+    rendering = render_pictures(material, fits, scene=scene, environment=environment, **pictures)
+    contents = describe(material, fits, rendering, file, path, scene, environment, ranking)
     page.write_page("report.html", path, fit_class=fit_class, **contents.said)
     return contents
 

@@ -58,9 +58,9 @@ def fit(
     rendered,
     spectral,
     scene,
-    envmap,
+    environment,
     spp,
-    until,
+    noise_floor,
     size,
     seed,
     console,
@@ -87,7 +87,7 @@ def fit(
     from brdfkit.rendering.scene_input.loading import SIZE, require_scene
 
     if not rendered:
-        _refuse_for_pictures("scene", "envmap", "spp", "until", "size")
+        _refuse_for_pictures("scene", "environment", "spp", "noise_floor", "size")
     _refuse_models(files)
     names = list(dict.fromkeys(map(labels.read_files, names or labels.models())))
     for name in names:
@@ -110,7 +110,7 @@ def fit(
     if ranking:
         print_ranking(ranking, console)
     if rendered:
-        require_scene(scene, envmap)
+        require_scene(scene, environment)
         require_memory((size, size) if size else SIZE, 1 + len(names))
         output = output or Path(to_file_stem(material.name))
 
@@ -122,9 +122,9 @@ def fit(
         written = [file for file in files if file.is_file()]
         if rendered and not interrupted:
             shown, exr = [material, *fits], output / "render.exr"
-            where = {"size": size, "seed": seed, "scene": scene, "envmap": envmap}
-            picture = path_trace(shown, exr, console, spp, until, **where)
-            errors, interrupted = picture.errors(), picture.spp < picture.asked
+            where = {"size": size, "seed": seed, "scene": scene, "environment": environment}
+            picture = path_trace(shown, exr, console, spp, noise_floor, **where)
+            errors, interrupted = picture.errors(), picture.spp < picture.requested
             written += [exr, output / "render.png"]
     with console.progress("compare"):
         comparison = compare(material, fits, max_angle=how["max_angle"], spectral=spectral)

@@ -64,9 +64,9 @@ def render(
     tone,
     values,
     scene,
-    envmap,
+    environment,
     spp,
-    until,
+    noise_floor,
     size,
     seed,
     of_volume,
@@ -88,7 +88,6 @@ def render(
     from brdfkit.distance_fields.export.json_files import is_field_file
     from brdfkit.lighting.environments.map_files import looks_like_map
     from brdfkit.mitsuba_bridge.registration.users_plugins import load_plugins
-    from brdfkit.rendering import render_scene
     from brdfkit.rendering.scene_input.mesh_file import SUFFIXES
     from brdfkit.volumes.loading import looks_like_volume
 
@@ -111,7 +110,7 @@ def render(
         raise BrdfkitError("--shadows is for --preview: path-traced pictures have them anyway.")
     fields = [t for t in things if is_field_file(t)]
     if fields:
-        if len(things) > 1 or values or scene != "ball" or envmap is not None or quickly:
+        if len(things) > 1 or values or scene != "ball" or environment is not None or quickly:
             raise BrdfkitError(
                 f"{fields[0]} is a distance field: it is rendered alone, without --set, --scene, "
                 "--envmap and --preview."
@@ -119,18 +118,18 @@ def render(
         output = picture_file(output or Path(fields[0]).with_suffix(".png").name)
         where = {"size": size, "seed": seed}
         field = load_field(fields[0])
-        picture = path_trace(field, output, console, spp, until, tone, usual=None, **where)
+        picture = path_trace(field, output, console, spp, noise_floor, tone, usual=None, **where)
     elif scenes:
         if len(things) > 1 or values:
             raise BrdfkitError("A scene is rendered alone and without --set: name one SCENE.xml.")
-        if scene != "ball" or envmap is not None or size or quickly:
+        if scene != "ball" or environment is not None or size or quickly:
             raise BrdfkitError(
                 f"{scenes[0]} is a scene: leave --scene, --envmap, --size and --preview out."
             )
         output = picture_file(output or Path(scenes[0]).with_suffix(".png").name)
-        with console.progress("render") as progress:
-            picture = render_scene(scenes[0], spp, seed, progress, until)
-        _write(picture, output, tone)
+        where = {"seed": seed}
+        scene = scenes[0]
+        picture = path_trace(scene, output, console, spp, noise_floor, tone, usual=None, **where)
     elif volume := the_volume(things, of_volume):
         if scene != "ball" or quickly:
             raise BrdfkitError(f"{volume} is a volume: leave --scene and --preview out.")
@@ -138,7 +137,8 @@ def render(
         name = to_file_stem(Path(volume).name.partition(".")[0])
         output = output or Path(f"{name}.gif" if turns else f"{name}.png")
         output = film_file(output) if turns else picture_file(output)
-        how = {"spp": spp, "until": until, "size": size, "seed": seed, "envmap": envmap}
+        how = {"spp": spp, "noise_floor": noise_floor, "size": size, "seed": seed}
+        how["environment"] = environment
         picture = render_volume(volume, of_volume, values, console, **how)
         if turns:
             _end_with_film(picture, output, tone, console)
@@ -149,13 +149,13 @@ def render(
         if values:
             _warn_of_gains(found)
         output = picture_file(output or f"{to_file_stem(found[0].name)}.png")
-        where = {"size": size, "seed": seed, "scene": scene, "envmap": envmap}
+        where = {"size": size, "seed": seed, "scene": scene, "environment": environment}
         if quickly:
-            picture = _preview(found, output, spp, until, shadows, tone, **where)
+            picture = _preview(found, output, spp, noise_floor, shadows, tone, **where)
         else:
-            picture = path_trace(found, output, console, spp, until, tone, **where)
+            picture = path_trace(found, output, console, spp, noise_floor, tone, **where)
     _print_picture(picture, output, console)
-    if picture.spp < picture.asked:
+    if picture.spp < picture.requested:
         click.get_current_context().exit(exit_status())
 
 
@@ -169,29 +169,33 @@ def _warn_of_gains(models):
             say(f"{model.name} reflects {format_share(most)} of the light, more than arrives.")
 
 
-def path_trace(things, output, console, spp, until, tone="range", usual=SPP, **where):
+def path_trace(things, output, console, spp, noise_floor, tone="range", usual=SPP, **where):
     """Render `things` side by side and write the picture; returns a `Rendering`.
 
     `tone`: a `ToneMapping` or the name of one; `usual`: samples per pixel where neither `spp` nor
-    `until` is given; `where`: what `brdfkit.render` takes besides.
+    `noise_floor` is given; `where`: other arguments of `brdfkit.render`.
     """
     from brdfkit.rendering.render_materials import render as render_things
 
     with console.progress("render") as progress:
-        spp = spp or (usual if until is None else None)
-        picture = render_things(things, spp, until=until, progress=progress, **where)
+        spp = spp or (usual if noise_floor is None else None)
+        picture = render_things(
+            things, spp=spp, noise_floor=noise_floor, progress=progress, **where
+        )
     _write(picture, output, tone)
     return picture
 
 
-def _preview(things, output, spp, until, shadows, tone, scene, envmap, size, seed):
+def _preview(things, output, spp, noise_floor, shadows, tone, scene, environment, size, seed):
     """Preview `things` and write the picture; returns a `Rendering`."""
     from brdfkit.rendering.previewing.preview import SIZE, SPP, STUDIO, preview
 
-    if until is not None or seed:
-        raise BrdfkitError("A preview has no noise: leave --until and --seed out.")
+    if noise_floor is not None or seed:
+        raise BrdfkitError("A preview has no noise: leave --noise-floor and --seed out.")
     size, spp = size or SIZE, spp or SPP
-    picture = preview(things, envmap or STUDIO, size, scene, spp=spp, shadows=shadows)
+    picture = preview(
+        things, environment=environment or STUDIO, size=size, scene=scene, spp=spp, shadows=shadows
+    )
     _write(picture, output, tone)
     return picture
 
@@ -199,24 +203,24 @@ def _preview(things, output, spp, until, shadows, tone, scene, envmap, size, see
 def _end_with_film(film, output, tone, console):
     """Write a `Film` and print what it is; ends the command where it was interrupted."""
     replace(film, tone_mapping=tone).write(output)
-    shown, asked = len(film.frames), film.asked
-    if shown < asked:
-        say(f"interrupted; the film has {shown} of {asked} frames.")
+    shown, requested = len(film.frames), film.requested
+    if shown < requested:
+        say(f"interrupted; the film has {shown} of {requested} frames.")
     if console.as_json:
-        counts = {"frames": shown, "asked": asked, "spp": film.spp, "seconds": film.seconds}
+        counts = {"frames": shown, "requested": requested, "spp": film.spp, "seconds": film.seconds}
         console.json(counts | {"written": [output]})
     else:
         console.out.print(str(film))
         console.list_written([output])
-    if shown < asked:
+    if shown < requested:
         click.get_current_context().exit(exit_status())
 
 
 def _write(picture, output, tone):
     """Write a `Rendering`, and say so where it was interrupted or is not as good as asked for."""
     picture.tone_mapped(tone).write(output)
-    if picture.spp < picture.asked:
-        say(f"interrupted; rendered with {picture.spp} of {picture.asked} samples per pixel.")
+    if picture.spp < picture.requested:
+        say(f"interrupted; rendered with {picture.spp} of {picture.requested} samples per pixel.")
     elif picture.shortfall:
         say(picture.shortfall)
 
@@ -242,5 +246,5 @@ def _print_picture(picture, path, console):
         console.out.print(picture.head)
         console.print_image_errors(picture.errors())
     else:
-        console.out.print(str(replace(picture, until=None)))  # `_write` told of the noise floor
+        console.out.print(str(replace(picture, requested_noise_floor=None)))  # `_write` said it
     console.list_written(written)

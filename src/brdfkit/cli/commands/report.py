@@ -24,7 +24,7 @@ from brdfkit.reporting.pictures.defaults import LARGEST, MODELS, SIZE, SMALLEST,
 @partial(scene_options, files=f"or {MESHES}")
 @partial(render_options, spp=SPP, size=f"{SIZE}; from {SMALLEST} to {LARGEST}")
 @writing_options
-def report(files, names, how, output, scene, envmap, spp, until, size, seed, console):
+def report(files, names, how, output, scene, environment, spp, noise_floor, size, seed, console):
     """Show how well models fit, in one HTML file.
 
     Any browser shows it, without a network: a verdict, pictures to wipe and to flicker, errors,
@@ -45,9 +45,9 @@ def report(files, names, how, output, scene, envmap, spp, until, size, seed, con
     names = list(dict.fromkeys(names or MODELS))
     how |= {"seed": seed}
     size = SIZE if size is None else size
-    require_pictures(size, scene, envmap)
-    pictures = {"spp": spp, "size": size, "seed": seed, "until": until}
-    pictures |= {"scene": scene, "envmap": envmap}
+    require_pictures(size, scene, environment)
+    pictures = {"spp": spp, "size": size, "seed": seed, "noise_floor": noise_floor}
+    pictures |= {"scene": scene, "environment": environment}
     if len(files) > 1:
         _report_many(files, names, how, output or Path("reports"), pictures, console)
     else:
@@ -77,8 +77,8 @@ def _report_one(file, names, how, output, pictures, console):
         console.list_written([path])
     for error in failed:
         say(error)
-    if said.spp < said.asked:
-        say(f"interrupted; rendered with {said.spp} of {said.asked} samples per pixel.")
+    if said.spp < said.requested:
+        say(f"interrupted; rendered with {said.spp} of {said.requested} samples per pixel.")
         click.get_current_context().exit(exit_status())
     if failed:
         click.get_current_context().exit(2)

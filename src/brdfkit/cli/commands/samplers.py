@@ -8,7 +8,7 @@ from brdfkit.core.interrupts import exit_status
 
 
 @click.command()
-@click.argument("envmap", metavar="NAME|MAP")
+@click.argument("environment", metavar="NAME|MAP")
 @click.option(
     "--material",
     default="plaster",
@@ -33,7 +33,7 @@ from brdfkit.core.interrupts import exit_status
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, metavar="N")
 @output_options
-def samplers(envmap, material, scene, rounds, seed, console):
+def samplers(environment, material, scene, rounds, seed, console):
     """Find the sampler that suits an environment map.
 
     Each sampler path-traces the same pictures; what counts is noise × time: what an equally good
@@ -45,7 +45,9 @@ def samplers(envmap, material, scene, rounds, seed, console):
     from brdfkit.rendering.map_sampling import COLUMNS, compare_samplers
 
     with console.progress("compare samplers") as progress:
-        found = compare_samplers(envmap, material, scene, rounds, seed=seed, progress=progress)
+        found = compare_samplers(
+            environment, material, scene=scene, rounds=rounds, seed=seed, progress=progress
+        )
     if console.as_json:
         console.json(
             {

@@ -102,5 +102,5 @@ def shadows(scene, projections, filters, partitions, others, resolution, size, o
     else:
         console.list_written(written)
     if found.interrupted:
-        say(f"interrupted; {found.finished} of {found.asked} scores are finished.")
+        say(f"interrupted; {found.finished} of {found.requested} scores are finished.")
         click.get_current_context().exit(exit_status())

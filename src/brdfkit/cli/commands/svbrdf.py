@@ -41,7 +41,9 @@ from brdfkit.core.interrupts import Interrupted, exit_status
     metavar="X",
     help="How much neighbours may differ: less is smoother. Default: by lights held out.",
 )
-@click.option("--linearise", is_flag=True, help="Accept pictures of 8 bits, by sRGB's curve.")
+@click.option(
+    "--accept-8-bit", is_flag=True, help="Accept pictures of 8 bits, and invert the sRGB curve."
+)
 @click.option(
     "-o",
     "--output",
@@ -49,7 +51,9 @@ from brdfkit.core.interrupts import Interrupted, exit_status
     help="The folder of the maps, a scene and a report. Default: FOLDER/maps.",
 )
 @writing_options
-def svbrdf(folder, model, resolution, anisotropic, fixed, smoothness, linearise, output, console):
+def svbrdf(
+    folder, model, resolution, anisotropic, fixed, smoothness, accept_8_bit, output, console
+):
     """Fit maps to the photographs in FOLDER.
 
     FOLDER holds linear photographs of a flat sample, OpenEXR, each under one point light or flash,
@@ -73,7 +77,7 @@ def svbrdf(folder, model, resolution, anisotropic, fixed, smoothness, linearise,
                 anisotropic=anisotropic,
                 fixed=values,
                 smoothness=smoothness,
-                linearise=linearise,
+                accept_8_bit=accept_8_bit,
                 progress=progress,
             )
         except Interrupted as stop:

@@ -36,7 +36,7 @@ class Ranking(Shown):
         Name of the loss.
     rows : tuple of Ranked
         The models, the least held-out error first; those that cannot be fitted last.
-    asked : int
+    requested : int
         How many models were asked for; more than there are rows after Ctrl-C.
     seconds : float
         Wall-clock time.
@@ -45,7 +45,7 @@ class Ranking(Shown):
     material: str
     loss: str
     rows: tuple[Ranked, ...]
-    asked: int
+    requested: int
     seconds: float = field(default=math.nan, compare=False)
 
     @property
@@ -67,9 +67,9 @@ class Ranking(Shown):
         though = f", though {choice.row.doubt}" if choice.row.doubt else ""
         recommended = f"{choice.row.model} is recommended{though}: {choice.why}."
         said = " ".join(filter(None, [recommended, choice.others(self.rows)]))
-        if len(self.rows) == self.asked:
+        if len(self.rows) == self.requested:
             return said
-        ranked = f"{len(self.rows)} of {self.asked} models are ranked"
+        ranked = f"{len(self.rows)} of {self.requested} models are ranked"
         return f"Interrupted: {ranked}. Of these, {said}"
 
     @property

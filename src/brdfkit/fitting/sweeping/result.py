@@ -72,7 +72,7 @@ class Sweep(Shown):
     ----------
     rows : tuple of Row
         One for every fit that is finished or failed: by file, then by model.
-    asked : int
+    requested : int
         How many fits were asked for; more than there are rows after Ctrl-C.
     found : int
         How many of the fits had been saved by an earlier sweep.
@@ -81,7 +81,7 @@ class Sweep(Shown):
     """
 
     rows: tuple[Row, ...]
-    asked: int
+    requested: int
     found: int = 0
     seconds: float = field(default=math.nan, compare=False)
 
@@ -119,7 +119,7 @@ class Sweep(Shown):
         before = f", {self.found} of them saved before" if self.found else ""
         failed = f"; {len(self.failed)} failed" if self.failed else ""
         wrong = f"; the light of {len(self.warned)} is wrong (!)" if self.warned else ""
-        done = f"{len(self.fits)} of {self.asked} fits{before}"
+        done = f"{len(self.fits)} of {self.requested} fits{before}"
         return f"{done}{failed}{wrong}; {self.seconds:.1f} s"
 
     def to_csv(self, path: str | Path) -> None:

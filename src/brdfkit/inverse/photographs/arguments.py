@@ -29,13 +29,13 @@ def require_variant():
         raise BrdfkitError("svbrdf: it needs LLVM, for derivatives; see the README.")
 
 
-def to_capture(given, linearise):
+def to_capture(given, accept_8_bit):
     """(name, `Capture`) of a folder or of what such a folder holds."""
     if isinstance(given, Capture):
         return "sample", given
     if not isinstance(given, str | PathLike):
         raise BrdfkitError(f"capture: a {type(given).__name__} is neither a folder nor a Capture.")
-    return Path(given).resolve().name, load_capture(given, linearise)
+    return Path(given).resolve().name, load_capture(given, accept_8_bit)
 
 
 def to_numbers(label, anisotropic, fixed):

@@ -1,5 +1,7 @@
 """`svbrdf`: maps of a flat sample, from photographs under known lights."""
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -47,7 +49,7 @@ def svbrdf(
     anisotropic: bool = False,
     fixed: Mapping[str, float] | None = None,
     smoothness: float | None = None,
-    linearise: bool = False,
+    accept_8_bit: bool = False,
     progress: Callable[[int, int], object] | None = None,
 ) -> Svbrdf:
     """Fit maps of a model's parameters and of the normal to photographs of a flat sample.
@@ -80,8 +82,8 @@ def svbrdf(
     smoothness : float, optional
         By how much neighbouring texels may differ, from 0.003 on: less is smoother. By default
         chosen by lights that are held out; with fewer than 8 lights 0.1.
-    linearise : bool, default False
-        Whether photographs of 8 bits are accepted, as seen by sRGB's curve.
+    accept_8_bit : bool, default False
+        Whether to accept photographs of 8 bits, and to invert the sRGB curve that they contain.
     progress : callable, optional
         Called with (done, total); see `brdfkit.progress`.
 
@@ -102,7 +104,7 @@ def svbrdf(
     """
     began = time.perf_counter()
     require_variant()
-    name, taken = to_capture(capture, linearise)
+    name, taken = to_capture(capture, accept_8_bit)
     numbers = to_numbers(model, anisotropic, fixed)
     smoothness = to_smoothness(smoothness)
     shape = to_shape(taken, resolution)

@@ -5,7 +5,7 @@ from __future__ import annotations  # so that `help` says Pictures, not what tha
 import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
+from brdfkit.core.progress_bar import Progress
 from brdfkit.inverse.scenes.problem.parameters import PARAMETER_LIMIT, choose_unknowns
 from brdfkit.inverse.scenes.problem.scene import load_scene, make_integrator
 from brdfkit.inverse.scenes.problem.targets import Pictures, Target, read_targets
@@ -35,20 +36,23 @@ STEP_LIMIT = 30  # by default; nearly all searches converge before
 NO_ERRORS = "descent, the search for many numbers, gives no standard errors"
 
 
+Bounds: TypeAlias = Mapping[str, tuple[float, float] | None]
+
+
 @in_turn
 def refine(
     scene: Any,
     pictures: Pictures,
-    parameters: Iterable[str] | Mapping[str, tuple[float, float] | None] | None = None,
     *,
+    parameters: Iterable[str] | Bounds | None = None,
     starts: int | None = None,
     steps: int | None = None,
-    smoothing: float | None = None,
-    samples: int = 1024,
+    smoothness: float | None = None,
+    spp: int = 1024,
     mask: Pictures | None = None,
-    linearise: bool = False,
+    accept_8_bit: bool = False,
     seed: int = 0,
-    progress: Callable[[int, int], object] | None = None,
+    progress: Progress | None = None,
 ) -> Refinement:
     """Find the parameters of a scene whose rendered pictures match given ones.
 
@@ -82,12 +86,12 @@ def refine(
         The largest number of steps after the choice of the starting point, at least 1. The default
         is 30; numbers that trade off, such as those of two lobes, need most of them. With textures,
         the limit holds for the short steps of L-BFGS-B in each of three stages.
-    smoothing : float, optional
+    smoothness : float, optional
         For textures and volumes: the weight, at least 0, of the mean squared difference of
         neighbouring texels in the loss; more is smoother. The unit of texels is their range, or
         their mean at the start where there is no upper bound. By default pixels that are held out
         choose the best of five weights.
-    samples : int, default 1024
+    spp : int, default 1024
         The largest number of samples per pixel, at least 4. The last steps take most of the time,
         in proportion to it; 128 or 256 are a good beginning. The search uses half of the samples
         and checks its end with all of them; if the check disagrees, the search goes on with all,
@@ -96,7 +100,7 @@ def refine(
         The pixels of each picture that count: booleans or weights ≥ 0 (height, width), or a picture
         file that is white there; None for a picture that counts everywhere. Masked pixels may hold
         anything. An alpha channel is ignored unless it is passed as ``mask=picture[..., 3]``.
-    linearise : bool, default False
+    accept_8_bit : bool, default False
         Whether to accept pictures of 8 bits, by inverting sRGB's curve.
     seed : int, default 0
         The seed of the samples and starting points. Equal seeds give equal results; for textures
@@ -114,12 +118,13 @@ def refine(
     BrdfkitError
         For a scene that does not load, an integrator without derivatives, pictures that do not fit
         the cameras, have 8 bits or are not finite, masks that do not fit the pictures, unknown
-        parameters, a negative smoothing, textures of integers, and parameters without any effect on
-        the pictures.
+        parameters, a negative smoothness, textures of integers, and parameters without any effect
+        on the pictures.
 
     Examples
     --------
-    >>> result = refine("cornell.xml", "photograph.exr", ["ball.bsdf.alpha_u"])    # doctest: +SKIP
+    >>> alpha = ["ball.bsdf.alpha_u"]
+    >>> result = refine("cornell.xml", "photograph.exr", parameters=alpha)    # doctest: +SKIP
     """
     began = time.perf_counter()
     variant = use_variant()
@@ -128,27 +133,27 @@ def refine(
             f"refine: the variant {variant} has no derivatives of pictures in linear colours; set "
             "llvm_ad_rgb or cuda_ad_rgb."
         )
-    samples = to_whole_number("refine: samples", samples, 4)
+    spp = to_whole_number("refine: spp", spp, 4)
     steps = STEP_LIMIT if steps is None else to_whole_number("refine: steps", steps, 1)
     if starts is not None:
         to_whole_number("refine: starts", starts, 1)
-    if smoothing is not None:
-        to_number("refine: smoothing", smoothing, least=0)
-    views = _make_views(scene, read_targets(pictures, linearise, mask), parameters)
+    if smoothness is not None:
+        to_number("refine: smoothness", smoothness, least=0)
+    views = _make_views(scene, read_targets(pictures, accept_8_bit, mask), parameters)
     by_descent = len(views.start) > PARAMETER_LIMIT or any(u.shape for u in views.unknowns)
     seed_of_search = seed + 100
     try:
         if by_descent:
-            report = _count_progress(progress, count_steps(smoothing, steps))
-            state, weight = descend(views, smoothing, steps, samples, seed_of_search, report)
-            how = "by held-out pixels" if smoothing is None else "as given"
-            notes: tuple[str, ...] = f"smoothing {weight:g}, {how}", NO_ERRORS
+            report = _count_progress(progress, count_steps(smoothness, steps))
+            state, weight = descend(views, smoothness, steps, spp, seed_of_search, report)
+            how = "by held-out pixels" if smoothness is None else "as given"
+            notes: tuple[str, ...] = f"smoothness {weight:g}, {how}", NO_ERRORS
             return conclude_search(views, state, time.perf_counter() - began, notes=notes)
         count = default_start_count(views) if starts is None else starts
         report = _count_progress(progress, (count + FINALISTS if count > 1 else 0) + steps)
         with silence_samplers():
             x = find_start(views, count, seed, report)
-            state, second_look = _search(views, x, steps, samples, seed_of_search, report)
+            state, second_look = _search(views, x, steps, spp, seed_of_search, report)
         return conclude_checked_search(views, state, second_look, time.perf_counter() - began)
     except Interrupted as stop:
         notes = (NO_ERRORS,) if by_descent else ()
@@ -158,29 +163,29 @@ def refine(
 
 
 def _search(
-    views: Views, x: FloatArray, steps: int, samples: int, seed: int, report: Callable[[], object]
+    views: Views, x: FloatArray, steps: int, spp: int, seed: int, report: Callable[[], object]
 ) -> tuple[Search, SecondLook | None]:
     """Search from `x` with half of the samples, and check the end with all of them.
 
     If the check disagrees, go on with all samples, and check the end with twice as many.
     """
-    state = _search_visible(views, x, steps - steps // 2, samples // 2, seed, report)
+    state = _search_visible(views, x, steps - steps // 2, spp // 2, seed, report)
     state, second_look = take_second_look(views, state, seed)
     agreed = state.converged and not (second_look and second_look.notes())
     if agreed or state.steps == steps:
         return state, second_look
     left = steps - state.steps
-    longer = _search_visible(views, state.residuals.x, left, samples, seed + 200, report)
+    longer = _search_visible(views, state.residuals.x, left, spp, seed + 200, report)
     longer.steps += state.steps
     longer.history[:0] = state.history
     return take_second_look(views, longer, seed + 200)
 
 
 def _search_visible(
-    views: Views, x: FloatArray, steps: int, samples: int, seed: int, report: Callable[[], object]
+    views: Views, x: FloatArray, steps: int, spp: int, seed: int, report: Callable[[], object]
 ) -> Search:
     """Search from `x`; numbers that have no effect on the pictures keep the scene's own values."""
-    state = run_gauss_newton(views, x, steps, samples, seed, report)
+    state = run_gauss_newton(views, x, steps, spp, seed, report)
     assert state.equations is not None
     unseen = state.equations.find_unseen(views, state.residuals.x)
     if unseen.all():

@@ -30,11 +30,11 @@ def mix_channels(
     if data.standard_error is not None:
         changed["standard_error"] = np.sqrt(data.standard_error**2 @ weights**2)
     if data._table is not None:
-        changed["_table"] = data._table.mixed(weights)
+        changed["_table"] = data._table.mix_channels(weights)
     if data._samples is not None:
         changed["_samples"] = replace(data._samples, values=data.values @ weights)
     if data._lookup is not None:
-        mixed = getattr(data._lookup, "mixed", functools.partial(MixedLookup, data._lookup))
+        mixed = getattr(data._lookup, "mix_channels", functools.partial(MixedLookup, data._lookup))
         changed["_lookup"] = mixed(weights)
     return replace(data, **changed)
 
@@ -51,7 +51,7 @@ class MixedLookup:
 
 
 def subtract(data: Data, brdf: Any, max_angle: float) -> Data:
-    """Return a `Measured` with values less those of `brdf`, as `Measured.minus` describes it.
+    """Return a `Measured` with values less those of `brdf`, as `Measured.subtract` describes it.
 
     `brdf` is a material with `name` and `eval`. Samples with an angle at or beyond `max_angle`
     [degrees] are unknown in the result, and it has no lookup between the samples.

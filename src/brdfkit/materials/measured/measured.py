@@ -132,20 +132,22 @@ class Measured(Shown, FromAngles):
     def _in_rgb(self) -> Measured:
         return to_rgb(self)
 
-    def mixed(self, weights: NDArray[np.float64], channels: Sequence[str], **info: str) -> Measured:
+    def mix_channels(
+        self, weights: NDArray[np.float64], channels: Sequence[str], **info: str
+    ) -> Measured:
         """Return the material in other `channels`, mixed from its own by `weights` (old, new).
 
         `info` are notes to add.
         """
         return mix_channels(self, weights, channels, {**self.info, **info})
 
-    def minus(self, brdf: Any, max_angle: float = 90.0) -> Measured:
+    def subtract(self, material: Any, max_angle: float = 90.0) -> Measured:
         """Subtract another BRDF from the measured values: signed residuals, as a measurement.
 
         Parameters
         ----------
-        brdf : Measured, Fit or Model
-            The BRDF to subtract, with the same channels or with one.
+        material : Measured, Fit or Model
+            The material to subtract, with the same channels or with one.
         max_angle : float, default 90
             Samples with an angle to the normal at or beyond this one [degrees, above 0 to 90] are
             left out.
@@ -163,10 +165,10 @@ class Measured(Shown, FromAngles):
 
         Examples
         --------
-        >>> load("car_paint").minus(models()["ward"]()).values.min() < 0    # doctest: +SKIP
+        >>> load("car_paint").subtract(models()["ward"]()).values.min() < 0    # doctest: +SKIP
         True
         """
-        return subtract(self, brdf, max_angle)
+        return subtract(self, material, max_angle)
 
     def mend(self, mirror_azimuth: bool = False, divide_by_cos: bool = False) -> Measured:
         """Convert samples from another convention of a file or an instrument to brdfkit's.

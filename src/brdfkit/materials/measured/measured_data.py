@@ -87,7 +87,7 @@ class MeasuredData:
         lookup : callable, optional
             A function that returns the values (m, channels) between the samples for (wi, wo), both
             (m, 3); by default they are interpolated. A lookup with `scene_dict()` and
-            `mixed(weights)` is rendered itself, any other as a table of its values.
+            `mix_channels(weights)` is rendered itself, any other as a table of its values.
 
         Returns
         -------

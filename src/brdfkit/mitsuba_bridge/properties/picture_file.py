@@ -47,16 +47,16 @@ def load_by_mitsuba(function, source, name):
 LINEAR = ".exr", ".hdr", ".pfm", ".rgbe"  # files without a curve for screens
 
 
-def read_photograph(path, linearise):
+def read_photograph(path, accept_8_bit):
     """The linear pixels (height, width, 3) of a photograph.
 
     Raises `BrdfkitError` where there is none, for a file that Mitsuba cannot read, and for one of 8
-    bits, unless it is to `linearise` by sRGB's curve.
+    bits, unless `accept_8_bit`: then sRGB's curve is inverted.
     """
-    if Path(path).suffix.lower() not in LINEAR and not linearise:
+    if Path(path).suffix.lower() not in LINEAR and not accept_8_bit:
         raise BrdfkitError(
             f"{path}: such files hold 8 bits, or 16, behind a curve for screens; give an OpenEXR "
-            "file, or say linearise=True (--linearise), for sRGB's curve."
+            "file, or give accept_8_bit=True (--accept-8-bit) to invert sRGB's curve."
         )
     return read_pixels(require_file(path), str(path))
 

@@ -115,7 +115,7 @@ class Table:
         cells = [(i[own] - a) % n for i, a, n in zip(nearest, added, self.shape, strict=True)]
         return self.values[tuple(cells)]
 
-    def mixed(self, weights):
+    def mix_channels(self, weights):
         """A table in new channels: the old ones times the matrix `weights` (old, new)."""
         return replace(self, values=self.values @ weights)
 

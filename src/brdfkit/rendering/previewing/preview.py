@@ -5,6 +5,8 @@ kept between calls: the filtered light, materials, the shape and what casts its 
 first picture takes seconds, and the next ones about a tenth of a second.
 """
 
+from __future__ import annotations
+
 import time
 from collections.abc import Iterable
 from functools import lru_cache
@@ -44,43 +46,44 @@ SHADOWS = {False: "no shadows", True: "approximate shadows"}
 
 
 def preview(
-    things: Renderable | Iterable[Renderable],
-    envmap: str | Path = STUDIO,
+    materials: Renderable | Iterable[Renderable],
+    *,
+    spp: int = SPP,
     size: int | tuple[int, int] = SIZE,
     scene: str | Path = "ball",
+    environment: str | Path = STUDIO,
     method: str = "filtered_sampling",
-    spp: int = SPP,
     shadows: bool = False,
 ) -> Rendering:
     """Show one or several materials under an environment, without noise.
 
-    The light that a material reflects straight from the environment; light between surfaces is
-    missing. Equal calls give equal pictures. The first call in a process takes seconds, as it
-    filters the light, compiles, and looks a measured material up at many directions; the next ones
-    take about a tenth of a second at 256 pixels, without shadows.
+    A preview contains the light that a material reflects directly from the environment, but no
+    light between surfaces. Equal calls give equal pictures. The first call in a process takes
+    seconds, because it filters the light, compiles, and evaluates a measured material at many
+    directions; later ones take about a tenth of a second at 256 pixels, without shadows.
 
     Parameters
     ----------
-    things : Measured, Fit, Model, str, Path, dict or (str, one of these), or several
+    materials : Measured, Fit, Model, str, Path, dict or (str, one of these), or several
         The materials, as `render` takes them; the first is the reference.
-    envmap : str or Path, default "studio"
-        An environment map by latitude and longitude: the name of one that brdfkit knows, or a file.
-        It is scaled to the illuminance that the scenes of `render` have.
+    spp : int, default 4
+        Rays per pixel, a square number; more make edges smoother. A spectral variant needs 9, or a
+        larger odd square: with fewer, all rays have the same four wavelengths.
     size : int or (int, int), default 256
         Side, or width and height, of a picture [pixels].
     scene : str or Path, default "ball"
-        What is seen: a scene of `render` without its own light, or a mesh (.obj, .ply;
-        "FILE.obj#z" where its axis z points up).
+        A scene of `render` without lamps of its own, or a mesh (.obj, .ply; "FILE.obj#z" if its
+        z axis points up).
+    environment : str or Path, default "studio"
+        An environment map by latitude and longitude: its name or its file. It is scaled to the
+        illuminance of the scenes of `render`.
     method : str, default "filtered_sampling"
-        How light and material meet, a method of the integrator `filtered_environment`: "gmm" is
-        more exact, and fits lobes to a material first, which takes seconds.
-    spp : int, default 4
-        Rays per pixel, a square number, which make edges smooth. A spectral variant needs 9, or a
-        larger odd one: with fewer, all rays have the same four wavelengths.
+        A method of the integrator `filtered_environment`. "gmm" is more exact, but first fits lobes
+        to a material, which takes seconds.
     shadows : bool, default False
-        Whether to show the ground as well, the shadows on it and on the shape itself, and the light
-        that the ground throws back. A picture takes 10 to 20 times as long, half to once the time
-        of 64 path-traced samples, which have noise and all light.
+        Whether to show the ground as well, with the shadows on it and on the shape, and the light
+        that it reflects. A picture takes 10 to 20 times as long: half to once the time of 64
+        path-traced samples, which are noisy but contain all light.
 
     Returns
     -------
@@ -96,16 +99,16 @@ def preview(
     Examples
     --------
     >>> preview(["car_paint", "ggx"]).write("paint.png")    # doctest: +SKIP
-    >>> preview("ward", envmap="probe.exr", scene="teapot.obj", size=512)    # doctest: +SKIP
+    >>> preview("ward", environment="probe.exr", scene="teapot.obj", size=512)    # doctest: +SKIP
     """
-    size, subjects = to_size(size), [keep(thing) for thing in as_list(things)]
+    size, subjects = to_size(size), [keep(thing) for thing in as_list(materials)]
     spp = to_whole_number("spp", spp, least=1)
     require_memory(size, len(subjects))
     mitsuba()  # sets a variant, on which the dictionaries depend
     _require_rays(spp)
     if not isinstance(scene, str | Path):
         raise BrdfkitError(f"scene = {scene!r:.60} should be a scene's name or a mesh's file.")
-    return _show(name_all(subjects), envmap, size, scene, method, spp, bool(shadows))
+    return _show(name_all(subjects), environment, size, scene, method, spp, bool(shadows))
 
 
 def _require_rays(spp):
@@ -125,13 +128,13 @@ def _require_rays(spp):
 
 
 @in_turn
-def _show(materials, envmap, size, scene, method, spp, shadows):
+def _show(materials, environment, size, scene, method, spp, shadows):
     """The `Rendering` of materials by name."""
     import mitsuba as mi
 
     start, variant = time.perf_counter(), mi.variant()
     shape = _shape(variant, scene, _changed(str(scene).partition("#")[0]))
-    light = _light(variant, envmap, _changed(find_map(envmap)), shadows)
+    light = _light(variant, environment, _changed(find_map(environment)), shadows)
     integrator = _integrator(variant, method, shadows)
     both_sides = suffix_of(scene) in mesh_file.SUFFIXES
     pictures, seen = {}, None
@@ -157,14 +160,14 @@ def _changed(path):
 
 
 @lru_cache(maxsize=4)
-def _light(variant, envmap, changed, ground):
+def _light(variant, environment, changed, ground):
     """The emitter of an environment map, whose file was `changed` at a time; its lower half is the
     `ground` in its light, or its own."""
     import mitsuba as mi
 
-    light = light_of(envmap)
+    light = light_of(environment)
     light = on_ground(light, GROUND) if ground else light
-    return load_by_mitsuba(mi.load_dict, light, envmap)
+    return load_by_mitsuba(mi.load_dict, light, environment)
 
 
 @lru_cache(maxsize=4)

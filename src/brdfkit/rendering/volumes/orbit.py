@@ -1,7 +1,9 @@
 """`render_orbit`: a film of a camera that goes once around a volume."""
 
+from __future__ import annotations
+
 import time
-from collections.abc import Callable
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,47 +12,78 @@ from numpy.typing import NDArray
 
 from brdfkit import volumes
 from brdfkit.core.arguments import to_number, to_positive, to_whole_number
+from brdfkit.core.progress_bar import Progress
 from brdfkit.rendering.film import Film
-from brdfkit.rendering.volumes.render_volume import render_volume
-from brdfkit.volumes import TransferFunction, Volume
+from brdfkit.rendering.volumes.render_volume import (
+    BACKGROUND,
+    Radiance,
+    TransferLike,
+    VolumeLike,
+    render_volume,
+)
+from brdfkit.volumes import Volume
 
 FRAMES, SIZE = 48, 320
 
 
 def render_orbit(
-    volume: Volume | str | Path,
-    transfer: TransferFunction | str | Path | None = None,
-    frames: int = FRAMES,
+    volume: VolumeLike,
+    transfer: TransferLike | None = None,
     *,
+    frames: int = FRAMES,
+    renderer: str = "single_scattering",
+    settings: Mapping[str, Any] | None = None,
+    spp: int | None = None,
     size: int | tuple[int, int] = SIZE,
+    environment: str | Path = "studio",
+    background: Radiance | None = BACKGROUND,
     azimuth: float = 30.0,
+    elevation: float = 20.0,
+    density: float = 1.0,
+    noise_floor: float | None = None,
     seconds: float | None = None,
-    progress: Callable[[int, int], object] | None = None,
-    **how: Any,
+    seed: int = 0,
+    progress: Progress | None = None,
 ) -> Film:
     """Render a film of a camera that goes once around a volume, to the camera's right.
 
-    All frames are seen from one distance, from which none is cut, and in the samples of one seed,
-    so that the noise does not flicker. Ctrl-C keeps the frames that are finished.
+    All frames have the same distance, from which none is cut off, and the same seed, so that the
+    noise does not flicker. Ctrl-C keeps the frames that are finished.
 
     Parameters
     ----------
     volume : Volume, str or Path
-        The volume; or the file, folder or name that `volumes.load` takes.
+        The volume; or the file, folder or name that `brdfkit.volumes.load` takes.
     transfer : TransferFunction, str or Path, optional
         As in `render_volume`.
     frames : int, default 48
-        Pictures of a whole turn, 2 or more.
+        Number of pictures of a whole turn, 2 or more.
+    renderer : str, default "single_scattering"
+        As in `render_volume`.
+    settings : dict of str to object, optional
+        As in `render_volume`.
+    spp : int, optional
+        As in `render_volume`.
     size : int or (int, int), default 320
         Side, or width and height, of a frame [pixels].
+    environment : str or Path, default "studio"
+        As in `render_volume`.
+    background : float or (float, float, float), optional
+        As in `render_volume`; by default 0.02.
     azimuth : float, default 30
-        Where the camera begins [degrees].
+        Azimuth at which the camera begins [degrees].
+    elevation : float, default 20
+        As in `render_volume`.
+    density : float, default 1
+        As in `render_volume`.
+    noise_floor : float, optional
+        As in `render_volume`, for each frame.
     seconds : float, optional
-        Adds samples for so long [s, above 0], all frames together.
+        Time for which samples are added [s, above 0], all frames together.
+    seed : int, default 0
+        Seed of the samples of every frame.
     progress : callable, optional
         Called with (done, total) after each pass.
-    **how : any
-        What `render_volume` takes besides, such as ``renderer="maximum_intensity"``, ``spp=16``.
 
     Returns
     -------
@@ -70,24 +103,28 @@ def render_orbit(
     azimuth = to_number("azimuth", azimuth)
     each = None if seconds is None else to_positive("seconds", seconds) / frames
     volume = volume if isinstance(volume, Volume) else volumes.load(volume)
-    start, spp = time.perf_counter(), 0
-    found: list[NDArray[np.float32]] = []
+    start, frame_spp = time.perf_counter(), 0
+    pictures: list[NDArray[np.float32]] = []
     told = _Told(progress, frames)
-    how |= {"size": size, "seconds": each, "progress": told, "all_around": True}
-    while len(found) < frames and not told.stopped:
-        turned = azimuth + 360 * len(found) / frames
+    look: dict[str, Any] = {"renderer": renderer, "settings": settings, "density": density}
+    look |= {"environment": environment, "background": background, "elevation": elevation}
+    look |= {"spp": spp, "size": size, "noise_floor": noise_floor, "seconds": each, "seed": seed}
+    while len(pictures) < frames and not told.stopped:
+        turned = azimuth + 360 * len(pictures) / frames
         try:
-            shown = render_volume(volume, transfer, azimuth=turned, **how)
+            shown = render_volume(
+                volume, transfer, azimuth=turned, all_around=True, progress=told, **look
+            )
         except KeyboardInterrupt:
-            if not found:
+            if not pictures:
                 raise
             break
-        unfinished = shown.spp < (shown.asked or 0)
+        unfinished = shown.spp < (shown.requested or 0)
         told.stopped |= unfinished
-        if not (unfinished and found):
-            found.append(shown.pictures[shown.reference])
-            spp, told.frame = shown.spp, len(found)
-    return Film(found, frames, spp, time.perf_counter() - start)
+        if not (unfinished and pictures):
+            pictures.append(shown.pictures[shown.reference])
+            frame_spp, told.frame = shown.spp, len(pictures)
+    return Film(pictures, frames, frame_spp, time.perf_counter() - start)
 
 
 class _Told:

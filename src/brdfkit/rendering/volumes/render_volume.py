@@ -1,19 +1,21 @@
 """`render_volume`: a picture of CT, MRI, microscopy or simulation data in light."""
 
-from collections.abc import Callable
+from __future__ import annotations
+
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from brdfkit import volumes
-from brdfkit.core.arguments import to_number, to_positive, to_whole_number
+from brdfkit.core.arguments import to_dictionary, to_number, to_positive, to_whole_number
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.memory import require_memory
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
-from brdfkit.rendering.render_materials import rendering_of, to_size
+from brdfkit.rendering.render_materials import PictureProgress, rendering_of, to_size
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scene_input.arguments import mitsuba
 from brdfkit.rendering.tracing import trace
@@ -23,77 +25,86 @@ from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.transfer.windows import fitted
 
 SPP, UNLIT_SPP = 64, 8  # samples per pixel
-MOST = 16_384  # of them, where a noise floor or a time is asked for
+MOST_SPP = 16_384  # samples per pixel, where a noise floor or a time is requested
 PASS = 4  # of them, so that the first picture is there soon
 BACKGROUND = 0.02
 
 
+VolumeLike: TypeAlias = Volume | str | Path
+TransferLike: TypeAlias = TransferFunction | str | Path
+Radiance: TypeAlias = float | tuple[float, float, float]
+
+
 def render_volume(
-    volume: Volume | str | Path,
-    transfer: TransferFunction | str | Path | None = None,
+    volume: VolumeLike,
+    transfer: TransferLike | None = None,
+    *,
     renderer: str = "single_scattering",
+    settings: Mapping[str, Any] | None = None,
     spp: int | None = None,
     size: int | tuple[int, int] = 512,
-    seed: int = 0,
-    progress: Callable[..., object] | None = None,
-    until: float | None = None,
-    seconds: float | None = None,
-    envmap: str | Path = "studio",
-    background: float | tuple[float, float, float] | None = BACKGROUND,
+    environment: str | Path = "studio",
+    background: Radiance | None = BACKGROUND,
     azimuth: float = 30.0,
     elevation: float = 20.0,
     density: float = 1.0,
     all_around: bool = False,
-    **settings: Any,
+    noise_floor: float | None = None,
+    seconds: float | None = None,
+    seed: int = 0,
+    progress: PictureProgress | None = None,
 ) -> Rendering:
     """Render a volume: CT, MRI, microscopy or simulation data in the light of an environment.
 
-    The camera sees the whole box, the head of patients up. It runs in the current variant of
-    Mitsuba; where none is set, in the best that works. Ctrl-C keeps the passes that are done.
+    The camera shows the whole box, with the head of patients up. It runs in the current variant of
+    Mitsuba; if none is set, in the best that works. Ctrl-C keeps the passes that are done.
 
     Parameters
     ----------
     volume : Volume, str or Path
-        The volume; or the file, folder or name that `volumes.load` takes.
+        The volume; or the file, folder or name that `brdfkit.volumes.load` takes.
     transfer : TransferFunction, str or Path, optional
-        What its values look like: colours and extinction; or the name of a preset, or a file. By
-        default a colour for each label; of scans in HU "ct_bone", or "ct_skin" without bone; of
-        others of patients "mri_head" over the volume's `window`; else a colour map over it.
+        The colour and extinction of its values: a transfer function, the name of a preset, or a
+        file. By default a colour for each label; for scans in HU "ct_bone", or "ct_skin" without
+        bone; for other scans of patients "mri_head" over the volume's `window`; otherwise a colour
+        map over it.
     renderer : str, default "single_scattering"
-        "single_scattering": light of the environment, scattered once; "emission_absorption": what
-        glows and dims; "maximum_intensity": the largest value along each ray; "isosurface": the
-        surface of one value, in light.
+        "single_scattering": light of the environment, scattered once; "emission_absorption": a
+        glowing and absorbing medium; "maximum_intensity": the largest value along each ray;
+        "isosurface": the lit surface on which the values have one level.
+    settings : dict of str to object, optional
+        Other parameters of the renderer, which `brdfkit plugins RENDERER` lists, as
+        ``{"max_depth": 8, "phase": "rayleigh"}`` or ``{"level": 110, "bsdf": "dusty_gold"}``.
     spp : int, optional
-        Samples per pixel, by default 64, and 8 of what has no light but its own, where they leave
-        no noise that is seen; with `until` or `seconds` the most of them, by default 16,384.
+        Samples per pixel, by default 64, or 8 for renderers without light from outside, which then
+        have no visible noise. With `noise_floor` or `seconds` the largest number, by default
+        16,384.
     size : int or (int, int), default 512
         Side, or width and height, of the picture [pixels].
+    environment : str or Path, default "studio"
+        The environment map that lights single_scattering and isosurface, as in `render`.
+    background : float or (float, float, float), optional
+        Radiance behind the volume, in place of that part of the environment; by default 0.02,
+        nearly black. None shows the environment.
+    azimuth : float, default 30
+        Azimuth of the camera [degrees]: 0 is the patient's front, or -y; 90 the left side, or +x.
+    elevation : float, default 20
+        Elevation of the camera [degrees, -90 to 90].
+    density : float, default 1
+        Factor of the transfer function's extinction, above 0.
+    all_around : bool, default False
+        Whether the camera is so far away that nothing is cut off at any azimuth, as in films.
+    noise_floor : float, optional
+        The noise floor to reach by adding samples [dB, above 0]: the PSNR of the picture to itself
+        with another seed. At 45 noise is hardly visible.
+    seconds : float, optional
+        Time for which samples are added [s, above 0]; there is at least one pass.
     seed : int, default 0
         Seed of the samples.
     progress : callable, optional
-        Called with (done, total) after each pass; see `brdfkit.progress`. One with a parameter
-        `pictures` also gets a function: ``pictures()[volume.name]`` is the picture so far.
-    until : float, optional
-        Adds samples until the noise floor, the PSNR of the picture to itself with another seed, is
-        so high [dB, above 0]; 45 leaves noise that is hardly seen.
-    seconds : float, optional
-        Adds samples for so long [s, above 0]; there is one pass at least.
-    envmap : str or Path, default "studio"
-        The environment map of single_scattering and isosurface, as in `render`.
-    background : float or (float, float, float), optional
-        Radiance of what is seen behind the volume, in place of that part of the environment; by
-        default 0.02, nearly black. None shows the environment.
-    azimuth : float, default 30
-        Where the camera stands [degrees]: 0 is the patient's front, or -y; 90 the left side, or +x.
-    elevation : float, default 20
-        How high the camera stands [degrees, -90 to 90].
-    density : float, default 1
-        By which the transfer function's extinction is multiplied, above 0.
-    all_around : bool, default False
-        Whether the camera stands so far away that nothing is cut off from any azimuth, as in films.
-    **settings : number, str, bool or dict
-        Further parameters of the integrator, which `brdfkit plugins RENDERER` lists, such as
-        ``max_depth=8``, ``phase="rayleigh"``, ``level=110``, ``bsdf="dusty_gold"``.
+        Called with (done, total) after each pass; see `brdfkit.progress`. A function with a
+        parameter `pictures` also gets a function: ``pictures()[volume.name]`` is the picture so
+        far.
 
     Returns
     -------
@@ -104,20 +115,25 @@ def render_volume(
     ------
     BrdfkitError
         For a volume, a transfer function or an environment that cannot be read, for an unknown
-        renderer or parameter, and for a picture larger than the memory that is available.
+        renderer or parameter, and for a picture larger than the available memory.
 
     Examples
     --------
     >>> render_volume("brain.nii.gz", seconds=10).write("brain.png")    # doctest: +SKIP
     >>> render_volume("smoke", renderer="emission_absorption", spp=4, size=64)    # doctest: +SKIP
     """
-    until = None if until is None else to_positive("until", until)
+    settings = to_dictionary("settings", settings)
+    noise_floor = None if noise_floor is None else to_positive("noise_floor", noise_floor)
     limit = None if seconds is None else to_positive("seconds", seconds)
-    most = (UNLIT_SPP if renderer in UNLIT else SPP) if until is None and limit is None else MOST
+    most = (
+        (UNLIT_SPP if renderer in UNLIT else SPP)
+        if noise_floor is None and limit is None
+        else MOST_SPP
+    )
     spp = to_whole_number("spp", most if spp is None else spp, least=1)
     seed, size = to_whole_number("seed", seed, least=0), to_size(size)
     view = to_number("azimuth", azimuth), to_number("elevation", elevation)
-    light = envmap, _to_background(background)
+    light = environment, _to_background(background)
     if renderer not in RENDERERS:
         raise no_such("renderer", renderer, RENDERERS)
     volume = volume if isinstance(volume, Volume) else volumes.load(volume)
@@ -129,11 +145,11 @@ def render_volume(
     if function is None and "level" in settings:
         _require_surface(volume, to_number("level", settings["level"]))
     described = volume, function, renderer, size, view, light, settings, all_around
-    how = {"progress": progress, "until": until, "limit": limit, "most": PASS}
+    how = {"progress": progress, "noise_floor": noise_floor, "limit": limit, "most": PASS}
     traced = _load_and_trace(described, spp=spp, seed=seed, **how)
     words = {name: value if _is_plain(value) else str(value) for name, value in settings.items()}
     shown = {"renderer": renderer, "transfer": getattr(function, "name", None), **words}
-    return rendering_of(traced, seed, until, {volume.name: shown})
+    return rendering_of(traced, seed, noise_floor, {volume.name: shown})
 
 
 @in_turn

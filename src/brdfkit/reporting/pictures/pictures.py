@@ -25,28 +25,34 @@ def render_pictures(
     material,
     fits,
     spp=None,
-    until=None,
+    noise_floor=None,
     size=SIZE,
     seed=0,
     scene=SCENE,
-    envmap=None,
+    environment=None,
     progress=None,
 ):
     """The `Rendering` of a `Measured`, first, and its fits, as `render` makes it.
 
-    `spp` is rounded up to whole passes; None is the default, or with `until` that of `render`.
+    `spp` is rounded up to whole passes; None is the default, or with
+    `noise_floor` the one of `render`.
     """
-    require_pictures(size, scene, envmap)
-    if spp is not None or until is None:
+    require_pictures(size, scene, environment)
+    if spp is not None or noise_floor is None:
         spp = SPP if spp is None else spp
         spp = ceil(to_whole_number("spp", spp, least=1) / PASS) * PASS
     build = _sharp(scene)
-    how = {"scene": build, "progress": progress, "until": until, "envmap": envmap}
-    found = render([material, *fits], spp, size, seed, **how)
+    how = {
+        "scene": build,
+        "progress": progress,
+        "noise_floor": noise_floor,
+        "environment": environment,
+    }
+    found = render([material, *fits], spp=spp, size=size, seed=seed, **how)
     return replace(found, mask=_mask(build, size))
 
 
-def require_pictures(size, scene, envmap):
+def require_pictures(size, scene, environment):
     """Raise `BrdfkitError` for pictures that a page cannot have, before anything is fitted."""
     if to_whole_number("size", size, least=SMALLEST) > LARGEST:
         raise BrdfkitError(f"size = {size}: pictures of a page have at most {LARGEST} pixels.")
@@ -54,7 +60,7 @@ def require_pictures(size, scene, envmap):
         raise BrdfkitError(
             f"{scene}: a report shows materials in a scene of brdfkit's or on a mesh; choose one."
         )
-    require_scene(scene, envmap)
+    require_scene(scene, environment)
 
 
 def _sharp(scene):

@@ -86,7 +86,7 @@ def compare(
     techniques = functions(kinds, to_names("others", others), resolution)
     scene = to_scene(scene, size)
     places = list(itertools.product(enumerate(scene.sensors()), enumerate(scene.emitters())))
-    report, asked = progress or (lambda done, total: None), len(places) * len(techniques)
+    report, requested = progress or (lambda done, total: None), len(places) * len(techniques)
     found: list[tuple[Pictures, dict]] = []
     try:
         for (view, sensor), (light, emitter) in places:
@@ -105,7 +105,7 @@ def compare(
                     Watched.by_moving_light(seen, placement),
                 )
             for label, shadow_of in techniques.items():
-                report((len(found) - 1) * len(techniques) + len(scores), asked)
+                report((len(found) - 1) * len(techniques) + len(scores), requested)
                 with raise_first_cause():  # Ctrl-C, for one
                     one, lit = score(seen, placement, watched, shadow_of)
                 pictures.keep(label, lit)
@@ -120,7 +120,7 @@ def compare(
     finished = [place for place in found if len(place[1]) == len(techniques)] or found[:1]
     shown, each = zip(*finished, strict=True)
     by_label = {label: tuple(scores[label] for scores in each) for label in each[0]}
-    return ShadowComparison(by_label, len(scene.emitters()), asked, shown)
+    return ShadowComparison(by_label, len(scene.emitters()), requested, shown)
 
 
 def score_nothing(pictures, scores, techniques):

@@ -24,7 +24,7 @@ class ShadowComparison(Shown):
         next.
     lights : int
         How many lights there are.
-    asked : int
+    requested : int
         How many scores were asked for; more than there are after Ctrl-C.
     pictures : tuple of Pictures
         What the page shows of each view and light, in the order of the scores.
@@ -32,7 +32,7 @@ class ShadowComparison(Shown):
 
     scores: dict[str, tuple[Scores, ...]]
     lights: int
-    asked: int
+    requested: int
     pictures: tuple[Pictures, ...] = field(compare=False)
 
     @property
@@ -65,7 +65,7 @@ class ShadowComparison(Shown):
     @property
     def interrupted(self) -> bool:
         """Whether Ctrl-C ended the comparison."""
-        return self.finished < self.asked
+        return self.finished < self.requested
 
     @property
     def finished(self) -> int:
@@ -100,7 +100,7 @@ class ShadowComparison(Shown):
         """A sentence on how much is finished after Ctrl-C; else nothing."""
         if not self.interrupted:
             return ""
-        return f"Interrupted: {self.finished} of {self.asked} scores are finished. "
+        return f"Interrupted: {self.finished} of {self.requested} scores are finished. "
 
     def write(self, path: str | Path, progress: Callable[[int, int], object] | None = None) -> None:
         """Write a page with the table, to sort, and all pictures: of each view in each light the

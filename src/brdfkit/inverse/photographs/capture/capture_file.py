@@ -19,11 +19,12 @@ NAME = "capture.toml"
 AT_CAMERA = "camera"  # the place of a flash light
 
 
-def load_capture(folder, linearise=False):
+def load_capture(folder, accept_8_bit=False):
     """The `Capture` of a `folder`; see docs/how_to/photographs.md for its file.
 
     Raises `BrdfkitError` for what is missing, misspelt or of the wrong form, for pictures of
-    different sizes, and for pictures of 8 bits, unless it is to `linearise` by sRGB's curve.
+    different sizes, and for pictures of 8 bits, unless `accept_8_bit`: then sRGB's curve is
+    inverted.
     """
     folder = Path(folder)
     path = folder / NAME
@@ -36,7 +37,7 @@ def load_capture(folder, linearise=False):
     lights = _lights(path, said)
     positions, intensities = _places(path, lights)
     names = tuple(light["picture"] for light in lights)
-    pictures = _pictures(folder, names, linearise)
+    pictures = _pictures(folder, names, accept_8_bit)
     cameras = cameras_of_file(path, said, size, pictures.shape[2:0:-1])
     positions = [
         own.origin if place is None else place
@@ -87,9 +88,9 @@ def _places(path, lights):
     return positions, intensities
 
 
-def _pictures(folder, names, linearise):
+def _pictures(folder, names, accept_8_bit):
     """Pictures (lights, height, width, 3) by their names."""
-    pictures = [read_photograph(folder / name, linearise) for name in names]
+    pictures = [read_photograph(folder / name, accept_8_bit) for name in names]
     for name, picture in zip(names, pictures, strict=True):
         if picture.shape != pictures[0].shape:
             own, first = (f"{p.shape[1]} × {p.shape[0]}" for p in (picture, pictures[0]))

@@ -75,7 +75,7 @@ def _read_target(picture: Any, name: str, accept_8_bit: bool, mask: FloatArray |
         if not accept_8_bit:
             raise BrdfkitError(
                 f"{name}: its numbers have 8 bits, behind a curve for screens; give linear pixels, "
-                "as of an OpenEXR file, or say linearise=True, for sRGB's curve."
+                "as of an OpenEXR file, or give accept_8_bit=True to invert sRGB's curve."
             )
         pixels = from_srgb(pixels / 255.0)
     if pixels.ndim == 2:

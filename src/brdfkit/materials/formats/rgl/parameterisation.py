@@ -148,7 +148,7 @@ class AdaptiveTable:
             f_cos *= factor[:, None]
         return np.where(above, f_cos / wo[:, 2:], 0.0)
 
-    def mixed(self, weights: FloatArray) -> "AdaptiveTable":
+    def mix_channels(self, weights: FloatArray) -> "AdaptiveTable":
         """Return the BRDF in other channels, mixed from the old ones by `weights` (old, new)."""
         return replace(self, values=self.values @ weights)
 
