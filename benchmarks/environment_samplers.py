@@ -17,7 +17,7 @@ import numpy as np
 from rich.console import Console
 
 import brdfkit as bk
-from brdfkit.checks.plugin_subject import example
+from brdfkit.checks.plugin_subject import make_example
 from brdfkit.core.colours import luminance
 from brdfkit.core.jit import llvm, threads
 from brdfkit.lighting.sampling.power_map import cell_power
@@ -321,7 +321,7 @@ def main():
         parser.error("--repeats: give 2 or more; one measurement has no known error.")
 
     llvm.use_variant()
-    assert bk.check(example("kdtree_envmap"), only=["weights"])  # and Mitsuba is awake
+    assert bk.check(make_example("kdtree_envmap"), only=["weights"])  # and Mitsuba is awake
     out = Console(stderr=True)
     found, sizes = {}, {}
     with threads.use_two_threads():

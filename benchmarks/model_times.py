@@ -106,7 +106,7 @@ def main():
             continue
         subject = Subject(bk.models()[name]())
         spreads = [f"{spread(subject, degrees):.2f}" for degrees in INCIDENCES]
-        brightest = max(bk.albedo(subject.thing, wi).max() for _, wi in incidences())
+        brightest = max(bk.albedo(subject.material, wi).max() for _, wi in incidences())
         fits = [f"{fit_seconds(name, data, loss):.2f}" for loss in bk.losses.named.by_sample]
         table.add_row(name, *spreads, f"{brightest:.3f}", *row, *fits)
     out.print(table)

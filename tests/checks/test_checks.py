@@ -93,7 +93,7 @@ def test_weights_of_samples_vary_little(configured):
     for seed in range(12):
         subject = Subject(random_model(configured, seed, full_bounds=True))
         spreads = [spread(subject, degrees, samples=20_000) for degrees in INCIDENCES]
-        assert max(spreads) <= 1.5, (subject.thing, spreads)
+        assert max(spreads) <= 1.5, (subject.material, spreads)
 
 
 def test_measured_table_passes_the_checks():

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 import brdfkit as bk
-from brdfkit.checks.plugin_subject import example
+from brdfkit.checks.plugin_subject import make_example
 from brdfkit.cli import main
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.latitude_rows import solid_angles
@@ -189,7 +189,7 @@ TURNED = {"type": "ward", "alpha_u": 0.1, "alpha_v": 0.3}
 def test_pictures_are_those_of_path_tracing(llvm_variant, bsdf, settings, expected):
     """On a ball, which hides nothing from itself; PSNR [dB] to 4096 paths per pixel."""
     mi = llvm_variant
-    light = example("kdtree_envmap")
+    light = make_example("kdtree_envmap")
     truth = shown(scene(mi, {"type": "path", "max_depth": 2}, bsdf, light), 4096)
     picture = shown(scene(mi, ours(**settings), bsdf, light), 16)
     assert psnr(truth, picture) > expected
@@ -199,7 +199,7 @@ def test_pictures_are_those_of_path_tracing(llvm_variant, bsdf, settings, expect
 def test_both_sides_of_a_material_are_alike(llvm_variant, method):
     """As those of meshes, whose normals may point inwards."""
     mi = llvm_variant
-    bsdf, light = {"type": "twosided", "inside": WARD}, example("kdtree_envmap")
+    bsdf, light = {"type": "twosided", "inside": WARD}, make_example("kdtree_envmap")
     outside = shown(scene(mi, ours(method=method), bsdf, light))
     ball = {"type": "sphere", "bsdf": bsdf, "flip_normals": True}
     inside = shown(scene(mi, ours(method=method), bsdf, light, ball=ball))
@@ -209,7 +209,7 @@ def test_both_sides_of_a_material_are_alike(llvm_variant, method):
 def test_it_follows_the_light_and_the_material(llvm_variant):
     """What an update changes is seen in the next picture."""
     mi = llvm_variant
-    loaded = scene(mi, ours(method="warped"), WARD, example("kdtree_envmap"))
+    loaded = scene(mi, ours(method="warped"), WARD, make_example("kdtree_envmap"))
     first = shown(loaded)
     parameters = mi.traverse(loaded)
     parameters["light.scale"] = 2.0
@@ -269,7 +269,7 @@ def test_what_it_cannot_light_is_said(llvm_variant, light, more, settings, varia
 def test_directions_of_views_are_those_of_points(llvm_variant, monkeypatch, bsdf, alike):
     """Pictures by directions that are drawn once for a grid of views, and at each point; PSNR."""
     mi, module = llvm_variant, import_module("brdfkit.lighting.filtering.filtered_sampling")
-    light = example("kdtree_envmap")
+    light = make_example("kdtree_envmap")
     by_views = shown(scene(mi, ours(), bsdf, light), 4)
     monkeypatch.setattr(module, "is_same_everywhere", lambda bsdf: False)
     assert psnr(shown(scene(mi, ours(), bsdf, light), 4), by_views) > alike
@@ -282,7 +282,7 @@ def test_balls_of_tables_have_no_rings(llvm_variant, name, most):
     0.006 and 0.023 where one random number chose the incidence and a place in its table.
     """
     mi = llvm_variant
-    loaded = scene(mi, ours(samples=64), bk.load(name).scene_dict(), example("kdtree_envmap"))
+    loaded = scene(mi, ours(samples=64), bk.load(name).scene_dict(), make_example("kdtree_envmap"))
     size = mi.ScalarVector2u(256, 4)
     film = mi.traverse(loaded.sensors()[0])
     film["film.size"] = size

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from brdfkit.checks.plugin_subject import example
+from brdfkit.checks.plugin_subject import make_example
 
 
 def directions(n=20_000):
@@ -32,7 +32,7 @@ def test_it_shines_as_mitsubas(llvm_variant, turned):
     turn = mi.ScalarTransform4f().rotate([0.48, 0.6, 0.64], 70)
     pixels = np.random.default_rng(1).random((4, 6, 3)).astype(np.float32)
     settings = {"bitmap": mi.Bitmap(pixels), "scale": 2.0} | ({"to_world": turn} if turned else {})
-    entries = example("kdtree_envmap", **settings)
+    entries = make_example("kdtree_envmap", **settings)
     w = directions()
     found, expected = (radiance(mi, mi.load_dict(e), w) for e in (entries, as_envmap(entries)))
     np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-4)
@@ -64,7 +64,7 @@ def mitsubas_mean():
     """That of Mitsuba's `envmap`, once."""
     import mitsuba as mi
 
-    return mean_and_error(mi, as_envmap(example("kdtree_envmap")))
+    return mean_and_error(mi, as_envmap(make_example("kdtree_envmap")))
 
 
 EMITTERS = [
@@ -82,7 +82,7 @@ EMITTERS = [
 def test_pictures_are_those_of_mitsubas(name, settings, llvm_variant, mitsubas_mean):
     """Means of 64 renders within 3 standard errors, by multiple importance sampling."""
     (a, error_a), (b, error_b) = (
-        mean_and_error(llvm_variant, example(name, **settings)),
+        mean_and_error(llvm_variant, make_example(name, **settings)),
         mitsubas_mean,
     )
     assert abs(a - b) < 3 * np.hypot(error_a, error_b)
@@ -93,7 +93,7 @@ def test_the_gradient_by_the_map_is_that_of_mitsubas(llvm_variant):
     import drjit as dr
 
     mi = llvm_variant
-    found, ours = {}, example("kdtree_envmap")
+    found, ours = {}, make_example("kdtree_envmap")
     for name, entries in {"ours": ours, "theirs": as_envmap(ours)}.items():
         loaded = scene(mi, entries, "prb", 24)
         parameters = mi.traverse(loaded)
@@ -131,7 +131,7 @@ def test_what_it_cannot_use_is_refused_in_a_sentence(given, said, llvm_variant):
     if "bitmap" in given:
         given = given | {"bitmap": mi.Bitmap(given["bitmap"].astype(np.float32))}
     with pytest.raises(RuntimeError) as error:
-        mi.load_dict(example("kdtree_envmap", **given))
+        mi.load_dict(make_example("kdtree_envmap", **given))
     assert said in str(error.value).splitlines()[-1]
 
 
@@ -151,17 +151,17 @@ def test_a_map_that_cannot_be_read_is_named(llvm_variant, tmp_path):
 def test_a_map_may_only_be_turned(llvm_variant):
     scaled = llvm_variant.ScalarTransform4f().scale(3)
     with pytest.raises(RuntimeError, match="to_world scales or shears"):
-        llvm_variant.load_dict(example("kdtree_envmap", to_world=scaled))
+        llvm_variant.load_dict(make_example("kdtree_envmap", to_world=scaled))
 
 
 @pytest.mark.parametrize(("value", "said"), [(0.0, "black all over"), (np.nan, "not finite")])
 def test_an_optimiser_s_map_lights_too(llvm_variant, value, said):
-    parameters = llvm_variant.traverse(llvm_variant.load_dict(example("kdtree_envmap")))
+    parameters = llvm_variant.traverse(llvm_variant.load_dict(make_example("kdtree_envmap")))
     parameters["data"] = llvm_variant.TensorXf(np.full((4, 8, 3), value, np.float32))
     with pytest.raises(ValueError, match=said):
         parameters.update()
 
 
 def test_more_blocks_than_pixels_are_as_many(llvm_variant):
-    emitter = llvm_variant.load_dict(example("kdtree_envmap", blocks=1_000_000))
+    emitter = llvm_variant.load_dict(make_example("kdtree_envmap", blocks=1_000_000))
     assert len(emitter.map_sampler.shares) <= 15 * 32

@@ -9,7 +9,7 @@ from brdfkit.plugins.emitters.sampled_envmap import Alias, Cdf, Mip, make_alias_
 import brdfkit as bk
 from brdfkit.checks import directions
 from brdfkit.checks import emitters as checks
-from brdfkit.checks.plugin_subject import example
+from brdfkit.checks.plugin_subject import make_example
 from brdfkit.lighting.sampling.blocks import DISTRIBUTIONS, LOOKUPS, Blocks
 from brdfkit.lighting.sampling.power_map import subtract_mean
 
@@ -121,9 +121,9 @@ FORMS = [
 @pytest.mark.parametrize(("name", "settings"), FORMS)
 def test_the_forms_of_an_emitter_pass_its_checks(name, settings, llvm_variant):
     """χ² (32 points along a cell) at a level of 1 % in all, mean light, weights, ∫ density."""
-    entries = example(name, **settings)
+    entries = make_example(name, **settings)
     emitter = SimpleNamespace(plugin=llvm_variant.load_dict(entries))
-    draw, radiance_and_pdf = checks.sampler(emitter)
+    draw, radiance_and_pdf = checks.make_sampler(emitter)
     p = directions.chi_squared(draw, lambda w: radiance_and_pdf(w)[1], tests=len(FORMS))
     assert p is not None
     report = bk.check(entries, only=["weights", "normalisation", "mean light"])

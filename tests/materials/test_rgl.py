@@ -11,7 +11,7 @@ from small_files import adaptive, rgl_file, written
 import brdfkit as bk
 from brdfkit import checks
 from brdfkit.checks.material_subject import INCIDENCES, Subject, incidences, random_pairs
-from brdfkit.checks.sampling import spread, uniform
+from brdfkit.checks.sampling import draw_uniform, spread
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.formats.rgl import encoding, tensor_file
@@ -526,7 +526,9 @@ def test_mitsuba_renders_what_was_written(llvm_variant, tmp_path, name):
 
     for _degrees, wi in incidences():
         si = rendered.interaction(np.tile(wi, (200_000, 1)))
-        _, weight = rendered.bsdf.sample(llvm_variant.BSDFContext(), si, *uniform(200_000, seed=1))
+        _, weight = rendered.bsdf.sample(
+            llvm_variant.BSDFContext(), si, *draw_uniform(200_000, seed=1)
+        )
         weight = np.array(weight, float).mean(axis=0)
         assert weight.mean() == pytest.approx(bk.albedo(source, wi).mean(), rel=0.01)
         assert weight.std() < 0.15 * weight.mean()

@@ -13,7 +13,7 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
-from brdfkit.checks.sampling import uniform
+from brdfkit.checks.sampling import draw_uniform
 from brdfkit.core.geometry.directions import from_angles, normalize
 from brdfkit.mitsuba_bridge.bsdf.signed_sum import tabulate
 from brdfkit.model.lobes import components_of
@@ -330,7 +330,7 @@ def test_albedo(model, llvm_variant):
             continue
         ctx = mi.BSDFContext()
         ctx.type_mask = mi.BSDFFlags.DiffuseReflection
-        _, u = uniform(200_000, seed=4)
+        _, u = draw_uniform(200_000, seed=4)
         wo = mi.warp.square_to_cosine_hemisphere(u)
         value = bsdf.eval(ctx, interaction(mi, [[0, 0, 1.0]]), wo)
         albedo = np.mean(np.array(value * (dr.pi / wo.z), float), axis=1)
@@ -444,12 +444,12 @@ def test_sampling_of_a_component(model, llvm_variant):
     wi = from_angles(math.radians(40), 0.5)
     si = interaction(mi, np.tile(wi, (n, 1)))
     for k, ctx in contexts(mi, bsdf):
-        drawn, weight = bsdf.sample(ctx, si, *uniform(n, seed=6))
+        drawn, weight = bsdf.sample(ctx, si, *draw_uniform(n, seed=6))
         assert np.unique(np.array(drawn.sampled_component)).tolist() == [k]
         assert dr.all((drawn.sampled_type & int(bsdf.flags(k))) == drawn.sampled_type)
         pdf = np.array(bsdf.pdf(ctx, si, drawn.wo))
         np.testing.assert_allclose(np.array(drawn.pdf), pdf, rtol=1e-3, atol=1e-6)
-        _, u = uniform(n, seed=7)
+        _, u = draw_uniform(n, seed=7)
         wo = mi.warp.square_to_cosine_hemisphere(u)
         cosine = np.array(bsdf.eval(ctx, si, wo) * (dr.pi / wo.z), float).mean(axis=0)
         own = np.array(weight, float).mean(axis=0)
@@ -458,7 +458,7 @@ def test_sampling_of_a_component(model, llvm_variant):
         assert z < HIGHEST_Z
     ctx = mi.BSDFContext()
     ctx.type_mask = mi.BSDFFlags.DeltaTransmission
-    drawn, weight = bsdf.sample(ctx, si, *uniform(n, seed=6))
+    drawn, weight = bsdf.sample(ctx, si, *draw_uniform(n, seed=6))
     assert not np.array(weight).any()
     assert not np.array(drawn.pdf).any()
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.checks.plugin_subject import example
+from brdfkit.checks.plugin_subject import make_example
 from brdfkit.checks.registry import checks
 from brdfkit.core.discovery import plugin_files
 from brdfkit.core.discovery.plugin_files import KINDS, MODELS, find_plugins
@@ -42,7 +42,7 @@ def test_loads_in_every_variant(name, chosen, variant):
         pytest.skip("volumes are not registered there, see `register_all`")
     variant(chosen)
     base, _ = KINDS[OTHERS[name]]
-    plugin = mi.load_dict(example(name))
+    plugin = mi.load_dict(make_example(name))
     assert isinstance(plugin, getattr(mi, base))
     assert type(plugin).__name__ in str(plugin)
 
@@ -74,7 +74,7 @@ def test_what_is_out_of_bounds_is_refused_by_name(name, parameter, llvm_variant)
         if wrong in (math.inf, -math.inf):
             continue
         with pytest.raises(RuntimeError) as error:
-            mi.load_dict(example(name, **{parameter: wrong}))
+            mi.load_dict(make_example(name, **{parameter: wrong}))
         assert f"{name}: {parameter} = {wrong}" in str(error.value).splitlines()[-1]
 
 
@@ -82,7 +82,7 @@ def test_what_is_out_of_bounds_is_refused_by_name(name, parameter, llvm_variant)
 @pytest.mark.parametrize("name", OTHERS)
 def test_a_misspelt_parameter_is_reported(name, llvm_variant):
     with pytest.raises(RuntimeError, match="misspelt"):
-        llvm_variant.load_dict({**example(name), "misspelt": 1.0})
+        llvm_variant.load_dict({**make_example(name), "misspelt": 1.0})
 
 
 # A user's own, one of each kind
@@ -334,7 +334,7 @@ def test_the_checks_of_emitters_notice(attribute, failed, monkeypatch, variant):
     import mitsuba as mi
 
     variant("llvm_ad_rgb")
-    plugin = type(mi.load_dict(example("kdtree_envmap")))
+    plugin = type(mi.load_dict(make_example("kdtree_envmap")))
     right = getattr(plugin, attribute)
     monkeypatch.setattr(plugin, attribute, lambda *arguments: 1.05 * right(*arguments))
     report = bk.check("kdtree_envmap")

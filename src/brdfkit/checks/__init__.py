@@ -1,9 +1,9 @@
-"""`check`: the requirements on every material and every plugin; the tests hold all of them to it.
+"""Checks materials and plugins against what a renderer and a fit require of them.
 
 A check is a function `(subject) -> (passed, figure)` with the decorator `check_of(KIND)`, in a
-file of this folder. The checks of a material get a `Subject`; they are in `physics.py`,
-`sampling.py` and `derivatives.py`. The checks of another kind of plugin get a `PluginSubject`; they
-are in the file of their kind.
+file of this folder. Checks of a material take a `Subject`; they are in `physics.py`, `sampling.py`
+and `derivatives.py`. Checks of another kind of plugin take a `PluginSubject`; they are in the file
+of their kind. The tests run all checks on all materials and plugins.
 """
 
 from __future__ import annotations
@@ -12,10 +12,11 @@ import importlib
 import pkgutil
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 from brdfkit.checks.material_subject import Subject
-from brdfkit.checks.plugin_subject import PluginSubject, example, is_no_model
-from brdfkit.checks.registry import Finding, checks, describe
+from brdfkit.checks.plugin_subject import PluginSubject, is_no_model, make_example
+from brdfkit.checks.registry import Finding, checks, describe_error
 from brdfkit.core.discovery import plugin_files
 from brdfkit.core.discovery.plugin_files import KINDS, MODELS
 from brdfkit.core.documents import Cell, Document, Shown, Table
@@ -34,14 +35,14 @@ for _module in pkgutil.iter_modules(__path__):
 
 @dataclass(frozen=True, repr=False)
 class Report(Shown):
-    """What `check` found; true when everything passed; prints as a list.
+    """The result of `check`: true if all checks passed; it prints as a list.
 
     Attributes
     ----------
     name : str
-        What was checked.
+        Name of the material or plugin.
     findings : tuple of Finding
-        Of each check its name (`check`), whether it `passed`, and the `figure` by which.
+        For each check its name (`check`), whether it `passed`, and the measured `figure` in words.
     """
 
     name: str
@@ -51,7 +52,7 @@ class Report(Shown):
         return all(finding.passed for finding in self.findings)
 
     def document(self) -> Document:
-        """Each check, whether it passed, and the figure by which."""
+        """Return a table of the checks: whether each passed, its name and its figure."""
         rows = tuple(
             (Cell("ok", GOOD) if f.passed else Cell("FAIL", BAD), f.check, f.figure)
             for f in self.findings
@@ -66,14 +67,14 @@ def check(
     only: Iterable[str] | None = None,
     progress: Progress | None = None,
 ) -> Report:
-    """Check that a material, or a plugin of another kind, is what a renderer and a fit need.
+    """Check that a material, or a plugin of another kind, meets a renderer's and a fit's needs.
 
-    Of a material: its sampling (χ² at five incidences to grazing, coverage, weight = eval / pdf),
-    reciprocity, finiteness to the horizon, energy, derivatives, and that the Mitsuba plugin
-    computes the formula. Of an emitter or a phase function: χ², weights, normalisation and means.
-    Of an integrator: the reference that its file names. A plugin whose lines raise an error has
-    failed. Everything runs in the current variant of Mitsuba; where none is set, in the best that
-    works.
+    The checks of a material are its sampling (χ² tests at five angles of incidence, coverage,
+    weight = eval / pdf), reciprocity, finite values up to the horizon, energy, derivatives, and
+    that the Mitsuba plugin computes the formula. The checks of an emitter or a phase function are
+    χ² tests, weights, normalisation and means. An integrator has to render the reference that its
+    file gives. A plugin whose code raises an error has failed. Everything runs in the current
+    variant of Mitsuba or, if none is set, in the best one that works.
 
     Parameters
     ----------
@@ -81,19 +82,20 @@ def check(
         The material, or its name or path; or the name of a plugin of another kind, or its
         dictionary for `mitsuba.load_dict`.
     only : list of str, optional
-        Names of the checks to run; by default all there are for its kind.
+        Names of the checks to run; by default all checks for the kind.
     progress : callable, optional
-        Called with (checks done, checks in all).
+        Called with (number of checks done, number of all checks).
 
     Returns
     -------
     Report
-        True where everything passed; prints as a list.
+        True if all checks passed; it prints as a list.
 
     Raises
     ------
     BrdfkitError
-        For an unknown check, for what is no material or plugin, and in a scalar variant of Mitsuba.
+        For an unknown check, for anything that is no material or plugin, and in a scalar variant of
+        Mitsuba.
 
     Examples
     --------
@@ -103,59 +105,59 @@ def check(
         usable = llvm.loaded_version() >= llvm.OLDEST
         remedy = "set llvm_ad_rgb" if usable else llvm.describe_remedy()
         raise BrdfkitError(f"check needs an LLVM or CUDA variant of Mitsuba; {remedy}.")
-    subject, kind, name = _subject(material)
+    subject, kind, name = _make_subject(material)
     only = [only] if isinstance(only, str) else only
     names = list(checks[kind]) if only is None else list(only)
     for wanted in names:
         if wanted not in checks[kind]:
             raise no_such("check", wanted, checks[kind])
-    if kind != MODELS and not _loads(subject):
-        names = ["loads"]  # the others would say the same
-    findings = []
+    if kind != MODELS and not _can_load(subject):
+        names = ["loads"]  # the other checks would fail with the same error
+    findings: list[Finding] = []
     for wanted in names:
-        findings.append(Finding(wanted, *_run(kind, wanted, subject)))
+        findings.append(Finding(wanted, *_run_check(kind, wanted, subject)))
         if progress:
             progress(len(findings), len(names))
     return Report(name, tuple(findings))
 
 
-def _subject(thing):
-    """The subject of the checks of `thing`, its kind of plugin, and its name."""
-    if isinstance(thing, str) and is_no_model(thing):
-        thing = example(thing)
-    name = thing.get("type") if isinstance(thing, dict) else None
+def _make_subject(material: MaterialLike) -> tuple[Subject | PluginSubject, str, str]:
+    """Return the subject of the checks, its kind of plugin, and its name."""
+    if isinstance(material, str) and is_no_model(material):
+        material = make_example(material)
+    name = material.get("type") if isinstance(material, dict) else None
     kind = plugin_files.find_kind(name) if isinstance(name, str) else None
-    if kind not in (None, MODELS):
-        return PluginSubject(kind, thing), kind, name
-    found = _material(thing)
+    if isinstance(material, dict) and kind not in (None, MODELS):
+        return PluginSubject(kind, material), kind, str(name)
+    converted = _to_material(material)
     if name and kind is None:  # a plugin of Mitsuba's, or none at all
         import mitsuba as mi
 
-        load_by_mitsuba(mi.load_dict, found.scene_dict(), name)
-    return Subject(found), MODELS, found.name
+        load_by_mitsuba(mi.load_dict, converted.scene_dict(), name)
+    return Subject(converted), MODELS, converted.name
 
 
-def _material(thing):
-    """The material of `thing`; the error for an unknown name proposes plugins, too."""
+def _to_material(material: MaterialLike) -> Any:
+    """Return `to_material(material)`; the error for an unknown name proposes plugins, too."""
     try:
-        return to_material(thing)
+        return to_material(material)
     except BrdfkitError:
         others = [n for kind in KINDS if kind != MODELS for n in plugin_files.find_plugins(kind)]
-        if isinstance(thing, str) and nearest(thing, others):
-            raise no_such("plugin", thing, others) from None
+        if isinstance(material, str) and nearest(material, others):
+            raise no_such("plugin", material, others) from None
         raise
 
 
-def _loads(subject):
-    """Whether Mitsuba makes an instance of a plugin."""
+def _can_load(subject: Any) -> bool:
+    """Return whether Mitsuba makes an instance of the plugin."""
     try:
         return subject.plugin is not None
     except Exception:
         return False
 
 
-def _run(kind, name, subject):
-    """(passed, figure) of one check; it has failed where a plugin's own code raises an error."""
+def _run_check(kind: str, name: str, subject: Subject | PluginSubject) -> tuple[bool, str]:
+    """Run a check and return (passed, figure); an error that the plugin's code raises fails it."""
     try:
         return checks[kind][name](subject)
     except BrdfkitError:
@@ -165,4 +167,4 @@ def _run(kind, name, subject):
             raise KeyboardInterrupt from None
         if subject.source is None:
             raise
-        return False, describe(error, subject.source)
+        return False, describe_error(error, subject.source)

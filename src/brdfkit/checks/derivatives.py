@@ -1,28 +1,29 @@
-"""Checks of derivatives: of the formula, of the Mitsuba BSDF, and through its sampling."""
+"""Checks the derivatives of a model: of the formula, of the Mitsuba BSDF, and of its samples."""
 
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 import drjit as dr
 import numpy as np
 
-from brdfkit.checks.material_subject import incidences, random_pairs
-from brdfkit.checks.model_derivatives import (
-    exact_derivative,
-    finite_difference,
-    free_shapes,
-    has_effect,
-)
+from brdfkit.checks.material_subject import Subject, incidences, random_pairs
 from brdfkit.checks.registry import check_of, larger
-from brdfkit.checks.sampling import sample_weights, uniform
+from brdfkit.checks.sampling import draw_uniform, sample_weights
+from brdfkit.core.array_types import FloatArray, JitColour, JitFloat, MitsubaModule, MitsubaObject
 from brdfkit.core.discovery.plugin_files import MODELS
-from brdfkit.model.evaluation import weight_matrix
+from brdfkit.core.jit import double_precision
+from brdfkit.model import Model
+from brdfkit.model.evaluation import lobe_values, weight_matrix
 
 NO_SHAPES = "nothing to check: no shape parameters"
 
 
 @check_of(MODELS)
-def plugin_is_formula(subject):
-    """The Mitsuba BSDF (float32) = the formula in double precision, times the cosine."""
+def plugin_is_formula(subject: Subject) -> tuple[bool, str]:
+    """Check that the Mitsuba BSDF computes the formula, times the cosine.
+
+    The BSDF computes in single precision, the formula in double precision.
+    """
     wi, wo = random_pairs(20_000, seed=5, max_degrees=85)
     formula = subject.values(wi, wo) * wo[:, 2:]
     difference = np.abs(subject.plugin_eval(wi, wo) - formula)
@@ -31,8 +32,8 @@ def plugin_is_formula(subject):
 
 
 @check_of(MODELS)
-def gradient(subject):
-    """Derivatives by every shape parameter = finite differences, in double precision."""
+def gradient(subject: Subject) -> tuple[bool, str]:
+    """Check that derivatives by every shape parameter are equal to finite differences."""
     model = subject.model
     if model is None or not model.shapes():
         return True, NO_SHAPES
@@ -48,8 +49,8 @@ def gradient(subject):
 
 
 @check_of(MODELS)
-def plugin_gradient(subject):
-    """Derivatives of the Mitsuba BSDF by every parameter = those of the formula."""
+def plugin_gradient(subject: Subject) -> tuple[bool, str]:
+    """Check that the Mitsuba BSDF has the derivatives of the formula, by every parameter."""
     import mitsuba as mi
 
     model = subject.model
@@ -57,23 +58,23 @@ def plugin_gradient(subject):
         return True, "nothing to check: no parameters"
     wi, wo = random_pairs(2_000, seed=7, max_degrees=80)
 
-    # every parameter is in `mitsuba.traverse`; those whose texture is a spectrum are left out
+    # Every parameter must be in `mitsuba.traverse`; colours that are spectra are left out below
     exposed = {key.split(".")[0] for key in mi.traverse(subject.bsdf).keys()}  # noqa: SIM118
     if missing := [name for name in model.free_values if name not in exposed]:
         return False, f"not in traverse: {', '.join(missing)}"
     names = [name for name in model.free_values if not _is_spectrum(mi, model, name)]
 
-    # the derivatives of the sum over all directions and channels, against those of the formula
+    # Compare derivatives of the sum over all directions and channels with those of the formula
     with _track_gradients(subject.bsdf, names) as values:
         image = subject.bsdf.eval(
             mi.BSDFContext(), subject.interaction(wi), mi.Vector3f(wo.astype(np.float32).T)
         )
-        dr.backward(_total(mi, image), dr.ADFlag.Default | dr.ADFlag.AllowNoGrad)
+        dr.backward(_sum_spectrum(mi, image), dr.ADFlag.Default | dr.ADFlag.AllowNoGrad)
         gradients = [dr.grad(value) for value in values]
-        dr.eval(gradients)  # in one kernel: a kernel for each takes that much longer to compile
-        found = [float(np.sum(np.array(gradient))) for gradient in gradients]
+        dr.eval(gradients)  # one kernel compiles faster than one for each
+        derivatives = [float(np.sum(np.array(gradient))) for gradient in gradients]
     worst = 0.0
-    for name, derivative in zip(names, found, strict=True):
+    for name, derivative in zip(names, derivatives, strict=True):
         expected = exact_derivative(model, subject.weights, name, wi, wo) * wo[:, 2:]
         difference = abs(derivative - float(expected.sum()))
         worst = larger(worst, difference / max(float(np.abs(expected).sum()), 1e-6))
@@ -84,10 +85,11 @@ def plugin_gradient(subject):
 
 
 @check_of(MODELS)
-def sampling_gradient(subject):
-    """Derivatives of the mean weight of a sample = those of the albedo, by cosine samples.
+def sampling_gradient(subject: Subject) -> tuple[bool, str]:
+    """Check that the mean weight of samples has the derivatives of the albedo.
 
-    A sampler fails whose directions depend on a parameter while its density does not.
+    The derivatives of the albedo come from cosine samples. A sampler fails if its directions depend
+    on a parameter while its density does not.
     """
     import mitsuba as mi
 
@@ -95,18 +97,18 @@ def sampling_gradient(subject):
     if model is None or not model.shapes():
         return True, NO_SHAPES
     n, wi = 200_000, incidences()[1][1]
-    _, u = uniform(n, seed=9)
+    _, u = draw_uniform(n, seed=9)
     wo = np.array(mi.warp.square_to_cosine_hemisphere(u)).T.astype(float)
     worst = 0.0
     for name in free_shapes(model):
-        # derivatives of the weights, sample by sample
+        # Derivatives of the weights, sample by sample
         with _track_gradients(subject.bsdf, [name]) as [value]:
             weight = sample_weights(subject, wi, n, seed=8)
             dr.forward_from(value)
             own = np.array(dr.grad(mi.unpolarized_spectrum(weight)))
             own = np.broadcast_to(own.mean(axis=0, dtype=float), n)
 
-        # derivatives of the formula over the density cos θ / π of cosine samples
+        # Derivatives of the formula over the density cos θ / π of cosine samples
         exact = exact_derivative(model, subject.weights, name, np.tile(wi, (n, 1)), wo)
         cosine = np.pi * exact.mean(axis=1)
         error = np.hypot(own.std(), cosine.std()) / np.sqrt(n)
@@ -115,8 +117,8 @@ def sampling_gradient(subject):
 
 
 @contextmanager
-def _track_gradients(bsdf, names):
-    """Within the block Dr.Jit tracks derivatives by parameters of the BSDF; gives their values."""
+def _track_gradients(bsdf: MitsubaObject, names: Sequence[str]) -> Iterator[list[JitFloat]]:
+    """Track derivatives by parameters of the BSDF within the block, and yield their values."""
     import mitsuba as mi
 
     parameters = mi.traverse(bsdf)
@@ -130,11 +132,86 @@ def _track_gradients(bsdf, names):
         parameters.update({key: dr.detach(value) for key, value in values.items()})
 
 
-def _total(mi, image):
-    """The sum of a spectrum over directions and channels, without its polarisation."""
+def _sum_spectrum(mi: MitsubaModule, image: JitColour) -> JitFloat:
+    """Return the sum of a spectrum over directions and channels, without its polarisation."""
     return dr.sum(dr.sum(mi.unpolarized_spectrum(image)))
 
 
-def _is_spectrum(mi, model, name):
-    """Whether a weight is a colour that Mitsuba's texture holds as coefficients of a spectrum."""
+def _is_spectrum(mi: MitsubaModule, model: Model, name: str) -> bool:
+    """Return whether a weight is a colour, which Mitsuba stores as coefficients of a spectrum."""
     return mi.is_spectral and len(np.unique(getattr(model, name))) > 1
+
+
+def free_shapes(model: Model) -> list[str]:
+    """Return the names of the shape parameters, without any that follows another and equals it."""
+    return [name for name in model.free_values if not model.parameters[name].linear]
+
+
+def has_effect(model: Model, name: str) -> bool:
+    """Return whether Dr.Jit can follow the parameter to the value of a lobe."""
+    values = {
+        n: double_precision.to_scalar(getattr(model, n)) for n in model.shapes(anisotropic=True)
+    }
+    dr.enable_grad(values[name])
+    wi, wo = (double_precision.to_vector(w) for w in random_pairs(2, seed=6))
+    lobes = [lobe for _, lobe in model.bind(values).terms()]
+    terms = [lobe.eval(wi, wo) for lobe in lobes]
+    terms += [lobe.quadratic(wi, wo) for lobe in lobes if lobe.quadratic]
+    return any(dr.grad_enabled(term) for term in terms)
+
+
+def exact_derivative(
+    model: Model, weights: FloatArray, name: str, wi: FloatArray, wo: FloatArray
+) -> FloatArray:
+    """Return the exact derivative (n, channels) of the BRDF by a parameter of the model.
+
+    `weights`: (lobes, channels). A weight changes by the same amount in all channels, and a
+    parameter that follows the parameter `name` changes with it. Where a negative BRDF is clamped at
+    0, the derivative is 0.
+    """
+    plain, squared = lobe_values(model, wi, wo)
+    if model.parameters[name].linear:
+        lobe = model.weights().index(name)
+        derivative = plain[:, [lobe]] + 2 * squared[:, [lobe]] * weights[lobe]
+    else:
+        plain_slopes, squared_slopes = _lobe_slopes(model, name, wi, wo)
+        derivative = plain_slopes @ weights + squared_slopes @ weights**2
+    if not model.signed():
+        return derivative
+    return np.where(plain @ weights + squared @ weights**2 > 0, derivative, 0)
+
+
+def _lobe_slopes(model: Model, name: str, wi: FloatArray, wo: FloatArray) -> list[FloatArray]:
+    """Return the derivatives of the lobes by a shape parameter, by Dr.Jit's forward mode.
+
+    These are two arrays (n, lobes): of the factors of the weights, and of the weights' squares.
+    """
+    values = double_precision.to_shape_scalars(model)
+    dr.enable_grad(values[name])
+    directions = double_precision.to_vector(wi), double_precision.to_vector(wo)
+    Float64 = double_precision.float_type()
+    terms = model.bind(values).terms()
+    plain = [Float64(lobe.eval(*directions)) for _, lobe in terms]
+    squared = [Float64(lobe.quadratic(*directions) if lobe.quadratic else 0) for _, lobe in terms]
+    dr.forward_from(values[name])
+    return [
+        np.stack([np.broadcast_to(np.array(dr.grad(c)), len(wi)) for c in columns], axis=1)
+        for columns in (plain, squared)
+    ]
+
+
+def finite_difference(model: Model, name: str, wi: FloatArray, wo: FloatArray) -> FloatArray:
+    """Return the derivative (n, channels) of the BRDF by a parameter, by finite differences.
+
+    The differences are central, or one-sided near a bound of the parameter, of second order.
+    """
+    value = getattr(model, name)
+    low, high = model.parameters[name].bounds
+    h = 1e-5 * max(abs(value), 1e-2)
+    if value + h > high or value - h < low:
+        h = -h if value + 2 * h > high else h
+        steps, factors = [0, h, 2 * h], [-1.5, 2, -0.5]
+    else:
+        steps, factors = [-h, h], [-0.5, 0.5]
+    values = [model.changed(**{name: value + step}).eval(wi, wo) for step in steps]
+    return sum(factor * f for factor, f in zip(factors, values, strict=True)) / h

@@ -1,13 +1,16 @@
-"""What the checks of emitters and of phase functions share: tests of samplers over the sphere.
+"""Tests samplers of directions over the sphere, for the checks of emitters and phase functions.
 
-A sampler is given as two functions: `draw(u, v)`, of a point of the unit square, or of the unit
-cube, returns (direction, weight, density), and `pdf(direction)` the density.
+A sampler is given as two functions. `draw(u, v)`, or `draw(u, v, w)`, takes a point of the unit
+square or cube to (direction, weight, density). `pdf(direction)` returns the density.
 """
 
+from collections.abc import Callable, Sequence
 from functools import cache
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, JitFloat, JitVector, MitsubaObject
 from brdfkit.core.jit.padding import pad
 
 SIGNIFICANCE = 0.01
@@ -18,45 +21,47 @@ CELLS, SUBCELLS = 101, 32
 RINGS, POINTS = 512, 1024  # polar angles and azimuths of the quadrature
 
 
-def chi_squared(draw, pdf, tests, dimensions=2):
-    """The p-value of Pearson's χ² test that directions follow their density; None if it rejects.
+def chi_squared(
+    draw: Callable[..., Any], pdf: Callable[[JitVector], JitFloat], tests: int, dimensions: int = 2
+) -> float | None:
+    """Return the p-value of Pearson's χ² test that directions have their density.
 
-    `tests`: how many such tests a check runs, which share the significance level; `dimensions`: how
-    many random numbers `draw` takes.
+    None stands for a rejection. `tests`: the number of such tests in a check, which share the level
+    of significance; `dimensions`: the number of arguments of `draw`.
     """
     import drjit as dr
     import mitsuba as mi
     from mitsuba.chi2 import ChiSquareTest, SphericalDomain
 
-    def sample(u):
+    def sample(u: Sequence[JitFloat]) -> tuple[JitVector, JitFloat]:
         direction, _, density = draw(*(u[i] for i in range(dimensions)))
         return direction, dr.select(density > 0, mi.Float(1), 0)
 
-    test = ChiSquareTest(
+    test: MitsubaObject = ChiSquareTest(
         SphericalDomain(), sample, pdf, dimensions, SAMPLES, res=CELLS, ires=SUBCELLS
     )
     return test.p_value if test.run(SIGNIFICANCE, test_count=tests, quiet=True) else None
 
 
-def random_points(n, seed, dimensions=2):
-    """`n` random points of the unit square, or cube, as one `mi.Float` for each axis."""
+def draw_points(n: int, seed: int, dimensions: int = 2) -> tuple[JitFloat, ...]:
+    """Draw `n` random points in the unit square or cube, as one `mi.Float` for each axis."""
     import mitsuba as mi
 
     u = np.random.default_rng(seed).random((dimensions, n), np.float32)
     return tuple(mi.Float(pad(row)) for row in u)
 
 
-def quadrature():
-    """Directions over the whole sphere, a `mi.Vector3f`, and their solid angles (n,)."""
+def make_quadrature() -> tuple[JitVector, FloatArray]:
+    """Return directions over the sphere, a `mi.Vector3f`, and their solid angles (n,) [sr]."""
     import mitsuba as mi
 
-    w, solid_angle = _even_grid()
+    w, solid_angle = _make_grid()
     return mi.Vector3f(w), solid_angle
 
 
 @cache
-def _even_grid():
-    """The directions (3, n) of `quadrature`, and their solid angles."""
+def _make_grid() -> tuple[FloatArray, FloatArray]:
+    """Return directions (3, n) evenly spaced in both angles, and their solid angles (n,) [sr]."""
     theta = (np.arange(RINGS) + 0.5) / RINGS * np.pi
     phi = (np.arange(POINTS) + 0.5) / POINTS * 2 * np.pi
     theta, phi = (a.ravel() for a in np.meshgrid(theta, phi, indexing="ij"))
@@ -64,17 +69,17 @@ def _even_grid():
     return w.astype(np.float32), np.sin(theta) * 2 * np.pi**2 / (RINGS * POINTS)
 
 
-def numbers(value, n):
-    """`value` as an array (n,): a number per direction, also where Mitsuba returned a constant."""
+def to_numbers(value: JitFloat, n: int) -> FloatArray:
+    """Return a value of Mitsuba as an array (n,), also if it is a constant for all directions."""
     return np.broadcast_to(np.array(value, float).ravel(), n)
 
 
-def deviation(weights, expected):
-    """How many standard errors the mean of `weights` (channels, n) is off `expected` (channels,).
+def deviation(weights: FloatArray, expected: FloatArray) -> float:
+    """Return the deviation of the mean of `weights` (channels, n) from `expected` (channels,).
 
-    The largest over the channels.
+    It is counted in standard errors, and is the largest over the channels.
     """
     weights = np.asarray(weights, float)
-    # of the mean, and of the quadrature that gave `expected`
+    # The error of the mean, and of the quadrature that gave `expected`
     error = np.hypot(weights.std(axis=1) / np.sqrt(weights.shape[1]), 1e-3 * np.abs(expected))
     return float(np.max(np.abs(weights.mean(axis=1) - expected) / np.maximum(error, 1e-12)))

@@ -1,28 +1,38 @@
-"""Checks of environment emitters: samples follow their density, no light is missed."""
+"""Checks that samples of environment emitters follow their density, and that no light is missed."""
+
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from brdfkit.checks import directions
+from brdfkit.checks.plugin_subject import PluginSubject
 from brdfkit.checks.registry import check_of, larger
-from brdfkit.checks.variants import WAVELENGTHS, columns
+from brdfkit.checks.variants import WAVELENGTHS, to_channels
+from brdfkit.core.array_types import JitColour, JitFloat, JitVector, MitsubaObject
 
 NO_ENVIRONMENT = "nothing to check: the emitter is no environment"
 
 
-def sampler(subject):
-    """(`draw` as in `directions.py`, a function direction → (radiance, density))."""
+def make_sampler(
+    subject: PluginSubject,
+) -> tuple[Callable[..., Any], Callable[[JitVector], tuple[JitColour, JitFloat]]]:
+    """Return two functions that sample an emitter.
+
+    The first is `draw` as in `directions.py`, the second takes a direction to (radiance, density).
+    """
     import drjit as dr
     import mitsuba as mi
 
-    it = dr.zeros(mi.Interaction3f)
+    it: MitsubaObject = dr.zeros(mi.Interaction3f)
     if mi.is_spectral:
         it.wavelengths = WAVELENGTHS
 
-    def draw(u, v):
+    def draw(u: JitFloat, v: JitFloat) -> tuple[JitVector, JitColour, JitFloat]:
         ds, weight = subject.plugin.sample_direction(it, mi.Point2f(u, v))
         return ds.d, weight, ds.pdf
 
-    def radiance_and_pdf(w):
+    def radiance_and_pdf(w: JitVector) -> tuple[JitColour, JitFloat]:
         si = dr.zeros(mi.SurfaceInteraction3f, dr.width(w))
         si.wi, si.wavelengths = -w, it.wavelengths
         ds = dr.zeros(mi.DirectionSample3f, dr.width(w))
@@ -33,55 +43,55 @@ def sampler(subject):
 
 
 @check_of("emitters")
-def chi_squared(subject):
-    """Directions follow the density that `pdf_direction` states (Pearson's χ² test)."""
+def chi_squared(subject: PluginSubject) -> tuple[bool, str]:
+    """Check by Pearson's χ² test that directions have the density `pdf_direction`."""
     if not subject.plugin.is_environment():
         return True, NO_ENVIRONMENT
-    draw, radiance_and_pdf = sampler(subject)
+    draw, radiance_and_pdf = make_sampler(subject)
     p = directions.chi_squared(draw, lambda w: radiance_and_pdf(w)[1], tests=1)
     return p is not None, "rejected" if p is None else f"p-value {p:.3g}"
 
 
 @check_of("emitters")
-def weights(subject):
-    """The weight of a sample = radiance / density, and its density is that of `pdf_direction`."""
+def weights(subject: PluginSubject) -> tuple[bool, str]:
+    """Check that a sample has the weight radiance / density, and the density `pdf_direction`."""
     if not subject.plugin.is_environment():
         return True, NO_ENVIRONMENT
     n = 20_000
-    u = directions.random_points(n, seed=1)
-    draw, radiance_and_pdf = sampler(subject)
-    w, weight, stated = draw(*u)
+    u = directions.draw_points(n, seed=1)
+    draw, radiance_and_pdf = make_sampler(subject)
+    w, weight, sample_pdf = draw(*u)
     radiance, pdf = radiance_and_pdf(w)
-    weight, radiance = (columns(x, n) for x in (weight, radiance))
-    pdf, stated = (directions.numbers(x, n) for x in (pdf, stated))
+    weight, radiance = (to_channels(x, n) for x in (weight, radiance))
+    pdf, sample_pdf = (directions.to_numbers(x, n) for x in (pdf, sample_pdf))
     worst = 0.0
-    for a, b in ((weight * stated, radiance), (stated, pdf)):
-        # a direction on the edge of two blocks belongs to either, by rounding: 0.1 % may be off
-        off = np.abs(a - b) / np.maximum(np.abs(b), 1e-6)
-        worst = larger(worst, float(np.percentile(off, 99.9)))
+    for a, b in ((weight * sample_pdf, radiance), (sample_pdf, pdf)):
+        # Rounding decides to which block a direction on an edge belongs, so 0.1 % may differ
+        difference = np.abs(a - b) / np.maximum(np.abs(b), 1e-6)
+        worst = larger(worst, float(np.percentile(difference, 99.9)))
     return worst < 1e-3, f"relative difference at most {worst:.1e} in 999 of 1000 samples"
 
 
 @check_of("emitters")
-def normalisation(subject):
-    """∫ density dω = 1 over the sphere."""
+def normalisation(subject: PluginSubject) -> tuple[bool, str]:
+    """Check that the density integrates to 1 over the sphere."""
     if not subject.plugin.is_environment():
         return True, NO_ENVIRONMENT
-    w, solid_angle = directions.quadrature()
-    pdf = sampler(subject)[1](w)[1]
-    total = float(directions.numbers(pdf, len(solid_angle)) @ solid_angle)
+    w, solid_angle = directions.make_quadrature()
+    pdf = make_sampler(subject)[1](w)[1]
+    total = float(directions.to_numbers(pdf, len(solid_angle)) @ solid_angle)
     return abs(total - 1) < 5e-3, f"integral {total:.5f}"
 
 
 @check_of("emitters")
-def mean_light(subject):
-    """The mean weight of a sample = ∫ L dω by quadrature: no light is missed."""
+def mean_light(subject: PluginSubject) -> tuple[bool, str]:
+    """Check that the mean weight of samples is the integral of the radiance: no light is missed."""
     if not subject.plugin.is_environment():
         return True, NO_ENVIRONMENT
-    u = directions.random_points(directions.SAMPLES, seed=2)
-    draw, radiance_and_pdf = sampler(subject)
+    u = directions.draw_points(directions.SAMPLES, seed=2)
+    draw, radiance_and_pdf = make_sampler(subject)
     _, weight, _ = draw(*u)
-    w, solid_angle = directions.quadrature()
-    expected = columns(radiance_and_pdf(w)[0], len(solid_angle)) @ solid_angle
-    apart = directions.deviation(columns(weight, directions.SAMPLES), expected)
-    return apart < 4.5, f"mean weight and quadrature {apart:.1f} standard errors apart"
+    w, solid_angle = directions.make_quadrature()
+    expected = to_channels(radiance_and_pdf(w)[0], len(solid_angle)) @ solid_angle
+    deviation = directions.deviation(to_channels(weight, directions.SAMPLES), expected)
+    return deviation < 4.5, f"mean weight and quadrature {deviation:.1f} standard errors apart"

@@ -1,92 +1,107 @@
-"""Checks of phase functions: samples follow their density, no light is lost."""
+"""Checks that samples of phase functions follow their density, and that no light is lost."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
 from brdfkit.checks import directions
+from brdfkit.checks.plugin_subject import PluginSubject
 from brdfkit.checks.registry import check_of, larger
-from brdfkit.checks.variants import WAVELENGTHS, columns
+from brdfkit.checks.variants import WAVELENGTHS, to_channels
+from brdfkit.core.array_types import JitColour, JitFloat, JitVector, MitsubaObject
 
-# Two directions in which light travels: a phase function may treat the axes differently
+# Two directions in which light travels, because a phase function may treat the axes differently
 FORWARD = ((0.0, 0.0, 1.0), (0.6, 0.48, 0.64))
 
 
-def sampler(subject, forward):
-    """(`draw` as in `directions.py`, a function direction → (value, density)) of light that travels
-    along `forward`."""
+def make_sampler(
+    subject: PluginSubject, forward: Sequence[float]
+) -> tuple[Callable[..., Any], Callable[[JitVector], tuple[JitColour, JitFloat]]]:
+    """Return two functions for light that travels along `forward` (3,).
+
+    The first is `draw` as in `directions.py`, the second takes a direction to (value, density).
+    """
     import mitsuba as mi
 
-    context, it = mi.PhaseFunctionContext(None), mi.MediumInteraction3f()
+    context = mi.PhaseFunctionContext(None)
+    it: MitsubaObject = mi.MediumInteraction3f()
     it.wi, it.p = -mi.Vector3f(*forward), mi.Point3f(0)
     it.sh_frame = mi.Frame3f(it.wi)
     if mi.is_spectral:
         it.wavelengths = WAVELENGTHS
 
-    def draw(u, v, lobe):
+    def draw(u: JitFloat, v: JitFloat, lobe: JitFloat) -> tuple[JitVector, JitColour, JitFloat]:
         return subject.plugin.sample(context, it, lobe, mi.Point2f(u, v))
 
-    def value_and_pdf(wo):
+    def value_and_pdf(wo: JitVector) -> tuple[JitColour, JitFloat]:
         return subject.plugin.eval_pdf(context, it, wo)
 
     return draw, value_and_pdf
 
 
 @check_of("phase")
-def chi_squared(subject):
-    """Samples follow the density that `eval_pdf` states (Pearson's χ² test)."""
+def chi_squared(subject: PluginSubject) -> tuple[bool, str]:
+    """Check by Pearson's χ² test that samples have the density that `eval_pdf` returns."""
     p_values = []
     for forward in FORWARD:
-        draw, value_and_pdf = sampler(subject, forward)
-        p = directions.chi_squared(draw, lambda wo, f=value_and_pdf: f(wo)[1], len(FORWARD), 3)
-        p_values.append(p)
-    if None in p_values:
+        draw, value_and_pdf = make_sampler(subject, forward)
+
+        def pdf(wo: JitVector, f: Callable[..., Any] = value_and_pdf) -> JitFloat:
+            return f(wo)[1]
+
+        p_values.append(directions.chi_squared(draw, pdf, len(FORWARD), dimensions=3))
+    accepted = [p for p in p_values if p is not None]
+    if len(accepted) < len(p_values):
         return False, "rejected"
-    return True, f"smallest p-value {min(p_values):.3g}"
+    return True, f"smallest p-value {min(accepted):.3g}"
 
 
 @check_of("phase")
-def weights(subject):
-    """The weight of a sample = value / density, and its density is that of `eval_pdf`."""
+def weights(subject: PluginSubject) -> tuple[bool, str]:
+    """Check that a sample has the weight value / density, and the density of `eval_pdf`."""
     n, worst = 20_000, 0.0
-    u = directions.random_points(n, seed=1, dimensions=3)
+    u = directions.draw_points(n, seed=1, dimensions=3)
     for forward in FORWARD:
-        draw, value_and_pdf = sampler(subject, forward)
-        wo, weight, stated = draw(*u)
+        draw, value_and_pdf = make_sampler(subject, forward)
+        wo, weight, sample_pdf = draw(*u)
         value, pdf = value_and_pdf(wo)
-        weight, value = (columns(x, n) for x in (weight, value))
-        pdf, stated = (directions.numbers(x, n) for x in (pdf, stated))
-        for a, b in ((weight * pdf, value), (stated, pdf)):
+        weight, value = (to_channels(x, n) for x in (weight, value))
+        pdf, sample_pdf = (directions.to_numbers(x, n) for x in (pdf, sample_pdf))
+        for a, b in ((weight * pdf, value), (sample_pdf, pdf)):
             worst = larger(worst, float(np.max(np.abs(a - b) / np.maximum(np.abs(b), 1e-6))))
     return worst < 1e-3, f"relative difference at most {worst:.1e}"
 
 
 @check_of("phase")
-def normalisation(subject):
-    """∫ p dω = 1 over the sphere, of the density and of the value: no light is gained or lost."""
-    w, solid_angle = directions.quadrature()
-    n, totals = len(solid_angle), {"density": [], "value": []}
+def normalisation(subject: PluginSubject) -> tuple[bool, str]:
+    """Check that the density and the value integrate to 1 over the sphere: no light is lost."""
+    w, solid_angle = directions.make_quadrature()
+    n = len(solid_angle)
+    totals: dict[str, list[float]] = {"density": [], "value": []}
     for forward in FORWARD:
-        value, pdf = sampler(subject, forward)[1](w)
-        totals["density"].append(directions.numbers(pdf, n) @ solid_angle)
-        totals["value"].extend(columns(value, n) @ solid_angle)
+        value, pdf = make_sampler(subject, forward)[1](w)
+        totals["density"].append(float(directions.to_numbers(pdf, n) @ solid_angle))
+        totals["value"].extend(to_channels(value, n) @ solid_angle)
     farthest = {name: max(t, key=lambda x: (np.isnan(x), abs(x - 1))) for name, t in totals.items()}
     passed = all(abs(total - 1) < 1e-3 for total in farthest.values())
-    return passed, ", ".join(f"integral of the {n} {t:.5f}" for n, t in farthest.items())
+    return passed, ", ".join(f"integral of the {name} {t:.5f}" for name, t in farthest.items())
 
 
 @check_of("phase")
-def mean_cosine(subject):
-    """The weighted mean cosine of the samples = ∫ p μ dω by quadrature: no direction is missed."""
+def mean_cosine(subject: PluginSubject) -> tuple[bool, str]:
+    """Check that the weighted mean cosine μ of samples is ∫ p μ dω: no direction is missed."""
     import mitsuba as mi
 
-    u = directions.random_points(directions.SAMPLES, seed=2, dimensions=3)
-    w, solid_angle = directions.quadrature()
+    u = directions.draw_points(directions.SAMPLES, seed=2, dimensions=3)
+    w, solid_angle = directions.make_quadrature()
     worst = 0.0
     for forward in FORWARD:
-        draw, value_and_pdf = sampler(subject, forward)
+        draw, value_and_pdf = make_sampler(subject, forward)
         wo, weight, _ = draw(*u)
         cosine = np.array(mi.Vector3f(*forward)).ravel() @ np.array(wo)
-        found = columns(weight, directions.SAMPLES) * cosine
-        value = columns(value_and_pdf(w)[0], len(solid_angle))
+        weighted_cosine = to_channels(weight, directions.SAMPLES) * cosine
+        value = to_channels(value_and_pdf(w)[0], len(solid_angle))
         expected = value @ (np.array(forward) @ np.array(w) * solid_angle)
-        worst = larger(worst, directions.deviation(found, expected))
+        worst = larger(worst, directions.deviation(weighted_cosine, expected))
     return worst < 4.5, f"samples and quadrature at most {worst:.1f} standard errors apart"

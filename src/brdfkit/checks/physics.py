@@ -1,8 +1,8 @@
-"""Checks of physics: the BRDF is reciprocal, finite and not negative, and it conserves energy."""
+"""Checks that a BRDF is reciprocal, finite and not negative, and conserves energy."""
 
 import numpy as np
 
-from brdfkit.checks.material_subject import AZIMUTH, incidences, random_pairs
+from brdfkit.checks.material_subject import AZIMUTH, Subject, incidences, random_pairs
 from brdfkit.checks.registry import check_of
 from brdfkit.core.discovery.plugin_files import MODELS
 from brdfkit.core.errors import BrdfkitError
@@ -14,19 +14,21 @@ from brdfkit.regression.problem.not_finite import require_finite, require_finite
 
 
 @check_of(MODELS)
-def reciprocity(subject):
-    """f(wi, wo) = f(wo, wi), in double precision over 10,000 pairs."""
+def reciprocity(subject: Subject) -> tuple[bool, str]:
+    """Check that f(wi, wo) = f(wo, wi) at 10,000 pairs of directions, in double precision."""
     wi, wo = random_pairs(10_000, seed=4)
-    forth, back = subject.thing.eval(wi, wo), subject.thing.eval(wo, wi)
+    forth, back = subject.material.eval(wi, wo), subject.material.eval(wo, wi)
     difference = np.max(np.abs(forth - back) / np.maximum(np.abs(forth), 1e-12))
-    return bool(
-        difference < (1e-3 if subject.is_single else 1e-10)
-    ), f"relative difference at most {difference:.1e}"
+    tolerance = 1e-3 if subject.is_single_precision else 1e-10
+    return bool(difference < tolerance), f"relative difference at most {difference:.1e}"
 
 
 @check_of(MODELS)
-def finite(subject):
-    """Finite and not negative up to the horizon, 0 below it, in the renderer's precision."""
+def finite(subject: Subject) -> tuple[bool, str]:
+    """Check that values are finite and not negative above the horizon, and 0 below it.
+
+    The values are those of the Mitsuba BSDF, in single precision.
+    """
     heights = np.array([-1, -1e-3, 0, 1e-8, 1e-6, 1e-4, 1e-2, 0.1, 0.5, 1.0])
     phi = np.linspace(0, 2 * np.pi, 13)
     z_i, z_o, phi = (a.ravel() for a in np.meshgrid(heights, heights, phi))
@@ -37,16 +39,16 @@ def finite(subject):
         "negative": (value < 0).sum(),
         "not black below the horizon": (value[below] != 0).sum(),
     }
-    found = "; ".join(f"{count} {what}" for what, count in problems.items() if count)
-    return not found, found or f"{value.size:,} values up to the horizon are finite"
+    figure = "; ".join(f"{count} {problem}" for problem, count in problems.items() if count)
+    return not figure, figure or f"{value.size:,} values up to the horizon are finite"
 
 
 @check_of(MODELS)
-def defined(subject):
-    """The formula and its derivatives are finite in double precision where a fit may need them.
+def defined(subject: Subject) -> tuple[bool, str]:
+    """Check that the formula and its derivatives are finite at special pairs of directions.
 
-    These are the normal, mirror directions, whose half vector is the normal, and the directions
-    back to the light.
+    These are mirror directions, whose half vector is the normal, and pairs of equal directions, up
+    to 89.9°. A fit, which computes in double precision, may need them.
     """
     model = subject.model
     if model is None:
@@ -61,14 +63,14 @@ def defined(subject):
         require_finite(model, plain.T, *directions)
         require_finite_slopes(model, shapes, shapes, *directions)
     except BrdfkitError as error:
-        # the reason, between the model's name and the remedy
+        # Only the reason, between the model's name and the remedy
         return False, str(error).partition(": ")[2].partition(";")[0]
     return True, f"formula and derivatives are finite at {len(wi):,} pairs"
 
 
 @check_of(MODELS)
-def energy(subject):
-    """No more light leaves than arrives: albedo ≤ 1 at every angle of incidence up to 85°."""
+def energy(subject: Subject) -> tuple[bool, str]:
+    """Check that the albedo is at most 1 at every angle of incidence up to 85°."""
     f = subject.values
     figures = {degrees: directional_albedo(f, wi).max() for degrees, wi in incidences()}
     degrees = max(figures, key=lambda d: figures[d])

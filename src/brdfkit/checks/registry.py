@@ -1,4 +1,4 @@
-"""The registry of the checks, by kind of plugin, and `Finding`, the result of one check."""
+"""Registers the checks by kind of plugin, and describes their results and errors."""
 
 import traceback
 from collections.abc import Callable
@@ -10,20 +10,20 @@ import numpy as np
 from brdfkit.core.discovery.plugin_files import KINDS
 
 
-def larger(a, b):
-    """The larger of two figures, NaN if one is NaN: what is not a number must not pass as small."""
+def larger(a: float, b: float) -> float:
+    """Return the larger of two figures, or NaN if one is NaN, which must not pass as small."""
     return float(np.maximum(a, b))
 
 
-# Words in an error of Dr.Jit's → what the plugin's author should write
+# Words in an error of Dr.Jit → what the author of the plugin should write
 HINTS = {
     "'bool'": "write dr.select in place of `if` on values",
     "'ndarray'": "write functions of dr in place of NumPy's",
 }
 
 
-def describe(error, path):
-    """`error` in words: the plugin's file (`Path`) and the line that raised it, and the reason."""
+def describe_error(error: BaseException, path: Path) -> str:
+    """Return an error in words: the plugin's file and line that raised it, and the reason."""
     frames = traceback.extract_tb(error.__traceback__)
     lines = [f.lineno for f in frames if Path(f.filename) == path]
     place = f"{path.name}, line {lines[-1]}" if lines else path.name
@@ -35,7 +35,8 @@ def describe(error, path):
     return f"{place}: {hint}{reason}"
 
 
-checks: dict[str, dict[str, Callable]] = {kind: {} for kind in KINDS}
+Check = Callable[..., tuple[bool, str]]  # (subject) → (passed, figure)
+checks: dict[str, dict[str, Check]] = {kind: {} for kind in KINDS}
 
 
 @dataclass(frozen=True)
@@ -47,13 +48,14 @@ class Finding:
     figure: str
 
 
-def check_of(*kinds):
-    """Register a function (subject) → (passed, figure) as a check of these kinds of plugins.
+def check_of(*kinds: str) -> Callable[[Check], Check]:
+    """Return a decorator that registers a function as a check of these kinds of plugins.
 
-    The check has the function's name, with spaces for underscores.
+    The function takes the subject and returns (passed, figure). The check has the name of the
+    function, with spaces for underscores.
     """
 
-    def register(function):
+    def register(function: Check) -> Check:
         for kind in kinds:
             checks[kind][function.__name__.replace("_", " ")] = function
         return function

@@ -1,31 +1,34 @@
-"""Spectra of Mitsuba's current variant as arrays: RGB, one channel, or fixed wavelengths."""
+"""Converts spectra of Mitsuba's current variant to arrays: RGB, one channel, or wavelengths."""
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, JitColour, MitsubaObject
 from brdfkit.core.colours import LUMINANCE, RGB, import_colour
+from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
+from brdfkit.model import Model
 
 WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)  # nm, at which spectral variants are checked
 
 
-def columns(spectrum, n):
-    """The channels (channels, n) of a spectrum of the variant, without its polarisation."""
+def to_channels(spectrum: JitColour, n: int) -> FloatArray:
+    """Return the channels (channels, n) of a spectrum of Mitsuba, without its polarisation."""
     import mitsuba as mi
 
-    found = np.array(mi.unpolarized_spectrum(spectrum), float)
-    return np.broadcast_to(found.reshape(len(found), -1), (len(found), n))
+    channels = np.array(mi.unpolarized_spectrum(spectrum), float)
+    return np.broadcast_to(channels.reshape(len(channels), -1), (len(channels), n))
 
 
-def in_variant(values, material):
-    """`values` (n, c) of a `Measured` in the channels of the current variant, (n, channels).
+def to_variant_channels(values: FloatArray, material: Measured) -> FloatArray:
+    """Return `values` (n, c) of a `Measured` in the channels of the current variant (n, channels).
 
-    In a spectral variant a colour is a sum of three basis spectra [Mallett & Yuksel 2019].
+    In a spectral variant a colour becomes a sum of three basis spectra [Mallett & Yuksel 2019].
     """
     import mitsuba as mi
 
     if values.shape[1] == 1:
         return np.broadcast_to(values, (len(values), len(WAVELENGTHS) if mi.is_spectral else 1))
-    if material.channels != RGB:  # only in a spectral variant: in others, `rendered` is in RGB
+    if material.channels != RGB:  # only in a spectral variant; in others, `rendered` is in RGB
         nm = wavelengths(material)
         order = np.argsort(nm)
         return np.stack([np.interp(WAVELENGTHS, nm[order], row) for row in values[:, order]])
@@ -38,12 +41,12 @@ def in_variant(values, material):
     return values @ np.array(spectra)
 
 
-def weights_of(bsdf, model):
-    """A model's weights (lobes, channels), as the textures of its BSDF give them."""
+def read_weights(bsdf: MitsubaObject, model: Model) -> FloatArray:
+    """Return the weights (lobes, channels) of a model from the textures of its BSDF."""
     import drjit as dr
     import mitsuba as mi
 
-    si = dr.zeros(mi.SurfaceInteraction3f, 1)
+    si: MitsubaObject = dr.zeros(mi.SurfaceInteraction3f, 1)
     if mi.is_spectral:
         si.wavelengths = WAVELENGTHS
-    return np.stack([columns(bsdf.eval_attribute(n, si), 1)[:, 0] for n in model.weights()])
+    return np.stack([to_channels(bsdf.eval_attribute(n, si), 1)[:, 0] for n in model.weights()])

@@ -29,7 +29,7 @@ def check(things, values, console):
 
 def _find_subject(name, settings):
     """The material of a name, or the dictionary of a plugin that is no model, with `settings`."""
-    from brdfkit.checks.plugin_subject import example, is_no_model, require_declared
+    from brdfkit.checks.plugin_subject import is_no_model, make_example, require_declared
     from brdfkit.cli.arguments import material
     from brdfkit.mitsuba_bridge.registration.users_plugins import load_plugins
 
@@ -38,7 +38,7 @@ def _find_subject(name, settings):
     if is_no_model(name):
         values = parse_settings(settings, "--set", "VALUE", "R,G,B")
         require_declared(name, values)
-        return example(name, **values)
+        return make_example(name, **values)
     return material(name, settings) if settings else name
 
 
