@@ -31,7 +31,6 @@ from .materials.measured import Measured as Measured
 from .materials.plotting import plot as plot
 from .mitsuba_bridge.registration.users_plugins import load_plugins as load_plugins
 from .model import Model as Model
-from .model.labels import load_models as load_models
 from .model.labels import models as models
 from .regression import Fit as Fit
 from .regression import losses as losses

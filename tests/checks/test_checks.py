@@ -239,7 +239,8 @@ def test_a_model_that_raises_has_failed(lines, said, tmp_path, monkeypatch):
     """Each check for itself; the figure names the line."""
     monkeypatch.setattr("brdfkit.core.discovery.plugin_files._users", {})
     (tmp_path / "users_mine.py").write_text(MINE + lines)
-    mine = bk.load_models(tmp_path)["users_mine"]
+    bk.load_plugins(tmp_path)
+    mine = bk.models()["users_mine"]
     report = bk.check(mine(), only=["plugin is formula", "finite"])
     assert not report
     for finding in report.findings:

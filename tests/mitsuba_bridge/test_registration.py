@@ -209,13 +209,13 @@ def test_a_users_folder(folder, llvm_variant):
     (folder / "users_felt.py").write_text(FELT)
     (folder / "users_cloth.py").write_text(FELT)
     (folder / "_helper.py").write_text("")
-    loaded = bk.load_models(folder)
-    assert list(loaded) == ["users_cloth", "users_felt"]
+    loaded = bk.load_plugins(folder)
+    assert loaded == {"users_cloth": "bsdfs", "users_felt": "bsdfs"}
     assert set(loaded) < set(bk.models())
-    assert bk.load_models(folder / "users_felt.py") == {"users_felt": loaded["users_felt"]}
+    assert bk.load_plugins(folder / "users_felt.py") == {"users_felt": "bsdfs"}
     bsdf = mi.load_dict({"type": "users_felt"})
     np.testing.assert_allclose(evaluated(mi, bsdf), 0.3 / np.pi * WO_Z, rtol=1e-5)
-    assert bk.check(loaded["users_cloth"](), only=["chi squared", "plugin is formula"])
+    assert bk.check(bk.models()["users_cloth"](), only=["chi squared", "plugin is formula"])
 
 
 @pytest.mark.quick
@@ -227,7 +227,7 @@ def test_an_edited_file_is_read_anew(folder, llvm_variant, monkeypatch):
     for albedo in (0.3, 0.6):
         file.write_text(FELT.replace("0.3", str(albedo)))
         os.utime(file, ns=(0, int(albedo * 10)))
-        bk.load_models(file)
+        bk.load_plugins(file)
         bsdf = mi.load_dict({"type": "users_wool"})
         np.testing.assert_allclose(evaluated(mi, bsdf), albedo / np.pi * WO_Z, rtol=1e-5)
 
@@ -237,7 +237,7 @@ def test_an_edited_file_is_read_anew(folder, llvm_variant, monkeypatch):
 def test_a_taken_name_is_refused(folder, name):
     (folder / f"{name}.py").write_text(FELT)
     with pytest.raises(bk.BrdfkitError, match=f"plugin '{name}'; rename the file"):
-        bk.load_models(folder)
+        bk.load_plugins(folder)
     assert not plugin_files._users
 
 
@@ -246,16 +246,16 @@ def test_two_files_of_one_name_are_refused(folder):
     for where in ("one", "two"):
         (folder / where).mkdir()
         (folder / where / "users_silk.py").write_text(FELT)
-    bk.load_models(folder / "one")
+    bk.load_plugins(folder / "one")
     with pytest.raises(bk.BrdfkitError, match=r"one.users_silk\.py is loaded as 'users_silk'"):
-        bk.load_models(folder / "two")
+        bk.load_plugins(folder / "two")
 
 
 @pytest.mark.quick
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("", "defines no class"),
+        ("", "holds no Model"),
         ("def", "cannot be imported"),
         ("1 / 0", "division by zero"),
         (FELT + FELT.replace("Felt", "Two"), "defines 2 models"),
@@ -264,10 +264,10 @@ def test_two_files_of_one_name_are_refused(folder):
 def test_a_file_that_holds_no_model_is_refused(folder, text, said):
     (folder / "users_wrong.py").write_text(text)
     with pytest.raises(bk.BrdfkitError, match=rf"users_wrong\.py.*{said}"):
-        bk.load_models(folder)
+        bk.load_plugins(folder)
     assert not plugin_files._users
     with pytest.raises(bk.BrdfkitError, match="no Python file"):
-        bk.load_models(folder / "nowhere.py")
+        bk.load_plugins(folder / "nowhere.py")
 
 
 @pytest.mark.quick
@@ -287,7 +287,7 @@ def test_a_wrong_declaration_is_refused(folder, declared, said):
     text = f"import math\nfrom brdfkit.model import shape\n{FELT}\n    other = {declared}\n"
     (folder / "users_wrong.py").write_text(text)
     with pytest.raises(bk.BrdfkitError, match=r"users_wrong\.py.*") as caught:
-        bk.load_models(folder)
+        bk.load_plugins(folder)
     assert said in str(caught.value)
 
 

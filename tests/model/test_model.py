@@ -79,7 +79,7 @@ def pickled(tmp_path, no_user_plugins):
     """A function: models of a user's file and a sum with it, pickled; the file's path."""
     file = tmp_path / "users_felt.py"
     file.write_text(FELT)
-    bk.load_models(file)
+    bk.load_plugins(file)
     felt = labels.model("users_felt")(n=2.0)
     both = labels.model("ggx+users_felt")(users_felt_2_n=3.0)
     (tmp_path / "models.pkl").write_bytes(pickle.dumps([felt, both]))
@@ -114,7 +114,7 @@ def test_a_pickle_says_where_its_file_is_missing(pickled):
     pickled.rename(moved / pickled.name)
     told = read(pickled.parent)
     assert told.startswith(f"BrdfkitError {pickled}: the file of the model 'users_felt' is missing")
-    load = f"import brdfkit as bk; bk.load_models({str(moved / pickled.name)!r})\n"
+    load = f"import brdfkit as bk; bk.load_plugins({str(moved / pickled.name)!r})\n"
     assert read(pickled.parent, load).startswith("2.0 3.0")
 
 

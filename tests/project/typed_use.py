@@ -105,7 +105,6 @@ def volumes() -> None:
 
 def extend() -> None:
     """Plugins of one's own."""
-    assert_type(bk.load_models("my_models/"), dict[str, type[bk.Model]])
     assert_type(bk.load_plugins("my_plugins/"), dict[str, str])
     assert_type(bk.losses.named["log"].meaning, str)
     dictionary: dict[str, Any] = bk.models()["ggx"]().scene_dict()

@@ -97,47 +97,23 @@ def read_files(label: Any) -> Any:
     for part in [label] if os.path.isfile(label) else label.split("+"):
         name, colon, options = part.partition(":")
         if name.endswith(".py"):
-            load_models(name)
+            load_model_file(name)
             name = Path(name).stem
         parts.append(name + colon + options)
     return "+".join(parts)
 
 
-def load_models(path: str | Path) -> dict[str, type[Model]]:
-    """Make BRDF models of yours known, beside brdfkit's: in fits, in Mitsuba and by name.
+def load_model_file(path: str | Path) -> None:
+    """Make the model that a Python file defines known, by the file's name.
 
-    Parameters
-    ----------
-    path : str or Path
-        A Python file that holds one class derived from `Model`, or a folder of such files; those
-        whose name begins with an underscore are left out. A file's name is the model's.
-
-    Returns
-    -------
-    dict of str to type
-        The models that were loaded, by name.
-
-    Raises
-    ------
-    BrdfkitError
-        And loads none, for a file that cannot be imported or holds no model or several, and for a
-        name that another plugin of brdfkit's, of Mitsuba's or of yours has.
-
-    Examples
-    --------
-    >>> load_models("my_models/")    # doctest: +SKIP
-    {'velvet': <class 'brdfkit.user_plugins.velvet.Velvet'>}
+    Raises `BrdfkitError` for a file that cannot be imported or defines no model or several, and for
+    a name that another plugin has.
     """
-    files = plugin_files.find_python_files(path)
-    loaded: dict[str, type[Model]] = {}
-    for file in files:
-        plugin_files.require_free_name(file.stem, file)
-        defined = model_in(file)
-        if defined is None:
-            raise BrdfkitError(f"{file} defines no class derived from brdfkit.Model.")
-        loaded[file.stem] = defined
-    plugin_files.add_plugins(MODELS, {file.stem: file for file in files})
-    return loaded
+    (file,) = plugin_files.find_python_files(path)
+    plugin_files.require_free_name(file.stem, file)
+    if model_in(file) is None:
+        raise BrdfkitError(f"{file} defines no class derived from brdfkit.Model.")
+    plugin_files.add_plugins(MODELS, {file.stem: file})
 
 
 def model_in(source: Path | type | None) -> type[Model] | None:

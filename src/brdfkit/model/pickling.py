@@ -33,7 +33,7 @@ class UsersClass:
         if not file.is_file():
             raise BrdfkitError(
                 f"{path}: the file of the model {path.stem!r} is missing; load it from where it "
-                'is now, as by brdfkit.load_models("FILE.py").'
+                'is now, as by brdfkit.load_plugins("FILE.py").'
             )
         if sha256(file) != self.checksum:
             warnings.warn(

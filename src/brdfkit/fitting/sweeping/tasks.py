@@ -68,7 +68,7 @@ def fit_models(task: Task) -> Iterator[Outcome]:
         try:
             _require_unchanged(files)
             for path in files:
-                labels.load_models(path)
+                labels.load_model_file(path)
             stream = io.BytesIO()
             found = fit(data, label, **task.settings)
             fit_json.write(found, stream)

@@ -54,7 +54,7 @@ def read(source: Source) -> Fit:
         if not labels.is_label(label):
             raise source.error(
                 f"is a fit of {label[:80]!r}, a model of somebody's own; load its file first, "
-                'brdfkit.load_models("FILE.py"), or name it before the fit'
+                'brdfkit.load_plugins("FILE.py"), or name it before the fit'
             ) from None
         reason = str(error)[:200].rstrip(".")
         raise source.error(f"cannot be restored ({reason}); fit it again") from None

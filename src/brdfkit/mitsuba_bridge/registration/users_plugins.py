@@ -1,4 +1,4 @@
-"""`load_plugins`: plugins of a user's own, of any kind."""
+"""`load_plugins`: makes plugins of a user's own known, BRDF models included."""
 
 from pathlib import Path
 
@@ -9,14 +9,18 @@ from brdfkit.model import labels
 
 
 def load_plugins(path: str | Path) -> dict[str, str]:
-    """Make plugins of yours, of any kind, known to Mitsuba in every variant.
+    """Make your own plugins of any kind known, to Mitsuba in every variant and to brdfkit by name.
+
+    A BRDF model is a plugin of the kind ``bsdfs``: afterwards it can be fitted, and `models` lists
+    it.
 
     Parameters
     ----------
     path : str or Path
-        A folder laid out as brdfkit's own, with ``emitters/``, ``phase/`` and the like in it, one
-        of these, or a file in one of them; a file that holds a `Model` may lie anywhere. A file's
-        name is the plugin's type.
+        A folder with the same layout as brdfkit's own, which contains ``emitters/``, ``phase/`` and
+        the like; one of these folders; or a file in one of them. A file that defines a `Model` may
+        lie anywhere, and so may a folder of such files. A file's name is the type of the plugin.
+        Files whose names begin with an underscore are left out.
 
     Returns
     -------
@@ -26,8 +30,8 @@ def load_plugins(path: str | Path) -> dict[str, str]:
     Raises
     ------
     BrdfkitError
-        And loads none, for a name that is taken, a file that cannot be imported or holds no plugin,
-        or that lies in no folder of a kind.
+        For a name that is taken, and for a file that cannot be imported, holds no plugin, or lies
+        in no folder of a kind. Then none is loaded.
 
     Examples
     --------
