@@ -3,9 +3,10 @@
     L = A RGB + (1 - A) L_behind,   (RGB, A) = T(v),   v = max V(t) along the ray
 
 T is the transfer function of a `volume` of the type `transfer_function`, as in angiography and PET.
-For a colour map alone, with A = 1, use `TransferFunction.from_colormap(name, range, [(0, 1), (1,
-1)])`. Any other volume is shown in grey: L = v. L_behind is the emission of the first surface,
-which ends the ray, or of the environment.
+For a colour map alone, with A = 1, use
+`TransferFunction.from_colormap(name, range, opacity=[(0, 1), (1, 1)])`. Any other volume is shown
+in grey: L = v. L_behind is the emission of the first surface, which ends the ray, or of the
+environment.
 
 The ray is cut into `steps` equal parts within the box of the volume. Each part is read at one
 point, at a random share of its length that is the same for all parts; then the largest value is

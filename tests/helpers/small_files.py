@@ -111,7 +111,9 @@ def spectrum(anisotropic=False):
     channels = tuple(f"{w}nm" for w in WAVELENGTHS)
     valid, errors = theta > 0.15, 0.01 * np.abs(values)
     rest = {"anisotropic": anisotropic, "standard_error": errors}
-    return Measured.from_samples(wi, wo, values, valid, channels, name="paint", **rest)
+    return Measured.from_samples(
+        wi, wo, values, valid=valid, channels=channels, name="paint", **rest
+    )
 
 
 def brushed():

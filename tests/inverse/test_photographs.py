@@ -92,7 +92,7 @@ def test_lights_that_were_held_out_are_predicted(mi, made, found):
 def test_relighting_is_what_mitsuba_shows(mi, found):
     """Of a sample seen from above, whose texels are pixels."""
     (position,), (intensity,) = made_capture.lights(1, seed=11)
-    picture = found.relight(position, intensity, viewer=(0, 0, 1e3))
+    picture = found.relight(position, intensity=intensity, viewer=(0, 0, 1e3))
     t = mi.ScalarTransform4f()
     sensor = {
         "type": "orthographic",

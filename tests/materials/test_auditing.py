@@ -257,7 +257,9 @@ DIFFERENCE = 0.1 / 1.05
 def test_reciprocity_of_tables(shape):
     assert not Measured.from_table(tabulated()).audit().reciprocity  # one half of the pairs
     for model, expected in ((GGX, 0), (OneWay(), DIFFERENCE)):
-        audit = Measured.from_table(tabulated(model, shape, 2 * np.pi), 2 * np.pi).audit()
+        audit = Measured.from_table(
+            tabulated(model, shape, 2 * np.pi), phi_d_period=2 * np.pi
+        ).audit()
         assert audit.reciprocity.pairs == 3 * audit.valid / 2
         assert audit.reciprocity.median == pytest.approx(expected, abs=1e-9)
     assert audit.reciprocity.percentile_95 == pytest.approx(DIFFERENCE)
@@ -292,7 +294,7 @@ def test_mirror_symmetry():
     for period, left in ((np.pi, slice(0, 18)), (2 * np.pi, slice(0, 36))):
         values = tabulated(shape=(20, 10, 2 * left.stop), period=period)
         values[..., left, :] *= 1.1
-        found = symmetries.by_mirror(Measured.from_table(values, period))
+        found = symmetries.by_mirror(Measured.from_table(values, phi_d_period=period))
         assert found.median == pytest.approx(DIFFERENCE)
     assert not symmetries.by_mirror(scattered(anisotropic=True))
     assert not symmetries.by_mirror(Measured.from_table(tabulated(shape=(4, 9, 9, 18))))

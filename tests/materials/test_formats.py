@@ -244,7 +244,7 @@ def test_merl_round_trip(drawn):
     period = 2 * np.pi if shape[2] == 4 * shape[1] else np.pi
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "table.binary"
-        save(Measured.from_table(values, period), path)
+        save(Measured.from_table(values, phi_d_period=period), path)
         back = load(path)
     np.testing.assert_array_max_ulp(
         back.table.values[values == values], values[values == values], 2
@@ -518,7 +518,7 @@ def test_protected_files(tmp_path):
 def test_valid_is_one_for_each_sample(valid):
     w = from_angles(np.array([0.1, 0.2, 0.3]), 0.0)
     with pytest.raises(BrdfkitError, match=r"grey: valid \(.*\) should be \(3,\)"):
-        Measured.from_samples(w, w, np.ones((3, 3)), valid, name="grey")
+        Measured.from_samples(w, w, np.ones((3, 3)), valid=valid, name="grey")
 
 
 @pytest.mark.quick

@@ -84,7 +84,7 @@ def test_notes_and_names_become_text(tmp_path):
 @pytest.mark.parametrize("period", [0, -1, 10, np.nan])
 def test_no_table_has_such_a_period(period):
     with pytest.raises(BrdfkitError, match=r"grey: phi_d_period is .*; give π"):
-        Measured.from_table(np.ones((2, 2, 2, 3)), period, name="grey")
+        Measured.from_table(np.ones((2, 2, 2, 3)), phi_d_period=period, name="grey")
 
 
 @pytest.mark.parametrize("shape", [7, (9, 9), (9, 9, 0), (9, 9, 2.5), (1, 2, 3, 4, 5)])

@@ -269,7 +269,9 @@ def test_round_trip_to_the_bit(angles, channels, numbers, errors, anisotropic, s
     values = np.array(numbers)[: len(angles) * len(channels)].reshape(len(angles), -1)
     rest = {"anisotropic": anisotropic, "standard_error": np.abs(values) if errors else None}
     info = {"instrument": "a goniometer: of ours", "θ": "2° steps"}
-    data = Measured.from_angles(*np.array(angles).T, values, "degrees", channels, info=info, **rest)
+    data = Measured.from_angles(
+        *np.array(angles).T, values, unit="degrees", channels=channels, info=info, **rest
+    )
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"mine{suffix}"
         save(data, path)

@@ -50,7 +50,7 @@ def scattered(rows, valid=None, name="scattered"):
     """From rows (theta_i, phi_i, theta_o, phi_o [degrees], value)."""
     theta_i, phi_i, theta_o, phi_o, value = np.array(rows, float).T
     wi, wo = from_angles(*np.radians([theta_i, phi_i])), from_angles(*np.radians([theta_o, phi_o]))
-    return Measured.from_samples(wi, wo, value[:, None], valid, channels=("Y",), name=name)
+    return Measured.from_samples(wi, wo, value[:, None], valid=valid, channels=("Y",), name=name)
 
 
 def texts(figure):

@@ -1,4 +1,4 @@
-"""The public names: annotated, with arguments listed as numpydoc has them, and examples."""
+"""The public names: their number, the form of their arguments, and their documentation."""
 
 import inspect
 import math
@@ -66,6 +66,67 @@ ROOM = {f"distance_fields.{name}": thing for name, thing in vars(bk.distance_fie
 FIELDS = {n: thing for n, thing in ROOM.items() if is_dataclass(thing)}
 TRACED = {n: thing for n, thing in ROOM.items() if inspect.isfunction(thing)}
 LISTED = CALLED | TRACED
+
+
+# Everything that a user calls: functions, methods and constructors
+METHODS_OF_ALL = {
+    f"{name}.{method}": getattr(cls, method)
+    for name, cls in CLASSES.items()
+    for method in [*(m for m in vars(cls) if not m.startswith("_")), "__init__"]
+    if callable(getattr(cls, method))
+}
+# Verbs of brdfkit; of formulas and of distance fields, arguments are as the formula has them
+VERBS = {**FUNCTIONS, "shadows.compare": bk.shadows.compare}
+WIDEST = 60
+
+
+def test_there_are_46_names():
+    kinds = {
+        "functions": sum(map(inspect.isfunction, TOP.values())),
+        "types": sum(isinstance(thing, type) for thing in TOP.values()),
+        "subnamespaces": sum(map(inspect.ismodule, TOP.values())),
+    }
+    assert kinds == {"functions": 23, "types": 14, "subnamespaces": 9}
+    assert len(TOP) == 46
+
+
+def test_a_subnamespace_offers_what_is_listed():
+    lazy = set(SUBNAMESPACES) - {"photographs", "rendering"}
+    for space in lazy:
+        assert sorted(dir(getattr(bk, space))) == sorted(SUBNAMESPACES[space].split())
+
+
+@pytest.mark.parametrize("name", CALLED | METHODS_OF_ALL | TRACED)
+def test_a_parameter_fits_into_a_line_of_help(name):
+    signature = inspect.signature((CALLED | METHODS_OF_ALL | TRACED)[name])
+    wide = [text for text in map(str, signature.parameters.values()) if len(text) > WIDEST]
+    assert not wide
+
+
+@pytest.mark.parametrize("name", VERBS)
+def test_at_most_two_arguments_are_positional(name):
+    by_place = [
+        n
+        for n, p in arguments(VERBS[name]).items()
+        if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)
+    ]
+    if name == "evaluate":  # a BRDF takes a pair of directions, as its method `eval` does
+        assert by_place.pop(1) == "wi"
+    assert len(by_place) <= 2
+
+
+@pytest.mark.parametrize("name", VERBS)
+def test_the_seed_and_the_progress_come_last(name):
+    names = list(arguments(VERBS[name]))
+    last = [n for n in ("seed", "progress") if n in names]
+    assert names[len(names) - len(last) :] == last
+
+
+@pytest.mark.parametrize("name", VERBS)
+def test_one_thing_has_one_word(name):
+    old = "brdf count data envmap linearise obj output rows samples smoothing thing things until"
+    new = set(arguments(VERBS[name])) - ({"data"} if name == "reproduce" else set())
+    assert not new & set(old.split())
 
 
 def documented(thing):

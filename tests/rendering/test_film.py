@@ -11,7 +11,7 @@ from brdfkit.rendering import Film, render_orbit
 from brdfkit.volumes import TransferFunction, Volume
 
 pytestmark = pytest.mark.usefixtures("module_in_llvm")
-GREY = TransferFunction.from_colormap("gray", (0, 1), [(0, 1), (1, 1)])
+GREY = TransferFunction.from_colormap("gray", (0, 1), opacity=[(0, 1), (1, 1)])
 LOOK = {"transfer": GREY, "renderer": "maximum_intensity", "size": 24, "spp": 2, "elevation": 0}
 
 

@@ -41,7 +41,7 @@ def dot(axes, *where):
     ],
 )
 def test_the_world_is_seen_from_where_it_is_said(axes, azimuth, where, upper, left):
-    grey = TransferFunction.from_colormap("gray", (0, 1), [(0, 1), (1, 1)])
+    grey = TransferFunction.from_colormap("gray", (0, 1), opacity=[(0, 1), (1, 1)])
     view = {"transfer": grey, "azimuth": azimuth, "elevation": 0}
     picture = seen(dot(axes, *where), **view)[..., 0]
     y, x = np.unravel_index(picture.argmax(), picture.shape)

@@ -69,7 +69,7 @@ def test_more_texels_are_better_and_a_map_that_ignores_the_camera_does_not_flick
     scene = objects_on_a_ground("directional")
     projections = "uniform", "focused"
     coarse, fine = (
-        bk.shadows.compare(scene, projections, ["depth"], resolution=n, size=(64, 64)).means
+        bk.shadows.compare(scene, projections, filters=["depth"], resolution=n, size=(64, 64)).means
         for n in (32, 512)
     )
     for name in projections:

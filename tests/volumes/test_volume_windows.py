@@ -93,7 +93,7 @@ def test_the_level_is_not_of_outliers():
 def test_a_boundary_is_a_shell_of_one_thickness():
     """Of a ramp of any slope, A falls from 1 on the surface to 0 at the thickness."""
     rows = [[100, 60, 0.2, 0.4, 0.6, 1]]
-    function = TransferFunction.from_boundaries(rows, 2.0, (-100, 300))
+    function = TransferFunction.from_boundaries(rows, 2.0, values=(-100, 300))
     x = np.linspace(-3, 3, 13)
     for slope in (18.75, 37.5, 56.25):  # on the grid
         a = function(100 + slope * x, slope)[:, 3]
@@ -122,7 +122,7 @@ def test_boundaries_are_no_product():
 )
 def test_what_is_no_boundary_is_said(rows, thickness, message):
     with pytest.raises(BrdfkitError, match=message):
-        TransferFunction.from_boundaries(rows, thickness, (0, 1))
+        TransferFunction.from_boundaries(rows, thickness, values=(0, 1))
 
 
 def test_files_of_boundaries(tmp_path):
@@ -133,7 +133,9 @@ def test_files_of_boundaries(tmp_path):
         '"range": [0, 1], "value_unit": "share of the window"}'
     )
     found = TransferFunction.load(path)
-    np.testing.assert_allclose(found.rgba, TransferFunction.from_boundaries(rows, 1, (0, 1)).rgba)
+    np.testing.assert_allclose(
+        found.rgba, TransferFunction.from_boundaries(rows, 1, values=(0, 1)).rgba
+    )
     assert (found.value_unit, found.extinction) == ("share of the window", 1)
     path.write_text('{"kind": "brdfkit transfer function", "boundaries": [[1, 2]]}')
     with pytest.raises(BrdfkitError, match=r"edges\.json: thickness = None"):

@@ -14,7 +14,7 @@ CLAY = {
 def maximum_intensity(scan):
     """Largest values, in the colours of a map."""
     low, high = scan.window
-    function = TransferFunction.from_colormap("magma", (low, high), [(0, 1), (1, 1)])
+    function = TransferFunction.from_colormap("magma", (low, high), opacity=[(0, 1), (1, 1)])
     return {"volume": scan.density.scene_dict(function)}
 
 

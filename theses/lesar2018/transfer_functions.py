@@ -56,8 +56,8 @@ def functions(scan):
     """Name → a transfer function for a scan."""
     low, high = scan.coloured.range
     span = high - low
-    mapped = TransferFunction.from_colormap("viridis", (low, high), [(0, 0), (0.3, 0), (1, 0.15)],
-                                          colour="albedo")  # fmt: skip
+    ramp = [(0, 0), (0.3, 0), (1, 0.15)]
+    mapped = TransferFunction.from_colormap("viridis", (low, high), opacity=ramp, colour="albedo")
     core = TransferFunction(
         [low, low + 0.72 * span, low + 0.84 * span, high],
         [[0.9, 0.3, 0.2, 0], [0.9, 0.3, 0.2, 0.01], [0.95, 0.85, 0.4, 0.8], [1, 1, 0.9, 1]],

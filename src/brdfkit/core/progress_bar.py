@@ -1,5 +1,7 @@
 """`progress`: a bar for what takes long, in a terminal and in a notebook."""
 
+from __future__ import annotations
+
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

@@ -36,6 +36,7 @@ from brdfkit.regression.solvers.settings import to_plain
 ModelLike: TypeAlias = str | Path | type[Model]
 LossLike: TypeAlias = str | Loss | Picture | Callable[..., Any]
 Constraint: TypeAlias = AlbedoAtMost | WeightsAtMost | Callable[[Model], ArrayLike]
+Constraints: TypeAlias = Constraint | Iterable[Constraint]
 Bounds: TypeAlias = Mapping[str, tuple[float, float]]
 
 
@@ -49,7 +50,7 @@ def fit(
     use_standard_error: bool = True,
     robust: str | None = None,
     solver: str | Solver | None = None,
-    constraints: Constraint | Iterable[Constraint] | None = None,
+    constraints: Constraints | None = None,
     starts: int | None = None,
     bounds: Bounds | None = None,
     fixed: Mapping[str, float] | None = None,

@@ -55,6 +55,6 @@ def _part(data, weights, max_angle):
     if data.is_table:
         values = data.table.values
         kept = np.where(good.reshape(values.shape[:-1])[..., None], values, np.nan)
-        return Measured.from_table(kept, data.table.phi_d_period, **how)
+        return Measured.from_table(kept, phi_d_period=data.table.phi_d_period, **how)
     part = samples.at(good)
     return Measured.from_samples(part.wi, part.wo, part.values, anisotropic=data.anisotropic, **how)

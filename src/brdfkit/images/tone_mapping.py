@@ -5,6 +5,8 @@
 curve of sRGB comes after it, when a picture becomes a PNG.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

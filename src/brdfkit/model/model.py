@@ -14,6 +14,8 @@ value. Each of its values makes a class of its own (`Model.configured`). `more_p
 parameters that depend on options, and leaves declared ones out.
 """
 
+from __future__ import annotations
+
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np

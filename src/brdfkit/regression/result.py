@@ -1,5 +1,7 @@
 """`Fit`, what a fit returns: the model with its values, and how they were found."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 from typing import Any
 

@@ -1,5 +1,7 @@
 """`Film`: pictures one after the other that end where they begin, as a file to look at."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 from pathlib import Path
 

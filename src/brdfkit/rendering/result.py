@@ -1,5 +1,7 @@
 """`Rendering`, what `render` returns: the pictures, their differences, and how to write them."""
 
+from __future__ import annotations
+
 import io
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -153,7 +155,7 @@ class Rendering(Shown):
         with write_safely(path.with_suffix(".png") if suffix == ".exr" else path) as beside:
             beside.write_bytes(png.getvalue())
 
-    def tone_mapped(self, tone_mapping: ToneMapping | str) -> "Rendering":
+    def tone_mapped(self, tone_mapping: ToneMapping | str) -> Rendering:
         """The same pictures, shown by another curve, in notebooks and PNG files.
 
         An EXR file and all errors and differences are of the radiance itself, as before.

@@ -25,11 +25,12 @@ from brdfkit.reporting.pictures.defaults import MODELS, SCENE, SIZE
 from brdfkit.reporting.pictures.pictures import render_pictures, require_pictures
 
 Fitted: TypeAlias = ModelLike | Fit
+Fits: TypeAlias = Fitted | Iterable[Fitted]
 
 
 def report(
     material: MaterialLike,
-    models: Fitted | Iterable[Fitted] = MODELS,
+    models: Fits = MODELS,
     *,
     path: str | Path | None = None,
     settings: Mapping[str, Any] | None = None,

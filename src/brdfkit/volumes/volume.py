@@ -1,8 +1,9 @@
 """`Volume`: values on a regular grid of voxels, and where in the world they lie."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
-from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.volumes import in_mitsuba, reducing
 from brdfkit.volumes.rays import reconstruction
 from brdfkit.volumes.transfer import windows
-from brdfkit.volumes.transfer.transfer_function import TransferFunction
+from brdfkit.volumes.transfer.transfer_function import TransferLike
 
 LARGEST = 1e15  # of a transform's numbers, whose squares are multiplied with 32 bits
 MOST = 1e30  # of values, and the inverse of their span: renderers have 32 bits
@@ -111,7 +112,7 @@ class Volume:
         """
         return reconstruction.gradient_magnitude(self.values, self.to_world)
 
-    def resized(self, factor: int) -> "Volume":
+    def resized(self, factor: int) -> Volume:
         """The volume with a voxel for each block of factor × factor × factor voxels.
 
         Its value is the mean of those that the block has, as at the upper ends there may be fewer;
@@ -138,9 +139,7 @@ class Volume:
         """
         return reconstruction.gradient_at(self, points, of_interpolant)
 
-    def scene_dict(
-        self, transfer: TransferFunction | str | PathLike[str] | None = None
-    ) -> dict[str, Any]:
+    def scene_dict(self, transfer: TransferLike | None = None) -> dict[str, Any]:
         """The dictionary for `mitsuba.load_dict`, in the current variant.
 
         Parameters

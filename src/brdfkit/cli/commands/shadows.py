@@ -82,12 +82,12 @@ def shadows(scene, projections, filters, partitions, others, resolution, size, o
         found = compare(
             scene,
             projections or PROJECTIONS,
-            filters,
-            partitions,
-            others,
-            resolution,
-            (size, size),
-            progress,
+            filters=filters,
+            partitions=partitions,
+            others=others,
+            resolution=resolution,
+            size=(size, size),
+            progress=progress,
         )
     if not console.as_json:
         console.table(found.columns, found.table())

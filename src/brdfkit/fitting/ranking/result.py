@@ -1,5 +1,7 @@
 """`Ranking`, what `rank` returns: a row for every model; prints as a table, with the choice."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field
 

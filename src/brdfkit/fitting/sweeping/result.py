@@ -1,5 +1,7 @@
 """`Sweep`, what a sweep returns: a row for every fit; prints as a table, and writes it."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field
 from pathlib import Path

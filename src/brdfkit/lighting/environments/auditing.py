@@ -1,5 +1,7 @@
 """`environments.audit`: the brightness of an environment map by direction, and its defects."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -138,7 +140,7 @@ class EnvironmentAudit(Shown):
             )
         return tuple(sentences)
 
-    def picture(self) -> "Figure":
+    def picture(self) -> Figure:
         """Draw the map, the blocks that `kdtree_envmap` makes of it, and the spread of its light.
 
         >>> environments.audit("studio").picture().savefig("studio.png")    # doctest: +SKIP

@@ -161,7 +161,14 @@ class Source:
             notes["not finite"] = f"{masked.sum():,} of {len(finite):,} rows, masked"
         try:
             return Measured.from_samples(
-                wi, wo, values, finite & valid, channels, name, notes, **details
+                wi,
+                wo,
+                values,
+                valid=finite & valid,
+                channels=channels,
+                name=name,
+                info=notes,
+                **details,
             )
         except BrdfkitError:
             raise self.error(

@@ -56,7 +56,9 @@ def read(source: Source) -> Measured:
     values = np.multiply(np.moveaxis(raw, 0, -1), SCALE, order="C")
     values[unknown] = np.nan
     info = {"format": NAME, "cells without a value": f"{unknown.sum():,} of {unknown.size:,}"}
-    return Measured.from_table(values, _compute_phi_d_period(shape), RGB, source.name, info)
+    return Measured.from_table(
+        values, phi_d_period=_compute_phi_d_period(shape), channels=RGB, name=source.name, info=info
+    )
 
 
 def write(obj: object, stream: IO[bytes]) -> None:

@@ -109,7 +109,7 @@ def _build(about: dict[str, Any], arrays: Mapping[str, AnyArray]) -> Measured:
     if errors is not None:
         errors = errors.reshape(arrays["table"].shape)
     return Measured.from_table(
-        arrays["table"], float(about["phi_d_period"]), **details, standard_error=errors
+        arrays["table"], phi_d_period=float(about["phi_d_period"]), **details, standard_error=errors
     )
 
 
@@ -128,12 +128,14 @@ def _build_from_samples(
         raise ValueError("a direction is no unit vector")
     lookup = None
     if "table" in arrays:
-        lookup = Measured.from_table(arrays["table"], float(about["phi_d_period"]), **details).table
+        lookup = Measured.from_table(
+            arrays["table"], phi_d_period=float(about["phi_d_period"]), **details
+        ).table
     measured = Measured.from_samples(
         wi,
         wo,
         values,
-        valid,
+        valid=valid,
         **details,
         anisotropic=about["anisotropic"] is True,
         standard_error=errors,

@@ -26,6 +26,7 @@ class FromAngles(MeasuredData):
         theta_o: ArrayLike,
         phi_o: ArrayLike,
         values: ArrayLike,
+        *,
         unit: str | None = None,
         channels: Sequence[str] | None = None,
         name: str = "samples",
@@ -105,6 +106,7 @@ class FromAngles(MeasuredData):
     def from_frame(
         cls,
         frame: Any,
+        *,
         unit: str | None = None,
         name: str = "samples",
         info: Mapping[str, str] | None = None,

@@ -226,8 +226,13 @@ class Measured(Shown, FromAngles):
         """The same material, with its `table` in place of the samples."""
         if self.is_table:
             return self
-        table, info = self.table, self.info
-        return self.from_table(table.values, table.phi_d_period, self.channels, self.name, info)
+        return self.from_table(
+            self.table.values,
+            phi_d_period=self.table.phi_d_period,
+            channels=self.channels,
+            name=self.name,
+            info=self.info,
+        )
 
     @property
     def rendered(self) -> Measured:

@@ -54,6 +54,7 @@ class MeasuredData:
         wi: ArrayLike,
         wo: ArrayLike,
         values: ArrayLike,
+        *,
         valid: ArrayLike | None = None,
         channels: Sequence[str] | None = None,
         name: str = "samples",
@@ -118,6 +119,7 @@ class MeasuredData:
     def from_table(
         cls,
         values: ArrayLike,
+        *,
         phi_d_period: float = pi,
         channels: Sequence[str] = RGB,
         name: str = "table",

@@ -10,10 +10,12 @@ to the material and not to the file. Samples with an angle beyond 80° are left 
 measurements are least reliable [Ngan et al. 2005].
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeAlias
 
 import drjit as dr
 import numpy as np
@@ -24,6 +26,8 @@ from brdfkit.core.jit import double_precision
 from brdfkit.core.jit.double_precision import differentiate
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.model.samples.measures import MEASURES, weigh
+
+Weights: TypeAlias = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 
 @dataclass(frozen=True)
@@ -63,7 +67,7 @@ class Loss:
     meaning: str
     difference: Callable[..., Any]
     measure: str = "balanced"
-    weights: Callable[[NDArray[np.float64]], NDArray[np.float64]] = np.ones_like
+    weights: Weights = np.ones_like
     channel_mean: bool = True
 
     def __post_init__(self) -> None:

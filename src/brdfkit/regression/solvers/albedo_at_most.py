@@ -1,8 +1,11 @@
 """`AlbedoAtMost`: a constraint on the share of light that the model reflects."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TypeAlias
 
 import numpy as np
 
@@ -17,6 +20,8 @@ from brdfkit.regression.problem.parameter_space import of_channel
 
 # Half the rings of a quadrature, and the points on each: albedos are exact to 1e-7
 POINTS = 128
+
+Angles: TypeAlias = tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -39,7 +44,7 @@ class AlbedoAtMost:
     """
 
     limit: float = 1.0
-    theta: tuple[float, ...] = (0.0, 30.0, 60.0, 75.0, 85.0, 89.0)
+    theta: Angles = (0.0, 30.0, 60.0, 75.0, 85.0, 89.0)
     phi: tuple[float, ...] = (0.0,)
 
     def __post_init__(self) -> None:

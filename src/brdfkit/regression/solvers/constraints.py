@@ -1,5 +1,7 @@
 """The constraints of a fit: what its parameters have to meet, beside their bounds."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 

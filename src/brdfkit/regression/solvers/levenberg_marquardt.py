@@ -3,6 +3,8 @@
 [Levenberg 1944]; [Marquardt 1963].
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -4,6 +4,8 @@ A point z (n,) holds the coordinates of the searched shape parameters, each from
 bounds, then the weights of the first channel, of the second and so on.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Protocol

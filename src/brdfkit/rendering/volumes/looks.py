@@ -69,7 +69,9 @@ def _of_largest_values(volume, colours):
     end, largest = windows.background_and_matter(np.concatenate(rays).astype(float))
     nodes = np.percentile(largest, NODES)
     if not end < nodes[0] < nodes[-1]:
-        return TransferFunction.from_colormap(colours, volume.window, [(0, 0), (0.25, 1), (1, 1)])
+        return TransferFunction.from_colormap(
+            colours, volume.window, opacity=[(0, 0), (0.25, 1), (1, 1)]
+        )
     even = np.linspace(DARKEST, 1, len(nodes))
     by_value = DARKEST + (1 - DARKEST) * (nodes - nodes[0]) / (nodes[-1] - nodes[0])
     values = np.linspace(end, nodes[-1], LEVELS)

@@ -17,11 +17,11 @@ from brdfkit.rendering.film import Film
 from brdfkit.rendering.volumes.render_volume import (
     BACKGROUND,
     Radiance,
-    TransferLike,
     VolumeLike,
     render_volume,
 )
 from brdfkit.volumes import Volume
+from brdfkit.volumes.transfer.transfer_function import TransferLike
 
 FRAMES, SIZE = 48, 320
 

@@ -22,6 +22,7 @@ from brdfkit.rendering.tracing import trace
 from brdfkit.rendering.volumes import looks
 from brdfkit.rendering.volumes.scene import RENDERERS, UNLIT, scene
 from brdfkit.volumes import TransferFunction, Volume
+from brdfkit.volumes.transfer.transfer_function import TransferLike
 from brdfkit.volumes.transfer.windows import fitted
 
 SPP, UNLIT_SPP = 64, 8  # samples per pixel
@@ -31,7 +32,6 @@ BACKGROUND = 0.02
 
 
 VolumeLike: TypeAlias = Volume | str | Path
-TransferLike: TypeAlias = TransferFunction | str | Path
 Radiance: TypeAlias = float | tuple[float, float, float]
 
 

@@ -1,7 +1,9 @@
 """`compare`: techniques of shadow maps on a scene of the user's, scored against exact shadows."""
 
+from __future__ import annotations
+
 import itertools
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import partial
 from typing import Any
 
@@ -10,6 +12,7 @@ import numpy as np
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.loops import raise_first_cause
+from brdfkit.core.progress_bar import Progress
 from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
 from brdfkit.shadows.comparison.arguments import to_names, to_scene, to_size, to_texels
 from brdfkit.shadows.comparison.comparison import ShadowComparison
@@ -30,13 +33,14 @@ FILTERS = "depth", "percentage_closer", "variance", "moment"
 
 def compare(
     scene: Any,
-    projections: Iterable[str] = PROJECTIONS,
-    filters: Iterable[str] = FILTERS,
+    projections: Iterable[str] | None = None,
+    *,
+    filters: Iterable[str] | None = None,
     partitions: Iterable[str] = ("whole",),
     others: Iterable[str] = (),
     resolution: int = 512,
     size: tuple[int, int] = (512, 512),
-    progress: Callable[[int, int], object] | None = None,
+    progress: Progress | None = None,
 ) -> ShadowComparison:
     """Compare shadow techniques with exact shadows, in all views and lights of a scene.
 
@@ -50,9 +54,14 @@ def compare(
         directional ones, its cameras perspective ones; each camera is a view. Or the name of a
         scene that comes with brdfkit, of four views and two suns: ``"street"``, ``"foliage"`` or
         ``"objects_on_a_ground"``.
-    projections, filters, partitions : iterable of str
-        Names of techniques, of which every combination is scored; see the plugin `shadow_map`.
-    others : iterable of str, default none
+    projections : iterable of str, optional
+        Names of projections, by default all. Every combination of projections, filters and
+        partitions is scored; the plugin `shadow_map` lists them.
+    filters : iterable of str, optional
+        Names of filters, by default depth, percentage_closer, variance and moment.
+    partitions : iterable of str, default ("whole",)
+        Names of partitions.
+    others : iterable of str, default ()
         Techniques that look up no map: ``"shadow_volume"`` and ``"hybrid_shadow"``; see the plugins
         of these names.
     resolution : int, default 512
@@ -80,6 +89,8 @@ def compare(
     """
     use_variant()
     refuse_scalar("compare")
+    projections = PROJECTIONS if projections is None else projections
+    filters = FILTERS if filters is None else filters
     kinds = {"projection": projections, "filter": filters, "partition": partitions}
     kinds = {kind: to_names(f"{kind}s", names) for kind, names in kinds.items()}
     resolution, size = to_texels(resolution), to_size(size)

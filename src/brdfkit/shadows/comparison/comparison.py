@@ -1,5 +1,7 @@
 """`ShadowComparison`, what `compare` returns: scores by technique; prints as a table."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field

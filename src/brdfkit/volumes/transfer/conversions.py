@@ -1,5 +1,7 @@
 """What a transfer function is made of, and files of it: colour maps, opacities, JSON, presets."""
 
+from __future__ import annotations
+
 from os import PathLike
 from typing import Any, Self
 
@@ -18,6 +20,7 @@ class Conversions:
         cls,
         colormap: str | Any,
         values: tuple[float, float] = (0.0, 1.0),
+        *,
         opacity: ArrayLike = ((0.0, 0.0), (1.0, 1.0)),
         extinction: float = 1.0,
         colour: str = "emission",
@@ -59,6 +62,7 @@ class Conversions:
         cls,
         values: ArrayLike,
         rgba: ArrayLike,
+        *,
         unit_distance: float = 1.0,
         colour: str = "emission",
     ) -> Self:
@@ -90,7 +94,8 @@ class Conversions:
 
         Examples
         --------
-        >>> half = TransferFunction.from_opacity([0, 1], [[1, 1, 1, 0.5], [1, 1, 1, 0.5]], 2)
+        >>> rgba = [[1, 1, 1, 0.5], [1, 1, 1, 0.5]]
+        >>> half = TransferFunction.from_opacity([0, 1], rgba, unit_distance=2)
         >>> half.extinction    # a layer of 2 lets half of the light through
         0.34657359027997264
         """
@@ -101,6 +106,7 @@ class Conversions:
         cls,
         boundaries: ArrayLike,
         thickness: float,
+        *,
         values: tuple[float, float],
         extinction: float = 1.0,
         colour: str = "albedo",
@@ -137,7 +143,8 @@ class Conversions:
         Examples
         --------
         >>> white_matter = [[190, 40, 0.97, 0.93, 0.85, 1]]
-        >>> TransferFunction.from_boundaries(white_matter, 1, (0, 255), 3).gradient_range
+        >>> edges = TransferFunction.from_boundaries(white_matter, 1, values=(0, 255))
+        >>> edges.gradient_range
         (0.0, 50.0)
         """
         return boundaries_of_values.function(cls, boundaries, thickness, values, extinction, colour)

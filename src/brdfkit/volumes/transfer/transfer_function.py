@@ -14,8 +14,11 @@ thickness d that lets 1 - a of the light through has σ_t = -ln(1 - a) / d (`opa
 2002].
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
-from typing import Any
+from os import PathLike
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -134,7 +137,7 @@ class TransferFunction(Conversions):
         gradients = np.linspace(*self.gradient_range, to_whole_number("m", m, 2))
         return self(values, gradients[:, None]).astype(np.float32)
 
-    def over_gradients(self, ramp: ArrayLike) -> "TransferFunction":
+    def over_gradients(self, ramp: ArrayLike) -> TransferFunction:
         """The function with A times a `ramp` (m, 2) of points (gradient magnitude, factor).
 
         It shows where the value changes, and hides what is even: ``[(0, 0), (50, 1)]``.
@@ -152,7 +155,7 @@ class TransferFunction(Conversions):
         rgba[..., 3] *= points[:, 1:]
         return replace(self, rgba=rgba, gradients=points[:, 0])
 
-    def per(self, unit: str) -> "TransferFunction":
+    def per(self, unit: str) -> TransferFunction:
         """The same function with its extinction, and its gradients, per another unit of length.
 
         Raises `BrdfkitError` where the function's unit or that one is unknown.
@@ -170,7 +173,7 @@ class TransferFunction(Conversions):
         extinction = self.extinction * factor
         return replace(self, extinction=extinction, gradients=gradients, length_unit=unit)
 
-    def scaled_to(self, low: float, high: float) -> "TransferFunction":
+    def scaled_to(self, low: float, high: float) -> TransferFunction:
         """The function with its values mapped to the range `low` to `high`, and gradients likewise.
 
         MRI has no unit: ``TransferFunction.load("mri_head").scaled_to(*volume.window)``.
@@ -195,6 +198,9 @@ class TransferFunction(Conversions):
             f"{self.name}: {low:.6g} to {high:.6g}{unit}{gradients}, RGB is {self.colour}, "
             f"extinction {self.extinction:.4g} per {per}"
         )
+
+
+TransferLike: TypeAlias = TransferFunction | str | PathLike[str]
 
 
 def _checked(rgba, shape, colour, name):

@@ -1,5 +1,7 @@
 """`Capture`: photographs of a flat sample under known lights."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
 

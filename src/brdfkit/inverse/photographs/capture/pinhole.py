@@ -1,5 +1,7 @@
 """A pinhole camera: where in its picture a point is seen."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

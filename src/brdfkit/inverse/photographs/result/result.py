@@ -1,5 +1,7 @@
 """`Svbrdf`, what `svbrdf` returns: maps of a sample, and how certain they are."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -86,6 +88,7 @@ class Svbrdf(Shown):
     def relight(
         self,
         position: ArrayLike,
+        *,
         intensity: float | ArrayLike = 1.0,
         viewer: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
