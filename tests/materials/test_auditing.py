@@ -18,14 +18,14 @@ from brdfkit.cli.commands.info import record
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.json_values import to_json
 from brdfkit.materials.auditing import symmetries
-from brdfkit.materials.auditing.albedos import Albedo, albedo_of_samples
-from brdfkit.materials.auditing.cosine import suspected_cosine
-from brdfkit.materials.auditing.data_findings import data_findings
-from brdfkit.materials.auditing.grazing_and_retro import backwards, grazing, retroreflection
-from brdfkit.materials.auditing.noise import noise
-from brdfkit.materials.auditing.report import percent
-from brdfkit.materials.auditing.spikes import spikes
-from brdfkit.materials.auditing.spread import some_samples
+from brdfkit.materials.auditing.albedos import Albedo, compute_sample_albedo
+from brdfkit.materials.auditing.cosine import explain_suspected_cosine
+from brdfkit.materials.auditing.data_findings import list_data_findings
+from brdfkit.materials.auditing.noise import estimate_noise
+from brdfkit.materials.auditing.ratios import backward_ratio, grazing_ratio, retroreflection_ratio
+from brdfkit.materials.auditing.report import to_percent
+from brdfkit.materials.auditing.spikes import find_spikes
+from brdfkit.materials.auditing.subsets import draw_samples
 from brdfkit.materials.loading import load
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.coverage import (
@@ -177,7 +177,7 @@ def test_nothing_that_is_no_measurement_is_called_one():
     assert whole == "values in all cells; a table does not tell which of them were measured"
     assert "beyond them: there values are extrapolated" in scattered().audit().rows()["coverage"]
     for share, told in ((0.9996, "99.9 %"), (0.996, "99.6 %"), (1 - 1e-15, "100 %")):
-        assert percent(share) == told
+        assert to_percent(share) == told
 
 
 def test_near_allows_for_the_symmetries_of_the_material():
@@ -203,29 +203,29 @@ def test_near_allows_for_the_symmetries_of_the_material():
 def test_noise_is_what_was_planted(data, sigma):
     if data == "samples":
         wi, wo = grid()
-        found = noise(scattered(noisy(GGX.eval(wi, wo), sigma), wi, wo))
+        found = estimate_noise(scattered(noisy(GGX.eval(wi, wo), sigma), wi, wo))
     else:
         shape = (4, *SHAPE) if data == "anisotropic table" else SHAPE
-        found = noise(Measured.from_table(noisy(tabulated(shape=shape), sigma)))
+        found = estimate_noise(Measured.from_table(noisy(tabulated(shape=shape), sigma)))
     assert found.relative == pytest.approx([sigma] * len(found.relative), rel=0.2)
 
 
 def test_a_smooth_table_has_no_noise():
-    assert max(noise(Measured.from_table(tabulated())).relative) < 1e-4
+    assert max(estimate_noise(Measured.from_table(tabulated())).relative) < 1e-4
 
 
 def test_noise_the_file_states():
     data = scattered()
     stated = replace(data, standard_error=0.03 * data.values)
-    assert noise(stated).relative == pytest.approx([0.03])
-    assert "states" in noise(stated).method
+    assert estimate_noise(stated).relative == pytest.approx([0.03])
+    assert "states" in estimate_noise(stated).method
 
 
 def test_noise_that_nothing_tells():
     half = scattered(GGX.eval, *grid(phi=range(5, 180, 10)))
-    assert np.isnan(noise(half).relative).all()
+    assert np.isnan(estimate_noise(half).relative).all()
     assert "not testable" in str(half.audit())
-    made_equal = noise(scattered())
+    made_equal = estimate_noise(scattered())
     assert np.isnan(made_equal.relative).all()
     assert "left and right are equal" in made_equal.method
 
@@ -272,7 +272,7 @@ def test_reciprocity_of_samples(anisotropic):
     angles = 20, 40, 60
     for model, expected in ((GGX, 0), (OneWay(), DIFFERENCE)):
         data = scattered(model.eval, *grid(angles, angles), anisotropic=anisotropic)
-        found = symmetries.by_reciprocity(data)
+        found = symmetries.compare_reciprocal(data)
         assert found.pairs == (3 if anisotropic else 3 * 36)
         assert found.median == pytest.approx(expected, abs=1e-9)
 
@@ -280,24 +280,24 @@ def test_reciprocity_of_samples(anisotropic):
 def test_a_lookup_is_compared_with_itself_exchanged():
     wi, wo = grid()
     data = scattered(OneWay().eval, wi, wo, lookup=OneWay().eval)
-    found = symmetries.by_reciprocity(data)
+    found = symmetries.compare_reciprocal(data)
     assert found.pairs == data.samples.valid.sum()
     assert found.median == pytest.approx(DIFFERENCE, abs=1e-6)
-    assert symmetries.by_mirror(data).percentile_95 == pytest.approx(0, abs=1e-9)
+    assert symmetries.compare_mirrored(data).percentile_95 == pytest.approx(0, abs=1e-9)
 
 
 def test_mirror_symmetry():
     data = scattered(LeftHanded().eval)
-    found = symmetries.by_mirror(data)
+    found = symmetries.compare_mirrored(data)
     assert found.pairs == 3 * 25 * 17  # all but the plane itself
     assert found.median == pytest.approx(DIFFERENCE)
     for period, left in ((np.pi, slice(0, 18)), (2 * np.pi, slice(0, 36))):
         values = tabulated(shape=(20, 10, 2 * left.stop), period=period)
         values[..., left, :] *= 1.1
-        found = symmetries.by_mirror(Measured.from_table(values, phi_d_period=period))
+        found = symmetries.compare_mirrored(Measured.from_table(values, phi_d_period=period))
         assert found.median == pytest.approx(DIFFERENCE)
-    assert not symmetries.by_mirror(scattered(anisotropic=True))
-    assert not symmetries.by_mirror(Measured.from_table(tabulated(shape=(4, 9, 9, 18))))
+    assert not symmetries.compare_mirrored(scattered(anisotropic=True))
+    assert not symmetries.compare_mirrored(Measured.from_table(tabulated(shape=(4, 9, 9, 18))))
 
 
 # Albedo
@@ -332,7 +332,7 @@ def test_the_albedo_of_samples_converges():
         theta_o = range(step, 90, step)
         data = scattered(GGX.eval, *grid([40], theta_o, range(0, 360, 2 * step)))
         expected = bk.albedo(GGX, from_angles(np.radians(40), 0.0))[0]
-        errors.append(abs(albedo_of_samples(data).values[0, 0] / expected - 1))
+        errors.append(abs(compute_sample_albedo(data).values[0, 0] / expected - 1))
     assert errors[1] < 0.01
     assert errors[1] < 0.3 * errors[0]
 
@@ -385,14 +385,14 @@ def test_clean_noisy_tables_have_no_spike(name):
         model = models()[name]
         shape = next(p for p in ("alpha_u", "alpha", "m", "exponent_u") if p in model.parameters)
         value = 10 / width if "exponent" in shape else width
-        assert not spikes(Measured.from_table(noisy(tabulated(model(**{shape: value})), 0.1)))
+        assert not find_spikes(Measured.from_table(noisy(tabulated(model(**{shape: value})), 0.1)))
 
 
 def test_clean_samples_have_no_spike():
     wi, wo = grid(range(0, 81, 10), range(0, 81, 8), range(0, 360, 15))
     for alpha in (0.05, 0.3):
         model = models()["ggx"](alpha_u=alpha)
-        assert not spikes(scattered(noisy(model.eval(wi, wo), 0.1), wi, wo))
+        assert not find_spikes(scattered(noisy(model.eval(wi, wo), 0.1), wi, wo))
 
 
 @pytest.mark.parametrize("anisotropic", [False, True])
@@ -403,7 +403,7 @@ def test_planted_spikes_are_found(anisotropic):
     for cell, factor in zip(cells, (10, 30), strict=True):
         values[cell] *= factor
     data = Measured.from_table(values)
-    found = spikes(data)
+    found = find_spikes(data)
     assert len(found) == 2
     assert found[0].factor == pytest.approx(30, rel=0.3)
     wi, wo = (w[cells[1]] for w in data.table.directions())
@@ -418,7 +418,7 @@ def test_a_planted_spike_among_samples_is_found():
     values = noisy(GGX.eval(wi, wo), 0.05)
     row = np.flatnonzero((wo[:, 2] < 0.6) & (wi[:, 2] < 0.9))[5]
     values[row] *= 20
-    (spike,) = spikes(scattered(values, wi, wo))
+    (spike,) = find_spikes(scattered(values, wi, wo))
     assert np.cos(np.radians(spike.theta_o)) == pytest.approx(wo[row, 2])
     assert spike.value == values[row, 0]
 
@@ -431,10 +431,10 @@ def test_a_line_down_to_the_horizon_is_told():
     line = np.clip((90 - np.degrees(np.arccos(np.clip(wo[:, 2:], 0, 1)))) / 15, 0, 1)
     wo[:, 2] = np.maximum(wo[:, 2], 1e-9)
     honest, faulty = (scattered(v, wi, wo) for v in (np.full((len(wi), 1), 0.3), 0.3 * line))
-    assert grazing(honest.samples) == pytest.approx(1)
-    assert grazing(faulty.samples) == pytest.approx(1 / 3, abs=0.04)
+    assert grazing_ratio(honest.samples) == pytest.approx(1)
+    assert grazing_ratio(faulty.samples) == pytest.approx(1 / 3, abs=0.04)
     assert any("fall towards the horizon" in finding for finding in faulty.audit().findings())
-    assert np.isnan(grazing(scattered().samples))
+    assert np.isnan(grazing_ratio(scattered().samples))
 
 
 def test_light_sent_back_is_told():
@@ -443,28 +443,30 @@ def test_light_sent_back_is_told():
 
     directions = grid(theta_o=range(2, 76, 2))
     data = scattered(back, *directions)
-    assert retroreflection(data.samples) > 5
+    assert retroreflection_ratio(data.samples) > 5
     mirror = scattered(lambda wi, wo: back(wi * [-1, -1, 1], wo), *directions)
-    assert retroreflection(mirror.samples) == pytest.approx(1, rel=0.01)
+    assert retroreflection_ratio(mirror.samples) == pytest.approx(1, rel=0.01)
     assert any("retroreflective" in finding for finding in data.audit().findings())
-    assert retroreflection(scattered(lambert(0.5).eval, *directions).samples) == pytest.approx(1)
+    assert retroreflection_ratio(
+        scattered(lambert(0.5).eval, *directions).samples
+    ) == pytest.approx(1)
     plaster = models()["oren_nayar"](sigma=1.0)
-    assert 1 < retroreflection(scattered(plaster.eval, *directions).samples) < 2.5
-    assert np.isnan(retroreflection(one_sample().samples))
+    assert 1 < retroreflection_ratio(scattered(plaster.eval, *directions).samples) < 2.5
+    assert np.isnan(retroreflection_ratio(one_sample().samples))
 
 
 def test_azimuths_counted_from_the_mirrors_side():
     """As a file in another convention has them; large steps of theta_o suffice."""
     wi, wo = grid(theta_o=range(0, 76, 10), phi=(0, 90, 180))
     right, wrong = scattered(wi=wi, wo=wo), scattered(GGX.eval(wi, wo), wi, wo * [-1, -1, 1])
-    assert backwards(right.samples) == pytest.approx(1 / backwards(wrong.samples))
-    assert backwards(wrong.samples) > 10
+    assert backward_ratio(right.samples) == pytest.approx(1 / backward_ratio(wrong.samples))
+    assert backward_ratio(wrong.samples) > 10
     (told,) = (f for f in wrong.audit().findings() if "mirror_azimuth" in f)
-    assert f"{backwards(wrong.samples):.2g} times as large towards the light as in" in told
+    assert f"{backward_ratio(wrong.samples):.2g} times as large towards the light as in" in told
     assert not any("mirror_azimuth" in finding for finding in right.audit().findings())
     plaster = models()["oren_nayar"](sigma=1.0)
-    assert 1 < backwards(scattered(plaster.eval).samples) < 4
-    assert np.isnan(backwards(one_sample().samples))
+    assert 1 < backward_ratio(scattered(plaster.eval).samples) < 4
+    assert np.isnan(backward_ratio(one_sample().samples))
 
 
 # A cosine that was not divided out
@@ -482,11 +484,11 @@ GRIDS = {
 def test_the_cosine_of_models_is_suspected_where_it_is(name, directions):
     wi, wo = GRIDS[directions]()
     values = noisy(models()[name]().eval(wi, wo), 0.02)
-    assert suspected_cosine(scattered(values, wi, wo)) == ""
-    assert suspected_cosine(scattered(values * wo[:, 2:], wi, wo))
-    assert suspected_cosine(scattered(values * wi[:, 2:], wi, wo)) == ""
+    assert explain_suspected_cosine(scattered(values, wi, wo)) == ""
+    assert explain_suspected_cosine(scattered(values * wo[:, 2:], wi, wo))
+    assert explain_suspected_cosine(scattered(values * wi[:, 2:], wi, wo)) == ""
     # what no cosine of the view can be in
-    assert suspected_cosine(scattered(values * wo[:, 2:], wi, wo, lookup=GGX.eval)) == ""
+    assert explain_suspected_cosine(scattered(values * wo[:, 2:], wi, wo, lookup=GGX.eval)) == ""
 
 
 def test_the_cosine_takes_the_place_of_what_follows_from_it():
@@ -499,9 +501,9 @@ def test_the_cosine_takes_the_place_of_what_follows_from_it():
 def test_a_part_of_a_large_table_tells_what_all_does(anisotropic):
     shape = (8, 40, 20, 40) if anisotropic else (90, 60, 60)
     data = Measured.from_table(tabulated(shape=shape))
-    part, whole = some_samples(data), data.samples
+    part, whole = draw_samples(data), data.samples
     assert len(part.wi) < len(whole.wi) / 2
-    for ratio in (grazing, retroreflection, backwards):
+    for ratio in (grazing_ratio, retroreflection_ratio, backward_ratio):
         assert ratio(part) == pytest.approx(ratio(whole), rel=0.15)
     rows = part.valid
     np.testing.assert_allclose(data.eval(part.wi[rows], part.wo[rows]), part.values[rows])
@@ -513,7 +515,7 @@ def test_what_is_doubtful_in_data_is_found_at_once_and_not_twice():
     seconds = []
     for _ in range(2):
         began = time.process_time()
-        assert data_findings(data) == ()
+        assert list_data_findings(data) == ()
         seconds.append(time.process_time() - began)
     assert seconds[0] < 0.3
     assert seconds[1] < 0.001
@@ -657,7 +659,7 @@ def test_curet_moss_negatives(measured_data):
 
 def test_curet_has_no_false_spike(measured_data):
     for sample in range(1, 62):
-        assert not spikes(load(f"{measured_data}/curet/abrdf.dat#{sample}"))
+        assert not find_spikes(load(f"{measured_data}/curet/abrdf.dat#{sample}"))
 
 
 def test_white_paint_reflects_too_much(measured_data):
@@ -677,10 +679,10 @@ def test_white_paint_reflects_too_much(measured_data):
 def test_paints_are_reciprocal_within_a_few_percent(measured_data, name, low, high):
     """20°, 40°, 60° and 0° against each other, both azimuth sides measured."""
     data = load(measured_data / PAINTS / f"{name}.astm.xz")
-    found = symmetries.by_reciprocity(data)
+    found = symmetries.compare_reciprocal(data)
     assert found.pairs == 3 * 6 * 36
     assert low < found.median < high
-    assert low < max(noise(data).relative) < 0.09
+    assert low < max(estimate_noise(data).relative) < 0.09
 
 
 def test_a_good_paint_has_no_findings(measured_data):
@@ -712,10 +714,10 @@ def test_retroreflective_tapes(measured_data, name):
 def test_the_tape_that_does_not_state_its_cosine_has_it(measured_data):
     """Its file says of PARAM_OUT nothing, the other's that the cosine is in its values."""
     tape = load(measured_data / "alta_retro" / "retro-gray-tape.dat.xz")
-    assert symmetries.by_reciprocity(tape).median > 0.3
+    assert symmetries.compare_reciprocal(tape).median > 0.3
     assert any("divide_by_cos=True" in finding for finding in tape.audit().findings())
     mended = tape.mend(divide_by_cos=True)
-    assert symmetries.by_reciprocity(mended).median < 0.1
+    assert symmetries.compare_reciprocal(mended).median < 0.1
     assert not any("cos theta_o" in finding for finding in mended.audit().findings())
 
 
@@ -725,9 +727,9 @@ def test_measured_paints_have_no_cosine_unless_they_are_given_one(measured_data,
     assert len(files) >= 3
     for file in files:
         data = load(file)
-        assert suspected_cosine(data) == "", file
+        assert explain_suspected_cosine(data) == "", file
         rows = data.samples
-        assert suspected_cosine(
+        assert explain_suspected_cosine(
             replace(data, _samples=replace(rows, values=rows.values * rows.wo[:, 2:]))
         ), file
 

@@ -14,7 +14,7 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.images.thumbnails.lobes import Radius
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.plotting import plot
-from brdfkit.materials.plotting.plane_of_incidence import lobe
+from brdfkit.materials.plotting.plane_of_incidence import compute_lobe
 
 pytestmark = pytest.mark.quick
 
@@ -66,7 +66,7 @@ def texts(figure):
 @pytest.mark.parametrize("theta_i", [0, 45, 80])
 def test_a_model_is_drawn_as_it_evaluates(theta_i):
     model = models()["ggx"](specular_reflectance=RED, diffuse_reflectance=GREY, alpha_u=0.1)
-    theta_o, values = lobe(model, theta_i)
+    theta_o, values = compute_lobe(model, theta_i)
     assert np.allclose(np.diff(theta_o), 0.1)
     assert theta_o[0] == pytest.approx(-89.9)
     assert theta_o[-1] == pytest.approx(89.9)
@@ -85,7 +85,7 @@ def test_luminance():
 
 def test_a_table_is_drawn_only_where_it_was_measured():
     material = table(known=lambda theta_h: theta_h < np.radians(20))
-    theta_o, values = lobe(material, 30)
+    theta_o, values = compute_lobe(material, 30)
     theta_h = np.abs(theta_o - 30) / 2
     assert np.allclose(values[theta_h < 18], 0.2)
     assert np.isnan(values[theta_h > 24]).all()
@@ -100,7 +100,7 @@ def test_scattered_samples_are_drawn_only_near_the_plane():
         (49, 0, 30, 180, 5),  # another incidence
         (45, 0, 50, 180, 6),  # masked
     ]
-    theta_o, values = lobe(scattered(rows, valid=np.arange(6) != 5), 45)
+    theta_o, values = compute_lobe(scattered(rows, valid=np.arange(6) != 5), 45)
     assert np.allclose(np.abs(theta_o[2]), 0)
     assert np.allclose(theta_o[:2], [30, -20])
     assert values.tolist() == [1, 2, 3]

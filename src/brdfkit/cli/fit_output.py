@@ -8,7 +8,7 @@ def print_fits(material, fits, failed, comparison, pictures, written, ranking, c
     errors of their `pictures`, `ImageErrors` or None; as JSON with what `failed` and with the
     `ranking`, too."""
     from brdfkit.cli.rank_output import record
-    from brdfkit.materials.auditing.data_findings import data_findings
+    from brdfkit.materials.auditing.data_findings import list_data_findings
 
     if console.as_json:
         psnr = {n: row["psnr"] for n, row in pictures.by_name.items()} if pictures else {}
@@ -18,7 +18,7 @@ def print_fits(material, fits, failed, comparison, pictures, written, ranking, c
         entries["ranking"] = record(ranking)
         console.json({**entries, "pictures": pictures, "written": written})
         return
-    shared = _shared_notes(fits, data_findings(material))
+    shared = _shared_notes(fits, list_data_findings(material))
     for note in shared:
         console.out.print(f"! {note}")
     own = [tuple(note for note in f.notes if note not in shared) for f in fits]

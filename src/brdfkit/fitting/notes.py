@@ -3,7 +3,7 @@
 from brdfkit.core.names import format_percent
 from brdfkit.fitting.lobe_notes import list_lobe_notes
 from brdfkit.fitting.uncertainty.isotropic_limit import note_on_azimuth
-from brdfkit.materials.auditing.data_findings import data_findings
+from brdfkit.materials.auditing.data_findings import list_data_findings
 from brdfkit.model.evaluation import clamped_share
 from brdfkit.regression import Picture
 
@@ -12,7 +12,7 @@ def list_notes(data, samples, loss, found, fitted, weighted):
     """Notes on a fit, in words: what is doubtful in the data, too few measured numbers, negative
     values, a clamped model, an isotropic one of an anisotropic material; `weighted`: whether the
     user gave weights."""
-    notes = [*data_findings(data, samples.largest_angle)]
+    notes = [*list_data_findings(data, samples.largest_angle)]
     if weighted:
         notes.append("samples count by the weights that were given; so in the loss")
     if isinstance(loss, Picture):

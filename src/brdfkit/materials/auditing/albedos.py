@@ -1,20 +1,23 @@
-"""The albedo of a material over the angle of incidence: of its lookup, and of its samples alone."""
+"""Computes the albedo over the angle of incidence: by the lookup, and of the samples alone."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.geometry.directions import from_angles, to_angles
+from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.albedos import albedo_at
+from brdfkit.model.samples import Samples
 
 DEGREES = np.arange(0, 90, 5)  # angles of incidence
-AZIMUTHS = 8  # azimuths of incidence of an anisotropic material
+AZIMUTHS = 8  # azimuths of incidence for an anisotropic material
 LEAST_AREA = 0.75  # share of the disc of directions that samples must cover for their albedo
 
 
 @dataclass(frozen=True)
 class Albedo:
-    """Reflected over incident light, per angle of incidence and channel.
+    """Reflected over incident light, for each angle of incidence and channel.
 
     `theta_i`: angles of incidence [degrees], (n,); `values`: (n, channels), the mean over the
     azimuth of incidence; `measured_to`: the largest measured angle of incidence [degrees], beyond
@@ -23,14 +26,17 @@ class Albedo:
     """
 
     channels: tuple[str, ...]
-    theta_i: np.ndarray
-    values: np.ndarray
+    theta_i: AnyArray
+    values: FloatArray
     measured_to: float
-    brightest: np.ndarray
+    brightest: FloatArray
 
 
-def albedo(data, measured_to):
-    """The `Albedo` of a `Measured`, ∫ f cos θo dωo, whose largest measured θi is `measured_to`."""
+def compute_albedo(data: Measured, measured_to: float) -> Albedo:
+    """Return the albedo ∫ f cos θo dωo of a `Measured`, by its lookup.
+
+    `measured_to` is its largest measured θi [degrees].
+    """
     azimuths = np.arange(AZIMUTHS) / AZIMUTHS * 2 * np.pi if data.anisotropic else (0.0,)
     values = np.array(
         [
@@ -41,34 +47,34 @@ def albedo(data, measured_to):
     return Albedo(data.channels, DEGREES, values.mean(axis=1), measured_to, values.max(axis=1))
 
 
-def albedo_of_samples(data):
-    """The `Albedo` of scattered samples alone, at the angles of incidence that have enough of them.
+def compute_sample_albedo(data: Measured) -> Albedo | None:
+    """Return the albedo of scattered samples alone, where an angle of incidence has enough of them.
 
     Directions are projected onto the unit disc (sin θo cos φo, sin θo sin φo), where an area is
     cos θo dωo. There the BRDF is taken as linear between the samples, and as constant from the
-    outermost samples to the horizon. None for a table, for an anisotropic material, and where there
-    are too few samples.
+    outermost samples to the horizon. The result is None for a table, for an anisotropic material,
+    and for too few samples.
     """
     if data.is_table or data.anisotropic:
         return None
     samples = data.samples.at(data.samples.valid)
     degrees = np.degrees(to_angles(samples.wi)[0]).round(1)
-    found = {}
+    by_angle = {}
     for angle in np.unique(degrees):
         value = _integrate_over_disc(samples.at(degrees == angle))
         if value is not None:
-            found[float(angle)] = value
-    if not found:
+            by_angle[float(angle)] = value
+    if not by_angle:
         return None
-    values = np.array(list(found.values()))
-    return Albedo(data.channels, np.array(list(found)), values, max(found), values)
+    values = np.array(list(by_angle.values()))
+    return Albedo(data.channels, np.array(list(by_angle)), values, max(by_angle), values)
 
 
-def _integrate_over_disc(samples):
-    """∫ f over the unit disc (channels,), of samples at one incidence; None for too few."""
+def _integrate_over_disc(samples: Samples) -> FloatArray | None:
+    """Return ∫ f over the unit disc (channels,) from samples at one incidence; None for too few."""
     from scipy.spatial import ConvexHull, Delaunay
 
-    # too few where they lie on a line, or cover too little of the disc
+    # They are too few where they lie on a line, or cover too little of the disc
     places, values = _project_to_disc(samples)
     if len(places) < 4 or np.linalg.matrix_rank(places - places[0], tol=1e-3) < 2:
         return None
@@ -76,21 +82,21 @@ def _integrate_over_disc(samples):
     if hull.volume < LEAST_AREA * np.pi:
         return None
 
-    # the outermost samples once more at the horizon
+    # The outermost samples once more at the horizon
     outermost = places[hull.vertices]
     rim = outermost / np.linalg.norm(outermost, axis=1, keepdims=True)
     places = np.concatenate([places, rim])
     values = np.concatenate([values, values[hull.vertices]])
 
-    # linear on triangles between the samples; the polygon's area is scaled to the disc's
+    # Linear on triangles between the samples; the polygon's area is scaled to the disc's
     corners = Delaunay(places).simplices
     (ax, ay), (bx, by) = (places[corners[:, k]].T - places[corners[:, 0]].T for k in (1, 2))
     area = np.abs(ax * by - ay * bx)
     return area @ values[corners].mean(axis=1) * np.pi / area.sum()
 
 
-def _project_to_disc(samples):
-    """Places (n, 2) on the disc and values (n, channels) of the samples and their mirror images.
+def _project_to_disc(samples: Samples) -> tuple[FloatArray, FloatArray]:
+    """Return places (n, 2) on the disc, and values (n, channels), of samples and mirror images.
 
     Samples at the same place are averaged.
     """

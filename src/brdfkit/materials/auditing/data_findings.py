@@ -1,4 +1,4 @@
-"""`data_findings`: what a fit should know of its data, found in milliseconds, in sentences."""
+"""Finds in milliseconds what a fit should know of its data, in sentences."""
 
 import math
 from weakref import WeakKeyDictionary
@@ -6,87 +6,93 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from brdfkit.core.names import format_percent
-from brdfkit.materials.auditing.cosine import suspected_cosine
-from brdfkit.materials.auditing.grazing_and_retro import (
+from brdfkit.materials.auditing.azimuth import compute_turned_error_ratio
+from brdfkit.materials.auditing.cosine import explain_suspected_cosine
+from brdfkit.materials.auditing.noise import estimate_noise
+from brdfkit.materials.auditing.ratios import (
     GRAZING,
     STEEP,
-    backwards,
-    grazing,
-    retroreflection,
+    backward_ratio,
+    grazing_ratio,
+    retroreflection_ratio,
 )
-from brdfkit.materials.auditing.noise import noise
-from brdfkit.materials.auditing.spread import some_samples
-from brdfkit.materials.auditing.symmetries import by_reciprocity
-from brdfkit.materials.auditing.turned import error_when_turned
+from brdfkit.materials.auditing.subsets import draw_samples
+from brdfkit.materials.auditing.symmetries import compare_reciprocal
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.conventions import can_mend
 from brdfkit.materials.measured.coverage import is_in_plane
 from brdfkit.model.samples import Samples
 from brdfkit.regression.light import format_share
 
-# What is above these, or below DARK_HORIZON, is a finding:
-NOT_RECIPROCAL, PAIRS = 0.1, 20  # the median difference, of at least so many pairs
-OF_NOISE = 0.6745 * math.sqrt(2)  # the median difference of two equal values, over their noise
-DARK_HORIZON, RETROREFLECTIVE = 0.5, 5  # ratios of `grazing_and_retro.py`
-# ... and `backwards` there: alone, or with this `retroreflection`; of rough plaster 3.5 and 1.6
-BACKWARDS, WITH_A_LOBE = 5, (2, 2.5)
-# ... where that ratio is not below FORWARDS, `error_when_turned` is below TURNED
-FORWARDS, TURNED = 0.9, 0.3
-SAME = 1.0  # degrees: angles of incidence that differ by less are one
-ZERO = 0.01  # the share of samples that are 0
-SEVERAL = 5  # values below 0 that are equal
-GAIN, LEAST_LIGHT = 1.25, 1e-3  # the light that is reflected ...
+# The limits above which something is a finding; for the two ratios *_BELOW, below which
+RECIPROCITY_ERROR, FEWEST_PAIRS = 0.1, 20  # a median difference, by at least so many pairs
+# The median difference of two values that are equal but for noise, over this noise
+NOISE_TO_DIFFERENCE = 0.6745 * math.sqrt(2)
+GRAZING_BELOW, RETROREFLECTIVE = 0.5, 5  # ratios of `ratios.py`
+# The backward ratio alone, or with this retroreflection ratio; rough plaster has 3.5 and 1.6
+BACKWARD, BACKWARD_WITH_LOBE = 5, (2, 2.5)
+# The error ratio of a turned azimuth, where the backward ratio is not below the first
+LEAST_BACKWARD, TURNED_ERROR_BELOW = 0.9, 0.3
+SAME_ANGLE = 1.0  # degrees: angles of incidence that differ by less are one
+ZERO_SHARE = 0.01  # of samples that are 0
+MOST_EQUAL_NEGATIVE = 4  # values below 0
+LARGEST_ALBEDO, SMALLEST_ALBEDO = 1.25, 1e-3  # ...
 OBLIQUE = 60  # ... below this angle of incidence [degrees]
-ALONG = math.cos(math.radians(5))  # the cosine of directions along the normal
+ALONG_NORMAL = math.cos(math.radians(5))  # the cosine of directions along the normal
 
-# A fit of each of many models asks the same
-_known: WeakKeyDictionary[Measured, dict[str, str]] = WeakKeyDictionary()
+# The sentences of each material: fits of many models ask for the same ones
+_cache: WeakKeyDictionary[Measured, dict[str, str]] = WeakKeyDictionary()
 
 
-def data_findings(data: Measured, max_angle: float = 90.0) -> tuple[str, ...]:
-    """Sentences on what is doubtful in a `Measured`, without what takes long or shows elsewhere.
+def list_data_findings(data: Measured, max_angle: float = 90.0) -> tuple[str, ...]:
+    """Return sentences on what is doubtful in a `Measured`, as far as it is found quickly.
 
-    `max_angle`: the largest angle to the normal [degrees] of the samples that are used; what is
-    wrong beyond it is left out.
+    `max_angle` is the largest angle to the normal [degrees] of the samples that are used; faults
+    beyond it are left out.
     """
-    if data not in _known:
-        _known[data] = {what: sentence for what, sentence in _find(data).items() if sentence}
-    found = _known[data]
-    return tuple(s for what, s in found.items() if what != "horizon" or max_angle > GRAZING)
+    if data not in _cache:
+        _cache[data] = {topic: text for topic, text in _describe(data).items() if text}
+    sentences = _cache[data]
+    return tuple(s for topic, s in sentences.items() if topic != "horizon" or max_angle > GRAZING)
 
 
-def _find(data: Measured) -> dict[str, str]:
-    """The sentences by what they are about, "" where there is nothing to say."""
-    samples = some_samples(data)
-    cosine = _say_cosine(data)
+def _describe(data: Measured) -> dict[str, str]:
+    """Return the sentences by their topics, "" for topics without a finding."""
+    samples = draw_samples(data)
+    cosine = _describe_cosine(data)
     return {
-        "azimuth": _say_direction(data, samples),
+        "azimuth": _describe_direction(data, samples),
         "cosine": cosine,
-        "reciprocity": "" if cosine else _say_reciprocity(data),
-        "horizon": "" if cosine else _say_horizon(samples),
-        "plane": _say_plane(samples),
-        "incidence": _say_incidence(samples),
-        "zero": _say_zero(samples),
-        "sentinel": _say_sentinel(samples),
-        "unit": _say_unit(data),
+        "reciprocity": "" if cosine else _describe_reciprocity(data),
+        "horizon": "" if cosine else _describe_horizon(samples),
+        "plane": _describe_plane(samples),
+        "incidence": _describe_incidence(samples),
+        "zero": _describe_zeros(samples),
+        "sentinel": _describe_sentinel(samples),
+        "unit": _describe_unit(data),
     }
 
 
-def _say_direction(data: Measured, samples: Samples) -> str:
-    """On light that is sent back to where it comes from, or azimuths that make it seem so."""
-    ratio, near_light = backwards(samples), retroreflection(samples)
+def _describe_direction(data: Measured, samples: Samples) -> str:
+    """Describe light that returns to its source, or azimuths that make it seem to return."""
+    ratio, near_light = backward_ratio(samples), retroreflection_ratio(samples)
     mendable = can_mend(data, "mirror_azimuth")
-    found = ""
-    if ratio > BACKWARDS or (ratio > WITH_A_LOBE[0] and near_light > WITH_A_LOBE[1]):
-        found = f"the values are {ratio:.2g} times as large towards the light as"
-    elif mendable and not ratio < FORWARDS and error_when_turned(samples) < TURNED:
-        found = "the highlight lies towards the light, and not"
-    if found:
+    beginning = ""
+    has_lobe = ratio > BACKWARD_WITH_LOBE[0] and near_light > BACKWARD_WITH_LOBE[1]
+    if ratio > BACKWARD or has_lobe:
+        beginning = f"the values are {ratio:.2g} times as large towards the light as"
+    elif (
+        mendable
+        and not ratio < LEAST_BACKWARD
+        and compute_turned_error_ratio(samples) < TURNED_ERROR_BELOW
+    ):
+        beginning = "the highlight lies towards the light, and not"
+    if beginning:
         mirrored = "the instrument counts phi_o from the mirror's side"
         if mendable:
             mirrored += ", which mirror_azimuth=True (--mirror-azimuth) mends"
         return (
-            f"{found} in the mirror direction, phi_o = phi_i + 180°: either the material is "
+            f"{beginning} in the mirror direction, phi_o = phi_i + 180°: either the material is "
             "retroreflective, which no lobe about the mirror direction can fit, or "
             f"{mirrored}"
         )
@@ -99,9 +105,9 @@ def _say_direction(data: Measured, samples: Samples) -> str:
     return ""
 
 
-def _say_cosine(data: Measured) -> str:
-    """On values that seem to be the BRDF times cos theta_o."""
-    why = suspected_cosine(data)
+def _describe_cosine(data: Measured) -> str:
+    """Describe values that seem to be the BRDF times cos theta_o."""
+    why = explain_suspected_cosine(data)
     if not why:
         return ""
     mend = ""
@@ -110,24 +116,24 @@ def _say_cosine(data: Measured) -> str:
     return f"the values seem to be the BRDF times cos theta_o, because {why}{mend}"
 
 
-def _say_reciprocity(data: Measured) -> str:
-    """On values that differ as wi and wo are exchanged, by more than noise makes them."""
-    found = by_reciprocity(data)
-    if found.pairs < PAIRS or not found.median > NOT_RECIPROCAL:
+def _describe_reciprocity(data: Measured) -> str:
+    """Describe values that exchanging wi and wo changes by more than their noise."""
+    difference = compare_reciprocal(data)
+    if difference.pairs < FEWEST_PAIRS or not difference.median > RECIPROCITY_ERROR:
         return ""
-    noises = [2 * OF_NOISE * n for n in noise(data).relative if not math.isnan(n)]
-    if found.median <= max([NOT_RECIPROCAL, *noises]):
+    noise = [n for n in estimate_noise(data).relative if not math.isnan(n)]
+    if difference.median <= 2 * NOISE_TO_DIFFERENCE * max(noise, default=0.0):
         return ""
     return (
         "the values are not reciprocal: exchanging wi and wo changes them by "
-        f"{100 * found.median:.0f} % in the median"
+        f"{100 * difference.median:.0f} % in the median"
     )
 
 
-def _say_horizon(samples: Samples) -> str:
-    """On values near the horizon that are darker than of most surfaces."""
-    ratio = grazing(samples)
-    if not ratio < DARK_HORIZON:
+def _describe_horizon(samples: Samples) -> str:
+    """Describe values near the horizon that are darker than on most surfaces."""
+    ratio = grazing_ratio(samples)
+    if not ratio < GRAZING_BELOW:
         return ""
     return (
         f"the values fall towards the horizon: the median beyond {GRAZING}° is {ratio:.2g} times "
@@ -136,9 +142,10 @@ def _say_horizon(samples: Samples) -> str:
     )
 
 
-def _say_plane(samples: Samples) -> str:
-    """On samples in the plane of incidence; along the normal there is none."""
-    oblique = (samples.wi[:, 2] < ALONG) & (samples.wo[:, 2] < ALONG) & samples.valid
+def _describe_plane(samples: Samples) -> str:
+    """Describe samples that all lie in the plane of incidence; along the normal there is none."""
+    oblique = (samples.wi[:, 2] < ALONG_NORMAL) & (samples.wo[:, 2] < ALONG_NORMAL)
+    oblique &= samples.valid
     if not oblique.any() or not is_in_plane(samples):
         return ""
     return (
@@ -147,10 +154,10 @@ def _say_plane(samples: Samples) -> str:
     )
 
 
-def _say_incidence(samples: Samples) -> str:
-    """On samples that all have the light at one angle to the normal."""
+def _describe_incidence(samples: Samples) -> str:
+    """Describe samples that all have the light at one angle to the normal."""
     angles = np.degrees(np.arccos(np.clip(samples.wi[samples.valid, 2], -1, 1)))
-    if len(angles) < 2 or np.ptp(angles) > SAME:
+    if len(angles) < 2 or np.ptp(angles) > SAME_ANGLE:
         return ""
     return (
         f"the material was measured at one angle of incidence, {np.median(angles):.0f}°: how its "
@@ -158,21 +165,21 @@ def _say_incidence(samples: Samples) -> str:
     )
 
 
-def _say_zero(samples: Samples) -> str:
-    """On samples that are 0 in all channels, as none of a surface is."""
+def _describe_zeros(samples: Samples) -> str:
+    """Describe samples that are 0 in all channels, as no surface is."""
     share = (samples.values[samples.valid] == 0).all(axis=1).mean()
-    if not share > ZERO:
+    if not share > ZERO_SHARE:
         return ""
-    share = format_percent(100 * share)
-    return f"{share} of the samples are exactly 0: probably clipped, or not measured"
+    percent = format_percent(100 * share)
+    return f"{percent} of the samples are exactly 0: probably clipped, or not measured"
 
 
-def _say_sentinel(samples: Samples) -> str:
-    """On a negative whole number of many samples, as -9999: a mark of what was not measured."""
+def _describe_sentinel(samples: Samples) -> str:
+    """Describe a negative whole number in many samples, such as -9999, which marks missing ones."""
     values = samples.values[samples.valid]
     whole = (values < 0) & (values == np.round(values))
     below, counts = np.unique(values[whole], return_counts=True)
-    if not len(counts) or counts.max() < SEVERAL:
+    if not len(counts) or counts.max() <= MOST_EQUAL_NEGATIVE:
         return ""
     mark = below[counts.argmax()]
     return (
@@ -181,8 +188,8 @@ def _say_sentinel(samples: Samples) -> str:
     )
 
 
-def _say_unit(data: Measured) -> str:
-    """On a measurement that reflects more light than arrives, or next to none."""
+def _describe_unit(data: Measured) -> str:
+    """Describe a measurement that reflects more light than arrives, or next to none."""
     albedo = data.rgb.albedo
     angles = zip(albedo.theta_i, albedo.means, strict=False)
     shares = {angle: share for angle, share in angles if angle < OBLIQUE and share > 0}
@@ -190,10 +197,10 @@ def _say_unit(data: Measured) -> str:
         return ""
     angle = max(shares, key=lambda angle: shares[angle])
     share = shares[angle]
-    if LEAST_LIGHT <= share <= GAIN:
+    if SMALLEST_ALBEDO <= share <= LARGEST_ALBEDO:
         return ""
     what = f"the measurement reflects {format_share(share)} of the light at {angle:g}°"
-    if share > GAIN:
+    if share > LARGEST_ALBEDO:
         return (
             f"{what}, more than arrives: the values are in another unit than 1/sr, or hold a "
             "factor, as 100 of per cent; divide them by it"

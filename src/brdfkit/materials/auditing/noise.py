@@ -1,21 +1,25 @@
-"""Noise: the relative standard deviation of the values of a measurement."""
+"""Estimates the noise of a measurement: the relative standard deviation of its values."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.materials.auditing.spread import some_half_vectors, some_valid
-from brdfkit.materials.auditing.symmetries import find_mirrored, relative_differences
+from brdfkit.core.array_types import FloatArray
+from brdfkit.materials.auditing.subsets import draw_valid_samples, thin_half_vectors
+from brdfkit.materials.auditing.symmetries import compute_relative_differences, find_mirrored
+from brdfkit.materials.measured import Measured
 
 TO_SIGMA = 1.4826  # standard deviation over median absolute deviation, for normal noise
-LEAST = 20  # differences that an estimate needs
+FEWEST_DIFFERENCES = 20  # for an estimate
 EQUAL = 1e-6  # two values that differ by less are one measurement, written twice
 
 
 @dataclass(frozen=True)
 class Noise:
-    """`relative`: standard deviation of a value over the value, per channel, NaN where unknown.
+    """The noise of a measurement.
 
+    `relative`: standard deviation of a value over the value, per channel, NaN where unknown;
     `method`: how it was estimated, in words.
     """
 
@@ -23,24 +27,30 @@ class Noise:
     method: str
 
 
-def noise(data):
-    """The `Noise` of a `Measured`: as its file states, else from differences that should be 0."""
+def estimate_noise(data: Measured) -> Noise:
+    """Return the `Noise` that a measurement states, else an estimate.
+
+    The estimate comes from differences that should be 0: of mirrored samples, or along phi_d of a
+    table.
+    """
     if data.standard_error is not None:
         values = np.where(data.values == 0, np.nan, data.values)
         stated = np.abs(data.standard_error / values)[data.samples.valid]
-        return Noise(_per_channel(stated, _median), "the standard error that the file states")
+        noise = _apply_to_channels(_compute_median, stated)
+        return Noise(noise, "the standard error that the file states")
     if data.is_table:
-        differences = _fourth_differences(some_half_vectors(data.table))
-        return Noise(_per_channel(differences, _sigma), "fourth differences along phi_d")
+        differences = _compute_fourth_differences(thin_half_vectors(data.table))
+        noise = _apply_to_channels(_compute_sigma, differences)
+        return Noise(noise, "fourth differences along phi_d")
     unknown = (np.nan,) * len(data.channels)
 
-    # samples of scattered ones that mirror each other; a difference has the noise of two values
-    samples = some_valid(data)
+    # Scattered samples that mirror each other; a difference has the noise of two values
+    samples = draw_valid_samples(data)
     rows, values = find_mirrored(samples, data.anisotropic), samples.values
-    differences = [
-        relative_differences(*values[rows, c].T) / np.sqrt(2) for c in range(values.shape[1])
-    ]
-    sigmas = tuple(map(_sigma, differences))
+    sigmas = tuple(
+        _compute_sigma(compute_relative_differences(*channel[rows].T) / np.sqrt(2))
+        for channel in values.T
+    )
     if np.isnan(sigmas).all():
         return Noise(unknown, "not testable: no direction pair was measured twice or mirrored")
     if np.nanmax(sigmas) < EQUAL:
@@ -48,11 +58,11 @@ def noise(data):
     return Noise(sigmas, f"{len(rows):,} pairs of directions, measured twice or left and right")
 
 
-def _fourth_differences(f):
-    """Relative fourth differences (n, channels) of table values along phi_d.
+def _compute_fourth_differences(f: FloatArray) -> FloatArray:
+    """Return relative fourth differences (n, channels) of table values along phi_d.
 
     They are scaled to the standard deviation of one value. A smooth BRDF leaves 10⁻⁵ of its value;
-    of second differences a highlight would leave 10⁻³.
+    in second differences a highlight would leave 10⁻³.
     """
     before, behind = f[..., :-4, :] + f[..., 4:, :], f[..., 1:-3, :] + f[..., 3:-1, :]
     middle = f[..., 2:-2, :]
@@ -61,17 +71,19 @@ def _fourth_differences(f):
         return ((before - 4 * behind + 6 * middle) / middle / np.sqrt(70)).reshape(-1, f.shape[-1])
 
 
-def _per_channel(columns, statistic):
-    """The `statistic` of each column of `columns` (n, channels), as a tuple."""
-    return tuple(statistic(column) for column in columns.T)
+def _apply_to_channels(
+    statistic: Callable[[FloatArray], float], values: FloatArray
+) -> tuple[float, ...]:
+    """Return the `statistic` of each channel of `values` (n, channels)."""
+    return tuple(statistic(column) for column in values.T)
 
 
-def _sigma(differences):
-    """The standard deviation of `differences`, unmoved by outliers."""
-    return TO_SIGMA * _median(np.abs(differences))
+def _compute_sigma(differences: FloatArray) -> float:
+    """Return the standard deviation of `differences`, which outliers do not change."""
+    return TO_SIGMA * _compute_median(np.abs(differences))
 
 
-def _median(values):
-    """The median of the finite values; NaN of fewer than `LEAST`."""
+def _compute_median(values: FloatArray) -> float:
+    """Return the median of the finite values; NaN if they are too few."""
     values = values[np.isfinite(values)]
-    return float(np.median(values)) if values.size >= LEAST else np.nan
+    return float(np.median(values)) if values.size >= FEWEST_DIFFERENCES else np.nan

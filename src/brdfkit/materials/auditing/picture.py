@@ -1,65 +1,73 @@
-"""An `Audit` as a picture: a slice of the table, the lobes, the albedo."""
+"""Draws an `Audit`: a slice of the table, the lobes and the albedo."""
 
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
+from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.colours import RGB, luminance
 from brdfkit.core.figures import Plot
-from brdfkit.materials.auditing.report import percent
+from brdfkit.materials.auditing.albedos import Albedo
+from brdfkit.materials.auditing.report import to_percent
+from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.coverage import is_near
 from brdfkit.materials.measured.spectrum_to_rgb import to_rgb_or_mean
-from brdfkit.materials.plotting.lobe_plots import draw
-from brdfkit.materials.plotting.plane_of_incidence import usual_angles
+from brdfkit.materials.plotting.lobe_plots import draw_panels
+from brdfkit.materials.plotting.plane_of_incidence import choose_angles
+from brdfkit.model.samples import Table
 
 SIZE = 12.6, 6.8  # inches
 GREY = "0.45"  # legend entries that stand for all channels
 COLOURS = {"R": "#d55e00", "G": "#009e73", "B": "#0072b2"}  # of the channels; others are black
 TICKS = np.array([0, 1, 5, 10, 20, 40, 60, 90])  # degrees of theta_h
-MOST = 4  # an albedo of samples above so many times the looked-up albedo is out of range
-FAINT = 0.35  # opacity of cells that were not measured
+LARGEST_RATIO = 4  # an albedo of samples above so many times the looked-up one is out of range
+FAINT_OPACITY = 0.35  # of cells that were not measured
 
 
-def picture(audit):
-    """The picture of an `Audit` as a matplotlib `Figure`."""
+def draw_audit(audit: Any) -> Figure:
+    """Draw an `Audit` as a matplotlib `Figure`."""
     data = to_rgb_or_mean(audit.data)
-    figure = Plot(figsize=SIZE, layout="constrained")
-    figure.get_layout_engine().set(w_pad=0.1, h_pad=0.1)
+    figure: Any = Plot(figsize=SIZE, layout="constrained")
+    layout: Any = figure.get_layout_engine()
+    layout.set(w_pad=0.1, h_pad=0.1)
     above, below = figure.subfigures(2, 1, height_ratios=(1, 1.06))
     _draw_title(figure, audit)
     slice_axes, albedo_axes = above.subplots(1, 2, width_ratios=(1.25, 1))
     _draw_slice(above, slice_axes, data)
     _draw_albedo(albedo_axes, audit)
-    things = [data]
+    things: list[Any] = [data]
     if not data.is_table:
         things.append(SimpleNamespace(name="interpolated", eval=data.eval))
-    draw(below, things, usual_angles(things))
+    draw_panels(below, things, choose_angles(things))
     return figure
 
 
-def _draw_title(figure, audit):
+def _draw_title(figure: Figure, audit: Any) -> None:
+    """Write the name, the kind and the coverage above the picture."""
     how = "in valid cells" if audit.data.is_table else "measured"
-    covered = f"{percent(audit.coverage.measured)} of the direction pairs {how}"
+    covered = f"{to_percent(audit.coverage.measured)} of the direction pairs {how}"
     text = f"{audit.name}: {audit.kind}, {audit.valid:,} valid, {covered}"
     figure.suptitle(text.replace("$", r"\$"), fontsize=12)  # $ begins a formula
 
 
-def _draw_slice(figure, axes, data):
+def _draw_slice(figure: Any, axes: Any, data: Measured) -> None:
     """Draw the luminance over theta_h and theta_d; hatched and faint where it was not measured."""
-    # the cells at phi_d ≈ 90°
+    # The cells at phi_d ≈ 90°
     table = data.table
     across = int(np.argmin(np.abs(table.centres[-1] - np.pi / 2)))
     cells = (0,) * table.anisotropic + (slice(None), slice(None), across)
     values = luminance(table.filled_values[cells])
     known = is_measured(data, table, cells)
 
-    # the picture; theta_h as in a table, by its square root
+    # The picture; theta_h by its square root, as in a table
     axes.patch.set(facecolor="0.92", hatch="////", edgecolor="0.75", linewidth=0)
-    norm = scale_of(values[known] if known.any() else values)
-    shown = axes.imshow(
+    norm = make_scale(values[known] if known.any() else values)
+    image = axes.imshow(
         np.maximum(values, 0.99 * norm.vmin).T,  # 0 gets the colour of values below the scale, too
         norm=norm,
-        alpha=np.where(known, 1, FAINT).T,
+        alpha=np.where(known, 1, FAINT_OPACITY).T,
         extent=(0, 1, 0, 90),
         origin="lower",
         aspect="auto",
@@ -70,27 +78,27 @@ def _draw_slice(figure, axes, data):
     axes.set_xlabel(r"$\theta_h$")
     axes.set_ylabel(r"$\theta_d$")
 
-    # title and colour bar
+    # The title and the colour bar
     phi_d = np.degrees(table.centres[-1][across])
     hatched = "" if known.all() else "; hatched: not measured"
     what = "luminance" if data.channels in (RGB, ("Y",)) else "mean"
     axes.set_title(rf"{what} of the BRDF [sr⁻¹] at $\phi_d$ = {phi_d:.0f}°{hatched}", fontsize=10)
-    bar = figure.colorbar(shown, ax=axes, pad=0.02, extend="both")
+    bar = figure.colorbar(image, ax=axes, pad=0.02, extend="both")
     bar.ax.yaxis.set_major_formatter("{x:g}")
-    if shown.norm.vmax < 10 * shown.norm.vmin:
+    if image.norm.vmax < 10 * image.norm.vmin:
         bar.ax.yaxis.set_minor_formatter("{x:.2g}")
 
 
-def is_measured(data, table, cells):
-    """Which cells of a slice were measured, or are near a sample."""
+def is_measured(data: Measured, table: Table, cells: Any) -> BoolArray:
+    """Return a mask of the `cells` of a slice, by an index, that were measured or near a sample."""
     if data.is_table:
         return np.isfinite(table.values[cells]).all(axis=-1)
     wi, wo = (w[cells].reshape(-1, 3) for w in table.directions())
     return is_near(data, wi, wo).reshape(table.values[cells].shape[:-1])
 
 
-def scale_of(values):
-    """Matplotlib's logarithmic scale for `values`, without the outermost 1 % on either side."""
+def make_scale(values: FloatArray) -> Any:
+    """Make a logarithmic scale of matplotlib's for `values`, without 1 % of them at either end."""
     from matplotlib.colors import LogNorm
 
     positive = values[values > 0]
@@ -100,9 +108,9 @@ def scale_of(values):
     return LogNorm(min(lowest, highest / 2), highest)
 
 
-def _draw_albedo(axes, audit):
-    """Draw the albedo over the angle of incidence: of the lookup, and of the samples alone."""
-    # lines of the lookup, dotted where it is extrapolated
+def _draw_albedo(axes: Any, audit: Any) -> None:
+    """Draw the albedo over the angle of incidence: by the lookup, and of the samples alone."""
+    # Lines of the lookup, dotted where it is extrapolated
     albedo, samples = audit.albedo, audit.albedo_of_samples
     measured = albedo.theta_i <= albedo.measured_to + 1
     last = int(np.flatnonzero(measured)[-1])
@@ -114,10 +122,10 @@ def _draw_albedo(axes, audit):
     if not measured.all():
         axes.plot([], ":", color=GREY, linewidth=1.8, label="extrapolated")
 
-    # circles of the samples
+    # Circles of the samples
     top = 1.12 * albedo.values.max() or 1.0
     if samples:
-        top = max(top, 1.12 * min(samples.values.max(), MOST * albedo.values.max()))
+        top = max(top, 1.12 * min(samples.values.max(), LARGEST_RATIO * albedo.values.max()))
         _draw_sample_albedo(axes, samples, top)
     if top > 0.9:
         axes.axhline(1, color="0.6", linewidth=0.8, zorder=0)
@@ -131,17 +139,17 @@ def _draw_albedo(axes, audit):
         axes.legend(loc="upper left", bbox_to_anchor=(1, 1), frameon=False, handlelength=1.2)
 
 
-def _draw_sample_albedo(axes, samples, top):
-    """Draw circles at the albedos of the samples, and triangles at the edge for those out of range.
+def _draw_sample_albedo(axes: Any, samples: Albedo, top: float) -> None:
+    """Draw circles at the albedos of the samples, and triangles at the edge where out of range.
 
     The triangles of the channels stand side by side, as they may be out of range together.
     """
     beside = 2.0 * (np.arange(len(samples.channels)) - (len(samples.channels) - 1) / 2)  # degrees
     for channel, values, aside in zip(samples.channels, samples.values.T, beside, strict=True):
         style = {"linestyle": "", "color": COLOURS.get(channel, "black")}
-        for marker, shown in (("^", values > top), ("v", values < 0)):
-            edge = np.full(shown.sum(), (0.97 if marker == "^" else 0.03) * top)
-            axes.plot(samples.theta_i[shown] + aside, edge, marker=marker, **style)
+        for marker, outside in (("^", values > top), ("v", values < 0)):
+            edge = np.full(outside.sum(), (0.97 if marker == "^" else 0.03) * top)
+            axes.plot(samples.theta_i[outside] + aside, edge, marker=marker, **style)
         inside = (values >= 0) & (values <= top)
         axes.plot(samples.theta_i[inside], values[inside], marker="o", mfc="none", **style)
     axes.plot([], "o", color=GREY, mfc="none", label="samples alone")

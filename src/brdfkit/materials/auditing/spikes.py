@@ -1,17 +1,20 @@
-"""Lone spikes: values far above all their neighbours.
+"""Finds lone spikes: values far above all their neighbours.
 
-f cos θi cos θo is compared: the f of a smooth surface grows towards the horizon as
-1 / (4 cos θi cos θo), which is no spike.
+The products f cos θi cos θo are compared, because the BRDF f of a smooth surface grows towards the
+horizon as 1 / (4 cos θi cos θo), which is no spike.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.geometry.directions import to_angles
+from brdfkit.materials.measured import Measured
+from brdfkit.model.samples import Table
 from brdfkit.model.samples.coordinates import coordinates
 
-FACTOR = 4  # over the largest neighbour; of rough and smooth paints, cloth and stone at most 3.4
+LEAST_FACTOR = 4  # over the largest neighbour; rough and smooth paints, cloth and stone reach 3.4
 NEIGHBOURS = 6  # of a scattered sample
 
 
@@ -19,9 +22,9 @@ NEIGHBOURS = 6  # of a scattered sample
 class Spike:
     """A suspicious sample.
 
-    `theta_i`, `theta_o`, `delta_phi`: degrees, 180 for the azimuth of the mirror direction;
-    `value`: its mean over the channels [sr⁻¹]; `factor`: its f cos θi cos θo over the largest of
-    its neighbours.
+    `theta_i`, `theta_o`, `delta_phi`: its angles [degrees], with delta_phi = 180 for the azimuth of
+    the mirror direction; `value`: its mean over the channels [sr⁻¹]; `factor`: its f cos θi cos θo
+    over the largest among its neighbours.
     """
 
     theta_i: float
@@ -30,33 +33,33 @@ class Spike:
     value: float
     factor: float
 
-    def __str__(self):
+    def __str__(self) -> str:
         return (
             f"θi {self.theta_i:.1f}°, θo {self.theta_o:.1f}°, Δφ {self.delta_phi:.0f}°: "
             f"{self.value:.4g} sr⁻¹, {self.factor:.1f} times its neighbours"
         )
 
 
-def spikes(data):
-    """The `Spike`s of a `Measured`, the worst first.
+def find_spikes(data: Measured) -> tuple[Spike, ...]:
+    """Return the spikes of a `Measured`, the worst first.
 
     A spike is brighter than the median, and more than 4 times its largest neighbour. The neighbours
-    of a table's cell share a side with it; those of a sample are the 6 with the nearest half and
-    difference vectors.
+    of a table's cell share a side with it; the neighbours of a sample are the 6 samples with the
+    nearest half and difference vectors.
     """
-    # the values, and the largest of their neighbours; clipped zeros count as nearly 0
+    # The values, and the largest of their neighbours; clipped zeros count as nearly 0
     samples = data.samples
     brightness = np.where(samples.valid, samples.values.mean(axis=1), np.nan)
     projected = brightness * samples.wi[:, 2] * samples.wo[:, 2]
     if data.is_table:
-        around = _largest_adjacent(data.table, projected)
+        around = _find_largest_adjacent(data.table, projected)
     else:
-        around = _largest_nearby(data, projected)
+        around = _find_largest_nearby(data, projected)
     around = np.maximum(around, 1e-3 * abs(np.nanmedian(projected)))
 
-    # the spikes, the worst first
-    found = (projected > FACTOR * around) & (brightness > np.nanmedian(brightness))
-    worst = np.flatnonzero(found)
+    # The spikes, the worst first
+    stands_out = (projected > LEAST_FACTOR * around) & (brightness > np.nanmedian(brightness))
+    worst = np.flatnonzero(stands_out)
     worst = worst[np.argsort(-projected[worst] / around[worst])]
     (theta_i, phi_i), (theta_o, phi_o) = to_angles(samples.wi[worst]), to_angles(samples.wo[worst])
     degrees = np.degrees([theta_i, theta_o, np.mod(phi_o - phi_i, 2 * np.pi)])
@@ -64,8 +67,8 @@ def spikes(data):
     return tuple(Spike(*row) for row in np.transpose(columns).tolist())
 
 
-def _largest_adjacent(table, values):
-    """For each cell the largest of `values` in the cells that share a side, or NaN; (n,)."""
+def _find_largest_adjacent(table: Table, values: FloatArray) -> FloatArray:
+    """Return for each cell the largest of `values` in the cells that share a side, or NaN; (n,)."""
     f = values.reshape(table.shape)
     around = np.full(f.shape, np.nan)
     for axis in range(f.ndim):
@@ -78,8 +81,8 @@ def _largest_adjacent(table, values):
     return around.reshape(-1)
 
 
-def _largest_nearby(data, values):
-    """For each sample the largest of `values` of the nearest valid samples, or NaN; (n,)."""
+def _find_largest_nearby(data: Measured, values: FloatArray) -> FloatArray:
+    """Return for each sample the largest of `values` at the nearest valid ones, or NaN; (n,)."""
     from scipy.spatial import cKDTree
 
     samples, valid = data.samples, np.flatnonzero(data.samples.valid)

@@ -1,6 +1,7 @@
 """Converts spectral measurements to linear sRGB, and reads wavelengths from channel names."""
 
 import re
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -42,6 +43,13 @@ def to_rgb_or_mean(data: Any) -> Any:
 def has_wavelengths(data: MeasuredData) -> bool:
     """Return whether the channels of a `Measured` are all named as wavelengths, as ``"400nm"``."""
     return all(map(WAVELENGTH.fullmatch, data.channels))
+
+
+def format_channels(channels: Sequence[str]) -> str:
+    """Return a text of the names of channels: all of up to five, else the first and the last."""
+    if len(channels) > 5:
+        return f"{len(channels)} wavelengths, {channels[0]} to {channels[-1]}"
+    return " ".join(channels)
 
 
 def wavelengths(data: MeasuredData) -> NDArray[np.float64]:

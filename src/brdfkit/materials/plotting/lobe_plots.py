@@ -5,50 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from itertools import cycle
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike
 
+from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.figures import Plot
 from brdfkit.core.names import make_unique
 from brdfkit.images.thumbnails.lobes import Radius
 from brdfkit.materials.measured import Measured
-from brdfkit.materials.plotting.plane_of_incidence import is_scattered, lobe, usual_angles
+from brdfkit.materials.plotting.plane_of_incidence import choose_angles, compute_lobe, is_scattered
 from brdfkit.materials.resolve import MaterialLike, to_materials
 
 SMALL = {"size": 8, "color": "0.35"}
-
-
-def draw_half_disc(axes, radius):
-    """Draw rim, grid and labels; `radius`: a `Radius`.
-
-    Matplotlib's own polar axes would leave half of the page blank.
-    """
-    axes.set(aspect="equal", xlim=(-1.2, 1.2), ylim=(-0.27, 1.13))
-    axes.set_axis_off()
-    half = np.arange(-90, 91)
-    rim = {"color": "0.3", "linewidth": 0.8, "zorder": 1.2}
-    grid = {"color": "0.87", "linewidth": 0.7, "zorder": 1}
-    axes.plot(*xy(half, 1), **rim)
-    axes.plot([-1, 1], [0, 0], **rim)
-    for theta in range(-90, 91, 30):
-        axes.plot(*xy(theta, np.array([0, 1])), **grid)
-        text = f"{theta}°".replace("-", "−")
-        va = "bottom" if abs(theta) == 90 else "center"  # above the numbers along the radius
-        axes.text(*xy(theta, 1.1), text, ha="center", va=va, **SMALL)
-    for tick in radius.ticks():
-        axes.plot(*xy(half, radius(tick)), **grid)
-        axes.text(radius(tick), -0.03, f"{tick:g}", ha="center", va="top", **SMALL)
-    axes.text(0, -0.17, "luminance of the BRDF [sr⁻¹], logarithmic", ha="center", va="top", **SMALL)
-
-
-def xy(theta, radius):
-    """The place (x, y) of a radius at an angle to the normal [degrees], positive to the right."""
-    return radius * np.sin(np.radians(theta)), radius * np.cos(np.radians(theta))
-
-
 BLACK, GREY = "black", "0.45"
 # Okabe and Ito's colours, which the colour-blind tell apart
 COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
@@ -59,12 +30,12 @@ MOST_COLUMNS = 3
 def plot(
     materials: MaterialLike | Iterable[MaterialLike], *, theta_i: ArrayLike | None = None
 ) -> Figure:
-    """Polar plots of BRDFs in the plane of incidence, one panel per angle of incidence.
+    """Draw BRDFs in the plane of incidence as polar plots, one panel per angle of incidence.
 
-    The radius is logarithmic in the BRDF [sr⁻¹], in its luminance where it has colour; what is
-    too dark for the scale lies in the centre. Light comes from the left, along the arrow. The
-    first measured material is black: a table a line, where it was measured, and scattered samples
-    dots, those within 3° of theta_i and 5° of the plane.
+    The radius is logarithmic in the BRDF [sr⁻¹], or in its luminance where it has colour; values
+    too dark for the scale lie in the centre. Light comes from the left, along the arrow. The first
+    measured material is black. A table is a line where it was measured, and scattered samples are
+    dots, within 3° of theta_i and 5° of the plane.
 
     Parameters
     ----------
@@ -72,57 +43,49 @@ def plot(
         The materials, their names or paths, or BSDFs' dictionaries.
     theta_i : float or array_like, optional
         Angles of incidence [degrees], from 0 to below 90. By default 15, 45 and 75, or the nearest
-        ones at which the first scattered material was measured.
+        angles at which the first scattered material was measured.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Not pyplot's: a notebook shows it, ``savefig`` writes it.
+        The figure, which is not pyplot's: a notebook shows it, ``savefig`` writes it.
 
     Raises
     ------
     BrdfkitError
-        For angles out of range, for values that are neither achromatic nor RGB, and for what is no
-        material.
+        For angles out of range, for values that are neither achromatic nor RGB, and for an object
+        that is no material.
 
     Examples
     --------
     >>> plot(["car_paint", "ward"]).savefig("paint.png")    # doctest: +SKIP
     """
-    found = _find_materials(materials)
-    angles = usual_angles(found) if theta_i is None else np.atleast_1d(theta_i).astype(float)
+    resolved = to_materials(materials, needed=("name", "eval"))
+    drawn = [getattr(material, "rgb", material) for material in resolved]
+    angles = choose_angles(drawn) if theta_i is None else np.atleast_1d(theta_i).astype(float)
     if angles.ndim != 1 or not angles.size or not np.all((angles >= 0) & (angles < 90)):
         raise BrdfkitError(f"plot: theta_i = {theta_i} should be angles from 0 to below 90°.")
-    return _make_figure(found, angles)
-
-
-def _find_materials(things):
-    """The materials of what `plot` was given; those of wavelengths in linear sRGB."""
-    found = to_materials(things, needed=("name", "eval"))
-    return [getattr(thing, "rgb", thing) for thing in found]
-
-
-def _make_figure(things, angles):
     rows, columns = _count_panels(angles)
     figure = Plot(figsize=(max(4.2 * columns, 6), 2.75 * rows + 0.35), layout="constrained")
-    figure.get_layout_engine().set(h_pad=0.08)
-    draw(figure, things, angles)
+    layout: Any = figure.get_layout_engine()
+    layout.set(h_pad=0.08)
+    draw_panels(figure, drawn, angles)
     return figure
 
 
-def _count_panels(angles):
-    """The rows and columns of the panels, one panel per angle."""
+def _count_panels(angles: FloatArray) -> tuple[int, int]:
+    """Return the numbers of rows and columns of the panels, one panel per angle."""
     rows = math.ceil(len(angles) / MOST_COLUMNS)
     return rows, math.ceil(len(angles) / rows)
 
 
-def draw(figure, things, angles):
+def draw_panels(figure: Any, things: list[Any], angles: FloatArray) -> None:
     """Draw the panels and their legend into a matplotlib `Figure` or `SubFigure`.
 
-    `things`: achromatic or RGB; `angles`: of incidence [degrees].
+    `things` are achromatic or RGB materials, `angles` those of incidence [degrees].
     """
     rows, columns = _count_panels(angles)
-    styles = _styles(things)
+    styles = _choose_styles(things)
     for place, theta_i in enumerate(angles, 1):
         _draw_panel(figure.add_subplot(rows, columns, place), theta_i, things, styles)
     handles, labels = figure.axes[0].get_legend_handles_labels()
@@ -130,14 +93,15 @@ def draw(figure, things, angles):
     figure.legend(handles, labels, loc="outside lower center", ncols=ncols, frameon=False)
 
 
-def _styles(things):
-    """Keywords of matplotlib's `plot` for each thing; no two have the same look or label."""
+def _choose_styles(things: list[Any]) -> list[dict[str, Any]]:
+    """Return keywords of matplotlib's `plot` for each material, with distinct looks and labels."""
     colours = [{"color": c, "linestyle": dash} for dash in DASHES for c in COLOURS]
-    palette, styles, taken = cycle(colours), [], set()
+    palette, taken = cycle(colours), set[str]()
+    styles: list[dict[str, Any]] = []
     black = next((thing for thing in things if isinstance(thing, Measured)), None)
     for thing in things:
-        style = {"color": BLACK, "linestyle": "-"} if thing is black else next(palette)
-        style = {**style, "linewidth": 1.4}
+        style: dict[str, Any] = {"color": BLACK, "linestyle": "-"}
+        style = {**(style if thing is black else next(palette)), "linewidth": 1.4}
         if isinstance(thing, Measured):  # thick, and under the models' lines
             style |= {"linewidth": 2.4, "zorder": 1.9}
         if is_scattered(thing):
@@ -148,13 +112,42 @@ def _styles(things):
     return styles
 
 
-def _draw_panel(axes, theta_i, things, styles):
+def _draw_panel(axes: Any, theta_i: float, things: list[Any], styles: list[dict[str, Any]]) -> None:
     """Draw the half disc of one angle of incidence, with the light's arrow and the lobes."""
-    lobes = [lobe(thing, theta_i) for thing in things]
+    lobes = [compute_lobe(thing, theta_i) for thing in things]
     radius = Radius([values for _, values in lobes])
-    draw_half_disc(axes, radius)
+    _draw_half_disc(axes, radius)
     axes.set_title(rf"$\theta_i$ = {theta_i:g}°", size=11)
     arrow = {"arrowstyle": "-|>", "color": GREY, "shrinkA": 0, "shrinkB": 0}
-    axes.annotate("", (0, 0), xy(-theta_i, 1), arrowprops=arrow, zorder=1.5)
+    axes.annotate("", (0, 0), _to_xy(-theta_i, 1), arrowprops=arrow, zorder=1.5)
     for (theta_o, values), style in zip(lobes, styles, strict=True):
-        axes.plot(*xy(theta_o, radius(values)), **style)
+        axes.plot(*_to_xy(theta_o, radius(values)), **style)
+
+
+def _draw_half_disc(axes: Any, radius: Radius) -> None:
+    """Draw rim, grid and labels of a half disc; `radius` maps BRDF values to radii.
+
+    Matplotlib's own polar axes would leave half of the page blank.
+    """
+    axes.set(aspect="equal", xlim=(-1.2, 1.2), ylim=(-0.27, 1.13))
+    axes.set_axis_off()
+    half = np.arange(-90, 91)
+    rim = {"color": "0.3", "linewidth": 0.8, "zorder": 1.2}
+    grid = {"color": "0.87", "linewidth": 0.7, "zorder": 1}
+    axes.plot(*_to_xy(half, 1), **rim)
+    axes.plot([-1, 1], [0, 0], **rim)
+    for theta in range(-90, 91, 30):
+        axes.plot(*_to_xy(theta, np.array([0, 1])), **grid)
+        text = f"{theta}°".replace("-", "−")
+        va = "bottom" if abs(theta) == 90 else "center"  # above the numbers along the radius
+        axes.text(*_to_xy(theta, 1.1), text, ha="center", va=va, **SMALL)
+    for tick in radius.ticks():
+        axes.plot(*_to_xy(half, radius(tick)), **grid)
+        axes.text(radius(tick), -0.03, f"{tick:g}", ha="center", va="top", **SMALL)
+    axes.text(0, -0.17, "luminance of the BRDF [sr⁻¹], logarithmic", ha="center", va="top", **SMALL)
+
+
+def _to_xy(theta: Any, radius: Any) -> tuple[Any, Any]:
+    """Return the place (x, y) of a radius at an angle to the normal [degrees], positive to the
+    right."""
+    return radius * np.sin(np.radians(theta)), radius * np.cos(np.radians(theta))

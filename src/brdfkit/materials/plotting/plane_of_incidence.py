@@ -1,24 +1,30 @@
 """A BRDF in the plane of incidence: the angles and luminances that `plot` draws."""
 
+from collections.abc import Iterable
+from typing import Any
+
 import numpy as np
 
+from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.colours import luminance
 from brdfkit.core.geometry.directions import from_angles, to_angles
 from brdfkit.materials.measured import Measured
-from brdfkit.model.samples import Table
+from brdfkit.model.samples import Samples, Table
 
 STEP = 0.1  # degrees between the points of a line
 NEAR_THETA, NEAR_PHI = 3, 5  # degrees: samples this close to the plane are drawn in it
+DEFAULT_ANGLES = np.array([15.0, 45.0, 75.0])
 
 
-def lobe(thing, theta_i):
-    """The lobe at incidence `theta_i` [degrees]: angles to the normal and luminances, both (n,).
+def compute_lobe(thing: Any, theta_i: float) -> tuple[FloatArray, FloatArray]:
+    """Return the lobe of a material at incidence `theta_i` [degrees].
 
-    The angles [degrees] are negative on the light's side. The luminance [sr⁻¹] is NaN where
-    a table was not measured, or where a model has no finite value.
+    The results are angles to the normal [degrees], negative on the light's side, and luminances
+    [sr⁻¹], both (n,). The luminance is NaN where a table was not measured, or where a model has no
+    finite value.
     """
     if is_scattered(thing):
-        return _samples_near(thing.samples, theta_i)
+        return _select_near(thing.samples, theta_i)
     theta_o = np.linspace(-90, 90, round(180 / STEP) + 1)[1:-1]
     wi = np.broadcast_to(from_angles(np.radians(theta_i), np.pi), (len(theta_o), 3))
     wo = from_angles(np.radians(theta_o), 0.0)
@@ -29,45 +35,48 @@ def lobe(thing, theta_i):
     return theta_o, np.where(known, values, np.nan)
 
 
-def usual_angles(things):
-    """15°, 45° and 75°, or the angles nearest to them at which scattered samples were measured."""
-    usual = np.array([15.0, 45.0, 75.0])
+def choose_angles(things: Iterable[Any]) -> FloatArray:
+    """Return the angles of incidence [degrees] at which materials are drawn by default.
+
+    They are 15°, 45° and 75°, or the nearest angles at which the first scattered material was
+    measured.
+    """
     scattered = next((thing for thing in things if is_scattered(thing)), None)
     if scattered is None:
-        return usual
-    there = to_angles(scattered.samples.wi[_in_plane(scattered.samples)])[0]
-    there = np.unique(np.degrees(there).round(1))
-    there = there[there < 90]
-    if not there.size:
-        return usual
-    return np.unique([there[np.argmin(np.abs(there - angle))] for angle in usual])
+        return DEFAULT_ANGLES
+    measured = to_angles(scattered.samples.wi[_find_in_plane(scattered.samples)])[0]
+    measured = np.unique(np.degrees(measured).round(1))
+    measured = measured[measured < 90]
+    if not measured.size:
+        return DEFAULT_ANGLES
+    return np.unique([measured[np.argmin(np.abs(measured - angle))] for angle in DEFAULT_ANGLES])
 
 
-def is_scattered(thing):
-    """Whether `thing` is a measured material of scattered samples, which are drawn as dots."""
+def is_scattered(thing: object) -> bool:
+    """Return whether `thing` is a measured material of scattered samples, drawn as dots."""
     return isinstance(thing, Measured) and not thing.is_table
 
 
-def _samples_near(samples, theta_i):
-    """Angles to the normal and luminances of the samples near the plane and near `theta_i`."""
+def _select_near(samples: Samples, theta_i: float) -> tuple[FloatArray, FloatArray]:
+    """Return angles to the normal and luminances of the samples near the plane and `theta_i`."""
     near = np.abs(np.degrees(to_angles(samples.wi)[0]) - theta_i) <= NEAR_THETA
-    near &= _in_plane(samples)
-    theta_o = -np.sign(_cos_delta_phi(samples)) * np.degrees(to_angles(samples.wo)[0])
+    near &= _find_in_plane(samples)
+    theta_o = -np.sign(_compute_cos_delta_phi(samples)) * np.degrees(to_angles(samples.wo)[0])
     return theta_o[near], luminance(samples.values[near])
 
 
-def _in_plane(samples):
-    """Which samples are valid and within `NEAR_PHI` of the plane of incidence."""
-    beside = np.abs(_cos_delta_phi(samples)) >= np.cos(np.radians(NEAR_PHI))
+def _find_in_plane(samples: Samples) -> BoolArray:
+    """Return a mask (n,) of the valid samples within `NEAR_PHI` of the plane of incidence."""
+    beside = np.abs(_compute_cos_delta_phi(samples)) >= np.cos(np.radians(NEAR_PHI))
     return samples.valid & (beside | (samples.wo[:, 2] == 1))
 
 
-def _cos_delta_phi(samples):
-    """cos Δφ of the samples: 1 in the light's azimuth, -1 in the mirror's."""
+def _compute_cos_delta_phi(samples: Samples) -> FloatArray:
+    """Return cos Δφ (n,) of the samples: 1 in the light's azimuth, -1 in the mirror's."""
     return np.cos(to_angles(samples.wo)[1] - to_angles(samples.wi)[1])
 
 
-def _is_measured(table, wi, wo):
-    """Where more than half of a lookup's weight is on measured cells."""
+def _is_measured(table: Table, wi: FloatArray, wo: FloatArray) -> BoolArray:
+    """Return a mask (n,), True where more than half of a lookup's weight is on measured cells."""
     known = np.isfinite(table.values).all(axis=-1, keepdims=True)
     return Table(known.astype(float), table.phi_d_period).eval(wi, wo)[:, 0] > 0.5

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from brdfkit.core.colours import luminance
-from brdfkit.materials.auditing.albedos import albedo
+from brdfkit.materials.auditing.albedos import compute_albedo
 from brdfkit.reporting.charts.svg import Chart, linear
 
 
@@ -39,7 +39,7 @@ def _albedo(model, anisotropic):
         anisotropic=anisotropic,
         eval=lambda wi, wo: luminance(model.eval(wi, wo))[:, None],
     )
-    return albedo(grey, measured_to=90.0).values[:, 0]
+    return compute_albedo(grey, measured_to=90.0).values[:, 0]
 
 
 def _step(most):

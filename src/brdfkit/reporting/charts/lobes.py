@@ -3,7 +3,7 @@
 import numpy as np
 
 from brdfkit.images.thumbnails.lobes import Radius
-from brdfkit.materials.plotting.plane_of_incidence import is_scattered, lobe, usual_angles
+from brdfkit.materials.plotting.plane_of_incidence import choose_angles, compute_lobe, is_scattered
 from brdfkit.reporting.charts.svg import BOTTOM, HEIGHT, TOP, Axis, Chart, linear
 
 STEP, APART = 0.5, 3.0  # degrees between the points of a line, and between dots of a table
@@ -17,13 +17,15 @@ def lobe_charts(material, fits, noise):
     `noise`: the standard deviation of a measured value over the value, 0 where it is unknown.
     """
     material = getattr(material, "rgb", material)
-    charts = [_chart(material, fits, noise, angle) for angle in usual_angles([material])]
+    charts = [_chart(material, fits, noise, angle) for angle in choose_angles([material])]
     return [svg for svg, _ in charts], any(barred for _, barred in charts)
 
 
 def _chart(material, fits, noise, theta_i):
     """The chart of an incidence, and whether it has bars."""
-    measured, *fitted = (lobe(getattr(thing, "rgb", thing), theta_i) for thing in (material, *fits))
+    measured, *fitted = (
+        compute_lobe(getattr(thing, "rgb", thing), theta_i) for thing in (material, *fits)
+    )
     radius = Radius([values for _, values in (measured, *fitted)])
     ticks = [(value, f"{value:g}") for value in radius.ticks()]
     x = linear("θo, towards the light < 0", -90, 90, range(-90, 91, 30), "°")

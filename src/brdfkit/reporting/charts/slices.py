@@ -4,7 +4,7 @@ import numpy as np
 
 from brdfkit.core.colours import luminance
 from brdfkit.core.pages import images
-from brdfkit.materials.auditing.picture import is_measured, scale_of
+from brdfkit.materials.auditing.picture import is_measured, make_scale
 from brdfkit.reporting.charts.svg import Axis, Chart, linear
 
 VALUES, RATIOS = "viridis", "RdBu_r"
@@ -23,7 +23,7 @@ def slice_charts(material, fits):
     wi, wo = (w[cells] for w in table.directions())
     known = is_measured(data, table, cells)
     measured = luminance(table.filled_values[cells])
-    scale = scale_of(measured[known] if known.any() else measured)
+    scale = make_scale(measured[known] if known.any() else measured)
 
     def draw(title, shares, palette):
         colours = images.apply_colour_map(palette, shares)

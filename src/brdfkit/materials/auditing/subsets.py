@@ -1,0 +1,45 @@
+"""Draws a part of a large measurement, whose medians are found in milliseconds."""
+
+import numpy as np
+
+from brdfkit.core.array_types import FloatArray, IntArray
+from brdfkit.core.geometry.directions import from_half_difference
+from brdfkit.materials.measured import Measured
+from brdfkit.model.samples import Samples, Table
+
+MOST_SAMPLES = 50_000  # samples, or cells, that are drawn
+MOST_CELLS = 200_000  # cells of a table that are compared with each other
+
+
+def draw_rows(count: int) -> IntArray:
+    """Return the numbers of at most 50,000 of `count` rows, ascending, and equal in each call."""
+    if count <= MOST_SAMPLES:
+        return np.arange(count)
+    return np.unique(np.random.default_rng(0).integers(count, size=MOST_SAMPLES))
+
+
+def draw_samples(data: Measured) -> Samples:
+    """Return at most 50,000 samples of a `Measured`, or cells of a table as samples."""
+    if not data.is_table:
+        samples, count = data.samples, len(data.samples.wi)
+        return samples if count <= MOST_SAMPLES else samples.at(draw_rows(count))
+    table = data.table
+    cells = draw_rows(table.values[..., 0].size)
+    places = np.unravel_index(cells, table.shape)
+    *phi_h, theta_h, theta_d, phi_d = map(np.take, table.centres, places)
+    wi, wo = from_half_difference(theta_h, theta_d, phi_d, *phi_h)
+    values = table.values.reshape(-1, table.values.shape[-1])[cells]
+    known = np.isfinite(values).all(axis=1) & (wi[:, 2] > 0) & (wo[:, 2] > 0)
+    return Samples(wi, wo, values, known, np.ones(len(cells)))
+
+
+def draw_valid_samples(data: Measured) -> Samples:
+    """Return the valid ones of `draw_samples`."""
+    samples = draw_samples(data)
+    return samples.at(samples.valid)
+
+
+def thin_half_vectors(table: Table) -> FloatArray:
+    """Return the values of a `Table`; of a large one, at every second, third, ... theta_h."""
+    step = -(-table.values[..., 0].size // MOST_CELLS)
+    return table.values[..., ::step, :, :, :]
