@@ -71,7 +71,7 @@ def define(mi: MitsubaModule) -> type:
             """Return the `LightVolumes` of an `emitter` of the scene."""
             return LightVolumes(
                 meshes,
-                Light.of_emitter(emitter),
+                Light.from_emitter(emitter),
                 pinhole(sensor),
                 self.method,
                 self.far_plane,

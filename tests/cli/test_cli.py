@@ -830,7 +830,7 @@ def test_progress_shows_after_a_second_and_goes_away(monkeypatch, patience, quie
     terminal = Terminal()
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setattr("sys.stderr", terminal)
-    monkeypatch.setattr("brdfkit.core.progress_bar.PATIENCE", patience)
+    monkeypatch.setattr("brdfkit.core.progress_bar.DELAY", patience)
     with Console(quiet=quiet).progress("fit [ward]") as report:
         time.sleep(0.1)
         report(1, 4)

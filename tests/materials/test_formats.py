@@ -406,9 +406,9 @@ def test_every_format_module_offers_the_protocol():
 @pytest.mark.parametrize("suffix", PACKED)
 def test_oversize_is_refused(tmp_path, monkeypatch, suffix):
     path = place(tmp_path, "merl", PACKED[suffix](merl()), "grey.binary" + suffix)
-    monkeypatch.setattr(files, "LIMIT", len(merl()))
+    monkeypatch.setattr(files, "SIZE_LIMIT", len(merl()))
     load(path)
-    monkeypatch.setattr(files, "LIMIT", len(merl()) - 1)
+    monkeypatch.setattr(files, "SIZE_LIMIT", len(merl()) - 1)
     refused(path, "more than 587 bytes")
 
 

@@ -103,6 +103,6 @@ def test_a_scene_without_shapes_is_one_sentence():
 
 def test_the_middle_of_a_thin_lens_is_the_camera():
     lens = {"type": "thinlens", "aperture_radius": 0.1, "focus_distance": 3.0, "fov": 40}
-    found = Camera.of_sensor(mi.load_dict(lens))
-    pinhole = Camera.of_sensor(mi.load_dict({"type": "perspective", "fov": 40}))
+    found = Camera.from_sensor(mi.load_dict(lens))
+    pinhole = Camera.from_sensor(mi.load_dict({"type": "perspective", "fov": 40}))
     np.testing.assert_allclose(found.matrix, pinhole.matrix)

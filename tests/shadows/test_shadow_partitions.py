@@ -132,7 +132,7 @@ def test_cascades_keep_their_texels_as_the_camera_moves_and_turns():
     to_world = mi.ScalarTransform4f().look_at([3.7, -6.2, 4.8], [0.4, 0.2, 0.3], [0, 0, 1])
     sensor = mi.load_dict({"type": "perspective", "fov": 40, "to_world": to_world})
     wide = {"low": 9 * placement.low, "high": 9 * placement.high}  # no map is as wide as the scene
-    moved = replace(placement, camera=Camera.of_sensor(sensor), **wide)
+    moved = replace(placement, camera=Camera.from_sensor(sensor), **wide)
     points = np.random.default_rng(7).uniform(-3, 3, (3, 100))
     resolution = 500
     camera = replace(placement.camera, slope_y=moved.camera.slope_y)

@@ -116,9 +116,9 @@ def meshes_of(scene):
 
 
 def volumes_of(scene, meshes=None, **how):
-    camera = Camera.of_sensor(scene.sensors()[0])
+    camera = Camera.from_sensor(scene.sensors()[0])
     meshes = meshes_of(scene) if meshes is None else meshes
-    return LightVolumes(meshes, Light.of_emitter(scene.emitters()[0]), camera, pixels=SIZE, **how)
+    return LightVolumes(meshes, Light.from_emitter(scene.emitters()[0]), camera, pixels=SIZE, **how)
 
 
 def wrong(scene, **how):
@@ -251,7 +251,7 @@ def test_volumes_are_closed(casters, kind):
     """A ray leaves every volume that it enters, also one through edges, seen in the axes."""
     cube = {"type": "cube", "to_world": mi.ScalarTransform4f().translate([0, 0, 0.5])}
     scene = scene_of({**objects(), "cube": cube}, kind, eye=[0, -9, 0.5])
-    camera, lamp = Camera.of_sensor(scene.sensors()[0]), Light.of_emitter(scene.emitters()[0])
+    camera, lamp = Camera.from_sensor(scene.sensors()[0]), Light.from_emitter(scene.emitters()[0])
     closed = [mesh for mesh in meshes_of(scene) if len(mesh.triangles) > 2]
     volumes = [shadow_volume(mesh, lamp, casters) for mesh in closed]
     faces = Faces.joined([f for v in volumes for f in (v.walls, v.front, v.back)])

@@ -21,13 +21,13 @@ class ByVolumes:
     def __init__(self, description):
         self.view = View.by(description)
         scene = self.view.scene
-        self.camera = Camera.of_sensor(scene.sensors()[0])
+        self.camera = Camera.from_sensor(scene.sensors()[0])
         self.meshes = [Mesh.of_shape(shape) for shape in scene.shapes()]
         self.exact, self.facing = self.view.seen.exact, self.view.seen.facing
 
     def lit(self, **how):
         """Whether (pixels,) the light arrives, by `LightVolumes`."""
-        light = Light.of_emitter(self.view.seen.emitter)
+        light = Light.from_emitter(self.view.seen.emitter)
         volumes = LightVolumes(self.meshes, light, self.camera, pixels=SIZE, **how)
         si = self.view.seen.si
         return np.array(volumes.lit(si.p, si.n)) == 1

@@ -72,7 +72,7 @@ def cost_of_volumes(view):
     meshes = [Mesh.of_shape(shape) for shape in view.scene.shapes()]
 
     def prepare():
-        camera = Camera.of_sensor(sensor)
+        camera = Camera.from_sensor(sensor)
         return LightVolumes(meshes, view.placement.light, camera, pixels=SIZE)
 
     volumes = prepare()

@@ -19,7 +19,7 @@ def simple_perspective(placement):
     """The `Projection` of a `Placement`."""
     corners, middle = placement.body.corners, placement.body.middle
     z_n, z_f = placement.depths
-    camera = placement.camera.between(NEAR * z_n, z_f).moved_back(corners).matrix
+    camera = placement.camera.with_planes(NEAR * z_n, z_f).move_back(corners).matrix
     cube, (centre,) = project_all(camera, corners), project_all(camera, [middle])
     matrix = light_view(camera @ placement.light.point, cube, centre) @ camera
     ends = project_all(matrix, corners)

@@ -13,7 +13,7 @@ from brdfkit.core.array_types import FloatArray, JitColour, JitFloat, MitsubaMod
 from brdfkit.core.discovery.plugin_files import MODELS
 from brdfkit.core.jit import double_precision
 from brdfkit.model import Model
-from brdfkit.model.evaluation import lobe_values, weight_matrix
+from brdfkit.model.evaluation import lobe_values, to_shape_scalars, weight_matrix
 
 NO_SHAPES = "nothing to check: no shape parameters"
 
@@ -186,7 +186,7 @@ def _lobe_slopes(model: Model, name: str, wi: FloatArray, wo: FloatArray) -> lis
 
     These are two arrays (n, lobes): of the factors of the weights, and of the weights' squares.
     """
-    values = double_precision.to_shape_scalars(model)
+    values = to_shape_scalars(model)
     dr.enable_grad(values[name])
     directions = double_precision.to_vector(wi), double_precision.to_vector(wo)
     Float64 = double_precision.float_type()

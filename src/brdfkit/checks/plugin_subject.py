@@ -73,7 +73,8 @@ def make_example(name: str, **values: Any) -> dict[str, Any]:
 
 def _find_module(name: str) -> ModuleType:
     """Return the module of the plugin of this name."""
-    return plugin_files.import_plugin(plugin_files.find_plugins(plugin_files.find_kind(name))[name])
+    kind = str(plugin_files.find_kind(name))
+    return plugin_files.import_plugin(plugin_files.find_plugins(kind)[name])
 
 
 @check_of(*(kind for kind in KINDS if kind != MODELS))

@@ -1,1 +1,3 @@
-"""What every other part uses and what knows no BRDF: errors, files, names, geometry, pages."""
+"""Tools on which all of brdfkit rests and that know nothing of BRDFs: errors, files, geometry,
+pages.
+"""

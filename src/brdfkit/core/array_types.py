@@ -1,7 +1,7 @@
-"""Short names for the arrays that functions take and return, for their annotations.
+"""Short names for the array types in annotations.
 
-Neither Dr.Jit's arrays, whose class depends on Mitsuba's variant, nor Mitsuba's objects have
-types that a checker could follow through a formula. The names for them tell the reader alone.
+Type checkers cannot follow the arrays of Dr.Jit, whose class depends on Mitsuba's variant, or the
+objects of Mitsuba. Their names here stand for `Any`; they only tell the reader what a value is.
 """
 
 from typing import Any, TypeAlias
@@ -15,7 +15,7 @@ IntArray: TypeAlias = NDArray[np.integer[Any]]
 BoolArray: TypeAlias = NDArray[np.bool_]
 AnyArray: TypeAlias = NDArray[Any]
 
-# Values of Dr.Jit in any variant, or of core/jit/double_precision.py, or plain Python numbers
+# Values of Dr.Jit in any variant, of core/jit/double_precision.py, or plain Python numbers
 JitFloat: TypeAlias = Any
 JitInt: TypeAlias = Any
 JitMask: TypeAlias = Any

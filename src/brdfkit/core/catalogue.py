@@ -1,8 +1,15 @@
-"""What comes with brdfkit, materials and environment maps: their origin, licence and files."""
+"""Finds the materials and environment maps that come with brdfkit: files, origins and licences.
+
+Each folder, `data/measured` and `data/environments`, has an `index.toml` of its entries by name.
+The wheel copies both folders into the package; a checkout has them at its top.
+"""
+
+from __future__ import annotations
 
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.files import sha256
@@ -10,14 +17,14 @@ from brdfkit.core.files import sha256
 MEASURED, ENVIRONMENTS = "measured", "environments"
 
 
-def read_index(kind=MEASURED):
-    """The content of an index, a dictionary by name; "collections" holds those of others."""
+def read_index(kind: str = MEASURED) -> dict[str, Any]:
+    """Return the content of an index by name; the entry "collections" holds public collections."""
     with (find_folder(kind) / "index.toml").open("rb") as stream:
         return tomllib.load(stream)
 
 
-def find_folder(kind=MEASURED):
-    """The folder of an index: in the installed package, or at the top of a checkout."""
+def find_folder(kind: str = MEASURED) -> Path:
+    """Return the folder of an index, in the installed package or at the top of a checkout."""
     package = Path(__file__).resolve().parents[1]
     installed, checkout = (place / "data" / kind for place in (package, package.parents[1]))
     return installed if installed.is_dir() else checkout
@@ -25,10 +32,11 @@ def find_folder(kind=MEASURED):
 
 @dataclass(frozen=True)
 class MapCollection:
-    """An entry of the index of environments.
+    """A public collection of environment maps, as the index describes it.
 
-    `licence` (a word) and `terms` (a sentence) are those of the owners; `page`: where the files
-    are; `convention`: what `brdfkit convert --from` should be given, or why that is not known.
+    `licence` (a word) and `terms` (a sentence) are the owners' conditions, `page` is the web page
+    with the files. `convention` is the word for `brdfkit convert --from`, or says why it is
+    unknown.
     """
 
     title: str
@@ -38,15 +46,15 @@ class MapCollection:
     page: str
     convention: str
 
-    def __str__(self):
+    def __str__(self) -> str:
         return (
             f"{self.title}\nTerms: {self.terms}\nCite: {self.citation}\nPage: {self.page}\n"
             f"Convention: {self.convention}"
         )
 
 
-def list_map_collections():
-    """The public collections of environment maps by name.
+def list_map_collections() -> dict[str, MapCollection]:
+    """Return the public collections of environment maps by name.
 
     >>> list_map_collections()["debevec"].convention
     'debevec'
@@ -59,9 +67,9 @@ def list_map_collections():
 class Shipped:
     """A material or an environment map that comes with brdfkit.
 
-    `name`: for `brdfkit.load`, or for ``envmap``; `title` and `what`: for people; `source`: the
-    data and the command that made it; `file`: its name in the index's folder; `sha256`: the file's
-    checksum.
+    `name` is what `brdfkit.load` or the argument ``environment`` takes; `title` and `what` describe
+    it for people; `source` names the data and the command that made it; `file` is its name in the
+    folder of the index, and `sha256` the checksum of the file.
     """
 
     name: str
@@ -72,12 +80,12 @@ class Shipped:
     file: str
     sha256: str
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"{self.name}: {self.title}; {self.what}\n  {self.source} ({self.licence})"
 
 
-def list_materials():
-    """The materials that come with brdfkit, by name.
+def list_materials() -> dict[str, Shipped]:
+    """Return the materials that come with brdfkit, by name.
 
     >>> print(list_materials()["dusty_gold"].title)
     Dusty gold
@@ -85,8 +93,8 @@ def list_materials():
     return _list_shipped(MEASURED)
 
 
-def list_environments():
-    """The environment maps that come with brdfkit, by name.
+def list_environments() -> dict[str, Shipped]:
+    """Return the environment maps that come with brdfkit, by name.
 
     >>> print(list_environments()["studio"].file)
     studio.exr
@@ -94,8 +102,9 @@ def list_environments():
     return _list_shipped(ENVIRONMENTS)
 
 
-def find_material_file(name):
-    """The path of a shipped material's file, after its checksum was verified.
+def find_material_file(name: str) -> Path:
+    """Return the path of the file of a material that comes with brdfkit, with its checksum
+    verified.
 
     Raises `BrdfkitError` for an unknown name, and for a file that is missing or was changed.
 
@@ -105,8 +114,10 @@ def find_material_file(name):
     return _verified_path("material", name, list_materials(), find_folder(MEASURED))
 
 
-def find_environment_file(name):
-    """The same of a shipped environment map.
+def find_environment_file(name: str) -> Path:
+    """Return the path of an environment map that comes with brdfkit, with its checksum verified.
+
+    Raises `BrdfkitError` for an unknown name, and for a file that is missing or was changed.
 
     >>> find_environment_file("studio").name
     'studio.exr'
@@ -115,12 +126,14 @@ def find_environment_file(name):
     return _verified_path("environment map", name, list_environments(), folder)
 
 
-def _list_shipped(kind):
+def _list_shipped(kind: str) -> dict[str, Shipped]:
+    """Return the entries of an index that come with brdfkit."""
     entries = read_index(kind).items()
     return {name: Shipped(name, **entry) for name, entry in entries if name != "collections"}
 
 
-def _verified_path(what, name, known, folder):
+def _verified_path(what: str, name: str, known: dict[str, Shipped], folder: Path) -> Path:
+    """Return the file of a known entry in a folder; `what` names its kind in errors."""
     if name not in known:
         raise no_such(what, name, known)
     file = folder / known[name].file

@@ -1,7 +1,12 @@
-"""Linear sRGB, as Mitsuba and the pictures use it, and the colours of spectra."""
+"""Converts between spectra, linear sRGB, as in Mitsuba and in pictures, and sRGB for screens."""
+
+from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError
 
 RGB = ("R", "G", "B")  # names of the channels
@@ -9,11 +14,11 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 ILLUMINANT = "D65"
 OBSERVER = "CIE 1931 2 Degree Standard Observer"
 # The wavelengths of a spectrum must span this range; otherwise its colour would be a guess
-NEEDED = (480, 620)  # nm
+REQUIRED_RANGE = (480, 620)  # nm
 
 
-def luminance(values):
-    """Luminance (...) of values (..., 1), achromatic, or (..., 3), linear sRGB.
+def luminance(values: FloatArray) -> FloatArray:
+    """Return the luminance (...) of values (..., 1), achromatic, or (..., 3), linear sRGB.
 
     >>> luminance(np.array([0.0, 1.0, 0.0]))
     np.float64(0.7152)
@@ -26,8 +31,8 @@ def luminance(values):
     return values[..., 0] if channels == 1 else values @ LUMINANCE
 
 
-def to_srgb(linear):
-    """sRGB's curve [IEC 1999]: values 0 to 1 of linear ones, which are clipped to 0 to 1.
+def to_srgb(linear: ArrayLike) -> FloatArray:
+    """Apply the curve of sRGB [IEC 1999] to linear values, which are clipped to 0 to 1.
 
     >>> to_srgb(np.array([0.0, 0.5, 2.0])).round(3)
     array([0.   , 0.735, 1.   ])
@@ -36,8 +41,8 @@ def to_srgb(linear):
     return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
 
 
-def from_srgb(values):
-    """Linear values of sRGB's curve [IEC 1999], 0 to 1; the inverse of `to_srgb`.
+def from_srgb(values: ArrayLike) -> FloatArray:
+    """Invert the curve of sRGB [IEC 1999]: return linear values from 0 to 1.
 
     >>> from_srgb(np.array([0.0, 0.735, 1.0])).round(3)
     array([0. , 0.5, 1. ])
@@ -46,24 +51,24 @@ def from_srgb(values):
     return np.where(y <= 0.04045, y / 12.92, ((y + 0.055) / 1.055) ** 2.4)
 
 
-def import_colour():
-    """The package `colour`, imported without its change of how NumPy prints arrays."""
+def import_colour() -> Any:
+    """Import the package `colour` without letting it change how NumPy prints arrays."""
     with np.printoptions():
         import colour
     return colour
 
 
-def compute_rgb_weights(wavelengths, name):
-    """Weights (n, 3) of the reflectance at each of the `wavelengths` [nm] in linear R, G, B.
+def compute_rgb_weights(wavelengths: ArrayLike, name: str) -> FloatArray:
+    """Compute the weights (n, 3) by which reflectances at n wavelengths [nm] add up to linear sRGB.
 
     Reflectance is linear between the wavelengths and constant beyond them; every column sums to 1.
     Raises `BrdfkitError` for wavelengths of the material `name` that do not span 480 to 620 nm.
     """
     wavelengths = np.asarray(wavelengths, float)
-    if wavelengths.min() > NEEDED[0] or wavelengths.max() < NEEDED[1]:
+    if wavelengths.min() > REQUIRED_RANGE[0] or wavelengths.max() < REQUIRED_RANGE[1]:
         raise BrdfkitError(
             f"{name}: its wavelengths, {wavelengths.min():g} to {wavelengths.max():g} "
-            f"nm, do not span {NEEDED[0]} to {NEEDED[1]} nm and give no colour; "
+            f"nm, do not span {REQUIRED_RANGE[0]} to {REQUIRED_RANGE[1]} nm and give no colour; "
             "choose one channel with `mix_channels`."
         )
     colour = import_colour()
@@ -73,7 +78,7 @@ def compute_rgb_weights(wavelengths, name):
         colour.SDS_ILLUMINANTS[ILLUMINANT].wavelengths,
         colour.SDS_ILLUMINANTS[ILLUMINANT].values,
     )
-    # Between the wavelengths reflectance is linear: a hat function for each
+    # A hat function for each wavelength, since reflectance is linear between them
     order = np.argsort(wavelengths)
     hats = np.stack(
         [np.interp(observer.wavelengths, wavelengths[order], row) for row in np.eye(len(order))]
@@ -82,7 +87,7 @@ def compute_rgb_weights(wavelengths, name):
     xyz = hats @ (light[:, None] * observer.values)
     rgb = xyz @ colour.RGB_COLOURSPACES["sRGB"].matrix_XYZ_to_RGB.T
     weights = np.empty_like(rgb)
-    # White becomes (1, 1, 1): the rows add up to the colour of the illuminant, which differs from
-    # sRGB's white in the fourth digit
+    # Scale white to (1, 1, 1): the rows add up to the colour of the illuminant, which differs from
+    # the white of sRGB in the fourth digit
     weights[order] = rgb / rgb.sum(axis=0)
     return weights

@@ -1,28 +1,33 @@
-"""The error that brdfkit raises for people to read, and the proposal of a similar name."""
+"""The error that brdfkit raises for people to read, and proposals for misspelt names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
 
 
 class BrdfkitError(ValueError):
-    """What is wrong, in which file or parameter, and what to do: one sentence.
+    """An error in one sentence: what is wrong, in which file or parameter, and what to do.
 
-    The command line prints it and leaves with status 2; nothing was half-written.
+    The command line prints it and ends with status 2. Files are never left half-written.
     """
 
 
-def no_such(what, name, known, where=""):
-    """The error for a `name` that is none of the `known`; it proposes the nearest of them.
+def no_such(what: str, name: object, known: Iterable[object], where: str = "") -> BrdfkitError:
+    """Return the error for an unknown `name`; it proposes the nearest of the `known` names.
 
     >>> no_such("model", "wrad", ["ggx", "ward"])
     BrdfkitError("There is no model 'wrad'; did you mean ward? There are ggx, ward.")
     """
-    known = list(known)
+    names = list(map(str, known))
     place = f"{where}: there" if where else "There"
-    near = nearest(name, known)
+    near = nearest(name, names)
     guess = f"did you mean {near}? There are" if near else "there are"
-    return BrdfkitError(f"{place} is no {what} {name!r}; {guess} {', '.join(known) or 'none'}.")
+    return BrdfkitError(f"{place} is no {what} {name!r}; {guess} {', '.join(names) or 'none'}.")
 
 
-def nearest(name, known):
-    """The name among `known` that is most like `name`, None where none is similar."""
+def nearest(name: object, known: Iterable[Any]) -> Any:
+    """Return the known name that is most similar to `name`, None where none is similar."""
     import difflib  # only here: `--help` should be instant
 
     known = list(known)

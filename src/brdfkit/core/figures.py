@@ -1,37 +1,43 @@
-"""Figures of matplotlib as files in memory, which notebooks show on light and on dark grounds."""
+"""Figures of matplotlib that notebooks can show on light and on dark backgrounds."""
+
+from __future__ import annotations
 
 import io
+from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
-# A grey of a contrast of 4 to white, and of 4.5 to the ground of dark notebooks
-INK = 0.49
-STRONGER = 1.6  # than on white: a grey of 0.4 is opaque, one of 0.9 a sixth
-NEUTRAL = 0.02  # channels that differ by less are a grey
+from brdfkit.core.array_types import AnyArray
+
+# The grey level of lines and text: its contrast is 4 to white, 4.5 to dark notebooks
+INK_LEVEL = 0.49
+OPACITY_GAIN = 1.6  # opacity over darkness: a grey of 0.4 becomes opaque, one of 0.9 a sixth
+GREY_TOLERANCE = 0.02  # a colour whose channels differ by less counts as grey
 COLOURS = {
     "Text": ("color",),
     "Line2D": ("color", "markerfacecolor", "markeredgecolor"),
     "Patch": ("edgecolor", "facecolor"),
     "LineCollection": ("color",),
-}  # of what is drawn, by the names of matplotlib's classes
+}  # attributes that hold colours, by the names of matplotlib's classes
 
 
 class Plot(Figure):
-    """A matplotlib `Figure` that is not pyplot's: it has no window and no global state.
+    """A matplotlib `Figure` apart from pyplot, without a window and global state.
 
-    Notebooks show it even if pyplot has not told them how.
+    Notebooks show it even if pyplot was not set up for them.
     """
 
-    def _repr_png_(self):
+    def _repr_png_(self) -> bytes:
         return to_png(self)
 
 
-def to_png(figure, dpi=100):
-    """The bytes of a matplotlib `Figure` as a PNG that is legible on white and on black.
+def to_png(figure: Figure, dpi: float = 100) -> bytes:
+    """Return a matplotlib figure as the bytes of a PNG that is legible on white and on black.
 
-    Its ground is transparent; what is black or grey is a middle grey. The figure stays as it is.
+    The background is transparent; black and greys become a middle grey. The figure is not changed.
     """
     png = io.BytesIO()
     with _with_visible_greys(figure):
@@ -40,9 +46,9 @@ def to_png(figure, dpi=100):
 
 
 @contextmanager
-def _with_visible_greys(figure):
-    """Within the block the greys of a `figure` are legible on any ground."""
-    figure.draw_without_rendering()  # which makes the labels of the ticks
+def _with_visible_greys(figure: Figure) -> Iterator[None]:
+    """Make the greys of a figure legible on any background within the block."""
+    figure.draw_without_rendering()  # creates the labels of the ticks
     before = [
         (artist, name, getattr(artist, f"get_{name}")())
         for artist in figure.findobj()
@@ -58,14 +64,17 @@ def _with_visible_greys(figure):
             getattr(artist, f"set_{name}")(colour)
 
 
-def _to_visible(colours):
-    """`colours` of matplotlib, black and greys as a middle grey, the fainter the lighter they were;
-    white is transparent."""
+def _to_visible(colours: Any) -> AnyArray | tuple[float, ...] | str:
+    """Return colours with black and greys replaced by a middle grey, which is fainter for lighter
+    greys.
+
+    White becomes transparent; other colours stay.
+    """
     from matplotlib.colors import to_rgba_array
 
     rgba = to_rgba_array(colours)
-    grey = np.ptp(rgba[:, :3], axis=1) < NEUTRAL
-    strength = np.minimum(STRONGER * (1 - rgba[grey, 0]), 1)
-    rgba[grey, :3] = INK
+    grey = np.ptp(rgba[:, :3], axis=1) < GREY_TOLERANCE
+    strength = np.minimum(OPACITY_GAIN * (1 - rgba[grey, 0]), 1)
+    rgba[grey, :3] = INK_LEVEL
     rgba[grey, 3] *= strength
     return rgba if len(rgba) > 1 else tuple(rgba[0]) if len(rgba) else "none"

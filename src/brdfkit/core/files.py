@@ -1,27 +1,32 @@
-"""Files, safely: written whole or not at all, read within a limit, compressed or not."""
+"""Reads and writes files safely: written whole or not at all, read up to a limit, unpacked if
+needed.
+"""
+
+from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from pathlib import Path
 
 from brdfkit.core.errors import BrdfkitError, nearest
 
-LIMIT = 2**30  # bytes, decompressed; the largest MERL table has 70 MB
-CHUNK = 2**20  # bytes
+SIZE_LIMIT = 2**30  # bytes, decompressed; the largest MERL table has 70 MB
+CHUNK_SIZE = 2**20  # bytes
 GZIP, XZ = ".gz", ".xz"
-# What is called with the path of a file before it is written, and after: see `watch_writing`
+# A function that is called with the path of a file before or after it is written
 Watcher = Callable[[Path], object]
 _watchers: ContextVar[tuple[tuple[Watcher, Watcher], ...]] = ContextVar("watchers", default=())
 COMPRESSED = {GZIP: b"\x1f\x8b", XZ: b"\xfd7zXZ\x00"}  # suffix: first bytes
 
 
 @contextmanager
-def write_safely(path):
-    """A temporary path beside `path` to write to, renamed to `path` when the block has succeeded.
+def write_safely(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """Yield a temporary path beside `path`, which is renamed to `path` when the block has
+    succeeded.
 
-    Where the block is interrupted, by Ctrl-C too, an older file at `path` stays as it was and no
+    If the block is interrupted, also by Ctrl-C, an older file at `path` stays as it was and no
     other file is left. The temporary path has the suffix of `path`, for libraries that choose a
     format by it. Raises `BrdfkitError` where the file cannot be written, and for an `OSError`
     inside the block.
@@ -30,7 +35,7 @@ def write_safely(path):
     ...     beside.write_text("{}")
     """
     target = require_writable(path)
-    with _utf8_path(target.parent) as folder:
+    with _utf8_folder(target.parent) as folder:
         beside = folder / f".brdfkit-{os.urandom(4).hex()}{target.suffix}"
         try:
             beside.touch(exist_ok=False)
@@ -49,8 +54,10 @@ def write_safely(path):
 
 
 @contextmanager
-def _utf8_path(folder):
-    """The path of a folder in UTF-8, as native libraries take it: where it is not, of a link."""
+def _utf8_folder(folder: Path) -> Iterator[Path]:
+    """Yield a path of the folder in UTF-8, as native libraries need it; if necessary that of a
+    link.
+    """
     if is_utf8(folder):
         yield folder
         return
@@ -62,8 +69,8 @@ def _utf8_path(folder):
         yield link
 
 
-def is_utf8(path):
-    """Whether the bytes of a path are UTF-8: else Python has lone surrogates in their place."""
+def is_utf8(path: str | os.PathLike[str]) -> bool:
+    """Return whether the bytes of a path are UTF-8; others appear as lone surrogates in Python."""
     try:
         str(path).encode()
     except UnicodeEncodeError:
@@ -71,8 +78,8 @@ def is_utf8(path):
     return True
 
 
-def make_folder(path):
-    """Make the folder `path` for results, unless it exists.
+def make_folder(path: str | os.PathLike[str]) -> None:
+    """Make a folder for results unless it exists.
 
     Raises `BrdfkitError` where no file can be written to it.
 
@@ -88,11 +95,11 @@ def make_folder(path):
         ) from error
 
 
-def require_writable(path):
-    """The `Path` of the file that `write_safely` will write: of a link, the file it leads to.
+def require_writable(path: str | os.PathLike[str]) -> Path:
+    """Return the path of the file that `write_safely` will write; for a link, the file that it
+    leads to.
 
-    Raises, before the work, the `BrdfkitError` that `write_safely` would raise after it, as far as
-    that can be known.
+    Raises the `BrdfkitError` of `write_safely` before the work, as far as it can be foreseen.
     """
     try:
         os.fsencode(path)
@@ -122,11 +129,11 @@ def require_writable(path):
 
 
 @contextmanager
-def watch_writing(before, after):
-    """Within the block `before(path)` is called before a file is written, and as soon as it is
-    known that it will be, and `after(path)` when it was written.
+def watch_writing(before: Watcher, after: Watcher) -> Iterator[None]:
+    """Call `before(path)` and `after(path)` around every file that is written in the block.
 
-    `before` may raise a `BrdfkitError`: then the file stays as it is.
+    `before` is also called as soon as it is known that a file will be written. It may raise a
+    `BrdfkitError`: then the file stays as it is.
     """
     token = _watchers.set((*_watchers.get(), (before, after)))
     try:
@@ -135,12 +142,12 @@ def watch_writing(before, after):
         _watchers.reset(token)
 
 
-def read_bytes(path):
-    """The bytes of a file, decompressed where it is gzip or xz by its name or its first bytes.
+def read_bytes(path: str | os.PathLike[str]) -> bytes:
+    """Read a file, decompressed if it is gzip or xz by its name or its first bytes.
 
-    Raises `BrdfkitError` when it is missing, no regular file, unreadable, empty, damaged, or larger
-    than `LIMIT` bytes. A plain file that is too large is not read at all; decompression stops at
-    the limit.
+    Raises `BrdfkitError` for a file that is missing, not regular, unreadable, empty, damaged, or
+    larger than `SIZE_LIMIT` bytes. A plain file that is too large is not read at all; decompression
+    stops at the limit.
 
     >>> read_bytes("gold.binary.xz")[:4]  # doctest: +SKIP
     b'Z\\x00\\x00\\x00'
@@ -153,10 +160,10 @@ def read_bytes(path):
     return data
 
 
-def sha256(path):
-    """The SHA-256 of a file, in hexadecimal.
+def sha256(path: str | os.PathLike[str]) -> str:
+    """Compute the SHA-256 of a file, in hexadecimal.
 
-    Raises `BrdfkitError` when it is missing, no regular file or unreadable.
+    Raises `BrdfkitError` for a file that is missing, not regular or unreadable.
     """
     import hashlib  # only here: `--help` should be instant
 
@@ -166,7 +173,7 @@ def sha256(path):
 
 
 @contextmanager
-def _reading(path):
+def _reading(path: Path) -> Iterator[None]:
     """Turn an `OSError` inside the block, which reads the file at `path`, into a `BrdfkitError`."""
     try:
         yield
@@ -195,20 +202,20 @@ def require_file(path: str | os.PathLike[str]) -> Path:
     raise BrdfkitError(f"{path}: there is no such file; {remedy} the path.")
 
 
-def _read(path):
-    """The bytes of a file, decompressed, `LIMIT` at most."""
+def _read(path: Path) -> bytes:
+    """Read the bytes of a file, decompressed, up to `SIZE_LIMIT`."""
     with path.open("rb") as stream:
         first = stream.read(8)
     for suffix, magic in COMPRESSED.items():
         if first and (path.suffix.lower() == suffix or first.startswith(magic)):
             return _decompress(path, suffix)
-    if path.stat().st_size > LIMIT:
+    if path.stat().st_size > SIZE_LIMIT:
         raise _size_error(path)
     return path.read_bytes()
 
 
-def _decompress(path, suffix):
-    """All bytes of a compressed file, `LIMIT` at most: a small file may unpack to terabytes."""
+def _decompress(path: Path, suffix: str) -> bytes:
+    """Decompress a file up to `SIZE_LIMIT` bytes, since a small file may unpack to terabytes."""
     import gzip  # only here: `--help` should be instant
     import lzma
     import zlib
@@ -216,9 +223,9 @@ def _decompress(path, suffix):
     data = bytearray()
     try:
         with (gzip.open if suffix == GZIP else lzma.open)(path) as stream:
-            while chunk := stream.read(CHUNK):
+            while chunk := stream.read(CHUNK_SIZE):
                 data += chunk
-                if len(data) > LIMIT:
+                if len(data) > SIZE_LIMIT:
                     raise _size_error(path)
     except (gzip.BadGzipFile, zlib.error, lzma.LZMAError, EOFError) as error:
         raise BrdfkitError(
@@ -228,12 +235,14 @@ def _decompress(path, suffix):
     return bytes(data)
 
 
-def _size_error(path):
+def _size_error(path: Path) -> BrdfkitError:
+    """Return the error for a file that is too large."""
     return BrdfkitError(
-        f"{path}: holds more than {LIMIT:,} bytes, which no BRDF file needs; "
+        f"{path}: holds more than {SIZE_LIMIT:,} bytes, which no BRDF file needs; "
         "check that it is the right file."
     )
 
 
-def _describe(error):
+def _describe(error: BaseException) -> str:
+    """Return the reason of an error in words."""
     return getattr(error, "strerror", None) or str(error).strip().rstrip(".") or "unknown cause"

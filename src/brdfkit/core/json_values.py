@@ -1,13 +1,16 @@
-"""Results as plain data, for JSON."""
+"""Converts results to the types that JSON has."""
+
+from __future__ import annotations
 
 import math
 from dataclasses import fields, is_dataclass
+from typing import Any
 
 import numpy as np
 
 
-def round_numbers(value, digits):
-    """JSON's types with numbers of so many digits."""
+def round_numbers(value: Any, digits: int) -> Any:
+    """Round the floats in JSON data to a number of significant digits."""
     if isinstance(value, dict):
         return {key: round_numbers(v, digits) for key, v in value.items()}
     if isinstance(value, list):
@@ -15,8 +18,10 @@ def round_numbers(value, digits):
     return float(f"{value:.{digits}g}") if isinstance(value, float) else value
 
 
-def to_json(value):
-    """`value` in JSON's types: NumPy's numbers as Python's, numbers that are not finite as null."""
+def to_json(value: Any) -> Any:
+    """Convert dataclasses, arrays and NumPy numbers to JSON's types; numbers that are not finite to
+    None.
+    """
     if is_dataclass(value):
         value = {f.name: getattr(value, f.name) for f in fields(value)}
     if isinstance(value, dict):

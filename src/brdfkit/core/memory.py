@@ -1,26 +1,32 @@
 """Checks, before a rendering starts, that its pictures fit into the available memory."""
 
+from __future__ import annotations
+
 import psutil
 
 from brdfkit.core.errors import BrdfkitError
 
-# Peak of the resident memory [bytes per pixel], measured from 2 to 9 million pixels: ONE for a
-# single picture and its noise, SEVERAL + EACH·pictures for more, whose colour differences take most
-ONE = 220
-SEVERAL, EACH = 330, 75
+# Peak of the resident memory [bytes per pixel], measured from 2 to 9 million pixels. Several
+# pictures take BYTES_OF_SEVERAL + BYTES_OF_EACH · pictures, most of it for colour differences
+BYTES_OF_ONE = 220
+BYTES_OF_SEVERAL, BYTES_OF_EACH = 330, 75
 
 
-def require_memory(size, pictures, where=""):
+def require_memory(size: tuple[int, int], pictures: int, where: object = "") -> None:
     """Raise `BrdfkitError` where a rendering would need more memory than is available.
 
-    `size`: (width, height) [pixels]; `pictures`: their number; `where`: a scene's file, if any.
+    `size` is (width, height) [pixels], `pictures` their number, `where` the file of the scene.
 
     >>> require_memory((100_000, 100_000), 1)
     Traceback (most recent call last):
     brdfkit.core.errors.BrdfkitError: A picture of 100000×100000 pixels would take about 2,200 ...
     """
     width, height = map(int, size)
-    needed = width * height * (ONE if pictures == 1 else SEVERAL + EACH * pictures)
+    needed = (
+        width
+        * height
+        * (BYTES_OF_ONE if pictures == 1 else BYTES_OF_SEVERAL + BYTES_OF_EACH * pictures)
+    )
     available = psutil.virtual_memory().available
     if needed <= available:
         return
@@ -32,5 +38,6 @@ def require_memory(size, pictures, where=""):
     raise BrdfkitError(f"{where}: {sentence}" if where else sentence[0].upper() + sentence[1:])
 
 
-def _gigabytes(size):
+def _gigabytes(size: float) -> str:
+    """Format a number of bytes in gigabytes."""
     return f"{size / 1e9:,.0f}" if size >= 1e10 else f"{size / 1e9:.2g}"

@@ -1,14 +1,17 @@
-"""Makes names unique, printable, fit for a file, and lists of them."""
+"""Formats names and lists of words: unique, printable, or fit for the name of a file."""
 
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
-CONTROL = {chr(c) for c in (*range(32), *range(127, 160))}  # ASCII, ISO 6429: a terminal obeys
+CONTROL = {chr(c) for c in (*range(32), *range(127, 160))}  # ASCII and ISO 6429
 RESERVED = '/\\:*?"<>|'  # not allowed in a file name, here or on another system
-LONGEST = 100  # bytes: a file system takes 255, with suffix and all
+LONGEST_STEM = 100  # bytes; a file system takes 255, including the suffix
 
 
-def make_unique(name, taken):
-    """`name`, or `name` with the first number by which it is not among `taken`.
+def make_unique(name: str, taken: Collection[str]) -> str:
+    """Return `name`, with the first free number behind it if `name` is taken.
 
     >>> make_unique("ward", {"ward"})
     'ward (2)'
@@ -20,8 +23,8 @@ def make_unique(name, taken):
     return result
 
 
-def format_percent(percent):
-    """A percentage in words, with two digits where it is small.
+def format_percent(percent: float) -> str:
+    """Format a percentage, with two digits if it is small.
 
     >>> format_percent(0.0312), format_percent(41.3), format_percent(100)
     ('0.031 %', '41 %', '100 %')
@@ -29,11 +32,11 @@ def format_percent(percent):
     return f"{percent:.2g} %" if percent < 10 else f"{percent:.0f} %"
 
 
-def to_printable(text, keep=""):
-    """`text` without control characters, by which a file could steer the terminal.
+def to_printable(text: object, keep: str = "") -> str:
+    """Remove the control characters from a text, since a file could steer the terminal by them.
 
-    The control characters in `keep` stay. Bytes of a file's name that are no UTF-8, which Python
-    has as lone surrogates, become question marks.
+    The control characters in `keep` stay. Bytes in a file's name that are not UTF-8, which Python
+    represents as lone surrogates, become question marks.
 
     >>> to_printable("gold\\x1b[2J")
     'gold[2J'
@@ -42,8 +45,8 @@ def to_printable(text, keep=""):
     return shown.encode(errors="replace").decode()
 
 
-def join_words(words):
-    """Words as a list in a sentence.
+def join_words(words: Sequence[str]) -> str:
+    """Join words to a list in a sentence.
 
     >>> join_words(["log", "cbrt", "plain"])
     'log, cbrt and plain'
@@ -52,19 +55,21 @@ def join_words(words):
     return f"{', '.join(first)} and {last}" if first else last
 
 
-def to_file_stem(name):
-    """A file name without suffix for a material's `name`: not empty, not too long, in no folder.
+def to_file_stem(name: str) -> str:
+    """Turn a material's name into a file name without suffix, never empty or too long or in a
+    folder.
 
     >>> to_file_stem("../gold: matte")
     '-gold- matte'
     """
     fit = "".join("-" if c in RESERVED or not c.isprintable() else c for c in name)
-    short = fit.strip(". ").encode()[:LONGEST].decode(errors="ignore")
+    short = fit.strip(". ").encode()[:LONGEST_STEM].decode(errors="ignore")
     return short.rstrip(". ") or "material"
 
 
-def to_fit_path(folder, label):
-    """The path in `folder` of a saved fit; no colons, which some file systems refuse.
+def to_fit_path(folder: str | Path, label: str) -> Path:
+    """Return the path in `folder` of a saved fit; colons, which some file systems refuse, become
+    "-".
 
     >>> to_fit_path("copper", "koenderink:order=8").name
     'koenderink-order=8.json'

@@ -1,4 +1,4 @@
-"""`progress`: a bar for what takes long, in a terminal and in a notebook."""
+"""`progress`: a bar that shows how far a long computation is, in a terminal and in a notebook."""
 
 from __future__ import annotations
 
@@ -14,32 +14,32 @@ from brdfkit.core.errors import BrdfkitError
 
 Progress: TypeAlias = Callable[[int, int], object]  # called with (steps done, steps in all)
 
-PATIENCE = 1.0  # seconds until the bar shows: a bar that flashes up only disturbs
-MEMORY = 3600.0  # seconds of which the time left is estimated: one fit of a sweep may take minutes
-INTERVAL = 0.1  # seconds between two pictures of the bar in a notebook
+DELAY = 1.0  # seconds before the bar appears, since a bar that only flashes up disturbs
+SPEED_PERIOD = 3600.0  # seconds over which the speed is averaged: one fit may take minutes
+INTERVAL = 0.1  # seconds between two updates of the bar in a notebook
 
 
 @contextmanager
 def progress(what: str) -> Iterator[Progress]:
-    """A bar, for the block, of how far a verb is; it goes with the block.
+    """Show a bar within the block for a function that takes long; it disappears with the block.
 
-    In a notebook it is a line of HTML, which needs no widgets; else it is drawn on standard error,
-    where that is a terminal.
+    In a notebook the bar is a line of HTML, which needs no widgets; otherwise it is drawn on
+    standard error if that is a terminal.
 
     Parameters
     ----------
     what : str
-        What takes long, in a word or two.
+        The name of the computation, in a word or two.
 
     Yields
     ------
     callable
-        The function (done, total) for the argument ``progress`` of a verb.
+        The function (done, total) to be passed as the argument ``progress``.
 
     Raises
     ------
     BrdfkitError
-        Where `what` is no text.
+        Where `what` is not a text.
 
     Examples
     --------
@@ -54,19 +54,20 @@ def progress(what: str) -> Iterator[Progress]:
         yield bar
 
 
-def _in_notebook():
-    """Whether this process is the kernel of a notebook."""
+def _in_notebook() -> bool:
+    """Return whether this process is the kernel of a notebook."""
     shell = "IPython" in sys.modules and sys.modules["IPython"].get_ipython()
     return hasattr(shell, "kernel")
 
 
 @contextmanager
-def _show_in_notebook(what):
+def _show_in_notebook(what: str) -> Iterator[Callable[[int, int], object]]:
+    """Show the bar as HTML below the current cell of a notebook."""
     from IPython.display import HTML, display
 
-    handle, drawn = None, monotonic() + PATIENCE - INTERVAL
+    handle, drawn = None, monotonic() + DELAY - INTERVAL
 
-    def show(done, total):
+    def show(done: int, total: int) -> None:
         nonlocal handle, drawn
         if monotonic() - drawn < INTERVAL:
             return
@@ -88,25 +89,28 @@ def _show_in_notebook(what):
 
 
 @contextmanager
-def _show_in_terminal(what):
-    """The bar appears from a thread of its own: also where its function is not called yet."""
+def _show_in_terminal(what: str) -> Iterator[Callable[[int, int], object]]:
+    """Show the bar on standard error, from a thread of its own.
+
+    Thus the bar also appears before its function is called for the first time.
+    """
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
     terminal = Console(stderr=True)
     text = TextColumn("{task.description}", markup=False)
     columns = text, BarColumn(), TimeRemainingColumn(compact=True)
-    bar = Progress(*columns, console=terminal, transient=True, speed_estimate_period=MEMORY)
+    bar = Progress(*columns, console=terminal, transient=True, speed_estimate_period=SPEED_PERIOD)
     task = bar.add_task(what, total=None)
-    patience = Timer(PATIENCE, bar.start)
-    patience.daemon = True
+    timer = Timer(DELAY, bar.start)
+    timer.daemon = True
     if terminal.is_terminal:
-        patience.start()
+        timer.start()
     try:
         yield lambda done, total: bar.update(task, completed=done, total=total)
     finally:
-        patience.cancel()
-        if patience.ident:
-            patience.join()
-        if bar.live.is_started:  # stopping an unstarted bar prints an empty line
+        timer.cancel()
+        if timer.ident:
+            timer.join()
+        if bar.live.is_started:  # stopping a bar that was not started prints an empty line
             bar.stop()

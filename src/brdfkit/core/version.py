@@ -1,4 +1,6 @@
-"""The version of brdfkit, of which the package's metadata is made; and of what it computes with."""
+"""The version of brdfkit, which the package's metadata reads here, and of its libraries."""
+
+from __future__ import annotations
 
 from functools import cache
 
@@ -8,8 +10,8 @@ LIBRARIES = "mitsuba", "drjit", "numpy", "scipy"
 
 
 @cache
-def find_versions():
-    """The versions of brdfkit and of the libraries on which its numbers depend, by name."""
+def find_versions() -> dict[str, str]:
+    """Return the versions of brdfkit and of the libraries that its numbers depend on, by name."""
     from importlib import metadata  # only here: `--help` should be instant
 
     return {"brdfkit": __version__, **{name: metadata.version(name) for name in LIBRARIES}}

@@ -52,6 +52,13 @@ def with_weights(model, shapes, weights, wavelengths=()):
     return model(wavelengths=wavelengths, **shapes, **named)
 
 
+def to_shape_scalars(model):
+    """Return the free shape parameters of a model with values, by name, as opaque scalars."""
+    linear = model.weights()
+    values = model.free_values.items()
+    return {name: double_precision.to_scalar(v) for name, v in values if name not in linear}
+
+
 @in_turn
 def lobe_values(model, wi, wo):
     """Two arrays (n, lobes) in sr⁻¹ of direction pairs (n, 3) above the surface.
@@ -59,7 +66,7 @@ def lobe_values(model, wi, wo):
     The first holds the values of each `Lobe.eval`, the second those of each `Lobe.quadratic`, 0 for
     a lobe without.
     """
-    terms = model.bind(double_precision.to_shape_scalars(model)).terms()
+    terms = model.bind(to_shape_scalars(model)).terms()
     wi, wo = double_precision.to_vector(wi), double_precision.to_vector(wo)
     plain = [lobe.eval(wi, wo) for _, lobe in terms]
     squared = [lobe.quadratic(wi, wo) if lobe.quadratic else 0.0 for _, lobe in terms]

@@ -116,7 +116,7 @@ def load_model_file(path: str | Path) -> None:
     plugin_files.add_plugins(MODELS, {file.stem: file})
 
 
-def model_in(source: Path | type | None) -> type[Model] | None:
+def model_in(source: Path | type) -> type[Model] | None:
     """The `Model` class that a plugin file defines, None if it defines none; a class for itself.
 
     Raises `BrdfkitError` for a file that defines several.

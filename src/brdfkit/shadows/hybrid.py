@@ -54,7 +54,7 @@ def surface_of(depths, projection, jump):
     points = np.stack(projection.from_map(x, y, depths), axis=-1)
     beside = np.stack(projection.from_map(x + 2 / n, y, depths), axis=-1)
     width = np.linalg.norm(beside - points, axis=-1)
-    way = projection.light.way(*np.moveaxis(points, -1, 0))
+    way = projection.light.path_length(*np.moveaxis(points, -1, 0))
     whole = corners(hit).all(axis=0)
     whole &= np.ptp(corners(way), axis=0) <= jump * corners(width).max(axis=0)
     a, b, c, d = corners(np.arange(n * n).reshape(n, n))[:, whole]

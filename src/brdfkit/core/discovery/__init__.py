@@ -1,1 +1,1 @@
-"""Finds plugins, one file each, and reads what their pages say."""
+"""Finds plugins, one file each, and reads the pages in their docstrings."""

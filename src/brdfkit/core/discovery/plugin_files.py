@@ -1,25 +1,30 @@
-"""Finds the plugin files: ``plugins/KIND/NAME.py`` is a plugin of that kind, and NAME its type.
+"""Finds the plugin files: ``plugins/KIND/NAME.py`` is a plugin of that kind with the type NAME.
 
-No list names the plugins: brdfkit's own files are found in their folders, and a user adds files.
-What the files of a kind contain is left to the code that uses the kind.
+There is no list of plugins: brdfkit finds its own files in their folders, and a user adds files.
+The code that uses a kind decides what its files contain.
 """
+
+from __future__ import annotations
 
 import importlib
 import importlib.util
 import pkgutil
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
+from types import CodeType, ModuleType
+from typing import Any
 
 from brdfkit import plugins
 from brdfkit.core.errors import BrdfkitError
 
 
-def find_module_names(path):
-    """The names, in alphabetical order, of the modules of a package with this `__path__`, without
-    those that begin with an underscore.
+def find_module_names(path: Iterable[str]) -> tuple[str, ...]:
+    """Return the names of the modules in a package, by its `__path__`, in alphabetical order.
+
+    Names that begin with an underscore are left out.
 
     >>> import brdfkit.materials.formats
     >>> "merl" in find_module_names(brdfkit.materials.formats.__path__)
@@ -28,12 +33,12 @@ def find_module_names(path):
     return tuple(sorted(m.name for m in pkgutil.iter_modules(path) if not m.name.startswith("_")))
 
 
-def import_modules(package, path):
-    """The modules of these names of a `package`, imported."""
+def import_modules(package: str, path: Iterable[str]) -> tuple[ModuleType, ...]:
+    """Import the modules of a package that `find_module_names` finds."""
     return tuple(importlib.import_module(f"{package}.{name}") for name in find_module_names(path))
 
 
-# Kind, the name of its folder → (Mitsuba's class, the function of `mitsuba` that registers it)
+# Kind, which is the name of a folder → (class of Mitsuba, function of `mitsuba` that registers it)
 KINDS = {
     "bsdfs": ("BSDF", "register_bsdf"),
     "emitters": ("Emitter", "register_emitter"),
@@ -44,16 +49,16 @@ KINDS = {
     "textures": ("Texture", "register_texture"),
     "volumes": ("Volume", "register_texture"),  # Mitsuba 3.9 has no register_volume
 }
-MODELS = "bsdfs"  # the kind of every model
-OWN, USERS = "brdfkit.plugins", "brdfkit.user_plugins"  # packages of the plugin files' modules
+MODELS = "bsdfs"  # the kind of every BRDF model
+OWN, USERS = "brdfkit.plugins", "brdfkit.user_plugins"  # packages of the plugins' modules
 PACKAGES_OF_MODELS = f"{OWN}.{MODELS}", USERS
 
 _users: dict[str, tuple[str, Path | type]] = {}
 _listeners: list[Callable[[], None]] = []
 
 
-def find_plugins(kind):
-    """Name → source of every plugin of a kind: its file, or its class if defined in a notebook.
+def find_plugins(kind: str) -> dict[str, Any]:
+    """Return the source of every plugin of a kind by name: its file, or a class from a notebook.
 
     >>> find_plugins("bsdfs")["ward"].name
     'ward.py'
@@ -61,16 +66,16 @@ def find_plugins(kind):
     return _find_own_plugins(kind) | {name: s for name, (k, s) in _users.items() if k == kind}
 
 
-def find_kind(name):
-    """The kind of the plugin `name`, None where there is no such plugin."""
+def find_kind(name: str) -> str | None:
+    """Return the kind of the plugin `name`, None where there is no such plugin."""
     return next((kind for kind in KINDS if name in find_plugins(kind)), None)
 
 
-def add_plugins(kind, added):
-    """Add a user's plugins of a kind; `added`: name → file or class.
+def add_plugins(kind: str, added: Mapping[str, Path | type]) -> None:
+    """Add a user's plugins of a kind, files or classes by name.
 
-    A file that is added again, and a class of the same name, replaces the earlier one. Raises
-    `BrdfkitError`, and adds none, where a name is taken by another plugin.
+    A file that is added again, or a class of the same name, replaces the earlier one. Raises
+    `BrdfkitError`, and adds none, where another plugin has one of the names.
     """
     for name, source in added.items():
         require_free_name(name, source)
@@ -81,13 +86,14 @@ def add_plugins(kind, added):
         listener()
 
 
-def call_when_added(listener):
-    """Call `listener()` each time that plugins have been added."""
+def call_when_added(listener: Callable[[], None]) -> None:
+    """Have `listener()` called each time that plugins have been added."""
     _listeners.append(listener)
 
 
-def find_python_files(path):
-    """The Python files at `path`: a file itself, or the files of a folder without a leading "_".
+def find_python_files(path: str | Path) -> list[Path]:
+    """Return the Python files at `path`: the file itself, or those in a folder without a leading
+    "_".
 
     Raises `BrdfkitError` where there are none.
     """
@@ -98,8 +104,8 @@ def find_python_files(path):
     return files
 
 
-def import_plugin(file):
-    """The module of a plugin file; a user's file is imported again when it has changed.
+def import_plugin(file: Path) -> ModuleType:
+    """Import a plugin file; a user's file is imported again when it has changed.
 
     Raises `BrdfkitError` where it cannot be imported.
     """
@@ -114,24 +120,26 @@ def import_plugin(file):
 
 
 @cache
-def _find_own_plugins(kind):
-    """Name → file of brdfkit's own plugins of a kind."""
+def _find_own_plugins(kind: str) -> dict[str, Path]:
+    """Return the files of brdfkit's own plugins of a kind by name."""
     files = [f for folder in plugins.__path__ for f in Path(folder, kind).glob("[!_]*.py")]
     return {file.stem: file for file in sorted(files)}
 
 
 @cache
-def _import_file(file, _modified):
-    """The module of a user's file; the time of its last change makes the cache import it anew."""
+def _import_file(file: Path, _modified: int) -> ModuleType:
+    """Import a user's file; the time of its last change makes the cache import it anew."""
     name = f"{USERS}.{file.stem}"
     if file.suffix != ".py":
         raise BrdfkitError(f"{file} is not a Python file.")
-    spec = importlib.util.spec_from_file_location(name, file, loader=_Loader(name, str(file)))
+    loader = _Loader(name, str(file))
+    spec = importlib.util.spec_from_file_location(name, file, loader=loader)
+    assert spec is not None, "the suffix .py has a specification"
     imported = importlib.util.module_from_spec(spec)
     sys.modules[name] = imported
     try:
-        spec.loader.exec_module(imported)
-    except BaseException as error:  # a file may raise anything; but Ctrl-C is no error of it
+        loader.exec_module(imported)
+    except BaseException as error:  # a file may raise anything
         del sys.modules[name]
         if isinstance(error, KeyboardInterrupt):
             raise
@@ -143,19 +151,19 @@ def _import_file(file, _modified):
 
 
 class _Loader(SourceFileLoader):
-    """Compiles a file whenever it is imported.
+    """Compiles a file whenever it is imported, without Python's cache of compiled files.
 
-    Python's cache of compiled files takes an edit of the same length within a second for none.
+    That cache overlooks an edit of the same length within a second.
     """
 
-    def get_code(self, fullname):
+    def get_code(self, fullname: str) -> CodeType | None:
         return self.source_to_code(self.get_data(self.path), self.path)
 
 
-def require_free_name(name, source):
+def require_free_name(name: str, source: Path | type) -> None:
     """Raise `BrdfkitError` where another plugin, of any kind, has the name of `source`.
 
-    Mitsuba would go on using the other one.
+    Mitsuba would go on using the other plugin.
     """
     _, known = _users.get(name, (None, source))
     if any(name in _find_own_plugins(kind) for kind in KINDS):
@@ -170,15 +178,17 @@ def require_free_name(name, source):
     raise BrdfkitError(f"{what}: {owner} {name!r}; rename the {remedy}.")
 
 
-def _is_same_file(known, source):
-    """Whether a new `source` is the file `known`, perhaps by another path."""
+def _is_same_file(known: Path, source: Path | type) -> bool:
+    """Return whether a new `source` is the file `known`, perhaps by another path."""
     return known == source or (
         isinstance(source, Path) and known.exists() and source.exists() and known.samefile(source)
     )
 
 
 @cache
-def _find_mitsuba_plugins():
-    """Names of Mitsuba's own plugins."""
-    package = Path(importlib.util.find_spec("mitsuba").origin).parent
+def _find_mitsuba_plugins() -> set[str]:
+    """Return the names of Mitsuba's own plugins."""
+    spec = importlib.util.find_spec("mitsuba")
+    assert spec is not None, "Mitsuba is installed"
+    package = Path(str(spec.origin)).parent
     return {file.stem for file in (package / "plugins").iterdir()}

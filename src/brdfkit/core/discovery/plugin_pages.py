@@ -1,44 +1,47 @@
-"""The page of a plugin: the docstring of its file.
+"""Reads the page of a plugin, which is the docstring of its file.
 
-The first line is ``Title: one sentence.``; the formula, where there is one, and prose follow.
+The first line is ``Title: one sentence.``; then follow the formula, if there is one, and prose.
 """
+
+from __future__ import annotations
 
 import inspect
 import re
 import sys
 from dataclasses import dataclass
+from pathlib import Path
 
 from brdfkit.core.discovery import plugin_files
-from brdfkit.core.references import find_cited_works
+from brdfkit.core.references import Reference, find_cited_works
 
 SHOWS = re.compile(r"\b(?:It s|S)(hows .*?\.)(?=\s|$)")
 
 
 @dataclass(frozen=True)
 class Page:
-    """A page: its `title`, one `sentence`, and the `lines` that follow the first."""
+    """The page of a plugin: its `title`, one `sentence`, and the `lines` after the first."""
 
     title: str
     sentence: str
     lines: tuple[str, ...]
 
-    def __str__(self):
+    def __str__(self) -> str:
         return "\n".join([f"{self.title}: {self.sentence}", *self.lines])
 
     @property
-    def shows(self):
-        """Which materials a model shows, and what it does not: the sentence that begins so."""
+    def shows(self) -> str:
+        """The sentence that says which materials a model shows and which it does not, or ""."""
         found = SHOWS.search(" ".join(self.lines))
         return f"S{found.group(1)}" if found else ""
 
     @property
-    def references(self):
-        """The cited works, as `Reference`s."""
+    def references(self) -> list[Reference]:
+        """The works that the page cites."""
         return find_cited_works(str(self))
 
 
-def read_page(source):
-    """The `Page` of a plugin, given as its file or its class.
+def read_page(source: Path | type) -> Page:
+    """Read the page of a plugin, given as its file or its class.
 
     A class that no plugin file defines has its own docstring as its page.
     """

@@ -1,7 +1,7 @@
-"""What an object tells of itself, written once and shown as text and as HTML.
+"""The summary of an object, written once and shown as text in terminals and as HTML in notebooks.
 
-A class that derives from `Shown` says it in `document()`: a title and parts, which are in
-`parts.py`. `text.py` makes text of them, for terminals, and `html.py` HTML, for notebooks.
+A class that derives from `Shown` returns the summary from `document()`: a title and the parts of
+`parts.py`. `text.py` turns them into text, and `html.py` into HTML.
 """
 
 from brdfkit.core.documents.parts import Cell as Cell

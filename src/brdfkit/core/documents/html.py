@@ -1,17 +1,30 @@
-"""A document as HTML for notebooks: no scripts, nothing from elsewhere.
+"""Turns a document into HTML for notebooks, without scripts and without anything from elsewhere.
 
-Its colours come from the text's own, so that they are right in light and dark themes; where a
-viewer removes the style sheet, plain tables remain.
+Its colours derive from the colour of the text, so that they are right in light and dark themes.
+Where a viewer removes the style sheet, plain tables remain.
 """
 
+from __future__ import annotations
+
 import base64
+from collections.abc import Callable, Sequence
 from html import escape
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 
 from brdfkit.core.colours import to_srgb
-from brdfkit.core.documents.parts import SOFT, Cell, Folded, Paragraph, Picture, Table
+from brdfkit.core.documents.parts import (
+    SOFT,
+    Cell,
+    Document,
+    Folded,
+    Paragraph,
+    Picture,
+    Row,
+    Table,
+)
 from brdfkit.core.names import to_printable
 
 STYLE = """
@@ -49,8 +62,8 @@ STYLE = """
 """
 
 
-def to_html(document):
-    """The HTML of a `Document`, to stand in a notebook's page."""
+def to_html(document: Document) -> str:
+    """Return a document as HTML for the output of a notebook's cell."""
     parts = []
     for kind, group in groupby(document.parts, type):
         made = [MAKERS[kind](part) for part in group]
@@ -59,7 +72,8 @@ def to_html(document):
     return f'<div class="brdfkit jp-toc-ignore"><style>{STYLE}</style>{title}{"".join(parts)}</div>'
 
 
-def _format_table(table):
+def _format_table(table: Table) -> str:
+    """Return a table as HTML that scrolls sideways where it is wide."""
     sides = [' class="number"' if name.startswith(">") else "" for name in table.columns]
     heads = "".join(
         f"<th{side}>{_escape(name.removeprefix('>'))}</th>"
@@ -71,16 +85,16 @@ def _format_table(table):
     return f'<div class="wide"><table>{head}{body}{foot}</table></div>'
 
 
-def _format_rows(rows, columns):
+def _format_rows(rows: Sequence[Row], columns: Sequence[str]) -> str:
+    """Return the rows of a table as HTML."""
     numeric = [name.startswith(">") for name in columns]
-    found = []
-    for row in rows:
-        sides = numeric or [False] * len(row)
-        found.append("".join(map(_format_cell, row, sides)))
-    return "".join(f"<tr>{cells}</tr>" for cells in found)
+    return "".join(
+        f"<tr>{''.join(map(_format_cell, row, numeric or [False] * len(row)))}</tr>" for row in rows
+    )
 
 
-def _format_cell(cell, is_number):
+def _format_cell(cell: str | Cell, is_number: bool) -> str:
+    """Return a cell with its colour, its text and its bar as HTML."""
     if not isinstance(cell, Cell):
         cell = Cell(cell)
     kinds = " ".join(filter(None, ["number" if is_number else "", cell.kind]))
@@ -90,8 +104,10 @@ def _format_cell(cell, is_number):
     return f"<td{attributes}>{content}</td>"
 
 
-def _format_chip(colour):
-    """A square of a linear colour, as bright as it can be: its hue, where it is above 1."""
+def _format_chip(colour: Sequence[float]) -> str:
+    """Return a small square of a linear colour, scaled down to 1 if it is brighter, or "" for
+    none.
+    """
     if len(colour) != 3:
         return ""
     rgb = np.maximum(colour, 0)
@@ -99,22 +115,24 @@ def _format_chip(colour):
     return f'<span class="chip" style="background:rgb({red},{green},{blue})"></span>'
 
 
-def _format_bar(place):
-    """A bar with a mark at `place`, 0 to 1."""
+def _format_bar(place: float | None) -> str:
+    """Return a bar with a mark at `place`, 0 to 1, or "" for None."""
     if place is None:
         return ""
     return f'<span class="bar"><i style="left:{100 * place:.0f}%"></i></span>'
 
 
-def _format_paragraph(paragraph):
+def _format_paragraph(paragraph: Paragraph) -> str:
+    """Return a paragraph as HTML."""
     kind = f' class="{paragraph.kind}"' if paragraph.kind else ""
     return f"<p{kind}>{'<br>'.join(map(_escape, paragraph.text.splitlines()))}</p>"
 
 
-def _format_picture(picture):
+def _format_picture(picture: Picture) -> str:
+    """Draw a picture and return its HTML, or a sentence that says why it is not shown."""
     try:
         content = picture.draw()
-    except Exception as error:  # what a user's model raises: the rest is shown all the same
+    except Exception as error:  # a user's model may raise anything; the rest is shown all the same
         said = f"Not shown: {picture.says} ({type(error).__name__}: {error})."
         return _format_paragraph(Paragraph(said, SOFT))
     if isinstance(content, str):
@@ -127,18 +145,19 @@ def _format_picture(picture):
     )
 
 
-def _format_folded(folded):
+def _format_folded(folded: Folded) -> str:
+    """Return folded lines as HTML that unfolds at a click."""
     text = "\n".join(map(_escape, folded.text.splitlines()))
     return f"<details><summary>{_escape(folded.heading)}</summary><pre>{text}</pre></details>"
 
 
-def _escape(text):
-    """Any text, escaped for HTML."""
+def _escape(text: object) -> str:
+    """Escape a text for HTML."""
     return escape(to_printable(text))
 
 
-KINDS = {b"\x89PNG": "png", b"RIFF": "webp", b"\xff\xd8": "jpeg"}  # of pictures' first bytes
-MAKERS = {
+KINDS = {b"\x89PNG": "png", b"RIFF": "webp", b"\xff\xd8": "jpeg"}  # by the first bytes
+MAKERS: dict[type, Callable[[Any], str]] = {
     Table: _format_table,
     Paragraph: _format_paragraph,
     Picture: _format_picture,

@@ -1,4 +1,6 @@
-"""The parts of a document: paragraphs, tables, pictures, and what is folded away."""
+"""The parts of a document: paragraphs, tables, pictures and folded lines."""
+
+from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,11 +11,11 @@ GOOD, BAD, STRONG, SOFT = "good", "bad", "strong", "soft"  # kinds of cells and 
 
 @dataclass(frozen=True)
 class Cell:
-    """A cell of a table that has more than a `text`.
+    """A cell of a table with more than a text.
 
-    `kind`: how it stands out, one of the kinds above; `hint`: what appears under the pointer;
-    `colour`: linear R, G, B, shown as a chip; `place`: where a value lies between its bounds, 0 to
-    1, shown as a mark on a bar. HTML alone shows the last three.
+    `kind` is one of the kinds above and says how the cell stands out. HTML alone shows the rest:
+    `hint` under the pointer, `colour`, linear R, G, B, as a small square, and `place`, from 0 to 1,
+    as a mark on a bar, for a value between its bounds.
     """
 
     text: str
@@ -28,9 +30,10 @@ Row: TypeAlias = tuple[str | Cell, ...]
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of cells under the names of the columns; numbers, flush right, under names with ">".
+    """Rows of cells under the names of the columns.
 
-    `foot`: rows that stand apart at the end. A table without `columns` has no head.
+    Columns whose names begin with ">" hold numbers, flush right. `foot` holds rows that are set
+    apart at the end. A table without `columns` has no head.
     """
 
     rows: tuple[Row, ...]
@@ -40,7 +43,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Paragraph:
-    """A sentence or several; `kind`: how it stands out, one of the kinds above."""
+    """One or more sentences; `kind`, one of the kinds above, says how they stand out."""
 
     text: str
     kind: str = ""
@@ -50,8 +53,9 @@ class Paragraph:
 class Picture:
     """A picture, which HTML alone shows.
 
-    `draw`: gives, when it is shown, the bytes of a PNG, WebP or JPEG, or the text of an SVG;
-    `says`: what it shows, for those who do not see it; `width`: in pixels of a screen.
+    `draw()` returns the bytes of a PNG, WebP or JPEG, or the text of an SVG; it is called when the
+    picture is shown. `says` describes the picture for those who do not see it; `width` is in pixels
+    of a screen.
     """
 
     draw: Callable[[], bytes | str]
@@ -61,7 +65,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Folded:
-    """What HTML alone shows, under a heading that unfolds it; `text` keeps its lines."""
+    """A `text` whose lines HTML alone shows, below a heading that unfolds them."""
 
     heading: str
     text: str
@@ -72,7 +76,7 @@ Part: TypeAlias = Table | Paragraph | Picture | Folded
 
 @dataclass(frozen=True)
 class Document:
-    """A `title`, and `parts` in their order; pictures that follow each other stand side by side."""
+    """A `title` and `parts` in their order; pictures that follow each other stand side by side."""
 
     title: str
     parts: tuple[Part, ...] = ()

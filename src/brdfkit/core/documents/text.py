@@ -1,35 +1,37 @@
-"""A document as text: the title, and below it, indented, its paragraphs and tables."""
+"""Turns a document into text: the title, and below it, indented, its paragraphs and tables."""
+
+from __future__ import annotations
 
 from brdfkit.core.documents.html import to_html
 from brdfkit.core.documents.parts import BAD, Cell, Document, Paragraph, Table
 from brdfkit.core.names import to_printable
 
-INDENT, BETWEEN = "  ", "  "
-MARK = "! "  # of what is bad
-NAME = 32  # characters of a name beyond which it has a line of its own
+INDENT, GAP = "  ", "  "
+BAD_MARK = "! "
+LONGEST_NAME = 32  # characters; a longer name gets a line of its own
 
 
-def to_text(document):
-    """The text of a `Document`; pictures and what is folded are left out."""
+def to_text(document: Document) -> str:
+    """Return a document as text, without pictures and folded lines."""
     lines = []
     for part in document.parts:
         if isinstance(part, Table):
             lines += _format_table(part)
         elif isinstance(part, Paragraph):
-            mark = MARK if part.kind == BAD else ""
+            mark = BAD_MARK if part.kind == BAD else ""
             lines += [f"{mark}{line}" for line in part.text.splitlines()]
     return "\n".join([document.title, *(INDENT + line for line in lines)])
 
 
-def to_plain_text(cell):
-    """The text of a cell, behind a mark where it is bad."""
+def to_plain_text(cell: str | Cell) -> str:
+    """Return the text of a cell, with a mark in front if the cell is bad."""
     if not isinstance(cell, Cell):
         return cell
-    return f"{MARK}{cell.text}" if cell.kind == BAD else cell.text
+    return f"{BAD_MARK}{cell.text}" if cell.kind == BAD else cell.text
 
 
-def _format_table(table):
-    """The lines of a `Table`: columns as wide as their longest text."""
+def _format_table(table: Table) -> list[str]:
+    """Return the lines of a table, with columns as wide as their longest text."""
     titles = [name.removeprefix(">") for name in table.columns]
     lines = (*([titles] if any(titles) else []), *table.rows, *table.foot)
     rows = [[to_printable(to_plain_text(cell)) for cell in line] for line in lines]
@@ -39,26 +41,28 @@ def _format_table(table):
         rows = [line for row in rows for line in _split_long_name(row)]
     widths = [max(map(len, texts)) for texts in zip(*rows, strict=True)]
     if len(table.columns) > 2:
-        widths[0] = min(widths[0], NAME)
+        widths[0] = min(widths[0], LONGEST_NAME)
     names = table.columns or [""] * len(widths)
     sides = [">" if name.startswith(">") else "<" for name in names]
     return [
-        BETWEEN.join(f"{t:{s}{w}}" for t, s, w in zip(row, sides, widths, strict=True)).rstrip()
+        GAP.join(f"{t:{s}{w}}" for t, s, w in zip(row, sides, widths, strict=True)).rstrip()
         for row in rows
     ]
 
 
-def _split_long_name(row):
-    """A row of texts; two where its name is long: the name, and below it the numbers."""
+def _split_long_name(row: list[str]) -> list[list[str]]:
+    """Return a row of texts as one row, or as two if its name is long: the name, and the numbers
+    below.
+    """
     name, *others = row
-    return [[name, *("" for _ in others)], ["", *others]] if len(name) > NAME else [row]
+    return [[name, *("" for _ in others)], ["", *others]] if len(name) > LONGEST_NAME else [row]
 
 
 class Shown:
-    """What tells of itself in `document()`; terminals show it as text, notebooks as HTML."""
+    """An object with a summary, `document()`; terminals show it as text and notebooks as HTML."""
 
     def document(self) -> Document:
-        """What the object tells of itself."""
+        """Return the summary of the object."""
         raise NotImplementedError
 
     def __str__(self) -> str:
@@ -68,5 +72,7 @@ class Shown:
         return str(self)
 
     def _repr_html_(self) -> str:
-        """What notebooks show; without scripts, and without addresses from elsewhere."""
+        """Return the summary as HTML for notebooks, without scripts and without anything from
+        elsewhere.
+        """
         return to_html(self.document())

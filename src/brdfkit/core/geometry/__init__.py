@@ -1,1 +1,1 @@
-"""Directions, integrals over them and multilinear lookup; nothing here knows what a BRDF is."""
+"""Directions, integrals over them and multilinear interpolation."""

@@ -1,16 +1,19 @@
-"""Directions on the hemisphere: angles, and half/difference coordinates and back.
+"""Converts directions on the hemisphere to angles and to half/difference coordinates, and back.
 
-Directions are unit vectors (..., 3) of NumPy, float64, in the local frame, z along the normal. `wi`
-and `wo` both point away from the surface: the mirror direction of `wi` is at Δφ = 180°.
-
+Directions are unit vectors (..., 3) of NumPy, float64, in the local frame with z along the normal.
+`wi` and `wo` both point away from the surface: the mirror direction of `wi` is at Δφ = 180°.
 Half/difference coordinates are those of [Rusinkiewicz 1998].
 """
 
+from __future__ import annotations
+
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
 
-def from_angles(theta, phi):
-    """Unit vectors (..., 3) at polar angle `theta` and azimuth `phi` [rad].
+
+def from_angles(theta: ArrayLike, phi: ArrayLike) -> FloatArray:
+    """Return unit vectors (..., 3) at the polar angle `theta` and the azimuth `phi` [rad].
 
     >>> from_angles(0.0, 0.0)
     array([0., 0., 1.])
@@ -20,23 +23,25 @@ def from_angles(theta, phi):
     return np.stack([sin_theta * np.cos(phi), sin_theta * np.sin(phi), np.cos(theta)], axis=-1)
 
 
-def to_angles(w):
-    """Polar angle in [0, π] and azimuth in (-π, π] [rad] of unit vectors (..., 3)."""
+def to_angles(w: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Return the polar angles in [0, π] and the azimuths in (-π, π] [rad] of unit vectors (...,
+    3).
+    """
     w = np.asarray(w, float)
     return np.arctan2(np.hypot(w[..., 0], w[..., 1]), w[..., 2]), np.arctan2(w[..., 1], w[..., 0])
 
 
-def normalize(w):
-    """Unit vectors (..., 3) along the vectors `w` (..., 3)."""
+def normalize(w: ArrayLike) -> AnyArray:
+    """Return the unit vectors (..., 3) along vectors (..., 3)."""
     w = np.asarray(w, float)
     return w / np.linalg.norm(w, axis=-1, keepdims=True)
 
 
-def to_half_difference(wi, wo):
-    """(theta_h, theta_d, phi_d) [rad] of direction pairs (..., 3); phi_d in [0, 2π).
+def to_half_difference(wi: ArrayLike, wo: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return (theta_h, theta_d, phi_d) [rad] of direction pairs (..., 3), with phi_d in [0, 2π).
 
-    Exchanging `wi` and `wo` adds π to phi_d: a reciprocal BRDF has period π in phi_d. The azimuth
-    of the half vector, on which only an anisotropic BRDF depends, is `half_azimuth`.
+    Exchanging `wi` and `wo` adds π to phi_d, so that a reciprocal BRDF has the period π in phi_d.
+    `half_azimuth` gives the azimuth of the half vector, on which only an anisotropic BRDF depends.
     """
     wi, wo = np.asarray(wi, float), np.asarray(wo, float)
     h = normalize(wi + wo)
@@ -47,23 +52,24 @@ def to_half_difference(wi, wo):
     return theta_h, theta_d, np.mod(phi_d, 2 * np.pi)
 
 
-def cos_theta_h(wi, wo):
-    """The cosine (n,) of theta_h, the half vector's angle to the normal, of direction pairs
-    (n, 3)."""
+def cos_theta_h(wi: FloatArray, wo: FloatArray) -> FloatArray:
+    """Return the cosine (n,) of theta_h, the half vector's angle to the normal, of pairs (n, 3)."""
     x, y, z = (wi + wo).T
     return z / np.sqrt(x * x + y * y + z * z)
 
 
-def half_azimuth(wi, wo):
-    """phi_h in [0, 2π) [rad], the azimuth of the half vector, of direction pairs (..., 3)."""
+def half_azimuth(wi: ArrayLike, wo: ArrayLike) -> FloatArray:
+    """Return phi_h in [0, 2π) [rad], the azimuth of the half vector of direction pairs (..., 3)."""
     s = np.asarray(wi, float) + np.asarray(wo, float)
     return np.mod(np.arctan2(s[..., 1], s[..., 0]), 2 * np.pi)
 
 
-def from_half_difference(theta_h, theta_d, phi_d, phi_h=0.0):
-    """Direction pairs (wi, wo), each (..., 3), with the half vector at azimuth `phi_h`.
+def from_half_difference(
+    theta_h: ArrayLike, theta_d: ArrayLike, phi_d: ArrayLike, phi_h: ArrayLike = 0.0
+) -> tuple[FloatArray, FloatArray]:
+    """Return direction pairs (wi, wo), each (..., 3), at half/difference angles [rad].
 
-    A direction may lie below the surface (z < 0): the caller masks it.
+    A direction may lie below the surface, z < 0; the caller has to mask it.
     """
     theta_h, theta_d, phi_d, phi_h = np.broadcast_arrays(theta_h, theta_d, phi_d, phi_h)
     wi = _rotate_y(from_angles(theta_d, phi_d), theta_h)
@@ -71,14 +77,15 @@ def from_half_difference(theta_h, theta_d, phi_d, phi_h=0.0):
     return rotate_z(wi, phi_h), rotate_z(wo, phi_h)
 
 
-def rotate_z(w, angle):
-    """Vectors (..., 3) turned about z by an `angle` [rad]."""
+def rotate_z(w: FloatArray, angle: ArrayLike) -> FloatArray:
+    """Turn vectors (..., 3) about the z axis by an angle [rad]."""
     c, s = np.cos(angle), np.sin(angle)
     x, y = w[..., 0], w[..., 1]
     return np.stack([c * x - s * y, s * x + c * y, w[..., 2]], axis=-1)
 
 
-def _rotate_y(w, angle):
+def _rotate_y(w: FloatArray, angle: ArrayLike) -> FloatArray:
+    """Turn vectors (..., 3) about the y axis by an angle [rad]."""
     c, s = np.cos(angle), np.sin(angle)
     x, z = w[..., 0], w[..., 2]
     return np.stack([c * x + s * z, w[..., 1], -s * x + c * z], axis=-1)

@@ -1,15 +1,19 @@
 """The dual-paraboloid map: all directions as two unit discs, one for z ≥ 0, one for z < 0.
 
-A direction of either hemisphere is seen in a paraboloid mirror from below or above. There are no
-angles in it, only divisions, and the density of directions varies by a factor of 4 over a disc.
-Written by arithmetic alone, for NumPy arrays and Dr.Jit's alike.
+Each disc shows a hemisphere of directions as a paraboloid mirror reflects it. The map needs
+divisions but no angles, and the density of directions varies by a factor of 4 over a disc. The
+functions use arithmetic alone, so they take NumPy's and Dr.Jit's arrays.
 
 [Heidrich & Seidel 1998], [Ergun 2015, chapter 7]
 """
 
+from __future__ import annotations
 
-def to_disc(x, y, z):
-    """The place (s, t) in the unit disc of a unit direction; which disc says the sign of `z`.
+from brdfkit.core.array_types import JitFloat
+
+
+def to_disc(x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, JitFloat]:
+    """Return the place (s, t) of a unit direction in the unit disc that the sign of `z` selects.
 
     >>> to_disc(0.6, 0.0, -0.8)
     (0.3333333333333333, 0.0)
@@ -18,8 +22,9 @@ def to_disc(x, y, z):
     return x * scale, y * scale
 
 
-def from_disc(s, t, sign):
-    """The unit direction (x, y, z) at (s, t) of the disc of z ≥ 0 (`sign` = 1) or z < 0 (-1).
+def from_disc(s: JitFloat, t: JitFloat, sign: JitFloat) -> tuple[JitFloat, JitFloat, JitFloat]:
+    """Return the unit direction (x, y, z) at (s, t) of the disc of z ≥ 0 (`sign` = 1) or z < 0
+    (-1).
 
     >>> from_disc(0.0, 0.0, -1)
     (0.0, 0.0, -1.0)
@@ -28,8 +33,8 @@ def from_disc(s, t, sign):
     return 2 * s / (1 + q), 2 * t / (1 + q), sign * (1 - q) / (1 + q)
 
 
-def solid_angle(z):
-    """Solid angle [sr] per area of the disc at a direction: (1 + |z|)².
+def solid_angle(z: JitFloat) -> JitFloat:
+    """Return the solid angle [sr] per area of the disc at a direction, (1 + |z|)².
 
     >>> solid_angle(1.0)
     4.0

@@ -1,53 +1,67 @@
-"""What the rows of maps by latitude and longitude weigh in integrals over all directions.
+"""Computes the weights of the rows of latitude-longitude maps in integrals over all directions.
 
-Two kinds of maps differ in where their rows stand: those of files have a row at each pole, and are
-linear between rows, as Mitsuba's `envmap` reads them; those that brdfkit makes for itself have
-constant pixels, no row at a pole. Columns are even in both.
+Two kinds of maps differ in where their rows lie. Maps from files have a row at each pole and are
+linear between rows, as Mitsuba's `envmap` reads them; maps that brdfkit makes for itself have
+constant pixels and no row at a pole. In both the columns are evenly spaced.
 """
+
+from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 
-def solid_angles(height, width, at_poles):
-    """Solid angle (height,) [sr] of a pixel of each row.
 
-    at_poles : whether rows stand at the poles and the map is linear between them, or each pixel is
-        constant. The share of a row is then ∫ of its weight, or over its pixel.
+def solid_angles(height: int, width: int, at_poles: bool) -> FloatArray:
+    """Return the solid angle (height,) [sr] of a pixel of each row.
+
+    With `at_poles` rows lie at the poles and the map is linear between rows, so that a pixel stands
+    for the integral of its weight; otherwise each pixel is constant.
 
     >>> (solid_angles(3, 1, at_poles=False).sum() / np.pi).round(9)
     np.float64(4.0)
     """
-    return _weights(height, width, at_poles, lambda a: -np.sin(a), lambda a: -np.cos(a))
+    return _integrate_rows(height, width, at_poles, lambda a: -np.sin(a), lambda a: -np.cos(a))
 
 
-def projected_solid_angles(height, width):
-    """∫ cosθ dω (height,) [sr] over the upper hemisphere, of a pixel of each row of a file's map.
+def projected_solid_angles(height: int, width: int) -> FloatArray:
+    """Return ∫ cosθ dω (height,) [sr] over the upper hemisphere for a pixel of each row of a file's
+    map.
 
     >>> (projected_solid_angles(5, 1).sum() / np.pi).round(9)
     np.float64(1.0)
     """
 
-    def once(theta):
+    def first_integral(theta: FloatArray) -> FloatArray:
         return np.sin(np.minimum(theta, np.pi / 2)) ** 2 / 2
 
-    def twice(theta):
+    def second_integral(theta: FloatArray) -> FloatArray:
         up, down = np.minimum(theta, np.pi / 2), np.maximum(theta - np.pi / 2, 0)
         return up / 4 - np.sin(2 * up) / 8 + down / 2
 
-    return _weights(height, width, True, twice, once)
+    return _integrate_rows(height, width, True, second_integral, first_integral)
 
 
-def _weights(height, width, at_poles, twice, once):
-    """∫ g(θ) dω of a pixel of each row: `once` is the integral of g(θ) sinθ over θ, `twice` that of
-    `once`.
+def _integrate_rows(
+    height: int,
+    width: int,
+    at_poles: bool,
+    second_integral: Callable[..., FloatArray],
+    first_integral: Callable[..., FloatArray],
+) -> FloatArray:
+    """Return ∫ g(θ) dω (height,) for a pixel of each row.
 
-    A row's weight rises and falls linearly between its neighbours; by parts, its integral is the
-    difference of the mean slopes of `twice` on both sides, that of `once` at the poles themselves.
+    `first_integral` is the integral of g(θ) sinθ over θ, and `second_integral` the integral of
+    that. The weight of a row falls linearly to its neighbours; by parts, its
+    integral is the difference of the mean slopes of `second_integral` on both sides, or of
+    `first_integral` itself at the poles.
     """
     if at_poles:
         theta = np.linspace(0, np.pi, height)
-        slopes = np.diff(twice(theta)) / np.diff(theta)
-        edges = np.concatenate([[once(0.0)], slopes, [once(np.pi)]])
+        slopes = np.diff(second_integral(theta)) / np.diff(theta)
+        edges = np.concatenate([[first_integral(0.0)], slopes, [first_integral(np.pi)]])
     else:
-        edges = once(np.linspace(0, np.pi, height + 1))
+        edges = first_integral(np.linspace(0, np.pi, height + 1))
     return 2 * np.pi / width * np.diff(edges)

@@ -1,31 +1,41 @@
-"""Multilinear interpolation: the nodes around a point on each axis, and the corners of its cell.
+"""Multilinear interpolation: finds the nodes around a point on each axis, and the corners of its
+cell.
 
-A bracket is (lower node, upper node, share of the upper node) on one axis, whose nodes stand at
-0, 1, ... n - 1. `find_bracket` and `find_periodic_bracket` take NumPy arrays, the functions of
-`mitsuba_bridge/arrays.py` take Dr.Jit's arrays. `list_corners` takes brackets of either kind.
+A bracket is (lower node, upper node, share of the upper node) on one axis, whose nodes lie at 0, 1,
+... n - 1. `find_bracket` and `find_periodic_bracket` take NumPy arrays; the functions of the same
+kind in `mitsuba_bridge/arrays.py` take Dr.Jit's arrays. `list_corners` takes brackets of either
+kind.
 """
 
+from __future__ import annotations
+
 import itertools
+from collections.abc import Iterator, Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray
 
-def find_bracket(x, n):
-    """The bracket around the coordinate `x` on an axis of `n` nodes; beyond an end, the end."""
+Bracket: TypeAlias = tuple[Any, Any, Any]
+
+
+def find_bracket(x: AnyArray, n: int) -> Bracket:
+    """Return the bracket around the coordinate `x` on an axis of `n` nodes, clamped at its ends."""
     x = np.clip(x, 0, n - 1)
     lower = np.minimum(x.astype(int), max(n - 2, 0))
     return lower, np.minimum(lower + 1, n - 1), x - lower
 
 
-def find_periodic_bracket(x, n):
-    """The bracket around the coordinate `x` on a periodic axis, where node n is node 0."""
+def find_periodic_bracket(x: AnyArray, n: int) -> Bracket:
+    """Return the bracket around the coordinate `x` on a periodic axis, where node n is node 0."""
     x = np.mod(x, n)
     lower = np.minimum(x.astype(int), n - 1)
     return lower, (lower + 1) % n, x - lower
 
 
-def list_corners(brackets):
-    """(node on each axis, share) of every corner of the cell around a point.
+def list_corners(brackets: Sequence[Bracket]) -> Iterator[tuple[tuple[Any, ...], Any]]:
+    """Yield (node on each axis, share) for every corner of the cell around a point.
 
     `brackets` has one bracket per axis. The shares of all corners add up to 1.
 
@@ -40,8 +50,10 @@ def list_corners(brackets):
         yield tuple(nodes), share
 
 
-def to_flat_index(nodes, shape):
-    """The index of a corner in an array of `shape` that is flattened, its last axis fastest."""
+def to_flat_index(nodes: Sequence[Any], shape: Sequence[int]) -> Any:
+    """Return the index of a corner in a flattened array of `shape`, whose last axis is the
+    fastest.
+    """
     index = 0
     for node, n in zip(nodes, shape, strict=True):
         index = index * n + node

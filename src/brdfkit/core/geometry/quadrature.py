@@ -1,19 +1,27 @@
-"""Integrals over the hemisphere, to the precision that narrow lobes need."""
+"""Integrates BRDFs over the hemisphere with the precision that narrow lobes need."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
 from functools import cache
+from typing import Any, TypeAlias
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.geometry.directions import from_angles, normalize
 
-# Points per ring, increased until the sum changes by less than TOLERANCE of itself; the rings about
-# the mirror direction are twice as many
+# Points per ring, increased until the sum changes by less than TOLERANCE of itself; there are twice
+# as many rings about the mirror direction
 POINTS = (64, 128, 256, 512, 1024)
 TOLERANCE = 2e-4
 
 
-def directional_albedo(f, wi):
-    """The directional albedo ∫ f cosθ_o dω_o (channels,) at one incidence `wi` (3,).
+Brdf: TypeAlias = Callable[[Any, Any], AnyArray]
+
+
+def directional_albedo(f: Brdf, wi: FloatArray) -> AnyArray:
+    """Compute the directional albedo ∫ f cosθ_o dω_o (channels,) at one incidence `wi` (3,).
 
     `f(wi, wo)` takes direction pairs (n, 3) and returns BRDF values (n, channels) in sr⁻¹; `wi` is
     a unit vector above the surface.
@@ -22,8 +30,8 @@ def directional_albedo(f, wi):
     which resolves lobes from a thousandth of a radian to the whole hemisphere. Points on a ring are
     denser near the plane of incidence and across it, which resolves elongated lobes. Rings and
     points are doubled until the sum changes by less than 2e-4 of itself, at most to 2048 rings of
-    1024 points: the albedo of a `ward` a hundred times narrower along one axis is then known to
-    2e-5.
+    1024 points. The albedo of a `ward` that is a hundred times narrower along one axis is then
+    accurate to 2e-5.
     """
     coarse = _integrate(f, wi, POINTS[0])
     for points in POINTS[1:]:
@@ -34,19 +42,23 @@ def directional_albedo(f, wi):
     return fine
 
 
-def _integrate(f, wi, points):
-    """The integral (channels,) by 2 `points` rings of `points` points."""
+def _integrate(f: Brdf, wi: FloatArray, points: int) -> AnyArray:
+    """Compute the albedo (channels,) by 2 `points` rings of `points` points."""
     wo, weight = make_ring_rule(wi, points)
     return weight @ f(np.broadcast_to(wi, wo.shape), wo)
 
 
-def make_ring_rule(wi, points):
-    """The directions wo (n, 3) of 2 `points` rings of `points` points, for light from `wi` (3,),
-    and their solid angles times cosθ_o (n,)."""
+def make_ring_rule(wi: FloatArray, points: int) -> tuple[FloatArray, FloatArray]:
+    """Return the directions wo (n, 3) of 2 `points` rings of `points` points, and their weights
+    (n,).
+
+    The rings lie about the mirror direction of `wi` (3,); the weights are solid angles times
+    cosθ_o.
+    """
     mirror = wi * [-1, -1, 1]
     cos_theta, sin_theta = mirror[2], np.hypot(mirror[0], mirror[1])
-    # Angle gamma of each ring to the mirror direction: as many rings lie wholly above the horizon
-    # (gamma < whole) as cross it
+    # Angle gamma of each ring to the mirror direction: half of the rings lie wholly above the
+    # horizon (gamma < whole), the others cross it
     t, weight = _gauss_legendre(points)
     whole = np.arctan2(cos_theta, sin_theta)
     gamma = np.concatenate([whole * t**3, whole + (np.pi - 2 * whole) * t**2])
@@ -69,15 +81,20 @@ def make_ring_rule(wi, points):
 
 
 @cache
-def _gauss_legendre(points, pieces=1):
-    """Gauss-Legendre nodes and weights, each (points,), of the unit interval in equal `pieces`."""
+def _gauss_legendre(points: int, pieces: int = 1) -> tuple[FloatArray, FloatArray]:
+    """Return Gauss-Legendre nodes and weights, each (points,), of the unit interval in equal
+    `pieces`.
+    """
     nodes, weights = np.polynomial.legendre.leggauss(points // pieces)
     nodes = np.arange(pieces)[:, None] + (nodes + 1) / 2
     return nodes.ravel() / pieces, np.tile(weights / 2 / pieces, pieces)
 
 
-def spread_by_cosine(n):
-    """Unit vectors (n, 3), distributed as the cosine: π f averages over them to the albedo of f."""
+def spread_by_cosine(n: int) -> FloatArray:
+    """Return unit vectors (n, 3) whose density is proportional to the cosine.
+
+    The mean of π f over them is the albedo of a BRDF f.
+    """
     square = (np.arange(n) + 0.5) / n
-    golden = (np.sqrt(5) - 1) / 2  # of a turn between neighbours: fills the circle most evenly
+    golden = (np.sqrt(5) - 1) / 2  # turns from point to point: fills the circle most evenly
     return from_angles(np.arcsin(np.sqrt(square)), 2 * np.pi * golden * np.arange(n))

@@ -1,1 +1,1 @@
-"""What Dr.Jit needs around it: an LLVM, whole arrays, one thread at a time, and no signals."""
+"""Helpers for Dr.Jit: finding LLVM, threads, loops, padding, and double precision."""

@@ -1,14 +1,16 @@
-"""Finds an LLVM that works with Dr.Jit, before Dr.Jit is loaded; chooses Mitsuba's variant.
+"""Finds an LLVM that works with Dr.Jit before Dr.Jit is loaded, and chooses Mitsuba's variant.
 
 Dr.Jit looks for libLLVM when it is imported and takes the newest of the system. With LLVM 15 or 16
 all works until the first kernel that contains a `minimum`: then LLVM aborts the process. So brdfkit
 chooses the library, through the environment variable DRJIT_LIBLLVM_PATH:
 
-1. the one that the user named there, if it is LLVM 17 or newer;
-2. the one that the package karellen-llvm-core brought into this environment;
+1. the library that the user named there, if it is LLVM 17 or newer;
+2. the library that the package karellen-llvm-core brought into this environment;
 3. the newest of the system, if it is LLVM 17 or newer;
 4. none: Mitsuba's scalar variants remain.
 """
+
+from __future__ import annotations
 
 import os
 import re
@@ -29,10 +31,10 @@ VARIANTS = ("cuda_ad_rgb", "llvm_ad_rgb", "scalar_rgb")
 NO_LIBRARY = "no-LLVM-17-or-newer-found"
 
 
-def choose_library():
-    """Point Dr.Jit to a usable libLLVM; called when brdfkit is imported.
+def choose_library() -> None:
+    """Point Dr.Jit to a usable libLLVM when brdfkit is imported.
 
-    Where Dr.Jit was imported before, its choice stands; a warning says so if it is a bad one.
+    If Dr.Jit was imported before, its choice stands; a warning says so if it is a bad one.
     """
     if "drjit" in sys.modules:
         _warn_of_bad_choice()
@@ -49,8 +51,8 @@ def choose_library():
         os.environ[VARIABLE] = str(chosen or NO_LIBRARY)
 
 
-def find_library():
-    """Path of the libLLVM to use, None where none of version 17 or newer is found."""
+def find_library() -> str | None:
+    """Return the path of the libLLVM to use, None where none of version 17 or newer is found."""
     named = os.environ.get(VARIABLE)
     if named and library_version(named) >= OLDEST:
         return named
@@ -58,13 +60,15 @@ def find_library():
         bundled = Path(prefix, "lib", "libLLVM.so")
         if library_version(bundled) >= OLDEST:
             return str(bundled)
-    found = [p for folder in SYSTEM_FOLDERS for p in Path("/").glob(f"{folder[1:]}/libLLVM*.so*")]
-    newest = max(found, key=library_version, default=None)
+    paths = [p for folder in SYSTEM_FOLDERS for p in Path("/").glob(f"{folder[1:]}/libLLVM*.so*")]
+    newest = max(paths, key=library_version, default=None)
     return str(newest) if newest and library_version(newest) >= OLDEST else None
 
 
-def library_version(path):
-    """Major version of a libLLVM, from its name or else from the library; 0 if it does not load."""
+def library_version(path: str | Path) -> int:
+    """Return the major version of a libLLVM, by its name or from the library; 0 if it does not
+    load.
+    """
     by_name = re.search(r"libLLVM(?:-|\.so\.)(\d+)", os.path.realpath(path))
     if by_name and Path(path).exists():
         return int(by_name[1])
@@ -79,10 +83,10 @@ def library_version(path):
         return 0
 
 
-def describe_remedy():
-    """What to do where Dr.Jit has no usable LLVM, as the end of a sentence.
+def describe_remedy() -> str:
+    """Say what to do where Dr.Jit has no usable LLVM, as the end of a sentence.
 
-    Where the machine has a usable one, it was not set or not installed when Dr.Jit was imported.
+    If the machine has a usable LLVM, it was not chosen or not installed when Dr.Jit was imported.
     """
     if find_library():
         return "start Python anew and import brdfkit before mitsuba and drjit"
@@ -92,24 +96,25 @@ def describe_remedy():
     )
 
 
-def loaded_version():
-    """Major version of the LLVM that Dr.Jit has loaded, -1 where it has none."""
+def loaded_version() -> int:
+    """Return the major version of the LLVM that Dr.Jit has loaded, -1 where it has none."""
     import drjit as dr
 
     return dr.detail.llvm_version()[0]
 
 
-def require_safe_variant(variant):
-    """Raise `BrdfkitError` where kernels of this `variant` would abort the process."""
+def require_safe_variant(variant: str | None) -> None:
+    """Raise `BrdfkitError` where kernels of a variant of Mitsuba would abort the process."""
     if variant and variant.startswith("llvm") and 0 < loaded_version() < OLDEST:
         raise BrdfkitError(_describe_bad_choice())
 
 
 @in_turn
-def use_variant():
-    """The name of the current Mitsuba variant; where none is set, the best that works is set first.
+def use_variant() -> str:
+    """Return the name of Mitsuba's current variant; where none is set, set the best that works
+    first.
 
-    A warning says so where that is only `scalar_rgb`, which is many times slower.
+    A warning is given if that is only `scalar_rgb`, which is many times slower.
     """
     import mitsuba as mi
 
@@ -123,16 +128,19 @@ def use_variant():
                 f"scalar_rgb is used; to mend it, {describe_remedy()}.",
                 stacklevel=3,  # the caller of use_variant, above the wrapper of `in_turn`
             )
-    require_safe_variant(mi.variant())
-    return mi.variant()
+    variant = str(mi.variant())
+    require_safe_variant(variant)
+    return variant
 
 
-def _warn_of_bad_choice():
+def _warn_of_bad_choice() -> None:
+    """Warn where Dr.Jit has loaded an LLVM that aborts the process."""
     if 0 < loaded_version() < OLDEST:
         warnings.warn(_describe_bad_choice(), stacklevel=4)
 
 
-def _describe_bad_choice():
+def _describe_bad_choice() -> str:
+    """Say which LLVM Dr.Jit has loaded, and what to do."""
     return (
         f"Dr.Jit was imported before brdfkit and took LLVM {loaded_version()}, which aborts the "
         f"process in Mitsuba's llvm variants: {describe_remedy()}."

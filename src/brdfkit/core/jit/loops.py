@@ -1,20 +1,26 @@
-"""`record_loops`: loops in one kernel, also while a picture is differentiated.
+"""Keeps loops in one kernel while a picture is differentiated, and finds the causes of errors.
 
-Mitsuba turns the recording of loops off then, because Dr.Jit goes backwards only through those of
-which it knows the `max_iterations`. Each step of a march was a kernel of its own, a thousand for a
-picture, and the whole some 10 times as slow.
+While Mitsuba differentiates a picture it turns the recording of loops off, since Dr.Jit
+differentiates backwards only through loops with known `max_iterations`. Then each step of a march
+becomes a kernel of its own, a thousand for a picture, and the picture takes about 10 times as long.
 """
 
-from collections.abc import Iterator
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import wraps
+from typing import ParamSpec, TypeVar
 
 import drjit as dr
+
+P = ParamSpec("P")
+R = TypeVar("R")
 
 
 @contextmanager
 def raise_first_cause() -> Iterator[None]:
-    """Within the block, a RuntimeError that another error caused gives way to the first of them."""
+    """Raise, in place of a RuntimeError that another error caused, the first error in the chain."""
     try:
         yield
     except RuntimeError as error:
@@ -25,21 +31,21 @@ def raise_first_cause() -> Iterator[None]:
 
 
 def is_interrupt(error: BaseException | None) -> bool:
-    """Whether Ctrl-C is the error, or caused it."""
+    """Return whether an error is Ctrl-C, or was caused by it."""
     while error is not None and not isinstance(error, KeyboardInterrupt):
         error = error.__cause__
     return error is not None
 
 
-def record_loops(function):
-    """The same function, whose loops are recorded.
+def record_loops(function: Callable[P, R]) -> Callable[P, R]:
+    """Decorate a function so that its loops are recorded.
 
-    Those that carry derivatives should have `max_iterations`, or `dr.backward` is an error; too few
-    would give a wrong derivative, unsaid.
+    Loops that carry derivatives need `max_iterations`, or `dr.backward` raises an error; too small
+    a number silently gives a wrong derivative.
     """
 
     @wraps(function)
-    def call(*args, **settings):
+    def call(*args: P.args, **settings: P.kwargs) -> R:
         with dr.scoped_set_flag(dr.JitFlag.SymbolicLoops, True):
             return function(*args, **settings)
 

@@ -1,24 +1,28 @@
 """Aligns and pads NumPy arrays for Dr.Jit, which uses their memory without a copy.
 
-A kernel of its LLVM backend reads whole packets: up to 15 numbers beyond the end. Where the array
-ends with a page of memory and the next page is not mapped, the process crashes. And it is another
-kernel, compiled anew, for each pattern of aligned and unaligned arguments: as NumPy's arrays lie
-where they may, equal computations would be compiled again and again.
+A kernel of its LLVM backend reads whole packets, up to 15 numbers beyond the end of an array. If
+the array ends with a page of memory and the next page is not mapped, the process crashes. Besides,
+Dr.Jit compiles another kernel for each pattern of aligned and unaligned arguments. Since NumPy
+places arrays anywhere, equal computations would be compiled again and again.
 """
 
+from __future__ import annotations
+
 import mmap
+from typing import Any
 
 import numpy as np
+
+from brdfkit.core.array_types import AnyArray
 
 PACKET = 16  # numbers, the largest packet (AVX-512)
 ALIGNMENT = 128  # bytes, of the largest packet of doubles
 
 
-def pad(values):
-    """`values` (n,), contiguous and aligned, followed by a packet of readable memory.
+def pad(values: AnyArray) -> AnyArray:
+    """Return values (n,) contiguous, aligned and followed by a packet of readable memory.
 
-    They are copied only where they are not contiguous, not aligned, or end too near the end of a
-    page.
+    They are copied only if they are not contiguous, not aligned, or end too near the end of a page.
 
     >>> pad(np.arange(3.0))
     array([0., 1., 2.])
@@ -32,11 +36,13 @@ def pad(values):
     return copy
 
 
-def make_padded_rows(count, n, dtype=float):
-    """An array (count, n) whose rows are aligned and followed by a packet of readable memory."""
+def make_padded_rows(count: int, n: int, dtype: Any = float) -> AnyArray:
+    """Return an empty array (count, n) whose rows are aligned and followed by a packet of
+    memory.
+    """
     itemsize = np.dtype(dtype).itemsize
     step = ALIGNMENT // itemsize  # numbers between aligned addresses
     width = -(-(n + PACKET) // step) * step
-    room = np.empty(count * width + step, dtype)
-    first = -room.ctypes.data % ALIGNMENT // itemsize
-    return room[first : first + count * width].reshape(count, width)[:, :n]
+    memory = np.empty(count * width + step, dtype)
+    first = -memory.ctypes.data % ALIGNMENT // itemsize
+    return memory[first : first + count * width].reshape(count, width)[:, :n]

@@ -1,9 +1,11 @@
 """Lets one thread at a time into Mitsuba and Dr.Jit.
 
-In Dr.Jit 1.5 a thread that waits for a kernel also works on the kernels of other threads, and now
-and then on one that is already freed: the process crashes. So all functions that run kernels take
-turns by one lock, and brdfkit can be used from any thread. A kernel runs on all cores anyway.
+In Dr.Jit 1.5 a thread that waits for a kernel also works on the kernels of other threads, and
+sometimes on one that is already freed, which crashes the process. So all functions that run kernels
+take turns by one lock, and brdfkit can be used from any thread. A kernel runs on all cores anyway.
 """
+
+from __future__ import annotations
 
 import functools
 import threading
@@ -14,11 +16,13 @@ from typing import Any, ParamSpec, TypeVar
 P = ParamSpec("P")
 R = TypeVar("R")
 
-TURN = threading.RLock()  # re-entrant: a function that has its turn may call another that takes one
+TURN = threading.RLock()  # re-entrant, since a function that holds it may call another one
 
 
 def in_turn(function: Callable[P, R]) -> Callable[P, R]:
-    """A decorator of functions that run kernels: one thread at a time calls any of them."""
+    """Decorate a function that runs kernels, so that one thread at a time calls any such
+    function.
+    """
 
     @functools.wraps(function)
     def call_in_turn(*args: P.args, **kwargs: P.kwargs) -> R:
@@ -31,8 +35,9 @@ def in_turn(function: Callable[P, R]) -> Callable[P, R]:
 class cached_in_turn(functools.cached_property[R]):
     """A `cached_property` whose function runs kernels.
 
-    The turn is taken first: Python 3.11 has a lock of its own for every cached property, and two
-    threads that take two locks in different orders wait for each other for ever.
+    The lock of `in_turn` is taken first. Python 3.11 has a lock of its own for every cached
+    property, and two threads that take two locks in different orders would wait for each other for
+    ever.
     """
 
     def __get__(self, instance: object, owner: type[Any] | None = None) -> Any:
@@ -42,7 +47,7 @@ class cached_in_turn(functools.cached_property[R]):
 
 @in_turn
 def use_threads(count: int) -> None:
-    """Run the kernels of this process in `count` threads, where other processes run beside it."""
+    """Run the kernels of this process in `count` threads, since other processes run beside it."""
     import drjit as dr
 
     dr.set_thread_count(count)
@@ -50,9 +55,10 @@ def use_threads(count: int) -> None:
 
 @contextmanager
 def use_two_threads() -> Iterator[None]:
-    """Run kernels of the block in two threads at least.
+    """Run the kernels of the block in at least two threads.
 
-    In one alone Mitsuba 3.9 waits for ever for the pixels of an OpenEXR file, read or written.
+    In one thread alone Mitsuba 3.9 waits for ever for the pixels of an OpenEXR file, read or
+    written.
     """
     import drjit as dr
 

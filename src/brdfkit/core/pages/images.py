@@ -1,61 +1,73 @@
-"""Pictures as addresses `data:`, which a page holds within itself, and colour scales."""
+"""Encodes pictures as `data:` addresses, which a page holds within itself, and maps numbers to
+colours.
+"""
+
+from __future__ import annotations
 
 import io
 from base64 import b64encode
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, ArrayLike
 from brdfkit.core.colours import to_srgb
 
 
-def encode_jpeg(linear):
-    """The address of a picture (height, width, 3) of linear sRGB, to look at."""
+def encode_jpeg(linear: AnyArray) -> str:
+    """Return a picture (height, width, 3) of linear sRGB as the address of a JPEG."""
     return _encode(_to_bytes(to_srgb(linear)), "JPEG", quality=92, subsampling=0)
 
 
-def encode_webp(colours, **options):
-    """The address of colours (height, width, 3) in 0..1, half as long as JPEG's or PNG's.
+def encode_webp(colours: AnyArray, **options: Any) -> str:
+    """Return colours (height, width, 3) in 0..1 as the address of a WebP, half as long as a JPEG's.
 
-    options : of Pillow, as `quality`, or `lossless`.
+    `options` are those of Pillow, such as `quality` or `lossless`.
     """
     return _encode(_to_bytes(colours), "WEBP", **options)
 
 
-def halve(linear):
-    """A picture (height, width, n) of half the size."""
+def halve(linear: AnyArray) -> AnyArray:
+    """Average blocks of 2×2 pixels of a picture (height, width, n)."""
     height, width = (n // 2 for n in linear.shape[:2])
     return linear[: 2 * height, : 2 * width].reshape(height, 2, width, 2, -1).mean(axis=(1, 3))
 
 
-def shrink(picture, widest):
-    """A picture (height, width, n), halved until no side is longer than `widest` pixels."""
-    while max(picture.shape[:2]) > widest:
+def shrink(picture: AnyArray, longest: int) -> AnyArray:
+    """Halve a picture (height, width, n) until no side is longer than `longest` pixels."""
+    while max(picture.shape[:2]) > longest:
         picture = halve(picture)
     return picture
 
 
-def encode_png(colours):
-    """The address of colours (height, width, 3 or 4) in 0..1, pixel by pixel."""
+def encode_png(colours: AnyArray) -> str:
+    """Return colours (height, width, 3 or 4) in 0..1 as the address of a PNG, which keeps every
+    pixel.
+    """
     return _encode(_to_bytes(colours), "PNG", optimize=True)
 
 
-def apply_colour_map(name, shares):
-    """Colours (..., 4) of matplotlib's scale `name` for shares (...) of its length."""
+def apply_colour_map(name: str, shares: ArrayLike) -> AnyArray:
+    """Return the colours (..., 4) of a colour map of matplotlib for numbers (...) in 0..1."""
     import matplotlib as mpl
 
     return mpl.colormaps[name](np.clip(shares, 0, 1))
 
 
-def draw_colour_bar(name, steps=128):
-    """The address of a scale from its low to its high end, one pixel high."""
+def draw_colour_bar(name: str, steps: int = 128) -> str:
+    """Return the address of a picture of a colour map from its low to its high end, one pixel
+    high.
+    """
     return encode_png(apply_colour_map(name, np.linspace(0, 1, steps))[None, :, :3])
 
 
-def _to_bytes(shares):
+def _to_bytes(shares: AnyArray) -> AnyArray:
+    """Convert numbers in 0..1 to bytes; nan becomes 0."""
     return (np.clip(np.nan_to_num(shares), 0, 1) * 255 + 0.5).astype(np.uint8)
 
 
-def _encode(pixels, kind, **options):
+def _encode(pixels: AnyArray, kind: str, **options: Any) -> str:
+    """Return the `data:` address of pixels (height, width, channels) in a format of Pillow."""
     from PIL import Image
 
     stream = io.BytesIO()

@@ -1,33 +1,40 @@
-"""Puts what a page says into its template, with its style and its script, which alone may run."""
+"""Fills the template of an HTML page; the page holds its style and its scripts, and no others
+may run.
+"""
+
+from __future__ import annotations
 
 from base64 import b64encode
 from functools import cache
 from hashlib import sha256
 from importlib import resources
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 from brdfkit.core.files import write_safely
 from brdfkit.core.names import to_printable
 
 
-def write_page(template, path, **said):
-    """Write the page of a `template`, a file of `templates/`, to `path`, whole or not at all."""
-    text = fill_template(template, **said)
+def write_page(template: str, path: str | PathLike[str], **content: Any) -> None:
+    """Write the page of a template, a file of `templates/`, to `path`, whole or not at all."""
+    text = fill_template(template, **content)
     with write_safely(path) as beside:
         Path(beside).write_text(text, encoding="utf-8", newline="\n")
 
 
-def fill_template(template, **said):
-    """The page as text; all that is `said` is escaped."""
-    return _make_environment().get_template(template).render(**said)
+def fill_template(template: str, **content: Any) -> str:
+    """Return the page of a template as text; the `content` is escaped."""
+    return _make_environment().get_template(template).render(**content)
 
 
 @cache
-def _make_environment():
+def _make_environment() -> Any:
+    """Set up jinja2 for the templates."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
 
-    found = Environment(
+    environment = Environment(
         loader=PackageLoader(__package__),
         autoescape=True,
         undefined=StrictUndefined,
@@ -35,23 +42,25 @@ def _make_environment():
         lstrip_blocks=True,
         finalize=_clean,
     )
-    found.globals |= {
+    environment.globals |= {
         "source": lambda name: Markup(read_template(name)),
         "policy": make_policy,
     }
-    return found
+    return environment
 
 
-def _clean(value):
-    """A text without control characters, which HTML forbids; markup and others as they are."""
+def _clean(value: Any) -> Any:
+    """Remove the control characters, which HTML forbids, from a text; markup and other values
+    stay.
+    """
     plain = isinstance(value, str) and not hasattr(value, "__html__")
     return to_printable(value, keep="\n") if plain else value
 
 
-def make_policy(style, *scripts):
-    """The content security policy: nothing from elsewhere, and of this page's own only its files.
+def make_policy(style: str, *scripts: str) -> str:
+    """Return a content security policy that allows only the style and the scripts of this page.
 
-    `style`, `scripts`: names of files of `templates/`, each in an element of its own.
+    `style` and `scripts` are files of `templates/`, each in an element of its own.
     """
     hash_of_style, *hashes = (_hash_template(name) for name in (style, *scripts))
     return (
@@ -60,13 +69,13 @@ def make_policy(style, *scripts):
     )
 
 
-def _hash_template(name):
-    """What a browser must find in an element for it to be the file of this name."""
+def _hash_template(name: str) -> str:
+    """Return the hash of an element that holds a file of `templates/`, as browsers compute it."""
     digest = sha256(read_template(name).encode()).digest()
     return f"'sha256-{b64encode(digest).decode()}'"
 
 
 @cache
-def read_template(name):
-    """A file of `templates/` as it stands in its element."""
+def read_template(name: str) -> str:
+    """Read a file of `templates/` as it stands in its element."""
     return "\n" + (resources.files(__package__) / "templates" / name).read_text(encoding="utf-8")

@@ -1,1 +1,1 @@
-"""Cameras and lights as 4 × 4 matrices and homogeneous points: what shadows by projection use."""
+"""Cameras, lights and convex bodies as 4 × 4 matrices and homogeneous points."""

@@ -1,10 +1,15 @@
 """A perspective camera as matrices, in OpenGL's convention: it looks along -z, x points right."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import ArrayLike, FloatArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.body import Empty
 from brdfkit.core.projective.homogeneous import project_all, transform
@@ -15,11 +20,11 @@ CUBE = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], 
 
 @dataclass(frozen=True)
 class Camera:
-    """Where a picture is taken from.
+    """A perspective camera.
 
     view : (4, 4), from the world to the camera, which looks along -z.
-    slope_x, slope_y : tangent of half the field of view, across and upwards.
-    near, far : distances of the planes along the view that bound what it sees.
+    slope_x, slope_y : tangents of half the field of view, across and upwards.
+    near, far : distances along the view of the planes that bound what it sees.
     """
 
     view: np.ndarray
@@ -29,8 +34,12 @@ class Camera:
     far: float
 
     @classmethod
-    def of_sensor(cls, sensor):
-        """Of one of Mitsuba's `perspective` or `thinlens` cameras."""
+    def from_sensor(cls, sensor: MitsubaObject) -> Camera:
+        """Read one of Mitsuba's `perspective` or `thinlens` cameras.
+
+        Raises `BrdfkitError` for another camera, and for one whose principal point is not in the
+        middle.
+        """
         import mitsuba as mi
 
         parameters = mi.traverse(sensor)
@@ -55,37 +64,37 @@ class Camera:
         )
 
     @property
-    def projection(self):
-        """P (4, 4), from the camera to the cube [-1, 1]³, -1 near [Ergun 2008, 2.1.7]."""
+    def projection(self) -> FloatArray:
+        """P (4, 4), from the camera to the cube [-1, 1]³, with z = -1 near [Ergun 2008, 2.1.7]."""
         n, f = self.near, self.far
         return self._projection(-(f + n) / (f - n), -2 * f * n / (f - n))
 
     @property
-    def infinite_projection(self):
-        """P∞ (4, 4), its limit for a far plane at infinity: points there have depth 1."""
+    def infinite_projection(self) -> FloatArray:
+        """P∞ (4, 4), the limit of P for a far plane at infinity; points there have the depth 1."""
         return self._projection(-1, -2 * self.near)
 
-    def _projection(self, along, shift):
+    def _projection(self, along: float, shift: float) -> FloatArray:
         matrix = np.diag([1 / self.slope_x, 1 / self.slope_y, along, 0])
         matrix[2, 3], matrix[3, 2] = shift, -1
         return matrix
 
     @property
-    def matrix(self):
-        """From the world to the cube [-1, 1]³."""
+    def matrix(self) -> FloatArray:
+        """The matrix (4, 4) from the world to the cube [-1, 1]³."""
         return self.projection @ self.view
 
     @property
-    def position(self):
-        """The eye (3,)."""
+    def position(self) -> FloatArray:
+        """The position of the eye (3,)."""
         return -self.view[:3, :3].T @ self.view[:3, 3]
 
     @property
-    def direction(self):
-        """Where it looks: a unit vector (3,)."""
+    def direction(self) -> FloatArray:
+        """The direction of the view, a unit vector (3,)."""
         return -self.view[2, :3]
 
-    def rays(self, size):
+    def rays(self, size: tuple[int, int]) -> FloatArray:
         """Return vectors (height, width, 3) from the eye through the middles of a picture's pixels.
 
         size : (width, height) [pixels]. The vectors have the length 1 along the view.
@@ -96,38 +105,41 @@ class Camera:
         x, y = np.meshgrid(across, upwards)
         return np.stack([x, y, np.full_like(x, -1)], axis=-1) @ self.view[:3, :3]
 
-    def corners(self):
-        """The corners (8, 3) of what it sees; the first four are on the near plane."""
+    def corners(self) -> FloatArray:
+        """Return the corners (8, 3) of the visible space; the first four are on the near plane."""
         return project_all(np.linalg.inv(self.matrix), CUBE)
 
-    def depths(self, points):
-        """The distances (n,) of points (n, 3) along the view."""
+    def depths(self, points: ArrayLike) -> FloatArray:
+        """Return the distances (n,) of points (n, 3) along the view."""
         return -transform(self.view, *np.asarray(points, float).T)[2]
 
-    def between(self, near, far):
-        """The same camera with other planes."""
+    def with_planes(self, near: float, far: float) -> Camera:
+        """Return the camera with other near and far planes."""
         return replace(self, near=near, far=far)
 
-    def moved_back(self, points):
-        """The same camera, so far back that `points` (n, 3) are before its near plane, and opened
-        until it sees all of them."""
+    def move_back(self, points: ArrayLike) -> Camera:
+        """Move the camera back until its near plane is before all points (n, 3), and open it to see
+        them.
+        """
         view = self.view.copy()
         view[2, 3] -= max(0, self.near - self.depths(points).min())
         x, y, z, _ = transform(view, *np.asarray(points, float).T)
         near, far = -z.max(), max(-z.min(), -1.001 * z.max())  # with room for points in a plane
         return Camera(view, np.abs(x / z).max(), np.abs(y / z).max(), near, far)
 
-    def fitted(self, points):
-        """The same camera, its planes drawn in to `points` (n, 3), such as the corners of a scene.
+    def fit_planes(self, points: ArrayLike) -> Camera:
+        """Return the camera with its planes drawn in to points (n, 3), such as the corners of a
+        scene.
 
-        Raises `Empty` where all of them are behind its near plane or beyond its far one.
+        Raises `Empty` where all of them are behind its near plane or beyond its far plane.
         """
         depths = self.depths(points)
         near, far = max(self.near, depths.min()), min(self.far, depths.max())
         if far <= near:
             raise Empty("the camera does not see the scene: turn it, or move its planes.")
-        return self.between(near, far)
+        return self.with_planes(near, far)
 
 
-def _number(parameters, name):
+def _number(parameters: Mapping[str, Any], name: str) -> float:
+    """Return a parameter of a camera as a float."""
     return float(np.ravel(parameters[name])[0])

@@ -1,14 +1,22 @@
-"""Points through 4 × 4 matrices, in NumPy or Dr.Jit; columns, so that matrices act from the left.
+"""Transforms points by 4 × 4 matrices, in NumPy or Dr.Jit; vectors are columns.
 
-Components are arguments and results of their own: floats, NumPy arrays or Dr.Jit arrays, and
-`matrix` is an array (4, 4) or a `mi.Matrix4f`.
+The components of points are arguments and results of their own: floats, NumPy arrays or Dr.Jit
+arrays. A `matrix` is an array (4, 4) or a `mi.Matrix4f`.
 """
+
+from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray, JitFloat
 
-def transform(matrix, x, y, z, w=1.0):
-    """The homogeneous coordinates (x, y, z, w) of a point, transformed.
+
+def transform(
+    matrix: Any, x: JitFloat, y: JitFloat, z: JitFloat, w: JitFloat = 1.0
+) -> tuple[Any, ...]:
+    """Return the homogeneous coordinates (x, y, z, w) of a point after a transformation.
 
     >>> transform(np.diag([2, 1, 1, 1]), 1.0, 2.0, 3.0)
     (2.0, 2.0, 3.0, 1.0)
@@ -19,33 +27,35 @@ def transform(matrix, x, y, z, w=1.0):
     )
 
 
-def project(matrix, x, y, z):
-    """The point (x, y, z), transformed and divided by w."""
+def project(
+    matrix: Any, x: JitFloat, y: JitFloat, z: JitFloat
+) -> tuple[JitFloat, JitFloat, JitFloat]:
+    """Transform a point and divide by w; return (x, y, z)."""
     x, y, z, w = transform(matrix, x, y, z)
     return x / w, y / w, z / w
 
 
-def normalise(x, y, z):
-    """The vector (x, y, z), of length 1."""
+def normalise(x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, JitFloat, JitFloat]:
+    """Return the unit vector along (x, y, z)."""
     length = (x * x + y * y + z * z) ** 0.5
     return x / length, y / length, z / length
 
 
-def project_all(matrix, points):
-    """The points (n, 3), transformed and divided by w: (n, 3)."""
+def project_all(matrix: AnyArray, points: ArrayLike) -> AnyArray:
+    """Transform points (n, 3) and divide them by w."""
     return np.column_stack(project(matrix, *np.asarray(points, float).T))
 
 
-def make_rigid(rotation, origin):
-    """The matrix (4, 4) into a frame: `rotation` (3, 3) has its axes as rows."""
+def make_rigid(rotation: ArrayLike, origin: ArrayLike) -> FloatArray:
+    """Return the matrix (4, 4) into a frame whose axes are the rows of `rotation` (3, 3)."""
     matrix = np.eye(4)
     matrix[:3, :3] = rotation
     matrix[:3, 3] = -np.asarray(rotation) @ origin
     return matrix
 
 
-def to_unit_cube(low, high):
-    """The matrix (4, 4) that maps the box from `low` (3,) to `high` (3,) onto [-1, 1]³.
+def to_unit_cube(low: ArrayLike, high: ArrayLike) -> FloatArray:
+    """Return the matrix (4, 4) that maps the box from `low` (3,) to `high` (3,) onto [-1, 1]³.
 
     >>> project(to_unit_cube([0, 0, 0], [1, 2, 4]), 1.0, 1.0, 0.0)
     (1.0, 0.0, -1.0)
@@ -57,10 +67,14 @@ def to_unit_cube(low, high):
     return matrix
 
 
-def make_axes(z, hint=None):
-    """Unit vectors x, y, z as rows (3, 3), right-handed; y is near `hint`, or else near an axis."""
-    if hint is None or np.linalg.norm(np.cross(z, hint)) < 1e-6:
-        hint = np.eye(3)[np.argmin(np.abs(z))]
-    x = np.cross(hint, z)
+def make_axes(z: FloatArray, hint: ArrayLike | None = None) -> FloatArray:
+    """Return right-handed unit vectors x, y, z as rows (3, 3), for a unit vector z.
+
+    y is as near as possible to `hint`, or to an axis where `hint` is missing or parallel to z.
+    """
+    upwards = np.zeros(3) if hint is None else np.asarray(hint, float)
+    if np.linalg.norm(np.cross(z, upwards)) < 1e-6:
+        upwards = np.eye(3)[np.argmin(np.abs(z))]
+    x = np.cross(upwards, z)
     x /= np.linalg.norm(x)
     return np.stack([x, np.cross(z, x), z])

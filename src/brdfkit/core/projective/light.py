@@ -1,26 +1,29 @@
-"""A light as one homogeneous point: where it is, or the direction from which it shines."""
+"""A light as one homogeneous point: its position, or the direction from which it shines."""
+
+from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray, JitFloat, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.body import Body
 from brdfkit.core.projective.homogeneous import make_axes, normalise
 
-NEAREST = 1e-3  # where the pyramid of a spot begins, over where it ends
-WIDEST = math.radians(80)  # half the angle of a pyramid; wider ones bound nothing
+NEAREST = 1e-3  # the distance at which the pyramid of a spot begins, over that of its end
+WIDEST_CUTOFF = math.radians(80)  # half the angle of a spot; no pyramid bounds a wider one
 
 
 @dataclass(frozen=True)
 class Light:
     """A point, spot or directional light.
 
-    point : (4,), (x, y, z, 1) of a light at a place, (x, y, z, 0) of one far away: the unit vector
-        to it.
-    axis, cutoff : where a spot shines, a unit vector (3,), and half the angle of its cone [rad];
-        None of other lights.
+    point : (4,), (x, y, z, 1) of a light at a position; (x, y, z, 0) of one at infinity, with the
+    unit vector to it.
+    axis, cutoff : the direction of a spot, a unit vector (3,), and half the angle of its cone
+    [rad]; None of other lights.
     """
 
     point: np.ndarray
@@ -28,10 +31,11 @@ class Light:
     cutoff: float | None = None
 
     @classmethod
-    def of_emitter(cls, emitter):
-        """Of one of Mitsuba's emitters `point`, `spot` and `directional`.
+    def from_emitter(cls, emitter: MitsubaObject) -> Light:
+        """Read one of Mitsuba's emitters `point`, `spot` and `directional`.
 
-        Raises `BrdfkitError` for others, and for one at no finite place or of no direction.
+        Raises `BrdfkitError` for other emitters, and for a position or direction that is not
+        finite.
         """
         import mitsuba as mi
 
@@ -39,13 +43,13 @@ class Light:
         parameters = mi.traverse(emitter)
         to_world = np.array(emitter.world_transform().matrix, float).reshape(4, 4)
         if mi.has_flag(flags, kinds.DeltaDirection) and mi.has_flag(flags, kinds.Infinite):
-            return cls(np.append(-_unit(emitter, to_world[:3, 2]), 0))
+            return cls(np.append(-_read_direction(emitter, to_world[:3, 2]), 0))
         if mi.has_flag(flags, kinds.DeltaPosition):
             place = parameters["position"] if "position" in parameters else to_world[:3, 3]
-            point = np.append(_finite(emitter, np.ravel(place)), 1)
+            point = np.append(_require_finite(emitter, np.ravel(place)), 1)
             if "cutoff_angle" in parameters:
                 cutoff = np.radians(np.ravel(parameters["cutoff_angle"])[0])
-                return cls(point, _unit(emitter, to_world[:3, 2]), float(cutoff))
+                return cls(point, _read_direction(emitter, to_world[:3, 2]), float(cutoff))
             return cls(point)
         raise BrdfkitError(
             f"{emitter.class_name()} has no single place or direction, which shadow maps and "
@@ -53,51 +57,62 @@ class Light:
         )
 
     @property
-    def is_directional(self):
+    def is_directional(self) -> bool:
+        """Whether the light is at infinity."""
         return self.point[3] == 0
 
     @property
-    def is_bounded(self):
-        """Whether a `pyramid` holds all of the light."""
-        return self.axis is not None and self.cutoff <= WIDEST
+    def is_bounded(self) -> bool:
+        """Whether a `bounding_pyramid` holds all of the light."""
+        return self.cutoff is not None and self.cutoff <= WIDEST_CUTOFF
 
-    def pyramid(self, reach):
-        """The `Body` of the square pyramid about a spot's cone, from 1/1000 of `reach` to it."""
-        across = make_axes(self.axis)[:2]
-        slope = math.tan(self.cutoff)
+    def bounding_pyramid(self, reach: float) -> Body:
+        """Return the square pyramid about a spot's cone, from 1/1000 of `reach` to `reach`."""
+        axis, cutoff = self.axis, self.cutoff
+        assert axis is not None, "only a spot has a pyramid"
+        assert cutoff is not None
+        across = make_axes(axis)[:2]
+        slope = math.tan(cutoff)
         ends = [
-            d * (self.axis + slope * (i * across[0] + j * across[1]))
+            d * (axis + slope * (i * across[0] + j * across[1]))
             for d in (NEAREST * reach, reach)
             for i in (-1, 1)
             for j in (-1, 1)
         ]
         return Body.around(self.point[:3] + np.array(ends))
 
-    def way(self, x, y, z):
-        """How far light has come when it is at a point; of a light far away, from the origin."""
+    def path_length(self, x: JitFloat, y: JitFloat, z: JitFloat) -> JitFloat:
+        """Return the distance that light has travelled at a point.
+
+        Light from infinity is measured from the plane through the origin.
+        """
         a, b, c = (self.point[i] for i in range(3))
         if self.is_directional:
             return -(a * x + b * y + c * z)
         return ((x - a) ** 2 + (y - b) ** 2 + (z - c) ** 2) ** 0.5
 
-    def direction(self, x, y, z):
-        """Where light goes at a point: the components of a unit vector."""
+    def direction(
+        self, x: JitFloat, y: JitFloat, z: JitFloat
+    ) -> tuple[JitFloat, JitFloat, JitFloat]:
+        """Return the direction of the light at a point, as the components of a unit vector."""
         a, b, c = (self.point[i] for i in range(3))
         return (-a, -b, -c) if self.is_directional else normalise(x - a, y - b, z - c)
 
-    def towards(self, points):
-        """The unit vectors (n, 3) from points (n, 3) to the light."""
+    def directions_from(self, points: ArrayLike) -> FloatArray:
+        """Return the unit vectors (n, 3) from points (n, 3) to the light."""
         to_light = self.point[:3] - self.point[3] * np.asarray(points, float)
         return to_light / np.linalg.norm(to_light, axis=1, keepdims=True)
 
 
-def _unit(emitter, way):
-    """The unit vector (3,) along a direction of an emitter's."""
-    return _finite(emitter, way) / np.linalg.norm(way)
+def _read_direction(emitter: MitsubaObject, way: AnyArray) -> FloatArray:
+    """Return the unit vector (3,) along a direction of an emitter."""
+    return _require_finite(emitter, way) / np.linalg.norm(way)
 
 
-def _finite(emitter, numbers):
-    """`numbers` (3,); `BrdfkitError` where they are no place or direction."""
+def _require_finite(emitter: MitsubaObject, numbers: AnyArray) -> FloatArray:
+    """Return the numbers (3,) of a position or direction; raise `BrdfkitError` unless they are
+    finite.
+    """
     if not np.isfinite(numbers).all():
         raise BrdfkitError(
             f"the place or direction of the light {emitter.id() or emitter.class_name()} is not "

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from statistics import median
 
-from brdfkit.core.documents.text import MARK
+from brdfkit.core.documents.text import BAD_MARK
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import write_safely
 from brdfkit.fitting.compare import format_error
@@ -85,7 +85,7 @@ def compare(sweep, quantity=ERROR):
     ]
     if sweep.warned:
         wrong = Counter(row.model for row in sweep.warned)
-        foot.append((f"{MARK}light is wrong", *(str(wrong[model]) for model in models), ""))
+        foot.append((f"{BAD_MARK}light is wrong", *(str(wrong[model]) for model in models), ""))
     columns = "material", *(f">{model}" for model in models), "best"
     return columns, body, foot if len(rows) > 1 else []
 
@@ -157,4 +157,4 @@ def _cell(row, quantity):
         return ""
     if not row.fit:
         return "failed"
-    return (MARK if row.fit.warnings else "") + quantity.format(quantity.of(row))
+    return (BAD_MARK if row.fit.warnings else "") + quantity.format(quantity.of(row))

@@ -130,8 +130,7 @@ def _run_coacd(
     with TemporaryDirectory() as folder, write_safely(file) as beside:
         mesh = Path(folder) / "mesh.npz"
         np.savez(mesh, points=points, faces=faces)
-        command = [sys.executable, "-P", PROGRAM, mesh, beside, json.dumps(settings)]
-        status = _run(command)
+        status = _run([sys.executable, "-P", PROGRAM, mesh, beside, json.dumps(settings)])
         if status:
             raise BrdfkitError(
                 f"coacd could not cut a mesh of {len(faces):,} triangles (exit status {status}); "

@@ -18,8 +18,8 @@ known state theirs.
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.geometry.directions import from_half_difference, to_half_difference
 from brdfkit.model.samples.cells import least_cosine
 from brdfkit.model.samples.coordinates import coordinates, sample_coordinates
@@ -44,7 +44,7 @@ BINS = 90
 GRID = 180, 90, 90
 
 
-def weigh(extents: NDArray[np.float64] | None, measure: str) -> NDArray[np.float64] | float:
+def weigh(extents: FloatArray | None, measure: str) -> FloatArray | float:
     """How much each sample counts by a measure's name; `extents` (n, 2), or None if unknown."""
     power = MEASURES[measure]
     if power is None or extents is None:
@@ -55,7 +55,7 @@ def weigh(extents: NDArray[np.float64] | None, measure: str) -> NDArray[np.float
     return angles ** (1 - power) * solid_angle**power
 
 
-def density(theta_h: NDArray[np.float64], theta_d: NDArray[np.float64]) -> NDArray[np.float64]:
+def density(theta_h: FloatArray, theta_d: FloatArray) -> FloatArray:
     """s = sinθ_h sinθ_d cosθ_d, the density of solid angle in the angles [rad]."""
     return np.sin(theta_h) * np.sin(theta_d) * np.cos(theta_d)
 
@@ -74,8 +74,8 @@ def whole(max_angle: float, measure: str) -> float:
 
 
 def estimate_extents(
-    wi: NDArray[np.float64], wo: NDArray[np.float64], anisotropic: bool, max_angle: float
-) -> NDArray[np.float64]:
+    wi: FloatArray, wo: FloatArray, anisotropic: bool, max_angle: float
+) -> FloatArray:
     """The extents (n, 2) of scattered samples at direction pairs (n, 3), all with both angles below
     `max_angle` [degrees]: how much of both measures is nearest to each."""
     from scipy.spatial import cKDTree

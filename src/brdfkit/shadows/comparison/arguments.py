@@ -68,7 +68,7 @@ def to_scene(scene, size):
     if not scene.emitters():
         raise BrdfkitError("the scene has no light; add a point, spot or directional one.")
     for sensor in scene.sensors():
-        Camera.of_sensor(sensor)
+        Camera.from_sensor(sensor)
     for emitter in scene.emitters():
-        Light.of_emitter(emitter)
+        Light.from_emitter(emitter)
     return scene

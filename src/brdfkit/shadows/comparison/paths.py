@@ -35,7 +35,7 @@ def moved(light, step):
 
 def faced_by_all(placements, points, normals):
     """Whether (n,) points (n, 3) with `normals` (n, 3) turn one side to all lights."""
-    cosines = [(normals * each.light.towards(points)).sum(axis=1) for each in placements]
+    cosines = [(normals * each.light.directions_from(points)).sum(axis=1) for each in placements]
     return (np.min(cosines, axis=0) > 0) | (np.max(cosines, axis=0) < 0)
 
 

@@ -23,7 +23,7 @@ class LightDepth:
         light, reach = placement.light, placement.reach
         if not light.is_directional:
             return cls(0.0, reach)
-        return cls(light.way(*(placement.low + placement.high) / 2) - reach / 2, reach)
+        return cls(light.path_length(*(placement.low + placement.high) / 2) - reach / 2, reach)
 
     def opaque(self):
         """The same for Dr.Jit."""

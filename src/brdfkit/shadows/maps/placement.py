@@ -30,15 +30,15 @@ class Placement:
         low, high = (np.array(end, float).ravel() for end in (bounds.min, bounds.max))
         if not np.isfinite([low, high]).all():
             raise BrdfkitError("the scene has no shapes that could cast or take a shadow.")
-        camera = Camera.of_sensor(sensor).fitted(make_box(low, high).corners)
+        camera = Camera.from_sensor(sensor).fit_planes(make_box(low, high).corners)
         nearest = nearest_seen(scene, sensor, camera)
-        return cls(camera, Light.of_emitter(emitter), low, high, nearest)
+        return cls(camera, Light.from_emitter(emitter), low, high, nearest)
 
     @cached_property
     def scene(self):
         """S, the box of the scene, as far as the light shines: a spot's pyramid bounds it."""
         whole = make_box(self.low, self.high)
-        return whole & self.light.pyramid(self.reach) if self.light.is_bounded else whole
+        return whole & self.light.bounding_pyramid(self.reach) if self.light.is_bounded else whole
 
     @property
     def size(self):
@@ -67,7 +67,7 @@ class Placement:
     @cached_property
     def body(self):
         """B = ((V ∩ S) + light) ∩ S: what the camera may see and what may shadow it."""
-        return self.seen.towards(self.light, self.size) & self.scene
+        return self.seen.extend_to_light(self.light.point, self.size) & self.scene
 
 
 def nearest_seen(scene, sensor, camera, side=64):

@@ -50,7 +50,7 @@ class Projection:
     def to_map(self, x, y, z):
         """Where a point of the world is in the cube."""
         u, v, depth = project(self.matrix, x, y, z)
-        return u, v, self.depth.of(self.light.way(x, y, z)) if self.depth else depth
+        return u, v, self.depth.of(self.light.path_length(x, y, z)) if self.depth else depth
 
     def is_before(self, x, y, z):
         """Whether the projection maps a point at all: w > 0."""
@@ -88,5 +88,5 @@ class Projection:
         if not self.depth:
             return project(self.inverse, x, y, z)
         origin, direction = self.ray(x, y)
-        way = self.depth.way(z) - self.light.way(*origin)
+        way = self.depth.way(z) - self.light.path_length(*origin)
         return tuple(o + d * way for o, d in zip(origin, direction, strict=True))

@@ -46,7 +46,7 @@ def lit(scene, light, seen):
     """Whether a `Light` reaches the points of `SeenSurfaces`: (n,) booleans, by rays."""
     import mitsuba as mi
 
-    to_light = light.towards(seen.points)
+    to_light = light.directions_from(seen.points)
     p, n, d = mi.Point3f(seen.points.T), mi.Normal3f(seen.normals.T), mi.Vector3f(to_light.T)
     ray = ray_off_surface(p, n, mi.Float(seen.distances), d)
     if not light.is_directional:

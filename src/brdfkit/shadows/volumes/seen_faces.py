@@ -26,7 +26,7 @@ def pinhole(sensor):
             "shadow volumes are counted along rays from one eye, and a thinlens camera has a whole "
             "lens; use a perspective camera."
         )
-    return Camera.of_sensor(sensor)
+    return Camera.from_sensor(sensor)
 
 
 @dataclass(frozen=True)

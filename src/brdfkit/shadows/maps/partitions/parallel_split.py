@@ -33,7 +33,7 @@ def partition(scene, placement, project, resolution, parts, spacing, ends):
     if ends == "surfaces":
         depths = camera.depths(seen_surfaces(scene, camera).points)
         near, far = (1 - ROOM) * depths.min(), (1 + ROOM) * depths.max()
-        camera = camera.between(max(near, camera.near), min(far, camera.far))
+        camera = camera.with_planes(max(near, camera.near), min(far, camera.far))
     planes = split_planes.split_planes(camera.near, camera.far, parts, spacing)
-    slices = [replace(placement, camera=camera.between(*pair)) for pair in pairwise(planes)]
+    slices = [replace(placement, camera=camera.with_planes(*pair)) for pair in pairwise(planes)]
     return filled(slices, project, resolution, split_planes.by_depth(camera, planes))

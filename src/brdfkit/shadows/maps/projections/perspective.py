@@ -18,7 +18,7 @@ NEAREST = 1 / 200  # of the distances before the camera, over the farthest: dept
 def projection(placement):
     corners, middle = placement.body.corners, placement.body.middle
     z_n, z_f = placement.depths
-    camera = placement.camera.between(max(z_n, NEAREST * z_f), z_f).moved_back(corners).matrix
+    camera = placement.camera.with_planes(max(z_n, NEAREST * z_f), z_f).move_back(corners).matrix
     cube, (middle,) = project_all(camera, corners), project_all(camera, [middle])
     seen = view(camera @ placement.light.point, cube, middle)
     return fitted(seen @ camera, placement.light, corners)

@@ -56,7 +56,7 @@ def onto(placement, plane):
     """The `Projection` that is best on a `plane` (4,) that takes the shadows."""
     light, corners = placement.light, placement.body.corners
     flat = (plane @ light.point) * np.eye(4) - np.outer(light.point, plane)
-    camera = placement.camera.between(*placement.depths).moved_back(project_all(flat, corners))
+    camera = placement.camera.with_planes(*placement.depths).move_back(project_all(flat, corners))
     if abs(height(plane, camera.position)) < 1e-3 * placement.size:
         return focused.projection(placement)
     matrix = camera.matrix @ flat
