@@ -35,7 +35,7 @@ class Light(Protocol):
         """Return the mean radiance over the von Mises-Fisher lobe of this axis and κ."""
 
     def irradiance(self, normal: JitVector) -> JitColour:
-        """Return the irradiance over π, the radiance of a white matte surface of this normal."""
+        """Return the irradiance divided by π: the radiance of a white matte surface."""
 
 
 class FilteredLight:
@@ -105,9 +105,10 @@ class LightDirections:
 
 
 def filter_irradiance(picture: FloatArray) -> FloatArray:
-    """Convert radiance (height, 2 height, channels) to irradiance over π, by the normal.
+    """Return the irradiance divided by π for all normals, from the radiance of all directions.
 
-    Returns discs (2, IRRADIANCE_SIDE, IRRADIANCE_SIDE, channels).
+    `picture` is (height, 2 height, channels) by latitude and longitude. The result is a pair of
+    discs (2, IRRADIANCE_SIDE, IRRADIANCE_SIDE, channels).
     """
     while len(picture) > 4 * IRRADIANCE_SIDE:
         picture = halve(picture)

@@ -119,7 +119,7 @@ class CacheByValues:
         self.make, self.results = make, dict[bytes, Any]()
 
     def get(self, bsdfs: list[MitsubaObject]) -> list[tuple[MitsubaObject, Any]]:
-        """Return pairs (BSDF, result) for `bsdfs` as they are now."""
+        """Return pairs (BSDF, result) for `bsdfs` with their present parameters."""
         pairs = []
         for bsdf in bsdfs:
             values = eval_bsdf(bsdf, *PAIRS).tobytes()
