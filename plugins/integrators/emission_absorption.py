@@ -45,7 +45,7 @@ from brdfkit.mitsuba_bridge.channels import emission_of_rgb, white
 from brdfkit.mitsuba_bridge.check_scenes import through_unit_cube
 from brdfkit.mitsuba_bridge.properties.declarations import count, declared, flag, volume
 from brdfkit.model.numerics import expm1
-from brdfkit.volumes.rays.along_ray import light_behind, within
+from brdfkit.volumes.rays.box import intersect_box, light_behind
 
 OPAQUE_TRANSMITTANCE = 1e-4
 
@@ -98,7 +98,7 @@ def define(mi: MitsubaModule) -> type:
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             # The part of the ray within the volume, cut into steps
             end, behind = light_behind(scene, ray, active)
-            near, far = within(ray, self.extinction)
+            near, far = intersect_box(ray, self.extinction)
             far = dr.minimum(far, end)
             inside = active & (far > near)
             step = dr.select(inside, (far - near) / self.steps, 0)

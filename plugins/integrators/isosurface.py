@@ -46,9 +46,15 @@ from brdfkit.mitsuba_bridge.properties.declarations import (
 from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
 from brdfkit.mitsuba_bridge.surface_points import interaction
 from brdfkit.volumes.light.surface_light import direct_light
-from brdfkit.volumes.rays.along_ray import light_behind, within
-from brdfkit.volumes.rays.first_crossing import first_above, first_crossing, reattach
-from brdfkit.volumes.rays.normals import face_normal, facing, gradient, per_voxel
+from brdfkit.volumes.rays.box import (
+    bend_to_viewer,
+    face_normal,
+    gradient,
+    intersect_box,
+    light_behind,
+    voxels_per_length,
+)
+from brdfkit.volumes.rays.search import find_first_above, find_first_crossing, reattach
 
 PARAMETERS = {
     "volume": volume(1.0, "the values, or a transfer_function", False, least=-np.inf),
@@ -82,10 +88,10 @@ def define(mi: MitsubaModule) -> type:
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             refuse_scalar("isosurface")
             end, behind = light_behind(scene, ray, active)
-            near, far = within(ray, self.volume)
+            near, far = intersect_box(ray, self.volume)
             far = dr.minimum(far, end)
             crossed = active & (far > near)
-            t, hit = first_crossing(
+            t, hit = find_first_crossing(
                 lambda t: self.f(ray(t), crossed), near, far, self.steps, crossed
             )
             si = self.surface(ray, dr.select(hit, t, 0), near, hit)
@@ -98,23 +104,23 @@ def define(mi: MitsubaModule) -> type:
             """Return the `mi.SurfaceInteraction3f` where a ray meets the surface, at `t`."""
             on_face = t <= near
             with dr.suspend_grad():
-                step = 0.02 / dr.norm(dr.select(hit, per_voxel(ray.d, self.volume), 1))
+                step = 0.02 / dr.norm(dr.select(hit, voxels_per_length(ray.d, self.volume), 1))
                 slope = (self.f(ray(t + step)) - self.f(ray(t - step))) / (2 * step)
             t = reattach(lambda t: self.f(ray(t)), t, dr.select(on_face, 0, slope))
             outwards = -gradient(self.f, ray(t), self.volume)
             flat = dr.squared_norm(outwards) == 0
             n = dr.normalize(dr.select(flat, -ray.d, outwards))
             n = dr.select(on_face, face_normal(ray(t), self.volume), n)
-            return interaction(ray, t, ray(t), facing(n, ray.d), hit)
+            return interaction(ray, t, ray(t), bend_to_viewer(n, ray.d), hit)
 
         def is_free(self, ray: MitsubaObject, active: JitMask) -> JitMask:
             """Return whether the surface does not block a ray between its origin and its end."""
             if not self.shadows:
                 return active
-            near, far = within(ray, self.volume)
+            near, far = intersect_box(ray, self.volume)
             far = dr.minimum(far, ray.maxt)
             crossed = active & (far > near)
-            _, _, above = first_above(
+            _, _, above = find_first_above(
                 lambda t: self.f(ray(t), crossed), near, far, self.steps, crossed
             )
             return active & ~(crossed & (above > 0))

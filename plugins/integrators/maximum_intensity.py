@@ -36,8 +36,8 @@ from brdfkit.core.array_types import (
 from brdfkit.mitsuba_bridge.channels import emission_of_rgb
 from brdfkit.mitsuba_bridge.check_scenes import through_unit_cube
 from brdfkit.mitsuba_bridge.properties.declarations import count, declared, flag, volume
-from brdfkit.volumes.rays.along_ray import light_behind, within
-from brdfkit.volumes.rays.largest_value import largest_along
+from brdfkit.volumes.rays.box import intersect_box, light_behind
+from brdfkit.volumes.rays.search import find_largest
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 
 PARAMETERS = {
@@ -77,7 +77,7 @@ def define(mi: MitsubaModule) -> type:
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             end, behind = light_behind(scene, ray, active)
-            near, far = within(ray, self.volume)
+            near, far = intersect_box(ray, self.volume)
             far = dr.minimum(far, end)
             inside = active & (far > near)
 
@@ -87,7 +87,7 @@ def define(mi: MitsubaModule) -> type:
                 return it
 
             place = sampler.next_1d(active) if self.jitter else mi.Float(0.5)
-            t = largest_along(
+            t = find_largest(
                 lambda t: self.value(at(t), inside), near, far, self.steps, place, inside
             )
             it = at(t)

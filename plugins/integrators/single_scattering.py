@@ -94,7 +94,7 @@ def define(mi: MitsubaModule) -> type:
 
         def parameters_changed(self, keys: Sequence[str] = ()) -> None:
             if not mi.variant().startswith("scalar"):
-                self.medium.bound(self.majorants == "local")
+                self.medium.update_majorants(self.majorants == "local")
 
         def sample(
             self,
@@ -152,23 +152,23 @@ def define(mi: MitsubaModule) -> type:
             continues, and the weight of the path after it.
             """
             si = scene.ray_intersect(ray, active)
-            share, collided, t = self.medium.divide(ray, si.t, sampler, active)
-            light = share * emitters.seen(scene, ray, si, density, active)
+            share, collided, t = self.medium.split_light(ray, si.t, sampler, active)
+            light = share * emitters.evaluate_hit(scene, ray, si, density, active)
 
             # The path continues from one of two ends: the collision, or a surface behind it
             passed = dr.select(si.is_valid(), dr.detach(share), 0)
             in_medium = active & (sampler.next_1d(active) * (collided + passed) < collided)
             mei = medium_interaction(ray, t)
-            sigma, albedo, own = self.medium.matter(mei, in_medium)
+            sigma, albedo, own = self.medium.coefficients(mei, in_medium)
             # `one` has the derivatives of σ T at a collision and of T at a surface
-            depth = self.medium.depth(ray, dr.select(in_medium, t, si.t), sampler, active)
+            depth = self.medium.sample_depth(ray, dr.select(in_medium, t, si.t), sampler, active)
             log_sigma = dr.log(dr.select(in_medium, sigma, 1))
             # Dr.Jit's stub knows no result of this function
             one = dr.replace_grad(mi.Float(1), log_sigma - depth)  # type: ignore[func-returns-value]
             weight = (collided + passed) * one
             light += dr.select(in_medium, weight * own, 0)
             if self.emits:
-                light += self.medium.glow(ray, si.t, sampler, active)
+                light += self.medium.sample_emission(ray, si.t, sampler, active)
             on_surface = active & ~in_medium & si.is_valid()
             vertex = Vertex(self.phase, mei, in_medium, si, on_surface)
             return light, vertex, weight * dr.select(in_medium, albedo, 1)
@@ -199,7 +199,7 @@ def define(mi: MitsubaModule) -> type:
             The light is computed as if nothing were in its way.
             """
             it = vertex.interaction
-            ds, light, there = emitters.sampled(scene, it, u, vertex.active)
+            ds, light, there = emitters.sample_emitters(scene, it, u, vertex.active)
             value, pdf = vertex.eval_pdf(ds.d)
             weight = dr.select(ds.delta, 1, emitters.power_heuristic(ds.pdf, dr.detach(pdf)))
             return emitters.ray_to(it, ds), value * light * weight, there
@@ -214,12 +214,12 @@ def define(mi: MitsubaModule) -> type:
         ) -> JitColour:
             """Return the light that rays receive without a further scattering."""
             si = scene.ray_intersect(ray, active)
-            comes = active & emitters.are_met(scene, si)
-            light = emitters.seen(scene, ray, si, density, comes)
+            comes = active & emitters.is_emitter_hit(scene, si)
+            light = emitters.evaluate_hit(scene, ray, si, density, comes)
             light *= self.medium.transmittance(ray, si.t, sampler, comes)
             own = self.medium.colour == "emission"
             if self.emits or own:
-                light += self.medium.glow(ray, si.t, sampler, active, own)
+                light += self.medium.sample_emission(ray, si.t, sampler, active, own)
             return light
 
     return SingleScattering

@@ -45,14 +45,14 @@ from brdfkit.mitsuba_bridge.channels import emission_of_rgb, spectrum_of_rgb
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
 from brdfkit.mitsuba_bridge.properties.declarations import declared, text, volume, word
 from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
-from brdfkit.volumes.light.majorants import data_of
-from brdfkit.volumes.rays.voxel_steps import is_trilinear, typical
+from brdfkit.volumes.light.majorants import read_grid
+from brdfkit.volumes.rays.voxel_steps import is_trilinear, typical_difference
 from brdfkit.volumes.transfer import files
-from brdfkit.volumes.transfer.block_bounds import block_ranges, largest_between
+from brdfkit.volumes.transfer.block_bounds import block_ranges, bound_between
 from brdfkit.volumes.transfer.lookup import TransferLookup
-from brdfkit.volumes.transfer.preintegration import is_thin
+from brdfkit.volumes.transfer.preintegration import has_peaks
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
-from brdfkit.volumes.transfer.windows import fitted
+from brdfkit.volumes.transfer.windows import scale_to_values
 
 CHANNELS = {1: "values alone", 2: "values and gradient magnitudes"}
 PARAMETERS = {
@@ -85,7 +85,7 @@ def define(mi: MitsubaModule) -> type:
             callback.put("extinction", self.lookup.extinction, mi.ParamFlags.Differentiable)
 
         def parameters_changed(self, keys: Sequence[str] = ()) -> None:
-            self.lookup.changed()
+            self.lookup.update()
             self.__dict__.pop("majorants", None)
 
         def optics(self, it: MitsubaObject, active: JitMask = True) -> tuple[JitFloat, JitColour]:
@@ -99,13 +99,15 @@ def define(mi: MitsubaModule) -> type:
             Then `integrals` and `mean_optics` include them. False for functions of labels or
             gradient magnitudes.
             """
-            data = data_of(self.values)
+            data = read_grid(self.values)
             if data is None or self.function.gradients is not None:
                 return False
             low, high = self.function.range
-            change = typical(data) * max(1, max(data.shape) / steps)  # of the values within a step
+            change = typical_difference(data) * max(
+                1, max(data.shape) / steps
+            )  # of the values within a step
             reach = change / (high - low) * self.lookup.integrals.steps
-            thin = is_thin(np.array(self.lookup.table), reach)
+            thin = has_peaks(np.array(self.lookup.table), reach)
             return thin and is_trilinear(self.values, data, self.to_local)
 
         def integrals(self, it: MitsubaObject, active: JitMask = True) -> JitVector:
@@ -159,10 +161,10 @@ def define(mi: MitsubaModule) -> type:
         def majorants(self) -> FloatArray:
             """Upper bounds of σ_t (kz, ky, kx), one for each of as many equal blocks of the box."""
             rows = self.lookup.table_over_values()[:, 3] * self.lookup.extinction[0]
-            data = data_of(self.values)
+            data = read_grid(self.values)
             if data is None:
                 return rows.max(keepdims=True).reshape(1, 1, 1)
-            return largest_between(rows, *map(self.lookup.steps_of, block_ranges(data)))
+            return bound_between(rows, *map(self.lookup.to_rows, block_ranges(data)))
 
     return TransferFunctionVolume
 
@@ -190,8 +192,8 @@ def read_function(transfer: str, values: MitsubaObject) -> TransferFunction:
             f"transfer_function: the function {function.name} is one of {CHANNELS[channels]}, and "
             f"the volume's number of channels is {count}; it should be {channels}."
         )
-    data = data_of(values)
-    return function if data is None else fitted(function, data)
+    data = read_grid(values)
+    return function if data is None else scale_to_values(function, data)
 
 
 def example() -> dict[str, Any]:

@@ -28,7 +28,7 @@ from brdfkit.core.discovery import plugin_files
 from brdfkit.distance_fields import sphere
 from brdfkit.rendering.scenes import scene_names
 from brdfkit.rendering.volumes.scene import RENDERERS
-from brdfkit.volumes.transfer.files import presets
+from brdfkit.volumes.transfer.files import list_presets
 
 SMALL = ("--size", "16", "--spp", "2")
 SHAPE = (6, 4, 8)
@@ -269,7 +269,7 @@ def test_render_a_volume(cli):
     assert record["spp"] == 2
     header = OpenEXR.File("it.exr").header()
     assert json.loads(header["parameters"])["level"] == 0.4
-    assert all(name in cli("render", "--help").stdout for name in (*RENDERERS, *presets()))
+    assert all(name in cli("render", "--help").stdout for name in (*RENDERERS, *list_presets()))
     assert_fine(cli("render", "sphere", "--tone-mapping", "filmic", "--azimuth", "0", *SMALL))
     assert Path("sphere.png").exists()
     by_scan = cli("render", "sphere", "--transfer", "ct_bone", *SMALL, "--force")

@@ -6,7 +6,7 @@ import pytest
 from scipy.optimize import brentq
 
 from brdfkit.volumes import TransferFunction, Volume
-from brdfkit.volumes.rays.first_crossing import first_above, first_crossing
+from brdfkit.volumes.rays.search import find_first_above, find_first_crossing
 
 SUN = {"type": "directional", "direction": [0, 0, -1], "irradiance": 2.0}
 SKY = {"type": "constant", "radiance": 0.5}
@@ -78,10 +78,10 @@ def test_the_depth_has_no_bias(mi):
     edge = mi.Float(truth)
     f = lambda t: dr.exp(t - edge) - 1  # noqa: E731
     args = mi.Float(dr.zeros(mi.Float, 4000)), mi.Float(depth), 10, mi.Bool(True)
-    found = np.array(first_above(f, *args)[1]) - truth
+    found = np.array(find_first_above(f, *args)[1]) - truth
     assert found.min() > 0
     assert found.mean() == pytest.approx(depth / n / 2, rel=0.05)
-    refined, there = first_crossing(f, *args)
+    refined, there = find_first_crossing(f, *args)
     assert np.array(there).all()
     assert np.abs(np.array(refined) - truth).max() < 1e-5 * depth
 
@@ -100,7 +100,7 @@ def test_the_surface_of_a_ball(mi):
     integrator = scene(mi, SKY, volume=gridvolume(mi, values)).integrator()
     ray = rays(mi, o, d)
     f = lambda t: integrator.f(ray(t))  # noqa: E731
-    t, found = first_crossing(f, mi.Float(0.7), mi.Float(2.3), 256, mi.Bool(True))
+    t, found = find_first_crossing(f, mi.Float(0.7), mi.Float(2.3), 256, mi.Bool(True))
     assert np.array(found).all()
     assert np.abs(np.array(t) - truth).max() < 1e-5 * 1.6
     si = integrator.surface(ray, t, mi.Float(0), found)
@@ -126,7 +126,7 @@ def test_of_a_transfer_function_and_an_oblique_box(mi):
     d /= np.linalg.norm(d, axis=1, keepdims=True)
     loaded = scene(mi, SKY, volume=volume, level=0.5)
     ray, integrator = rays(mi, o, d), loaded.integrator()
-    found, there = first_crossing(
+    found, there = find_first_crossing(
         lambda t: integrator.f(ray(t)), mi.Float(0.1), mi.Float(8), 512, mi.Bool(True)
     )
     assert np.array(there).all()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from brdfkit.volumes import TransferFunction, Volume
-from brdfkit.volumes.rays.voxel_steps import typical
+from brdfkit.volumes.rays.voxel_steps import typical_difference
 from brdfkit.volumes.transfer.lookup import TransferLookup
 
 RNG = np.random.default_rng(8)
@@ -57,5 +57,5 @@ def test_which_functions_are_missed(llvm_variant):
 def test_typical_differences():
     """Of white noise: √2 times its deviation, in a grid of which not every voxel is asked, too."""
     noise = RNG.normal(0, 3, (60, 300, 200))
-    assert typical(noise) == pytest.approx(3 * np.sqrt(2), rel=0.01)
-    assert typical(Volume(np.ones((1, 1, 1))).values) == 0
+    assert typical_difference(noise) == pytest.approx(3 * np.sqrt(2), rel=0.01)
+    assert typical_difference(Volume(np.ones((1, 1, 1))).values) == 0

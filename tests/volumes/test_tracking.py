@@ -7,7 +7,12 @@ from scipy.ndimage import map_coordinates
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.volumes.light.majorants import Majorants
-from brdfkit.volumes.light.tracking import FAINT, collide, divide, transmittance
+from brdfkit.volumes.light.tracking import (
+    FAINT,
+    estimate_transmittance,
+    sample_collision,
+    split_light,
+)
 
 N = 1 << 17
 DEVIATIONS = 4.5  # of a mean: one in 150 000 is farther
@@ -44,7 +49,7 @@ def test_collisions_in_a_linear_medium(bounds, llvm_variant):
     mi = llvm_variant
     majorants = Majorants(np.broadcast_to(bounds, (np.size(bounds), 1, 1)), TALL)
     majorants.require(linear)
-    t, lookups = collide(linear, majorants, along_z(mi), 0, dr.inf, sampler(mi))
+    t, lookups = sample_collision(linear, majorants, along_z(mi), 0, dr.inf, sampler(mi))
     t, lookups = np.array(t), np.array(lookups)
     require_mean(np.isinf(t), THROUGH, 1e-6)
     require_mean(t[np.isfinite(t)] - 1, MEAN, 1e-5)  # the rays begin 1 before the medium
@@ -52,10 +57,14 @@ def test_collisions_in_a_linear_medium(bounds, llvm_variant):
         require_mean(lookups, bounds * SEEN, 1e-4 * bounds)
     else:
         assert lookups.mean() < 0.4 * 3.25 * SEEN
-    share, _ = transmittance(linear, majorants, along_z(mi), 0, dr.inf, sampler(mi, seed=1))
+    share, _ = estimate_transmittance(
+        linear, majorants, along_z(mi), 0, dr.inf, sampler(mi, seed=1)
+    )
     require_mean(np.array(share), THROUGH, 1e-6)
     assert np.std(np.array(share)) < np.sqrt(THROUGH * (1 - THROUGH))  # of tracking's 0 and 1
-    share, collided, t, _ = divide(linear, majorants, along_z(mi), 0, dr.inf, sampler(mi, seed=2))
+    share, collided, t, _ = split_light(
+        linear, majorants, along_z(mi), 0, dr.inf, sampler(mi, seed=2)
+    )
     share, collided, t = np.array(share), np.array(collided), np.array(t)
     require_mean(share, THROUGH, 1e-6)
     require_mean(collided, 1 - THROUGH, 1e-6)
@@ -68,7 +77,7 @@ def test_an_extinction_above_its_majorant(llvm_variant):
     mi, low = llvm_variant, Majorants([[[1.5]]], TALL)
     with pytest.raises(BrdfkitError, match=r"extinction is 3\.2.* its majorant 1\.5.*raise"):
         low.require(linear)
-    for track in (collide, transmittance, divide):
+    for track in (sample_collision, estimate_transmittance, split_light):
         found, *_ = track(linear, low, along_z(mi), 0, dr.inf, sampler(mi))
         assert np.isnan(np.array(found)).any()
         below, *_ = track(linear, low, along_z(mi), 0, 1.8, sampler(mi))  # z < 0.8
@@ -106,7 +115,7 @@ def turned(llvm_variant):
 @pytest.mark.parametrize("size", [1, 2, 5, 100])
 def test_bounds_of_a_grid_bound_what_lies_between_voxels(size, turned):
     sigma, voxels, to_world = turned
-    majorants = Majorants.of_grid(voxels, size, to_world)
+    majorants = Majorants.from_grid(voxels, size, to_world)
     majorants.require(sigma)
     assert majorants.shape == tuple(-(-n // size) for n in voxels.shape[::-1])
     assert majorants.values.max() == voxels.max()
@@ -118,7 +127,7 @@ def test_bounds_of_a_grid_bound_what_lies_between_voxels(size, turned):
 def test_rays_through_a_turned_grid(size, turned, llvm_variant):
     """Of any direction, from inside or outside, and along edges of cells: by quadrature."""
     mi, (sigma, voxels, to_world) = llvm_variant, turned
-    majorants = Majorants.of_grid(voxels, size, to_world)
+    majorants = Majorants.from_grid(voxels, size, to_world)
     rng, n, t_max = np.random.default_rng(4), 1 << 13, 0.7
     # in the unit cube
     o, d = rng.random((3, n)) * 1.4 - 0.2, rng.normal(size=(3, n)) / 2
@@ -127,9 +136,9 @@ def test_rays_through_a_turned_grid(size, turned, llvm_variant):
     turn, shift = to_world[:3, :3], to_world[:3, 3:]
     world = ((turn @ o + shift).astype(np.float32), (turn @ d).astype(np.float32))
     ray = mi.Ray3f(mi.Point3f(world[0]), mi.Vector3f(world[1]))
-    share, _ = transmittance(sigma, majorants, ray, 0, t_max, sampler(mi, n))
+    share, _ = estimate_transmittance(sigma, majorants, ray, 0, t_max, sampler(mi, n))
     require_mean(np.array(share) - np.exp(-depth), 0, 1e-4)
-    distance, _ = collide(sigma, majorants, ray, 0, t_max, sampler(mi, n, 1))
+    distance, _ = sample_collision(sigma, majorants, ray, 0, t_max, sampler(mi, n, 1))
     distance = np.array(distance)
     require_mean(np.isinf(distance) - np.exp(-depth), 0, 1e-4)
     assert (distance[np.isfinite(distance)] <= t_max).all()
@@ -150,7 +159,11 @@ def test_rays_that_miss_or_are_not_asked(llvm_variant):
     mi, majorants = llvm_variant, Majorants([[[3.0]]])
     beside = mi.Ray3f(mi.Point3f([0.5, 2, 0.5], 0.5, -1), mi.Vector3f(0, 0, 1))
     asked = mi.Bool([True, True, False])
-    for track, expected in ((collide, np.inf), (transmittance, 1.0), (divide, 1.0)):
+    for track, expected in (
+        (sample_collision, np.inf),
+        (estimate_transmittance, 1.0),
+        (split_light, 1.0),
+    ):
         rays = majorants, beside, 0, 9, sampler(mi, 3), asked
         found, *_, lookups = track(lambda p, active: 0 * p.x, *rays)
         np.testing.assert_array_equal(np.array(found), [expected] * 3)
@@ -169,7 +182,7 @@ def test_what_collides_has_a_place(llvm_variant):
             return mi.Float(0.5 if self.calls % 2 == 0 else 1.0)
 
     even = Majorants([[[20.0]]])
-    found = divide(lambda p, active: mi.Float(7), even, along_z(mi), 0, dr.inf, HalfAndOne())
+    found = split_light(lambda p, active: mi.Float(7), even, along_z(mi), 0, dr.inf, HalfAndOne())
     _, collided, t, _ = found
     assert collided[0] > 0
     assert np.isfinite(t[0])

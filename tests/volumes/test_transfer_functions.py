@@ -10,7 +10,7 @@ import brdfkit as bk
 from brdfkit.core.colours import from_srgb, to_srgb
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.volumes.transfer import opacity
-from brdfkit.volumes.transfer.files import presets
+from brdfkit.volumes.transfer.files import list_presets
 
 TF = bk.volumes.TransferFunction
 pytestmark = pytest.mark.quick
@@ -96,12 +96,12 @@ def test_opacity_of_a_layer_becomes_extinction():
         at = np.setdiff1d(np.linspace(0, 5, 4001), values)
         sigma = function.extinction * function(at)[:, 3]
         given = TF(values, rgba, colour="emission")
-        exact = opacity.extinction(given(at)[:, 3], distance)
+        exact = opacity.to_extinction(given(at)[:, 3], distance)
         assert np.abs(sigma - exact).max() <= 1.001e-5 * function.extinction
         np.testing.assert_allclose(function(at)[:, :3], given(at)[:, :3], atol=1e-9)
         sample = 0.1  # VTK: 1 - (1 - a)^(s / d)
         vtk = 1 - (1 - np.minimum(given(at)[:, 3], opacity.OPAQUE)) ** (sample / distance)
-        np.testing.assert_allclose(opacity.of_extinction(exact, sample), vtk, rtol=1e-9)
+        np.testing.assert_allclose(opacity.to_opacity(exact, sample), vtk, rtol=1e-9)
     half = TF.from_opacity([0, 1], [[1, 1, 1, 0.5]] * 2, 2)
     assert half.extinction == pytest.approx(np.log(2) / 2)
     assert len(half.values) == 2
@@ -133,7 +133,7 @@ def test_json_comes_back(tmp_path, of_gradients):
         assert getattr(again, field) == getattr(function, field)
 
 
-@pytest.mark.parametrize("name", presets())
+@pytest.mark.parametrize("name", list_presets())
 def test_presets(name):
     """Named after their files, with units, and something to see; those of CT in HU."""
     preset = TF.load(name)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from brdfkit.volumes import TransferFunction, Volume
-from brdfkit.volumes.transfer.block_bounds import block_ranges, largest_between
+from brdfkit.volumes.transfer.block_bounds import block_ranges, bound_between
 from brdfkit.volumes.transfer.lookup import TransferLookup
 
 RNG = np.random.default_rng(6)
@@ -156,7 +156,7 @@ def test_the_largest_value_between_two_places():
     """Against the function at very many places; its corners are among them."""
     rows = RNG.random(37)
     low, high = np.sort(RNG.uniform(-3, 40, (2, 300)), axis=0)
-    found = largest_between(rows, low, high)
+    found = bound_between(rows, low, high)
     for a, b, largest in zip(low, high, found, strict=True):
         places = np.unique(np.clip([*np.linspace(a, b, 50), *range(37)], a, b))
         truth = np.interp(places, np.arange(37), rows).max()

@@ -18,7 +18,7 @@ import brdfkit as bk
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.volumes import made
 from brdfkit.volumes.formats import formats
-from brdfkit.volumes.transfer.files import presets
+from brdfkit.volumes.transfer.files import list_presets
 
 LPS = np.diag([-1, -1, 1, 1])
 
@@ -523,9 +523,9 @@ def test_the_page_of_volumes_names_what_there_is():
     for module in formats():
         suffixes = " ".join(f"`{suffix}`" for suffix in module.SUFFIXES)
         assert f"| {module.NAME} | {suffixes}" in page
-    for name in (*made.names(), *presets()):
+    for name in (*made.list_names(), *list_presets()):
         assert f"`{name}`" in page
-        assert name in bk.volumes.load.__doc__ or name in presets()
+        assert name in bk.volumes.load.__doc__ or name in list_presets()
 
 
 def test_no_two_formats_take_one_suffix():

@@ -8,7 +8,7 @@ from brdfkit.core.colours import to_srgb
 from brdfkit.rendering.volumes import looks
 from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.summary.summary import summarise
-from brdfkit.volumes.transfer.windows import fitted, window
+from brdfkit.volumes.transfer.windows import find_window, scale_to_values
 
 pytestmark = pytest.mark.quick
 RNG = np.random.default_rng(29)
@@ -41,10 +41,10 @@ WINDOWS = {
 @pytest.mark.parametrize("name", WINDOWS)
 def test_windows_leave_air_and_outliers_out(name):
     values, low, high = WINDOWS[name]
-    found = window(values)
+    found = find_window(values)
     assert low[0] <= found[0] <= low[1]
     assert high[0] <= found[1] <= high[1]
-    scaled = window(values * 1e-6)  # data of any size
+    scaled = find_window(values * 1e-6)  # data of any size
     np.testing.assert_allclose(scaled, np.array(found) * 1e-6, rtol=1e-3)
 
 
@@ -153,7 +153,7 @@ def test_functions_are_drawn_over_histograms(name):
     joint = next(a for a in figure.axes if a.get_ylabel().startswith("gradient"))
     veil = joint.images[-1].get_array()
     low, high, _, steepest = joint.images[-1].get_extent()
-    whole = fitted(preset, volume.values).per("µm")
+    whole = scale_to_values(preset, volume.values).per("µm")
     at = low + (high - low) * 300 / 399, steepest * 120 / 399
     a = whole(*(at if whole.gradients is not None else at[:1]))[3]
     assert veil[120, 300, 3] == pytest.approx(0.85 * a, abs=1e-6)

@@ -9,7 +9,7 @@ from brdfkit.core.jit.threads import in_turn
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.page import Section, Table
 from brdfkit.volumes.light.majorants import Majorants
-from brdfkit.volumes.light.tracking import collide, transmittance
+from brdfkit.volumes.light.tracking import estimate_transmittance, sample_collision
 
 SECONDS = 3
 RAYS = 1 << 20
@@ -58,8 +58,8 @@ def track(bound):
     """What is measured → its mean, and how many standard errors it is off, by one majorant."""
     ray, sampler = rays()
     majorants = Majorants([[[bound]]], TALL)
-    t, lookups = collide(sigma, majorants, ray, 0, DEPTH, sampler)
-    share, _ = transmittance(sigma, majorants, ray, 0, DEPTH, sampler)
+    t, lookups = sample_collision(sigma, majorants, ray, 0, DEPTH, sampler)
+    share, _ = estimate_transmittance(sigma, majorants, ray, 0, DEPTH, sampler)
     t, lookups, share = np.array(t, float), np.array(lookups, float), np.array(share, float)
     return {
         "comes through": compare(np.isinf(t), THROUGH),

@@ -81,10 +81,10 @@ def _refuse_nearly_made(word):
     from brdfkit.model import labels
     from brdfkit.volumes import made
 
-    known = [*labels.models(), *catalogue.list_materials(), *made.names()]
+    known = [*labels.models(), *catalogue.list_materials(), *made.list_names()]
     if word in known or labels.is_label(word) or Path(word).suffix or Path(word).exists():
         return
-    if nearest(word, known) in made.names():
+    if nearest(word, known) in made.list_names():
         raise no_such("file, model, material or volume", word, known)
 
 

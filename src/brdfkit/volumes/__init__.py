@@ -10,7 +10,7 @@ by `summary/histograms.py`, `summary/report.py` and `summary/picture.py`. For re
 values, for steps that would jump over what it has (`rays/voxel_steps.py`), and
 `transfer/block_bounds.py` bounds of it; `light/majorants.py` bounds the extinction, and
 `light/tracking.py` finds where light collides. Rays are helped by `rays/along_ray.py`,
-`rays/largest_value.py` and `rays/first_crossing.py`, level sets by `rays/normals.py` and
+`rays/largest_value.py` and `rays/find_first_crossing.py`, level sets by `rays/normals.py` and
 `light/surface_light.py`. Paths of light go through a `light/medium.py`, whose bounds are those of
 `light/extinction_bounds.py`, turn at a `light/vertex.py`, and come from `light/emitters.py`.
 """

@@ -6,7 +6,7 @@ import numpy as np
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
-from brdfkit.volumes.transfer.windows import fitted
+from brdfkit.volumes.transfer.windows import scale_to_values
 
 
 def scene_dict(volume, transfer):
@@ -18,7 +18,7 @@ def scene_dict(volume, transfer):
         transfer = TransferFunction.load(transfer)
     if volume.unit and transfer.length_unit:
         transfer = transfer.per(volume.unit)
-    transfer = fitted(transfer, volume.values)
+    transfer = scale_to_values(transfer, volume.values)
     if volume.labels and transfer.gradients is None:
         volume, transfer = numbered(volume, transfer)
     channels = [volume.values]

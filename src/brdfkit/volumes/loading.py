@@ -92,7 +92,7 @@ def load(
             "brdfkit.volumes.Volume(array) makes one."
         ) from None
     found, part = split_part(text)
-    place = find_file_or_name(found, "volume", made.names(), folders=True)
+    place = find_file_or_name(found, "volume", made.list_names(), folders=True)
     if isinstance(place, str):
         if any(setting is not None for setting in (part, labels, dtype, spacing, offset)):
             raise BrdfkitError(f"{text} is made: it takes size and downsample alone.")
@@ -116,7 +116,7 @@ def looks_like_volume(name: str) -> bool:
     A file .hdr that begins as Radiance's maps do is none: Analyze's begin otherwise.
     """
     path, _ = split_part(name)
-    if name in made.names() or formats.is_series(path):
+    if name in made.list_names() or formats.is_series(path):
         return True
     return formats.has_format(str(path)) and not _is_radiance(path)
 
@@ -198,7 +198,7 @@ def _require_memory(file, stored, downsample):
 
 def _require_memory_to_make(name, size):
     """Raise `BrdfkitError` where a made volume would take more memory than there is."""
-    available, needed = psutil.virtual_memory().available, made.needed(name, size)
+    available, needed = psutil.virtual_memory().available, made.memory_needed(name, size)
     if needed > available:
         raise BrdfkitError(
             f"{name}: {'×'.join(map(str, size))} voxels would take about {needed / 1e9:,.2g} GB of "

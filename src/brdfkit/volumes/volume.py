@@ -102,7 +102,7 @@ class Volume:
         """(low, high), by the histogram: the background, such as air, is below, and only few bright
         voxels are above. It is what `TransferFunction.scaled_to` wants.
         """
-        return windows.window(self.values)
+        return windows.find_window(self.values)
 
     @cached_property
     def gradient_magnitude(self) -> NDArray[np.float32]:

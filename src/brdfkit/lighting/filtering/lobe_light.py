@@ -2,8 +2,9 @@
 
     L(o) ≈ d(o) E + Σ_k w_k(o) · L filtered by the lobe μ_k(o), κ_k(o)
 
-with the irradiance E divided by π, and the light's radiance L. The view o, the albedo d and the lobes are
-those of a `LobeTable`, interpolated between its views. [Ergun 2015, sections 8.3, 8.5, 8.6]
+with the irradiance E divided by π, and the light's radiance L. The view o, the albedo d and the
+lobes are those of a `LobeTable`, interpolated between its views. [Ergun 2015, sections 8.3, 8.5,
+8.6]
 """
 
 import numpy as np

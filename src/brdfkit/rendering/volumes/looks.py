@@ -42,7 +42,7 @@ def transfer_function(volume, renderer):
         return from_colormap("magma", volume.window, RAMP, GLOWING / _across(volume))
     low, high = volume.range
     if volume.axes and low < AIR and high > TISSUE:
-        values = windows.sample(volume.values)
+        values = windows.sample_values(volume.values)
         bony = (values > BONE).sum() > BONY * (values > BODY).sum()
         return TransferFunction.load("ct_bone" if bony else "ct_skin")
     if volume.axes:
@@ -66,7 +66,7 @@ def _of_largest_values(volume, colours):
     import matplotlib as mpl
 
     rays = [volume.values.max(axis=axis).ravel() for axis in range(3)]
-    end, largest = windows.background_and_matter(np.concatenate(rays).astype(float))
+    end, largest = windows.split_background(np.concatenate(rays).astype(float))
     nodes = np.percentile(largest, NODES)
     if not end < nodes[0] < nodes[-1]:
         return TransferFunction.from_colormap(
@@ -116,7 +116,7 @@ def level(volume):
     low, high = volume.range
     if volume.labels or low == high:
         return 0.5 * (1 if volume.labels else high)
-    values = windows.sample(volume.values)
+    values = windows.sample_values(volume.values)
     # outliers would leave but a few parts to all others
     values = values[
         (values >= np.percentile(values, 0.1)) & (values <= np.percentile(values, 99.9))

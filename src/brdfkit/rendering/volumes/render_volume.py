@@ -23,7 +23,7 @@ from brdfkit.rendering.volumes import looks
 from brdfkit.rendering.volumes.scene import RENDERERS, UNLIT, scene
 from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.transfer.transfer_function import TransferLike
-from brdfkit.volumes.transfer.windows import fitted
+from brdfkit.volumes.transfer.windows import scale_to_values
 
 SPP, UNLIT_SPP = 64, 8  # samples per pixel
 MOST_SPP = 16_384  # samples per pixel, where a noise floor or a time is requested
@@ -174,7 +174,7 @@ def _function(volume, transfer, renderer, density):
         transfer = looks.transfer_function(volume, renderer)
     elif not isinstance(transfer, TransferFunction):
         transfer = TransferFunction.load(transfer)
-    transfer = fitted(transfer, volume.values)  # the camera wants to know what shows
+    transfer = scale_to_values(transfer, volume.values)  # the camera wants to know what shows
     if volume.unit and transfer.length_unit:
         transfer = transfer.per(volume.unit)
     return replace(transfer, extinction=density * transfer.extinction)

@@ -1,15 +1,27 @@
-"""The light of a scene's emitters: what a ray meets of it, and what a sample of it sends.
+"""The light of a scene's emitters, found by rays that hit them or by samples of the emitters.
 
 Both may find the same light, and are weighted by the power heuristic [Veach & Guibas 1995].
 """
 
+from typing import Any
+
 import drjit as dr
 
+from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
 
-def seen(scene, ray, si, density, active=True):
-    """The light that rays see where they meet a surface, or nothing, weighted.
+replace_grad: Any = dr.replace_grad  # Dr.Jit's stub knows no result of it
 
-    density : with which the rays were drawn [sr⁻¹]; 0 where no sample of an emitter is like them.
+
+def evaluate_hit(
+    scene: MitsubaObject,
+    ray: MitsubaObject,
+    si: MitsubaObject,
+    density: JitFloat,
+    active: JitMask = True,
+) -> JitColour:
+    """Return the weighted light that rays receive from `si`, their end on a surface or nothing.
+
+    `density` [sr⁻¹] is that of the rays; it is 0 where no sample of an emitter finds their light.
     """
     import mitsuba as mi
 
@@ -24,12 +36,13 @@ def seen(scene, ray, si, density, active=True):
     return dr.select(active, light * weight, 0)
 
 
-def sampled(scene, it, sample, active):
-    """A sample of the emitters as `it` sees them, by an even `sample` of two numbers: the
-    `mi.DirectionSample3f`, its light over its density, were nothing between, and whether there is
-    one.
+def sample_emitters(
+    scene: MitsubaObject, it: MitsubaObject, sample: JitVector, active: JitMask
+) -> tuple[MitsubaObject, JitColour, JitMask]:
+    """Sample the emitters as seen from `it`, by two uniform numbers.
 
-    The light has the derivatives by what the emitter emits.
+    Returns the `mi.DirectionSample3f`, its light over its density as if nothing were in its way,
+    and whether there is a sample. The light has the derivatives of the emission.
     """
     import mitsuba as mi
 
@@ -38,14 +51,14 @@ def sampled(scene, it, sample, active):
         there = active & (ds.pdf > 0)
         ds.pdf = dr.select(there, ds.pdf, 1)
     attached = mi.unpolarized_spectrum(scene.eval_emitter_direction(it, ds, there)) / ds.pdf
-    light = dr.replace_grad(mi.unpolarized_spectrum(light), attached)
+    light = replace_grad(mi.unpolarized_spectrum(light), attached)
     return ds, dr.select(there, light, 0), there
 
 
-def ray_to(it, ds):
-    """The ray from `it` to a sample of an emitter; to the sky it has no end.
+def ray_to(it: MitsubaObject, ds: MitsubaObject) -> MitsubaObject:
+    """Return the ray from `it` to a sample of an emitter; one to the sky has no end.
 
-    Mitsuba's distance of the sky is that of a sphere about the shapes, which volumes may leave.
+    Mitsuba's sky lies on a sphere about the shapes, beyond which volumes may reach.
     """
     import mitsuba as mi
 
@@ -55,11 +68,11 @@ def ray_to(it, ds):
     return ray
 
 
-def are_met(scene, si):
-    """Whether rays that end at `si` end at an emitter."""
+def is_emitter_hit(scene: MitsubaObject, si: MitsubaObject) -> JitMask:
+    """Return whether rays that end at `si` end at an emitter."""
     return si.emitter(scene).flags() != 0  # a missing one has none
 
 
-def power_heuristic(density, other):
-    """The weight of what was drawn with a `density` > 0, and might have been with the `other`."""
+def power_heuristic(density: JitFloat, other: JitFloat) -> JitFloat:
+    """Return the weight of a sample of `density` > 0 that another method has with the `other`."""
     return 1 / (1 + dr.square(other / density))

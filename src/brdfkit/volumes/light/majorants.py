@@ -1,53 +1,49 @@
 """`Majorants`: upper bounds of a volume's extinction, one for each of a few coarse cells.
 
-The lower the bounds, the fewer the look-ups by which `tracking.py` finds where light collides
+The lower the bounds, the fewer look-ups `tracking.py` needs to find where light collides
 [Szirmay-Kalos et al. 2011]. A single cell is the global majorant.
 """
+
+from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.array_types import (
+    AnyArray,
+    ArrayLike,
+    FloatArray,
+    JitFloat,
+    JitMask,
+    JitVector,
+    MitsubaObject,
+)
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.padding import pad
-from brdfkit.volumes.rays.along_ray import to_cube
-from brdfkit.volumes.transfer.block_bounds import along_blocks
+from brdfkit.volumes.rays.box import to_cube
+from brdfkit.volumes.transfer.block_bounds import reduce_blocks
 
-VOXELS = 16  # along the edges of a cell
-ROUNDING = 1e-5  # by which an interpolated extinction may exceed what it is interpolated from
+CELL_VOXELS = 16  # along the edges of a cell
+ROUNDING = 1e-5  # relative error by which an interpolated extinction may exceed its voxels
 
 
 @dataclass(frozen=True, eq=False)
 class Majorants:
-    """Upper bounds of an extinction in the cells of a box, for the current variant of Mitsuba's.
+    """Upper bounds of an extinction in the cells of a box, for the current variant of Mitsuba.
 
-    Attributes
-    ----------
-    values : array (nz, ny, nx)
-        The bounds [1/unit of length], at least 0; x fastest.
-    cube_to_world : array (4, 4), optional
-        From the unit cube, in which the cells lie, to the world; by default the identity.
-    array : mitsuba.Float
-        The values in Dr.Jit's memory.
+    `values` (nz, ny, nx) are the bounds [1/unit of length], at least 0, x fastest. `cube_to_world`
+    (4, 4) is the transform from the unit cube, which the cells divide, to the world; by default the
+    identity. `array` holds the values as a `mitsuba.Float`. Scalar variants cannot use it. Raises
+    `BrdfkitError` for values that are not bounds.
 
-    It has no use in scalar variants.
-
-    Raises
-    ------
-    BrdfkitError
-        For values that are no bounds.
-
-    Examples
-    --------
-    >>> Majorants([[[3.25]]])                       # one bound for all of the unit cube
-    >>> Majorants.of_grid(extinction)               # one for each 16³ voxels
+    >>> Majorants([[[3.25]]])                       # one bound for the whole unit cube
+    >>> Majorants.from_grid(extinction)             # one for each 16³ voxels
     """
 
-    values: NDArray
+    values: Any
     cube_to_world: Any = None
     array: Any = field(init=False, repr=False)
 
@@ -65,59 +61,30 @@ class Majorants:
         object.__setattr__(self, "array", mi.Float(pad(values.ravel())))
 
     @classmethod
-    def of_grid(
-        cls, values: ArrayLike, voxels: int = VOXELS, cube_to_world: ArrayLike | None = None
-    ) -> "Majorants":
-        """The bounds of voxels' values, and of what is interpolated from them linearly.
+    def from_grid(
+        cls, values: ArrayLike, voxels: int = CELL_VOXELS, cube_to_world: ArrayLike | None = None
+    ) -> Majorants:
+        """Return the bounds of voxels' values, and of what is interpolated from them linearly.
 
-        Parameters
-        ----------
-        values : array (nz, ny, nx)
-            The extinction at the centres of the voxels [1/unit of length], at least 0.
-        voxels : int, default 16
-            Voxels along the edge of a cell, at least 1: fewer take fewer look-ups and more steps.
-        cube_to_world : array (4, 4), optional
-            From the unit cube, which the voxels fill, to the world; by default the identity.
-
-        Raises
-        ------
-        BrdfkitError
-            For values that have no bounds, and for less than a voxel.
-
-        Examples
-        --------
-        >>> Majorants.of_grid(np.ones((64, 64, 64))).values.shape
-        (4, 4, 4)
+        `values` (nz, ny, nx) is the extinction at the centres of the voxels [1/unit of length].
+        `voxels` is the number along the edge of a cell: fewer need fewer look-ups and more steps.
         """
-        found = np.asarray(values, np.float32)
-        voxels = to_whole_number("voxels", voxels, 1)
-        for axis, n in enumerate(found.shape):
-            found = along_blocks(found, axis, -(-n // voxels), np.max)
-        return cls(found, cube_to_world)
+        bounds = np.asarray(values, np.float32)
+        for axis, n in enumerate(bounds.shape):
+            bounds = reduce_blocks(bounds, axis, -(-n // voxels), np.max)
+        return cls(bounds, cube_to_world)
 
     def require(
-        self, extinction: Callable[[Any, Any], Any], samples: int = 1 << 18, seed: int = 0
+        self,
+        extinction: Callable[[JitVector, JitMask], JitFloat],
+        samples: int = 1 << 18,
+        seed: int = 0,
     ) -> None:
-        """Raise an error if an extinction is above its majorant, or below 0, at a random point.
+        """Raise `BrdfkitError` if an extinction exceeds its majorant, or is below 0, at a sample.
 
-        That none is found is no proof, except for what `of_grid` bounds.
+        `extinction(p, active)` is evaluated at random points `p` of the box. That none fails is not
+        a proof, except for what `from_grid` bounds.
 
-        Parameters
-        ----------
-        extinction : callable
-            σ(p, active) of a `mitsuba.Point3f` in the world.
-        samples : int, default 262,144
-            How many points are drawn.
-        seed : int, default 0
-            Of the random numbers.
-
-        Raises
-        ------
-        BrdfkitError
-            For an extinction above its majorant, below 0 or not finite; it says where.
-
-        Examples
-        --------
         >>> Majorants([[[1.5]]]).require(lambda p, active: 0.25 + 3 * p.x)
         brdfkit.core.errors.BrdfkitError: The extinction is 3.25 at (1, 0.42, 0.8), its ...
         """
@@ -130,45 +97,47 @@ class Majorants:
         points = mi.Point3f(*(mi.Float(pad(c.astype(np.float32))) for c in p.T))
         sigma = np.broadcast_to(np.array(extinction(points, mi.Bool(True))), len(u))
         if (sigma < 0).any():
+            place = _format_point(p[int(sigma.argmin())])
             raise BrdfkitError(
-                f"The extinction is {sigma.min():.4g} at {_place(p[int(sigma.argmin())])}, and a "
-                "volume cannot add to light: clip it at 0, as after a step of an optimiser."
+                f"The extinction is {sigma.min():.4g} at {place}, and a volume cannot add "
+                "to light: clip it at 0, as after a step of an optimiser."
             )
-        above = ~(sigma <= bound * (1 + ROUNDING))  # or no number
+        above = ~(sigma <= bound * (1 + ROUNDING))  # also where it is NaN
         if above.any():
             worst = int(np.argmax(np.where(above, sigma - bound, 0)))
             raise BrdfkitError(
-                f"The extinction is {sigma[worst]:.4g} at {_place(p[worst])}, its majorant "
+                f"The extinction is {sigma[worst]:.4g} at {_format_point(p[worst])}, its majorant "
                 f"{bound[worst]:.4g}: no bound, and pictures would be wrong; raise the majorant; "
                 "of a grid that is turned, mirrored or repeated in its box take the global one."
             )
 
     @property
     def shape(self) -> tuple[int, int, int]:
-        """Number of cells along x, y, z."""
+        """The number of cells along x, y, z."""
         nz, ny, nx = self.values.shape
         return nx, ny, nz
 
     @property
-    def world_to_cells(self) -> NDArray[np.float64]:
-        """(4, 4): from the world to where a cell is a unit cube, the first from (0, 0, 0)."""
+    def world_to_cells(self) -> FloatArray:
+        """The transform (4, 4) from the world to a frame whose unit cubes from 0 are the cells."""
         return np.diag([*self.shape, 1.0]) @ np.linalg.inv(self.cube_to_world)
 
 
-def _place(p):
+def _format_point(p: FloatArray) -> str:
+    """Format a point for an error message."""
     return f"({', '.join(f'{c:.3g}' for c in p)})"
 
 
-def extinction_bounds(volume, scale, local):
-    """`Majorants` of a volume times a `scale`: of coarse cells if `local`, else one for all of it.
+def compute_majorants(volume: MitsubaObject, scale: JitFloat, local: bool) -> Majorants:
+    """Return the `Majorants` of a volume times a `scale`, of coarse cells if `local`, else one.
 
-    Those of a gridvolume and of a `transfer_function` are found from their values; of another
-    volume its `max()` is taken at its word.
+    Those of a gridvolume and of a `transfer_function` follow from their values; any other volume's
+    `max()` is trusted.
     """
     if hasattr(volume, "majorants"):
         bounds = volume.majorants
-    elif (data := data_of(volume)) is not None:
-        bounds = Majorants.of_grid(data).values
+    elif (data := read_grid(volume)) is not None:
+        bounds = Majorants.from_grid(data).values
     else:
         bounds = np.reshape(volume.max(), (1, 1, 1))
     if not local:
@@ -177,8 +146,8 @@ def extinction_bounds(volume, scale, local):
     return Majorants(bounds * scale[0], np.linalg.inv(box))
 
 
-def data_of(volume):
-    """The values (nz, ny, nx) of a gridvolume, in NumPy; None of another volume."""
+def read_grid(volume: MitsubaObject) -> AnyArray | None:
+    """Return the values (nz, ny, nx) of a gridvolume, None for any other volume."""
     import mitsuba as mi
 
     data = mi.traverse(volume).get("data")

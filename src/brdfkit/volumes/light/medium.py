@@ -1,13 +1,13 @@
-"""`Medium`: the matter in the box of a volume, and what it does to light along rays.
+"""`Medium`: the matter in the box of a volume, and its effect on light along rays.
 
-Places are drawn without derivatives, by `tracking.py`; what is found there has them. Light f from a
-collision at t, which has the density σ(t) T(t), T = exp(-τ), has the derivative
+`tracking.py` draws places without derivatives; light from these places has derivatives. Light f
+from a collision at t, which has the density σ(t) T(t) with T = exp(-τ), has the derivative
 
     ∂(f σ T) / (σ T) = ∂f + f (∂σ(t)/σ(t) - ∂τ),   ∂τ = ∫ ∂σ ds from 0 to t = mean of t ∂σ(ut)
 
-for u even in [0, 1), and the share T that comes through has -T ∂τ. So one more look-up, at one u,
-makes each unbiased, also where σ meets its majorant and null collisions have no derivative. Nothing
-collides where σ = 0: there only ∂τ is found.
+for u uniform in [0, 1), and the transmitted share T has the derivative -T ∂τ. One more look-up, at
+one u, thus makes each unbiased, even where σ meets its majorant and null collisions have no
+derivative. Nothing collides where σ = 0: there only ∂τ is found.
 """
 
 from dataclasses import dataclass
@@ -16,25 +16,27 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.channels import emission_of_rgb, spectrum_of_rgb, white
-from brdfkit.volumes.light.majorants import extinction_bounds
-from brdfkit.volumes.light.tracking import divide, transmittance
-from brdfkit.volumes.rays.along_ray import within
+from brdfkit.volumes.light.majorants import Majorants, compute_majorants
+from brdfkit.volumes.light.tracking import estimate_transmittance, split_light
+from brdfkit.volumes.rays.box import intersect_box
 
-TESTED = 1 << 14  # points at which an extinction is held against its majorants
-MOST_COLLISIONS = 1e6  # across a box; of smaller steps single precision loses some, and all in time
+replace_grad: Any = dr.replace_grad  # Dr.Jit's stub knows no result of it
+
+TESTED_POINTS = 1 << 14  # at which an extinction is compared to its majorants
+COLLISION_LIMIT = 1e6  # across a box: more take very long, and lose steps to single precision
 
 
 @dataclass(init=False, eq=False)
 class Medium:
-    """The matter of volumes of Mitsuba's, for its current variant.
+    """The matter that Mitsuba volumes describe, for the current variant.
 
-    extinction : σ; its box bounds all. A `transfer_function` has RGB as well.
-    scale : a factor of σ.
-    albedo : α, the share of what collides that is scattered; times RGB where that is an albedo.
-    emission : e, radiance that is added per length.
-    majorants : bounds of σ, from `bound` on.
+    `extinction` is σ, whose box bounds the medium; a `transfer_function` has RGB as well. `scale`
+    is a factor of σ. `albedo` is α, the share of collisions that scatter light, times RGB where
+    that is an albedo. `emission` is e, the radiance that is added per length. `majorants` are
+    bounds of σ, which `update_majorants` computes.
     """
 
     extinction: Any
@@ -43,34 +45,42 @@ class Medium:
     emission: Any
     majorants: Any
 
-    def __init__(self, extinction, scale, albedo, emission):
+    def __init__(
+        self,
+        extinction: MitsubaObject,
+        scale: JitFloat,
+        albedo: MitsubaObject,
+        emission: MitsubaObject,
+    ) -> None:
         self.extinction, self.scale = extinction, scale
         self.albedo, self.emission, self.majorants = albedo, emission, None
-        # What RGB of a transfer function means
+        # The meaning of RGB if σ is a transfer function
         function = getattr(extinction, "function", None)
         self.colour = None if function is None else function.colour
         self.reflectance, self.light, self.white = spectrum_of_rgb(), emission_of_rgb(), white()
 
-    def bound(self, local):
-        """Find the majorants anew: those of coarse cells if `local`, else one.
+    def update_majorants(self, local: bool) -> None:
+        """Compute the majorants again, for coarse cells if `local`, otherwise one for all.
 
-        Raises `BrdfkitError` for an extinction that they do not bound, or that is in another unit.
+        Raises `BrdfkitError` if they do not bound the extinction, or if it is far too large.
         """
         with dr.suspend_grad():
-            self.majorants = extinction_bounds(self.extinction, self.scale, local)
-            self.majorants.require(self.sigma, TESTED)
+            self.majorants = compute_majorants(self.extinction, self.scale, local)
+            self.majorants.require(self.sigma, TESTED_POINTS)
         require_unit(self.majorants)
 
-    def sigma(self, p, active=True):
-        """σ at points."""
+    def sigma(self, p: JitVector, active: JitMask = True) -> JitFloat:
+        """Return the extinction σ at points `p`."""
         import mitsuba as mi
 
         it = dr.zeros(mi.Interaction3f)
         it.p = p
         return self.scale * self.extinction.eval_1(it, active)
 
-    def matter(self, it, active):
-        """σ, α, and the light that σ RGB is: e / σ."""
+    def coefficients(
+        self, it: MitsubaObject, active: JitMask
+    ) -> tuple[JitFloat, JitColour, JitColour]:
+        """Return σ, α, and the radiance RGB that is emitted per σ and length."""
         import mitsuba as mi
 
         albedo, light = mi.unpolarized_spectrum(self.albedo.eval(it, active)), 0
@@ -83,53 +93,71 @@ class Medium:
             light = self.light(rgb, it)
         return self.scale * sigma, albedo, light
 
-    def divide(self, ray, end, sampler, active):
-        """The share of light that comes through before `end`, that which collides, and where.
+    def split_light(
+        self, ray: MitsubaObject, end: JitFloat, sampler: MitsubaObject, active: JitMask
+    ) -> tuple[JitFloat, JitFloat, JitFloat]:
+        """Return the shares of light that pass and that collide before `end`, and a collision.
 
-        The first has the derivatives of T, and is NaN where σ was above its majorant.
+        The first share has the derivatives of T, and is NaN where σ exceeds its majorant. The
+        collision is a distance.
         """
-        near, far = self.inside(ray, end)
-        share, collided, t, _ = divide(self.sigma, self.majorants, ray, near, far, sampler, active)
-        depth = self.depth(ray, end, sampler, active)
-        return dr.replace_grad(share, -share * depth), collided, t
+        near, far = self.clip_to_box(ray, end)
+        share, collided, t, _ = split_light(
+            self.sigma, self.majorants, ray, near, far, sampler, active
+        )
+        depth = self.sample_depth(ray, end, sampler, active)
+        return replace_grad(share, -share * depth), collided, t
 
-    def transmittance(self, ray, end, sampler, active):
-        """A random share of light, of the mean T from the ray's origin to `end`."""
-        near, far = self.inside(ray, end)
-        share, _ = transmittance(self.sigma, self.majorants, ray, near, far, sampler, active)
-        return dr.replace_grad(share, -share * self.depth(ray, end, sampler, active))
+    def transmittance(
+        self, ray: MitsubaObject, end: JitFloat, sampler: MitsubaObject, active: JitMask
+    ) -> JitFloat:
+        """Return a random share of light, whose mean is T from the ray's origin to `end`."""
+        near, far = self.clip_to_box(ray, end)
+        share, _ = estimate_transmittance(
+            self.sigma, self.majorants, ray, near, far, sampler, active
+        )
+        return replace_grad(share, -share * self.sample_depth(ray, end, sampler, active))
 
-    def glow(self, ray, end, sampler, active, own=False):
-        """The radiance that e adds along rays, from a random place. With `own`, σ RGB as well."""
+    def sample_emission(
+        self,
+        ray: MitsubaObject,
+        end: JitFloat,
+        sampler: MitsubaObject,
+        active: JitMask,
+        with_rgb: bool = False,
+    ) -> JitColour:
+        """Return the radiance of e, and of σ RGB if `with_rgb`, up to `end`, by a random place."""
         import mitsuba as mi
 
-        near, far = self.inside(ray, end)
+        near, far = self.clip_to_box(ray, end)
         length = dr.maximum(far - near, 0)
         t = near + sampler.next_1d(active) * length
         it = dr.zeros(mi.Interaction3f)
         it.p, it.wavelengths = ray(t), ray.wavelengths
         e = mi.unpolarized_spectrum(self.emission.eval(it, active)) * self.white(it)
-        if own:
-            sigma, _, light = self.matter(it, active)
+        if with_rgb:
+            sigma, _, light = self.coefficients(it, active)
             e += sigma * light
         return length * self.transmittance(ray, t, sampler, active) * e
 
-    def depth(self, ray, end, sampler, active):
-        """The optical depth of rays up to `end`, by σ at a random place."""
-        near, far = self.inside(ray, end)
+    def sample_depth(
+        self, ray: MitsubaObject, end: JitFloat, sampler: MitsubaObject, active: JitMask
+    ) -> JitFloat:
+        """Return an estimate of the optical depth of rays up to `end`, by σ at a random place."""
+        near, far = self.clip_to_box(ray, end)
         length = dr.maximum(far - near, 0)
         return length * self.sigma(ray(near + sampler.next_1d(active) * length), active)
 
-    def inside(self, ray, end):
-        """The part of rays, up to `end`, within the box."""
-        near, far = within(ray, self.extinction)
+    def clip_to_box(self, ray: MitsubaObject, end: JitFloat) -> tuple[JitFloat, JitFloat]:
+        """Return where rays enter and leave the box, up to `end`."""
+        near, far = intersect_box(ray, self.extinction)
         return near, dr.minimum(far, end)
 
 
-def require_unit(majorants):
-    """Raise `BrdfkitError` for bounds so large for their box that no ray would get through it."""
+def require_unit(majorants: Majorants) -> None:
+    """Raise `BrdfkitError` if bounds are so large for their box that no ray would pass it."""
     collisions = float(majorants.values.max()) * np.linalg.norm(majorants.cube_to_world[:3, :3])
-    if collisions > MOST_COLLISIONS:
+    if collisions > COLLISION_LIMIT:
         raise BrdfkitError(
             f"The extinction reaches {majorants.values.max():.3g} per unit of length, and light "
             f"would collide {collisions:.2g} times across the volume, which takes forever; check "

@@ -1,29 +1,49 @@
-"""Direct light on a surface that is no shape of the scene, by lamps and by its BSDF.
+"""Direct light on a surface that is not a shape of the scene, such as an isosurface.
 
-Two directions for each sample, one drawn by the scene's emitters and one by the BSDF, each weighted
-by the balance heuristic [Veach & Guibas 1995]. Derivatives go through the weights as well, and the
-direction that the BSDF drew stays as it is in the world while the surface turns.
+Each sample has two directions, one drawn by the scene's emitters and one by the BSDF, which are
+weighted by the balance heuristic [Veach & Guibas 1995]. The weights have derivatives as well, and
+the direction that the BSDF drew is constant in the world while the surface turns.
 """
+
+from collections.abc import Callable
+from typing import TypeAlias
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
 from brdfkit.volumes.light.emitters import ray_to
 
+IsFree: TypeAlias = Callable[[MitsubaObject, JitMask], JitMask]
 
-def direct_light(scene, si, bsdf, sampler, shows, active):
-    """The radiance that a surface sends to where it is looked at from.
 
-    si, bsdf : the point, a `mi.SurfaceInteraction3f`, and its `mi.BSDF`.
-    shows : a function (ray, active) → whether a ray with its `maxt` is free; shapes are in its way
-        in any case.
+def direct_light(
+    scene: MitsubaObject,
+    si: MitsubaObject,
+    bsdf: MitsubaObject,
+    sampler: MitsubaObject,
+    is_free: IsFree,
+    active: JitMask,
+) -> JitColour:
+    """Return the radiance that a surface reflects towards the viewer.
+
+    `si` is the point, a `mi.SurfaceInteraction3f`. `is_free(ray, active)` returns whether nothing
+    but the scene's shapes, which always block light, may be in a ray's way up to its `maxt`.
     """
-    drawn = sampler.next_2d(active)
-    of_lamps = by_emitters(scene, si, bsdf, drawn, shows, active)
-    drawn = sampler.next_1d(active), sampler.next_2d(active)
-    return of_lamps + by_bsdf(scene, si, bsdf, *drawn, shows, active)
+    sample = sampler.next_2d(active)
+    by_emitters = _sample_emitters(scene, si, bsdf, sample, is_free, active)
+    sample1, sample2 = sampler.next_1d(active), sampler.next_2d(active)
+    return by_emitters + _sample_bsdf(scene, si, bsdf, sample1, sample2, is_free, active)
 
 
-def by_emitters(scene, si, bsdf, sample, shows, active):
+def _sample_emitters(
+    scene: MitsubaObject,
+    si: MitsubaObject,
+    bsdf: MitsubaObject,
+    sample: JitVector,
+    is_free: IsFree,
+    active: JitMask,
+) -> JitColour:
+    """Return the weighted light of a direction that the emitters draw."""
     import mitsuba as mi
 
     active = active & mi.has_flag(bsdf.flags(), mi.BSDFFlags.Smooth)
@@ -31,11 +51,20 @@ def by_emitters(scene, si, bsdf, sample, shows, active):
     active = active & (ds.pdf > 0)
     value, pdf = bsdf.eval_pdf(mi.BSDFContext(), si, si.to_local(ds.d), active)
     weight = dr.select(ds.delta, 1, ds.pdf / dr.select(active, ds.pdf + pdf, 1))
-    found = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * weight
-    return dr.select(active & shows(ray_to(si, ds), active), found, 0)
+    reflected = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * weight
+    return dr.select(active & is_free(ray_to(si, ds), active), reflected, 0)
 
 
-def by_bsdf(scene, si, bsdf, sample1, sample2, shows, active):
+def _sample_bsdf(
+    scene: MitsubaObject,
+    si: MitsubaObject,
+    bsdf: MitsubaObject,
+    sample1: JitFloat,
+    sample2: JitVector,
+    is_free: IsFree,
+    active: JitMask,
+) -> JitColour:
+    """Return the weighted light of a direction that the BSDF draws."""
     import mitsuba as mi
 
     context = mi.BSDFContext()
@@ -47,7 +76,7 @@ def by_bsdf(scene, si, bsdf, sample1, sample2, shows, active):
     f = mi.unpolarized_spectrum(f) / dr.detach(dr.select(active, bs.pdf, 1))
     f = dr.select(mirrored, mi.unpolarized_spectrum(value), f)
 
-    # The light in this direction, and its density
+    # The light from this direction, and its density
     ray = si.spawn_ray(wo)
     far = scene.ray_intersect(ray, active)
     emitter = far.emitter(scene)
@@ -58,4 +87,4 @@ def by_bsdf(scene, si, bsdf, sample1, sample2, shows, active):
     by_lamp = scene.pdf_emitter_direction(si, ds, active & ~mirrored)
     weight = dr.select(mirrored, 1, pdf / dr.select(pdf + by_lamp > 0, pdf + by_lamp, 1))
     ray.maxt = far.t
-    return dr.select(active & shows(ray, active), f * light * weight, 0)
+    return dr.select(active & is_free(ray, active), f * light * weight, 0)

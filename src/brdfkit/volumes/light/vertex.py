@@ -1,16 +1,21 @@
-"""`Vertex`: where paths of light turn, in a medium or on a surface, each ray's its own."""
+"""`Vertex`: the points where paths of light turn, each in a medium or on a surface."""
 
 from dataclasses import dataclass
 from typing import Any
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
+
+replace_grad: Any = dr.replace_grad  # Dr.Jit's stub knows no result of it
+
 
 @dataclass(eq=False)
 class Vertex:
-    """Where rays were scattered: by a phase function where `in_medium`, by a BSDF `on_surface`.
+    """The points where rays are scattered: by a `phase` function in a medium, or by a BSDF.
 
-    mei, si : the `mi.MediumInteraction3f` and the `mi.SurfaceInteraction3f`.
+    `in_medium` and `on_surface` are masks of the rays, `mei` and `si` their
+    `mi.MediumInteraction3f` and `mi.SurfaceInteraction3f`.
     """
 
     phase: Any
@@ -20,13 +25,13 @@ class Vertex:
     on_surface: Any
 
     @property
-    def active(self):
+    def active(self) -> JitMask:
         """Whether light is scattered at all."""
         return self.in_medium | self.on_surface
 
     @property
-    def interaction(self):
-        """The place, from which rays are sent."""
+    def interaction(self) -> MitsubaObject:
+        """The `mi.Interaction3f` from which rays are sent."""
         import mitsuba as mi
 
         it = dr.zeros(mi.Interaction3f)
@@ -34,8 +39,8 @@ class Vertex:
         it.time, it.wavelengths = self.mei.time, self.mei.wavelengths
         return it
 
-    def eval_pdf(self, wo):
-        """The light that is scattered into `wo`, with a surface's cosine, and its density."""
+    def eval_pdf(self, wo: JitVector) -> tuple[JitColour, JitFloat]:
+        """Return the share of light scattered towards `wo`, cosine included, and its density."""
         import mitsuba as mi
 
         phase = self.phase.eval_pdf(mi.PhaseFunctionContext(), self.mei, wo, self.in_medium)
@@ -45,10 +50,10 @@ class Vertex:
         values = (mi.unpolarized_spectrum(value) for value in (phase[0], bsdf[0]))
         return self.either(*values), self.either(phase[1], bsdf[1])
 
-    def sample(self, sampler):
-        """A direction, its weight, and its density: 0 where no other way finds that direction.
+    def sample(self, sampler: MitsubaObject) -> tuple[JitVector, JitColour, JitFloat]:
+        """Return a direction, its weight, and its density, 0 if samples of emitters cannot find it.
 
-        The weight has the derivatives of what is scattered, the direction and the density none.
+        The weight has derivatives; the direction and the density have none.
         """
         import mitsuba as mi
 
@@ -69,14 +74,15 @@ class Vertex:
         value, _ = self.eval_pdf(wo)
         smooth = drawn & ~delta
         attached = dr.select(smooth, value / dr.select(smooth, pdf, 1), weight)
-        return wo, dr.replace_grad(weight, attached), dr.select(smooth, pdf, 0)
+        return wo, replace_grad(weight, attached), dr.select(smooth, pdf, 0)
 
-    def either(self, in_medium, on_surface):
+    def either(self, in_medium: Any, on_surface: Any) -> Any:
+        """Select one of two values, for rays in the medium or on a surface."""
         return dr.select(self.in_medium, in_medium, on_surface)
 
 
-def medium_interaction(ray, t):
-    """The `mi.MediumInteraction3f` of rays at t."""
+def medium_interaction(ray: MitsubaObject, t: JitFloat) -> MitsubaObject:
+    """Return the `mi.MediumInteraction3f` of rays at the distance `t`."""
     import mitsuba as mi
 
     mei = dr.zeros(mi.MediumInteraction3f)

@@ -1,33 +1,37 @@
-"""Volumes that are made, not loaded: every file of this folder is one, by its name.
+"""Synthetic volumes: every file of this folder makes one, which users load by the file's name.
 
-Such a file defines ``SIZE``, the number of voxels along each axis by default, ``BYTES``, the memory
-that a voxel takes, and ``make(size)``, the `Volume` of `size` (nx, ny, nz) voxels. What is known of
-it exactly stands beside that.
+A file defines ``SIZE``, the default number of voxels along each axis; ``BYTES``, the memory per
+voxel while it is made; and ``make(size)``, which returns the `Volume` of `size` (nx, ny, nz)
+voxels.
 """
 
 import importlib
 import math
 from functools import cache
+from typing import Any
 
 from brdfkit.core.discovery.plugin_files import find_module_names
+from brdfkit.volumes.volume import Volume
 
 
 @cache
-def names():
-    """The names of the made volumes."""
+def list_names() -> list[str]:
+    """Return the names of the synthetic volumes."""
     return find_module_names(__path__)
 
 
-def needed(name, size):
-    """The memory [bytes] in which the volume of that name and `size` is made."""
-    return math.prod(size) * _module(name).BYTES
+def memory_needed(name: str, size: tuple[int, int, int]) -> int:
+    """Return the memory [bytes] that is needed to make a volume of this name and `size`."""
+    return math.prod(size) * int(_load_module(name).BYTES)
 
 
-def make(name, size=None):
-    """The made volume of that name; `size`: (nx, ny, nz), by default its own."""
-    module = _module(name)
-    return module.make(size or (module.SIZE,) * 3)
+def make(name: str, size: tuple[int, int, int] | None = None) -> Volume:
+    """Make the volume of this name, with `size` (nx, ny, nz) voxels or its default size."""
+    module = _load_module(name)
+    volume: Volume = module.make(size or (module.SIZE,) * 3)
+    return volume
 
 
-def _module(name):
+def _load_module(name: str) -> Any:
+    """Return the module that makes the volume of this name."""
     return importlib.import_module(f"{__name__}.{name}")

@@ -1,24 +1,24 @@
 """Smoke: noise of many sizes within a ball, from 0 at its surface to 1.
 
-White noise is smoothed to a spectrum of k^(-11/3), Kolmogorov's of turbulence [Kolmogorov 1941],
-by the Fourier transform; seeded, so that a size has one smoke.
+A Fourier transform gives white noise the spectrum k^(-11/3), Kolmogorov's for turbulence at the
+wave number k [Kolmogorov 1941]. The noise is seeded, so that each size always has the same smoke.
 """
 
 import numpy as np
 
-from brdfkit.volumes.made._grid import centres, filling_cube
+from brdfkit.volumes.made._grid import Size, fill_cube, voxel_centres
 from brdfkit.volumes.volume import Volume
 
 SIZE = 64
-BYTES = 62  # that a voxel takes while it is made
-EXPONENT = -11 / 6  # of the amplitude: half of that of the power
+BYTES = 62  # per voxel while the volume is made
+EXPONENT = -11 / 6  # of the amplitude, half the exponent of the power
 
 
-def make(size, seed=0):
-    """The smoke."""
+def make(size: Size, seed: int = 0) -> Volume:
+    """Make the smoke of `size` voxels."""
     rng = np.random.default_rng(seed)
-    to_world = filling_cube(size, 1.0)
-    x, y, z = centres(size, to_world)
+    to_world = fill_cube(size, 1.0)
+    x, y, z = voxel_centres(size, to_world)
     shape = size[::-1]
     kz, ky = (np.fft.fftfreq(n, 1 / n) for n in shape[:2])
     kx = np.fft.rfftfreq(shape[2], 1 / shape[2])

@@ -1,1 +1,1 @@
-"""What a ray meets in a volume: values along it, the largest one, surfaces and their normals."""
+"""Rays through volumes: their box, values between voxels, crossings and largest values."""

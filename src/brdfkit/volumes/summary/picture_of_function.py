@@ -3,7 +3,7 @@
 import numpy as np
 
 from brdfkit.core.colours import to_srgb
-from brdfkit.volumes.transfer.windows import fitted
+from brdfkit.volumes.transfer.windows import scale_to_values
 
 POINTS = 400  # along each axis
 LEVELS = 0.01, 0.25, 0.5, 0.75  # of A, as lines
@@ -12,7 +12,7 @@ VEIL = 0.85  # opacity of the colours where A is 1
 
 def for_volume(transfer, volume):
     """The function with the volume's values and its unit of length, as renderers have it."""
-    transfer = fitted(transfer, volume.values)
+    transfer = scale_to_values(transfer, volume.values)
     return transfer.per(volume.unit) if volume.unit and transfer.length_unit else transfer
 
 

@@ -1,43 +1,57 @@
-"""Boundaries between materials, as triangles of values × gradient magnitudes.
+"""Transfer functions of boundaries between materials: triangles over values × gradient magnitudes.
 
-Across a boundary that a scanner blurs, values go from one material's to the other's, and are the
-steeper the nearer they are to the mean of both. So a shell of one thickness about the surface of
-that value f is where |v - f| < thickness · g [Levoy 1988]. A triangle that ends at a `steepest` g
-leaves out what goes through the same values faster, such as skin to air [Kniss et al. 2002].
+Across a boundary that a scanner blurs, values v change from one material's to the other's, and
+their gradient magnitude g is largest near the mean f of both. A shell of constant thickness about
+the surface v = f is thus where |v - f| < thickness · g [Levoy 1988]. A triangle that ends at a
+`steepest` g omits what passes through the same values faster, such as skin to air [Kniss et al.
+2002].
 """
+
+from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
 from brdfkit.core.arguments import to_pair, to_positive
+from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError
 
-VALUES, GRADIENTS = 129, 33  # of the grid that holds the triangles
-FADE = 0.25  # of the steepest gradient: how far above it a boundary fades
+VALUES, GRADIENTS = 129, 33  # size of the grid that holds the triangles
+FADE = 0.25  # share of the steepest gradient within which a boundary fades above it
 
 
-def function(cls, rows, thickness, values, extinction, colour):
-    """The transfer function, of the class `cls`, of boundaries; see `from_boundaries`."""
+def from_boundaries(
+    cls: Any,
+    boundaries: ArrayLike,
+    thickness: float,
+    values: tuple[float, float],
+    extinction: float,
+    colour: str,
+) -> Any:
+    """Return the transfer function, of the class `cls`, of `boundaries`; see `Conversions`."""
     thickness, (low, high) = to_positive("thickness", thickness), to_pair("values", values)
     v = np.linspace(low, high, VALUES)
-    rows = _checked(rows)
+    rows = _check_rows(boundaries)
     g = np.linspace(0, (1 + FADE) * rows[:, 1].max(), GRADIENTS)[:, None]
-    shares = []
+    triangles = []
     for level, steepest, *_, a in rows:
         near = 1 - np.abs(v - level) / np.maximum(thickness * g, 1e-12 * (high - low))
         ends = (1 + FADE - g / steepest) / FADE
-        shares.append(a * np.clip(near, 0, 1) * np.clip(ends, 0, 1) * (g > 0))
-    shares = np.array(shares)  # (k, m, n)
-    shares[..., [0, -1]] = 0  # beyond its ends a function stays as it is there
-    # Where none shows, the colours still go from one to the next: textures are interpolated
+        triangles.append(a * np.clip(near, 0, 1) * np.clip(ends, 0, 1) * (g > 0))
+    shares = np.array(triangles)  # (k, m, n)
+    shares[..., [0, -1]] = 0  # beyond its ends a function is constant
+    # Where nothing shows, colours still change gradually, because textures are interpolated
     weights = shares + 1e-6 / (1e-3 + np.abs(v - rows[:, 0, None, None]) / (high - low))
     rgb = np.einsum("kmn,kc->mnc", weights / weights.sum(axis=0), rows[:, 2:5])
     rgba = np.dstack([rgb, 1 - np.prod(1 - shares, axis=0)])
     return cls(v, rgba, extinction, colour, g[:, 0], name="boundaries")
 
 
-def _checked(rows):
+def _check_rows(boundaries: ArrayLike) -> FloatArray:
+    """Return the rows (k, 6) of boundaries as floats; raise `BrdfkitError` if they are wrong."""
     try:
-        rows = np.array(rows, float)
+        rows = np.array(boundaries, float)
     except (TypeError, ValueError):
         rows = np.empty(0)
     if rows.ndim != 2 or rows.shape[1:] != (6,) or not np.isfinite(rows).all():

@@ -1,16 +1,24 @@
-"""Matplotlib's colour maps as control points."""
+"""Transfer functions of Matplotlib's colour maps, and the search of control points."""
+
+from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
 from brdfkit.core.arguments import to_pair
+from brdfkit.core.array_types import ArrayLike, FloatArray, IntArray
 from brdfkit.core.colours import from_srgb
 from brdfkit.core.errors import BrdfkitError, no_such
 
 
-def require_order(points, what):
-    """`points` (n,) as floats; `BrdfkitError` unless there are two or more and they rise."""
+def to_rising(given: ArrayLike, what: str) -> FloatArray:
+    """Return numbers as floats (n,); raise `BrdfkitError` unless there are two or more that rise.
+
+    The error calls them `what`.
+    """
     try:
-        points = np.array(points, float)
+        points = np.array(given, float)
     except (TypeError, ValueError):
         points = np.empty(0)
     if points.ndim != 1 or len(points) < 2 or not np.isfinite(points).all():
@@ -27,12 +35,13 @@ def require_order(points, what):
     return points
 
 
-def places(x, points):
-    """The points below and above `x` (...), and the share (..., 1) of the upper one.
+def bracket_points(x: FloatArray, points: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
+    """Return the indices of the points below and above `x` (...), and the upper one's share.
 
-    Of points at one place the last counts from there on; beyond the ends x is at the end.
+    The share has the shape (..., 1). If several points are at one place, the last counts from there
+    on. Beyond the ends, x counts as the end.
 
-    >>> places(np.array([0.5, 9.0]), np.array([0.0, 2.0]))
+    >>> bracket_points(np.array([0.5, 9.0]), np.array([0.0, 2.0]))
     (array([0, 0]), array([1, 1]), array([[0.25],
            [1.  ]]))
     """
@@ -42,17 +51,24 @@ def places(x, points):
     return low, low + 1, np.clip(ahead, 0, 1)[..., None]
 
 
-def function(cls, colormap, values, opacity, extinction, colour):
-    """The transfer function, of the class `cls`, with the colours of a colour map."""
+def from_colormap(
+    cls: Any,
+    colormap: Any,
+    values: tuple[float, float],
+    opacity: ArrayLike,
+    extinction: float,
+    colour: str,
+) -> Any:
+    """Return the transfer function, of the class `cls`, of a colour map; see `Conversions`."""
     low, high = to_pair("values", values)
-    name, shares, rgba = points(colormap, opacity)
+    name, shares, rgba = _read_colormap(colormap, opacity)
     return cls(low + (high - low) * shares, rgba, extinction, colour, name=name)
 
 
-def points(colormap, opacity):
-    """The name of a colour map, its places (n,), 0 to 1, and RGBA (n, 4) in linear sRGB.
+def _read_colormap(colormap: Any, opacity: ArrayLike) -> tuple[str, FloatArray, FloatArray]:
+    """Return the name of a colour map, its points (n,) from 0 to 1, and their RGBA (n, 4).
 
-    `opacity` (k, 2): points (place, A).
+    RGB is linear sRGB; A is interpolated in `opacity`, rows (point, A).
     """
     import matplotlib
 
@@ -64,11 +80,11 @@ def points(colormap, opacity):
     ramp = np.asarray(opacity, float)
     if ramp.ndim != 2 or ramp.shape[1] != 2:
         raise BrdfkitError("opacity should be points (share of the range, A), (k, 2).")
-    at = require_order(ramp[:, 0], "the shares of opacity")
+    at = to_rising(ramp[:, 0], "the shares of opacity")
     before_steps = np.nextafter(at[1:][np.diff(at) == 0], -np.inf)
     corners = np.clip(np.concatenate([at, before_steps]), 0, 1)
-    shares = np.union1d(np.linspace(0, 1, colormap.N), corners)  # of the map and the ramp
-    low, high, t = places(shares, at)
+    shares = np.union1d(np.linspace(0, 1, colormap.N), corners)  # points of the map and of the ramp
+    low, high, t = bracket_points(shares, at)
     alpha = (1 - t[:, 0]) * ramp[low, 1] + t[:, 0] * ramp[high, 1]
     rgb = from_srgb(colormap(shares)[:, :3])
-    return colormap.name, shares, np.column_stack([rgb, alpha])
+    return str(colormap.name), shares, np.column_stack([rgb, alpha])

@@ -1,16 +1,19 @@
-"""Transfer functions in files: JSON of our own, Slicer's presets, and the presets of this room.
+"""Files of transfer functions: brdfkit's JSON, Slicer's presets, and the shipped presets.
 
-The JSON has the fields of `TransferFunction`. One over values alone has ``"points"``, rows (value,
-R, G, B, A); one over gradient magnitudes, too, has ``"values"``, ``"gradients"`` and ``"rgba"``.
-Instead of these, ``"points"`` may stand with ``"gradient_ramp"``, rows (gradient magnitude,
-factor), which is shorter to write by hand. So may ``"boundaries"``, rows (value, steepest gradient,
-R, G, B, A), with their ``"thickness"`` and ``"range"``, the two values of `from_boundaries`.
+The JSON has the fields of `TransferFunction`. A function over values alone has ``"points"``, rows
+(value, R, G, B, A). A function over gradient magnitudes as well has ``"values"``, ``"gradients"``
+and ``"rgba"``; or, shorter to write by hand, ``"points"`` with a ``"gradient_ramp"``, rows
+(gradient magnitude, factor); or ``"boundaries"``, rows (value, steepest gradient, R, G, B, A), with
+their ``"thickness"`` and ``"range"``, the two values of `from_boundaries`.
 """
+
+from __future__ import annotations
 
 import json
 import os
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -25,35 +28,35 @@ ALLOWED = {"kind", "extinction", "points", "gradient_ramp", "values", "gradients
 ALLOWED |= {"boundaries", "thickness", "range"}
 
 
-def presets():
-    """The files of the presets that come with brdfkit, by name."""
+def list_presets() -> dict[str, Path]:
+    """Return the files of the presets that come with brdfkit, by name."""
     folder = Path(__file__).with_name("presets")
     return {path.stem: path for path in sorted(folder.glob("*.json"))}
 
 
-def load(cls, path):
-    """The transfer function, of the class `cls`, in a file or of a preset's name."""
+def load(cls: Any, path: str | os.PathLike[str]) -> Any:
+    """Load the transfer function, of the class `cls`, of a file or of a preset's name."""
     text = os.fspath(path)
     file, _, part = text.partition("#")
-    if text in presets():
-        return _read_json(cls, presets()[text])
+    if text in list_presets():
+        return _read_json(cls, list_presets()[text])
     if file.lower().endswith(".xml"):
-        return slicer_presets.read(cls, Path(file), part)
+        return slicer_presets.read_preset(cls, Path(file), part)
     if not Path(text).suffix and not Path(text).exists():
-        raise no_such("transfer function", text, presets())
+        raise no_such("transfer function", text, list_presets())
     return _read_json(cls, Path(text))
 
 
-def save(function, path):
-    """Write a transfer function to a .json."""
+def save(function: Any, path: str | os.PathLike[str]) -> None:
+    """Write a transfer function to a .json file."""
     if Path(path).suffix.lower() != ".json":
         raise BrdfkitError(f"{path}: transfer functions are written as .json; choose that suffix.")
     with write_safely(path) as beside:
         beside.write_text(to_json(function), encoding="utf-8")
 
 
-def to_json(function):
-    """The text of a transfer function, as it stands in a file."""
+def to_json(function: Any) -> str:
+    """Return the text of a transfer function's file."""
     words = {word: getattr(function, word) for word in WORDS}
     record = {"kind": KIND, **words, "extinction": function.extinction}
     if function.gradients is None:
@@ -61,23 +64,24 @@ def to_json(function):
     else:
         fields = "values", "gradients", "rgba"
         record |= {field: getattr(function, field).tolist() for field in fields}
-    lines = [f"  {json.dumps(key)}: {_rows(value)}" for key, value in record.items()]
+    lines = [f"  {json.dumps(key)}: {_format_rows(value)}" for key, value in record.items()]
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
-def _rows(value):
-    """JSON with a line for each row of an array, for people who edit it."""
+def _format_rows(value: Any) -> str:
+    """Return JSON with a line for each row of an array, for people who edit it."""
     if not (isinstance(value, list) and isinstance(value[0], list)):
         return json.dumps(value, ensure_ascii=False)
     return "[\n    " + ",\n    ".join(json.dumps(row) for row in value) + "\n  ]"
 
 
-def _read_json(cls, path):
+def _read_json(cls: Any, path: Path) -> Any:
+    """Read the transfer function, of the class `cls`, in a .json file."""
     return from_json(cls, read_bytes(path), path)
 
 
-def from_json(cls, text, where):
-    """The transfer function, of the class `cls`, in a `text`; errors call it `where`."""
+def from_json(cls: Any, text: str | bytes, where: str | Path) -> Any:
+    """Parse the transfer function, of the class `cls`, in a `text`; errors call it `where`."""
     try:
         record = json.loads(text)
     except ValueError as error:
@@ -93,14 +97,15 @@ def from_json(cls, text, where):
         raise BrdfkitError(f"{where}: {error}") from error
 
 
-def _from_record(cls, record):
-    settings = {word: to_printable(record[word]) for word in WORDS if word in record}
+def _from_record(cls: Any, record: dict[str, Any]) -> Any:
+    """Return the transfer function, of the class `cls`, with the fields of a JSON object."""
+    settings: dict[str, Any] = {w: to_printable(record[w]) for w in WORDS if w in record}
     settings["extinction"] = record.get("extinction", 1.0)
     if "boundaries" in record:
-        given = [record.get(key) for key in ("boundaries", "thickness", "range")]
+        shells = [record.get(key) for key in ("boundaries", "thickness", "range")]
         colour = settings.pop("colour", "albedo")
-        found = cls.from_boundaries(*given, settings.pop("extinction"), colour)
-        return replace(found, **settings)
+        function = cls.from_boundaries(*shells, settings.pop("extinction"), colour)
+        return replace(function, **settings)
     if "points" not in record:
         fields = "values", "rgba", "gradients"
         return cls(**{field: record.get(field) for field in fields}, **settings)

@@ -1,30 +1,38 @@
-"""A transfer function as a texture, looked up by renderers: derivatives by all of its numbers."""
+"""`TransferLookup`: a transfer function as a texture for renderers, differentiable throughout."""
 
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import (
+    AnyArray,
+    FloatArray,
+    JitColour,
+    JitFloat,
+    JitMask,
+    JitVector,
+)
 from brdfkit.volumes.transfer.preintegration import Preintegration
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 
-# Of a table over values, at least: a step in a function is one of them wide; and at most, or twice
-STEPS, MOST = 2**12, 2**15
+MIN_STEPS = 2**12  # of a table over values; a jump of the function is one step wide
+MAX_STEPS = 2**15  # or up to twice as many
 
 
-@dataclass(init=False, eq=False)  # of a dataclass `dr.freeze` finds the arrays
+@dataclass(init=False, eq=False)  # `dr.freeze` finds the arrays of a dataclass
 class TransferLookup:
     """A `TransferFunction` in the memory of Mitsuba's current variant.
 
-    function : what it was made of.
-    table : `mi.TensorXf` (n, 4) of RGBA at even steps of the values, or (m, n, 4), m of gradient
-        magnitudes. Optimisers may change it; its numbers should stay 0 or more, and A 1 or less.
-    extinction : `mi.Float`, σ_t where A is 1 [1/unit of length].
-    axes : (low, scale, first) of values, and of gradient magnitudes.
-    texture : the table as a `mi.Texture1f` or `mi.Texture2f`.
-    integrals : its `Preintegration`; None of a function of gradient magnitudes.
+    `function` is its source. `table` is a `mi.TensorXf` of RGBA (n, 4) at even steps of the values,
+    or (m, n, 4) at even steps of gradient magnitudes as well. Optimisers may change it; its numbers
+    should stay ≥ 0, and A ≤ 1. `extinction` is a `mi.Float`, σ_t where A is 1 [1/unit of length].
+    `axes` are (low, scale, first) for values, and for gradient magnitudes. `texture` is the table
+    as a `mi.Texture1f` or `mi.Texture2f`. `integrals` are its `Preintegration`, None for a function
+    of gradient magnitudes.
     """
 
     function: TransferFunction
@@ -34,85 +42,87 @@ class TransferLookup:
     texture: Any
     integrals: Any
 
-    def __init__(self, function):
+    def __init__(self, function: TransferFunction) -> None:
         import mitsuba as mi
 
-        self.function, n = function, 1 + steps(function.values)
+        self.function, n = function, 1 + choose_steps(function.values)
         self.table = mi.TensorXf(function.table(n))
         self.extinction = mi.Float(function.extinction)
-        ranges = function.range, function.gradient_range
+        ranges: list[Any] = [function.range, function.gradient_range]
         sizes = self.table.shape[-2::-1]  # n, and m
-        # Ends of the range are centres of texels: (place - low) · scale + first
+        # The ends of the range are centres of texels: (place - low) · scale + first
         self.axes = [
             (mi.Float(low), mi.Float((size - 1) / size / (high - low)), 0.5 / size)
             for (low, high), size in zip(ranges[: len(sizes)], sizes, strict=True)
         ]
         dr.make_opaque(self.table, self.extinction, self.axes)
-        self.changed()
+        self.update()
 
-    def changed(self):
-        """To be called after `table` or `extinction` were assigned."""
+    def update(self) -> None:
+        """Update what depends on `table` and `extinction`, after they were assigned."""
         import mitsuba as mi
 
-        kind = mi.Texture1f if len(self.axes) == 1 else mi.Texture2f
+        kind: Any = mi.Texture1f if len(self.axes) == 1 else mi.Texture2f
         self.texture = kind(self.table, use_accel=False, wrap_mode=dr.WrapMode.Clamp)
         self.integrals = Preintegration(self.table) if len(self.axes) == 1 else None
 
-    def __call__(self, places, active=True):
-        """RGB, a `mi.Color3f` in linear sRGB, and A; `places`: [value], or [value, ‖∇V‖]."""
+    def __call__(
+        self, places: Sequence[JitFloat], active: JitMask = True
+    ) -> tuple[JitColour, JitFloat]:
+        """Return RGB in linear sRGB, and A, at `places`, [value] or [value, ‖∇V‖]."""
         import mitsuba as mi
 
         at = [
             (x - low) * scale + first
             for x, (low, scale, first) in zip(places, self.axes, strict=True)
         ]
-        point = mi.Point1f if len(at) == 1 else mi.Point2f
+        point: Any = mi.Point1f if len(at) == 1 else mi.Point2f
         r, g, b, a = self.texture.eval(point(*at), active)
         return mi.Color3f(r, g, b), a
 
-    def integrals_at(self, value):
-        """What `mean_between` takes, of one value."""
+    def integrals_at(self, value: JitFloat) -> tuple[JitFloat, JitVector, JitVector]:
+        """Return the integrals up to a value, an end for `mean_between`."""
         low, scale, _ = self.axes[0]
         return self.integrals.at((value - low) * scale * (self.integrals.steps + 1))
 
-    def mean_between(self, front, back):
-        """The means of A RGB, a `mi.Color3f`, and of A, as the value goes from one to the other."""
+    def mean_between(self, front: Any, back: Any) -> tuple[JitColour, JitFloat]:
+        """Return the means of A RGB and of A between two values, as `integrals_at` gives them."""
         import mitsuba as mi
 
         r, g, b, a = self.integrals.mean(front, back)
         return mi.Color3f(r, g, b), a
 
-    def table_over_values(self):
-        """(n, 4) in NumPy: the table, or of each value the largest over gradient magnitudes."""
+    def table_over_values(self) -> AnyArray:
+        """Return the table (n, 4), for each value the largest over all gradient magnitudes."""
         table = np.array(self.table)
         return table if table.ndim == 2 else table.max(axis=0)
 
-    def steps_of(self, values):
-        """Places of `values`, NumPy's, in the table: 0 is its first row, n - 1 its last."""
+    def to_rows(self, values: AnyArray) -> AnyArray:
+        """Return the places of `values` in the table: 0 is its first row, n - 1 its last one."""
         low, high = self.function.range
         return np.clip((values - low) / (high - low), 0, 1) * (self.table.shape[-2] - 1)
 
 
-def steps(values):
-    """How many even steps, `STEPS` or more, best meet all `values` (k,), rising.
+def choose_steps(values: FloatArray) -> int:
+    """Return the number of even steps, `MIN_STEPS` or more, that best meet rising `values` (k,).
 
-    So that corners of a function, and labels, lie on rows of its table. Values that are nearer to
-    each other have more steps, up to a limit, beyond which a warning tells that they share a row.
+    Corners of a function, and labels, then lie on rows of its table. Values that are closer to each
+    other get more steps, up to a limit beyond which a warning says that they share a row.
 
-    >>> steps(np.array([0.0, 7.0, 29.0]))
+    >>> choose_steps(np.array([0.0, 7.0, 29.0]))
     4118
     """
     places = (values - values[0]) / (values[-1] - values[0])
     gaps = np.diff(places)
     gap = gaps[gaps > 0].min()
-    if gap < 0.5 / MOST:
+    if gap < 0.5 / MAX_STEPS:
         warnings.warn(
             f"values of the transfer function are {gap:.1g} of its range apart; what is between "
-            f"them is not seen below {0.5 / MOST:.1g}: number labels anew, or cut the range.",
+            f"them is not seen below {0.5 / MAX_STEPS:.1g}: number labels anew, or cut the range.",
             stacklevel=2,
         )
-    least = int(np.clip(np.ceil(1 / gap), STEPS, MOST))
-    if np.ptp(gaps) == 0:  # any number of them, as of labels
+    least = int(np.clip(np.ceil(1 / gap), MIN_STEPS, MAX_STEPS))
+    if np.ptp(gaps) == 0:  # even values, such as labels, meet a multiple of their number
         return (len(values) - 1) * -(-least // (len(values) - 1))
     counts = np.arange(least, 2 * least)
     worst = np.zeros(len(counts))

@@ -1,14 +1,14 @@
-"""`TransferFunction`: what a volume's values mean to light: colour, and extinction.
+"""`TransferFunction`: the colour and extinction that a volume's values stand for.
 
-At a point with the value v, and the gradient magnitude g, the function has RGB and A. They mean
+At a point with the value v and the gradient magnitude g, the function has RGB and A. They mean
 
     σ_t = extinction · A        extinction [1/unit of length]; A is 0 to 1
     albedo = RGB                where colour = "albedo": light is scattered, σ_s = σ_t · RGB
     emission = σ_t · RGB        where colour = "emission": radiance that is added per unit of length
 
-So under "emission" RGB is the radiance of a piece so thick that nothing is seen through it, the
-colour of what is called compositing elsewhere. RGB is linear sRGB. A is no opacity: a layer of
-thickness d that lets 1 - a of the light through has σ_t = -ln(1 - a) / d (`opacity.py`).
+With "emission", RGB is the radiance of a piece so thick that it is opaque, the colour of what is
+called compositing elsewhere. RGB is linear sRGB. A is not an opacity: a layer of thickness d that
+transmits 1 - a of the light has σ_t = -ln(1 - a) / d (`opacity.py`).
 
 [Lesar 2018, chapter 6] leaves the meaning open; value × gradient magnitude is from [Kniss et al.
 2002].
@@ -21,46 +21,54 @@ from os import PathLike
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from brdfkit.core.arguments import to_pair, to_positive, to_whole_number
+from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.volumes.transfer.colour_maps import places, require_order
+from brdfkit.volumes.transfer.colour_maps import bracket_points, to_rising
 from brdfkit.volumes.transfer.conversions import Conversions
-from brdfkit.volumes.transfer.length_units import METRES, ratio
 
-COLOURS = "albedo", "emission"  # what RGB means
-# Units of values, of functions for any data
+COLOURS = "albedo", "emission"  # the meanings of RGB
+# Units of the values of functions for any data
 WINDOW_SHARES, RANGE_SHARES = "share of the window", "share of the range"
+METRES = {  # in a unit of length, by the names that files give it
+    "m": 1.0,
+    "cm": 1e-2,
+    "mm": 1e-3,
+    **dict.fromkeys(("µm", "μm", "um", "micron", "microns"), 1e-6),
+    "nm": 1e-9,
+}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TransferFunction(Conversions):
-    """RGBA over a volume's values, or over values × gradient magnitudes; linear in between.
+    """RGBA over a volume's values, or over values × gradient magnitudes, linear between points.
 
-    Beyond the first and the last point it stays as it is there. Two points at one value are a step.
-    Raises `BrdfkitError` for points that are out of order and for numbers out of range.
+    Beyond the first and the last point the function is constant. Two points at one value are a
+    jump. Raises `BrdfkitError` if points are out of order or numbers out of range.
 
     Attributes
     ----------
     values : ndarray
-        Of the control points (n,), rising, in the data's own unit.
+        The values (n,) of the control points, rising, in the data's own unit.
     rgba : ndarray
-        At each value (n, 4), or at each gradient magnitude and value (m, n, 4). RGB, linear sRGB,
-        is 0 to 1 as an albedo, and 0 or more as an emission; A is 0 to 1.
+        RGBA at each value (n, 4), or at each gradient magnitude and value (m, n, 4). RGB, in linear
+        sRGB, is 0 to 1 as an albedo, and 0 or more as an emission; A is 0 to 1.
     extinction : float
-        σ_t where A is 1 [1/unit of length], the unit being that of the volume.
+        σ_t where A is 1 [1/unit of length], in the unit of the volume.
     colour : str
-        What RGB means: "albedo" or "emission".
+        The meaning of RGB, "albedo" or "emission".
     gradients : ndarray
-        The gradient magnitudes (m,), rising [value per unit of length]; None if it has only values.
+        The gradient magnitudes (m,), rising [value per unit of length]; None for a function of
+        values alone.
     value_unit : str
-        Such as "HU"; for people.
+        The unit of the values, such as "HU", for display.
     length_unit : str
-        Such as "mm": a volume in another unit that is known has the function `per` that one. Empty:
-        the unit of whatever volume.
+        The unit of length, such as "mm"; `per` converts the function for a volume in another known
+        unit. If empty, it is the unit of any volume.
     name : str
-        What it is called.
+        The function's name.
 
     Examples
     --------
@@ -81,17 +89,17 @@ class TransferFunction(Conversions):
     def __post_init__(self) -> None:
         if self.colour not in COLOURS:
             raise no_such("meaning of RGB", self.colour, COLOURS, self.name)
-        values = require_order(self.values, f"{self.name}: values")
+        values = to_rising(self.values, f"{self.name}: values")
         shape: tuple[int, ...] = (len(values), 4)
         gradients = self.gradients
         if gradients is not None:
-            gradients = require_order(gradients, f"{self.name}: gradients")
+            gradients = to_rising(gradients, f"{self.name}: gradients")
             shape = (len(gradients), *shape)
         extinction = to_positive(f"{self.name}: extinction", self.extinction)
         checked = {
             "values": values,
             "gradients": gradients,
-            "rgba": _checked(self.rgba, shape, self.colour, self.name),
+            "rgba": _check_rgba(self.rgba, shape, self.colour, self.name),
             "extinction": extinction,
         }
         for name, value in checked.items():
@@ -109,27 +117,27 @@ class TransferFunction(Conversions):
             return None
         return float(self.gradients[0]), float(self.gradients[-1])
 
-    def __call__(self, values: ArrayLike, gradients: ArrayLike | None = None) -> NDArray[Any]:
-        """RGBA (..., 4) at `values`, and at `gradients`, magnitudes, if the function has them.
+    def __call__(self, values: ArrayLike, gradients: ArrayLike | None = None) -> FloatArray:
+        """Evaluate RGBA (..., 4) at `values`, and at gradient magnitudes if the function has them.
 
-        Raises `BrdfkitError` where they are missing.
+        Raises `BrdfkitError` if the gradients are missing.
         """
         values = np.asarray(values, float)
-        low, high, t = places(values, self.values)
+        low, high, t = bracket_points(values, self.values)
         if self.gradients is None:
             return (1 - t) * self.rgba[low] + t * self.rgba[high]
         if gradients is None:
             raise BrdfkitError(f"{self.name}: is one of gradient magnitudes, too; give them.")
-        below, above, s = places(np.asarray(gradients, float), self.gradients)
+        below, above, s = bracket_points(np.asarray(gradients, float), self.gradients)
         lower = (1 - t) * self.rgba[below, low] + t * self.rgba[below, high]
         upper = (1 - t) * self.rgba[above, low] + t * self.rgba[above, high]
         return (1 - s) * lower + s * upper
 
     def table(self, n: int = 1024, m: int = 64) -> NDArray[np.float32]:
-        """RGBA (n, 4), or (m, n, 4), at even steps over `range` and `gradient_range`, both ends in.
+        """Return RGBA (n, 4), or (m, n, 4), at even steps over the ranges, both ends included.
 
-        A texture of it has its first and last centres at the ends of the range. What is narrower
-        than a step is lost.
+        A texture of it has its first and last centres at the ends of the range. Details narrower
+        than a step are lost.
         """
         values = np.linspace(*self.range, to_whole_number("n", n, 2))
         if self.gradient_range is None:
@@ -138,9 +146,9 @@ class TransferFunction(Conversions):
         return self(values, gradients[:, None]).astype(np.float32)
 
     def over_gradients(self, ramp: ArrayLike) -> TransferFunction:
-        """The function with A times a `ramp` (m, 2) of points (gradient magnitude, factor).
+        """Return the function with A times a `ramp` (m, 2) of points (gradient magnitude, factor).
 
-        It shows where the value changes, and hides what is even: ``[(0, 0), (50, 1)]``.
+        ``[(0, 0), (50, 1)]`` shows where the value changes, and hides uniform regions.
         """
         try:
             points = np.asarray(ramp, float)
@@ -156,27 +164,28 @@ class TransferFunction(Conversions):
         return replace(self, rgba=rgba, gradients=points[:, 0])
 
     def per(self, unit: str) -> TransferFunction:
-        """The same function with its extinction, and its gradients, per another unit of length.
+        """Convert the function's extinction and gradients to another unit of length.
 
-        Raises `BrdfkitError` where the function's unit or that one is unknown.
+        Raises `BrdfkitError` if either unit is unknown.
         """
         if unit == self.length_unit:
             return self
-        factor = ratio(unit, self.length_unit)
-        if factor is None:
+        if unit not in METRES or self.length_unit not in METRES:
             raise BrdfkitError(
                 f"{self.name}: its extinction is per {self.length_unit or 'unit of length'}, which "
                 f"cannot be converted to 1/{unit}: units are {', '.join(METRES)}; set length_unit "
                 "to the volume's unit, and the extinction."
             )
+        factor = round(METRES[unit] / METRES[self.length_unit], 12)
         gradients = None if self.gradients is None else self.gradients * factor
         extinction = self.extinction * factor
         return replace(self, extinction=extinction, gradients=gradients, length_unit=unit)
 
     def scaled_to(self, low: float, high: float) -> TransferFunction:
-        """The function with its values mapped to the range `low` to `high`, and gradients likewise.
+        """Return the function with its values scaled to the range `low` to `high`.
 
-        MRI has no unit: ``TransferFunction.load("mri_head").scaled_to(*volume.window)``.
+        Gradients are scaled likewise. MRI has no unit, so that presets for it need this:
+        ``TransferFunction.load("mri_head").scaled_to(*volume.window)``.
         """
         low, high = to_pair("range", (low, high))
         first, last = self.range
@@ -203,10 +212,10 @@ class TransferFunction(Conversions):
 TransferLike: TypeAlias = TransferFunction | str | PathLike[str]
 
 
-def _checked(rgba, shape, colour, name):
-    """RGBA of this shape as floats; `BrdfkitError` for another, and for what no medium has."""
+def _check_rgba(given: ArrayLike, shape: tuple[int, ...], colour: str, name: str) -> AnyArray:
+    """Return RGBA as floats; raise `BrdfkitError` if its shape or a number is wrong."""
     try:
-        rgba = np.array(rgba, float)
+        rgba = np.array(given, float)
     except (TypeError, ValueError):
         rgba = np.empty(0)
     if rgba.shape != shape:
@@ -214,8 +223,8 @@ def _checked(rgba, shape, colour, name):
             f"{name}: rgba has the shape {rgba.shape}; it should be {shape}, R, G, B and A for "
             "each point."
         )
-    most = [1, 1, 1, 1] if colour == "albedo" else [np.inf, np.inf, np.inf, 1]
-    if not (np.isfinite(rgba).all() and (rgba >= 0).all() and (rgba <= most).all()):
+    largest = [1, 1, 1, 1] if colour == "albedo" else [np.inf, np.inf, np.inf, 1]
+    if not (np.isfinite(rgba).all() and (rgba >= 0).all() and (rgba <= largest).all()):
         reach = "0 to 1" if colour == "albedo" else "at least 0, and A at most 1"
         raise BrdfkitError(f"{name}: rgba has a number out of range; as {colour} they are {reach}.")
     return rgba

@@ -1,59 +1,64 @@
-"""The window of a volume's values: from where its matter begins to where it is brightest."""
+"""The window of a volume's values, from the faintest matter to the brightest."""
 
 import numpy as np
 
-from brdfkit.volumes.transfer.transfer_function import RANGE_SHARES, WINDOW_SHARES
+from brdfkit.core.array_types import AnyArray, FloatArray
+from brdfkit.volumes.transfer.transfer_function import (
+    RANGE_SHARES,
+    WINDOW_SHARES,
+    TransferFunction,
+)
 
-MOST = 2_000_000  # voxels that are looked at, evenly spread
-PARTS = 256  # of the histogram by which the background is found
-FEWEST = 1000  # voxels with a histogram that tells a background
-OUTLIERS = 0.1  # percentile: a few voxels beyond it, at either end, count for nothing
-# A background is a peak below this share of the range, that ends below that one
+SAMPLED_VOXELS = 2_000_000  # at most, evenly spread
+PARTS = 256  # of the histogram in which the background is found
+MIN_VOXELS = 1000  # fewer have no reliable histogram
+OUTLIERS = 0.1  # percentile at either end beyond which voxels are ignored
+# A background is a peak below the first share of the range, and ends below the second
 PEAK, FOOT = 0.15, 0.4
-FALL = 0.25  # of the peak: the histogram is below it where the background ends
+FALL = 0.25  # share of the peak's height below which the background ends
 FIRST, LAST = 2.0, 99.0  # percentiles of the matter
 
 
-def window(values):
-    """(low, high) of `values` (nz, ny, nx): nothing of interest is below, hardly a voxel above.
+def find_window(values: AnyArray) -> tuple[float, float]:
+    """Return (low, high) of `values` (nz, ny, nx): the background is below, few voxels are above.
 
-    `low` is halfway from the end of the background to the least of the matter, so that the matter
-    is above it also where it is all of one value.
+    `low` is halfway from the end of the background to the faintest matter, so that matter is above
+    it even if it has only one value.
 
-    >>> window(np.repeat([0.0, 100.0, 200.0], [9000, 500, 500]).reshape(100, 10, 10))
+    >>> find_window(np.repeat([0.0, 100.0, 200.0], [9000, 500, 500]).reshape(100, 10, 10))
     (50.0, 200.0)
     """
-    end, found = background_and_matter(sample(values))
-    least, high = np.percentile(found, [FIRST, LAST]).tolist()
-    low = (end + least) / 2
+    end, matter = split_background(sample_values(values))
+    faintest, high = np.percentile(matter, [FIRST, LAST]).tolist()
+    low = (end + faintest) / 2
     if low < high:
         return low, high
     low, high = float(values.min()), float(values.max())
     return (low, high) if low < high else (min(low, 0.0), max(high, 0.0))
 
 
-def fitted(transfer, values):
-    """A transfer function of shares for these `values` (nz, ny, nx); any other one as it is."""
+def scale_to_values(transfer: TransferFunction, values: AnyArray) -> TransferFunction:
+    """Scale a transfer function over shares to `values` (nz, ny, nx); keep any other as it is."""
     low, high = float(values.min()), float(values.max())
     if low == high or transfer.value_unit not in (WINDOW_SHARES, RANGE_SHARES):
         return transfer
     if transfer.value_unit == WINDOW_SHARES:
-        low, high = window(values)
+        low, high = find_window(values)
     return transfer.scaled_to(low, high)
 
 
-def sample(values):
-    """At most MOST of the `values` (nz, ny, nx), evenly spread, as floats (n,)."""
-    step = -(-values.size // MOST)
+def sample_values(values: AnyArray) -> FloatArray:
+    """Return at most SAMPLED_VOXELS of the `values` (nz, ny, nx), evenly spread, as floats (n,)."""
+    step = -(-values.size // SAMPLED_VOXELS)
     return values.reshape(-1)[::step].astype(float)
 
 
-def background_and_matter(values):
-    """The largest value of the background, and the `values` (n,) that are none and no outliers.
+def split_background(values: FloatArray) -> tuple[float, FloatArray]:
+    """Return the largest value of the background, and the `values` (n,) of matter.
 
     The background is the peak of the lowest values, such as air. It ends where the histogram is
     farthest below the line from the peak to the largest value [Zack et al. 1977]. Without such a
-    peak all is matter.
+    peak all is matter. Outliers belong to neither.
     """
     low, high = np.percentile(values, [OUTLIERS, 100 - OUTLIERS])
     if low == high:  # nearly all is background
@@ -65,7 +70,7 @@ def background_and_matter(values):
     line = np.linspace(1, 0, len(heights))
     foot = peak + int(np.argmax(line - heights))
     is_low = peak < PEAK * PARTS and foot < FOOT * PARTS and heights[foot - peak] < FALL
-    if not is_low or len(values) < FEWEST:
+    if not is_low or len(values) < MIN_VOXELS:
         return float(low), values[(values >= low) & (values <= high)]
     air = values < edges[foot]
     return float(values[air].max()), values[~air & (values <= high)]
