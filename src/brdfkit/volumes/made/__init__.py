@@ -15,7 +15,7 @@ from brdfkit.volumes.volume import Volume
 
 
 @cache
-def list_names() -> list[str]:
+def list_names() -> tuple[str, ...]:
     """Return the names of the synthetic volumes."""
     return find_module_names(__path__)
 

@@ -31,7 +31,7 @@ def values_at(volume: Volume, points: ArrayLike) -> AnyArray:
     return np.where(_is_inside(volume, indices), values, 0)
 
 
-def gradient_at(volume: Volume, points: ArrayLike, of_interpolant: bool) -> NDArray[np.float64]:
+def gradient_at(volume: Volume, points: ArrayLike, of_interpolant: bool) -> AnyArray:
     """Return ∇V (n, 3) at `points` (n, 3) of the world; see `Volume.gradient`."""
     indices = _to_indices(volume, points)
     by_index = _slopes(volume, indices) if of_interpolant else _differences(volume, indices)
