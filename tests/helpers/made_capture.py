@@ -5,7 +5,7 @@ from scipy.ndimage import gaussian_filter
 
 import brdfkit as bk
 from brdfkit.core.jit.threads import use_two_threads
-from brdfkit.inverse.photographs.capture.pinhole import corners_of
+from brdfkit.inverse.photographs.capture.pinhole import find_corners
 from brdfkit.inverse.photographs.maps.scene import bsdf_dict
 
 SIDE = 0.1  # m
@@ -114,7 +114,7 @@ def write_capture(capture, folder, by_corners=False):
             mi.Bitmap(np.float32(picture)).write(str(folder / name))
         lines.append(f'[[light]]\npicture = "{name}"\nintensity = {power.tolist()}')
         if by_corners:
-            corners = camera.project(corners_of(capture.size), capture.picture_size).tolist()
+            corners = camera.project(find_corners(capture.size), capture.picture_size).tolist()
             lines.append(f'position = "camera"\ncamera = {{ corners = {corners} }}\n')
         else:
             lines.append(f"position = {place.tolist()}\n")

@@ -4,16 +4,15 @@ import dataclasses
 import pickle
 import subprocess
 import sys
-from types import SimpleNamespace
 
 import made_capture
 import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.inverse.photographs.arguments import to_numbers
+from brdfkit.inverse.photographs.arguments import to_texel_parameters
 from brdfkit.inverse.photographs.maps.scene import scene_xml
-from brdfkit.inverse.photographs.maps.undetermined import describe_open
+from brdfkit.inverse.photographs.maps.undetermined import describe_undetermined
 from brdfkit.inverse.photographs.search import coarse_to_fine
 
 pytestmark = pytest.mark.filterwarnings("error")
@@ -149,13 +148,13 @@ def test_a_sample_of_a_millimetre(mi, capture, found):
 
 
 def test_fresnel_reflectances_of_sums_are_alike_everywhere():
-    assert to_numbers("ggx+ggx", False, {}).fixed == {"ggx_1_f0": 0.5, "ggx_2_f0": 0.5}
+    assert to_texel_parameters("ggx+ggx", False, {}).fixed == {"ggx_1_f0": 0.5, "ggx_2_f0": 0.5}
 
 
 @pytest.mark.parametrize("finished", [0, 1, 2])
 def test_ctrl_c_of_maps_that_are_not_square(capture, monkeypatch, finished):
     """33 texels were made of 3, each 11 large, not 16, and the lower ones were missing."""
-    original, calls = coarse_to_fine.finish, []
+    original, calls = coarse_to_fine.finish_level, []
 
     def stop(*args):
         calls.append(args)
@@ -163,7 +162,7 @@ def test_ctrl_c_of_maps_that_are_not_square(capture, monkeypatch, finished):
             raise KeyboardInterrupt
         return original(*args)
 
-    monkeypatch.setattr(coarse_to_fine, "finish", stop)
+    monkeypatch.setattr(coarse_to_fine, "finish_level", stop)
     with pytest.raises(bk.Interrupted) as stopped:
         fit(dataclasses.replace(capture, size=(0.1, 0.09)), resolution=33)
     assert stopped.value.best.shape == (30, 33)
@@ -196,11 +195,10 @@ def test_texels_finer_than_pixels_are_said(capture):
 
 
 def test_one_number_that_is_open_is_not_apart():
-    numbers = to_numbers("oren_nayar", False, {})
+    numbers = to_texel_parameters("oren_nayar", False, {})
     hessian = np.tile(np.eye(numbers.count), (4, 1, 1))
-    hessian[:2, numbers.shapes] = 0
-    fitted = SimpleNamespace(about=SimpleNamespace(hessian=hessian))
-    (said,) = describe_open(numbers, fitted, 8)
+    hessian[:2, numbers.shape_columns] = 0
+    (said,) = describe_undetermined(numbers, hessian, 8)
     assert "do not tell sigma: there" in said
 
 

@@ -62,13 +62,13 @@ def svbrdf(
     """
     from brdfkit.cli.arguments import results_folder
     from brdfkit.inverse.photographs import svbrdf as fit_maps
-    from brdfkit.inverse.photographs.result.files import require_files
+    from brdfkit.inverse.photographs.result.files import check_folder
     from brdfkit.model import labels
 
     values, output = parse_settings(fixed, "--fixed"), output or folder / "maps"
     interrupted = False
     with results_folder(output), console.progress("fit maps") as progress:
-        require_files(labels.model(labels.read_files(model)), output)
+        check_folder(labels.model(labels.read_files(model)), output)
         try:
             found = fit_maps(
                 folder,

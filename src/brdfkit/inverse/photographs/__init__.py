@@ -1,22 +1,16 @@
-"""Textures of a flat sample from photographs of it under known lights.
+"""Estimates maps of a flat sample (an SVBRDF) from photographs of it under known lights.
 
-`capture/capture.py` is what was photographed, by a `capture/pinhole.py`, and `capture/checks.py`
-what must hold of it; `capture/capture_file.py` a
-folder, with `capture/cameras.py`, `capture/camera_from_corners.py` and `capture/toml_values.py`;
-`capture/downsampling.py` makes pictures smaller, and `capture/observations.py` says what of them
-each texel shows.
+The maps are textures of a model's parameters and of the surface normal. `svbrdf.py` holds the
+public function, which runs the parts below one after the other:
 
-`maps/texel_parameters.py` are the numbers of a texel and how they make its radiances,
-`maps/maps.py` those of all of them; `search/search.py` steps downhill, from `search/starts.py` and
-`search/restarts.py`; `search/coarse_to_fine.py` does so for ever smaller texels, drawn to each
-other by `search/smoothness.py`, and `search/fitting_maps.py` as `search/held_out.py` finds best.
-`search/through_renderer.py` refines the maps by Mitsuba's pictures of them, and
-`result/simulated_errors.py` says how certain they are. `svbrdf.py` runs these one after the other,
-as `arguments.py` says; `maps/undetermined.py`, `maps/residuals.py`, `result/levelling.py` and
-`result/notes.py` say what is left open, what is not explained, and what else one should know.
-
-`result/result.py` is `Svbrdf`: `maps/prediction.py` shows it under any light, `maps/scene.py` in a
-scene, `result/files.py` makes files and a `result/report.py` of it.
+- `capture/` reads photographs with the positions of cameras and lights, and collects what they show
+  of each texel (a pixel of the maps).
+- `maps/` defines the numbers of a texel, the radiance that follows from them, and the maps as a
+  Mitsuba scene.
+- `search/` fits the numbers of all texels: coarse maps first, then finer ones, at last corrected by
+  Mitsuba's renderings of the maps.
+- `result/` estimates standard errors, and makes the `Svbrdf` that users receive, its files and its
+  report.
 """
 
 from brdfkit.inverse.photographs.capture.capture import Capture as Capture

@@ -1,25 +1,29 @@
-"""What a caller of `svbrdf` asks for, checked: each error is one sentence."""
+"""Checks the arguments of `svbrdf` and converts them; each error is one sentence."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
-from brdfkit.core.arguments import to_dictionary, to_number, to_positive, to_whole_number
+from brdfkit.core.arguments import to_dictionary, to_number, to_whole_number
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit import double_precision
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.names import join_words
-from brdfkit.inverse.photographs.capture.capture import Capture
+from brdfkit.inverse.photographs.capture.capture import SMALLEST_MAP, Capture
 from brdfkit.inverse.photographs.capture.capture_file import load_capture
-from brdfkit.inverse.photographs.maps.maps import pair_of
-from brdfkit.inverse.photographs.maps.texel_parameters import Numbers
+from brdfkit.inverse.photographs.maps.maps import find_pair
+from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 from brdfkit.model import labels
 
-MOST = 512  # texels along a side, by default
-SMOOTHEST = 0.003  # below it the steps of a search end before the maps are as smooth as asked for
+DEFAULT_LONGEST_SIDE = 512  # texels, at most
+SMALLEST_SMOOTHNESS = 0.003  # below, the steps of a search end before the maps are as smooth
 
 
-def require_variant():
-    """Raise `BrdfkitError` where Mitsuba's pictures have no RGB, or nothing has derivatives."""
+def check_variant() -> None:
+    """Raise `BrdfkitError` if Mitsuba's variant has no RGB pictures, or no derivatives."""
     variant = use_variant()
     if not variant.endswith("_rgb"):
         raise BrdfkitError(
@@ -29,19 +33,22 @@ def require_variant():
         raise BrdfkitError("svbrdf: it needs LLVM, for derivatives; see the README.")
 
 
-def to_capture(given, accept_8_bit):
-    """(name, `Capture`) of a folder or of what such a folder holds."""
-    if isinstance(given, Capture):
-        return "sample", given
-    if not isinstance(given, str | PathLike):
-        raise BrdfkitError(f"capture: a {type(given).__name__} is neither a folder nor a Capture.")
-    return Path(given).resolve().name, load_capture(given, accept_8_bit)
+def to_capture(value: object, accept_8_bit: bool) -> tuple[str, Capture]:
+    """Return the sample's name and the `Capture`, from a folder or a `Capture`."""
+    if isinstance(value, Capture):
+        return "sample", value
+    if not isinstance(value, str | PathLike):
+        raise BrdfkitError(f"capture: a {type(value).__name__} is neither a folder nor a Capture.")
+    return Path(value).resolve().name, load_capture(Path(value), accept_8_bit)
 
 
-def to_numbers(label, anisotropic, fixed):
-    """The `Numbers` of a model's label.
+def to_texel_parameters(
+    label: str, anisotropic: bool, fixed: Mapping[str, float] | None
+) -> TexelParameters:
+    """Return the layout of a texel's numbers for a model's label.
 
-    Raises `BrdfkitError` for parameters that are none, and for a model with signed weights.
+    Raises `BrdfkitError` for unknown parameters, values beyond their bounds, and a model whose
+    weights may be negative.
     """
     model = labels.model(label)
     if model.signed():
@@ -53,27 +60,27 @@ def to_numbers(label, anisotropic, fixed):
             raise BrdfkitError(
                 f"{label}: {name} is not searched; fixed can be {join_words(shapes)}."
             )
-    usual = model().values
-    # also those of the parts of a sum, as ggx_1_f0
-    held = {name: usual[name] for name in shapes if name == "f0" or name.endswith("_f0")}
+    defaults = model().values
+    # Also the f0 of each part of a sum, such as ggx_1_f0
+    held: dict[str, Any] = {
+        name: defaults[name] for name in shapes if name == "f0" or name.endswith("_f0")
+    }
     held |= {name: to_number(name, value) for name, value in fixed.items()}
-    model(**held)  # raises for values beyond the bounds
+    model(**held)  # raises an error for values beyond the bounds
     names = tuple(name for name in shapes if name not in held)
-    return Numbers(model, names, held, pair_of(model, names))
+    return TexelParameters(model, names, held, find_pair(model, names))
 
 
-def to_smoothness(given):
-    """The smoothness, or None for one that is chosen."""
-    if given is not None and to_positive("smoothness", given) < SMOOTHEST:
-        raise BrdfkitError(f"smoothness = {given:g} should be at least {SMOOTHEST}.")
-    return given
+def to_smoothness(value: float | None) -> float | None:
+    """Return the smoothness, or None if it is to be chosen."""
+    return None if value is None else to_number("smoothness", value, least=SMALLEST_SMOOTHNESS)
 
 
-def to_shape(capture, resolution):
-    """(height, width) of the maps."""
+def to_shape(capture: Capture, resolution: int | None) -> tuple[int, int]:
+    """Return the shape (height, width) of the maps."""
     if resolution is None:
-        return capture.usual_shape(MOST)
-    longer = to_whole_number("resolution", resolution, 4)
+        return capture.default_shape(DEFAULT_LONGEST_SIDE)
+    longer = to_whole_number("resolution", resolution, SMALLEST_MAP)
     width, height = capture.size
     scale = longer / max(width, height)
-    return max(4, round(height * scale)), max(4, round(width * scale))
+    return max(SMALLEST_MAP, round(height * scale)), max(SMALLEST_MAP, round(width * scale))

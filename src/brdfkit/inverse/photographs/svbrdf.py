@@ -1,40 +1,41 @@
-"""`svbrdf`: maps of a flat sample, from photographs under known lights."""
+"""The public function `svbrdf`, which fits maps of a flat sample to photographs of it."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.threads import in_turn
+from brdfkit.core.progress_bar import Progress
 from brdfkit.inverse.photographs.arguments import (
-    require_variant,
+    check_variant,
     to_capture,
-    to_numbers,
     to_shape,
     to_smoothness,
+    to_texel_parameters,
 )
-from brdfkit.inverse.photographs.capture.capture import Capture
-from brdfkit.inverse.photographs.capture.checks import require_shown
-from brdfkit.inverse.photographs.capture.downsampling import shrunk
-from brdfkit.inverse.photographs.capture.observations import Observations, gathered, shown_colours
-from brdfkit.inverse.photographs.maps.maps import Maps, errors_of
+from brdfkit.inverse.photographs.capture.capture import Capture, downsample
+from brdfkit.inverse.photographs.capture.observations import Observations, sample_pictures
+from brdfkit.inverse.photographs.maps.maps import Maps, to_error_maps
 from brdfkit.inverse.photographs.maps.residuals import describe_misfit
 from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS
-from brdfkit.inverse.photographs.maps.undetermined import describe_open
+from brdfkit.inverse.photographs.maps.undetermined import describe_undetermined
 from brdfkit.inverse.photographs.result.levelling import describe_capture, describe_normals
 from brdfkit.inverse.photographs.result.result import Svbrdf
-from brdfkit.inverse.photographs.result.simulated_errors import simulated_errors
-from brdfkit.inverse.photographs.search.fitting_maps import fit_maps, usual_total
+from brdfkit.inverse.photographs.result.simulated_errors import simulate_errors
+from brdfkit.inverse.photographs.search.fitting_maps import UnfinishedMaps, estimate_steps, fit_maps
 from brdfkit.inverse.photographs.search.through_renderer import (
-    Rendered,
+    RenderedMaps,
     compute_psnr,
-    left_of,
-    misfits_of,
+    measure_misfit,
     refine_through_renderer,
+    summarise_differences,
 )
 
 INTERRUPTED = "Interrupted: these are the maps so far, without standard errors."
@@ -50,38 +51,37 @@ def svbrdf(
     fixed: Mapping[str, float] | None = None,
     smoothness: float | None = None,
     accept_8_bit: bool = False,
-    progress: Callable[[int, int], object] | None = None,
+    progress: Progress | None = None,
 ) -> Svbrdf:
     """Fit maps of a model's parameters and of the normal to photographs of a flat sample.
 
-    First the photographs of large parts of the sample, then of ever smaller ones, at last of each
-    texel, by Gauss-Newton steps for all at once. Neighbouring texels are drawn to each other, as
-    strongly as lights that were held out are predicted best. Then Mitsuba renders the photographs
-    of the maps, and what the real ones show beyond is fitted, until only noise is left. Direct
-    light alone is fitted: a flat sample throws hardly any light on itself. Ctrl-C raises
-    `Interrupted`, whose ``best`` has the finest maps so far, without standard errors. Equal
-    photographs give equal maps but for rounding, about 1e-8, since Mitsuba adds light up in any
-    order.
+    Gauss-Newton steps fit maps of a few large texels first, then ever finer ones. Neighbouring
+    texels are drawn to each other, so strongly that photographs held out are predicted best. Then
+    Mitsuba renders the photographs of the maps, and the maps are corrected by the differences until
+    only noise is left. The fit assumes direct light alone, because a flat sample throws hardly any
+    light on itself. Ctrl-C raises `Interrupted`, whose ``best`` has the finest maps so far, without
+    standard errors. Equal photographs give equal maps up to rounding, about 1e-8, because Mitsuba
+    adds light up in any order.
 
     Parameters
     ----------
     capture : path or Capture
         A folder with linear photographs and the file ``capture.toml``, which says where the camera
-        and the lights are; or what such a folder holds.
+        and the lights are; or the content of such a folder.
     model : str, default "ggx"
         Label of the model, with a shape parameter ``alpha_u`` or others.
     resolution : int, optional
         Texels along the longer side of the maps, at least 4. By default a texel is a square as
         large as a pixel in the middle, and there are at most 512.
     anisotropic : bool, default False
-        Whether ``alpha_v`` and its like have maps of their own, and ``anisotropy_angle`` one: the
-        direction of ``alpha_u`` [radians, counterclockwise from the sample's x].
+        Whether to fit maps of ``alpha_v`` and its like, and of ``anisotropy_angle``, the direction
+        of ``alpha_u`` [radians, counterclockwise from the sample's x].
     fixed : dict of str to float, optional
-        Shape parameters that are alike everywhere, as ``{"f0": 0.04}``. By default ``f0`` is, at
-        the model's default: from few lights it cannot be told from the specular reflectance.
+        Shape parameters with one value everywhere, as ``{"f0": 0.04}``. By default ``f0`` has the
+        model's default: few lights do not tell it from the specular reflectance.
     smoothness : float, optional
-        By how much neighbouring texels may differ, from 0.003 on: less is smoother. By default
-        chosen by lights that are held out; with fewer than 8 lights 0.1.
+        The typical difference of neighbouring texels, at least 0.003: less is smoother. By default
+        photographs that are held out choose it; with fewer than 8 lights it is 0.1.
     accept_8_bit : bool, default False
         Whether to accept photographs of 8 bits, and to invert the sRGB curve that they contain.
     progress : callable, optional
@@ -95,89 +95,98 @@ def svbrdf(
     Raises
     ------
     BrdfkitError
-        For a folder, a file or photographs that are wrong, a model with weights of its lobes that
-        may be negative, parameters that are none, and a variant of Mitsuba's without RGB.
+        For a folder, a file or photographs that are wrong, a model whose weights may be negative,
+        unknown parameters, and a variant of Mitsuba without RGB.
 
     Examples
     --------
     >>> maps = svbrdf("photographs/paper")    # doctest: +SKIP
     """
     began = time.perf_counter()
-    require_variant()
-    name, taken = to_capture(capture, accept_8_bit)
-    numbers = to_numbers(model, anisotropic, fixed)
+    check_variant()
+    name, photographs = to_capture(capture, accept_8_bit)
+    parameters = to_texel_parameters(model, anisotropic, fixed)
     smoothness = to_smoothness(smoothness)
-    shape = to_shape(taken, resolution)
-    clipped = taken.clipped.mean() if taken.lost is None else 0.0
-    taken = shrunk(taken, shape)
-    seen = Observations.of(taken, shape)
-    require_shown(taken, seen)
-    report = _counter(progress, usual_total(len(taken.names), smoothness))
+    shape = to_shape(photographs, resolution)
+    clipped = photographs.clipped.mean() if photographs.lost is None else 0.0
+    photographs = downsample(photographs, shape)
+    observed = Observations.collect(photographs, shape)
+    lights = len(photographs.names)
+    report = _count_progress(progress, estimate_steps(lights, smoothness))
 
-    def outcome(fitted, *notes, **known):
+    def make_result(fitted: UnfinishedMaps, notes: tuple[str, ...], **known: Any) -> Svbrdf:
+        """Return the `Svbrdf` of maps; `known` holds what only finished searches have."""
         return Svbrdf(
             name=name,
             model=model,
-            maps=Maps.of(numbers, fitted.x, shape, taken.size).maps,
-            fixed=numbers.fixed,
-            size=taken.size,
+            maps=Maps.from_rows(parameters, fitted.x, shape, photographs.size).maps,
+            fixed=parameters.fixed,
+            size=photographs.size,
             smoothness=float(fitted.tau),
-            held_out=fitted.errors,
-            notes=(*notes, *describe_capture(taken, clipped, seen)),
+            held_out=fitted.held_out,
+            notes=(*notes, *describe_capture(photographs, clipped, observed)),
             seconds=time.perf_counter() - began,
-            capture=taken,
+            capture=photographs,
             **known,
         )
 
-    def conclude(best, errors):
-        fitted = best.fitted
-        maps = Maps.of(numbers, fitted.x, shape, taken.size).maps
-        beyond = gathered(taken, taken.pictures - best.pictures, shape)
-        misfit = misfits_of(beyond, fitted.noise, seen)
-        diffuse = maps.get("diffuse_reflectance", np.ones(CHANNELS))[..., shown_colours(seen)]
-        left = left_of(taken, best.pictures)
-        told_apart = CHANNELS * len(taken.names) > numbers.count
-        noise = fitted.noise**0.5 if told_apart else 0.0
-        return outcome(
+    def conclude(rendered: RenderedMaps, errors: FloatArray) -> Svbrdf:
+        """Return the `Svbrdf` of a finished search, with notes and standard errors (n, count)."""
+        fitted, pictures = rendered.fitted, rendered.pictures
+        maps = Maps.from_rows(parameters, fitted.x, shape, photographs.size).maps
+        beyond = sample_pictures(photographs, photographs.pictures - pictures, shape)
+        misfit = measure_misfit(beyond, fitted.noise, observed)
+        diffuse = maps.get("diffuse_reflectance", np.ones(CHANNELS))[..., observed.lit_channels()]
+        differences = summarise_differences(photographs, pictures)
+        is_overdetermined = CHANNELS * lights > parameters.count
+        noise = fitted.noise**0.5 if is_overdetermined else 0.0
+        notes = (
+            *describe_undetermined(parameters, fitted.equations.hessian, lights),
+            *describe_misfit(misfit, noise, differences, float(np.median(diffuse))),
+            *(describe_normals(maps["normal"]) if is_overdetermined else ()),
+        )
+        return make_result(
             fitted,
-            *describe_open(numbers, fitted, len(taken.names)),
-            *describe_misfit(misfit, noise, left, float(np.median(diffuse))),
-            *(describe_normals(maps["normal"]) if told_apart else ()),
-            uncertainty=errors_of(numbers, errors, fitted.x, shape),
+            notes,
+            uncertainty=to_error_maps(parameters, errors, fitted.x, shape),
             misfit=misfit.reshape(shape),
-            **_compared(best, taken),
+            **_compare(rendered, photographs),
         )
 
-    fitted = best = None
+    fitted = rendered = None
     try:
-        fitted = fit_maps(numbers, seen, smoothness, report)
-        best, rounds = refine_through_renderer(numbers, fitted, seen, taken, report)
-        return conclude(best, simulated_errors(numbers, best, rounds, seen, taken, report))
+        fitted = fit_maps(parameters, observed, smoothness, report)
+        rendered, rounds = refine_through_renderer(
+            parameters, fitted, observed, photographs, report
+        )
+        errors = simulate_errors(parameters, rendered, rounds, observed, photographs, report)
+        return conclude(rendered, errors)
     except KeyboardInterrupt as stop:
-        so_far = (stop.best if isinstance(stop, Interrupted) else best) or fitted
-        if so_far is None:
+        best = (stop.best if isinstance(stop, Interrupted) else rendered) or fitted
+        if best is None:
             raise
-        if isinstance(so_far, Rendered):
-            found = outcome(so_far.fitted, INTERRUPTED, **_compared(so_far, taken))
+        if isinstance(best, RenderedMaps):
+            known = _compare(best, photographs)
+            result = make_result(best.fitted, (INTERRUPTED,), **known)
         else:
-            found = outcome(so_far, INTERRUPTED)
-        raise Interrupted(found, f"{name}: there are maps so far") from None
+            result = make_result(best, (INTERRUPTED,))
+        raise Interrupted(result, f"{name}: there are maps so far") from None
 
 
-def _compared(best, capture):
-    """What an `Svbrdf` knows of the pictures of a `Rendered`."""
-    dB = compute_psnr(capture, best.pictures)
-    return {"residual": best.left, "predicted": dB, "rendered": best.pictures}
+def _compare(rendered: RenderedMaps, capture: Capture) -> dict[str, Any]:
+    """Return the attributes of an `Svbrdf` that compare renderings with the photographs."""
+    psnr = compute_psnr(capture, rendered.pictures)
+    return {"residual": rendered.difference, "predicted": psnr, "rendered": rendered.pictures}
 
 
-def _counter(progress, usual):
-    """A function that reports one more step; how many there will be is an estimate."""
+def _count_progress(progress: Progress | None, estimate: int) -> Callable[[], None]:
+    """Return a function that reports one more step to `progress`; their total is an estimate."""
     done = 0
 
-    def report():
+    def report() -> None:
         nonlocal done
         done += 1
         if progress:
-            progress(done, max(done + 1, usual))
+            progress(done, max(done + 1, estimate))
 
     return report

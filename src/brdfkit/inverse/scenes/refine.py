@@ -216,9 +216,7 @@ def _make_views(
     return Views(loaded, make_integrator(loaded), targets, traversed, unknowns)
 
 
-def _count_progress(
-    progress: Callable[[int, int], object] | None, total: int
-) -> Callable[[], None]:
+def _count_progress(progress: Progress | None, total: int) -> Callable[[], None]:
     """Return a function that reports one more step of `total` to `progress`."""
     done = 0
 

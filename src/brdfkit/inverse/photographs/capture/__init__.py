@@ -1,1 +1,1 @@
-"""Reads photographs of a flat sample, with the places of cameras and lights."""
+"""Reads photographs of a flat sample, with the positions of the cameras and lights."""

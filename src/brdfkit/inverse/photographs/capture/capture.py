@@ -1,44 +1,47 @@
-"""`Capture`: photographs of a flat sample under known lights."""
+"""Defines `Capture`, photographs of a flat sample under known lights."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from brdfkit.inverse.photographs.capture.checks import require_right
+from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray
+from brdfkit.inverse.photographs.capture.checks import check_capture
 from brdfkit.inverse.photographs.capture.pinhole import Pinhole
 
-CLIPPED = 1e-4  # the share of numbers that equal the largest: not by chance
-LOWEST = 0.05  # cosine of a light's angle: below it the sample's own shadows fall where bumps are
+CLIPPED_SHARE = 1e-4  # of the numbers: if more equal the largest one, this is not by chance
+SMALLEST_COSINE = 0.05  # of a light's angle: below it bumps of the sample cast shadows
+SMALLEST_MAP = 4  # texels along a side
+PIXELS_PER_TEXEL = 1.4  # along a side, at least, after photographs are made smaller
 
 
 @dataclass(frozen=True, eq=False)
 class Capture:
-    """Photographs of a flat sample, each under one point light, by a camera that rests or moves.
+    """Photographs of a flat sample, each under one point light, by a fixed or a moving camera.
 
-    The sample lies in the plane z = 0, its middle at the origin, x to the right, y up; it is seen
-    from above (z > 0).
+    The sample lies in the plane z = 0 with its middle at the origin, x to the right and y up; it is
+    seen from above (z > 0).
 
     Attributes
     ----------
     pictures : ndarray, shape (lights, height, width, 3)
-        Linear values: radiance [W/(m² sr)], or anything in proportion, alike in all pictures.
+        Linear values: radiance [W/(m² sr)], or numbers in proportion to it by the same factor in
+        all pictures.
     positions : ndarray, shape (lights, 3)
-        Where the lights are [m].
+        Positions of the lights [m].
     intensities : ndarray, shape (lights, 3)
-        Radiant intensity of the lights [W/sr], in the units of the pictures.
+        Radiant intensities of the lights [W/sr], in the units of the pictures.
     camera : Pinhole, or tuple of Pinhole
-        The camera that rests, or where it was for each picture.
+        The fixed camera, or the camera of each picture.
     size : tuple of float
-        The sample's width and height [m].
+        Width and height of the sample [m].
     names : tuple of str
-        What the pictures are called.
+        Names of the pictures.
     lost : ndarray of bool, shape (lights, height, width, 3), optional
-        Numbers of the pictures that do not count, as where a shadow falls on the sample. By default
-        those at the end of what the camera could hold: see `clipped`.
+        Which numbers of the pictures do not count, such as those in a shadow on the sample. By
+        default those that are clipped: see `clipped`.
 
     Raises
     ------
@@ -47,83 +50,130 @@ class Capture:
         a light or a camera that is not above the sample, and a camera that does not see all of it.
     """
 
-    pictures: NDArray[np.float64]
-    positions: NDArray[np.float64]
-    intensities: NDArray[np.float64]
+    pictures: FloatArray
+    positions: FloatArray
+    intensities: FloatArray
     camera: Pinhole | tuple[Pinhole, ...]
     size: tuple[float, float]
     names: tuple[str, ...]
-    lost: NDArray[np.bool_] | None = None
+    lost: BoolArray | None = None
 
     def __post_init__(self) -> None:
-        require_right(self)
+        check_capture(self)
 
     @property
-    def cameras(self):
-        """The camera of each picture, a tuple."""
+    def cameras(self) -> tuple[Pinhole, ...]:
+        """The camera of each picture."""
         if isinstance(self.camera, Pinhole):
             return (self.camera,) * len(self.pictures)
         return tuple(self.camera)
 
-    def texels(self, shape):
-        """Points (n, 3) [m] in the middle of the texels of a map of `shape` (height, width), row by
-        row from the top."""
+    def texel_centres(self, shape: tuple[int, int]) -> FloatArray:
+        """Return the centres (n, 3) [m] of the texels of maps of `shape` (height, width).
+
+        They go row by row from the sample's upper edge.
+        """
         height, width = shape
         x = ((np.arange(width) + 0.5) / width - 0.5) * self.size[0]
         y = (0.5 - (np.arange(height) + 0.5) / height) * self.size[1]
         x, y = np.meshgrid(x, y)
         return np.stack([x, y, np.zeros_like(x)], axis=-1).reshape(-1, 3)
 
-    def usual_shape(self, most=512):
-        """(height, width) of maps of square texels, about as large as a pixel in the middle."""
-        sides = np.array([self.pixel(camera) for camera in self.cameras])
+    def default_shape(self, longest_side: int) -> tuple[int, int]:
+        """Return the shape (height, width) of maps with square texels about as large as pixels."""
+        sides = np.array([self.pixel_size(camera) for camera in self.cameras])
         width, height = np.array(self.size) / np.sqrt(sides.prod(axis=1)).mean()
-        shrink = min(1.0, most / max(width, height))
-        return max(4, round(height * shrink)), max(4, round(width * shrink))
+        shrink = min(1.0, longest_side / max(width, height))
+        return max(SMALLEST_MAP, round(height * shrink)), max(SMALLEST_MAP, round(width * shrink))
 
-    def pixel(self, camera):
-        """Width and height (2,) of a pixel of a `camera` in the middle of the sample [m]."""
+    def pixel_size(self, camera: Pinhole) -> FloatArray:
+        """Return width and height (2,) [m] of a camera's pixel in the middle of the sample."""
         step = 1e-4 * min(self.size)
-        across = np.array([[0, 0, 0], [step, 0, 0], [0, step, 0]])
-        middle, right, above = camera.project(across, self.picture_size)
+        points = np.array([[0, 0, 0], [step, 0, 0], [0, step, 0]])
+        middle, right, above = camera.project(points, self.picture_size)
         return step / np.linalg.norm([right - middle, above - middle], axis=1)
 
-    def is_shown(self, k, points):
-        """Whether picture k shows points (..., 2) [m] well: a pixel or more within the sample,
-        under a light that does not graze it."""
-        margin = np.array(self.size) / 2 - self.pixel(self.cameras[k])
-        inside = (np.abs(points) < margin).all(axis=-1)
+    def is_shown(self, k: int, points: FloatArray) -> BoolArray:
+        """Return which points (..., 2) [m] picture `k` shows reliably.
+
+        They lie a pixel or more within the sample, and their light does not graze it.
+        """
+        margin = np.array(self.size) / 2 - self.pixel_size(self.cameras[k])
+        inside = np.all(np.abs(points) < margin, axis=-1)
         points = np.where(inside[..., None], points, 0)
         across = np.linalg.norm(self.positions[k, :2] - points, axis=-1)
         height = self.positions[k, 2]
-        return inside & (height > LOWEST * np.hypot(across, height))
+        return inside & (height > SMALLEST_COSINE * np.hypot(across, height))
 
     @cached_property
-    def counted(self):
-        """Which numbers (lights, height, width, 3) show the sample alone, and are not left out."""
+    def counted(self) -> BoolArray:
+        """Which numbers (lights, height, width, 3) show the sample reliably and are not lost."""
         shown = [
             self.is_shown(k, camera.on_sample(self.picture_size))
             for k, camera in enumerate(self.cameras)
         ]
-        return np.array(shown)[..., None] & ~self.left_out
+        return np.array(shown)[..., None] & ~self.excluded
 
     @property
-    def picture_size(self):
-        """(width, height) of the pictures [pixels]."""
+    def picture_size(self) -> tuple[int, int]:
+        """The width and height of the pictures [pixels]."""
         return self.pictures.shape[2], self.pictures.shape[1]
 
     @cached_property
-    def clipped(self):
-        """Which numbers (lights, height, width, 3) are at the end of what the camera could hold.
+    def clipped(self) -> BoolArray:
+        """Which numbers (lights, height, width, 3) equal the largest value the camera could store.
 
-        Each colour has an end of its own, as a white balance moves them apart.
+        Each colour has its own largest value, because a white balance scales them.
         """
-        end = self.pictures.max(axis=(0, 1, 2))
-        at_end = (self.pictures == end) & (end > 0)  # without light of a colour all are at 0
+        largest = self.pictures.max(axis=(0, 1, 2))
+        at_end = (self.pictures == largest) & (largest > 0)  # a colour without light is all 0
         several = at_end.sum(axis=(0, 1, 2)) > 1
-        return at_end & several & (at_end.mean(axis=(0, 1, 2)) > CLIPPED)
+        return at_end & several & (at_end.mean(axis=(0, 1, 2)) > CLIPPED_SHARE)
 
     @property
-    def left_out(self):
-        """Which numbers (lights, height, width, 3) do not count: those `lost`, or clipped."""
+    def excluded(self) -> BoolArray:
+        """Which numbers (lights, height, width, 3) do not count: the lost ones, or the clipped."""
         return self.clipped if self.lost is None else self.lost
+
+
+def downsample(capture: Capture, shape: tuple[int, int]) -> Capture:
+    """Return a `Capture` with as few pixels as maps of `shape` (height, width) need.
+
+    Square blocks of pixels are averaged. Their sides are odd, so that a picture can be padded by
+    equal numbers of pixels on both sides.
+    """
+    height, width = shape
+    texel = np.array(capture.size) / (width, height)
+    pixel = np.max([capture.pixel_size(camera) for camera in capture.cameras], axis=0)
+    side = int((texel / pixel).min() / PIXELS_PER_TEXEL)
+    side -= (side + 1) % 2
+    if side < 2:
+        return capture
+    wide, high = (_find_padding(pixels, side) for pixels in capture.picture_size)
+    around = (0, 0), (high, high), (wide, wide), (0, 0)
+    lost = np.pad(capture.excluded, around, constant_values=True)
+    pictures = np.pad(capture.pictures, around)
+    scale = pictures.shape[2] / capture.picture_size[0]
+    cameras = [replace(camera, fov=_widen(camera.fov, scale)) for camera in capture.cameras]
+    return replace(
+        capture,
+        pictures=_split_blocks(pictures, side).mean(axis=(2, 4)),
+        lost=np.any(_split_blocks(lost, side), axis=(2, 4)),
+        camera=cameras[0] if len(set(map(id, capture.cameras))) == 1 else tuple(cameras),
+    )
+
+
+def _find_padding(pixels: int, side: int) -> int:
+    """Return how many pixels to add at both ends so that an odd `side` divides their number."""
+    return next(n for n in range(side) if (pixels + 2 * n) % side == 0)
+
+
+def _widen(fov: float, scale: float) -> float:
+    """Return the field of view [degrees] of a picture that is `scale` times as wide."""
+    return float(2 * np.degrees(np.arctan(scale * np.tan(np.radians(fov) / 2))))
+
+
+def _split_blocks(values: AnyArray, side: int) -> AnyArray:
+    """Return pictures (k, height, width, c) as blocks (k, rows, side, columns, side, c)."""
+    lights, height, width, channels = values.shape
+    return values.reshape(lights, height // side, side, width // side, side, channels)

@@ -1,73 +1,80 @@
-"""A folder of photographs, described by its file capture.toml."""
+"""Reads a folder of photographs with the file capture.toml, which describes cameras and lights."""
+
+from __future__ import annotations
 
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.arguments import to_number, wrong_argument
+from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.inverse.photographs.capture.cameras import (
-    cameras_of_file,
-    require_known,
-    to_number,
-    to_numbers,
-)
+from brdfkit.inverse.photographs.capture.camera_from_corners import camera_from_corners
 from brdfkit.inverse.photographs.capture.capture import Capture
+from brdfkit.inverse.photographs.capture.pinhole import Pinhole, find_corners
 from brdfkit.mitsuba_bridge.properties.picture_file import read_photograph
 
 NAME = "capture.toml"
-AT_CAMERA = "camera"  # the place of a flash light
+AT_CAMERA = "camera"  # the position of a flash light
+CAMERA_KEYS = "origin", "target", "up", "fov", "corners"
+POSITION_KEYS = "origin", "corners"  # either one says where a camera was
+LARGEST_NUMBER = 1e30  # so that squares of lengths, and their sums, stay finite
 
 
-def load_capture(folder, accept_8_bit=False):
-    """The `Capture` of a `folder`; see docs/how_to/photographs.md for its file.
+def load_capture(folder: str | Path, accept_8_bit: bool = False) -> Capture:
+    """Return the `Capture` in a folder; docs/how_to/photographs.md describes its file.
 
-    Raises `BrdfkitError` for what is missing, misspelt or of the wrong form, for pictures of
-    different sizes, and for pictures of 8 bits, unless `accept_8_bit`: then sRGB's curve is
-    inverted.
+    Raises `BrdfkitError` for entries that are missing, misspelt or wrong, for pictures of different
+    sizes, and for pictures of 8 bits unless `accept_8_bit`, which inverts sRGB's curve.
     """
     folder = Path(folder)
     path = folder / NAME
-    said = _tables(folder, path)
-    sample = said.get("sample", {})
-    require_known(path, sample, ("width", "height"), "[sample]")
-    size = tuple(to_number(path, sample, side, "[sample]") for side in ("width", "height"))
-    if min(size) <= 0:
+    tables = _read_file(folder, path)
+    sample = tables.get("sample", {})
+    _check_keys(path, sample, ("width", "height"), "[sample]")
+    width, height = (
+        _read_number(f"{path}: [sample] {side}", sample.get(side)) for side in ("width", "height")
+    )
+    if min(width, height) <= 0:
         raise BrdfkitError(f"{path}: the sample's width and height should be above 0 [m].")
-    lights = _lights(path, said)
-    positions, intensities = _places(path, lights)
+    lights = _read_lights(path, tables)
+    positions, intensities = _read_positions(path, lights)
     names = tuple(light["picture"] for light in lights)
-    pictures = _pictures(folder, names, accept_8_bit)
-    cameras = cameras_of_file(path, said, size, pictures.shape[2:0:-1])
-    positions = [
-        own.origin if place is None else place
-        for own, place in zip(cameras, positions, strict=True)
+    pictures = _read_pictures(folder, names, accept_8_bit)
+    size, picture_size = (width, height), (pictures.shape[2], pictures.shape[1])
+    cameras = _read_cameras(path, tables, size, picture_size)
+    places = [
+        camera.origin if position is None else position
+        for camera, position in zip(cameras, positions, strict=True)
     ]
-    return Capture(pictures, np.array(positions), np.array(intensities), cameras, size, names)
+    return Capture(pictures, np.array(places), np.array(intensities), cameras, size, names)
 
 
-def _tables(folder, path):
-    """The tables of the file, whose names are known."""
+def _read_file(folder: Path, path: Path) -> dict[str, Any]:
+    """Return the tables of the file, after a check of their names."""
     if not folder.is_dir():
         raise BrdfkitError(f"{folder}: there is no such folder; check the path.")
     if not path.is_file():
         raise BrdfkitError(f"{folder}: there is no {NAME} in it, which says where the lights are.")
     try:
-        said = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except ValueError as error:  # that it is no TOML, no UTF-8, or has a number too long
+        tables = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except ValueError as error:  # not TOML, not UTF-8, or a number with too many digits
         raise BrdfkitError(f"{path}: it is no TOML ({error}).") from error
-    require_known(path, said, ("sample", "camera", "light"), "the file")
-    return said
+    _check_keys(path, tables, ("sample", "camera", "light"), "the file")
+    return tables
 
 
-def _lights(path, said):
-    """The tables of the lights, each with a picture."""
-    lights = said.get("light")
+def _read_lights(path: Path, tables: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the tables of the lights, after a check that each has a picture of its own."""
+    lights = tables.get("light")
     if not isinstance(lights, list) or not lights:
         raise BrdfkitError(f"{path}: it names no [[light]]; there should be one for each picture.")
     for number, light in enumerate(lights, 1):
         known = "picture", "position", "intensity", "camera"
-        require_known(path, light, known, f"[[light]] {number}")
+        _check_keys(path, light, known, f"[[light]] {number}")
         if not isinstance(light.get("picture"), str):
             raise BrdfkitError(f"{path}: [[light]] {number} names no picture.")
         if light["picture"] in (other["picture"] for other in lights[: number - 1]):
@@ -75,21 +82,24 @@ def _lights(path, said):
     return lights
 
 
-def _places(path, lights):
-    """(positions, intensities) of the lights, lists of arrays (3,); a flash has no position."""
-    positions, intensities = [], []
+def _read_positions(
+    path: Path, lights: list[dict[str, Any]]
+) -> tuple[list[FloatArray | None], list[FloatArray]]:
+    """Return the positions and intensities (3,) of the lights; a flash has the position None."""
+    positions: list[FloatArray | None] = []
+    intensities = []
     for light in lights:
-        name, place = light["picture"], light.get("position")
-        flash = place == AT_CAMERA
-        positions.append(None if flash else to_numbers(path, place, f"{name}: position", 3))
+        what, position = f"{path}: {light['picture']}:", light.get("position")
+        flash = position == AT_CAMERA
+        positions.append(None if flash else _read_numbers(f"{what} position", position, (3,)))
         power = light.get("intensity", 1.0)
         power = power if isinstance(power, list) else [power] * 3
-        intensities.append(to_numbers(path, power, f"{name}: intensity", 3))
+        intensities.append(_read_numbers(f"{what} intensity", power, (3,)))
     return positions, intensities
 
 
-def _pictures(folder, names, accept_8_bit):
-    """Pictures (lights, height, width, 3) by their names."""
+def _read_pictures(folder: Path, names: tuple[str, ...], accept_8_bit: bool) -> FloatArray:
+    """Return the pictures (lights, height, width, 3) with these names in the folder."""
     pictures = [read_photograph(folder / name, accept_8_bit) for name in names]
     for name, picture in zip(names, pictures, strict=True):
         if picture.shape != pictures[0].shape:
@@ -99,3 +109,83 @@ def _pictures(folder, names, accept_8_bit):
                 "be alike."
             )
     return np.array(pictures)
+
+
+def _read_cameras(
+    path: Path, tables: dict[str, Any], size: tuple[float, float], picture_size: tuple[int, int]
+) -> tuple[Pinhole, ...]:
+    """Return the camera of each light.
+
+    The table `camera` of a light adds to that of the file, or replaces its position. `size` is that
+    of the sample [m], `picture_size` is (width, height) [pixels].
+    """
+    common, lights = tables.get("camera", {}), tables["light"]
+    _check_keys(path, common, CAMERA_KEYS, "[camera]")
+    if not any("camera" in light for light in lights):
+        return (_make_camera(path, common, "[camera]", size, picture_size),) * len(lights)
+    cameras = []
+    for light in lights:
+        own, where = light.get("camera", {}), f"{light['picture']}: camera"
+        _check_keys(path, own, CAMERA_KEYS, where)
+        moved = any(key in own for key in POSITION_KEYS)
+        shared = {k: v for k, v in common.items() if not (moved and k in POSITION_KEYS)}
+        cameras.append(_make_camera(path, shared | own, where, size, picture_size))
+    return tuple(cameras)
+
+
+def _make_camera(
+    path: Path,
+    table: dict[str, Any],
+    where: str,
+    size: tuple[float, float],
+    picture_size: tuple[int, int],
+) -> Pinhole:
+    """Return the camera of a table, from its origin or from the corners of the sample."""
+    what = f"{path}: {where}"
+    fov = _read_number(f"{what} fov", table.get("fov"))
+    if "corners" in table:
+        if "origin" in table:
+            raise BrdfkitError(f"{what} has an origin and corners; one of them is enough.")
+        places = _read_numbers(f"{what} corners", table["corners"], (4, 2))
+        try:
+            return camera_from_corners(places, find_corners(size), picture_size, fov)
+        except BrdfkitError as error:
+            raise BrdfkitError(f"{what} corners: {error}") from None
+    defaults = {"origin": None, "target": [0, 0, 0], "up": [0, 1, 0]}
+    origin, target, up = (
+        _read_numbers(f"{what} {name}", table.get(name, default), (3,))
+        for name, default in defaults.items()
+    )
+    try:
+        return Pinhole(origin, target, up, fov)
+    except BrdfkitError as error:
+        raise BrdfkitError(f"{what}: {error}") from None
+
+
+def _read_number(what: str, value: object) -> float:
+    """Return an entry of the file as a number, which errors call `what`."""
+    return to_number(what, value, -LARGEST_NUMBER, LARGEST_NUMBER)
+
+
+def _read_numbers(what: str, value: object, shape: tuple[int, ...]) -> FloatArray:
+    """Return lists of numbers in the file as an array of the given shape."""
+    try:
+        numbers: AnyArray = np.array(value)
+    except ValueError:  # lists of different lengths
+        numbers = np.array("")
+    if numbers.shape == shape and numbers.dtype.kind in "if":
+        array: FloatArray = numbers.astype(float)
+        if (np.abs(array) < LARGEST_NUMBER).all():
+            return array
+    raise wrong_argument(what, value, f"{' × '.join(map(str, shape))} numbers below 1e30")
+
+
+def _check_keys(path: Path, table: object, known: Iterable[str], where: str) -> None:
+    """Raise `BrdfkitError` unless an entry of the file is a table with `known` keys."""
+    if not isinstance(table, dict):
+        raise BrdfkitError(f"{path}: {where} should be a table, of {', '.join(known)}.")
+    for name in table:
+        if name not in known:
+            raise BrdfkitError(
+                f"{path}: {where} has {name!r}, which is not known; known are {', '.join(known)}."
+            )

@@ -1,16 +1,23 @@
-"""What must hold of a `Capture`; what does not is one sentence."""
+"""Checks the photographs, cameras and lights of a `Capture`; each error is one sentence."""
+
+from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
 from brdfkit.core.arguments import to_array
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.inverse.photographs.capture.pinhole import Pinhole, corners_of
+from brdfkit.inverse.photographs.capture.pinhole import Pinhole, find_corners
 
-SMALLEST = 8  # pixels along the longer side of the sample
+SMALLEST_SAMPLE = 8  # pixels along its longer side in a photograph
 
 
-def require_right(capture):
-    """Make arrays of what a `Capture` holds; raise `BrdfkitError` for what cannot be."""
+def check_capture(capture: Any) -> None:
+    """Convert the fields of a new `Capture` to arrays and check them.
+
+    Raises `BrdfkitError` for fields that are wrong.
+    """
     _set(capture, "pictures", to_array("pictures", capture.pictures))
     shape, count = capture.pictures.shape, len(np.atleast_1d(capture.pictures))
     if len(shape) != 4 or shape[3] != 3 or not capture.pictures.size:
@@ -30,28 +37,18 @@ def require_right(capture):
             raise BrdfkitError(
                 f"lost: its shape {capture.lost.shape} should be that of the pictures, {shape}."
             )
-    _require_pictures(capture)
-    _require_lights(capture)
-    _require_cameras(capture, count)
+    _check_pictures(capture)
+    _check_lights(capture)
+    _check_cameras(capture, count)
 
 
-def require_shown(capture, seen):
-    """Raise `BrdfkitError` unless each picture shows some of the sample in numbers that count."""
-    shown = (seen.weights * seen.irradiance > 0).any(axis=(1, 2))
-    shown &= capture.counted.any(axis=(1, 2, 3))
-    for name, is_shown in zip(capture.names, shown, strict=True):
-        if not is_shown:
-            raise BrdfkitError(
-                f"{name}: nothing of the sample counts in it, as all is clipped, lost, within a "
-                "pixel of the edge, or under a light that grazes; leave this picture out."
-            )
+def _set(capture: Any, name: str, value: object) -> None:
+    """Set a field of a frozen `Capture`."""
+    object.__setattr__(capture, name, value)
 
 
-def _set(capture, name, value):
-    object.__setattr__(capture, name, value)  # it is frozen
-
-
-def _require_pictures(capture):
+def _check_pictures(capture: Any) -> None:
+    """Raise `BrdfkitError` for pictures that are not finite, or black."""
     for name, picture in zip(capture.names, capture.pictures, strict=True):
         if not np.isfinite(picture).all():
             bad = int((~np.isfinite(picture)).any(axis=2).sum())
@@ -60,7 +57,8 @@ def _require_pictures(capture):
             raise BrdfkitError(f"{name}: it is black; leave it out, or check its exposure.")
 
 
-def _require_lights(capture):
+def _check_lights(capture: Any) -> None:
+    """Raise `BrdfkitError` for lights behind the sample, or without intensity."""
     for name, position in zip(capture.names, capture.positions, strict=True):
         if not position[2] > 0:
             raise BrdfkitError(
@@ -71,9 +69,10 @@ def _require_lights(capture):
         raise BrdfkitError("intensities: each light needs one above 0, and none below.")
 
 
-def _require_cameras(capture, count):
-    given = capture.camera
-    if not isinstance(given, Pinhole | tuple | list) or not all(
+def _check_cameras(capture: Any, count: int) -> None:
+    """Raise `BrdfkitError` unless there are one or `count` cameras that see the sample."""
+    value = capture.camera
+    if not isinstance(value, Pinhole | tuple | list) or not all(
         isinstance(camera, Pinhole) for camera in capture.cameras
     ):
         raise BrdfkitError("camera: it should be a Pinhole, or a tuple of them.")
@@ -88,18 +87,18 @@ def _require_cameras(capture, count):
                 f"{name}: its camera is at z = {camera.origin[2]:g} m, behind the sample; z should "
                 "be above 0."
             )
-        _require_seen(capture, name, camera)
+        _check_corners(capture, name, camera)
 
 
-def _require_seen(capture, name, camera):
-    """Raise `BrdfkitError` unless the sample's corners are in the picture of a camera."""
+def _check_corners(capture: Any, name: str, camera: Pinhole) -> None:
+    """Raise `BrdfkitError` unless the sample's corners are in the picture, and far enough apart."""
     width, height = capture.picture_size
-    places = camera.project(corners_of(capture.size), (width, height))
+    places = camera.project(find_corners(capture.size), (width, height))
     inside = (places >= -1) & (places <= np.array([width, height]) + 1)
-    if inside.all() and np.ptp(places, axis=0).max() < SMALLEST:
+    if inside.all() and np.ptp(places, axis=0).max() < SMALLEST_SAMPLE:
         raise BrdfkitError(
-            f"{name}: the sample is smaller than {SMALLEST} pixels; check that its size and the "
-            "place of the camera are both in metres."
+            f"{name}: the sample is smaller than {SMALLEST_SAMPLE} pixels; check that its size and "
+            "the place of the camera are both in metres."
         )
     if not inside.all():
         raise BrdfkitError(

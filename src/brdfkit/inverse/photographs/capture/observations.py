@@ -1,110 +1,139 @@
-"""What the photographs say of each texel: radiances, and the directions to the lights."""
+"""Collects what the photographs show of each texel: radiances, and the directions of the lights."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, IntArray
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.inverse.photographs.capture.capture import Capture
+
 ARRAYS = "radiance", "weights", "to_light", "irradiance", "to_camera"
-POOLED = 8  # texels along a side: more tell a large texel nothing new
-DARK = 0.05  # of the mean radiance, added to a radiance: its relative difference is no noise then
+POOLED_TEXELS = 8  # along a side of a large texel: more of them add nothing
+DARK_OFFSET = 0.05  # of the mean radiance, added to a radiance, so that relative errors stay finite
 
 
 @dataclass(frozen=True)
 class Observations:
-    """Of n texels under k lights:
+    """What k photographs show of n texels.
 
     radiance : (k, n, 3) [W/(m² sr)].
-    weights : (k, n, 3), 0 where a value is clipped; else 1 over about the radiance's square.
-    to_light : (k, n, 3) unit vectors.
-    irradiance : (k, n, 3) on a surface that faces the light [W/m²].
-    to_camera : (k, n, 3) unit vectors.
+    weights : (k, n, 3), the weights of squared errors: about 1 / radiance², 0 if lost or clipped.
+    to_light : (k, n, 3), unit vectors.
+    irradiance : (k, n, 3), on a surface that faces the light [W/m²].
+    to_camera : (k, n, 3), unit vectors.
     shape : (height, width) of the map.
     """
 
-    radiance: np.ndarray
-    weights: np.ndarray
-    to_light: np.ndarray
-    irradiance: np.ndarray
-    to_camera: np.ndarray
+    radiance: FloatArray
+    weights: FloatArray
+    to_light: FloatArray
+    irradiance: FloatArray
+    to_camera: FloatArray
     shape: tuple[int, int]
 
     @classmethod
-    def of(cls, capture, shape):
-        """Of a `Capture`, for maps of this shape."""
-        points = capture.texels(shape)
-        radiance = gathered(capture, capture.pictures, shape)
-        lost = gathered(capture, capture.left_out, shape) > 0
-        to_light, irradiance = light_on(points, capture.positions, capture.intensities)
-        to_camera = np.array([directions(camera.origin, points) for camera in capture.cameras])
-        scale = np.maximum(radiance, 0) + DARK * radiance.mean()
-        # pixels at the edge see what is beside the sample, too: there neighbours decide
+    def collect(cls, capture: Capture, shape: tuple[int, int]) -> Observations:
+        """Return what a `Capture` shows of the texels of maps of `shape` (height, width).
+
+        Raises `BrdfkitError` for a photograph that shows nothing of the sample that counts.
+        """
+        points = capture.texel_centres(shape)
+        radiance = sample_pictures(capture, capture.pictures, shape)
+        lost = sample_pictures(capture, capture.excluded, shape) > 0
+        to_light, irradiance = illuminate(points, capture.positions, capture.intensities)
+        to_camera = np.array([directions_to(camera.origin, points) for camera in capture.cameras])
+        scale = np.maximum(radiance, 0) + DARK_OFFSET * radiance.mean()
+        # Pixels at the edge also see what lies beside the sample; neighbours decide there
         for light in range(len(lost)):
             lost[light] |= ~capture.is_shown(light, points[:, :2])[:, None]
         weights = np.where(lost, 0, 1 / scale**2)
-        return cls(radiance, weights, to_light, irradiance, to_camera, tuple(shape))
+        shown = np.any(weights * irradiance > 0, axis=(1, 2))
+        shown &= np.any(capture.counted, axis=(1, 2, 3))
+        for name, is_shown in zip(capture.names, shown, strict=True):
+            if not is_shown:
+                raise BrdfkitError(
+                    f"{name}: nothing of the sample counts in it, as all is clipped, lost, within "
+                    "a pixel of the edge, or under a light that grazes; leave this picture out."
+                )
+        return cls(radiance, weights, to_light, irradiance, to_camera, shape)
 
-    def under(self, lights):
-        """The same under some of the lights."""
-        return self._each(lambda values: values[lights], self.shape)
+    def select_lights(self, lights: IntArray) -> Observations:
+        """Return the observations under some of the lights."""
+        return self._map_arrays(lambda values: values[lights], self.shape)
 
-    def at(self, texels):
-        """The same of some of the texels, a slice or their numbers, in a row."""
-        found = self._each(lambda values: values[:, texels], (1, 0))
-        return replace(found, shape=(1, found.radiance.shape[1]))
+    def select_texels(self, texels: IntArray | slice) -> Observations:
+        """Return the observations of some of the texels, as a map of one row."""
+        part = self._map_arrays(lambda values: values[:, texels], (1, 0))
+        return replace(part, shape=(1, part.radiance.shape[1]))
 
-    def pooled(self, side):
-        """Texels `side` times as large: what is observed of those within one, or of `POOLED` ×
-        `POOLED` evenly among them, is observed of it."""
+    def pool(self, side: int) -> Observations:
+        """Return the observations of texels that are `side` times as large.
+
+        A large texel receives all observations of the texels within it, or of 8 × 8 of them.
+        """
         height, width = self.shape
         rows, columns = -(-height // side), -(-width // side)
         texel = np.arange(height * width).reshape(height, width)
-        spare = (0, rows * side - height), (0, columns * side - width)
-        blocks = np.pad(texel, spare, mode="edge").reshape(rows, side, columns, side)
-        step = max(1, side // POOLED)
+        margin = (0, rows * side - height), (0, columns * side - width)
+        padded = np.pad(texel, margin, mode="edge")
+        blocks: IntArray = padded.reshape(rows, side, columns, side)
+        step = max(1, side // POOLED_TEXELS)
         blocks = blocks[:, step // 2 :: step, :, step // 2 :: step]
         blocks = blocks.transpose(1, 3, 0, 2).reshape(-1, rows * columns)
+        return self._map_arrays(
+            lambda values: values[:, blocks].reshape(-1, rows * columns, 3), (rows, columns)
+        )
 
-        def pool(values):
-            return values[:, blocks].reshape(-1, rows * columns, 3)
+    def lit_channels(self) -> BoolArray:
+        """Return which of red, green and blue (3,) are observed at all; lights may be coloured."""
+        return np.any(self.weights * self.irradiance > 0, axis=(0, 1))
 
-        return self._each(pool, (rows, columns))
-
-    def _each(self, change, shape):
-        arrays = {name: change(getattr(self, name)) for name in ARRAYS}
+    def _map_arrays(
+        self, function: Callable[[FloatArray], FloatArray], shape: tuple[int, int]
+    ) -> Observations:
+        """Return the observations with a function applied to each array."""
+        arrays = {name: function(getattr(self, name)) for name in ARRAYS}
         return Observations(**arrays, shape=shape)
 
 
-def gathered(capture, pictures, shape):
-    """Values (k, n, c) at the texels of a map of `shape`, of pictures (k, height, width, c)."""
-    points = capture.texels(shape)
+def sample_pictures(capture: Capture, pictures: AnyArray, shape: tuple[int, int]) -> FloatArray:
+    """Return the values (k, n, c) of pictures (k, height, width, c) at the texels of maps."""
+    points = capture.texel_centres(shape)
     return np.array(
         [
-            bilinear(picture, camera.project(points, capture.picture_size))
+            _interpolate(picture, camera.project(points, capture.picture_size))
             for picture, camera in zip(pictures, capture.cameras, strict=True)
         ]
     )
 
 
-def shown_colours(seen):
-    """Which of red, green and blue (3,) `Observations` show anywhere: lights may be red alone."""
-    return (seen.weights * seen.irradiance > 0).any(axis=(0, 1))
-
-
-def directions(place, points):
-    """Unit vectors (n, 3) from `points` to a `place`."""
+def directions_to(place: FloatArray, points: FloatArray) -> FloatArray:
+    """Return the unit vectors (n, 3) from `points` (n, 3) to a `place` (3,)."""
     away = place - points
     return away / np.linalg.norm(away, axis=1, keepdims=True)
 
 
-def light_on(points, positions, intensities):
-    """(unit vectors to the lights, irradiance on what faces them), each (k, n, 3), at `points`."""
+def illuminate(
+    points: FloatArray, positions: FloatArray, intensities: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the unit vectors from points to lights, and the irradiance on surfaces facing them.
+
+    Both are (k, n, 3), for `points` (n, 3) [m], `positions` (k, 3) [m] and `intensities` (k, 3).
+    """
     away = positions[:, None] - points
     square = (away**2).sum(axis=2, keepdims=True)
     return away / np.sqrt(square), intensities[:, None] / square
 
 
-def bilinear(picture, places):
-    """Values (n, c) of a `picture` (height, width, c) at `places` (n, 2), columns and rows."""
+def _interpolate(picture: AnyArray, places: FloatArray) -> FloatArray:
+    """Return the values (n, c) of a picture between its pixels, by bilinear interpolation.
+
+    The picture is (height, width, c); `places` (n, 2) are columns and rows.
+    """
     height, width = picture.shape[:2]
     x, y = (places - 0.5).T
     x, y = np.clip(x, 0, width - 1), np.clip(y, 0, height - 1)

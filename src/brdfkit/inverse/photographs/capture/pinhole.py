@@ -1,8 +1,9 @@
-"""A pinhole camera: where in its picture a point is seen."""
+"""Defines `Pinhole`, the camera of a photograph, which projects points to pixels."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -12,44 +13,45 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.homogeneous import make_axes, make_rigid, project_all
 
-NEAREST, FARTHEST = 1e-2, 1e4  # what Mitsuba shows, in heights of the camera above the sample
-PARALLEL = 1e-5  # the sine of an angle in which Mitsuba sees none
+CLIP_DISTANCES = 1e-2, 1e4  # near and far, in heights of the camera above the sample
+SMALLEST_SINE = 1e-5  # of the angle between view and up, below which Mitsuba finds no axes
 
 
 @dataclass(frozen=True, eq=False)
 class Pinhole:
-    """A pinhole camera; no lens distorts its pictures.
+    """A pinhole camera, whose pictures have no lens distortion.
 
     Attributes
     ----------
     origin : ndarray, shape (3,)
-        Where it is [m].
+        The camera's position [m].
     target : ndarray, shape (3,)
-        Where it looks [m].
+        The point in the middle of its pictures [m].
     up : ndarray, shape (3,)
-        A direction that is up in its pictures.
+        A direction that points upwards in its pictures.
     fov : float
-        The angle across the width of its pictures, above 0, below 180 [degrees].
+        The angle across the width of its pictures, between 0 and 180 [degrees].
 
     Raises
     ------
     BrdfkitError
-        For what are no three numbers, another fov, and a camera that looks along up.
+        For vectors that are not three numbers, a field of view out of range, and a camera that
+        looks along `up`.
     """
 
-    origin: np.ndarray
-    target: np.ndarray
-    up: np.ndarray
+    origin: FloatArray
+    target: FloatArray
+    up: FloatArray
     fov: float
 
     def __post_init__(self) -> None:
         for name in ("origin", "target", "up"):
             object.__setattr__(self, name, to_array(name, getattr(self, name), (3,)))
         object.__setattr__(self, "fov", float(to_array("fov", self.fov, ())))
-        require_fov(self.fov)
+        check_fov(self.fov)
         away = self.target - self.origin
         along = np.linalg.norm(away) * np.linalg.norm(self.up)
-        if not np.linalg.norm(np.cross(away, self.up)) > PARALLEL * along:
+        if not np.linalg.norm(np.cross(away, self.up)) > SMALLEST_SINE * along:
             raise BrdfkitError("camera: it looks along up, or at where it is.")
 
     @property
@@ -87,13 +89,13 @@ class Pinhole:
         with np.errstate(invalid="ignore"):
             return np.nan_to_num((self.origin + steps[..., None] * ray)[..., :2], nan=np.inf)
 
-    def clips(self):
-        """The depths [m] between which Mitsuba's sensor sees; by default not within 1 cm."""
+    def clips(self) -> dict[str, float]:
+        """Return the clip distances [m] for Mitsuba, whose default hides all within 1 cm."""
         height = abs(float(self.origin[2])) or 1.0
-        return {"near_clip": NEAREST * height, "far_clip": FARTHEST * height}
+        return {"near_clip": CLIP_DISTANCES[0] * height, "far_clip": CLIP_DISTANCES[1] * height}
 
-    def scene_dict(self, size):
-        """The dictionary of Mitsuba's sensor of this camera."""
+    def scene_dict(self, size: tuple[int, int]) -> dict[str, Any]:
+        """Return the dictionary of a Mitsuba sensor, for pictures of `size` (width, height)."""
         import mitsuba as mi
 
         at = mi.ScalarTransform4f()
@@ -115,13 +117,13 @@ class Pinhole:
         }
 
 
-def require_fov(fov):
-    """Raise `BrdfkitError` for what is no angle of a camera."""
+def check_fov(fov: float) -> None:
+    """Raise `BrdfkitError` for a field of view that is not between 0 and 180 degrees."""
     if not 0 < fov < 180:
         raise BrdfkitError(f"fov = {fov:g} should be between 0 and 180 degrees.")
 
 
-def corners_of(size):
-    """The corners (4, 3) of a sample of `size` [m], clockwise from the upper left."""
+def find_corners(size: tuple[float, float]) -> FloatArray:
+    """Return the corners (4, 3) of a sample of `size` [m], clockwise from the upper left."""
     w, h = np.array(size) / 2
     return np.array([[-w, h, 0], [w, h, 0], [w, -h, 0], [-w, -h, 0]])

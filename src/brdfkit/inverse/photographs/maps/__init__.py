@@ -1,1 +1,1 @@
-"""The numbers of each texel that `svbrdf` searches, and how they become light."""
+"""Defines the numbers of each texel, the radiance that follows from them, and maps of them."""

@@ -1,71 +1,106 @@
-"""Maps of a model's parameters and of the normal, and the rows of numbers that they are made of."""
+"""Converts between maps, images of a model's parameters and of the normal, and rows of numbers."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
+from brdfkit.inverse.photographs.capture.observations import Observations, directions_to
 from brdfkit.inverse.photographs.maps.shape_parameters import ANGLE
-from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, Numbers
-from brdfkit.model import labels
+from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, TexelParameters
+from brdfkit.model import Model, labels
 
 
 @dataclass(frozen=True)
 class Maps:
-    """The `maps` by name of a sample of `size` [m]: of a `model`, whose other shape parameters are
-    `fixed`."""
+    """The maps of a sample.
 
-    model: type
+    model : the model's class.
+    fixed : the values of the shape parameters that have no map.
+    size : width and height of the sample [m].
+    maps : the maps by name, (height, width) or (height, width, 3).
+    """
+
+    model: type[Model]
     fixed: dict[str, float]
     size: tuple[float, float]
-    maps: dict[str, np.ndarray]
+    maps: dict[str, FloatArray]
 
     @classmethod
-    def of(cls, numbers, x, shape, size):
-        """Of rows `x` (n, count) of `Numbers`, for a map of `shape`."""
-        return cls(numbers.model, numbers.fixed, size, maps_of(numbers, x, shape))
+    def from_rows(
+        cls,
+        parameters: TexelParameters,
+        x: FloatArray,
+        shape: tuple[int, int],
+        size: tuple[float, float],
+    ) -> Maps:
+        """Return the maps of `shape` (height, width) that rows `x` (n, count) hold."""
+        maps = {}
+        for lobe, name in enumerate(parameters.lobes):
+            weights = x[:, CHANNELS * lobe : CHANNELS * (lobe + 1)]
+            maps[name] = weights.reshape(*shape, CHANNELS)
+        shapes = parameters.shapes.to_values(x[:, parameters.shape_columns].T)
+        maps |= {name: values.reshape(shape) for name, values in shapes.items()}
+        slant = x[:, parameters.normal_columns]
+        z = np.sqrt(np.maximum(1 - (slant**2).sum(axis=1), 1e-4))
+        normals = np.concatenate([slant, z[:, None]], axis=1)
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        maps["normal"] = normals.reshape(*shape, 3)
+        return cls(parameters.model, parameters.fixed, size, maps)
 
 
-def numbers_of(svbrdf):
-    """The `Numbers` of `Maps`, or of an `Svbrdf`, and its rows (n, count)."""
+def to_rows(svbrdf: Any) -> tuple[TexelParameters, FloatArray]:
+    """Return the rows (n, count) of `Maps` or an `Svbrdf`, and their layout."""
     model, maps = labels.model(svbrdf.model), svbrdf.maps
     weights = model.weights()
     names = tuple(name for name in maps if name not in (*weights, "normal", ANGLE))
-    numbers = Numbers(model, names, svbrdf.fixed, pair_of(model, names) if ANGLE in maps else None)
+    pair = find_pair(model, names) if ANGLE in maps else None
+    parameters = TexelParameters(model, names, svbrdf.fixed, pair)
     columns = [maps[name].reshape(-1, CHANNELS) for name in weights]
-    shapes = [n.reshape(-1, 1) for n in numbers.form.numbers(maps)]
+    shapes = [numbers.reshape(-1, 1) for numbers in parameters.shapes.to_numbers(maps)]
     normals = maps["normal"].reshape(-1, 3)[:, :2]
-    return numbers, np.concatenate([*columns, *shapes, normals], axis=1)
+    return parameters, np.concatenate([*columns, *shapes, normals], axis=1)
 
 
-def pair_of(model, names):
-    """The shape parameters (u, v) among the `names` that are widths along two directions."""
+def find_pair(model: type[Model], names: Iterable[str]) -> tuple[str, str] | None:
+    """Return the shape parameters (u, v) among `names` that are widths along two directions."""
     return next(
         ((p.follows, name) for name, p in model.parameters.items() if p.follows and name in names),
         None,
     )
 
 
-def maps_of(numbers, x, shape):
-    """The maps by name of rows `x` (n, count)."""
-    height, width = shape
-    found = {}
-    for lobe, name in enumerate(numbers.lobes):
-        found[name] = x[:, CHANNELS * lobe : CHANNELS * (lobe + 1)].reshape(height, width, CHANNELS)
-    shapes = numbers.form.values(x[:, numbers.shapes].T)
-    found |= {name: values.reshape(shape) for name, values in shapes.items()}
-    slant = x[:, numbers.normal]
-    z = np.sqrt(np.maximum(1 - (slant**2).sum(axis=1), 1e-4))
-    normals = np.concatenate([slant, z[:, None]], axis=1)
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    return found | {"normal": normals.reshape(height, width, 3)}
+def to_error_maps(
+    parameters: TexelParameters, errors: FloatArray, x: FloatArray, shape: tuple[int, int]
+) -> dict[str, FloatArray]:
+    """Return maps (height, width) of standard errors, given those (n, count) of the rows `x`.
 
-
-def errors_of(numbers, errors, x, shape):
-    """The standard errors (height, width) by name, of `errors` (n, count) of the rows `x`."""
-    found = {}
-    for lobe, name in enumerate(numbers.lobes):
+    Colours have the RMS error of their channels, normals that of their direction [radians].
+    """
+    by_name = {}
+    for lobe, name in enumerate(parameters.lobes):
         own = errors[:, CHANNELS * lobe : CHANNELS * (lobe + 1)]
-        found[name] = np.sqrt((own**2).mean(axis=1))
-    found |= numbers.form.errors(x[:, numbers.shapes].T, errors[:, numbers.shapes].T)
-    found["normal"] = np.sqrt((errors[:, numbers.normal] ** 2).sum(axis=1))
-    return {name: error.reshape(shape) for name, error in found.items()}
+        by_name[name] = np.sqrt((own**2).mean(axis=1))
+    columns = parameters.shape_columns
+    by_name |= parameters.shapes.propagate_errors(x[:, columns].T, errors[:, columns].T)
+    by_name["normal"] = np.sqrt((errors[:, parameters.normal_columns] ** 2).sum(axis=1))
+    return {name: error.reshape(shape) for name, error in by_name.items()}
+
+
+def predict(
+    svbrdf: Any, points: FloatArray, to_light: FloatArray, irradiance: FloatArray, eye: FloatArray
+) -> FloatArray:
+    """Return the radiances (k, height, width, 3) of an `Svbrdf`, for direct light alone.
+
+    `points` (n, 3) [m] are its texels, `to_light` (k, n, 3) unit vectors to the lights,
+    `irradiance` (k, n, 3) that on surfaces facing them, and `eye` (3,) [m] the viewer's position.
+    """
+    to_camera = np.broadcast_to(directions_to(eye, points), to_light.shape)
+    nothing = np.zeros_like(to_light)
+    observed = Observations(nothing, nothing, to_light, irradiance, to_camera, (1, 1))
+    parameters, x = to_rows(svbrdf)
+    return parameters.compute_radiances(x, observed).reshape(-1, *svbrdf.shape, CHANNELS)

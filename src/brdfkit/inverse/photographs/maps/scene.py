@@ -1,14 +1,20 @@
-"""The sample as Mitsuba has it: a rectangle, whose textures are the maps."""
+"""Writes the sample as a Mitsuba scene: a rectangle whose textures are the maps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.inverse.photographs.maps.shape_parameters import ANGLE
 from brdfkit.model import labels
 
 
-def sample_dict(svbrdf):
-    """The dictionary of the sample of an `Svbrdf`, in the plane z = 0."""
+def sample_dict(svbrdf: Any) -> dict[str, Any]:
+    """Return the dictionary of the sample of an `Svbrdf` or `Maps`, in the plane z = 0."""
     import mitsuba as mi
 
     use_variant()
@@ -20,33 +26,35 @@ def sample_dict(svbrdf):
     }
 
 
-def bsdf_dict(svbrdf):
-    """The dictionary of its BSDF."""
+def bsdf_dict(svbrdf: Any) -> dict[str, Any]:
+    """Return the dictionary of the sample's BSDF."""
     maps = svbrdf.maps
-    textures = {name: _texture(maps[name]) for name in _parameters(maps)}
-    material = {**_type(svbrdf.model), **svbrdf.fixed, **textures}
+    textures = {name: _bitmap(maps[name]) for name in _parameter_names(maps)}
+    material = {**_plugin(svbrdf.model), **svbrdf.fixed, **textures}
     if ANGLE in maps:
-        angle = _texture(maps[ANGLE]) | {"filter_type": "nearest"}  # it has a seam
+        # Angles jump by π at a seam, across which interpolation would be wrong
+        angle = _bitmap(maps[ANGLE]) | {"filter_type": "nearest"}
         material = {"type": "tangent_rotation", "angle": angle, "bsdf": material}
-    normals = _texture((maps["normal"] + 1) / 2)
+    normals = _bitmap((maps["normal"] + 1) / 2)
     return {"type": "normalmap", "normalmap": normals, "bsdf": material}
 
 
-def _parameters(maps):
-    """The names of the maps that are parameters of the model."""
+def _parameter_names(maps: Iterable[str]) -> list[str]:
+    """Return the names of the maps that are parameters of the model."""
     return [name for name in maps if name not in ("normal", ANGLE)]
 
 
-def _type(label):
-    """The plugin's type and options of a model's label."""
+def _plugin(label: str) -> dict[str, Any]:
+    """Return the type and the options of the Mitsuba plugin for a model's label."""
     model = labels.model(label)
     return {"type": model.type_name(), **model.chosen()}
 
 
-def _texture(values):
+def _bitmap(values: FloatArray) -> dict[str, Any]:
+    """Return the dictionary of a texture with the values of a map."""
     import mitsuba as mi
 
-    # the first row of Mitsuba's bitmap is the lower edge of a rectangle
+    # Mitsuba puts the first row of a bitmap at the lower edge of a rectangle
     pixels = np.ascontiguousarray(np.atleast_3d(values)[::-1], np.float32)
     return {
         "type": "bitmap",
@@ -57,16 +65,17 @@ def _texture(values):
     }
 
 
-def scene_xml(svbrdf, files):
-    """The text of a scene: the sample under the first light, seen by the first photograph's camera.
+def scene_xml(svbrdf: Any, files: Mapping[str, str]) -> str:
+    """Return the text of a scene: the sample under the first light, in the first photograph.
 
-    `files`: the name of each map's file, which lies beside it, its first row the upper edge.
+    `files` maps the name of each map to its file, which lies beside the scene and whose first row
+    is the sample's upper edge.
     """
     width, height = svbrdf.size
     capture = svbrdf.capture
     camera, size = capture.cameras[0], capture.picture_size
     textures = "\n".join(
-        f"        {_file_texture(name, files[name])}" for name in _parameters(svbrdf.maps)
+        f"        {_file_texture(name, files[name])}" for name in _parameter_names(svbrdf.maps)
     )
     turning, inner, end = "", "", ""
     if ANGLE in svbrdf.maps:
@@ -74,8 +83,8 @@ def scene_xml(svbrdf, files):
         turning, end = f'<bsdf type="tangent_rotation">\n        {angle}\n        ', "</bsdf>"
         inner = 'name="bsdf" '
     clips = "\n".join(f'    <float name="{n}" value="{v!r}"/>' for n, v in camera.clips().items())
-    kind = _type(svbrdf.model)
-    values = {**{name: v for name, v in kind.items() if name != "type"}, **svbrdf.fixed}
+    plugin = _plugin(svbrdf.model)
+    values = {**{name: v for name, v in plugin.items() if name != "type"}, **svbrdf.fixed}
     numbers = "\n".join(
         f'        <{_tag(value)} name="{name}" value="{value}"/>' for name, value in values.items()
     )
@@ -104,7 +113,7 @@ def scene_xml(svbrdf, files):
     <transform name="to_world"><scale x="{width / 2!r}" y="{height / 2!r}" z="1"/></transform>
     <bsdf type="normalmap">
       {_file_texture("normalmap", files["normal"])}
-      {turning}<bsdf {inner}type="{kind["type"]}">
+      {turning}<bsdf {inner}type="{plugin["type"]}">
 {textures}
 {numbers}
       </bsdf>{end}
@@ -114,24 +123,27 @@ def scene_xml(svbrdf, files):
 """
 
 
-def _file_texture(name, file, between="bilinear"):
+def _file_texture(name: str, file: str, interpolation: str = "bilinear") -> str:
+    """Return the XML of a texture that is read from a file."""
     return (
         f'<texture type="bitmap" name="{name}"><string name="filename" value="{file}"/>'
         '<boolean name="raw" value="true"/><string name="wrap_mode" value="clamp"/>'
-        f'<string name="filter_type" value="{between}"/>'
-        # Mitsuba's rectangles have a picture's first row at their lower edge
+        f'<string name="filter_type" value="{interpolation}"/>'
+        # Mitsuba puts the first row of a picture at the lower edge of a rectangle
         '<transform name="to_uv"><scale y="-1"/><translate y="1"/></transform></texture>'
     )
 
 
-def _tag(value):
-    """The element of Mitsuba's XML for a value."""
+def _tag(value: float | str) -> str:
+    """Return the element of Mitsuba's XML for a value, by its type."""
     return {int: "integer", float: "float", str: "string"}[type(value)]
 
 
-def _csv(numbers):
+def _csv(numbers: Iterable[float]) -> str:
+    """Return numbers separated by commas."""
     return ", ".join(repr(float(number)) for number in numbers)
 
 
-def _xyz(numbers):
+def _xyz(numbers: Iterable[float]) -> str:
+    """Return three numbers as the attributes x, y and z."""
     return " ".join(f'{axis}="{float(n)!r}"' for axis, n in zip("xyz", numbers, strict=True))

@@ -1,143 +1,174 @@
-"""The numbers of a texel that are searched, and how they make its radiances.
+"""Defines the numbers of a texel that are searched, and computes its radiances from them.
 
-Of a texel: the weights of the model's lobes, in red, green and blue, the shape parameters, and x
-and y of the normal. With irradiances E_i from directions l_i, and the texel's frame about n:
+A texel has the weights a_l of the model's lobes in red, green and blue, the shape parameters, and x
+and y of its normal n. Light i arrives from the direction l_i and would cause the irradiance E_i on
+a surface facing it; v is the direction to the camera, and the lobes f_l are evaluated in the
+texel's frame around n. The texel then has the radiance
 
-    L_i = E_i max(n · l_i, 0) Σ_l a_l f_l(v, l_i)
+    L_i = E_i max(n · l_i, 0) Σ_l a_l f_l(v, l_i).
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, JitFloat, JitMask, JitVector
 from brdfkit.core.jit import double_precision
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.inverse.photographs.maps.shape_parameters import ANGLE, Shapes
+from brdfkit.inverse.photographs.capture.observations import Observations
+from brdfkit.inverse.photographs.maps.shape_parameters import ANGLE, ShapeParameters
+from brdfkit.model import Model
 
-STEEPEST = 0.65  # the largest x or y of a normal
+STEEPEST_SLANT = 0.65  # the largest |x| or |y| of a normal
 CHANNELS = 3
+
+Lobes = list[FloatArray]  # radiances (k, n) of each lobe under a weight and an irradiance of 1
 
 
 @dataclass(frozen=True)
-class Numbers:
-    """The numbers of a `model` whose shape parameters `names` are searched, and others `fixed`.
+class TexelParameters:
+    """The layout of a texel's row of numbers, for one model.
 
-    Of each texel a row: weights (lobe by lobe, red, green and blue), the numbers of the `form`, the
-    shape parameters, and the normal's x and y. `pair`: those that turn about the normal, if any.
+    A row holds the weights (lobe by lobe, red, green and blue), the numbers of the shape
+    parameters, and x and y of the normal.
+
+    model : the model's class.
+    names : the shape parameters that are searched.
+    fixed : the values of the other shape parameters.
+    pair : the names of two widths whose directions turn about the normal, or None.
     """
 
-    model: type
+    model: type[Model]
     names: tuple[str, ...]
     fixed: dict[str, float]
     pair: tuple[str, str] | None = None
 
     @property
-    def lobes(self):
-        """The names of the weights."""
-        return self.model.weights()
+    def lobes(self) -> tuple[str, ...]:
+        """The names of the lobes' weights."""
+        return tuple(self.model.weights())
 
     @property
-    def form(self):
-        """The `Shapes`."""
-        return Shapes(self.model, self.names, self.pair)
+    def shapes(self) -> ShapeParameters:
+        """The shape parameters and their numbers."""
+        return ShapeParameters(self.model, self.names, self.pair)
 
     @property
-    def shapes(self):
-        """Where the shapes are in a row."""
+    def shape_columns(self) -> slice:
+        """Where the numbers of the shape parameters are in a row."""
         first = CHANNELS * len(self.lobes)
-        return slice(first, first + len(self.form.columns))
+        return slice(first, first + len(self.shapes.number_names))
 
     @property
-    def normal(self):
+    def normal_columns(self) -> slice:
         """Where x and y of the normal are in a row."""
-        return slice(self.shapes.stop, self.shapes.stop + 2)
+        return slice(self.shape_columns.stop, self.shape_columns.stop + 2)
 
     @property
-    def count(self):
-        """How many numbers a texel has."""
-        return self.normal.stop
+    def count(self) -> int:
+        """How many numbers a row has."""
+        return int(self.normal_columns.stop)
 
-    def limits(self):
-        """(low, high), each (count,)."""
+    @property
+    def number_names(self) -> list[str]:
+        """A name for each number of a row, such as "diffuse_reflectance[0]"."""
+        weights = [f"{name}[{c}]" for name in self.lobes for c in range(CHANNELS)]
+        return [*weights, *self.shapes.number_names, "normal[x]", "normal[y]"]
+
+    def limits(self) -> tuple[FloatArray, FloatArray]:
+        """Return the lowest and the highest numbers of a row, each (count,)."""
         low, high = np.zeros(self.count), np.full(self.count, np.inf)
-        low[self.shapes], high[self.shapes] = self.form.limits()
-        low[self.normal], high[self.normal] = -STEEPEST, STEEPEST
+        low[self.shape_columns], high[self.shape_columns] = self.shapes.limits()
+        low[self.normal_columns], high[self.normal_columns] = -STEEPEST_SLANT, STEEPEST_SLANT
         return low, high
 
+    def compute_radiances(self, x: FloatArray, observed: Observations) -> FloatArray:
+        """Return the radiances (k, n, 3) of rows `x` (n, count) under the observed lights."""
+        lobes, _ = self.evaluate_lobes(x, observed, differentiate=False)
+        weights = x[:, : self.shape_columns.start].reshape(len(x), -1, CHANNELS)
+        shown = sum(lobe[..., None] * weights[:, k] for k, lobe in enumerate(lobes))
+        radiances: FloatArray = shown * observed.irradiance
+        return radiances
+
     @in_turn
-    def radiances(self, x, seen, slopes=True):
-        """By lobe, arrays (k, n): the radiances of each under a weight of 1 and irradiance of 1;
-        and their derivatives by shapes and normal, a list for each of these, of rows `x` (n, count)
-        seen as `Observations`."""
-        lights, texels = seen.to_light.shape[:2]
+    def evaluate_lobes(
+        self, x: FloatArray, observed: Observations, differentiate: bool = True
+    ) -> tuple[Lobes, list[Lobes]]:
+        """Return the lobes at rows `x` (n, count), and their derivatives.
+
+        The derivatives are by each number of the shapes and the normal; there are none unless
+        `differentiate`.
+        """
+        lights, texels = observed.to_light.shape[:2]
         arrays = [
             double_precision.to_array(np.tile(column, lights))
-            for column in x[:, self.shapes.start : self.normal.stop].T
+            for column in x[:, self.shape_columns.start : self.normal_columns.stop].T
         ]
-        to_light = double_precision.to_vector(seen.to_light.reshape(-1, 3))
-        to_camera = double_precision.to_vector(seen.to_camera.reshape(-1, 3))
-        shape = (lights, texels)
-        if slopes:
-            for one in arrays:
-                dr.enable_grad(one)
-        found = self._lobes(arrays, to_light, to_camera)
-        values, by_number = [dr.detach(lobe) for lobe in found], []
-        for one in arrays if slopes else ():
-            dr.clear_grad(found)
-            dr.set_grad(one, 1)
-            dr.enqueue(dr.ADMode.Forward, one)
+        to_light = double_precision.to_vector(observed.to_light.reshape(-1, 3))
+        to_camera = double_precision.to_vector(observed.to_camera.reshape(-1, 3))
+        if differentiate:
+            for array in arrays:
+                dr.enable_grad(array)
+        lobes = self._evaluate(arrays, to_light, to_camera)
+        values, derivatives = [dr.detach(lobe) for lobe in lobes], []
+        for array in arrays if differentiate else ():
+            dr.clear_grad(lobes)
+            dr.set_grad(array, 1)
+            dr.enqueue(dr.ADMode.Forward, array)
             dr.traverse(dr.ADMode.Forward, dr.ADFlag.ClearInterior)
-            by_number.append([dr.grad(lobe) for lobe in found])
-        dr.eval(values, by_number)  # all of them in one kernel
+            derivatives.append([dr.grad(lobe) for lobe in lobes])
+        dr.eval(values, derivatives)  # all of them in one kernel
 
-        def plain(lobes):
-            return [np.array(lobe).reshape(shape) for lobe in lobes]
+        def to_numpy(lobes: Sequence[JitFloat]) -> Lobes:
+            return [np.array(lobe).reshape(lights, texels) for lobe in lobes]
 
-        return plain(values), [plain(lobes) for lobes in by_number]
+        return to_numpy(values), [to_numpy(lobes) for lobes in derivatives]
 
-    def _lobes(self, arrays, to_light, to_camera):
-        """Each lobe times the cosine, at shapes and normals, `arrays` over lights and texels."""
+    def _evaluate(
+        self, arrays: list[JitFloat], to_light: JitVector, to_camera: JitVector
+    ) -> list[JitFloat]:
+        """Return each lobe times the cosine, over all lights and texels.
+
+        `arrays` holds the numbers of the shapes and of the normal.
+        """
         *shapes, x, y = arrays
         z = dr.sqrt(dr.maximum(1 - x * x - y * y, 1e-4))
         normal = double_precision.Vector(x, y, z)
-        # the tangent is the x axis, laid onto the surface, as Mitsuba's normal maps have it
+        # The tangent is the x axis projected onto the surface, as in Mitsuba's normal maps
         scale = dr.rsqrt(dr.maximum(1 - x * x, 1e-4))
         tangent = double_precision.Vector((1 - x * x) * scale, -x * y * scale, -x * z * scale)
-        values = self.form.values(shapes, dr)
+        values = self.shapes.to_values(shapes, dr)
         if self.pair:
             sine, cosine = dr.sincos(values.pop(ANGLE))
-            tangent = _turned(tangent, _cross(normal, tangent), cosine, sine)
-        bitangent = _cross(normal, tangent)
-        wi = _local(to_camera, tangent, bitangent, normal)
-        wo = _local(to_light, tangent, bitangent, normal)
+            tangent = tangent * cosine + _cross(normal, tangent) * sine
+        frame = tangent, _cross(normal, tangent), normal
+        wi, wo = _to_local(to_camera, frame), _to_local(to_light, frame)
         lit = (wi.z > 1e-3) & (wo.z > 1e-3)
         up = double_precision.Vector(0 * x, 0 * x, 0 * x + 1)
-        wi, wo_ = _where(lit, wi, up), _where(lit, wo, up)
+        wi, safe_wo = _select(lit, wi, up), _select(lit, wo, up)
         values |= {name: double_precision.to_scalar(v) for name, v in self.fixed.items()}
         lobes = [lobe for _, lobe in self.model.bind(values).terms()]
-        return [dr.select(lit, (lobe.eval(wi, wo_) + 0 * x) * wo_.z, 0) for lobe in lobes]
+        return [dr.select(lit, (lobe.eval(wi, safe_wo) + 0 * x) * safe_wo.z, 0) for lobe in lobes]
 
 
-def _cross(a, b):
+def _cross(a: JitVector, b: JitVector) -> JitVector:
+    """Return the cross product of two vectors."""
     return double_precision.Vector(
         a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x
     )
 
 
-def _turned(u, v, cosine, sine):
-    return double_precision.Vector(*(cosine * getattr(u, k) + sine * getattr(v, k) for k in "xyz"))
+def _to_local(w: JitVector, frame: tuple[JitVector, JitVector, JitVector]) -> JitVector:
+    """Return the coordinates of a vector along tangent, bitangent and normal."""
+    return double_precision.Vector(*(w.x * a.x + w.y * a.y + w.z * a.z for a in frame))
 
 
-def _dot(a, b):
-    return a.x * b.x + a.y * b.y + a.z * b.z
-
-
-def _local(w, tangent, bitangent, normal):
-    return double_precision.Vector(_dot(w, tangent), _dot(w, bitangent), _dot(w, normal))
-
-
-def _where(condition, a, b):
+def _select(condition: JitMask, a: JitVector, b: JitVector) -> JitVector:
+    """Return `a` where the condition holds, else `b`."""
     return double_precision.Vector(
         *(dr.select(condition, getattr(a, k), getattr(b, k)) for k in "xyz")
     )

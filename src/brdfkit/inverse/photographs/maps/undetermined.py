@@ -1,62 +1,65 @@
-"""What the lights leave open, in words."""
+"""Finds numbers that the photographs do not determine, and describes them."""
+
+from __future__ import annotations
 
 import numpy as np
 
+from brdfkit.core.array_types import BoolArray, FloatArray, IntArray
 from brdfkit.core.names import join_words
-from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS
+from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 
-OPEN = 1e-4  # an eigenvalue of the Hessian, of unit diagonal, below which a combination is open
-PART = 0.3  # of the largest entry: which numbers are in that combination
-SHARE = 0.05  # of the texels, from which it is said
+SMALLEST_EIGENVALUE = 1e-4  # of a Hessian with unit diagonal: below, a combination is undetermined
+MAIN_PART = 0.3  # of the largest entry of an eigenvector: numbers above it are in the combination
+MENTIONED_SHARE = 0.25  # of the undetermined texels, in which a number has to be to be named
+UNDETERMINED_SHARE = 0.05  # of the texels, from which a sentence says so
 
 
-def describe_open(numbers, fitted, lights):
-    """Sentences on numbers that many texels do not determine for themselves."""
-    said = []
+def describe_undetermined(
+    parameters: TexelParameters, hessian: FloatArray, lights: int
+) -> tuple[str, ...]:
+    """Return sentences on the numbers that many texels do not determine by themselves.
+
+    `hessian` (n, count, count) is from the equations of the n texels, without their neighbours.
+    """
+    sentences = []
     if lights == 1:
-        said.append("One light: roughness and strength trade off here, and the normal with both.")
-    hessian = fitted.about.hessian
-    hessian = hessian[np.diagonal(hessian, axis1=1, axis2=2).any(axis=1)]  # none at the edge
-    kept, scaled = _of_seen(hessian)
+        sentences.append(
+            "One light: roughness and strength trade off here, and the normal with both."
+        )
+    hessian = hessian[np.diagonal(hessian, axis1=1, axis2=2).any(axis=1)]  # not at the edge
+    columns, scaled = _scale_observed(hessian)
     values, vectors = np.linalg.eigh(scaled)
-    left_open = values[:, 0] < OPEN
-    if left_open.mean() < SHARE:
-        return tuple(said)
-    weakest = np.abs(vectors[left_open, :, 0])
+    undetermined = values[:, 0] < SMALLEST_EIGENVALUE
+    if undetermined.mean() < UNDETERMINED_SHARE:
+        return tuple(sentences)
+    weakest = np.abs(vectors[undetermined, :, 0])
     weakest /= weakest.max(axis=1, keepdims=True)
-    names = [_names(numbers)[k] for k in kept]
-    share = dict(zip(names, (weakest > PART).mean(axis=0), strict=True))
-    several = {}
-    for name, value in share.items():
-        plain = name.partition("[")[0]
-        several[plain] = max(value, several.get(plain, 0))
-    worst = [name for name, value in several.items() if value > 0.25] or list(several)
-    apart = f"{join_words(worst)} apart" if len(worst) > 1 else worst[0]
-    said.append(
-        f"In {100 * left_open.mean():.0f} % of the texels the photographs do not tell {apart}: "
+    shares: dict[str, float] = {}
+    for column, share in zip(columns, (weakest > MAIN_PART).mean(axis=0), strict=True):
+        name = parameters.number_names[column].partition("[")[0]
+        shares[name] = max(share, shares.get(name, 0))
+    names = [name for name, share in shares.items() if share > MENTIONED_SHARE] or list(shares)
+    apart = f"{join_words(names)} apart" if len(names) > 1 else names[0]
+    sentences.append(
+        f"In {100 * undetermined.mean():.0f} % of the texels the photographs do not tell {apart}: "
         "there their neighbours decide. More lights near the mirror's direction would."
     )
-    return tuple(said)
+    return tuple(sentences)
 
 
-def are_seen(hessian):
-    """Which numbers (count,) the photographs show anywhere: not those of colours without light."""
-    return np.diagonal(hessian, axis1=1, axis2=2).any(axis=0)
+def is_observed(hessian: FloatArray) -> BoolArray:
+    """Return which numbers (count,) have any effect; colours without light have none."""
+    return np.any(np.diagonal(hessian, axis1=1, axis2=2), axis=0)
 
 
-def is_open(hessian):
-    """Which texels (n,) leave a combination of numbers open, by Hessians (n, count, count)."""
-    return np.linalg.eigvalsh(_of_seen(hessian)[1])[:, 0] < OPEN
+def is_undetermined(hessian: FloatArray) -> BoolArray:
+    """Return which texels (n,) leave a combination of numbers undetermined."""
+    return np.linalg.eigvalsh(_scale_observed(hessian)[1])[:, 0] < SMALLEST_EIGENVALUE
 
 
-def _of_seen(hessian):
-    """(the numbers that `are_seen`, Hessians of these, of unit diagonal)."""
-    kept = np.flatnonzero(are_seen(hessian))
-    hessian = hessian[:, kept[:, None], kept]
+def _scale_observed(hessian: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Return the indices of the observed numbers, and their Hessians with unit diagonal."""
+    columns = np.flatnonzero(is_observed(hessian))
+    hessian = hessian[:, columns[:, None], columns]
     scale = 1 / np.sqrt(np.maximum(np.diagonal(hessian, axis1=1, axis2=2), 1e-300))
-    return kept, hessian * scale[:, :, None] * scale[:, None, :]
-
-
-def _names(numbers):
-    weights = [f"{name}[{c}]" for name in numbers.lobes for c in range(CHANNELS)]
-    return [*weights, *numbers.form.columns, "normal[x]", "normal[y]"]
+    return columns, hessian * scale[:, :, None] * scale[:, None, :]

@@ -1,1 +1,1 @@
-"""What `svbrdf` returns, and what it writes."""
+"""Makes the result of `svbrdf`: maps, standard errors, notes, files and a report."""

@@ -1,40 +1,48 @@
-"""The files of an `Svbrdf`: maps, a scene of Mitsuba's, and a report."""
+"""Writes the files of an `Svbrdf`: maps, a Mitsuba scene, and a report."""
+
+from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.files import make_folder, require_writable, write_safely
 from brdfkit.core.jit.threads import use_two_threads
 from brdfkit.inverse.photographs.maps.scene import scene_xml
+from brdfkit.inverse.photographs.maps.shape_parameters import ANGLE
 from brdfkit.inverse.photographs.result.report import write_report
+from brdfkit.model import Model
 
-# Names of files beside the maps; what the name of a map's uncertainty ends with
-MISFIT, SCENE, REPORT, ERROR = "misfit.exr", "sample.xml", "report.html", "_error"
+MISFIT, SCENE, REPORT = "misfit.exr", "sample.xml", "report.html"
+ERROR = "_error"  # the end of the name of a map of standard errors
 
 
-def require_files(model, folder):
-    """Make the `folder`; raise `BrdfkitError` where a file that `write_all` may write to it for a
-    `model` class cannot be written."""
+def check_folder(model: type[Model], folder: str | Path) -> None:
+    """Make the folder, and raise `BrdfkitError` for any file of `write_files` that it cannot hold.
+
+    `model` is the class whose maps will be written.
+    """
     make_folder(folder)
-    maps = *model.parameters, "normal", "anisotropy_angle"
+    maps = *model.parameters, "normal", ANGLE
     names = *(f"{name}{end}.exr" for name in maps for end in ("", ERROR)), MISFIT, SCENE, REPORT
     for name in names:
         require_writable(Path(folder) / name)
 
 
-def write_all(svbrdf, folder):
-    """Write all files of an `Svbrdf`; returns their paths."""
+def write_files(svbrdf: Any, folder: str | Path) -> list[Path]:
+    """Write all files of an `Svbrdf`, and return their paths."""
     folder = Path(folder)
     make_folder(folder)
     files = {name: f"{name}.exr" for name in svbrdf.maps}
     written = []
     for name, values in svbrdf.maps.items():
-        # upright, as programs show and use them; normals as colours, green along the sample's y
-        shown = (values + 1) / 2 if name == "normal" else values
-        written.append(_write(folder / files[name], shown))
-        written += _write_known(folder / f"{name}{ERROR}.exr", svbrdf.uncertainty.get(name))
-    written += _write_known(folder / MISFIT, svbrdf.misfit)
+        # As colours, normals have green along the sample's y
+        pixels = (values + 1) / 2 if name == "normal" else values
+        written += _write_or_remove(folder / files[name], pixels)
+        written += _write_or_remove(folder / f"{name}{ERROR}.exr", svbrdf.uncertainty.get(name))
+    written += _write_or_remove(folder / MISFIT, svbrdf.misfit)
     scene = folder / SCENE
     with write_safely(scene) as beside:
         Path(beside).write_text(scene_xml(svbrdf, files), encoding="utf-8")
@@ -43,15 +51,11 @@ def write_all(svbrdf, folder):
     return [*written, scene, report]
 
 
-def _write_known(path, values):
-    """The paths written: none where there are no values, and that of other maps goes, too."""
+def _write_or_remove(path: Path, values: FloatArray | None) -> list[Path]:
+    """Write a map and return its path in a list; without values, remove the file of older maps."""
     if values is None:
         path.unlink(missing_ok=True)
         return []
-    return [_write(path, values)]
-
-
-def _write(path, values):
     import mitsuba as mi
 
     pixels = np.ascontiguousarray(np.atleast_3d(values), np.float32)
@@ -60,4 +64,4 @@ def _write(path, values):
             mi.Bitmap(pixels).write(str(beside))
         except RuntimeError as error:  # a full disk, for instance
             raise OSError(str(error).splitlines()[0]) from error
-    return path
+    return [path]

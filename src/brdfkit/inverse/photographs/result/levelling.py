@@ -1,42 +1,45 @@
-"""Whether normals are those of what lies flat: as a whole they do not lean, whatever its bumps."""
+"""Checks whether the normals are those of a flat sample, and what the photographs do not show."""
+
+from __future__ import annotations
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.names import join_words
-from brdfkit.inverse.photographs.capture.observations import shown_colours
+from brdfkit.inverse.photographs.capture.capture import Capture
+from brdfkit.inverse.photographs.capture.observations import Observations
 
 COLOURS = "red", "green", "blue"
-FINER = 1.25  # texels along a pixel, from which it is said
+LONG_PIXEL = 1.25  # texels, the length of a pixel from which a sentence says so
+LARGEST_LEAN, LARGEST_BULGE = 2.0, 8.0  # degrees, in the middle and towards the edges
+FEWEST_TEXELS = 32  # along a side: with fewer, bumps of the sample itself make normals lean
 
 
-def describe_capture(capture, clipped, seen):
-    """Sentences on a `Capture`, of which the share `clipped` is at its end, and what is `seen`."""
-    said = []
-    dark = [name for name, lit in zip(COLOURS, shown_colours(seen), strict=True) if not lit]
+def describe_capture(capture: Capture, clipped: float, observed: Observations) -> tuple[str, ...]:
+    """Return sentences on missing colours, on large pixels and on the share that is `clipped`."""
+    sentences = []
+    dark = [name for name, lit in zip(COLOURS, observed.lit_channels(), strict=True) if not lit]
     if dark:
-        said.append(f"Nothing is seen in {join_words(dark)}: there the maps say nothing.")
-    texel = np.array(capture.size) / seen.shape[::-1]
-    finer = float(np.median([(capture.pixel(c) / texel).max() for c in capture.cameras]))
-    if finer > FINER:
-        said.append(
-            f"A pixel is {finer:.2g} texels long: what is finer than pixels is guessed from "
+        sentences.append(f"Nothing is seen in {join_words(dark)}: there the maps say nothing.")
+    texel = np.array(capture.size) / observed.shape[::-1]
+    lengths = [(capture.pixel_size(camera) / texel).max() for camera in capture.cameras]
+    length = float(np.median(lengths))
+    if length > LONG_PIXEL:
+        sentences.append(
+            f"A pixel is {length:.2g} texels long: what is finer than pixels is guessed from "
             "neighbours, and the standard errors do not know how well; see resolution."
         )
     if clipped:
-        said.append(f"{100 * clipped:.2g} % of the pixels are clipped; they do not count.")
-    return tuple(said)
+        sentences.append(f"{100 * clipped:.2g} % of the pixels are clipped; they do not count.")
+    return tuple(sentences)
 
 
-LEAN, BULGE = 2.0, 8.0  # degrees, of the middle and of the edges, from which it is said
-FEWEST = 32  # texels along a side: of fewer the bumps themselves lean
-
-
-def describe_normals(normals):
-    """Sentences on normals (height, width, 3) that lean as a whole, or towards the edges."""
-    if min(normals.shape[:2]) < FEWEST:
+def describe_normals(normals: FloatArray) -> tuple[str, ...]:
+    """Return a sentence on normals (height, width, 3) that lean as a whole or towards the edges."""
+    if min(normals.shape[:2]) < FEWEST_TEXELS:
         return ()
-    lean, bulge = leaning(normals)
-    if lean < LEAN and bulge < BULGE:
+    lean, bulge = _measure_lean(normals)
+    if lean < LARGEST_LEAN and bulge < LARGEST_BULGE:
         return ()
     return (
         f"The normals lean by {lean:.2g}° as a whole, and by {bulge:.2g}° towards the edges: the "
@@ -44,10 +47,10 @@ def describe_normals(normals):
     )
 
 
-def leaning(normals):
-    """By how much [degrees] normals lean in the middle, and more so at the edges."""
+def _measure_lean(normals: FloatArray) -> tuple[float, float]:
+    """Return by how many degrees normals lean in the middle, and by how many more at the edges."""
     height, width = normals.shape[:2]
     y, x = np.mgrid[-1 : 1 : height * 1j, -1 : 1 : width * 1j]
     terms = np.stack([np.ones_like(x), x, y], axis=-1).reshape(-1, 3)
     middle, *slopes = np.linalg.lstsq(terms, normals[..., :2].reshape(-1, 2), rcond=None)[0]
-    return np.degrees(np.hypot(*middle)), np.degrees(np.abs(slopes).max())
+    return float(np.degrees(np.hypot(*middle))), float(np.degrees(np.abs(slopes).max()))

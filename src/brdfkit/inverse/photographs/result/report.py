@@ -1,90 +1,96 @@
-"""The report of an `Svbrdf`: its maps, how certain they are, and photographs beside pictures of
-them."""
+"""Writes the HTML report of an `Svbrdf`: maps, standard errors, and photographs beside pictures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.pages import page
 from brdfkit.core.pages.images import apply_colour_map, encode_jpeg, encode_png, shrink
 from brdfkit.core.version import __version__
-from brdfkit.inverse.photographs.capture.observations import gathered
-from brdfkit.inverse.photographs.maps.residuals import MISFIT
+from brdfkit.inverse.photographs.capture.observations import sample_pictures
+from brdfkit.inverse.photographs.maps.residuals import UNEXPLAINED
 
 WIDEST = 512  # pixels of a picture on the page
-SCALE = "viridis"
-OFF = "RdBu_r"
-MOST_OFF = 0.2  # relative, the end of the scale of differences
+VALUE_SCALE, DIFFERENCE_SCALE = "viridis", "RdBu_r"
+LARGEST_MISFIT = 2 * UNEXPLAINED  # times the noise, the end of the colour scale
+LARGEST_DIFFERENCE = 0.2  # relative, the ends of the colour scale
+DARK_OFFSET = 0.05  # of white, added where differences are relative
 
 
-def write_report(svbrdf, path):
-    """Write the page of an `Svbrdf`."""
+def write_report(svbrdf: Any, path: Path) -> None:
+    """Write the HTML page of an `Svbrdf`."""
     document = svbrdf.document()
     table, *paragraphs = document.parts
+    misfit = svbrdf.misfit
     page.write_page(
         "svbrdf.html",
         path,
         title=document.title,
         columns=table.columns,
         rows=table.rows,
-        said=[paragraph.text for paragraph in paragraphs],
-        maps=[_shown_map(svbrdf, name) for name in svbrdf.maps],
-        misfit=None if svbrdf.misfit is None else _scaled(svbrdf.misfit, 0, 2 * MISFIT),
-        most=2 * MISFIT,
-        photographs=[] if svbrdf.misfit is None else _photographs(svbrdf),
+        notes=[paragraph.text for paragraph in paragraphs],
+        maps=[_describe_map(svbrdf, name) for name in svbrdf.maps],
+        misfit=None if misfit is None else _to_png(misfit, 0, LARGEST_MISFIT),
+        largest_misfit=LARGEST_MISFIT,
+        photographs=[] if misfit is None else _describe_photographs(svbrdf),
         version=__version__,
     )
 
 
-def _shown_map(svbrdf, name):
+def _describe_map(svbrdf: Any, name: str) -> dict[str, str | None]:
+    """Return what the template shows of a map: its picture, its range, and its standard errors."""
     values, errors = svbrdf.maps[name], svbrdf.uncertainty.get(name)
     if name == "normal":
-        picture, said = (
+        picture, scale = (
             encode_png(shrink((values + 1) / 2, WIDEST)),
             "x, y and z as red, green and blue",
         )
     elif values.ndim == 3:
         white = max(1e-6, float(np.quantile(values, 0.99)))
-        picture, said = encode_jpeg(shrink(values / white, WIDEST)), f"white is {white:.3g}"
+        picture, scale = encode_jpeg(shrink(values / white, WIDEST)), f"white is {white:.3g}"
     else:
         low, high = np.quantile(values, (0.01, 0.99))
-        picture, said = _scaled(values, low, high), f"{low:.3g} (dark) to {high:.3g} (bright)"
-    return {"name": name, "said": said, "picture": picture, **_shown_errors(name, errors)}
+        picture, scale = _to_png(values, low, high), f"{low:.3g} (dark) to {high:.3g} (bright)"
+    shown = {"name": name, "picture": picture, "scale": scale, "error": None, "error_scale": None}
+    if errors is not None:
+        unit, errors = ("°", np.degrees(errors)) if name == "normal" else ("", errors)
+        high = float(np.quantile(errors, 0.9))  # those at the edge are much larger
+        shown["error"] = _to_png(errors, 0, high)
+        shown["error_scale"] = f"standard error, 0 (dark) to {high:.2g}{unit} (bright)"
+    return shown
 
 
-def _shown_errors(name, errors):
-    """The picture of a map's standard errors, if there are any, and what it shows."""
-    if errors is None:
-        return {"error": None}
-    unit, errors = ("°", np.degrees(errors)) if name == "normal" else ("", errors)
-    high = float(np.quantile(errors, 0.9))  # at the edge they are much larger
-    said = f"standard error, 0 (dark) to {high:.2g}{unit} (bright)"
-    return {"error": _scaled(errors, 0, high), "error_said": said}
-
-
-def _photographs(svbrdf):
-    """The photographs beside what the maps predict, the worst predicted first."""
+def _describe_photographs(svbrdf: Any) -> list[dict[str, str]]:
+    """Return what the template shows of each photograph, the worst predicted first."""
     capture = svbrdf.capture
-    seen, shown = (
-        gathered(capture, pictures, svbrdf.shape)
+    photographs, predictions = (
+        sample_pictures(capture, pictures, svbrdf.shape).reshape(-1, *svbrdf.shape, 3)
         for pictures in (capture.pictures, svbrdf.rendered)
     )
-    found = []
+    shown = []
     for k in np.argsort([svbrdf.predicted[name] for name in capture.names]):
-        photograph = seen[k].reshape(*svbrdf.shape, 3)
-        prediction = shown[k].reshape(photograph.shape)
+        photograph, prediction = photographs[k], predictions[k]
         white = max(1e-12, float(np.quantile(photograph, 0.99)))
-        off = (prediction - photograph).mean(axis=2) / (photograph.mean(axis=2) + 0.05 * white)
-        found.append(
+        difference = (prediction - photograph).mean(axis=2)
+        difference /= photograph.mean(axis=2) + DARK_OFFSET * white
+        scale = -LARGEST_DIFFERENCE, LARGEST_DIFFERENCE, DIFFERENCE_SCALE
+        shown.append(
             {
                 "name": capture.names[k],
-                "said": f"PSNR {svbrdf.predicted[capture.names[k]]:.1f} dB",
+                "psnr": f"PSNR {svbrdf.predicted[capture.names[k]]:.1f} dB",
                 "photograph": encode_jpeg(shrink(photograph / white, WIDEST)),
                 "prediction": encode_jpeg(shrink(prediction / white, WIDEST)),
-                "off": _scaled(off, -MOST_OFF, MOST_OFF, OFF),
+                "difference": _to_png(difference, *scale),
             }
         )
-    return found
+    return shown
 
 
-def _scaled(values, low, high, scale=SCALE):
+def _to_png(values: FloatArray, low: float, high: float, scale: str = VALUE_SCALE) -> str:
+    """Return the address of a picture of values (height, width) in the colours of a scale."""
     shares = (shrink(values[..., None], WIDEST)[..., 0] - low) / max(high - low, 1e-12)
     return encode_png(apply_colour_map(scale, shares)[..., :3])

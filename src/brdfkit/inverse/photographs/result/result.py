@@ -1,71 +1,73 @@
-"""`Svbrdf`, what `svbrdf` returns: maps of a sample, and how certain they are."""
+"""Defines `Svbrdf`, the result of `svbrdf`: maps of a sample and their standard errors."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.core.arguments import to_array, wrong_argument
+from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.documents import Document, Paragraph, Shown, Table
 from brdfkit.core.documents.parts import SOFT
 from brdfkit.inverse.photographs.capture.capture import Capture
-from brdfkit.inverse.photographs.capture.observations import light_on
+from brdfkit.inverse.photographs.capture.observations import illuminate
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Svbrdf(Shown):
-    """Maps of a flat sample: a model's parameters and the normal, texel by texel.
+    """Maps of a flat sample: textures of a model's parameters and of the normal.
 
     Attributes
     ----------
     name : str
-        What the sample is called.
+        The sample's name.
     model : str
         Label of the model.
     maps : dict of str to ndarray
-        The map of each parameter, (height, width), or (height, width, 3) in linear sRGB of weights;
-        ``"normal"``, unit vectors (height, width, 3); and, where a material may be anisotropic,
+        The map of each parameter, (height, width), or (height, width, 3) in linear sRGB for the
+        weights of lobes; ``"normal"``, unit vectors (height, width, 3); and, for anisotropic maps,
         ``"anisotropy_angle"``, the direction of ``alpha_u`` [radians]. The first row is the
         sample's upper edge.
     fixed : dict of str to float
-        Shape parameters that are alike everywhere. Where ``f0`` is, the reflectance at normal
-        incidence is ``specular_reflectance`` times it.
+        Shape parameters with one value everywhere. If ``f0`` is one of them, the reflectance at
+        normal incidence is ``specular_reflectance`` times it.
     size : tuple of float
-        The sample's width and height [m].
+        Width and height of the sample [m].
     smoothness : float
-        By how much neighbouring texels may differ: weights relative to their median, logarithms of
-        widths, and sines of the normal's angles.
+        The typical difference of neighbouring texels: of weights relative to their lobe's
+        brightness, of logarithms of widths, and of x and y of the normal.
     held_out : dict of float to float
-        Smoothness that was tried → RMS relative error of lights that were held out.
+        The RMS relative error of held-out photographs for each smoothness that was tried.
     notes : tuple of str
-        What else one should know, as what the lights leave open.
+        Sentences about doubtful findings, such as numbers that the lights leave undetermined.
     seconds : float
         Wall-clock time.
     capture : Capture
-        The photographs, smaller where the maps do not need all of their pixels.
+        The photographs, reduced where the maps do not need all of their pixels.
     uncertainty : dict of str to ndarray
-        The standard error (height, width) of each map, by the photographs' noise and what the model
-        leaves of them; of the normal in radians. Empty where Ctrl-C ended the search.
+        The standard error (height, width) of each map, that of the normal in radians. It covers the
+        noise of the photographs and what the model does not explain. Empty where Ctrl-C ended the
+        search.
     misfit : ndarray, shape (height, width), or None
-        What each texel leaves of the photographs, in units of the noise: about 1 where the maps
-        explain them. None where Ctrl-C ended the search.
+        The residual of each texel in units of the noise: about 1 where the maps explain the
+        photographs. None where Ctrl-C ended the search.
     residual : float
-        RMS relative difference of the maps from all photographs; nan where Ctrl-C came before
-        any picture was rendered; then there are no `predicted` and `rendered` either.
+        The RMS relative difference of Mitsuba's renderings from all photographs; nan where Ctrl-C
+        came before the first rendering; `predicted` and `rendered` are then empty, too.
     predicted : dict of str to float
-        Name of each photograph → PSNR [dB] of Mitsuba's picture of the maps under its light.
+        The PSNR [dB] of Mitsuba's rendering of each photograph, by its name.
     rendered : ndarray, shape (lights, height, width, 3), or None
-        Mitsuba's pictures of the maps, as the photographs.
+        Mitsuba's renderings of the photographs.
     """
 
     name: str
     model: str
-    maps: dict[str, NDArray[np.float64]]
+    maps: dict[str, FloatArray]
     fixed: dict[str, float]
     size: tuple[float, float]
     smoothness: float
@@ -73,15 +75,15 @@ class Svbrdf(Shown):
     notes: tuple[str, ...]
     seconds: float
     capture: Capture = field(repr=False)
-    uncertainty: dict[str, NDArray[np.float64]] = field(default_factory=dict)
-    misfit: NDArray[np.float64] | None = None
+    uncertainty: dict[str, FloatArray] = field(default_factory=dict)
+    misfit: FloatArray | None = None
     residual: float = math.nan
     predicted: dict[str, float] = field(default_factory=dict)
-    rendered: NDArray[np.float32] | None = field(default=None, repr=False)
+    rendered: FloatArray | None = field(default=None, repr=False)
 
     @property
     def shape(self) -> tuple[int, int]:
-        """(height, width) of the maps."""
+        """The height and width of the maps."""
         height, width = self.maps["normal"].shape[:2]
         return height, width
 
@@ -91,17 +93,17 @@ class Svbrdf(Shown):
         *,
         intensity: float | ArrayLike = 1.0,
         viewer: ArrayLike | None = None,
-    ) -> NDArray[np.float64]:
-        """Radiance of every texel under another point light, direct light alone.
+    ) -> FloatArray:
+        """Return the radiance of every texel under another point light, for direct light alone.
 
         Parameters
         ----------
         position : array_like, shape (3,)
-            Where the light is [m]; the sample is in the plane z = 0, its middle at the origin.
+            The position of the light [m]; the sample lies in the plane z = 0, around the origin.
         intensity : float or array_like, shape (3,), default 1
-            Its radiant intensity [W/sr].
+            Radiant intensity of the light [W/sr].
         viewer : array_like, shape (3,), optional
-            From where the sample is seen [m]; by default by the first photograph's camera.
+            The position of the viewer [m]; by default that of the first photograph's camera.
 
         Returns
         -------
@@ -111,59 +113,64 @@ class Svbrdf(Shown):
         Raises
         ------
         BrdfkitError
-            For a light or a viewer that is no point above the sample, and an intensity that is not
-            one number or three.
+            For a light or a viewer that is not a point above the sample, and an intensity that is
+            not one number or three.
 
         Examples
         --------
         >>> picture = maps.relight((0.1, 0.2, 0.5))    # doctest: +SKIP
         """
-        points = self.capture.texels(self.shape)
+        points = self.capture.texel_centres(self.shape)
         eye = self.capture.cameras[0].origin if viewer is None else _to_place("viewer", viewer)
         place = _to_place("position", position)[None]
         power = _to_intensity(intensity)
-        from brdfkit.inverse.photographs.maps.prediction import predict
+        from brdfkit.inverse.photographs.maps.maps import predict
 
-        to_light, irradiance = light_on(points, place, power)
+        to_light, irradiance = illuminate(points, place, power)
         return predict(self, points, to_light, irradiance, eye)[0]
 
     def scene_dict(self) -> dict[str, Any]:
-        """The dictionary for `mitsuba.load_dict`: the sample, a rectangle with its material."""
+        """Return the dictionary for `mitsuba.load_dict`: a rectangle with the sample's material."""
         from brdfkit.inverse.photographs.maps.scene import sample_dict
 
         return sample_dict(self)
 
     def write(self, folder: str | Path) -> list[Path]:
-        """Write the maps, a scene of Mitsuba's and a report.
+        """Write the maps, a Mitsuba scene and a report.
 
         Parameters
         ----------
         folder : str or Path
-            Where to; it is made if it is not there.
+            The folder, which is made if it does not exist.
 
         Returns
         -------
         list of Path
-            The files: a map each as OpenEXR, with ``_error`` that of its standard error;
-            ``sample.xml``, a scene with the sample under the first light; ``report.html``.
+            The files: an OpenEXR file for each map and, with ``_error`` in its name, for its
+            standard error; ``sample.xml``, a scene of the sample under the first light; and
+            ``report.html``.
 
         Raises
         ------
         BrdfkitError
-            Where nothing can be written.
+            For a folder to which nothing can be written.
 
         Examples
         --------
         >>> maps.write("paper")    # doctest: +SKIP
         """
-        from brdfkit.inverse.photographs.result.files import write_all
+        from brdfkit.inverse.photographs.result.files import write_files
 
-        return write_all(self, folder)
+        return write_files(self, folder)
 
     def document(self) -> Document:
-        """A row for each map, notes, and how well it predicts."""
+        """Return a table with a row for each map, notes, and how well the maps predict."""
         rows = tuple(
-            (name, *_summary(name, values), _median(name, self.uncertainty.get(name)))
+            (
+                name,
+                *_format_quantiles(name, values),
+                _format_error(name, self.uncertainty.get(name)),
+            )
             for name, values in self.maps.items()
         )
         height, width = self.shape
@@ -174,8 +181,8 @@ class Svbrdf(Shown):
             f"{self.name}: {self.model}, {width} × {height} texels from {count} photographs",
             (
                 Table(rows, ("map", ">5 %", ">median", ">95 %", ">± median")),
-                *(Paragraph(note) for note in (*_fixed(self.fixed), *self.notes)),
-                *_compared(self.residual, self.predicted.values()),
+                *(Paragraph(note) for note in (*_describe_fixed(self.fixed), *self.notes)),
+                *_describe_difference(self.residual, self.predicted.values()),
                 Paragraph(
                     f"smoothness {self.smoothness:g}{chosen}; {self.seconds:.1f} s", kind=SOFT
                 ),
@@ -183,43 +190,43 @@ class Svbrdf(Shown):
         )
 
 
-def _fixed(values):
-    """What to know of the parameters that are alike everywhere."""
+def _describe_fixed(values: dict[str, float]) -> tuple[str, ...]:
+    """Return a sentence on the parameters with one value everywhere, if there are any."""
     if not values:
         return ()
-    said = "Everywhere " + ", ".join(f"{name} = {value:g}" for name, value in values.items())
+    equal = ", ".join(f"{name} = {value:g}" for name, value in values.items())
     at_normal = "; at normal incidence the specular reflectance counts times f0"
-    return (f"{said}{at_normal if 'f0' in values else ''}.",)
+    return (f"Everywhere {equal}{at_normal if 'f0' in values else ''}.",)
 
 
-def _compared(residual, dB):
-    """How near Mitsuba's pictures come to the photographs, where there are any."""
-    if not dB:
+def _describe_difference(residual: float, psnr: Collection[float]) -> tuple[Paragraph, ...]:
+    """Return a sentence on how near Mitsuba's pictures come to the photographs, if rendered."""
+    if not psnr:
         return ()
-    said = (
+    text = (
         f"Mitsuba's pictures of the maps are the photographs but for {100 * residual:.2g} % (RMS); "
-        f"PSNR {min(dB):.1f} to {max(dB):.1f} dB."
+        f"PSNR {min(psnr):.1f} to {max(psnr):.1f} dB."
     )
-    return (Paragraph(said),)
+    return (Paragraph(text),)
 
 
-def _summary(name, values):
-    """5 %, median and 95 % of a map as texts; of normals the angle to z [degrees]."""
+def _format_quantiles(name: str, values: FloatArray) -> tuple[str, ...]:
+    """Return 5 %, median and 95 % of a map as text; of normals the angle to z in degrees."""
     if name == "normal":
         angle = np.degrees(np.arccos(np.clip(values[..., 2], -1, 1)))
         return tuple(f"{q:.2g}°" for q in np.quantile(angle, (0.05, 0.5, 0.95)))
     return tuple(f"{q:.3g}" for q in np.quantile(values, (0.05, 0.5, 0.95)))
 
 
-def _median(name, errors):
-    """The median of standard errors as a text, if there are any; of normals [degrees]."""
+def _format_error(name: str, errors: FloatArray | None) -> str:
+    """Return the median of standard errors as text, of normals in degrees; "" if unknown."""
     if errors is None:
         return ""
     median = float(np.median(errors))
     return f"{np.degrees(median):.2g}°" if name == "normal" else f"{median:.2g}"
 
 
-def _to_place(what: str, point: Any) -> NDArray[Any]:
+def _to_place(what: str, point: Any) -> FloatArray:
     """Return a point above the sample as an array (3,) [m]."""
     place = to_array(what, point, (3,))
     if place[2] <= 0:
@@ -227,7 +234,7 @@ def _to_place(what: str, point: Any) -> NDArray[Any]:
     return place
 
 
-def _to_intensity(value: Any) -> NDArray[Any]:
+def _to_intensity(value: Any) -> FloatArray:
     """Return the intensity of a light, one number or three, as an array (1, 3)."""
     intensity = to_array("intensity", value)
     if (

@@ -1,57 +1,90 @@
-"""How far maps are off, by a simulation: the photographs of the maps found, with noise like that of
-the real ones, are fitted as these were, and the maps differ by so much from those found.
+"""Estimates standard errors of maps by a simulation.
 
-The noise is what is left of the photographs, each pixel's with a sign by chance: the wild bootstrap
-[Wu 1986]. So the renderer, the smoothness and the blur of pixels have their part in the errors,
-which the equations of a texel alone do not know.
+Photographs of the fitted maps, with noise like that of the real ones, are fitted in the same way.
+How far the new maps are from the fitted ones shows how far these may be from the truth. The noise
+is what is left of the photographs, each pixel's residual with a random sign: the wild bootstrap
+[Wu 1986]. So the errors include the effects of the renderer, the smoothness and the blur of pixels,
+which the equations of single texels ignore.
 """
+
+from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
 from scipy.ndimage import uniform_filter
 
-from brdfkit.inverse.photographs.capture.observations import gathered
-from brdfkit.inverse.photographs.search.fitting_maps import standard_errors
-from brdfkit.inverse.photographs.search.search import equations, search_together
-from brdfkit.inverse.photographs.search.through_renderer import STEPS, one_round, rendered
+from brdfkit.core.array_types import AnyArray, FloatArray
+from brdfkit.inverse.photographs.capture.capture import Capture
+from brdfkit.inverse.photographs.capture.observations import Observations, sample_pictures
+from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
+from brdfkit.inverse.photographs.search.fitting_maps import compute_standard_errors
+from brdfkit.inverse.photographs.search.least_squares import (
+    Report,
+    compute_equations,
+    fit_all_texels,
+)
+from brdfkit.inverse.photographs.search.through_renderer import (
+    STEPS_PER_ROUND,
+    RenderedMaps,
+    correct_maps,
+    render_maps,
+)
 
-AROUND = 9  # texels along a side, over which a simulated error is the mean
-MOST = 5.0  # times its standard error by its equations, by which a texel counts
-FEWEST = 0.3  # of the numbers photographed, the share that is free, at least
+AVERAGED_SIDE = 9  # texels: simulated errors are averaged over this square
+LARGEST_ERROR_RATIO = 5.0  # a simulated error over that of the equations: larger ones are clipped
+FEWEST_FREE = 0.3  # of the photographed numbers, the smallest share that the maps do not follow
 
 
-def simulated_errors(numbers, there, rounds, seen, capture, report=lambda: None):
-    """Standard errors (n, count) of the maps of a `Rendered`, which so many `rounds` led to: by the
-    equations of each texel, and scaled by what a simulation shows around it."""
-    fitted = there.fitted
+def simulate_errors(
+    parameters: TexelParameters,
+    rendered: RenderedMaps,
+    rounds: int,
+    observed: Observations,
+    capture: Capture,
+    report: Report = lambda: None,
+) -> FloatArray:
+    """Return the standard errors (n, count) of the numbers of maps.
+
+    They are those of the equations of each texel, scaled by what the simulation shows around it.
+    `rounds` is the number of corrections that led to the maps.
+    """
+    fitted = rendered.fitted
     signs = np.random.default_rng(0).choice([-1.0, 1.0], capture.pictures.shape[:3])[..., None]
-    noise = (capture.pictures - there.pictures) * signs * _spread(numbers, seen, capture)
-    pictures = np.where(capture.counted, there.pictures + noise, there.pictures)
-    other = replace(capture, pictures=pictures, lost=capture.left_out)
-    target = replace(seen, radiance=gathered(other, pictures, seen.shape))
-    x = search_together(numbers, fitted.x.copy(), target, fitted.strength, STEPS, report)
-    again = replace(fitted, x=x, about=equations(numbers, x, target))
-    for done in range(rounds):
-        start = rendered(numbers, again, seen, other, report)
-        again = one_round(numbers, start, done == 0, seen, other, report)
-    errors = standard_errors(numbers, fitted, seen)
-    off = np.minimum(np.abs(again.x - fitted.x) / np.maximum(errors, 1e-300), MOST)
-    shown = (seen.weights > 0).any(axis=(0, 2)).astype(float)
-    around = _sums(off**2 * shown[:, None], seen.shape) / np.maximum(_sums(shown, seen.shape), 1)
-    return errors * np.sqrt(np.maximum(1, around))
+    residuals = capture.pictures - rendered.pictures
+    noise = residuals * signs * _find_noise_factor(parameters, observed, capture)
+    pictures = np.where(capture.counted, rendered.pictures + noise, rendered.pictures)
+    simulated = replace(capture, pictures=pictures, lost=capture.excluded)
+    target = replace(observed, radiance=sample_pictures(simulated, pictures, observed.shape))
+    x = fit_all_texels(
+        parameters, fitted.x.copy(), target, fitted.strength, STEPS_PER_ROUND, report
+    )
+    again = replace(fitted, x=x, equations=compute_equations(parameters, x, target))
+    for number in range(rounds):
+        start = render_maps(parameters, again, observed, simulated, report)
+        again = correct_maps(parameters, start, number == 0, observed, simulated, report)
+    errors = compute_standard_errors(parameters, fitted, observed)
+    ratio = np.abs(again.x - fitted.x) / np.maximum(errors, 1e-300)
+    ratio = np.minimum(ratio, LARGEST_ERROR_RATIO)
+    shown = (observed.weights > 0).any(axis=(0, 2)).astype(float)
+    total = _sum_around(ratio**2 * shown[:, None], observed.shape)
+    mean = total / np.maximum(_sum_around(shown, observed.shape), 1)
+    return errors * np.sqrt(np.maximum(1, mean))
 
 
-def _sums(values, shape):
-    """Sums (n, count) over the texels around each, of values (n, count) or (n,)."""
+def _sum_around(values: AnyArray, shape: tuple[int, int]) -> FloatArray:
+    """Return the sums (n, count) over the texels around each, of values (n, count) or (n,)."""
     grid = values.reshape(*shape, -1)
-    mean = uniform_filter(grid, size=(AROUND, AROUND, 0), mode="constant")
-    return AROUND**2 * mean.reshape(len(values), -1)
+    size = (AVERAGED_SIDE, AVERAGED_SIDE, 0)
+    mean: FloatArray = uniform_filter(grid, size=size, mode="constant")
+    return AVERAGED_SIDE**2 * mean.reshape(len(values), -1)
 
 
-def _spread(numbers, seen, capture):
-    """By how much noise is larger than what is left, a part of which the numbers follow."""
-    shown = np.count_nonzero((seen.weights > 0).any(axis=(0, 2)))
-    photographed = max(1, np.count_nonzero(capture.counted))
-    free = 1 - numbers.count * shown / photographed
-    return 1 / np.sqrt(max(free, FEWEST))
+def _find_noise_factor(
+    parameters: TexelParameters, observed: Observations, capture: Capture
+) -> float:
+    """Return the noise over the residuals, which are smaller as the numbers follow part of it."""
+    shown = int(np.any(observed.weights > 0, axis=(0, 2)).sum())
+    photographed = max(1, int(capture.counted.sum()))
+    free = 1 - parameters.count * shown / photographed
+    return float(1 / np.sqrt(max(free, FEWEST_FREE)))

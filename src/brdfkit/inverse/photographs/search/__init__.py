@@ -1,1 +1,1 @@
-"""Searches the maps that explain the photographs."""
+"""Fits the maps to the photographs: starts, steps, smoothness, and the correction by rendering."""

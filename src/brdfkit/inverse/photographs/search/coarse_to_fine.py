@@ -1,69 +1,106 @@
-"""Maps that are first a few texels large, then twice as fine and so on."""
+"""Fits maps of a few large texels first, and then maps that are twice as fine, and so on.
+
+A small texel alone may mistake a highlight for its colour; a large part of the sample less so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
 
 import numpy as np
 
-from brdfkit.inverse.photographs.search.restarts import propagated, restarted
-from brdfkit.inverse.photographs.search.search import equations, search_each, search_together
-from brdfkit.inverse.photographs.search.smoothness import noise_of, strengths
-from brdfkit.inverse.photographs.search.starts import WIDTHS, rows
+from brdfkit.core.array_types import FloatArray
+from brdfkit.inverse.photographs.capture.observations import Observations
+from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
+from brdfkit.inverse.photographs.search.least_squares import (
+    Report,
+    compute_equations,
+    compute_errors,
+    fit_all_texels,
+    fit_each_texel,
+)
+from brdfkit.inverse.photographs.search.smoothness import compute_strength, estimate_noise
+from brdfkit.inverse.photographs.search.starts import (
+    WIDTHS,
+    make_start,
+    propagate_from_neighbours,
+    restart_unexplained,
+)
 
-USUAL = 0.1  # by how much neighbours may differ on the way
-COARSE = 4  # texels along a side of the first maps
-SEARCHES = 5  # for the noise, at most
-SETTLED = 0.7  # of the noise before
-SWEEPS = 2  # of numbers handed on to neighbours
+DEFAULT_TAU = 0.1  # the typical difference of neighbours, in their units
+COARSEST_SIDE = 4  # texels along the longer side of the first maps
+NOISE_ROUNDS = 5  # searches until the estimate of the noise settles, at most
+SETTLED = 0.7  # of the noise before: a smaller decrease ends them
+SWEEPS = 2  # in which numbers are handed on to neighbours
 
 
-def coarse_to_fine(numbers, seen, report):
-    """Yield (rows, noise, shape) of maps that are first a few texels large, then twice as fine and
-    so on: a texel alone may mistake a highlight for its colour, a part of the sample less so."""
-    side = 2 ** max(0, int(np.ceil(np.log2(max(seen.shape) / COARSE))))
-    pooled = seen.pooled(side)
-    tried = [
-        search_each(numbers, rows(numbers, pooled, width), pooled, report=report)
+def fit_coarse_to_fine(
+    parameters: TexelParameters, observed: Observations, report: Report
+) -> Iterator[tuple[FloatArray, float, tuple[int, int]]]:
+    """Yield the rows, the variance of the noise and the shape of ever finer maps."""
+    side = 2 ** max(0, int(np.ceil(np.log2(max(observed.shape) / COARSEST_SIDE))))
+    pooled = observed.pool(side)
+    trials = [
+        fit_each_texel(parameters, make_start(parameters, pooled, width), pooled, report=report)
         for width in WIDTHS
     ]
-    errors = np.array([error for _, error in tried])
+    errors = np.array([error for _, error in trials])
     best = errors.argmin(axis=0)
-    x = np.array([x for x, _ in tried])[best, np.arange(len(best))]
-    noise = noise_of(numbers, errors.min(axis=0), pooled)
+    x = np.array([x for x, _ in trials])[best, np.arange(len(best))]
+    noise = estimate_noise(parameters, errors.min(axis=0), pooled)
     yield x, noise, pooled.shape
     while side > 1:
         side //= 2
-        coarse, pooled = pooled.shape, seen.pooled(side)
-        x = refined(x, coarse, pooled.shape)
-        x, noise = settled(numbers, x, pooled, noise, report)
-        strength = strengths(numbers, x, pooled, noise, USUAL)
-        x = finish(numbers, x, pooled, strength, noise, report)
-        noise = noise_of(numbers, equations(numbers, x, pooled, slopes=False).error, pooled)
+        coarse, pooled = pooled.shape, observed.pool(side)
+        x = enlarge(x, coarse, pooled.shape, 2)
+        x, noise = _settle_noise(parameters, x, pooled, noise, report)
+        hessian = compute_equations(parameters, x, pooled).hessian
+        strength = compute_strength(parameters, hessian, pooled, noise, DEFAULT_TAU)
+        x = finish_level(parameters, x, pooled, strength, noise, report)
+        noise = estimate_noise(parameters, compute_errors(parameters, x, pooled), pooled)
         yield x, noise, pooled.shape
 
 
-def settled(numbers, x, seen, noise, report):
-    """(rows, noise): what coarser maps leave is no noise of finer ones, which it would smooth."""
-    for _ in range(SEARCHES):
-        strength = strengths(numbers, x, seen, noise, USUAL)
-        x = search_together(numbers, x, seen, strength, report=report)
+def _settle_noise(
+    parameters: TexelParameters, x: FloatArray, observed: Observations, noise: float, report: Report
+) -> tuple[FloatArray, float]:
+    """Return the rows and the variance of the noise after searches from coarser maps.
+
+    The residuals of coarser maps are no noise of finer ones, which would become too smooth by it.
+    """
+    for _ in range(NOISE_ROUNDS):
+        hessian = compute_equations(parameters, x, observed).hessian
+        strength = compute_strength(parameters, hessian, observed, noise, DEFAULT_TAU)
+        x = fit_all_texels(parameters, x, observed, strength, report=report)
         before = noise
-        noise = noise_of(numbers, equations(numbers, x, seen, slopes=False).error, seen)
+        noise = estimate_noise(parameters, compute_errors(parameters, x, observed), observed)
         if noise > SETTLED * before:
             break
     return x, noise
 
 
-def refined(x, coarse, fine):
-    """Rows of maps of the shape `coarse` for those of `fine`, twice as many a side."""
-    grid = np.repeat(np.repeat(x.reshape(*coarse, -1), 2, axis=0), 2, axis=1)
+def enlarge(x: FloatArray, coarse: tuple[int, int], fine: tuple[int, int], side: int) -> FloatArray:
+    """Return rows of maps of the shape `coarse` for maps of the shape `fine`.
+
+    Each texel is repeated `side` × `side` times.
+    """
+    grid = x.reshape(*coarse, -1).repeat(side, axis=0).repeat(side, axis=1)
     return grid[: fine[0], : fine[1]].reshape(fine[0] * fine[1], -1)
 
 
-def finish(numbers, x, seen, strength, noise, report):
-    """Rows of the least squares together; texels that are not explained, or that their neighbours'
-    numbers suit better, begin at others once more."""
-    x = search_together(numbers, x, seen, strength, report=report)
-    other = restarted(numbers, x, seen, noise, report)
+def finish_level(
+    parameters: TexelParameters,
+    x: FloatArray,
+    observed: Observations,
+    strength: FloatArray,
+    noise: float,
+    report: Report,
+) -> FloatArray:
+    """Return the rows that fit all texels together, after restarts of unexplained texels."""
+    x = fit_all_texels(parameters, x, observed, strength, report=report)
+    other = restart_unexplained(parameters, x, observed, noise, report)
     for _ in range(SWEEPS):
-        other = propagated(numbers, other, seen, report)
+        other = propagate_from_neighbours(parameters, other, observed, report)
     if (other != x).any():
-        x = search_together(numbers, other, seen, strength, report=report)
+        x = fit_all_texels(parameters, other, observed, strength, report=report)
     return x

@@ -1,125 +1,159 @@
-"""Maps fitted to observations: each texel for itself, then all together, as smooth as helps lights
-that were held out."""
+"""Fits maps to observations, with the smoothness that best predicts photographs held out."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.interrupts import Interrupted
-from brdfkit.inverse.photographs.maps.residuals import MISFIT, misfits
-from brdfkit.inverse.photographs.maps.undetermined import are_seen, is_open
-from brdfkit.inverse.photographs.search.coarse_to_fine import USUAL, coarse_to_fine, finish
-from brdfkit.inverse.photographs.search.search import Equations, equations
-from brdfkit.inverse.photographs.search.smoothness import strengths, units_of
+from brdfkit.inverse.photographs.capture.observations import Observations
+from brdfkit.inverse.photographs.maps.residuals import UNEXPLAINED, compute_misfit
+from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
+from brdfkit.inverse.photographs.maps.undetermined import is_observed, is_undetermined
+from brdfkit.inverse.photographs.search.coarse_to_fine import (
+    DEFAULT_TAU,
+    enlarge,
+    finish_level,
+    fit_coarse_to_fine,
+)
+from brdfkit.inverse.photographs.search.least_squares import (
+    Equations,
+    Report,
+    compute_equations,
+    compute_errors,
+)
+from brdfkit.inverse.photographs.search.smoothness import compute_strength, find_units
 
-TAUS = 1.0, 0.3, 0.1, 0.03  # typical differences of neighbours, of which one is chosen
-PATCH = 48  # texels along a side of the part on which that is
-
-
-def held_out_errors(numbers, seen, noise, report):
-    """τ → the RMS relative error of lights that were held out, on a patch in the middle."""
-    part = patch(seen)
-    lights = np.arange(len(seen.radiance))
-    held = lights[1 :: max(2, len(lights) // 3)]
-    taught, asked = part.under(np.setdiff1d(lights, held)), part.under(held)
-    *_, (start, _, _) = coarse_to_fine(numbers, taught, report)
-    units, found = units_of(numbers, equations(numbers, start, taught).hessian, taught), {}
-    for tau in TAUS:
-        x = finish(numbers, start, taught, noise / (tau * units) ** 2, noise, report)
-        left = equations(numbers, x, asked, slopes=False).error
-        found[tau] = float(np.sqrt(left.sum() / max(1, (asked.weights > 0).sum())))
-    return found
-
-
-def patch(seen):
-    """`Observations` of a patch in the middle."""
-    height, width = seen.shape
-    rows_, columns = min(height, PATCH), min(width, PATCH)
-    top, left = (height - rows_) // 2, (width - columns) // 2
-    texel = np.arange(height * width).reshape(height, width)
-    inside = seen.at(texel[top : top + rows_, left : left + columns].ravel())
-    return replace(inside, shape=(rows_, columns))
-
-
-FEW_TO_HOLD_OUT = 8  # lights, below which none is held out
-
-
-def usual_total(lights, smoothness):
-    """How many steps a search for maps takes, about, for its progress."""
-    held_out = smoothness is None and lights >= FEW_TO_HOLD_OUT
-    return 250 + 300 * held_out
+TAUS = 1.0, 0.3, 0.1, 0.03  # typical differences of neighbours, among which held-out lights choose
+PATCH_SIDE = 48  # texels: the part of the maps on which they choose
+FEWEST_LIGHTS_TO_HOLD_OUT = 8
 
 
 @dataclass(frozen=True)
-class FittedMaps:
-    """Rows `x` (n, count) and the `Equations` there; `tau`, by which neighbours may differ; the
-    `noise`, as a variance of relative radiances; and `errors`: of each τ that was tried, that of
-    the lights held out, relative. The equations and the `strength` of the neighbours are None where
-    Ctrl-C ended the search."""
+class UnfinishedMaps:
+    """Maps from a search that may have been interrupted.
 
-    x: np.ndarray
-    about: Equations | None
+    x : the rows (n, count).
+    tau : the typical difference of neighbours, in their units.
+    held_out : the relative error of held-out photographs, by each τ that was tried.
+    """
+
+    x: FloatArray
     tau: float
+    held_out: dict[float, float]
+
+
+@dataclass(frozen=True)
+class FittedMaps(UnfinishedMaps):
+    """Maps from a finished search.
+
+    equations : the `Equations` at x.
+    noise : the variance of relative radiances.
+    strength : the weights (count,) of squared differences of neighbours.
+    """
+
+    equations: Equations
     noise: float
-    strength: np.ndarray | None
-    errors: dict[float, float]
+    strength: FloatArray
 
 
-def fit_maps(numbers, seen, smoothness=None, report=lambda: None):
-    """The `FittedMaps` of `Observations`; `smoothness`: τ, or None for one that is chosen.
+def estimate_steps(lights: int, smoothness: float | None) -> int:
+    """Return about how many steps a search for maps takes, for its progress."""
+    chooses = smoothness is None and lights >= FEWEST_LIGHTS_TO_HOLD_OUT
+    return 250 + 300 * chooses
 
-    On Ctrl-C `Interrupted` has those of the finest maps that are finished, if there are any.
+
+def fit_maps(
+    parameters: TexelParameters,
+    observed: Observations,
+    smoothness: float | None = None,
+    report: Report = lambda: None,
+) -> FittedMaps:
+    """Return the maps fitted to the observations; without a `smoothness` (τ), choose it.
+
+    On Ctrl-C `Interrupted` holds the finest `UnfinishedMaps`, if there are any.
     """
     finest = None
     try:
-        for finest in coarse_to_fine(numbers, seen, report):
+        for finest in fit_coarse_to_fine(parameters, observed, report):
             start, noise, _ = finest
-        errors = {}
+        held_out = {}
         tau = smoothness
         if tau is None:
-            tau = USUAL
-            if len(seen.radiance) >= FEW_TO_HOLD_OUT:
-                errors = held_out_errors(numbers, seen, noise, report)
-                tau = min(errors, key=errors.get)
-        strength = strengths(numbers, start, seen, noise, tau)
-        x = finish(numbers, start, seen, strength, noise, report)
+            tau = DEFAULT_TAU
+            if len(observed.radiance) >= FEWEST_LIGHTS_TO_HOLD_OUT:
+                held_out = _predict_held_out(parameters, observed, noise, report)
+                tau = min(held_out, key=held_out.__getitem__)
+        hessian = compute_equations(parameters, start, observed).hessian
+        strength = compute_strength(parameters, hessian, observed, noise, tau)
+        x = finish_level(parameters, start, observed, strength, noise, report)
     except KeyboardInterrupt:
         if finest is None:
             raise
-        raise Interrupted(_enlarged(seen.shape, *finest)) from None
-    return FittedMaps(x, equations(numbers, x, seen), tau, noise, strength, errors)
+        x, _, shape = finest
+        raise Interrupted(_enlarge_unfinished(observed.shape, x, shape)) from None
+    equations = compute_equations(parameters, x, observed)
+    return FittedMaps(x, tau, held_out, equations, noise, strength)
 
 
-def _enlarged(shape, x, noise, coarse):
-    """The `FittedMaps` of rows of maps of the shape `coarse`, as they are: without equations."""
-    height, width = shape
-    side = 1  # a power of 2, as in `coarse_to_fine`
-    while side * coarse[0] < height or side * coarse[1] < width:
+def _predict_held_out(
+    parameters: TexelParameters, observed: Observations, noise: float, report: Report
+) -> dict[float, float]:
+    """Return the RMS relative error of held-out photographs for each τ, on a patch of the maps."""
+    patch = _select_patch(observed)
+    lights = np.arange(len(observed.radiance))
+    held_out = lights[1 :: max(2, len(lights) // 3)]
+    fitted = patch.select_lights(np.setdiff1d(lights, held_out))
+    hidden = patch.select_lights(held_out)
+    *_, (start, _, _) = fit_coarse_to_fine(parameters, fitted, report)
+    hessian, errors = compute_equations(parameters, start, fitted).hessian, {}
+    for tau in TAUS:
+        strength = compute_strength(parameters, hessian, fitted, noise, tau)
+        x = finish_level(parameters, start, fitted, strength, noise, report)
+        error = compute_errors(parameters, x, hidden).sum()
+        errors[tau] = float(np.sqrt(error / max(1, (hidden.weights > 0).sum())))
+    return errors
+
+
+def _select_patch(observed: Observations) -> Observations:
+    """Return the observations of a patch in the middle."""
+    height, width = observed.shape
+    rows, columns = min(height, PATCH_SIDE), min(width, PATCH_SIDE)
+    top, left = (height - rows) // 2, (width - columns) // 2
+    texel = np.arange(height * width).reshape(height, width)
+    patch = observed.select_texels(texel[top : top + rows, left : left + columns].ravel())
+    return replace(patch, shape=(rows, columns))
+
+
+def _enlarge_unfinished(
+    shape: tuple[int, int], x: FloatArray, coarse: tuple[int, int]
+) -> UnfinishedMaps:
+    """Return coarser maps as they are, enlarged to `shape`."""
+    side = 1  # a power of 2, as in `fit_coarse_to_fine`
+    while side * coarse[0] < shape[0] or side * coarse[1] < shape[1]:
         side *= 2
-    grid = x.reshape(*coarse, -1).repeat(side, axis=0).repeat(side, axis=1)
-    x = grid[:height, :width].reshape(height * width, -1)
-    return FittedMaps(x, None, USUAL, noise, None, {})
+    return UnfinishedMaps(enlarge(x, coarse, shape, side), DEFAULT_TAU, {})
 
 
-def standard_errors(numbers, fitted, seen):
-    """Standard errors (n, count) of each number by the equations, neighbours given.
+def compute_standard_errors(
+    parameters: TexelParameters, fitted: FittedMaps, observed: Observations
+) -> FloatArray:
+    """Return the standard errors (n, count) of all numbers, with the neighbours taken as known.
 
-    Those of a texel that is not explained are by what it leaves. Where photographs leave numbers
-    open, they do so in the neighbours, too: there each has its limits or its unit in their place.
+    Those of unexplained texels are scaled by their residuals. Where the photographs leave numbers
+    of a texel undetermined, they do so in the neighbours, too; there each number has half of its
+    range, or its unit, as an error instead.
     """
-    noise, own = fitted.noise, fitted.about.hessian
-    unit = np.diag(noise / ranges(numbers, own, seen) ** 2)
-    together = own + 4 * np.diag(fitted.strength * are_seen(own)) + unit
-    matrix = np.where(is_open(own)[:, None, None], own + unit, together)
+    noise, own = fitted.noise, fitted.equations.hessian
+    ranges, (low, high) = find_units(parameters, own, observed), parameters.limits()
+    is_limited = np.isfinite(high - low)
+    ranges[is_limited] = (high - low)[is_limited] / 2
+    prior = np.diag(noise / ranges**2)
+    together = own + 4 * np.diag(fitted.strength * is_observed(own)) + prior
+    matrix = np.where(is_undetermined(own)[:, None, None], own + prior, together)
     variance = np.diagonal(np.linalg.inv(matrix), axis1=1, axis2=2)
-    misfit = misfits(fitted.about.error, noise, seen)
-    noise = noise * np.where(misfit > MISFIT, misfit, 1) ** 2
-    return np.sqrt(np.maximum(variance, 0) * noise[:, None])
-
-
-def ranges(numbers, hessian, seen):
-    """How far (count,) each number may be from where it is, at most, about."""
-    found, (low, high) = units_of(numbers, hessian, seen), numbers.limits()
-    limited = np.isfinite(high - low)
-    found[limited] = (high - low)[limited] / 2
-    return found
+    misfit = compute_misfit(fitted.equations.error, noise, observed)
+    variance = np.maximum(variance, 0) * noise
+    return np.sqrt(variance) * np.where(misfit > UNEXPLAINED, misfit, 1)[:, None]

@@ -1,37 +1,100 @@
-"""Where the search for maps begins: matt and flat as a whole, and a few widths of the highlight."""
+"""Chooses where the search for a texel begins, and restarts texels in a poor local minimum.
+
+All texels begin matt and flat, with a few widths of the highlight. Restarted texels begin there
+again, or with the numbers of their neighbours.
+"""
+
+from __future__ import annotations
 
 import numpy as np
+from scipy.ndimage import median_filter
 
-from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS
+from brdfkit.core.array_types import FloatArray
+from brdfkit.inverse.photographs.capture.observations import Observations
+from brdfkit.inverse.photographs.maps.residuals import compute_misfit
+from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, TexelParameters
+from brdfkit.inverse.photographs.search.least_squares import Report, compute_errors, fit_each_texel
 
-WIDTHS = 0.08, 0.2, 0.45  # of the shape parameters that are searched, on their scale of 0 to 1
-MATT = 0.6  # the share of the observations, the darker ones, that count as free of highlights
+WIDTHS = 0.08, 0.2, 0.45  # of highlights, as shares of the shape parameters' range
+START_WEIGHT = 0.1  # of all lobes but the first, the diffuse one
+MATT_SHARE = 0.6  # of the observations: the darker ones, which count as free of highlights
+DOUBTFUL = 2  # times the noise, from which a texel is restarted
+RESTART_STEPS = 10
+OFFSETS = [(way * a, way * b) for way in (1, 3) for a, b in ((0, 1), (1, 0), (0, -1), (-1, 0))]
 
 
-def albedos(seen):
-    """Albedos (n, 3) of a matt and flat surface, from the darker ones of `Observations`.
+def make_start(parameters: TexelParameters, observed: Observations, width: float) -> FloatArray:
+    """Return rows (n, count) to begin at, flat and isotropic.
 
-    Normals by photometric stereo [Woodham 1980] are no better a start: where all lights are near
-    the camera, as flashes are, they lean by 40° to where the search does not come back from.
+    `width` is that of the highlight, as a share of the range of the shape parameters.
     """
-    cosine = np.maximum(seen.to_light[..., 2], 0.05)
-    share = (seen.radiance / np.maximum(seen.irradiance, 1e-30)).mean(axis=2)
-    brightness = np.where((seen.weights > 0).all(axis=2), share / cosine, np.inf)
-    rank = np.argsort(np.argsort(brightness, axis=0), axis=0)
-    used = (rank < max(1, round(MATT * len(share)))) & np.isfinite(brightness)
-    lit = seen.irradiance * (cosine * used)[..., None]
-    found = (seen.radiance * lit).sum(axis=0) / np.maximum((lit**2).sum(axis=0), 1e-30)
-    return np.pi * np.maximum(found, 0)
-
-
-def rows(numbers, seen, width):
-    """Rows (n, count) to begin at: a width of the highlight, at `width` between its bounds."""
-    low, high = numbers.limits()
-    x = np.zeros((seen.radiance.shape[1], numbers.count))
-    x[:, :CHANNELS] = albedos(seen)
-    x[:, CHANNELS : numbers.shapes.start] = 0.1
-    at = numbers.shapes
+    low, high = parameters.limits()
+    x = np.zeros((observed.radiance.shape[1], parameters.count))
+    x[:, :CHANNELS] = _estimate_albedos(observed)
+    x[:, CHANNELS : parameters.shape_columns.start] = START_WEIGHT
+    at = parameters.shape_columns
     x[:, at] = low[at] + width**0.5 * (high[at] - low[at])
-    if numbers.pair:  # alike in all directions
+    if parameters.pair:
         x[:, at.stop - 2 : at.stop] = 0
     return x
+
+
+def _estimate_albedos(observed: Observations) -> FloatArray:
+    """Return the albedos (n, 3) of a matt and flat surface, from the darker observations.
+
+    Normals from photometric stereo [Woodham 1980] are no better a start: with all lights near the
+    camera, as flashes are, they lean by 40°, from where the search does not return.
+    """
+    cosine = np.maximum(observed.to_light[..., 2], 0.05)
+    ratio = (observed.radiance / np.maximum(observed.irradiance, 1e-30)).mean(axis=2)
+    brightness = np.where((observed.weights > 0).all(axis=2), ratio / cosine, np.inf)
+    rank = np.argsort(np.argsort(brightness, axis=0), axis=0)
+    used = (rank < max(1, round(MATT_SHARE * len(ratio)))) & np.isfinite(brightness)
+    lit = observed.irradiance * (cosine * used)[..., None]
+    slope = (observed.radiance * lit).sum(axis=0) / np.maximum((lit**2).sum(axis=0), 1e-30)
+    return np.pi * np.maximum(slope, 0)
+
+
+def restart_unexplained(
+    parameters: TexelParameters, x: FloatArray, observed: Observations, noise: float, report: Report
+) -> FloatArray:
+    """Return rows `x` (n, count) in which texels with large residuals are searched anew."""
+    errors = compute_errors(parameters, x, observed)
+    wrong = np.flatnonzero(compute_misfit(errors, noise, observed) > DOUBTFUL)
+    if not len(wrong):
+        return x
+    part, x = observed.select_texels(wrong), x.copy()
+    for width in WIDTHS:
+        start = make_start(parameters, part, width)
+        trial, error = fit_each_texel(parameters, start, part, RESTART_STEPS, report)
+        better = error < errors[wrong]
+        x[wrong[better]], errors[wrong[better]] = trial[better], error[better]
+    return x
+
+
+def propagate_from_neighbours(
+    parameters: TexelParameters, x: FloatArray, observed: Observations, report: Report
+) -> FloatArray:
+    """Return rows `x` (n, count) in which texels take over numbers that suit them better.
+
+    The candidates are the median around the texel and the numbers of texels nearby, handed on as
+    matches are in [Barnes et al. 2009].
+    """
+    grid = x.reshape(*observed.shape, -1)
+    errors = compute_errors(parameters, x, observed)
+    median = median_filter(grid, size=(3, 3, 1), mode="nearest")
+    for candidate in (median, *(_shift(grid, *offset) for offset in OFFSETS)):
+        candidate = candidate.reshape(x.shape)
+        there = compute_errors(parameters, candidate, observed)
+        better = there < errors
+        x, errors = np.where(better[:, None], candidate, x), np.where(better, there, errors)
+        report()
+    return x
+
+
+def _shift(grid: FloatArray, down: int, right: int) -> FloatArray:
+    """Return the grid (height, width, count) shifted by texels; the edge is repeated."""
+    height, width = grid.shape[:2]
+    rows = np.clip(np.arange(height) + down, 0, height - 1)
+    columns = np.clip(np.arange(width) + right, 0, width - 1)
+    return grid[rows][:, columns]

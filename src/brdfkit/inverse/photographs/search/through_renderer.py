@@ -1,132 +1,171 @@
-"""Maps refined through the renderer: what pixels blur, the formula of the texels does not say.
+"""Corrects fitted maps by Mitsuba's renderings of them, which include the blur of pixels.
 
-Mitsuba renders the photographs R of the maps, and what the photographs P show beyond them is added
-to what the formula L says of each texel t, before all are fitted once more:
+The formula L of a texel ignores that a pixel covers parts of several texels. Mitsuba therefore
+renders the photographs R of the maps with rows x. What the real photographs P show beyond them is
+added to the radiance of each texel t, and the maps are fitted to that again:
 
     L_t ← L_t(x) + (P - R(x))_t
 
-At the end R(x) is P but for noise, whatever the formula leaves out; it only has to change with x
-about as R does. [Van Cittert 1931] so undoes a blur.
+At the end R(x) equals P up to noise, whatever the formula ignores; it only has to change with x
+about as R does. [Van Cittert 1931] removes a blur by the same iteration.
 """
+
+from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.images.errors.psnr import psnr
-from brdfkit.inverse.photographs.capture.observations import DARK, gathered
+from brdfkit.inverse.photographs.capture.capture import Capture
+from brdfkit.inverse.photographs.capture.observations import (
+    DARK_OFFSET,
+    Observations,
+    sample_pictures,
+)
 from brdfkit.inverse.photographs.maps.maps import Maps
-from brdfkit.inverse.photographs.maps.prediction import radiances
-from brdfkit.inverse.photographs.maps.residuals import misfits
+from brdfkit.inverse.photographs.maps.residuals import compute_misfit
 from brdfkit.inverse.photographs.maps.scene import sample_dict
+from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 from brdfkit.inverse.photographs.search.fitting_maps import FittedMaps
-from brdfkit.inverse.photographs.search.search import equations, search_together
-from brdfkit.inverse.photographs.search.smoothness import units_of
+from brdfkit.inverse.photographs.search.least_squares import (
+    Report,
+    compute_equations,
+    fit_all_texels,
+)
+from brdfkit.inverse.photographs.search.smoothness import compute_strength
 
 SAMPLES = 16  # per pixel, evenly spread
-EVENLY = {"sampler": {"type": "multijitter", "sample_count": SAMPLES}}
-ROUNDS = 5
-STEPS = 3  # of each round, which begins near its end
-GAIN = 0.9  # what is left has to fall below so much of itself, else it is noise
+ROUND_LIMIT = 5
+STEPS_PER_ROUND = 3  # few, because each round begins near its end
+LARGEST_REMAINDER = 0.9  # of the difference before: a round that leaves more found only noise
 
 
 @dataclass(frozen=True)
-class Rendered:
-    """`FittedMaps` with Mitsuba's pictures of them (lights, height, width, 3), and what is left of
-    the photographs: the RMS of relative differences."""
+class RenderedMaps:
+    """Fitted maps with Mitsuba's renderings of the photographs.
+
+    fitted : the maps.
+    pictures : the renderings (lights, height, width, 3).
+    difference : the RMS relative difference from the photographs.
+    """
 
     fitted: FittedMaps
-    pictures: np.ndarray
-    left: float
+    pictures: FloatArray
+    difference: float
 
 
-def refine_through_renderer(numbers, fitted, seen, capture, report=lambda: None):
-    """The `Rendered` of the best maps, and how many rounds lead to them from those `fitted`.
+def refine_through_renderer(
+    parameters: TexelParameters,
+    fitted: FittedMaps,
+    observed: Observations,
+    capture: Capture,
+    report: Report = lambda: None,
+) -> tuple[RenderedMaps, int]:
+    """Return the best maps with their renderings, and the number of rounds that led to them.
 
-    On Ctrl-C `Interrupted` has the `Rendered` so far, if there is one.
+    On Ctrl-C `Interrupted` holds the `RenderedMaps` so far, or None.
     """
     best = None
     try:
-        best = rendered(numbers, fitted, seen, capture, report)
-        for done in range(ROUNDS):
-            corrected = one_round(numbers, best, done == 0, seen, capture, report)
-            trial = rendered(numbers, corrected, seen, capture, report)
-            if not trial.left < GAIN * best.left:
-                return best, done
+        best = render_maps(parameters, fitted, observed, capture, report)
+        for rounds in range(ROUND_LIMIT):
+            corrected = correct_maps(parameters, best, rounds == 0, observed, capture, report)
+            trial = render_maps(parameters, corrected, observed, capture, report)
+            if not trial.difference < LARGEST_REMAINDER * best.difference:
+                return best, rounds
             best = trial
-        return best, ROUNDS
+        return best, ROUND_LIMIT
     except KeyboardInterrupt:
         raise Interrupted(best) from None
 
 
-def one_round(numbers, there, first, seen, capture, report):
-    """The `FittedMaps` from those of a `Rendered`, by what the photographs show beyond it: all in
-    the `first` round, and then what is more than noise, texel by texel, lest noise is sharpened."""
-    fitted = there.fitted
-    beyond = gathered(capture, capture.pictures - there.pictures, seen.shape)
-    if not first:
-        misfit = np.maximum(misfits_of(beyond, fitted.noise, seen), 1)
-        beyond *= (1 - 1 / misfit**2)[:, None]  # [Wiener 1949]
-    target = replace(seen, radiance=radiances(numbers, fitted.x, seen) + beyond)
-    units = units_of(numbers, fitted.about.hessian, seen)  # radiances do not change it
-    strength = fitted.noise / (fitted.tau * units) ** 2
-    x = search_together(numbers, fitted.x.copy(), target, strength, STEPS, report)
-    about = equations(numbers, x, target)
-    return replace(fitted, x=x, about=about, strength=strength)
+def correct_maps(
+    parameters: TexelParameters,
+    rendered: RenderedMaps,
+    is_first: bool,
+    observed: Observations,
+    capture: Capture,
+    report: Report,
+) -> FittedMaps:
+    """Return the maps after one round of correction.
+
+    The first round adds the whole difference between photographs and renderings. Later ones add
+    only what exceeds the noise in each texel, so that noise is not sharpened [Wiener 1949].
+    """
+    fitted = rendered.fitted
+    beyond = sample_pictures(capture, capture.pictures - rendered.pictures, observed.shape)
+    if not is_first:
+        misfit = np.maximum(measure_misfit(beyond, fitted.noise, observed), 1)
+        beyond *= (1 - 1 / misfit**2)[:, None]
+    target = replace(observed, radiance=parameters.compute_radiances(fitted.x, observed) + beyond)
+    hessian = fitted.equations.hessian  # does not depend on the radiances
+    strength = compute_strength(parameters, hessian, observed, fitted.noise, fitted.tau)
+    x = fit_all_texels(parameters, fitted.x.copy(), target, strength, STEPS_PER_ROUND, report)
+    equations = compute_equations(parameters, x, target)
+    return replace(fitted, x=x, equations=equations, strength=strength)
 
 
-def misfits_of(off, noise, seen):
-    """The `misfits` (n,) of radiances that are `off` (k, n, 3)."""
-    return misfits((seen.weights * off**2).sum(axis=(0, 2)), noise, seen)
+def measure_misfit(differences: FloatArray, noise: float, observed: Observations) -> FloatArray:
+    """Return the `compute_misfit` (n,) of differences (k, n, 3) of radiances."""
+    return compute_misfit((observed.weights * differences**2).sum(axis=(0, 2)), noise, observed)
 
 
-def rendered(numbers, fitted, seen, capture, report=lambda: None):
-    """The `Rendered` of `FittedMaps`."""
-    maps = Maps.of(numbers, fitted.x, seen.shape, capture.size)
-    pictures = pictures_of(maps, capture, report)
-    off = differences(capture, pictures)[capture.counted]
-    return Rendered(fitted, pictures, float(np.sqrt((off**2).mean())))
+def render_maps(
+    parameters: TexelParameters,
+    fitted: FittedMaps,
+    observed: Observations,
+    capture: Capture,
+    report: Report,
+) -> RenderedMaps:
+    """Return fitted maps with Mitsuba's renderings of the photographs."""
+    maps = Maps.from_rows(parameters, fitted.x, observed.shape, capture.size)
+    pictures = _render_photographs(maps, capture, report)
+    relative = _compare(capture, pictures)[capture.counted]
+    return RenderedMaps(fitted, pictures, float(np.sqrt((relative**2).mean())))
 
 
-def differences(capture, pictures):
-    """How pictures differ from the photographs (lights, height, width, 3), relative to these."""
-    scale = np.maximum(capture.pictures, 0) + DARK * capture.pictures.mean()
+def _compare(capture: Capture, pictures: FloatArray) -> FloatArray:
+    """Return the relative differences (lights, height, width, 3) from the photographs."""
+    scale = np.maximum(capture.pictures, 0) + DARK_OFFSET * capture.pictures.mean()
     return (pictures - capture.pictures) / scale
 
 
-def pictures_of(maps, capture, report=lambda: None):
-    """Mitsuba's pictures (lights, height, width, 3) of `Maps`, by the cameras and lights of a
-    `Capture`."""
+def _render_photographs(maps: Maps, capture: Capture, report: Report) -> FloatArray:
+    """Render maps with the cameras and lights of a `Capture`: (lights, height, width, 3)."""
     import mitsuba as mi
 
     sample = mi.load_dict(sample_dict(maps))
-    found = np.empty(capture.pictures.shape, np.float32)
+    sampler = {"type": "multijitter", "sample_count": SAMPLES}
+    pictures: FloatArray = np.empty(capture.pictures.shape, np.float32)
     for k, camera in enumerate(capture.cameras):
-        light = {
-            "type": "point",
-            "position": capture.positions[k].tolist(),
-            "intensity": {"type": "rgb", "value": capture.intensities[k].tolist()},
-        }
         scene = {
             "type": "scene",
             "integrator": {"type": "direct"},
-            "sensor": camera.scene_dict(capture.picture_size) | EVENLY,
+            "sensor": {**camera.scene_dict(capture.picture_size), "sampler": sampler},
             "sample": sample,
-            "light": light,
+            "light": {
+                "type": "point",
+                "position": capture.positions[k].tolist(),
+                "intensity": {"type": "rgb", "value": capture.intensities[k].tolist()},
+            },
         }
-        found[k] = mi.render(mi.load_dict(scene), seed=k, spp=SAMPLES)
+        pictures[k] = mi.render(mi.load_dict(scene), seed=k, spp=SAMPLES)
         report()
-    return found
+    return pictures
 
 
-def left_of(capture, pictures):
-    """Name of each photograph → the RMS relative difference of its picture."""
-    parts = zip(capture.names, differences(capture, pictures), capture.counted, strict=True)
-    return {name: float(np.sqrt((off[counts] ** 2).mean())) for name, off, counts in parts}
+def summarise_differences(capture: Capture, pictures: FloatArray) -> dict[str, float]:
+    """Return the RMS relative difference of each picture from its photograph, by name."""
+    parts = zip(capture.names, _compare(capture, pictures), capture.counted, strict=True)
+    return {name: float(np.sqrt((off[counted] ** 2).mean())) for name, off, counted in parts}
 
 
-def compute_psnr(capture, pictures):
-    """Name of each photograph → `psnr` [dB] of its picture, over the pixels that count."""
+def compute_psnr(capture: Capture, pictures: FloatArray) -> dict[str, float]:
+    """Return the PSNR [dB] of each picture beside its photograph, over the pixels that count."""
     parts = zip(capture.names, capture.pictures, pictures, capture.counted, strict=True)
-    return {name: psnr(photograph, picture, counts) for name, photograph, picture, counts in parts}
+    return {
+        name: psnr(photograph, picture, counted) for name, photograph, picture, counted in parts
+    }
