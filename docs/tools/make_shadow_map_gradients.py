@@ -36,7 +36,7 @@ class Case:
 
         self.solid, self.scene = SCENES[name][0], load(name, light)
         (sensor,), (emitter,) = self.scene.sensors(), self.scene.emitters()
-        self.placement = Placement.of_scene(self.scene, sensor, emitter)
+        self.placement = Placement.from_scene(self.scene, sensor, emitter)
         self.light = self.placement.light
         self.parameters = mi.traverse(self.scene)
         self.corners = mi.Point3f(self.solid.corners.T)

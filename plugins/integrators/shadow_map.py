@@ -32,10 +32,10 @@ from brdfkit.core.array_types import FloatArray, MitsubaModule, MitsubaObject
 from brdfkit.mitsuba_bridge.check_scenes import beside_a_shadow
 from brdfkit.mitsuba_bridge.direct_light import shadowed
 from brdfkit.mitsuba_bridge.properties.declarations import count, flag, plain_number, word
-from brdfkit.shadows.maps.bias import AUTOMATIC, Bias
 from brdfkit.shadows.maps.light_shadow import DEPTHS, LightShadow
+from brdfkit.shadows.maps.map_point import AUTOMATIC, Bias
 from brdfkit.shadows.maps.placement import Placement
-from brdfkit.shadows.maps.techniques import FILES, all_settings, settings_of
+from brdfkit.shadows.maps.techniques import FILES, find_settings, list_settings
 
 PARAMETERS = {
     "projection": word(FILES["projection"], "how a map projects the scene", "focused"),
@@ -47,7 +47,7 @@ PARAMETERS = {
     "slope_bias": plain_number(0.0, (0.0, 100.0), "bias in steps of depth from texel to texel"),
     "normal_offset": plain_number(0.0, (0.0, 100.0), "bias along the normal [texels]"),
     "plane_bias": flag(AUTOMATIC.plane, "whether texels are compared with the tangent plane"),
-    **all_settings(),
+    **list_settings(),
 }
 
 
@@ -66,10 +66,10 @@ def define(mi: MitsubaModule) -> type:
         ) -> LightShadow:
             """Return the `LightShadow` of an `emitter` of the scene."""
             names = {kind: getattr(self, kind) for kind in FILES}
-            settings = [n for kind, name in names.items() for n in settings_of(kind, name)]
+            settings = [n for kind, name in names.items() for n in find_settings(kind, name)]
             return LightShadow(
                 scene,
-                Placement.of_scene(scene, sensor, emitter),
+                Placement.from_scene(scene, sensor, emitter),
                 resolution=self.resolution,
                 bias=Bias(self.bias, self.slope_bias, self.normal_offset, self.plane_bias),
                 depth=self.depth,

@@ -39,7 +39,7 @@ from brdfkit.mitsuba_bridge.properties.declarations import flag, plain_number, w
 from brdfkit.shadows.volumes.casters import CASTERS
 from brdfkit.shadows.volumes.light_volumes import FAR_PLANES, METHODS, LightVolumes
 from brdfkit.shadows.volumes.mesh import Mesh
-from brdfkit.shadows.volumes.seen_faces import pinhole
+from brdfkit.shadows.volumes.projected_faces import to_pinhole
 from brdfkit.shadows.volumes.silhouettes import SILHOUETTES
 from brdfkit.shadows.volumes.volume import BACK_CAPS
 
@@ -62,7 +62,7 @@ def define(mi: MitsubaModule) -> type:
         def shadow_of(
             self, scene: MitsubaObject, sensor: MitsubaObject
         ) -> Callable[[MitsubaObject], LightVolumes]:
-            meshes = [Mesh.of_shape(shape) for shape in scene.shapes()]
+            meshes = [Mesh.from_shape(shape) for shape in scene.shapes()]
             return partial(self.make_shadow, meshes, sensor)
 
         def make_shadow(
@@ -72,7 +72,7 @@ def define(mi: MitsubaModule) -> type:
             return LightVolumes(
                 meshes,
                 Light.from_emitter(emitter),
-                pinhole(sensor),
+                to_pinhole(sensor),
                 self.method,
                 self.far_plane,
                 max(sensor.film().size()),

@@ -10,7 +10,7 @@ LIGHTS = ("directional", "point", "spot")
 
 
 def placement_of(scene):
-    return Placement.of_scene(scene, scene.sensors()[0], scene.emitters()[0])
+    return Placement.from_scene(scene, scene.sensors()[0], scene.emitters()[0])
 
 
 def light(kind):

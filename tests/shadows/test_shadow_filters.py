@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from shadow_scenes import half_plane, objects_on_a_ground, placement_of, seen_from
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.shadows.maps.bias import AUTOMATIC, Bias, acne, peter_panning
+from brdfkit.shadows.comparison.quality import acne
 from brdfkit.shadows.maps.filters import (
     bilinear_percentage_closer,
     exponential_variance,
@@ -19,10 +19,10 @@ from brdfkit.shadows.maps.filters import (
     variance,
 )
 from brdfkit.shadows.maps.light_shadow import LightShadow
-from brdfkit.shadows.maps.map_point import MapPoint
-from brdfkit.shadows.maps.moments import bounds, chebyshev
+from brdfkit.shadows.maps.map_point import AUTOMATIC, Bias, MapPoint
+from brdfkit.shadows.maps.moments import bounds
 from brdfkit.shadows.maps.moments.moving_depths import MovingDepths
-from brdfkit.shadows.maps.techniques import FILES, settings_of
+from brdfkit.shadows.maps.techniques import FILES, find_settings
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 
@@ -61,7 +61,7 @@ def test_percentage_closer_is_the_mean_of_its_comparisons(width):
         t = np.floor(v - (width - 1) / 2) + j + 0.5
         expected += depth + a * (s - u) + b * (t - v) <= seen(depths, s, t)
     lookup = percentage_closer.Lookup(mi.TensorXf(depths), width)
-    found = np.array(lookup.lit(at(u, v, depth, a, b)))
+    found = np.array(lookup.lit_share(at(u, v, depth, a, b)))
     assert np.abs(found - expected / width**2).max() < 1e-5
 
 
@@ -75,7 +75,7 @@ def test_bilinear_percentage_closer_of_three_texels():
     rows = mi.TensorXf(B.transpose(1, 0, 2).reshape(3, 600).astype(np.float32))
     wide = dr.concat([rows, dr.zeros(mi.TensorXf, (597, 600))])  # a square map, three rows used
     lookup = bilinear_percentage_closer.Lookup(wide, 3)
-    found = np.array(lookup.lit(at(3 * np.arange(200) + 1 + fx, 1 + fy, 0.5)))
+    found = np.array(lookup.lit_share(at(3 * np.arange(200) + 1 + fx, 1 + fy, 0.5)))
     assert np.abs(found - D.mean(axis=(1, 2))).max() < 1e-4  # places are rounded at 600 texels
 
 
@@ -87,7 +87,7 @@ def test_bilinear_weights():
 
 
 def test_poisson_disk():
-    taps = poisson_disk.taps()
+    taps = poisson_disk.draw_taps()
     apart = np.linalg.norm(taps[:, None] - taps, axis=2) + 9 * np.eye(12)
     assert len(taps) == 12
     assert apart.min() >= 0.5
@@ -99,7 +99,7 @@ def test_poisson_disk():
         [seen(depths, u + radius * x, v + radius * y) >= 0.1 for x, y in taps], axis=0
     )
     lookup = poisson_disk.Lookup(mi.TensorXf(depths), 2.5, 0.7)
-    wrong = np.abs(np.array(lookup.lit(at(u, v, 0.1))) - expected) > 1e-5
+    wrong = np.abs(np.array(lookup.lit_share(at(u, v, 0.1))) - expected) > 1e-5
     assert wrong.sum() <= 1  # a tap may be rounded to the next texel
 
 
@@ -109,8 +109,8 @@ def test_poisson_disk():
 @pytest.mark.quick
 def test_two_planes_of_the_thesis():
     """[Ergun 2008, 2.2.1.4]: d₁ = 1, d₂ = 2, p = 0.25."""
-    assert chebyshev.most_lit(1.25, 1.75, 2.0) == pytest.approx(0.25, abs=1e-12)
-    assert chebyshev.most_lit(1.25, 1.75, 1.25) == 1
+    assert bounds.bound_by_two_moments(1.25, 1.75, 2.0) == pytest.approx(0.25, abs=1e-12)
+    assert bounds.bound_by_two_moments(1.25, 1.75, 1.25) == 1
 
 
 @pytest.mark.parametrize(
@@ -127,8 +127,10 @@ def test_of_one_plane_above_another_moments_are_percentage_closer(lookup, settin
     depths = mi.TensorXf(np.where(near, -0.3, 0.4).astype(np.float32))
     u, v = (np.mgrid[3:29, 3:29] + 0.5).reshape(2, -1)
     point = at(u, v, 0.4)
-    expected = np.array(percentage_closer.Lookup(depths, 5).lit(point))
-    found = np.array(lookup(MovingDepths(depths), blur=2, bleeding=0.0, **settings).lit(point))
+    expected = np.array(percentage_closer.Lookup(depths, 5).lit_share(point))
+    found = np.array(
+        lookup(MovingDepths(depths), blur=2, bleeding=0.0, **settings).lit_share(point)
+    )
     assert np.abs(found - expected).max() < tolerance
 
 
@@ -143,7 +145,7 @@ def test_four_moments_know_two_depths_and_three_with_the_receiver(depths, anywhe
     weights = generator.dirichlet(np.ones(depths), 2000).T
     t = generator.uniform(-1, 1, 2000) if anywhere else z[-1]
     b = [dr.llvm.Float64(x) for x in moments(z, weights, range(1, 5))]
-    found = np.array(bounds.most_lit(b, dr.llvm.Float64(t), 1e-13))
+    found = np.array(bounds.bound_by_four_moments(b, dr.llvm.Float64(t), 1e-13))
     close = np.abs(z - t).min(axis=0) < 1e-3  # where the bound may jump
     wrong = np.abs(found - (weights * (z >= t)).sum(axis=0)) > 1e-4
     assert wrong[~close | (not anywhere)].mean() < 0.005  # depths that nearly coincide
@@ -159,22 +161,24 @@ def test_no_bound_is_darker_than_what_it_bounds(distribution, t):
     lit = weights[z >= t].sum()
     T = dr.scalar.ArrayXf64
     b = [T(m) for m in moments(z, weights, range(1, 5))]
-    assert chebyshev.most_lit(b[0], b[1], T(t), 1e-14)[0] > lit - 1e-6
-    assert bounds.most_lit(b, T(t), 1e-7)[0] > lit - 1e-3
+    assert bounds.bound_by_two_moments(b[0], b[1], T(t), 1e-14)[0] > lit - 1e-6
+    assert bounds.bound_by_four_moments(b, T(t), 1e-7)[0] > lit - 1e-3
     for warped in (np.exp(5 * z), -np.exp(-5 * z)):
         m, s = (T(x) for x in moments(warped, weights, (1, 2)))
         own = np.exp(5 * t) if warped[0] > 0 else -np.exp(-5 * t)
-        assert chebyshev.most_lit(m, s, T(own), 1e-9 * own**2)[0] > lit - 1e-6
+        assert bounds.bound_by_two_moments(m, s, T(own), 1e-9 * own**2)[0] > lit - 1e-6
 
 
 def test_bleeding_is_cut_off():
     """Two occluders behind each other: the farther one's shadow, dark by comparisons."""
     depths = MovingDepths(mi.TensorXf(np.tile(np.float32([-0.9, 0.3]), (8, 4))))
     how = {"blur": 1, "least_deviation": 0.0}
-    leaks = variance.Lookup(depths, bleeding=0.0, **how).lit(at(4.0, 4.5, 0.4))[0]
+    leaks = variance.Lookup(depths, bleeding=0.0, **how).lit_share(at(4.0, 4.5, 0.4))[0]
     assert 0.2 < leaks < 0.8
-    assert variance.Lookup(depths, bleeding=leaks + 0.01, **how).lit(at(4.0, 4.5, 0.4))[0] == 0
-    assert variance.Lookup(depths, bleeding=0.9, **how).lit(at(4.0, 4.5, -0.9))[0] == 1
+    assert (
+        variance.Lookup(depths, bleeding=leaks + 0.01, **how).lit_share(at(4.0, 4.5, 0.4))[0] == 0
+    )
+    assert variance.Lookup(depths, bleeding=0.9, **how).lit_share(at(4.0, 4.5, -0.9))[0] == 1
 
 
 # In scenes
@@ -187,7 +191,7 @@ def test_the_penumbra_of_a_half_plane(kind):
     shadow = LightShadow(
         scene, placement, filter="percentage_closer_soft", light_size=light_size, taps=64
     )
-    found = np.array(shadow.lit(mi.Point3f(mi.Float(x * w), 0, 0), mi.Normal3f(*n)))
+    found = np.array(shadow.lit_share(mi.Point3f(mi.Float(x * w), 0, 0), mi.Normal3f(*n)))
     s = (2 * x).clip(-1, 1)
     disk = 0.5 + (np.arcsin(s) + s * np.sqrt(1 - s * s)) / np.pi
     assert np.abs(found - disk).max() < 0.04
@@ -198,11 +202,21 @@ def test_a_projective_texture_shadows_no_object_by_itself():
     scene = objects_on_a_ground("directional")
     si, facing, lit = seen_from(scene)
     shadow = LightShadow(scene, placement_of(scene), filter="projective_texture", resolution=256)
-    found = np.array(shadow.lit(si.p, si.n)) > 0.5
+    found = np.array(shadow.lit_share(si.p, si.n)) > 0.5
     ground = np.array(si.p.z) < 1e-3
     away = np.array(si.is_valid()) & ~ground
     assert found[away & ~facing].mean() > 0.97  # the dark sides of the objects themselves
     assert (found != lit)[facing & ground].mean() < 0.01
+
+
+def peter_panning(found, lit, facing, gap, contact):
+    """The share of light that pixels in a shadow have, next to what casts it.
+
+    gap : (height, width), from each pixel to its occluder along the ray of light.
+    contact : the largest gap that is looked at.
+    """
+    where = facing & ~lit & (gap <= contact)
+    return float(found[where].mean()) if where.any() else 0.0
 
 
 @pytest.mark.parametrize("name", FILTERS)
@@ -210,7 +224,7 @@ def test_the_automatic_bias_leaves_no_acne_in_grazing_light(name):
     scene = objects_on_a_ground([1, -0.5, -0.12])
     si, facing, lit, gap = seen_from(scene, with_gap=True)
     shadow = LightShadow(scene, placement_of(scene), filter=name, resolution=512)
-    found = np.array(shadow.lit(si.p, si.n))
+    found = np.array(shadow.lit_share(si.p, si.n))
     picture = [a.reshape(128, 128) for a in (found, lit, facing)]
     assert acne(*picture, margin=6) < 0.003
     assert peter_panning(*picture, gap.reshape(128, 128), contact=3.0) < 0.05
@@ -231,7 +245,9 @@ def test_what_a_wrong_bias_does(bias, worse):
 
     def errors(bias):
         shadow = LightShadow(scene, placement_of(scene), resolution=256, bias=bias)
-        picture = [a.reshape(128, 128) for a in (np.array(shadow.lit(si.p, si.n)), lit, facing)]
+        picture = [
+            a.reshape(128, 128) for a in (np.array(shadow.lit_share(si.p, si.n)), lit, facing)
+        ]
         panning = peter_panning(*picture, gap.reshape(128, 128), contact=0.6)
         return {"acne": acne(*picture, margin=4), "panning": panning}
 
@@ -256,7 +272,7 @@ def test_derivatives_know_of_edges_that_move():
         parameters["cube.vertex_positions"] = dr.ravel(moved)
         parameters.update()
         shadow = LightShadow(scene, placement, filter="moment", resolution=512)
-        return dr.sum(shadow.lit(p, mi.Normal3f(0, 0, 1)) * weight)
+        return dr.sum(shadow.lit_share(p, mi.Normal3f(0, 0, 1)) * weight)
 
     way = mi.Float(0)
     dr.enable_grad(way)
@@ -293,7 +309,7 @@ def test_a_name_means_the_same_in_every_file():
     known = {}
     for kind, files in FILES.items():
         for file in files:
-            for name, setting in settings_of(kind, file).items():
+            for name, setting in find_settings(kind, file).items():
                 assert known.setdefault(name, setting) is setting, name
 
 

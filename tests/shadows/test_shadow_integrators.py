@@ -196,14 +196,14 @@ def compare(of, **how):
 
 def test_ctrl_c_within_a_look_up_keeps_what_is_finished(monkeypatch):
     """There Dr.Jit raises its own error in place of KeyboardInterrupt."""
-    finished, lit = [], ShadowMap.lit
+    finished, lit = [], ShadowMap.lit_share
 
     def interrupted(*arguments):
         if finished[-1] == 1:
             raise KeyboardInterrupt
         return lit(*arguments)
 
-    monkeypatch.setattr(ShadowMap, "lit", interrupted)
+    monkeypatch.setattr(ShadowMap, "lit_share", interrupted)
     of, how = scene([light("point")]), {"projections": ["focused", "uniform"]}
     found = compare(of, **how, progress=lambda done, total: finished.append(done))
     assert [*found.scores] == ["focused"]

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from brdfkit.theses.ergun2008.depth_curves import depth_curve, unevenness
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from placements import LIGHTS, SUN, VIEWS, camera, placement
@@ -11,18 +12,17 @@ from placements import LIGHTS, SUN, VIEWS, camera, placement
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.homogeneous import make_axes, project_all
 from brdfkit.core.projective.light import Light
-from brdfkit.shadows.maps.light_depth import LightDepth
 from brdfkit.shadows.maps.light_shadow import LightShadow
-from brdfkit.shadows.maps.projection import Projection
-from brdfkit.shadows.maps.resolution import aliasing, depth_curve, unevenness
-from brdfkit.shadows.maps.sight import Sight
-from brdfkit.shadows.maps.techniques import FILES, techniques
+from brdfkit.shadows.maps.line_of_sight import LineOfSight
+from brdfkit.shadows.maps.projection import LightDepth, Projection
+from brdfkit.shadows.maps.resolution import aliasing
+from brdfkit.shadows.maps.techniques import FILES, make_techniques
 
 PROJECTIONS = FILES["projection"]
 
 
 def project(name, placement, **settings):
-    return techniques({"projection": name}, settings)["projection"](placement)
+    return make_techniques({"projection": name}, settings)["projection"](placement)
 
 
 def points_in(body, count=40, seed=0):
@@ -52,13 +52,13 @@ def check(projection, placement):
 
 def check_slopes(projection, placement):
     """`along` is the difference quotient of `to_map`."""
-    points, step = points_in(placement.seen), 1e-6 * placement.reach
+    points, step = points_in(placement.visible), 1e-6 * placement.reach
     for axis in np.eye(3):
         slope = np.subtract(
             projection.to_map(*(points + step * axis).T),
             projection.to_map(*(points - step * axis).T),
         ) / (2 * step)
-        found = np.array(np.broadcast_arrays(*projection.along(tuple(points.T), axis)))
+        found = np.array(np.broadcast_arrays(*projection.derivative_along(tuple(points.T), axis)))
         assert np.abs(found - slope).max() < 1e-5 * np.abs(slope).max()
 
 
@@ -68,7 +68,7 @@ def test_all_hold_what_is_seen_and_its_shadows(kind, view):
     scene = placement(camera(*VIEWS[view]), LIGHTS[kind])
     for name in PROJECTIONS:
         projected = project(name, scene)
-        linear = replace(projected, depth=LightDepth.through(scene))
+        linear = replace(projected, depth=LightDepth.from_placement(scene))
         for projection in (projected, linear):
             check(projection, scene)
             check_slopes(projection, scene)
@@ -103,7 +103,7 @@ def test_a_point_light_far_away_is_a_directional_one(name):
             placement(camera(*VIEWS[view]), Light(np.append(place, w)), nearest=2.5)
             for place, w in ((1e7 * SUN, 1), (SUN, 0))
         )
-        points = points_in(sun.seen).T
+        points = points_in(sun.visible).T
         found = [project(name, scene).to_map(*points) for scene in (far_away, sun)]
         np.testing.assert_allclose(*found, atol=1e-3)
 
@@ -134,8 +134,9 @@ def test_a_trapezoid_becomes_the_map(angle):
     placed = np.eye(4)
     placed[:3, :3], placed[:3, 3] = turn.T, shift
     corners = project_all(placed, [(x, y, z) for x, y in sides for z in (-1, 1)])
-    sight = Sight(to_sight @ np.linalg.inv(placed), Light(np.array([0, 0, -1.0, 0])), corners, 0, 0)
-    found = sight.warped(1.35 - 0.6)
+    light = Light(np.array([0, 0, -1.0, 0]))
+    sight = LineOfSight(to_sight @ np.linalg.inv(placed), light, corners, 0, 0)
+    found = sight.warp(1.35 - 0.6)
     points = [(0, 0, 0), (0, 0.4, 0), (0, -0.7, 0), (0, 0.4, 0.25), *((x, y, 0) for x, y in sides)]
     u, v, depth = found.to_map(*project_all(placed, points).T)
     printed = project_all(np.array(N_T), points)
@@ -155,7 +156,8 @@ def overhead():
 
 def slopes(projection, *points):
     """Of the map at points: of u across and of v along y."""
-    found = [(projection.along(p, (1, 0, 0))[0], projection.along(p, (0, 1, 0))[1]) for p in points]
+    ways = (1, 0, 0), (0, 1, 0)
+    found = [[projection.derivative_along(p, ways[i])[i] for i in (0, 1)] for p in points]
     return np.abs(found)
 
 
@@ -177,8 +179,8 @@ def test_the_best_n_of_light_space_perspective():
 def test_warps_weaken_as_view_and_light_become_parallel(name, view):
     """The distance of the apex, of w along the map, is the formula's over sin γ."""
     scene = seen_from(view)
-    sun, eye, corners = scene.light.point[:3], scene.camera.position, scene.seen.corners
-    sight = scene.seen.middle - eye
+    sun, eye, corners = scene.light.point[:3], scene.camera.position, scene.visible.corners
+    sight = scene.visible.middle - eye
     sight /= np.linalg.norm(sight)
     across = sight - sun * (sun @ sight)
     sine = np.linalg.norm(across)
@@ -265,12 +267,12 @@ def test_the_footprint_of_a_texel():
     """Acceptance check 10: a texel over a pixel, both of the same angle, by area and by length."""
     light, eye = np.array([0.0, 3, 2]), np.array([0.0, -1, 4])
     by_light, by_eye = (
-        Projection.by(camera(place, [0, 0, 0], slope=1).matrix, Light(np.append(place, 1)))
+        Projection.from_matrix(camera(place, [0, 0, 0], slope=1).matrix, Light(np.append(place, 1)))
         for place in (light, eye)
     )
     found = aliasing((by_light, 64), (by_eye, (64, 64)), (0, 0, 0), (0, 0, 1))
     assert found == pytest.approx(1.3374318, abs=1e-7)
-    lengths = [1 / p.along((0, 0, 0), (0, 1, 0))[1] for p in (by_light, by_eye)]
+    lengths = [1 / p.derivative_along((0, 0, 0), (0, 1, 0))[1] for p in (by_light, by_eye)]
     assert abs(lengths[0] / lengths[1]) == pytest.approx(1.5294118, abs=1e-7)
 
 
@@ -286,7 +288,7 @@ def test_warps_are_finer_near_the_eye():
     scene = seen_from("perpendicular")
     x, y = np.meshgrid(np.linspace(-1, 1, 9), np.linspace(-13, -10, 9))
     points, up = (x.ravel(), y.ravel(), np.zeros(81)), (0, 0, 1)
-    picture = (Projection.by(scene.camera.matrix, scene.light), (512, 512))
+    picture = (Projection.from_matrix(scene.camera.matrix, scene.light), (512, 512))
     worst = {
         name: aliasing((project(name, scene), 512), picture, points, up).max()
         for name in PROJECTIONS
@@ -309,7 +311,7 @@ def test_trapezoidal_and_plane_optimal_distort_depth_more(view):
     assert found["uniform"] < 1e-9
     assert found["focused"] < 1e-9
     assert found["light_space_perspective"] < found["trapezoidal"] < found["plane_optimal"]
-    linear = replace(project("plane_optimal", scene), depth=LightDepth.through(scene))
+    linear = replace(project("plane_optimal", scene), depth=LightDepth.from_placement(scene))
     assert unevenness(*depth_curve(linear, scene.body.corners)) < 1e-9
 
 

@@ -10,15 +10,15 @@ from shadow_scenes import LIGHTS, light
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.light import Light
-from brdfkit.shadows.comparison.exact_shadow import Seen
+from brdfkit.shadows.comparison.exact_shadow import LitView
 from brdfkit.shadows.hybrid import hybrid_shadow
 from brdfkit.shadows.volumes.casters import CASTERS
 from brdfkit.shadows.volumes.light_volumes import METHODS, LightVolumes
 from brdfkit.shadows.volumes.mesh import Mesh
-from brdfkit.shadows.volumes.seen_faces import picture_matrix, seen_faces
+from brdfkit.shadows.volumes.projected_faces import picture_matrix, project_faces
 from brdfkit.shadows.volumes.silhouettes import SILHOUETTES
 from brdfkit.shadows.volumes.stencil import Stencil
-from brdfkit.shadows.volumes.volume import BACK_CAPS, Faces, extruded, shadow_volume
+from brdfkit.shadows.volumes.volume import BACK_CAPS, Faces, extrude, make_shadow_volume
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 SIZE = 96
@@ -112,7 +112,7 @@ def border(scene, lit):
 
 
 def meshes_of(scene):
-    return [Mesh.of_shape(shape) for shape in scene.shapes()]
+    return [Mesh.from_shape(shape) for shape in scene.shapes()]
 
 
 def volumes_of(scene, meshes=None, **how):
@@ -126,7 +126,7 @@ def wrong(scene, **how):
     the light is on the side of the surface that is seen."""
     si, lit, sides = shaded(scene)
     counted = sides & ~border(scene, lit)
-    found = np.array(volumes_of(scene, **how).lit(si.p, si.n)) == 1
+    found = np.array(volumes_of(scene, **how).lit_share(si.p, si.n)) == 1
     return ((found != lit) & counted).sum() / counted.sum()
 
 
@@ -141,7 +141,7 @@ def test_no_pixel_differs_from_shadow_rays(shapes, kind):
     within = ~border(scene, lit)
     assert 0.03 < lit[sides & within].mean() < 0.97
     for method in METHODS:
-        found = np.array(volumes_of(scene, method=method).lit(si.p, si.n)) == 1
+        found = np.array(volumes_of(scene, method=method).lit_share(si.p, si.n)) == 1
         # depth_pass has no caps: not for what is seen from the side without light
         asked = sides & within if method == "depth_pass" else np.array(si.is_valid()) & within
         assert not np.any((found != lit)[asked]), method
@@ -167,13 +167,13 @@ def test_the_scale_of_the_world_changes_nothing(factor):
     asked = sides & ~border(scene, lit)
     scene = scaled(scene, factor)
     sensor, emitter = scene.sensors()[0], scene.emitters()[0]
-    seen = Seen.by(scene, sensor, emitter, (SIZE, SIZE))
+    seen = LitView.from_sensor(scene, sensor, emitter, (SIZE, SIZE))
     assert not np.any((seen.exact != lit)[asked])
     for method in METHODS:
-        found = np.array(volumes_of(scene, method=method).lit(seen.si.p, seen.si.n)) == 1
+        found = np.array(volumes_of(scene, method=method).lit_share(seen.si.p, seen.si.n)) == 1
         assert not np.any((found != lit)[asked]), method
     volumes = hybrid_shadow(scene, sensor, emitter, resolution=256, jump=8)
-    found = np.array(volumes.lit(seen.si.p, seen.si.n)) == 1
+    found = np.array(volumes.lit_share(seen.si.p, seen.si.n)) == 1
     assert (found != lit)[asked].mean() < 1e-3
 
 
@@ -223,7 +223,7 @@ def test_a_point_is_in_as_many_volumes_as_triangles_hide_it():
     mesh = next(mesh for mesh in meshes_of(scene) if len(mesh.triangles) > 2)
     volumes = volumes_of(scene, [mesh])
     si, _, _ = shaded(scene)
-    p, seen = volumes.off_surface(si.p, si.n), np.array(si.is_valid())
+    p, seen = volumes.move_off_surface(si.p, si.n), np.array(si.is_valid())
     expected = crossings(np.array(p, float).T[seen], mesh, light("point")["position"])
     assert expected.max() >= 3
     different = np.array(volumes.count(p))[seen] != expected
@@ -241,7 +241,7 @@ def test_all_kinds_of_caps_silhouettes_and_ends_agree():
                 how = {"casters": casters, "silhouettes": silhouettes, "back_cap": back_cap}
                 for length in (0, 50):
                     volumes = volumes_of(scene, closed, length=length, **how)
-                    dark = np.array(volumes.lit(si.p, si.n)) == 0
+                    dark = np.array(volumes.lit_share(si.p, si.n)) == 0
                     assert not np.any((dark == lit)[asked]), how
 
 
@@ -253,18 +253,18 @@ def test_volumes_are_closed(casters, kind):
     scene = scene_of({**objects(), "cube": cube}, kind, eye=[0, -9, 0.5])
     camera, lamp = Camera.from_sensor(scene.sensors()[0]), Light.from_emitter(scene.emitters()[0])
     closed = [mesh for mesh in meshes_of(scene) if len(mesh.triangles) > 2]
-    volumes = [shadow_volume(mesh, lamp, casters) for mesh in closed]
-    faces = Faces.joined([f for v in volumes for f in (v.walls, v.front, v.back)])
+    volumes = [make_shadow_volume(mesh, lamp, casters) for mesh in closed]
+    faces = Faces.join([f for v in volumes for f in (v.walls, v.front, v.back)])
     to_picture = picture_matrix(camera)
-    stencil = Stencil(seen_faces(faces, to_picture), halvings=4)
+    stencil = Stencil(project_faces(faces, to_picture), halvings=4)
     random = np.random.default_rng(0).uniform(-1, 1, (20_000, 2))
     t, zero = np.linspace(-1, 1, 1001), np.zeros(1001)
     axes = np.concatenate([np.column_stack(way) for way in ((t, zero), (zero, t), (t, t), (t, -t))])
     places = mi.Point2f(np.concatenate([random, axes]).T)
     total = stencil.count(*places, mi.Float(-dr.inf), mi.Float(dr.inf))
     assert np.all(np.array(total) == 0)
-    walls = Faces.joined([volume.walls for volume in volumes])
-    walls = Stencil(seen_faces(walls, to_picture), halvings=4)
+    walls = Faces.join([volume.walls for volume in volumes])
+    walls = Stencil(project_faces(walls, to_picture), halvings=4)
     assert np.any(np.array(walls.count(*places, mi.Float(-dr.inf), mi.Float(dr.inf))) != 0)
 
 
@@ -321,7 +321,7 @@ def test_ghost_shadows_behind_walls_that_cast_none():
     meshes = meshes_of(scene)
 
     def dark(**how):
-        return 1 - np.array(volumes_of(scene, **how).lit(si.p, si.n))[below].mean()
+        return 1 - np.array(volumes_of(scene, **how).lit_share(si.p, si.n))[below].mean()
 
     only_ball = [mesh for mesh in meshes if len(mesh.triangles) > 12]
     assert dark() == 1
@@ -336,7 +336,7 @@ def test_caps_fight_with_the_surfaces_that_they_lie_on():
     its = [mesh for mesh in meshes_of(scene) if len(mesh.triangles) > 12]
     for casters, fights in (("light_facing", True), ("facing_away", False)):
         volumes = volumes_of(scene, its, casters=casters)
-        moved = volumes.off_surface(si.p, si.n)
+        moved = volumes.move_off_surface(si.p, si.n)
         specks, others = ((np.array(volumes.count(p)) != 0) & lit & sides for p in (si.p, moved))
         print(casters, specks.sum(), others.sum())
         assert (specks.sum() > 20) == fights
@@ -347,7 +347,7 @@ def test_caps_fight_with_the_surfaces_that_they_lie_on():
 
 
 def cube_towards(direction):
-    cube = Mesh.of_shape(mi.load_dict({"type": "cube"}))
+    cube = Mesh.from_shape(mi.load_dict({"type": "cube"}))
     return cube, Light(np.append(direction / np.linalg.norm(direction), 0))
 
 
@@ -395,7 +395,7 @@ def test_the_projection_with_no_far_plane_keeps_what_is_at_infinity():
     """P∞ (x, y, z, 0) has depth 1 [Ergun 2008, 2.1.8]."""
     camera = Camera(np.eye(4), 0.5, 0.4, 0.1, 10)
     points = np.random.default_rng(3).normal(size=(10, 3)) - [0, 0, 5]
-    ends = extruded(points, Light(np.array([0, 0, 3, 1.0])), 0) @ camera.infinite_projection.T
+    ends = extrude(points, Light(np.array([0, 0, 3, 1.0])), 0) @ camera.infinite_projection.T
     np.testing.assert_allclose(ends[:, 2] / ends[:, 3], 1, atol=1e-12)
 
 
@@ -409,7 +409,7 @@ def test_volumes_of_a_finer_map_are_nearer_to_rays(kind):
 
     def share(resolution):
         parts = scene.sensors()[0], scene.emitters()[0]
-        dark = np.array(hybrid_shadow(scene, *parts, resolution, jump=8).lit(si.p, si.n)) == 0
+        dark = np.array(hybrid_shadow(scene, *parts, resolution, jump=8).lit_share(si.p, si.n)) == 0
         return (dark == lit)[sides].mean()
 
     assert share(256) < share(64) / 3
@@ -424,7 +424,7 @@ def test_a_slanted_ground_is_not_torn(kind):
     si, lit, _ = shaded(scene)
     volumes = hybrid_shadow(scene, scene.sensors()[0], scene.emitters()[0], resolution=32, jump=8)
     assert lit.mean() > 0.8
-    assert np.all(np.array(volumes.lit(si.p, si.n))[lit] == 1)
+    assert np.all(np.array(volumes.lit_share(si.p, si.n))[lit] == 1)
 
 
 def test_without_walls_all_is_lit():
@@ -433,7 +433,7 @@ def test_without_walls_all_is_lit():
     parts = scene.sensors()[0], scene.emitters()[0]
     torn = hybrid_shadow(scene, *parts, resolution=8, jump=0)
     for volumes in (torn, volumes_of(scene, [])):
-        assert np.all(np.array(volumes.lit(si.p, si.n)) == 1)
+        assert np.all(np.array(volumes.lit_share(si.p, si.n)) == 1)
 
 
 # What is refused

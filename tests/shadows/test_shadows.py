@@ -14,13 +14,13 @@ from PIL import Image
 from shadow_scenes import LIGHTS, objects_on_a_ground, placement_of
 
 import brdfkit as bk
-from brdfkit.shadows.comparison.exact_shadow import Seen
-from brdfkit.shadows.comparison.map_pictures import CHECKS, OUTSIDE, MapPictures, Packed
+from brdfkit.shadows.comparison.exact_shadow import LitView
+from brdfkit.shadows.comparison.map_pictures import CHECKS, OUTSIDE, CompressedArray, MapPictures
 from brdfkit.shadows.comparison.page_pictures import draw_errors
-from brdfkit.shadows.comparison.paths import TURN, arrives, path
+from brdfkit.shadows.comparison.paths import LIGHT_TURN, is_lit, light_path
 from brdfkit.shadows.comparison.quality import aliasing_error, share_used
-from brdfkit.shadows.comparison.scores import Scores, between_lights, mean
-from brdfkit.shadows.comparison.tracked_points import Watched
+from brdfkit.shadows.comparison.scores import Scores, average, difference_of_lights
+from brdfkit.shadows.comparison.tracked_points import TrackedPoints
 from brdfkit.shadows.maps.scenes import SCENES
 
 SCENE = """<scene version="3.0.0">
@@ -39,16 +39,16 @@ def test_means_and_relative_scores_are_those_of_the_thesis():
     """Q2 of PSM: eight printed numbers, of which Table 1 has the mean and the relative score."""
     lights = [24.35, 24.83, 25.20, 31.83], [25.47, 24.76, 30.16, 29.83]
     cells = [Scores(aliasing=value) for view in zip(*lights, strict=True) for value in view]
-    assert mean(cells).aliasing == pytest.approx(27.05375)
-    assert between_lights(cells).aliasing == pytest.approx(2.0375)
+    assert average(cells).aliasing == pytest.approx(27.05375)
+    assert difference_of_lights(cells).aliasing == pytest.approx(2.0375)
 
 
 def test_what_is_unknown_is_left_out_of_means():
-    known = mean([Scores(psnr=10, acne=np.nan), Scores(psnr=np.inf, acne=0.5)])
+    known = average([Scores(psnr=10, acne=np.nan), Scores(psnr=np.inf, acne=0.5)])
     assert (known.psnr, known.acne) == ((10 + 99) / 2, 0.5)
     assert np.isnan(known.texture_use)
     cut_short = [Scores(psnr=10), Scores(psnr=13), Scores(psnr=50)]
-    assert between_lights(cut_short).psnr == 3
+    assert difference_of_lights(cut_short).psnr == 3
 
 
 def test_the_share_of_a_map_that_is_used():
@@ -83,7 +83,7 @@ def test_more_texels_are_better_and_a_map_that_ignores_the_camera_does_not_flick
 
 
 def seen_by_camera(scene, size=96):
-    return Seen.by(scene, scene.sensors()[0], scene.emitters()[0], (size, size))
+    return LitView.from_sensor(scene, scene.sensors()[0], scene.emitters()[0], (size, size))
 
 
 def with_light_of(kind, light):
@@ -102,28 +102,28 @@ def with_light_of(kind, light):
 def test_a_moving_light_has_the_shadows_of_a_light_there_and_its_error_alone_flickers(kind):
     scene = objects_on_a_ground(kind)
     placement, seen = placement_of(scene), seen_by_camera(scene)
-    watched = Watched.by_moving_light(seen, placement)
-    for each, true in zip(watched.path, watched.true, strict=True):
-        there = seen_by_camera(with_light_of(kind, each.light)).exact[watched.pixels]
+    tracked = TrackedPoints.by_moving_light(seen, placement)
+    for each, true in zip(tracked.path, tracked.true, strict=True):
+        there = seen_by_camera(with_light_of(kind, each.light)).exact[tracked.pixels]
         assert np.mean(true != there) < 0.002
 
-    first = watched.true[0]
-    still = watched.flicker(seen.exact, lambda *_: SimpleNamespace(lit=lambda p, n: first))
-    assert still == np.abs(np.diff(watched.true.astype(float), axis=0)).mean() > 0.001
+    first = tracked.true[0]
+    still = tracked.flicker(seen.exact, lambda *_: SimpleNamespace(lit_share=lambda p, n: first))
+    assert still == np.abs(np.diff(tracked.true.astype(float), axis=0)).mean() > 0.001
 
     def exact(seen, moved):
-        return SimpleNamespace(lit=partial(arrives, seen.scene, moved.light))
+        return SimpleNamespace(lit_share=partial(is_lit, seen.scene, moved.light))
 
-    assert watched.flicker(seen.exact, exact) == 0
+    assert tracked.flicker(seen.exact, exact) == 0
 
 
 @pytest.mark.usefixtures("llvm_variant")
 @pytest.mark.parametrize("kind", LIGHTS)
 def test_what_is_farthest_from_a_moving_light_sees_it_turn_by_one_step(kind):
     placement = placement_of(objects_on_a_ground(kind))
-    here, there = (each.light.point for each in path(placement, steps=2))
+    here, there = (each.light.point for each in light_path(placement, steps=2))
     reach = 1 if kind == "directional" else placement.reach
-    assert np.linalg.norm(there - here) / reach == pytest.approx(TURN, rel=0.01)
+    assert np.linalg.norm(there - here) / reach == pytest.approx(LIGHT_TURN, rel=0.01)
 
 
 @pytest.mark.usefixtures("llvm_variant")
@@ -136,7 +136,7 @@ def test_a_scene_by_its_name_has_four_views_and_two_suns():
     assert found.requested == 8 == found.finished
     for number, view, light in ((0, "V1", 1), (5, "V3", 2)):
         alone = mi.load_dict(SCENES["objects_on_a_ground"](view, light, (24, 16)))
-        seen = Seen.by(alone, alone.sensors()[0], alone.emitters()[0], (16, 24))
+        seen = LitView.from_sensor(alone, alone.sensors()[0], alone.emitters()[0], (16, 24))
         assert np.array_equal(found.pictures[number].exact, seen.exact.reshape(16, 24))
 
 
@@ -217,8 +217,8 @@ def test_the_checker_shows_how_wide_texels_are_and_the_light_sees_what_is_near_b
             "ball": {"type": "sphere", "center": [3, 3, 1], "radius": 0.5},
         }
     )
-    seen = Seen.by(scene, scene.sensors()[0], scene.emitters()[0], (size, size))
-    maps = MapPictures.of(seen, placement_of(scene), projection="uniform", resolution=64)
+    seen = LitView.from_sensor(scene, scene.sensors()[0], scene.emitters()[0], (size, size))
+    maps = MapPictures.from_view(seen, placement_of(scene), projection="uniform", resolution=64)
     assert not np.any(maps.part == OUTSIDE)
     shade = maps.shade
     for row in (shade[10], shade[:, 10]):
@@ -279,6 +279,6 @@ def test_the_command_prints_a_line_for_each_technique_into_a_pipe(tmp_path, caps
 @pytest.mark.parametrize("kind", [bool, np.uint8, np.float16])
 def test_packed_arrays_are_smaller_and_the_same(kind):
     array = (np.add.outer(np.arange(60), np.arange(80)) // 20).astype(kind)
-    assert np.array_equal(Packed.of(array).array, array)
-    assert Packed.of(array).array.dtype == kind
-    assert len(Packed.of(array).data) < array.nbytes / 10
+    assert np.array_equal(CompressedArray.from_array(array).array, array)
+    assert CompressedArray.from_array(array).array.dtype == kind
+    assert len(CompressedArray.from_array(array).data) < array.nbytes / 10

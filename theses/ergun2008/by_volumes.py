@@ -22,7 +22,7 @@ class ByVolumes:
         self.view = View.by(description)
         scene = self.view.scene
         self.camera = Camera.from_sensor(scene.sensors()[0])
-        self.meshes = [Mesh.of_shape(shape) for shape in scene.shapes()]
+        self.meshes = [Mesh.from_shape(shape) for shape in scene.shapes()]
         self.exact, self.facing = self.view.seen.exact, self.view.seen.facing
 
     def lit(self, **how):
@@ -30,7 +30,7 @@ class ByVolumes:
         light = Light.from_emitter(self.view.seen.emitter)
         volumes = LightVolumes(self.meshes, light, self.camera, pixels=SIZE, **how)
         si = self.view.seen.si
-        return np.array(volumes.lit(si.p, si.n)) == 1
+        return np.array(volumes.lit_share(si.p, si.n)) == 1
 
     def wrong(self, **how):
         """How many pixels differ from rays, and have no border of a shadow in them."""

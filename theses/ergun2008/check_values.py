@@ -10,14 +10,14 @@ from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.homogeneous import make_axes, make_rigid, project_all
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.filters.bilinear_percentage_closer import Lookup
-from brdfkit.shadows.maps.moments.chebyshev import most_lit
+from brdfkit.shadows.maps.line_of_sight import LineOfSight
+from brdfkit.shadows.maps.moments.bounds import bound_by_two_moments
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.projections import light_space_perspective
 from brdfkit.shadows.maps.resolution import aliasing
-from brdfkit.shadows.maps.sight import Sight
-from brdfkit.shadows.maps.split_planes import split_planes
-from brdfkit.shadows.volumes.volume import extruded
+from brdfkit.shadows.maps.split_planes import compute_split_planes
+from brdfkit.shadows.volumes.volume import extrude
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.page import Section
 
@@ -58,7 +58,7 @@ def agreed(says, where, expected, found, shown="{:.6f}"):
 def infinity():
     camera = Camera(np.eye(4), 0.5, 0.4, 0.1, 10)
     points = np.random.default_rng(3).normal(size=(1000, 3)) - [0, 0, 6]
-    ends = extruded(points, Light(np.array([0, 0, 3, 1.0])), 0) @ camera.infinite_projection.T
+    ends = extrude(points, Light(np.array([0, 0, 3, 1.0])), 0) @ camera.infinite_projection.T
     depth = ends[:, 2] / ends[:, 3]
     return agreed(
         "No point at infinity is clipped by P∞: its depth is 1.",
@@ -94,8 +94,8 @@ def trapezoid():
         # from the apex of the sides, (0.1, 1.35), to the middle of the narrow one
         to_sight = np.array([[-1, 0, 0, 0.1], [0, -1, 0, 0.6], [0, 0, 1, 0], [0, 0, 0, 1.0]])
         below = Light(-ABOVE.point)
-        sight = Sight(to_sight @ np.linalg.inv(placed), below, np.array(points), None, None)
-        u, v, _ = sight.warped(1.35 - 0.6).to_map(*np.transpose(points))
+        sight = LineOfSight(to_sight @ np.linalg.inv(placed), below, np.array(points), None, None)
+        u, v, _ = sight.warp(1.35 - 0.6).to_map(*np.transpose(points))
         off = max(off, np.abs(np.column_stack([-u, -v]) - mapped).max())
     found = project_all(trapezoid_to_square(), [(0, 0, 0), (0, 0.4, 0.25), (0, -0.7, 0)])
     expected = [(-0.022222222, -1 / 3, 0), (-0.115789474, 0.368421053, 0.197368421)]
@@ -113,7 +113,7 @@ def trapezoid():
 def two_planes():
     d_1, d_2, p = 1.0, 2.0, np.array([0.1, 0.25, 0.5, 0.9])
     mean, square = p * d_2 + (1 - p) * d_1, p * d_2**2 + (1 - p) * d_1**2
-    found = most_lit(Float64(mean), Float64(square), Float64(d_2))
+    found = bound_by_two_moments(Float64(mean), Float64(square), Float64(d_2))
     return agreed(
         "Of an occluder above a receiver the bound of the variance is the lit share itself.",
         "2.2.1.4",
@@ -142,7 +142,7 @@ def bilinear():
 
 
 def splits():
-    found = [split_planes(1, 100, 4, s)[1:-1] for s in ("logarithmic", "uniform", "mean")]
+    found = [compute_split_planes(1, 100, 4, s)[1:-1] for s in ("logarithmic", "uniform", "mean")]
     expected = [3.16227766, 10, 31.6227766, 25.75, 50.5, 75.25, 14.45613883, 30.25, 53.4363883]
     return agreed(
         "Planes of four parts from 1 to 100: logarithmic, uniform, and their mean.",
@@ -158,9 +158,9 @@ def best_warp():
     place = Placement(camera, ABOVE, np.array([-20, -1, -20.0]), np.array([20, 10, 20.0]))
 
     def ratios(apex):
-        warped = light_space_perspective.projection(place, apex)
+        warped = light_space_perspective.make_projection(place, apex)
         ends = [
-            [warped.along(p, (1.0, 0, 0))[0], warped.along(p, (0, 1.0, 0))[1]]
+            [warped.derivative_along(p, (1.0, 0, 0))[0], warped.derivative_along(p, (0, 1.0, 0))[1]]
             for p in ((0.3, 1.0, 0.2), (2.0, 10.0, -1.0))
         ]
         return np.abs(np.divide(*ends))
@@ -175,9 +175,11 @@ def best_warp():
 
 def footprint():
     eyes = np.array([0.0, 3, 2]), np.array([0.0, -1, 4])
-    light, eye = (Projection.by(looking(p, (0, 0, 0)).matrix, Light(np.append(p, 1))) for p in eyes)
+    light, eye = (
+        Projection.from_matrix(looking(p, (0, 0, 0)).matrix, Light(np.append(p, 1))) for p in eyes
+    )
     area = aliasing((light, 64), (eye, (64, 64)), (0, 0, 0), (0, 0, 1))
-    lengths = [abs(1 / p.along((0, 0, 0), (0, 1, 0))[1]) for p in (light, eye)]
+    lengths = [abs(1 / p.derivative_along((0, 0, 0), (0, 1, 0))[1]) for p in (light, eye)]
     return agreed(
         "A texel beside a pixel: d r_s cosβ / (d_i r_i cosα), and the ratio of areas.",
         "3.1.1",

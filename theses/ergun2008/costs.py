@@ -69,14 +69,14 @@ def boxes(count):
 def cost_of_volumes(view):
     """Seconds to prepare and to shade, and bytes."""
     sensor, si = view.scene.sensors()[0], view.seen.si
-    meshes = [Mesh.of_shape(shape) for shape in view.scene.shapes()]
+    meshes = [Mesh.from_shape(shape) for shape in view.scene.shapes()]
 
     def prepare():
         camera = Camera.from_sensor(sensor)
         return LightVolumes(meshes, view.placement.light, camera, pixels=SIZE)
 
     volumes = prepare()
-    shade = least_seconds(lambda: np.array(volumes.lit(si.p, si.n)))
+    shade = least_seconds(lambda: np.array(volumes.lit_share(si.p, si.n)))
     return least_seconds(prepare), shade, volumes.stencil.memory
 
 
@@ -140,7 +140,7 @@ def hybrid_claim():
     si, jump = view.seen.si, 8.0
 
     def by_hybrid():
-        return np.array(hybrid_shadow(*parts, RESOLUTION, jump).lit(si.p, si.n))
+        return np.array(hybrid_shadow(*parts, RESOLUTION, jump).lit_share(si.p, si.n))
 
     def by_map():
         return view.lit(view.shadow())

@@ -5,9 +5,8 @@ from brdfkit.theses.ergun2008.views import PROJECTIONS, View
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.shadows.maps.resolution import depth_curve, unevenness
 from brdfkit.shadows.maps.scenes import VIEWS
-from brdfkit.shadows.maps.techniques import techniques
+from brdfkit.shadows.maps.techniques import make_techniques
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.drawing import COLOURS, figure, tidy
 from brdfkit.theses.page import Picture, Section, Table
@@ -37,11 +36,31 @@ def run(sources, report):
     )
 
 
+def depth_curve(projection, corners, count=1000, seed=0):
+    """Return how far light has come (count,), and its depth on the map (count,), at random points.
+
+    projection : a `Projection`.
+    corners : (n, 3), of the convex body that has the points.
+    """
+    points = np.random.default_rng(seed).dirichlet(np.full(len(corners), 0.3), count) @ corners
+    return projection.light.way(*points.T), projection.to_map(*points.T)[2]
+
+
+def unevenness(before, after):
+    """Return the share, in [0, 1], of the spread of depths that is no straight line of the ways.
+
+    0 if equal lengths along the light have equal depths all over the map.
+    """
+    line = np.polynomial.Polynomial.fit(before, after, 1)
+    return np.std(after - line(before)) / np.std(after)
+
+
 def curves_of(placement):
     """Projection → (ways, depths)."""
     return {
         name: depth_curve(
-            techniques({"projection": name}, {})["projection"](placement), placement.body.corners
+            make_techniques({"projection": name}, {})["projection"](placement),
+            placement.body.corners,
         )
         for name in PROJECTIONS
     }

@@ -129,7 +129,7 @@ def footprint_area():
         back = place / np.linalg.norm(place)
         camera = Camera(make_rigid(make_axes(back, [0, 0, 1]), place), 1.0, 1.0, 1.0, 100.0)
         light = Light(np.append(place, 1))
-        areas.append(1 / magnification(Projection.by(camera.matrix, light), *ground))
+        areas.append(1 / magnification(Projection.from_matrix(camera.matrix, light), *ground))
     growth = areas[1] / areas[0]
     return Claim(
         "d_s r_s / cosα is the area of a texel on a surface.",

@@ -8,7 +8,7 @@ import numpy as np
 
 from brdfkit.core.projective.homogeneous import project_all, to_unit_cube
 from brdfkit.shadows.comparison.quality import aliasing_error, share_used
-from brdfkit.shadows.maps.light_camera import view as light_view
+from brdfkit.shadows.maps.light_camera import view_matrix
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.resolution import aliasing
 
@@ -21,17 +21,17 @@ def simple_perspective(placement):
     z_n, z_f = placement.depths
     camera = placement.camera.with_planes(NEAR * z_n, z_f).move_back(corners).matrix
     cube, (centre,) = project_all(camera, corners), project_all(camera, [middle])
-    matrix = light_view(camera @ placement.light.point, cube, centre) @ camera
+    matrix = view_matrix(camera @ placement.light.point, cube, centre) @ camera
     ends = project_all(matrix, corners)
     half, depths = np.abs(ends[:, :2]).max(), ends[:, 2]
     square = to_unit_cube([-half, -half, depths.min()], [half, half, depths.max()])
-    return Projection.by(square @ matrix, placement.light)
+    return Projection.from_matrix(square @ matrix, placement.light)
 
 
 def simple_scores(view, resolution):
     """(The unused share, the aliasing [dB]) of it."""
     projection, seen = simple_perspective(view.placement).opaque(), view.seen
-    camera = Projection.by(view.placement.camera.matrix, view.placement.light).opaque()
+    camera = Projection.from_matrix(view.placement.camera.matrix, view.placement.light).opaque()
     x, y, _ = projection.to_map(*seen.si.p)
     picture = camera, seen.size[::-1]
     e = np.array(aliasing((projection, resolution), picture, seen.si.p, seen.si.n))

@@ -138,7 +138,7 @@ def length_claim():
 def silhouettes_claim():
     import mitsuba as mi
 
-    cube = Mesh.of_shape(mi.load_dict({"type": "cube"}))
+    cube = Mesh.from_shape(mi.load_dict({"type": "cube"}))
     found = {
         name: [
             len(way(cube, CASTERS["light_facing"](cube, Light(np.array([*direction, 0.0]))))[0])

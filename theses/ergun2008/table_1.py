@@ -10,7 +10,7 @@ from brdfkit.theses.ergun2008.views import PROJECTIONS, measured
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.shadows.comparison.scoring import use_of_maps
+from brdfkit.shadows.comparison.scoring import score_texels
 from brdfkit.shadows.maps.scenes import VIEWS
 from brdfkit.theses.drawing import COLOURS, figure, tidy
 from brdfkit.theses.page import Picture, Section, Table
@@ -59,7 +59,7 @@ def scores(view):
     """(unused share, aliasing [dB]) of each projection, and of PSM in the simple way."""
     found = []
     for projection in PROJECTIONS:
-        use, aliasing = use_of_maps(view.shadow(projection=projection), view.seen, view.placement)
+        use, aliasing = score_texels(view.shadow(projection=projection), view.seen, view.placement)
         found.append((1 - use, aliasing))
     return [*found, simple_scores(view, views.RESOLUTION)]
 

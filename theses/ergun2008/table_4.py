@@ -6,7 +6,7 @@ from brdfkit.theses.ergun2008.views import View, measured
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.shadows.maps.bias import Bias
+from brdfkit.shadows.maps.map_point import Bias
 from brdfkit.shadows.maps.scenes import VIEWS
 from brdfkit.theses.claims import UNSTATED, Claim, verdict
 from brdfkit.theses.page import Picture, Section, Table

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.images.errors.psnr import psnr
-from brdfkit.shadows.comparison.exact_shadow import Seen
+from brdfkit.shadows.comparison.exact_shadow import LitView
 from brdfkit.shadows.maps.light_shadow import LightShadow
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.scenes import LIGHTS, SCENES, VIEWS
@@ -30,7 +30,7 @@ class View:
 
     scene: object
     placement: Placement
-    seen: Seen
+    seen: LitView
 
     @classmethod
     def of(cls, name, view, light):
@@ -45,8 +45,8 @@ class View:
         scene = mi.load_dict(description, parallel=False)
         (sensor,), (emitter,) = scene.sensors(), scene.emitters()
         width, height = sensor.film().size()
-        placement = Placement.of_scene(scene, sensor, emitter)
-        return cls(scene, placement, Seen.by(scene, sensor, emitter, (height, width)))
+        placement = Placement.from_scene(scene, sensor, emitter)
+        return cls(scene, placement, LitView.from_sensor(scene, sensor, emitter, (height, width)))
 
     def shadow(self, **technique):
         """The `LightShadow` by a technique."""
@@ -55,7 +55,7 @@ class View:
     def lit(self, shadow):
         """The shares (pixels,) of the light that a `LightShadow` lets through."""
         si = self.seen.si
-        return np.array(shadow.lit(si.p, si.n, si.is_valid()))
+        return np.array(shadow.lit_share(si.p, si.n, si.is_valid()))
 
     def wrong(self, lit):
         """The mean error of shares of the light, where surfaces face it."""

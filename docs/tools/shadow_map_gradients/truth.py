@@ -12,7 +12,7 @@ sides tell whether there is a border, or another shadow.
 
 import numpy as np
 
-from brdfkit.shadows.comparison.paths import arrives
+from brdfkit.shadows.comparison.paths import is_lit
 
 WIDTH = 0.3  # standard deviation of a patch
 CENTRES = np.array([(x, y) for x in (-0.3, 0.4, 1.1) for y in (-0.5, 0.2, 0.9)])
@@ -40,7 +40,7 @@ def lit(scene, light, x, y):
     import mitsuba as mi
 
     p = mi.Point3f(mi.Float(x), mi.Float(y), mi.Float(np.zeros(len(x))))
-    return arrives(scene, light, p, mi.Normal3f(0, 0, 1))
+    return is_lit(scene, light, p, mi.Normal3f(0, 0, 1))
 
 
 def by_borders(scene, light, solid):

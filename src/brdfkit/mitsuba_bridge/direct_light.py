@@ -48,7 +48,7 @@ def shadowed(mi, parameters):
 class NoShadow:
     """Of a light that reaches nothing that is seen, to which any shadow is right."""
 
-    def lit(self, p, n, active=True):
+    def lit_share(self, p, n, active=True):
         return 1
 
 
@@ -64,7 +64,7 @@ def direct_light(si, sampler, lights, active):
     """The light that surfaces send to the camera: Σ ρ(ω_l, ω_o) cosθ_l E_l V.
 
     si : a `mi.SurfaceInteraction3f`.
-    lights : pairs of an emitter and its shadow, whose `lit(p, n, active)` is V, in [0, 1], at
+    lights : pairs of an emitter and its shadow, whose `lit_share(p, n, active)` is V, in [0, 1], at
         points of surfaces and by their normals.
     """
     import mitsuba as mi
@@ -75,6 +75,6 @@ def direct_light(si, sampler, lights, active):
     for emitter, shadow in lights:
         ds, light = emitter.sample_direction(si, sampler.next_2d(seen), seen)
         value = bsdf.eval(context, si, si.to_local(ds.d), seen)
-        lit = shadow.lit(si.p, si.n, seen)
+        lit = shadow.lit_share(si.p, si.n, seen)
         radiance += mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * lit
     return mi.depolarizer(dr.select(seen, radiance, 0))

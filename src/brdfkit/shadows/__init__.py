@@ -1,4 +1,4 @@
-"""Shadows by maps, by volumes and by both, and their comparison by `compare`."""
+"""Shadows by maps, by volumes and by both, and `compare`, which scores them."""
 
 import lazy_loader
 

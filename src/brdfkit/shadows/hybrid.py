@@ -1,49 +1,68 @@
-"""Shadow volumes out of a shadow map: silhouettes where its depths jump, not edges of meshes.
+"""Shadow volumes made from a shadow map: silhouettes where its depths jump, not edges of meshes.
 
-The map's texels become a surface that is torn where depths jump; its border is the silhouette, and
-walls go from there away from the light [McCool 2000]. So all shapes cast, whether they have
-triangles or not, and the volumes depend on the map's resolution, not on the scene.
+The map's texels become a surface that is torn where depths jump. Its border is the silhouette, from
+which walls lead away from the light [McCool 2000]. So all shapes cast, with or without triangles,
+and the volumes depend on the map's resolution, not on the scene.
 """
+
+from typing import Any
 
 import numpy as np
 
-from brdfkit.shadows.maps.depth_pass import depth_pass
+from brdfkit.core.array_types import AnyArray, FloatArray, MitsubaObject
+from brdfkit.core.projective.camera import Camera
+from brdfkit.shadows.maps.depth_pass import render_depths
 from brdfkit.shadows.maps.placement import Placement
+from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.projections import focused
 from brdfkit.shadows.volumes.light_volumes import LightVolumes
 from brdfkit.shadows.volumes.mesh import Mesh
-from brdfkit.shadows.volumes.seen_faces import pinhole
+from brdfkit.shadows.volumes.projected_faces import to_pinhole
 
 
-def hybrid_shadow(scene, sensor, emitter, resolution, jump):
-    """The `LightVolumes` of a scene's depth map in one light.
+def hybrid_shadow(
+    scene: MitsubaObject,
+    sensor: MitsubaObject,
+    emitter: MitsubaObject,
+    resolution: int,
+    jump: float,
+) -> LightVolumes:
+    """Make the shadow volumes of a scene's depth map in one light.
 
-    They are counted by depth-pass: caps would lie on all that the light sees.
+    They are counted by depth-pass, as caps would lie on all surfaces that the light sees.
 
     resolution : texels along a side of the map.
-    jump : see `surface_of`.
+    jump : see `map_to_mesh`.
     """
-    placement = Placement.of_scene(scene, sensor, emitter)
+    placement = Placement.from_scene(scene, sensor, emitter)
     pixels = max(sensor.film().size())
-    return volumes_of_map(scene, placement, pinhole(sensor), resolution, jump, pixels)
+    return volumes_of_map(scene, placement, to_pinhole(sensor), resolution, jump, pixels)
 
 
-def volumes_of_map(scene, placement, camera, resolution, jump, pixels):
-    """The same from a `Placement`, counted in the picture of a `Camera`.
+def volumes_of_map(
+    scene: MitsubaObject,
+    placement: Placement,
+    camera: Camera,
+    resolution: int,
+    jump: float,
+    pixels: int,
+) -> LightVolumes:
+    """Make the shadow volumes of a scene's depth map, counted in the picture of a camera.
 
-    pixels : along the longer side of the picture; see `LightVolumes`.
+    pixels : along the longer side of the picture.
+    resolution, jump : as in `hybrid_shadow`.
     """
-    projection = focused.projection(placement)
-    depths = np.array(depth_pass(scene, projection, resolution))
-    mesh = surface_of(depths, projection, jump)
+    projection = focused.make_projection(placement)
+    depths = np.array(render_depths(scene, projection, resolution))
+    mesh = map_to_mesh(depths, projection, jump)
     return LightVolumes([mesh], placement.light, camera, "depth_pass", pixels=pixels)
 
 
-def surface_of(depths, projection, jump):
-    """What a map of `depths` (n, n) shows, as a `Mesh` between the middles of its texels.
+def map_to_mesh(depths: FloatArray, projection: Projection, jump: float) -> Mesh:
+    """Return the surface in a map of `depths` (n, n), as a mesh between the middles of its texels.
 
-    projection : the `Projection` of the map.
-    jump : the change of distance to the light between texels, over their width, from which on the
+    projection : that of the map.
+    jump : the change of distance to the light between texels, over their width, beyond which the
         surface is torn.
     """
     n = len(depths)
@@ -54,14 +73,14 @@ def surface_of(depths, projection, jump):
     points = np.stack(projection.from_map(x, y, depths), axis=-1)
     beside = np.stack(projection.from_map(x + 2 / n, y, depths), axis=-1)
     width = np.linalg.norm(beside - points, axis=-1)
-    way = projection.light.path_length(*np.moveaxis(points, -1, 0))
-    whole = corners(hit).all(axis=0)
-    whole &= np.ptp(corners(way), axis=0) <= jump * corners(width).max(axis=0)
-    a, b, c, d = corners(np.arange(n * n).reshape(n, n))[:, whole]
+    way: Any = projection.light.path_length(*np.moveaxis(points, -1, 0))
+    whole = cell_corners(hit).all(axis=0)
+    whole &= np.ptp(cell_corners(way), axis=0) <= jump * cell_corners(width).max(axis=0)
+    a, b, c, d = cell_corners(np.arange(n * n).reshape(n, n))[:, whole]
     triangles = np.concatenate([np.column_stack([a, b, d]), np.column_stack([a, d, c])])
     return Mesh("the depth map", points.reshape(-1, 3), triangles)
 
 
-def corners(values):
-    """The values (4, n - 1, n - 1) at the corners of the cells between texels (n, n)."""
+def cell_corners(values: AnyArray) -> AnyArray:
+    """Return the values (4, n - 1, n - 1) at the corners of the cells between texels (n, n)."""
     return np.stack([values[:-1, :-1], values[:-1, 1:], values[1:, :-1], values[1:, 1:]])

@@ -1,4 +1,4 @@
-"""A laboratory of shadows: techniques on a user's scene, scored against exact shadows."""
+"""Compares shadow techniques on a user's scene with exact shadows."""
 
 from brdfkit.shadows.comparison.comparing import compare as compare
 from brdfkit.shadows.comparison.comparison import ShadowComparison as ShadowComparison

@@ -1,11 +1,11 @@
-"""`compare`: techniques of shadow maps on a scene of the user's, scored against exact shadows."""
+"""`compare`: scores techniques of shadow maps on a user's scene against exact shadows."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -16,19 +16,22 @@ from brdfkit.core.progress_bar import Progress
 from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
 from brdfkit.shadows.comparison.arguments import to_names, to_scene, to_size, to_texels
 from brdfkit.shadows.comparison.comparison import ShadowComparison
-from brdfkit.shadows.comparison.exact_shadow import Seen
+from brdfkit.shadows.comparison.exact_shadow import LitView
 from brdfkit.shadows.comparison.map_pictures import MapPictures
 from brdfkit.shadows.comparison.pictures import Pictures, title_of
 from brdfkit.shadows.comparison.scores import Scores
 from brdfkit.shadows.comparison.scoring import score
-from brdfkit.shadows.comparison.tracked_points import Watched
-from brdfkit.shadows.comparison.without_maps import OTHERS
+from brdfkit.shadows.comparison.tracked_points import TrackedPoints
+from brdfkit.shadows.comparison.without_maps import WITHOUT_MAPS
 from brdfkit.shadows.maps.light_shadow import LightShadow
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.techniques import FILES
 
 PROJECTIONS = tuple(FILES["projection"])
 FILTERS = "depth", "percentage_closer", "variance", "moment"
+
+# Makes the shadow that a technique gives to a view: an object with `lit_share(p, n, active)`
+Technique: TypeAlias = Callable[[LitView, Placement], Any]
 
 
 def compare(
@@ -44,15 +47,15 @@ def compare(
 ) -> ShadowComparison:
     """Compare shadow techniques with exact shadows, in all views and lights of a scene.
 
-    Ctrl-C ends with the views and lights that are finished; in the first of them, with the
-    techniques that are.
+    After Ctrl-C the result has the views and lights that are finished; if it is in the first of
+    them, the techniques that are.
 
     Parameters
     ----------
     scene : path, str or mitsuba.Scene
         A scene file of Mitsuba's (.xml), or a loaded scene. Its lights are point, spot or
         directional ones, its cameras perspective ones; each camera is a view. Or the name of a
-        scene that comes with brdfkit, of four views and two suns: ``"street"``, ``"foliage"`` or
+        scene that comes with brdfkit, with four views and two suns: ``"street"``, ``"foliage"`` or
         ``"objects_on_a_ground"``.
     projections : iterable of str, optional
         Names of projections, by default all. Every combination of projections, filters and
@@ -62,8 +65,8 @@ def compare(
     partitions : iterable of str, default ("whole",)
         Names of partitions.
     others : iterable of str, default ()
-        Techniques that look up no map: ``"shadow_volume"`` and ``"hybrid_shadow"``; see the plugins
-        of these names.
+        Techniques without maps: ``"shadow_volume"`` and ``"hybrid_shadow"``; see the plugins of
+        these names.
     resolution : int, default 512
         Texels along a side of each map.
     size : (int, int), default (512, 512)
@@ -79,9 +82,9 @@ def compare(
     Raises
     ------
     BrdfkitError
-        For a name that is no technique or no scene, for a scene without a camera or with other
-        lights, for one in which nothing that is seen is in a light, and for shapes that have no
-        shadow volume where one is asked for.
+        For a name of no technique or scene, for a scene without a camera, with other lights, or in
+        which no light shines on a visible surface, and for shapes that have no shadow volume where
+        one is needed.
 
     Examples
     --------
@@ -91,69 +94,73 @@ def compare(
     refuse_scalar("compare")
     projections = PROJECTIONS if projections is None else projections
     filters = FILTERS if filters is None else filters
-    kinds = {"projection": projections, "filter": filters, "partition": partitions}
-    kinds = {kind: to_names(f"{kind}s", names) for kind, names in kinds.items()}
+    named = {"projection": projections, "filter": filters, "partition": partitions}
+    kinds = {kind: to_names(f"{kind}s", names) for kind, names in named.items()}
     resolution, size = to_texels(resolution), to_size(size)
-    techniques = functions(kinds, to_names("others", others), resolution)
+    techniques = choose_techniques(kinds, to_names("others", others), resolution)
     scene = to_scene(scene, size)
     places = list(itertools.product(enumerate(scene.sensors()), enumerate(scene.emitters())))
     report, requested = progress or (lambda done, total: None), len(places) * len(techniques)
-    found: list[tuple[Pictures, dict]] = []
+    results: list[tuple[Pictures, dict[str, Scores]]] = []
     try:
-        for (view, sensor), (light, emitter) in places:
-            seen = Seen.by(scene, sensor, emitter, size[::-1])
-            pictures = Pictures.of(seen, title_of(view, sensor, light, emitter))
+        for (view_index, sensor), (light_index, emitter) in places:
+            view = LitView.from_sensor(scene, sensor, emitter, size[::-1])
+            pictures = Pictures.from_view(view, title_of(view_index, sensor, light_index, emitter))
             scores: dict[str, Scores] = {}
-            found.append((pictures, scores))
+            results.append((pictures, scores))
             if not pictures.is_lit:
-                score_nothing(pictures, scores, techniques)
+                score_unlit_view(pictures, scores, techniques)
                 continue
-            placement = Placement.of_scene(scene, sensor, emitter)
+            placement = Placement.from_scene(scene, sensor, emitter)
             with raise_first_cause():
-                pictures.maps = pictures_of_maps(seen, placement, kinds, resolution)
-                watched = (
-                    Watched.by_moving_camera(seen, placement),
-                    Watched.by_moving_light(seen, placement),
+                pictures.maps = picture_maps(view, placement, kinds, resolution)
+                tracked = (
+                    TrackedPoints.by_moving_camera(view, placement),
+                    TrackedPoints.by_moving_light(view, placement),
                 )
-            for label, shadow_of in techniques.items():
-                report((len(found) - 1) * len(techniques) + len(scores), requested)
-                with raise_first_cause():  # Ctrl-C, for one
-                    one, lit = score(seen, placement, watched, shadow_of)
-                pictures.keep(label, lit)
-                scores[label] = one
+            for label, technique in techniques.items():
+                report((len(results) - 1) * len(techniques) + len(scores), requested)
+                with raise_first_cause():  # Ctrl-C, for instance
+                    scores_here, lit = score(view, placement, tracked, technique)
+                pictures.add(label, lit)
+                scores[label] = scores_here
     except KeyboardInterrupt:
-        if not (found and found[0][1]):
+        if not (results and results[0][1]):
             raise
-    if not any(pictures.is_lit for pictures, _ in found):
+    if not any(pictures.is_lit for pictures, _ in results):
         raise BrdfkitError(
             "no camera sees a surface that a light shines on: turn a camera, or move a light."
         )
-    finished = [place for place in found if len(place[1]) == len(techniques)] or found[:1]
+    finished = [result for result in results if len(result[1]) == len(techniques)] or results[:1]
     shown, each = zip(*finished, strict=True)
     by_label = {label: tuple(scores[label] for scores in each) for label in each[0]}
     return ShadowComparison(by_label, len(scene.emitters()), requested, shown)
 
 
-def score_nothing(pictures, scores, techniques):
+def score_unlit_view(
+    pictures: Pictures, scores: dict[str, Scores], techniques: Mapping[str, Technique]
+) -> None:
     """Fill in a view in which nothing is in the light: no technique can be right or wrong."""
     for label in techniques:
-        pictures.keep(label, np.ones(pictures.exact.size))
+        pictures.add(label, np.ones(pictures.exact.size))
         scores[label] = Scores()
 
 
-def functions(kinds, others, resolution):
-    """Label → function (seen, placement) of the shadow, of all techniques that are asked for.
+def choose_techniques(
+    kinds: Mapping[str, tuple[str, ...]], others: tuple[str, ...], resolution: int
+) -> dict[str, Technique]:
+    """Return label → technique, for combinations of `kinds` (kind → names), and `others`.
 
-    Raises `BrdfkitError` for an unknown name, and where there is none at all.
+    Raises `BrdfkitError` for an unknown name, and if there is none at all.
     """
     for name in others:
-        if name not in OTHERS:
-            raise no_such("technique without maps", name, OTHERS)
-    maps = {
-        label: partial(of_maps, **technique, resolution=resolution)
-        for label, technique in combinations(kinds).items()
+        if name not in WITHOUT_MAPS:
+            raise no_such("technique without maps", name, WITHOUT_MAPS)
+    techniques: dict[str, Technique] = {
+        label: partial(make_map_shadow, **names, resolution=resolution)
+        for label, names in combine_names(kinds).items()
     }
-    techniques = maps | {name: partial(OTHERS[name], resolution=resolution) for name in others}
+    techniques |= {name: partial(WITHOUT_MAPS[name], resolution=resolution) for name in others}
     if not techniques:
         raise BrdfkitError(
             "no technique is asked for: name a projection, a filter and a partition, or others."
@@ -161,15 +168,15 @@ def functions(kinds, others, resolution):
     return techniques
 
 
-def of_maps(seen, placement, **technique):
-    """The `LightShadow` of a technique, of what a camera sees."""
-    return LightShadow(seen.scene, placement, **technique)
+def make_map_shadow(view: LitView, placement: Placement, **settings: Any) -> LightShadow:
+    """Make the shadow by maps of what a camera sees."""
+    return LightShadow(view.scene, placement, **settings)
 
 
-def combinations(names):
-    """Label → keyword arguments of `LightShadow`, of all combinations of `names` by kind.
+def combine_names(names: Mapping[str, tuple[str, ...]]) -> dict[str, dict[str, Any]]:
+    """Return label → keyword arguments of `LightShadow`, for all combinations of names by kind.
 
-    What all have in common is not in the label. Raises `BrdfkitError` for an unknown name.
+    A label leaves out what all have in common. Raises `BrdfkitError` for an unknown name.
     """
     for kind, its in names.items():
         for name in its:
@@ -182,10 +189,12 @@ def combinations(names):
     return {" + ".join(each[kind] for kind in several): each for each in chosen}
 
 
-def pictures_of_maps(seen, placement, kinds, resolution):
-    """Label → `MapPictures` of every projection in every partition; filters change nothing."""
-    chosen = combinations({kind: kinds[kind] for kind in ("projection", "partition")})
+def picture_maps(
+    view: LitView, placement: Placement, kinds: Mapping[str, tuple[str, ...]], resolution: int
+) -> dict[str, MapPictures]:
+    """Return label → pictures of the maps, for every projection in every partition."""
+    chosen = combine_names({kind: kinds[kind] for kind in ("projection", "partition")})
     return {
-        label: MapPictures.of(seen, placement, **technique, resolution=resolution)
-        for label, technique in chosen.items()
+        label: MapPictures.from_view(view, placement, **names, resolution=resolution)
+        for label, names in chosen.items()
     }

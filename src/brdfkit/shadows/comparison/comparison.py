@@ -1,4 +1,4 @@
-"""`ShadowComparison`, what `compare` returns: scores by technique; prints as a table."""
+"""`ShadowComparison`, the result of `compare`: scores by technique, printed as a table."""
 
 from __future__ import annotations
 
@@ -12,7 +12,13 @@ import numpy as np
 from brdfkit.core.documents import Cell, Document, Paragraph, Shown, Table
 from brdfkit.core.documents.parts import STRONG
 from brdfkit.shadows.comparison.pictures import Pictures
-from brdfkit.shadows.comparison.scores import COLUMNS, Scores, between_lights, mean, to_texts
+from brdfkit.shadows.comparison.scores import (
+    COLUMNS,
+    Scores,
+    average,
+    difference_of_lights,
+    to_texts,
+)
 
 
 @dataclass(frozen=True, repr=False)
@@ -25,11 +31,11 @@ class ShadowComparison(Shown):
         Technique → its `Scores` in each view and light: all lights of the first view, then of the
         next.
     lights : int
-        How many lights there are.
+        The number of lights.
     requested : int
-        How many scores were asked for; more than there are after Ctrl-C.
+        The number of scores that were requested; after Ctrl-C there are fewer.
     pictures : tuple of Pictures
-        What the page shows of each view and light, in the order of the scores.
+        The pictures of each view and light for the page, in the order of the scores.
     """
 
     scores: dict[str, tuple[Scores, ...]]
@@ -40,19 +46,20 @@ class ShadowComparison(Shown):
     @property
     def means(self) -> dict[str, Scores]:
         """Technique → the means over views and lights, the best PSNR first, unknown ones last."""
-        found = {label: mean(scores) for label, scores in self.scores.items()}
-        return dict(sorted(found.items(), key=lambda item: -np.nan_to_num(item[1].psnr, nan=-99)))
+        means = {label: average(scores) for label, scores in self.scores.items()}
+        return dict(sorted(means.items(), key=lambda item: -np.nan_to_num(item[1].psnr, nan=-99)))
 
     @property
     def relative(self) -> dict[str, Scores]:
-        """Technique → the mean differences between the two lights of each view: how much a light
-        that hardly moves changes; in the order of `means`. Empty where there are not two lights, or
-        no view in which both shine.
+        """Technique → the mean differences between the two lights of each view, as in `means`.
+
+        They show how much a small move of the light changes. Empty unless there are two lights, and
+        a view in which both shine.
         """
         both = zip(self.pictures[::2], self.pictures[1::2], strict=False)
         if self.lights != 2 or not any(one.is_lit and other.is_lit for one, other in both):
             return {}
-        return {label: between_lights(self.scores[label]) for label in self.means}
+        return {label: difference_of_lights(self.scores[label]) for label in self.means}
 
     @property
     def best(self) -> str:
@@ -61,26 +68,26 @@ class ShadowComparison(Shown):
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """The heads of the table."""
+        """The headings of the table."""
         return ("technique", *(f">{head}" for _, head, *_ in COLUMNS))
 
     @property
     def interrupted(self) -> bool:
-        """Whether Ctrl-C ended the comparison."""
+        """True if Ctrl-C ended the comparison."""
         return self.finished < self.requested
 
     @property
     def finished(self) -> int:
-        """How many scores there are."""
+        """The number of scores that are finished."""
         return sum(map(len, self.scores.values()))
 
     def table(self) -> list[tuple[str, ...]]:
-        """The means as texts, a row for each technique."""
+        """Return the means as texts, a row for each technique."""
         return to_texts(self.means)
 
     @property
     def meaning(self) -> str:
-        """What the columns are, in a sentence or two."""
+        """The meaning of the columns, in a few sentences."""
         places = len(next(iter(self.scores.values())))
         pairs = "the only pair" if places == 1 else f"{places} pairs"
         return (
@@ -88,25 +95,27 @@ class ShadowComparison(Shown):
             f"{self.unlit}"
             "Use is the share of texels that the view needs (Q1), aliasing how fine they are "
             "beside its pixels (Q2), flicker the change of the error from picture to picture while "
-            "the camera moves, or the light."
+            "the camera or the light moves."
         )
 
     @property
     def unlit(self) -> str:
-        """A sentence on the pairs in which nothing is in the light; without any, nothing."""
+        """A sentence on the views in which nothing is in the light, or an empty text."""
         count = sum(not each.is_lit for each in self.pictures)
         return f"In {count} of them nothing is in the light: they do not count. " if count else ""
 
     @property
     def cut_short(self) -> str:
-        """A sentence on how much is finished after Ctrl-C; else nothing."""
+        """A sentence on how much is finished after Ctrl-C, or an empty text."""
         if not self.interrupted:
             return ""
         return f"Interrupted: {self.finished} of {self.requested} scores are finished. "
 
     def write(self, path: str | Path, progress: Callable[[int, int], object] | None = None) -> None:
-        """Write a page with the table, to sort, and all pictures: of each view in each light the
-        exact shadows, and of each technique the shadows, their errors and where its texels go.
+        """Write a page with the table, which can be sorted, and all pictures.
+
+        For each view in each light it shows the exact shadows, and for each technique the shadows,
+        their errors and where the texels of its maps are.
 
         Parameters
         ----------
@@ -118,7 +127,7 @@ class ShadowComparison(Shown):
         Raises
         ------
         BrdfkitError
-            For another suffix, and where the file cannot be written.
+            For another suffix, and if the file cannot be written.
 
         Examples
         --------
@@ -129,7 +138,7 @@ class ShadowComparison(Shown):
         write_page(self, path, progress)
 
     def document(self) -> Document:
-        """The means, a row for each technique, the best of each column strong."""
+        """Return the means, a row for each technique, with the best of each column strong."""
         means, texts = list(self.means.values()), self.table()
         best = []
         for name, *_, more in COLUMNS:

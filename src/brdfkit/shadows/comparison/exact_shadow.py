@@ -1,4 +1,4 @@
-"""What a camera sees of a scene in one light, with exact shadows: what techniques are held to."""
+"""What a camera sees of a scene in one light, with exact shadows, the reference of a comparison."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -7,17 +7,18 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import BoolArray, FloatArray, IntArray, JitColour, MitsubaObject
 from brdfkit.mitsuba_bridge.surface_points import ray_off_surface
 from brdfkit.shadows.volumes.mesh import Mesh
 
 
 @dataclass(frozen=True)
-class Seen:
-    """The surfaces in the middle of all pixels, row by row.
+class LitView:
+    """The surfaces at the centres of all pixels, row by row, in one light.
 
     scene : the `mi.Scene`.
     sensor : one of its cameras.
-    emitter : one of its lights, with a place or a direction.
+    emitter : one of its lights: a point, spot or directional one.
     si : the `mi.SurfaceInteraction3f` of each pixel.
     size : (height, width) of the picture.
     """
@@ -29,8 +30,14 @@ class Seen:
     size: tuple[int, int]
 
     @classmethod
-    def by(cls, scene, sensor, emitter, size):
-        """Of a `sensor` whose picture has the `size` (height, width)."""
+    def from_sensor(
+        cls,
+        scene: MitsubaObject,
+        sensor: MitsubaObject,
+        emitter: MitsubaObject,
+        size: tuple[int, int],
+    ) -> "LitView":
+        """Return the view of a sensor whose picture has the `size` (height, width)."""
         import mitsuba as mi
 
         height, width = size
@@ -42,29 +49,32 @@ class Seen:
         dr.eval(si)
         return cls(scene, sensor, emitter, si, (height, width))
 
-    def points(self, pixels):
-        """The places and the normals of the surfaces in some `pixels`, by their numbers (n,)."""
+    def points(self, pixels: IntArray) -> tuple[MitsubaObject, MitsubaObject]:
+        """Return the places and normals of the surfaces in some pixels, by their indices (n,)."""
         import mitsuba as mi
 
         index = mi.UInt32(pixels)
         return dr.gather(mi.Point3f, self.si.p, index), dr.gather(mi.Normal3f, self.si.n, index)
 
     @cached_property
-    def meshes(self):
-        """All shapes as `Mesh`es, which bound shadow volumes."""
-        return [Mesh.of_shape(shape) for shape in self.scene.shapes()]
+    def meshes(self) -> list[Mesh]:
+        """All shapes as meshes, for shadow volumes."""
+        return [Mesh.from_shape(shape) for shape in self.scene.shapes()]
 
     @cached_property
-    def to_light(self):
-        """The `mi.DirectionSample3f` to the light, and its light there without a shadow."""
+    def to_light(self) -> tuple[MitsubaObject, JitColour]:
+        """The `mi.DirectionSample3f` to the light, and its unshadowed light at the surfaces."""
         import mitsuba as mi
 
-        return self.emitter.sample_direction(self.si, mi.Point2f(0.5))
+        sample: tuple[Any, Any] = self.emitter.sample_direction(self.si, mi.Point2f(0.5))
+        return sample
 
     @cached_property
-    def facing(self):
-        """Whether (pixels,) there is a surface that faces the light, where it shines (a spot does
-        not everywhere): elsewhere all is dark."""
+    def facing(self) -> BoolArray:
+        """Whether (pixels,) a surface faces the light, where the light shines.
+
+        Elsewhere all is dark. A spot does not shine everywhere.
+        """
         import mitsuba as mi
 
         ds, light = self.to_light
@@ -73,7 +83,7 @@ class Seen:
         return np.array(self.si.is_valid() & (towards > 0) & shines)
 
     @cached_property
-    def exact(self):
+    def exact(self) -> BoolArray:
         """Whether (pixels,) a shadow ray reaches the light."""
         import mitsuba as mi
 
@@ -83,7 +93,7 @@ class Seen:
         return np.array(~self.scene.ray_test(ray, self.si.is_valid()))
 
     @cached_property
-    def unshadowed(self):
+    def unshadowed(self) -> FloatArray:
         """The radiance (pixels, 3) of each surface by the light, without its shadow."""
         import mitsuba as mi
 
@@ -94,6 +104,6 @@ class Seen:
         rgb = mi.Color3f(radiance) if mi.is_rgb else mi.Color3f(radiance[0])
         return np.array(dr.select(valid, rgb, 0)).T
 
-    def picture(self, lit):
-        """The picture (height, width, 3) by the shares (pixels,) of the light that arrive."""
+    def picture(self, lit: Any) -> FloatArray:
+        """Return the picture (height, width, 3) for the shares (pixels,) of the light."""
         return (self.unshadowed * np.asarray(lit)[:, None]).reshape(*self.size, 3)

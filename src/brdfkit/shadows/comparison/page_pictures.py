@@ -1,48 +1,51 @@
-"""The pictures of shadows on a page, small enough that a page of hundreds stays light."""
+"""The pictures of shadows on a page, so small that a page of hundreds of them loads quickly."""
+
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.pages.images import apply_colour_map, encode_webp, shrink
-from brdfkit.shadows.comparison.map_pictures import OUTSIDE
+from brdfkit.shadows.comparison.map_pictures import OUTSIDE, MapPictures
 
-WIDEST = 320  # pixels of a picture on the page
+MAX_WIDTH = 320  # pixels of a picture on the page
 QUALITY = 60  # of WebP
-ERRORS = "RdBu_r"  # matplotlib's scale for light that is lost (blue) or gained (red)
-STEPS = 8  # of errors, from none to all of the light: pictures of few colours are small
-TINTS = "Set2"  # of maps, in turn
-NOTHING = (0.16, 0.2, 0.3)  # where the light sees no surface
+ERROR_SCALE = "RdBu_r"  # matplotlib's colours for light that is lost (blue) or gained (red)
+ERROR_STEPS = 8  # from none to all of the light: pictures of few colours are small files
+TINTS = "Set2"  # matplotlib's colours of maps, in turn
+NO_SURFACE = (0.16, 0.2, 0.3)  # the colour where the light sees nothing
 
 
-def small(picture):
-    """A picture (height, width, n), halved until it is narrow enough."""
-    return shrink(np.asarray(picture, float), WIDEST)
+def shrink_for_page(picture: AnyArray) -> FloatArray:
+    """Return a picture (height, width, n), halved until it is narrow enough."""
+    return shrink(np.asarray(picture, float), MAX_WIDTH)
 
 
-def draw_radiance(picture, white):
-    """The address of a picture (height, width, 3), in which `white` is the brightest value."""
-    return looked_at(small(picture / white))
+def draw_radiance(picture: FloatArray, white: float) -> Any:
+    """Return a picture (height, width, 3) as a data URL; `white` is the brightest value."""
+    return to_url(shrink_for_page(picture / white))
 
 
-def draw_errors(errors):
-    """The address of the shares (height, width) of the light that are gained, or lost below 0."""
-    shares = np.round(small(errors[..., None])[..., 0] * STEPS) / STEPS
-    return encode_webp(apply_colour_map(ERRORS, (shares + 1) / 2)[..., :3], lossless=True)
+def draw_errors(errors: FloatArray) -> Any:
+    """Return shares (height, width) of the light, gained or (negative) lost, as a data URL."""
+    shares = np.round(shrink_for_page(errors[..., None])[..., 0] * ERROR_STEPS) / ERROR_STEPS
+    return encode_webp(apply_colour_map(ERROR_SCALE, (shares + 1) / 2)[..., :3], lossless=True)
 
 
-def draw_texels(maps):
-    """The address of a scene under the checker of its `MapPictures`; grey where there is no map."""
+def draw_texels(maps: MapPictures) -> Any:
+    """Return a scene under the checker of its maps as a data URL; it is grey without a map."""
     tints = np.ones((OUTSIDE + 1, 3))
     tints[:OUTSIDE] = apply_colour_map(TINTS, np.arange(OUTSIDE) % 8 / 7.99)[:, :3] ** 2
-    return looked_at(small(maps.shade[..., None] * tints[maps.part]))
+    return to_url(shrink_for_page(maps.shade[..., None] * tints[maps.part]))
 
 
-def draw_depths(depths):
-    """The address of what the light sees (side, side), 0 near to 1 far, near ones bright."""
+def draw_depths(depths: FloatArray) -> Any:
+    """Return depths (side, side), 0 near to 1 far, as a data URL, near ones bright."""
     bright = (1 - 0.9 * depths.astype(float))[..., None] ** 2
-    return looked_at(np.where(np.isnan(bright), NOTHING, bright))
+    return to_url(np.where(np.isnan(bright), NO_SURFACE, bright))
 
 
-def looked_at(linear):
-    """The address of a picture (height, width, 3) of linear sRGB, which may lose a little."""
+def to_url(linear: FloatArray) -> Any:
+    """Return a picture (height, width, 3) of linear sRGB as a data URL, compressed with loss."""
     return encode_webp(to_srgb(linear), quality=QUALITY)

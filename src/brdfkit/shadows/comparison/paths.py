@@ -1,46 +1,82 @@
-"""A light that moves a little from picture to picture, as the sun of a game does."""
+"""A camera, or a light, that moves a little from picture to picture, as in a game.
+
+Such moves make the borders of shadows flicker.
+"""
 
 from dataclasses import replace
 
 import numpy as np
 
-from brdfkit.shadows.comparison.camera_path import STEPS
+from brdfkit.core.array_types import BoolArray, FloatArray, MitsubaObject
+from brdfkit.core.projective.homogeneous import make_rigid, project_all
+from brdfkit.core.projective.light import Light
+from brdfkit.shadows.maps.placement import Placement
 
-TURN = 0.01  # of a step, as what is farthest from the light sees it [rad]
+STEPS = 4
+CAMERA_TURN = 0.003  # the camera's turn to the right in a step [rad]
+CAMERA_WAY = 0.01  # the camera's way in a step, over the nearest distance
+LIGHT_TURN = 0.01  # the turn in a step as the place farthest from the light sees it [rad]
 
 
-def path(placement, steps=STEPS):
-    """The `Placement`s of a light that goes across its way to what is seen, in equal steps."""
+def camera_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
+    """Return the placements of a camera that moves to the right, and turns that way.
+
+    A step moves a picture of 512 pixels by two or three of them.
+    """
+    camera = placement.camera
+    nearest, _ = placement.depths
+    path = []
+    for step in range(steps):
+        c, s = np.cos(CAMERA_TURN * step), np.sin(CAMERA_TURN * step)
+        turn = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+        moved = make_rigid(turn, np.array([CAMERA_WAY * step * nearest, 0, 0])) @ camera.view
+        path.append(replace(placement, camera=replace(camera, view=moved)))
+    return path
+
+
+def is_visible_to_all(placements: list[Placement], points: FloatArray) -> BoolArray:
+    """Return whether points (n, 3) are within the pictures of all cameras: (n,)."""
+    matrices = [placement.camera.matrix for placement in placements]
+    within = [(np.abs(project_all(m, points)) <= 1).all(axis=1) for m in matrices]
+    visible: BoolArray = np.all(within, axis=0)
+    return visible
+
+
+def light_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
+    """Return the placements of a light that moves across its direction, in equal steps."""
     light = placement.light
-    way = light.point[:3] - light.point[3] * placement.seen.middle
-    step = TURN * across(way) * (1 if light.is_directional else placement.reach)
-    return [replace(placement, light=moved(light, k * step)) for k in range(steps)]
+    way = light.point[:3] - light.point[3] * placement.visible.middle
+    step = LIGHT_TURN * perpendicular(way) * (1 if light.is_directional else placement.reach)
+    return [replace(placement, light=move_light(light, k * step)) for k in range(steps)]
 
 
-def across(way):
-    """The unit vector (3,) at right angles to a `way` (3,) that is nearest to an axis."""
-    way = way / max(np.linalg.norm(way), 1e-9)
-    found = np.eye(3)[np.argmin(np.abs(way))]
-    found = found - (found @ way) * way
-    return found / np.linalg.norm(found)
+def perpendicular(way: FloatArray) -> FloatArray:
+    """Return the unit vector (3,) at right angles to `way` (3,) that is nearest to an axis."""
+    way = way / max(float(np.linalg.norm(way)), 1e-9)
+    across: FloatArray = np.eye(3)[np.argmin(np.abs(way))]
+    across = across - (across @ way) * way
+    return across / np.linalg.norm(across)
 
 
-def moved(light, step):
-    """A `Light` whose place, or the unit vector to it, is moved by a `step` (3,)."""
+def move_light(light: Light, step: FloatArray) -> Light:
+    """Return a light whose place, or the unit vector to it, is moved by a `step` (3,)."""
     place = light.point[:3] + step
     if light.is_directional:
         place = place / np.linalg.norm(place)
     return replace(light, point=np.append(place, light.point[3]))
 
 
-def faced_by_all(placements, points, normals):
-    """Whether (n,) points (n, 3) with `normals` (n, 3) turn one side to all lights."""
+def is_facing_all(
+    placements: list[Placement], points: FloatArray, normals: FloatArray
+) -> BoolArray:
+    """Return whether points (n, 3) with `normals` (n, 3) turn one side to all lights: (n,)."""
     cosines = [(normals * each.light.directions_from(points)).sum(axis=1) for each in placements]
-    return (np.min(cosines, axis=0) > 0) | (np.max(cosines, axis=0) < 0)
+    facing: BoolArray = (np.min(cosines, axis=0) > 0) | (np.max(cosines, axis=0) < 0)
+    return facing
 
 
-def arrives(scene, light, p, n):
-    """Whether (points,) a shadow ray from surfaces at `p` with normals `n` reaches a `Light`."""
+def is_lit(scene: MitsubaObject, light: Light, p: MitsubaObject, n: MitsubaObject) -> BoolArray:
+    """Return whether (points,) shadow rays from surfaces at `p` with normals `n` reach a light."""
     import drjit as dr
     import mitsuba as mi
 

@@ -1,33 +1,49 @@
-"""Q2: the aliasing of a picture as one number [dB], larger is better [Ergun 2008, 3.2].
+"""Measures of a shadow technique's quality: use of its texels, aliasing, flicker and acne."""
 
-e, how many pixels a texel covers, is written to the red channel, and the picture's PSNR is taken
-against a black one. The thesis does not tell how e becomes a grey level; here e is the level, at
-most 255, which gives figures as printed (27 to 37 dB):
-
-    10 log10 (255² / mean e²)
-"""
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
-BINS = 64  # along each side of a map: cells enough to tell where, points enough in each
+from brdfkit.core.array_types import AnyArray, FloatArray
+
+BINS = 64  # along each side of a map: fine enough to tell where, with enough points in each
+WHITE = 255.0
 
 
-def share_used(maps, bins=BINS):
-    """The share of the maps that points use, in (0, 1]; nan where no point is on a map.
+def share_used(maps: Iterable[FloatArray], bins: int = BINS) -> float:
+    """Return Q1, the share in (0, 1] of the maps that points use; NaN if no point is on a map.
 
     maps : for each map, the places (n, 2) of points on it, in [0, 1]²; others do not count.
 
     >>> share_used([np.array([[0.2, 0.2], [0.7, 0.2]])], bins=2)
     0.5
     """
-    counts = np.stack([np.histogram2d(*places.T, bins, [[0, 1]] * 2)[0] for places in maps])
+    limits = [[0, 1]] * 2
+    histograms = [np.histogram2d(p[:, 0], p[:, 1], bins, limits)[0] for p in maps]
+    counts = np.stack(histograms)
     if not counts.any():
         return np.nan
     return float(counts.sum() ** 2 / (counts.size * np.square(counts).sum()))
 
 
-def flicker(lit, true):
-    """The mean change of the error from picture to picture, 0 at best.
+def aliasing_error(e: Any) -> float:
+    """Return Q2 [dB], the aliasing of a picture as one number; larger is better [Ergun 2008, 3.2].
+
+    The areas `e` of texels [pixels] of all visible points are written to the red channel, and the
+    picture's PSNR is taken against a black one: 10 log10(255² / mean e²). The thesis does not say
+    how e becomes a grey level. Here e is the level, at most 255, which gives figures as printed (27
+    to 37 dB). It is NaN without points.
+
+    >>> aliasing_error(np.full(9, 25.5))
+    20.0
+    """
+    e = np.minimum(np.asarray(e, float), WHITE)
+    return float(10 * np.log10(WHITE**2 / np.square(e).mean())) if e.size else np.nan
+
+
+def flicker(lit: Any, true: Any) -> float:
+    """Return the mean change of the error from picture to picture, 0 at best.
 
     lit, true : shares of the light (pictures, points), by the technique and in truth.
 
@@ -38,14 +54,18 @@ def flicker(lit, true):
     return float(np.abs(np.diff(errors, axis=0)).mean())
 
 
-WHITE = 255.0
+def acne(lit: AnyArray, exact: AnyArray, facing: AnyArray, margin: int) -> float:
+    """Return the share of light that lit pixels lack, away from shadows [Ergun 2008, 3.1.2].
 
-
-def aliasing_error(e):
-    """Q2 [dB] of the texels' areas `e` [pixels] of all that is seen; nan where nothing is.
-
-    >>> aliasing_error(np.full(9, 25.5))
-    20.0
+    lit : the share of the light (height, width) by the technique.
+    exact : whether the light arrives.
+    facing : whether the surface faces the light.
+    margin : pixels around shadows in which a soft border counts as no acne.
     """
-    e = np.minimum(np.asarray(e, float), WHITE)
-    return float(10 * np.log10(WHITE**2 / np.square(e).mean())) if e.size else np.nan
+    from scipy.ndimage import binary_dilation
+
+    near: AnyArray = facing & ~exact
+    if margin:
+        near = binary_dilation(near, np.ones((3, 3), bool), margin)
+    lacking = (1 - lit)[facing & exact & ~near]
+    return float(lacking.mean()) if lacking.size else 0.0

@@ -1,10 +1,13 @@
-"""What one technique does in one view and one light."""
+"""`Scores`: the errors and costs of one technique in one view and light, and their means."""
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from math import nan
 
 import numpy as np
+
+from brdfkit.core.array_types import FloatArray
 
 # Name, heading, scale, decimals, and whether more is better
 COLUMNS = (
@@ -20,32 +23,17 @@ COLUMNS = (
 )
 
 
-def to_texts(rows):
-    """The `Scores` by technique as rows of texts; "–" for what is unknown."""
-
-    def text(value, digits):
-        return "–" if math.isnan(value) else f"{value:.{digits}f}"
-
-    return [
-        (
-            label,
-            *(text(getattr(scores, name) * scale, digits) for name, _, scale, digits, _ in COLUMNS),
-        )
-        for label, scores in rows.items()
-    ]
-
-
 @dataclass(frozen=True)
 class Scores:
-    """Errors against exact shadows, and what they cost.
+    """Errors against exact shadows, and processor times.
 
     Attributes
     ----------
     psnr : float
-        Q3, of the picture lit by this light alone, against the one with exact shadows [dB].
+        Q3, the PSNR of the picture lit by this light alone, against exact shadows [dB].
     wrong : float
-        The share of light that is wrong where the surface faces the light: the mean difference
-        from exact shadows.
+        The share of light that is wrong where surfaces face the light: the mean difference from
+        exact shadows.
     acne : float
         The share of light that lit surfaces lack, away from shadows.
     texture_use : float
@@ -56,7 +44,7 @@ class Scores:
         The mean change of the error from picture to picture, while the camera moves and while the
         light does.
     build, look_up : float
-        Processor time to make the maps, and to read them for all pixels [s].
+        Processor time to make the maps, and to look up all pixels in them [s].
     """
 
     psnr: float = nan
@@ -73,30 +61,42 @@ class Scores:
 NAMES = tuple(field.name for field in fields(Scores))
 
 
-def mean(scores):
-    """The `Scores` that are means of several; of dB as in the thesis, not of squared errors.
+def average(scores: Sequence[Scores]) -> Scores:
+    """Return the means of several scores; those of dB, as in the thesis, not of squared errors.
 
-    A picture without an error has infinite dB: it counts as 99. What is nan does not count, nor
-    dB against a picture that is black.
+    A picture without an error has infinite dB, which count as 99. NaN does not count, nor do dB
+    against a black picture.
     """
-    return averaged(table_of(scores))
+    return _average_columns(_to_table(scores))
 
 
-def between_lights(scores):
-    """The relative `Scores`: the mean difference of neighbours, (light 1, light 2) of each view."""
-    table = table_of(scores)
+def difference_of_lights(scores: Sequence[Scores]) -> Scores:
+    """Return the mean differences of neighbours, which are lights 1 and 2 of each view."""
+    table = _to_table(scores)
     first, second = table[::2], table[1::2]
-    return averaged(np.abs(first[: len(second)] - second))
+    return _average_columns(np.abs(first[: len(second)] - second))
 
 
-def table_of(scores):
-    """The numbers (scores, names) of `Scores`, 99 at most, nan for -∞."""
+def to_texts(rows: Mapping[str, Scores]) -> list[tuple[str, ...]]:
+    """Return the scores of techniques as rows of texts; "–" for unknown ones."""
+
+    def to_text(value: float, digits: int) -> str:
+        return "–" if math.isnan(value) else f"{value:.{digits}f}"
+
+    return [
+        (label, *(to_text(getattr(scores, name) * k, digits) for name, _, k, digits, _ in COLUMNS))
+        for label, scores in rows.items()
+    ]
+
+
+def _to_table(scores: Sequence[Scores]) -> FloatArray:
+    """Return the numbers (scores, names), 99 at most, NaN for -∞."""
     table = np.array([[getattr(one, name) for name in NAMES] for one in scores])
     return np.where(np.isneginf(table), nan, np.minimum(table, 99.0))
 
 
-def averaged(table):
-    """The `Scores` that are the means of the columns of a `table`, without what is nan in it."""
+def _average_columns(table: FloatArray) -> Scores:
+    """Return the means of the columns of a table (scores, names), without NaN."""
     known = ~np.isnan(table)
     count = known.sum(axis=0)
     sums = np.where(known, table, 0).sum(axis=0)

@@ -1,86 +1,99 @@
-"""Scores of one technique: its maps are made, read for all pixels, and held to shadow rays."""
+"""Scores one technique: makes its maps, looks all pixels up, and compares with shadow rays."""
 
 import time
+from collections.abc import Callable
 from math import nan
+from typing import Any
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.images.errors.psnr import psnr
-from brdfkit.shadows.comparison.quality import aliasing_error, share_used
+from brdfkit.shadows.comparison.exact_shadow import LitView
+from brdfkit.shadows.comparison.quality import acne, aliasing_error, share_used
 from brdfkit.shadows.comparison.scores import Scores
-from brdfkit.shadows.maps.bias import acne
+from brdfkit.shadows.comparison.tracked_points import TrackedPoints
 from brdfkit.shadows.maps.light_shadow import LightShadow
+from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.resolution import aliasing
 
-MARGIN = 4  # pixels about shadows in which a soft border is no acne
+MARGIN = 4  # pixels around shadows in which a soft border counts as no acne
 
 
-def score(seen, placement, watched, shadow_of):
-    """The `Scores` of a technique, and the shares of light (pixels,) that it lets through.
+def score(
+    view: LitView,
+    placement: Placement,
+    tracked: tuple[TrackedPoints, TrackedPoints],
+    technique: Callable[[LitView, Placement], Any],
+) -> tuple[Scores, FloatArray]:
+    """Return the scores of a technique, and the shares of light (pixels,) that it lets through.
 
-    seen : what the camera sees, a `Seen`.
-    placement : of its camera and light.
-    watched : points of it while the camera moves, and while the light does: two `Watched`.
-    shadow_of : the function (seen, placement) → what has `lit(p, n, active)`, as `LightShadow`.
+    placement : of the view's camera and light.
+    tracked : points of the view while the camera moves, and while the light does.
+    technique : makes a shadow, which has `lit_share(p, n, active)`, as `LightShadow`.
     """
 
-    def look(shadow):
-        return shadow.lit(seen.si.p, seen.si.n, seen.si.is_valid())
+    def look_up(shadow: Any) -> Any:
+        return shadow.lit_share(view.si.p, view.si.n, view.si.is_valid())
 
-    shadow = shadow_of(seen, placement)
-    lit, look_up = timed(lambda: look(shadow))
-    _, both = timed(lambda: look(shadow_of(seen, placement)))
-    lit = np.array(lit)
-    facing, exact = seen.facing, seen.exact
-    pictures = (image.reshape(seen.size) for image in (lit, exact, facing))
-    use, fineness = use_of_maps(shadow, seen, placement)
-    by_camera, by_light = (points.flicker(lit, shadow_of) for points in watched)
+    shadow = technique(view, placement)
+    shares, seconds = run_timed(lambda: look_up(shadow))
+    _, seconds_of_both = run_timed(lambda: look_up(technique(view, placement)))
+    lit = np.array(shares)
+    facing, exact = view.facing, view.exact
+    lit_picture, exact_picture, facing_picture = (
+        image.reshape(view.size) for image in (lit, exact, facing)
+    )
+    use, fineness = score_texels(shadow, view, placement)
+    by_camera, by_light = (points.flicker(lit, technique) for points in tracked)
     scores = Scores(
-        psnr=psnr(seen.picture(exact), seen.picture(lit), facing.reshape(seen.size)),
+        psnr=psnr(view.picture(exact), view.picture(lit), facing_picture),
         wrong=float(np.abs(lit - exact)[facing].mean()),
-        acne=acne(*pictures, MARGIN),
+        acne=acne(lit_picture, exact_picture, facing_picture, MARGIN),
         texture_use=use,
         aliasing=fineness,
         camera_flicker=by_camera,
         light_flicker=by_light,
-        build=max(both - look_up, 0.0),
-        look_up=look_up,
+        build=max(seconds_of_both - seconds, 0.0),
+        look_up=seconds,
     )
     return scores, lit
 
 
-def timed(function):
-    """What a function returns, evaluated, and its processor time [s] when it runs again."""
-    for _ in range(2):  # at first kernels are compiled
-        began = time.process_time()
-        found = function()
-        dr.eval(found)
+def run_timed(function: Callable[[], Any]) -> tuple[Any, float]:
+    """Return a function's evaluated result, and the processor time [s] of its second run."""
+    for _ in range(2):  # the first run compiles kernels
+        start = time.process_time()
+        result = function()
+        dr.eval(result)
         dr.sync_thread()
-        seconds = time.process_time() - began
-    return found, seconds
+        seconds = time.process_time() - start
+    return result, seconds
 
 
-def use_of_maps(shadow, seen, placement):
-    """Q1, the share of the maps' texels that are used, and Q2, the aliasing error [dB]; nan for a
-    `shadow` without maps."""
+def score_texels(shadow: Any, view: LitView, placement: Placement) -> tuple[float, float]:
+    """Return Q1, the share of the maps' texels that are used, and Q2, the aliasing error [dB].
+
+    Both are NaN for a `shadow` without maps.
+    """
     import mitsuba as mi
 
     if not isinstance(shadow, LightShadow):
         return nan, nan
-    camera = Projection.by(placement.camera.matrix, placement.light).opaque()
-    film = seen.sensor.film()
+    camera = Projection.from_matrix(placement.camera.matrix, placement.light).opaque()
+    film = view.sensor.film()
     # the camera's whole picture, of which a film may show a window, in pixels of this size
-    pixels = np.array(seen.size[::-1]) * np.array(film.size()) / np.array(film.crop_size())
-    p, n = seen.si.p, seen.si.n
-    part, facing = shadow.which(p), mi.Bool(seen.facing)
+    pixels = np.array(view.size[::-1]) * np.array(film.size()) / np.array(film.crop_size())
+    p, n = view.si.p, view.si.n
+    part, facing = shadow.part_of(p), mi.Bool(view.facing)
     places, areas = [], []
-    for number, its_map in enumerate(shadow.maps):
+    for index, its_map in enumerate(shadow.maps):
         x, y, _ = its_map.projection.to_map(*p)
         texels = its_map.projection, its_map.resolution
         e = aliasing(texels, (camera, pixels.tolist()), p, n)
-        chosen = np.array(facing & (part == number))
+        chosen = np.array(facing & (part == index))
         places.append((np.array([x, y]).T[chosen] + 1) / 2)
         areas.append(np.array(e)[chosen])
     return share_used(places), aliasing_error(np.concatenate(areas))

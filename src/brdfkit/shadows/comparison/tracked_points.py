@@ -1,58 +1,61 @@
-"""Points of a picture that are watched while the camera moves, or while the light does."""
+"""Points of a picture that are tracked while the camera moves, or while the light does."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import nan
+from typing import Any
 
 import numpy as np
 
-from brdfkit.shadows.comparison import camera_path, paths
-from brdfkit.shadows.comparison.exact_shadow import Seen
+from brdfkit.core.array_types import AnyArray, FloatArray
+from brdfkit.shadows.comparison import paths
+from brdfkit.shadows.comparison.exact_shadow import LitView
 from brdfkit.shadows.comparison.quality import flicker
 from brdfkit.shadows.maps.placement import Placement
 
-EVERY = 7  # of the pixels one is watched
+PIXEL_STRIDE = 7  # one in so many pixels is tracked
 
 
 @dataclass(frozen=True)
-class Watched:
+class TrackedPoints:
     """Points that keep their places in the world.
 
-    seen : the first picture.
-    pixels : those of it where the points are.
-    path : where the camera and the light are in each picture, from the first one on.
+    view : the first picture.
+    pixels : the indices of its pixels where the points are.
+    path : the placements of camera and light in each picture, from the first one on.
     true : whether (pictures, points) the light arrives.
     """
 
-    seen: Seen
-    pixels: np.ndarray
+    view: LitView
+    pixels: AnyArray
     path: list[Placement]
-    true: np.ndarray
+    true: AnyArray
 
     @classmethod
-    def by_moving_camera(cls, seen, placement):
-        """Points that all cameras of a path see; their light stands still."""
-        path, pixels = camera_path.path(placement), np.flatnonzero(seen.facing)[::EVERY]
-        pixels = pixels[camera_path.seen_by_all(path, np.array(seen.si.p).T[pixels])]
-        return cls(seen, pixels, path, np.tile(seen.exact[pixels], (len(path), 1)))
+    def by_moving_camera(cls, view: LitView, placement: Placement) -> "TrackedPoints":
+        """Return points that all cameras of a path see; their light stands still."""
+        path, pixels = paths.camera_path(placement), np.flatnonzero(view.facing)[::PIXEL_STRIDE]
+        pixels = pixels[paths.is_visible_to_all(path, np.array(view.si.p).T[pixels])]
+        return cls(view, pixels, path, np.tile(view.exact[pixels], (len(path), 1)))
 
     @classmethod
-    def by_moving_light(cls, seen, placement):
-        """Points that face all lights of a path; their camera stands still."""
-        path, pixels = paths.path(placement), np.flatnonzero(seen.facing)[::EVERY]
-        p, n = (np.array(vectors).T[pixels] for vectors in (seen.si.p, seen.si.n))
-        pixels = pixels[paths.faced_by_all(path, p, n)]
-        p, n = seen.points(pixels)
-        true = [paths.arrives(seen.scene, each.light, p, n) for each in path]
-        return cls(seen, pixels, path, np.array(true))
+    def by_moving_light(cls, view: LitView, placement: Placement) -> "TrackedPoints":
+        """Return points that face all lights of a path; their camera stands still."""
+        path, pixels = paths.light_path(placement), np.flatnonzero(view.facing)[::PIXEL_STRIDE]
+        points, normals = (np.array(vectors).T[pixels] for vectors in (view.si.p, view.si.n))
+        pixels = pixels[paths.is_facing_all(path, points, normals)]
+        p, n = view.points(pixels)
+        true = [paths.is_lit(view.scene, each.light, p, n) for each in path]
+        return cls(view, pixels, path, np.array(true))
 
-    def flicker(self, lit, shadow_of):
-        """The mean change of a technique's error from picture to picture; nan of no points.
+    def flicker(self, lit: FloatArray, technique: Callable[[LitView, Placement], Any]) -> float:
+        """Return the mean change of a technique's error between pictures; NaN without points.
 
-        lit : the shares (pixels,) of the light that arrive in the first picture, by the technique.
-        shadow_of : the function (seen, placement) → what has `lit(p, n)`, as `LightShadow`.
+        lit : the shares (pixels,) of the light in the first picture, by the technique.
+        technique : makes a shadow, which has `lit_share(p, n)`, as `LightShadow`.
         """
         if not self.pixels.size:
             return nan
-        p, n = self.seen.points(self.pixels)
-        later = [np.array(shadow_of(self.seen, each).lit(p, n)) for each in self.path[1:]]
+        p, n = self.view.points(self.pixels)
+        later = [np.array(technique(self.view, each).lit_share(p, n)) for each in self.path[1:]]
         return flicker([lit[self.pixels], *later], self.true)

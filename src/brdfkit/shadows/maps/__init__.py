@@ -1,1 +1,1 @@
-"""Shadow maps: what a light sees as a picture of depths, in which later points are looked up."""
+"""Shadow maps: pictures of depths that a light sees, in which points are looked up later."""

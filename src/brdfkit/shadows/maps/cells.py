@@ -1,23 +1,26 @@
-"""Square cells of a shadow map, each with a map of its own, in finer or coarser texels."""
+"""Square cells of a shadow map, each with a map of its own whose texels are finer or coarser."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import IntArray, JitFloat, JitInt, JitMask, JitVector
+from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.projection import Projection
 
-GUTTER = 4  # texels beyond the edge of a cell that its map has too, for filters
+GUTTER = 4  # texels beyond the edge of a cell that its map has, too, for filters
 
 
 @dataclass(frozen=True)
 class Cell:
-    """The projection by which a square of another one's map fills the map.
+    """The projection by which a square of another projection's map fills a map of its own.
 
-    whole : the `Projection` of the other map.
-    x, y : the middle of the square there.
-    half : half of its side.
+    whole : the other projection.
+    x, y : the middle of the square on its map.
+    half : half of the square's side.
     """
 
     whole: Projection
@@ -26,64 +29,68 @@ class Cell:
     half: Any
 
     @classmethod
-    def of_grid(cls, whole, column, row, cells, resolution):
-        """The cell of a grid of `cells` × `cells`, with room for a gutter at this `resolution`."""
+    def from_grid(
+        cls, whole: Projection, column: int, row: int, cells: int, resolution: int
+    ) -> "Cell":
+        """Return a cell of a grid of `cells` × `cells`, with a gutter at this `resolution`."""
         x, y = ((2 * place + 1) / cells - 1 for place in (column, row))
         return cls(whole, x, y, resolution / (resolution - 2 * GUTTER) / cells)
 
     @property
-    def light(self):
+    def light(self) -> Light:
+        """The light of the whole map."""
         return self.whole.light
 
-    def opaque(self):
-        """The same for Dr.Jit."""
+    def opaque(self) -> "Cell":
+        """Return the same for Dr.Jit; one kernel serves every cell."""
         import mitsuba as mi
 
         numbers = {name: dr.opaque(mi.Float, getattr(self, name)) for name in ("x", "y", "half")}
         return replace(self, whole=self.whole.opaque(), **numbers)
 
-    def to_map(self, x, y, z):
-        """Where a point of the world is in the cube."""
+    def to_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
+        """Return where a point of the world is in the map's cube."""
         u, v, depth = self.whole.to_map(x, y, z)
         return (u - self.x) / self.half, (v - self.y) / self.half, depth
 
-    def is_before(self, x, y, z):
-        """Whether the projection maps a point at all."""
+    def is_before(self, x: JitFloat, y: JitFloat, z: JitFloat) -> JitMask:
+        """Return whether the projection maps a point at all."""
         return self.whole.is_before(x, y, z)
 
-    def along(self, point, way):
-        """The derivative of `to_map` at a `point` along a `way`, both of three components."""
-        u, v, depth = self.whole.along(point, way)
+    def derivative_along(self, point: JitVector, way: JitVector) -> tuple[JitFloat, ...]:
+        """Return the derivative of `to_map` at a `point` along a vector `way`."""
+        u, v, depth = self.whole.derivative_along(point, way)
         return u / self.half, v / self.half, depth
 
-    def to_light(self, p):
-        """The unit vectors from points `p` to the light."""
+    def to_light(self, p: JitVector) -> JitVector:
+        """Return the unit vectors from points `p` to the light."""
         return self.whole.to_light(p)
 
-    def ray(self, x, y):
-        """The ray of light at a place of the map: its origin and its unit direction."""
+    def ray(self, x: JitFloat, y: JitFloat) -> tuple[Any, Any]:
+        """Return the ray of light at a place of the map: its origin and its unit direction."""
         return self.whole.ray(x * self.half + self.x, y * self.half + self.y)
 
-    def from_map(self, x, y, z):
-        """The point of the world at a place in the cube."""
+    def from_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
+        """Return the point of the world at a place in the map's cube."""
         return self.whole.from_map(x * self.half + self.x, y * self.half + self.y, z)
 
 
-def by_cell(whole, table):
-    """The function from points to the numbers in a `table` (n, n) of their cells of the map of
-    `whole`, by rows and columns."""
+def make_cell_finder(whole: Projection, table: IntArray) -> Callable[[JitVector], JitInt]:
+    """Return the function from points to the entries of a `table` (n, n) of cells.
+
+    The table covers the map of `whole`, by rows and columns.
+    """
     import mitsuba as mi
 
-    cells = len(table)
-    opaque, numbers = whole.opaque(), mi.UInt32(np.ravel(table).astype(np.uint32))
-    dr.make_opaque(numbers)
-    count = dr.opaque(mi.Float, float(cells))
+    opaque, entries = whole.opaque(), mi.UInt32(np.ravel(table).astype(np.uint32))
+    dr.make_opaque(entries)
+    count = dr.opaque(mi.Float, float(len(table)))
 
-    def number(place):
+    def to_index(place: JitFloat) -> JitInt:
         return mi.UInt32(dr.clip(dr.floor((place + 1) / 2 * count), 0, count - 1))
 
-    def which(p):
+    def part_of(p: JitVector) -> JitInt:
         x, y, _ = opaque.to_map(*p)
-        return dr.gather(mi.UInt32, numbers, number(y) * mi.UInt32(count) + number(x))
+        return dr.gather(mi.UInt32, entries, to_index(y) * mi.UInt32(count) + to_index(x))
 
-    return which
+    return part_of

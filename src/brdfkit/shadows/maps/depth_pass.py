@@ -1,26 +1,31 @@
-"""The first pass: what the light sees, ray-traced through a projection, as a picture of depths."""
+"""The first pass of a shadow map: the light's view, ray-traced, as a picture of depths."""
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import JitFloat, JitVector, MitsubaObject
+from brdfkit.shadows.maps.projection import AnyProjection
 
-def depth_pass(scene, projection, resolution):
-    """The `mi.TensorXf` (resolution, resolution) of depths, row by row from y = -1 upwards.
+
+def render_depths(
+    scene: MitsubaObject, projection: AnyProjection, resolution: int
+) -> MitsubaObject:
+    """Return the `mi.TensorXf` (resolution, resolution) of depths, rows from y = -1 upwards.
 
     The depth is that of the first surface along each texel's ray of light, wherever it is: one
-    before the cube has a depth below -1. Texels without a surface have infinity. Derivatives by
-    the scene's geometry are kept.
-
-    scene : a `mi.Scene`.
-    projection : a `Projection`.
+    before the map's cube has a depth below -1. Texels without a surface have infinity. Derivatives
+    by the scene's geometry are kept.
     """
     opaque = projection.opaque()
-    si = scene.ray_intersect(rays_of_light(scene, opaque, resolution))
-    return square(dr.select(si.is_valid(), depth_of(opaque, si.p), dr.inf), resolution)
+    si = scene.ray_intersect(texel_rays(scene, opaque, resolution))
+    return to_square(dr.select(si.is_valid(), depth_of(opaque, si.p), dr.inf), resolution)
 
 
-def rays_of_light(scene, opaque, resolution):
-    """The `mi.Ray3f` of light through the middle of each texel of an opaque `Projection`."""
+def texel_rays(scene: MitsubaObject, opaque: AnyProjection, resolution: int) -> MitsubaObject:
+    """Return the `mi.Ray3f` of light through the middle of each texel of an opaque projection.
+
+    Rays of a directional light start outside of the scene.
+    """
     import mitsuba as mi
 
     index = dr.arange(mi.UInt32, resolution**2)
@@ -28,28 +33,23 @@ def rays_of_light(scene, opaque, resolution):
     side = dr.opaque(mi.UInt32, resolution)
     x = (mi.Float(index % side) + 0.5) * texel - 1
     y = (mi.Float(index // side) + 0.5) * texel - 1
-    return ray_of_light(opaque, x, y, scene.bbox())
+    origin, direction = (mi.Vector3f(*vector) for vector in opaque.ray(x, y))
+    if opaque.light.is_directional:
+        bounds = scene.bbox()
+        radius = float(np.linalg.norm(np.ravel(bounds.extents()))) / 2
+        away: JitFloat = dr.norm(origin - mi.Vector3f(bounds.center()))
+        away = away + dr.opaque(mi.Float, radius)
+        origin -= away * direction
+    return mi.Ray3f(mi.Point3f(origin), direction)
 
 
-def depth_of(opaque, p):
-    """The depth of points; infinity beyond the horizon of a warped map, where no rays are."""
+def depth_of(opaque: AnyProjection, p: JitVector) -> JitFloat:
+    """Return the depth of points; infinity beyond the horizon of a warped map."""
     return dr.select(opaque.is_before(*p), opaque.to_map(*p)[2], dr.inf)
 
 
-def square(values, resolution):
-    """The values of texels as a `mi.TensorXf` (resolution, resolution)."""
+def to_square(values: JitFloat, resolution: int) -> MitsubaObject:
+    """Return the values of texels as a `mi.TensorXf` (resolution, resolution)."""
     import mitsuba as mi
 
     return mi.TensorXf(values, (resolution, resolution))
-
-
-def ray_of_light(opaque, x, y, bounds):
-    """The `mi.Ray3f` of light at the place (x, y) of a map, from outside `bounds`."""
-    import mitsuba as mi
-
-    origin, direction = (mi.Vector3f(*vector) for vector in opaque.ray(x, y))
-    if opaque.light.is_directional:
-        radius = np.linalg.norm(np.ravel(bounds.extents())) / 2
-        away = dr.norm(origin - mi.Vector3f(bounds.center())) + dr.opaque(mi.Float, float(radius))
-        origin -= away * direction
-    return mi.Ray3f(mi.Point3f(origin), direction)

@@ -1,45 +1,51 @@
-"""A camera at a light, fitted to points: perspective, or orthographic where the light is far away.
+"""A camera at a light, fitted to points: perspective, or orthographic for a directional light.
 
-Of a light l = (q, w) in homogeneous coordinates about the middle of the points p, the rays are
-w p - q, for any w: a light at a place, far away, or behind an eye, where w < 0 [Ergun 2008, 2.2.2].
+For a light (q, w) in homogeneous coordinates about the middle of the points p, the rays are w p - q
+with any w: w > 0 for a light at a place, 0 for one far away, and w < 0 behind an eye
+[Ergun 2008, 2.2.2].
 """
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.projective.body import Body
 from brdfkit.core.projective.homogeneous import make_axes, make_rigid, project_all, to_unit_cube
-from brdfkit.core.projective.light import NEAREST
+from brdfkit.core.projective.light import NEAREST, Light
 from brdfkit.shadows.maps.projection import Projection
 
 
-def around(light, body):
-    """The `Projection` whose cube encloses a `Body`.
+def enclose_body(light: Light, body: Body) -> Projection:
+    """Return the projection from a light whose cube encloses a body.
 
     Raises `BrdfkitError` for a point light that the body surrounds.
     """
-    return fitted(view(light.point, body.corners, body.middle), light, body.corners)
+    return fit_to_corners(view_matrix(light.point, body.corners, body.middle), light, body.corners)
 
 
-def fitted(matrix, light, corners):
-    """The `Projection` by a `matrix` (4, 4) through the light, then stretched so that its cube just
-    encloses `corners` (n, 3)."""
+def fit_to_corners(matrix: FloatArray, light: Light, corners: FloatArray) -> Projection:
+    """Return the projection by a matrix (4, 4) through the light, stretched to enclose `corners`.
+
+    Its cube just encloses the corners (n, 3).
+    """
     ends = project_all(matrix, corners)
-    return Projection.by(to_unit_cube(ends.min(axis=0), ends.max(axis=0)) @ matrix, light)
+    to_cube = to_unit_cube(ends.min(axis=0), ends.max(axis=0))
+    return Projection.from_matrix(to_cube @ matrix, light)
 
 
-def view(light, corners, middle):
-    """The matrix (4, 4) of a camera at the point `light` (4,) that looks at `corners` (n, 3).
+def view_matrix(light: FloatArray, corners: FloatArray, middle: FloatArray) -> FloatArray:
+    """Return the matrix (4, 4) of a camera at the point `light` (4,), looking at `corners` (n, 3).
 
     x and y are of one scale, tangents or lengths, at right angles to the ray to the `middle` (3,),
     a point among the corners; depth is from -1 to 1 for the corners.
 
-    Raises `BrdfkitError` where no plane parts the light from the corners.
+    Raises `BrdfkitError` if no plane separates the light from the corners.
     """
     to_middle = make_rigid(np.eye(3), middle)
-    *q, w = to_middle @ light
-    q = np.array(q)
+    *components, w = to_middle @ light
+    q = np.array(components)
     rays = w * (corners - middle) - q
-    axis = axis_of(rays)
+    axis = narrowest_cone_axis(rays)
     before = rays @ axis
     if not before.min() > NEAREST / 2 * before.max():
         raise BrdfkitError(
@@ -52,18 +58,19 @@ def view(light, corners, middle):
     matrix = matrix @ to_middle
     depths = project_all(matrix, corners)[:, 2]
     low, high = depths.min(), depths.max()
-    return to_unit_cube([-1, -1, low], [1, 1, high]) @ matrix
+    view: FloatArray = to_unit_cube([-1, -1, low], [1, 1, high]) @ matrix
+    return view
 
 
-def axis_of(rays):
-    """The axis (3,) of the narrowest cone that holds `rays` (n, 3); 0 where none holds them."""
+def narrowest_cone_axis(rays: FloatArray) -> FloatArray:
+    """Return the axis (3,) of the narrowest cone that holds `rays` (n, 3); 0 if there is none."""
     from scipy.optimize import nnls
 
     lengths = np.linalg.norm(rays, axis=1, keepdims=True)
     if lengths.min() < 1e-9 * lengths.max():
         return np.zeros(3)
-    # towards the point of the convex hull of their directions that is nearest to 0
+    # The axis points to the place of the directions' convex hull that is nearest to 0
     units = rays / lengths
     weights, _ = nnls(np.vstack([units.T, np.ones(len(units))]), np.array([0, 0, 0, 1.0]))
-    axis = weights @ units
-    return axis / max(np.linalg.norm(axis), 1e-9)
+    axis: FloatArray = weights @ units
+    return axis / max(float(np.linalg.norm(axis)), 1e-9)

@@ -1,98 +1,112 @@
-"""All shadow maps of one light."""
+"""`LightShadow`: all shadow maps of one light, and the share of its light at surface points."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat, JitMask, JitVector, MitsubaObject
 from brdfkit.core.errors import no_such
-from brdfkit.shadows.maps.bias import AUTOMATIC
-from brdfkit.shadows.maps.depth_pass import depth_pass
-from brdfkit.shadows.maps.light_depth import LightDepth
-from brdfkit.shadows.maps.map_point import map_point
-from brdfkit.shadows.maps.techniques import seen_by, techniques
+from brdfkit.shadows.maps.depth_pass import render_depths
+from brdfkit.shadows.maps.map_point import AUTOMATIC, Bias, find_map_point
+from brdfkit.shadows.maps.placement import Placement
+from brdfkit.shadows.maps.projection import AnyProjection, LightDepth, Projection
+from brdfkit.shadows.maps.techniques import find_renderer, make_techniques
+
+DEPTHS = ("projected", "linear")
 
 
 class ShadowMap:
-    """What a light sees of a scene, to be looked up.
+    """The view of a light of a scene, in which points are looked up.
 
     scene : a `mi.Scene`.
-    projection : a `Projection` through the light.
+    projection : a projection through the light.
     reach : of the light through the scene [unit of length].
-    lookup : of a file of `filters/`, its class `Lookup`.
+    lookup : the class `Lookup` of a file in `filters/`.
     resolution : texels along a side.
-    bias : a `Bias`.
-    see : of that file, its function `see` where it has one: what the map holds in place of depths.
+    bias : how receivers are moved towards the light.
+    render : the function that renders the map: `render_depths`, or the file's own `render_map`.
     """
 
     def __init__(
-        self, scene, projection, reach, lookup, resolution=1024, bias=AUTOMATIC, see=depth_pass
-    ):
-        self.depths = see(scene, projection, resolution)
+        self,
+        scene: MitsubaObject,
+        projection: AnyProjection,
+        reach: float,
+        lookup: Callable[[Any], Any],
+        resolution: int = 1024,
+        bias: Bias = AUTOMATIC,
+        render: Callable[..., Any] = render_depths,
+    ) -> None:
+        self.depths = render(scene, projection, resolution)
         self.lookup = lookup(self.depths)
         self.projection = projection.opaque()
         self.resolution, self.bias, self.reach = resolution, bias, reach
 
-    def lit(self, p, n, active=True):
-        """The share of the light that arrives at points `p` of surfaces with normals `n`."""
-        point = map_point(self.projection, self.resolution, p, n, self.bias, self.reach, active)
-        return self.lookup.lit(point)
-
-
-DEPTHS = ("projected", "linear")
+    def lit_share(self, p: JitVector, n: JitVector, active: JitMask = True) -> JitFloat:
+        """Return the share of the light that arrives at points `p` with surface normals `n`."""
+        settings = self.bias, self.reach, active
+        point = find_map_point(self.projection, self.resolution, p, n, *settings)
+        return self.lookup.lit_share(point)
 
 
 class LightShadow:
     """The shadow of a scene in one light, by a technique.
 
     scene : a `mi.Scene`.
-    placement : the `Placement` of the camera and the light in it.
+    placement : the camera and the light in the scene.
     projection, filter, partition : names of files in the folders of those names.
     resolution : texels along a side of each map; `tiled` shares out those of one map.
-    bias : a `Bias`.
+    bias : how receivers are moved towards the light.
     depth : what maps hold: "projected", the third coordinate of the projection's cube, in which
-        planes stay planes, or "linear", the way of the light.
-    settings : those of the three files, by the names in their `SETTINGS`.
+        planes stay planes, or "linear", the distance that the light has come.
+    settings : of the three files, by the names in their `SETTINGS`.
     """
 
     def __init__(
         self,
-        scene,
-        placement,
-        projection="focused",
-        filter="depth",
-        partition="whole",
-        resolution=1024,
-        bias=AUTOMATIC,
-        depth="projected",
-        **settings,
-    ):
+        scene: MitsubaObject,
+        placement: Placement,
+        projection: str = "focused",
+        filter: str = "depth",
+        partition: str = "whole",
+        resolution: int = 1024,
+        bias: Bias = AUTOMATIC,
+        depth: str = "projected",
+        **settings: Any,
+    ) -> None:
         names = {"projection": projection, "filter": filter, "partition": partition}
-        chosen = techniques(names, settings)
-        project = _holding(depth, chosen["projection"], placement)
-        shared = chosen["partition"](scene, placement, project, resolution)
-        self.which = shared.which
-        reach, see = placement.reach, seen_by(filter)
+        technique = make_techniques(names, settings)
+        project = _use_depth(depth, technique["projection"], placement)
+        partitioned = technique["partition"](scene, placement, project, resolution)
+        self.part_of = partitioned.part_of
+        lookup, render = technique["filter"], find_renderer(filter)
         self.maps = [
-            ShadowMap(scene, part.projection, reach, chosen["filter"], part.resolution, bias, see)
-            for part in shared.parts
+            ShadowMap(
+                scene, part.projection, placement.reach, lookup, part.resolution, bias, render
+            )
+            for part in partitioned.parts
         ]
 
-    def lit(self, p, n, active=True):
-        """The share of the light, in [0, 1], that arrives at points `p` with normals `n`."""
+    def lit_share(self, p: JitVector, n: JitVector, active: JitMask = True) -> JitFloat:
+        """Return the share of the light, in [0, 1], at points `p` with surface normals `n`."""
         import mitsuba as mi
 
-        part = self.which(p)
+        part = self.part_of(p)
         inside = mi.Bool(active) & (part < len(self.maps))
         # all look-ups have the same code, and so a kernel has it once, however many parts there are
-        lit = dr.switch(part, [each.lit for each in self.maps], p, n, inside)
+        lit = dr.switch(part, [each.lit_share for each in self.maps], p, n, inside)
         return dr.select(inside, lit, 1)
 
 
-def _holding(depth, project, whole):
-    """`project`, its maps holding this depth; linear ones the same for all parts of the whole."""
+def _use_depth(
+    depth: str, project: Callable[[Placement], Projection], whole: Placement
+) -> Callable[[Placement], Projection]:
+    """Return `project`, whose maps hold this kind of depth; linear depths are those of `whole`."""
     if depth not in DEPTHS:
         raise no_such("depth", depth, DEPTHS)
     if depth == "projected":
         return project
-    linear = LightDepth.through(whole)
+    linear = LightDepth.from_placement(whole)
     return lambda placement: replace(project(placement), depth=linear)

@@ -1,55 +1,75 @@
-"""A scene shared among several shadow maps: its parts, and to which of them a point belongs."""
+"""A scene divided among several shadow maps: its parts, and to which of them a point belongs."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import JitInt, JitVector
 from brdfkit.core.projective.body import Empty
-from brdfkit.shadows.maps.projection import Projection
+from brdfkit.shadows.maps.placement import Placement
+from brdfkit.shadows.maps.projection import AnyProjection
 
 
 @dataclass(frozen=True)
 class Part:
-    """A part of a scene that has a shadow map of its own: its `projection`, and how many texels the
-    map has along a side, its `resolution`."""
+    """A part of a scene with its own map: the `projection`, and the texels along a side."""
 
-    projection: Projection
+    projection: AnyProjection
     resolution: int
 
 
 @dataclass(frozen=True)
 class Partition:
-    """The `parts`, and the number of each point's part, `which(p)`, a `mi.UInt32` of a
-    `mi.Point3f`: a point has one part, or none where there is no part of that number."""
+    """The `parts` of a scene, and a function from points to the indices of their parts.
+
+    `part_of(p)` is a `mi.UInt32` for a `mi.Point3f`; a point without a part has an index beyond
+    the list.
+    """
 
     parts: list[Part]
-    which: Callable
+    part_of: Callable[[Any], Any]
 
 
-def filled(placements, project, resolution, which):
-    """The `Partition` of those `placements` that hold something, in which number i of `which` is
-    the i-th placement; `Empty` where none does."""
-    parts, numbers = [], []
+def make_parts(
+    placements: Iterable[Placement],
+    project: Callable[[Placement], AnyProjection],
+    resolution: int,
+    placement_of: Callable[[Any], Any],
+) -> Partition:
+    """Make the partition with a part for each placement that is not empty.
+
+    placement_of : function from points to the indices of their placements.
+
+    Raises `Empty` if all placements are.
+    """
+    placements = list(placements)
+    parts: list[Part] = []
+    indices: list[int] = []
     for placement in placements:
         try:
             projection = project(placement)
-        except Empty as empty:
-            nothing = empty
-            numbers.append(len(placements))
+        except Empty as error:
+            empty = error
+            indices.append(len(placements))
             continue
-        numbers.append(len(parts))
+        indices.append(len(parts))
         parts.append(Part(projection, resolution))
     if not parts:
-        raise nothing
-    return Partition(parts, renumbered(which, numbers))
+        raise empty
+    return Partition(parts, _renumber(placement_of, indices))
 
 
-def renumbered(which, numbers):
-    """`which`, whose results are places in the list of `numbers`, with those numbers in place."""
+def _renumber(placement_of: Callable[[Any], Any], indices: list[int]) -> Callable[[Any], Any]:
+    """Return the function that looks the results of `placement_of` up in a list of indices."""
     import mitsuba as mi
 
-    table = mi.UInt32(np.array(numbers, np.uint32))
+    table = mi.UInt32(np.array(indices, np.uint32))
     dr.make_opaque(table)
-    return lambda p: dr.gather(mi.UInt32, table, which(p))
+
+    def part_of(p: JitVector) -> JitInt:
+        return dr.gather(mi.UInt32, table, placement_of(p))
+
+    return part_of

@@ -1,37 +1,24 @@
-"""How large a map's texels are in the picture: √(1/|det J|), with J from pixels to the map.
+"""The size of a map's texels in the picture: √(1/|det J|), with the Jacobian J from pixels to map.
 
-[Ergun 2008, 3.1.1]: where they are larger than pixels, one sees them.
+Texels that are larger than pixels are visible [Ergun 2008, 3.1.1].
 """
+
+from typing import Any
 
 import numpy as np
 
-from brdfkit.shadows.maps.seen_surfaces import SIDE
+from brdfkit.core.array_types import FloatArray, JitFloat, JitVector
+from brdfkit.shadows.maps.projection import AnyProjection
+from brdfkit.shadows.maps.visible_surfaces import SIDE, VisibleSurfaces
 
 
-def depth_curve(projection, corners, count=1000, seed=0):
-    """How far light has come (count,), and its depth on the map (count,), at random points.
+def aliasing(
+    texels: tuple[AnyProjection, int], pixels: tuple[AnyProjection, Any], p: JitVector, n: JitVector
+) -> JitFloat:
+    """Return 1 / |det J|, a texel's area in pixels, at a surface point `p` with normal `n`.
 
-    projection : a `Projection`.
-    corners : (n, 3), of the convex body that has the points.
-    """
-    points = np.random.default_rng(seed).dirichlet(np.full(len(corners), 0.3), count) @ corners
-    return projection.light.path_length(*points.T), projection.to_map(*points.T)[2]
-
-
-def unevenness(before, after):
-    """The share of the spread of depths, in [0, 1], that is no straight line of those before.
-
-    0 if equal lengths along the light have equal depths all over the map.
-    """
-    line = np.polynomial.Polynomial.fit(before, after, 1)
-    return np.std(after - line(before)) / np.std(after)
-
-
-def aliasing(texels, pixels, p, n):
-    """1 / |det J| at a point `p` of a surface with the normal `n`, of three components each.
-
-    texels : of the shadow map, a `Projection` and its resolution.
-    pixels : of the picture, a `Projection` by its camera's matrix, and its width and height.
+    texels : of the shadow map, its projection and resolution.
+    pixels : of the picture, a projection by its camera's matrix, and its width and height.
 
     Components are floats, NumPy arrays or, of opaque projections, Dr.Jit arrays.
     """
@@ -41,10 +28,11 @@ def aliasing(texels, pixels, p, n):
     return pixel_density / (resolution**2 * magnification(projection, p, n))
 
 
-def magnification(projection, p, n):
-    """The area on the map's square, over that on the surface."""
+def magnification(projection: AnyProjection, p: JitVector, n: JitVector) -> JitFloat:
+    """Return the area on the map's square per area on a surface at `p` with the normal `n`."""
     (u_x, v_x, _), (u_y, v_y, _), (u_z, v_z, _) = (
-        projection.along(p, way) for way in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+        projection.derivative_along(p, way)
+        for way in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
     )
     return abs(
         n[0] * (u_y * v_z - u_z * v_y)
@@ -53,22 +41,22 @@ def magnification(projection, p, n):
     )
 
 
-def on_map(projection, seen):
-    """The places (n, 2) on a projection's map, in [-1, 1]², of the points of a `SeenSurfaces`."""
-    return np.column_stack(projection.to_map(*seen.points.T)[:2])
+def places_on_map(projection: AnyProjection, surfaces: VisibleSurfaces) -> FloatArray:
+    """Return the places (n, 2) of visible points on a projection's map, in [-1, 1]²."""
+    return np.column_stack(projection.to_map(*surfaces.points.T)[:2])
 
 
-def footprints(places, seen):
-    """The widths (n,) in the picture's rays of a step of 1 at `places` (n, 2) of the map.
+def footprints(places: FloatArray, surfaces: VisibleSurfaces) -> FloatArray:
+    """Return the widths (n,) in the picture, in rays, of a step of 1 on the map at `places` (n, 2).
 
-    By differences between neighbouring rays; at borders of surfaces these are too large and the
-    widths too small, and 0 where a neighbour hits nothing.
+    They come from differences between neighbouring rays. At borders of surfaces the differences are
+    too large and the widths too small; a width is 0 where a neighbour hits nothing.
     """
     grid = np.full((SIDE, SIDE, 2), np.nan)
-    grid[seen.hit] = places
+    grid[surfaces.hit] = places
     (u_row, v_row), (u_column, v_column) = (
         np.moveaxis(np.diff(grid, axis=axis, append=np.nan), -1, 0) for axis in (0, 1)
     )
-    area = np.abs(u_row * v_column - u_column * v_row)[seen.hit]
-    known = area > 0  # not where it is not a number, either
+    area = np.abs(u_row * v_column - u_column * v_row)[surfaces.hit]
+    known = area > 0  # false for NaN
     return np.where(known, 1 / np.sqrt(np.where(known, area, 1)), 0)

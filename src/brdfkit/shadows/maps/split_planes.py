@@ -1,17 +1,21 @@
-"""Planes across the view that part what a camera sees, and between which of them a point is.
+"""Planes across the view that divide what a camera sees, and between which of them a point is.
 
-Of the depths from n to f, plane i of m is at
+For depths from n to f, plane i of m is at
 
     C_log = n (f/n)^(i/m),   C_uni = n + i (f - n)/m,   C_mean = (C_log + C_uni)/2
 
-Logarithmic ones make texels equally large in the picture at all depths, yet spend most parts near
-the eye; uniform ones spend most far away; the mean is between [Zhang et al. 2006], [Ergun 2008,
+Logarithmic ones make texels equally large in the picture at all depths, but spend most parts near
+the eye. Uniform ones spend most far away; the mean is between [Zhang et al. 2006], [Ergun 2008,
 2.2.3.4].
 """
+
+from collections.abc import Callable
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, JitInt, JitVector
+from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.homogeneous import transform
 from brdfkit.mitsuba_bridge.properties.declarations import count, word
 
@@ -22,10 +26,10 @@ SETTINGS = {
 }
 
 
-def split_planes(near, far, parts, spacing):
-    """The depths (parts + 1,) of the planes, from `near` to `far`.
+def compute_split_planes(near: float, far: float, parts: int, spacing: str) -> FloatArray:
+    """Return the depths (parts + 1,) of the planes, from `near` to `far`.
 
-    >>> split_planes(1, 100, 2, "logarithmic")
+    >>> compute_split_planes(1, 100, 2, "logarithmic")
     array([  1.,  10., 100.])
     """
     uniform = np.linspace(near, far, parts + 1)
@@ -34,17 +38,19 @@ def split_planes(near, far, parts, spacing):
     return {"uniform": uniform, "logarithmic": logarithmic, "mean": mean}[spacing]
 
 
-def by_depth(camera, planes):
-    """The function from points to the numbers, from 0 on, of the spaces between `planes`; what is
-    before the first or behind the last is in the first or last space."""
+def make_slice_finder(camera: Camera, planes: FloatArray) -> Callable[[JitVector], JitInt]:
+    """Return the function from points to the indices of the slices between `planes`.
+
+    A point before the first or behind the last plane is in the first or last slice.
+    """
     import mitsuba as mi
 
     view = mi.Matrix4f(camera.view)
     inner = [dr.opaque(mi.Float, float(plane)) for plane in planes[1:-1]]
     dr.make_opaque(view)
 
-    def which(p):
+    def slice_of(p: JitVector) -> JitInt:
         depth = -transform(view, *p)[2]
         return sum((dr.select(depth > plane, mi.UInt32(1), 0) for plane in inner), mi.UInt32(0))
 
-    return which
+    return slice_of

@@ -1,6 +1,18 @@
-"""The depths of a map by whole texels: looked up one by one, never blended."""
+"""Look-ups of the depths of a map by whole texels, one by one or in square windows, never blended.
+
+Filters compare each texel's depth with the surface's first and average then.
+"""
+
+from collections.abc import Callable
+from typing import Any
 
 import drjit as dr
+
+from brdfkit.core.array_types import JitFloat, JitInt, JitMask, MitsubaObject
+from brdfkit.mitsuba_bridge.properties.declarations import count
+from brdfkit.shadows.maps.map_point import MapPoint
+
+WIDTH = count(3, (1, 15), "texels along a side of the window")
 
 
 class Texels:
@@ -9,32 +21,74 @@ class Texels:
     values : a `mi.TensorXf` (resolution, resolution).
     """
 
-    def __init__(self, values):
+    def __init__(self, values: MitsubaObject) -> None:
         self.resolution = values.shape[0]
         self.values = values.array
 
-    def at(self, column, row, active=True):
-        """The values at whole texels, `mi.Int32`."""
+    def value_at(self, column: JitInt, row: JitInt, active: JitMask = True) -> JitFloat:
+        """Return the values at whole texels, by `mi.Int32`."""
         import mitsuba as mi
 
         size = dr.opaque(mi.Int32, self.resolution)
         within = active & (column >= 0) & (column < size) & (row >= 0) & (row < size)
-        found = dr.gather(mi.Float, self.values, mi.UInt32(row * size + column), within)
-        return dr.select(within, found, dr.inf)
+        value = dr.gather(mi.Float, self.values, mi.UInt32(row * size + column), within)
+        return dr.select(within, value, dr.inf)
 
-    def depth_under(self, point, u, v):
-        """The value at a place of the map, and the depth that the plane of a `MapPoint` has in the
-        middle of that texel."""
+    def depths_at(self, point: MapPoint, u: JitFloat, v: JitFloat) -> tuple[JitFloat, JitFloat]:
+        """Return the map's value at (u, v), and the depth of a point's plane in that texel."""
         import mitsuba as mi
 
         u, v = dr.floor(u), dr.floor(v)
-        there = point.depth_at(u + 0.5, v + 0.5)
-        return self.at(mi.Int32(u), mi.Int32(v), point.active), there
+        plane_depth = point.plane_depth(u + 0.5, v + 0.5)
+        return self.value_at(mi.Int32(u), mi.Int32(v), point.active), plane_depth
 
-    def lit(self, point, u, v):
-        """1 where the texel at a place of the map leaves a `MapPoint` lit, 0 where it saw
-        something nearer."""
+    def lit_share(self, point: MapPoint, u: JitFloat, v: JitFloat) -> JitFloat:
+        """Return 1 where the texel at (u, v) leaves a point lit, 0 where it is nearer."""
         import mitsuba as mi
 
-        seen, depth = self.depth_under(point, u, v)
-        return dr.select(depth > seen, mi.Float(0), 1)
+        occluder, depth = self.depths_at(point, u, v)
+        return dr.select(depth > occluder, mi.Float(0), 1)
+
+
+class Windows:
+    """Square windows of texels; a frame of infinity is as wide as a window beyond the map's edge.
+
+    values : a `mi.TensorXf` (resolution, resolution).
+    width : texels along a side of a window.
+    """
+
+    def __init__(self, values: MitsubaObject, width: int) -> None:
+        self.width, self.resolution = width, values.shape[0]
+        self.values = add_frame(values, width).array
+
+    def lit_share(self, point: MapPoint, weights: Callable[[Any], Any]) -> JitFloat:
+        """Return the mean of the comparisons of a window's texels: Σ_ij w_i w_j [z ≤ f_ij].
+
+        weights : of the columns or rows; a function of where, from 0 to 1, the window begins
+            within its first texel.
+        """
+        import mitsuba as mi
+
+        n, half = self.width, (self.width - 1) / 2
+        u, v = dr.floor(point.u - half), dr.floor(point.v - half)
+        size = dr.opaque(mi.Int32, self.resolution)
+        column, row = (dr.clip(mi.Int32(begin), -n, size) + n for begin in (u, v))
+        first, row_length = mi.UInt32(row * (size + 2 * n) + column), mi.UInt32(size + 2 * n)
+        across, upwards = weights(point.u - half - u), weights(point.v - half - v)
+
+        def compare(i: int, j: int) -> JitFloat:
+            occluder = dr.gather(mi.Float, self.values, first + (j * row_length + i))
+            depth = point.plane_depth(u + i + 0.5, v + j + 0.5)
+            return dr.select(depth > occluder, mi.Float(0), 1)
+
+        rows = (upwards[j] * sum(across[i] * compare(i, j) for i in range(n)) for j in range(n))
+        return dr.select(point.active, sum(rows), 1)
+
+
+def add_frame(values: MitsubaObject, width: int) -> MitsubaObject:
+    """Return a square tensor with a frame of infinity, `width` values wide."""
+    for axis in (0, 1):
+        shape = [width, values.shape[1]] if axis == 0 else [values.shape[0], width]
+        edge = dr.full(type(values), dr.inf, shape)
+        values = dr.concat([edge, values, edge], axis)
+    return values

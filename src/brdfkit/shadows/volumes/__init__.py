@@ -1,1 +1,1 @@
-"""Shadow volumes: silhouettes, pushed away from the light, that enclose all that is dark."""
+"""Shadow volumes: silhouettes, extruded away from the light, that enclose all that is dark."""

@@ -5,32 +5,34 @@ from functools import cached_property
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray, IntArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.shadows.volumes.tessellation import tessellated
+from brdfkit.shadows.volumes.tessellation import tessellate
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """Triangles by the numbers (m, 3) of their corners, which are `points` (n, 3).
+    """Triangles by the indices (m, 3) of their corners among `points` (n, 3).
 
-    No two points are at one place: a seam of texture coordinates does not part the triangles.
+    No two points are at one place, so that a seam of texture coordinates does not separate
+    triangles.
     """
 
     name: str
-    points: np.ndarray
-    triangles: np.ndarray
+    points: AnyArray
+    triangles: AnyArray
 
     @classmethod
-    def of(cls, name, points, triangles):
-        """Of any `points`; those at one place become one."""
-        points, number = np.unique(points, axis=0, return_inverse=True)
-        return cls(name, points, number.ravel()[triangles])
+    def weld(cls, name: str, points: AnyArray, triangles: AnyArray) -> "Mesh":
+        """Make a mesh of any `points`; those at one place become one."""
+        points, index = np.unique(points, axis=0, return_inverse=True)
+        return cls(name, points, index.ravel()[triangles])
 
     @classmethod
-    def of_shape(cls, shape):
-        """Of one of Mitsuba's; `BrdfkitError` for one that neither has triangles nor gets any."""
+    def from_shape(cls, shape: MitsubaObject) -> "Mesh":
+        """Make a mesh of a Mitsuba shape; raise `BrdfkitError` if it cannot have triangles."""
         if not shape.is_mesh():
-            return cls.of(shape.id(), *tessellated(shape))
+            return cls.weld(shape.id(), *tessellate(shape))
         points = np.array(shape.vertex_positions_buffer(), float).reshape(-1, 3)
         triangles = np.array(shape.faces_buffer(), int).reshape(-1, 3)
         if not np.isfinite(points[triangles]).all():
@@ -38,24 +40,25 @@ class Mesh:
                 f"{shape.id()}: the mesh has a triangle whose corners are not all finite, which "
                 "has no shadow volume; mend or remove it."
             )
-        return cls.of(shape.id(), points, triangles)
+        return cls.weld(shape.id(), points, triangles)
 
     @cached_property
-    def normals(self):
+    def normals(self) -> FloatArray:
         """The normals (m, 3) of the triangles, as long as twice their areas."""
         a, b, c = self.points[self.triangles].transpose(1, 0, 2)
         return np.cross(b - a, c - a)
 
     @cached_property
-    def shared_edges(self):
-        """The edges (k, 2) and, of each, the triangle that has it forwards, and backwards.
+    def shared_edges(self) -> tuple[IntArray, IntArray, IntArray]:
+        """The edges (k, 2), and for each the triangle that has it forwards, and backwards.
 
-        Two sweeps: edges whose first number is the smaller, then the others, which must be the same
-        ones. Raises `BrdfkitError` where they are not: the mesh is open, or turned both ways.
+        Edges whose first index is the smaller are matched with the others, which must be the same
+        ones. Raises `BrdfkitError` if they are not: the mesh is open, or oriented both ways.
         """
         first, last, triangle = directed_edges(self.triangles)
         key = np.minimum(first, last) * len(self.points) + np.maximum(first, last)
-        forwards, backwards = (sweep[np.argsort(key[sweep])] for sweep in sweeps(first < last))
+        sides = np.flatnonzero(first < last), np.flatnonzero(first >= last)
+        forwards, backwards = (side[np.argsort(key[side])] for side in sides)
         if not (
             np.array_equal(key[forwards], key[backwards])
             and len(np.unique(key[forwards])) == len(forwards)
@@ -69,13 +72,8 @@ class Mesh:
         return edges, triangle[forwards], triangle[backwards]
 
 
-def directed_edges(triangles):
-    """The edges of triangles (m, 3), in their turn: first and last numbers, and whose (3m,)."""
+def directed_edges(triangles: IntArray) -> tuple[IntArray, IntArray, IntArray]:
+    """Return first and last corners and the triangle (3m,) of each edge of triangles (m, 3)."""
     first = triangles.ravel()
     last = triangles[:, [1, 2, 0]].ravel()
     return first, last, np.repeat(np.arange(len(triangles)), 3)
-
-
-def sweeps(mask):
-    """The indices where a mask holds, and where not."""
-    return np.flatnonzero(mask), np.flatnonzero(~mask)

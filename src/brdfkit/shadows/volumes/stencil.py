@@ -1,53 +1,69 @@
-"""The stencil buffer: how many faces of volumes a ray of the camera meets before, or behind, p."""
+"""The stencil buffer: how many faces of volumes a camera ray meets before, or behind, a point.
+
+The picture is halved again and again into tiles, each with a list of the faces that may be visible
+in it, so that a ray tests few faces.
+"""
 
 import drjit as dr
 import numpy as np
 
-from brdfkit.shadows.volumes.tiles import faces_by_tile
+from brdfkit.core.array_types import FloatArray, JitFloat, JitInt, JitMask, JitVector
+from brdfkit.shadows.volumes.projected_faces import ProjectedFaces
 
-RECORD = 5  # of four numbers each: four edges with their ties, the depth with how often it counts
+RECORD = 5  # vectors of four per face: four edges with their ties, the depth with `times`
+SLACK = 1e-5  # of the picture's size: beyond the rounding of the edges
+MAX_PAIRS = 2**24  # of a face and a tile, beyond which tiles are not halved further
 
 
 class Stencil:
-    """Counts of faces over the picture of a camera; entering adds, leaving takes away.
+    """Counts of faces over a camera's picture; entering a volume adds, leaving it subtracts.
 
-    faces : `SeenFaces`.
-    halvings : see `faces_by_tile`.
+    faces : the faces in the picture.
+    halvings : how often the picture is halved into tiles.
     """
 
-    def __init__(self, faces, halvings):
+    def __init__(self, faces: ProjectedFaces, halvings: int) -> None:
         import mitsuba as mi
 
         edges = np.concatenate([faces.edges, faces.ties[..., None]], axis=2)
         depth = np.column_stack([faces.inverse_depth, faces.times])
         self.records = mi.Float(np.concatenate([edges, depth[:, None]], axis=1).ravel())
-        self.numbers, self.begins, tiles = faces_by_tile(faces.edges, halvings)
+        self.indices, self.begins, tiles = list_faces_by_tile(faces.edges, halvings)
         self.tiles = mi.UInt32(tiles)
-        dr.make_opaque(self.records, self.numbers, self.begins, self.tiles)
+        dr.make_opaque(self.records, self.indices, self.begins, self.tiles)
 
     @property
-    def tests(self):
-        """How many pairs of a face and a tile there are."""
-        return len(self.numbers)
+    def tests(self) -> int:
+        """The number of pairs of a face and a tile."""
+        return len(self.indices)
 
     @property
-    def memory(self):
-        """What the volumes take [bytes]."""
-        return 4 * sum(map(len, (self.records, self.numbers, self.begins)))
+    def memory(self) -> int:
+        """The memory of the volumes [bytes]."""
+        return 4 * sum(map(len, (self.records, self.indices, self.begins)))
 
-    def count(self, x, y, least, most, active=True):
-        """The sum (`mi.Int32`) over the faces that the ray of a place of the picture meets, with
-        1/z above `least` and up to `most`."""
+    def count(
+        self,
+        x: JitFloat,
+        y: JitFloat,
+        least: JitFloat,
+        most: JitFloat,
+        active: JitMask = True,
+    ) -> JitInt:
+        """Return the sum (`mi.Int32`) over the faces that the rays at (x, y) of the picture meet.
+
+        Faces count whose 1/z is above `least` and at most `most`.
+        """
         import mitsuba as mi
 
         if not self.tests:
             return dr.zeros(mi.Int32, dr.width(x))
-        tile = self.tile(x, y)
+        tile = self.find_tile(x, y)
         start = dr.gather(mi.UInt32, self.begins, tile, active)
         end = dr.gather(mi.UInt32, self.begins, tile + 1, active)
 
-        def body(index, count):
-            face = RECORD * dr.gather(mi.UInt32, self.numbers, index)
+        def add_face(index: JitInt, count: JitInt) -> tuple[JitInt, JitInt]:
+            face = RECORD * dr.gather(mi.UInt32, self.indices, index)
             *edges, depth = (dr.gather(mi.Vector4f, self.records, face + k) for k in range(RECORD))
             inverse_depth = depth.x * x + depth.y * y + depth.z
             meets = (inverse_depth > least) & (inverse_depth <= most)
@@ -56,13 +72,63 @@ class Stencil:
             return index + 1, count + dr.select(meets, mi.Int32(depth.w), 0)
 
         state = start, mi.Int32(0)
-        return dr.while_loop(state, lambda index, count: index < end, body)[1]
+        return dr.while_loop(state, lambda index, count: index < end, add_face)[1]
 
-    def tile(self, x, y):
-        """The number of the tile of a place; places off the picture have that of its edge."""
+    def find_tile(self, x: JitFloat, y: JitFloat) -> JitInt:
+        """Return the index of the tile at (x, y); places off the picture get the nearest tile."""
         import mitsuba as mi
 
         column, row = (mi.Int32(dr.floor((c + 1) * 0.5 * mi.Float(self.tiles))) for c in (x, y))
         last = mi.Int32(self.tiles) - 1
         column, row = dr.clip(column, 0, last), dr.clip(row, 0, last)
         return mi.UInt32(row) * self.tiles + mi.UInt32(column)
+
+
+def list_faces_by_tile(edges: FloatArray, halvings: int) -> tuple[JitInt, JitInt, int]:
+    """Return the indices of faces tile by tile, where each tile's begin, and the tiles per side.
+
+    The first two are `mi.UInt32`; the picture [-1, 1]² has its tiles row by row.
+
+    edges : (k, 4, 3), of `ProjectedFaces`.
+    halvings : how often the picture is halved, both ways, unless the pairs become too many.
+    """
+    import mitsuba as mi
+
+    factors = [mi.Float(np.ascontiguousarray(edges[:, i].ravel())) for i in range(4)]
+    face = dr.arange(mi.UInt32, len(edges))
+    column, row = dr.zeros(mi.UInt32, len(edges)), dr.zeros(mi.UInt32, len(edges))
+    for level in range(halvings + 1):
+        if not len(face):
+            break
+        within = may_touch_tile(factors, face, column, row, dr.opaque(mi.Float, 1 / 2**level))
+        indices: JitInt = dr.compress(within)
+        face, column, row = (dr.gather(mi.UInt32, part, indices) for part in (face, column, row))
+        if level == halvings or len(face) > MAX_PAIRS:
+            break
+        quarter = dr.tile(dr.arange(mi.UInt32, 4), len(face))
+        face = dr.repeat(face, 4)
+        column = 2 * dr.repeat(column, 4) + quarter % 2
+        row = 2 * dr.repeat(row, 4) + quarter // 2
+    tile = np.array(row) * 2**level + np.array(column)
+    order = np.argsort(tile, kind="stable")
+    begins = np.searchsorted(tile[order], np.arange(4**level + 1))
+    return mi.UInt32(np.array(face)[order]), mi.UInt32(begins), 2**level
+
+
+def may_touch_tile(
+    factors: list[JitVector], face: JitInt, column: JitInt, row: JitInt, half: JitFloat
+) -> JitMask:
+    """Return whether faces may touch tiles: no edge has all of the tile on its outer side.
+
+    factors : the coefficients of each edge for all faces.
+    half : half the width of a tile.
+    """
+    import mitsuba as mi
+
+    x, y = (2 * mi.Float(place) * half + (half - 1) for place in (column, row))
+    within = mi.Bool(True)
+    for edge in factors:
+        a, b, c = dr.gather(mi.Vector3f, edge, face)
+        farthest = a * x + b * y + c + (half + SLACK) * (dr.abs(a) + dr.abs(b))
+        within &= farthest >= 0
+    return within

@@ -1,18 +1,21 @@
-"""Triangles of Mitsuba's round shapes, whose corners lie on them.
+"""Triangles of Mitsuba's round shapes, whose corners lie on the shapes.
 
-A ball's shadow is smaller by 1 - cos(π/128), 0.03 % of its radius; a shape that bulges is not
-shadowed by its own triangles, which lie within.
+The shadow of a tessellated ball is smaller by 1 - cos(π/128), 0.03 % of its radius. A convex shape
+is not shadowed by its own triangles, as they lie within it.
 """
+
+from collections.abc import Sequence
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, IntArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 
 AROUND, UPWARDS = 128, 64  # steps about the axis, and from pole to pole
 
 
-def tessellated(shape):
-    """The points (n, 3) and triangles (m, 3) of a sphere, cylinder or disk of Mitsuba's.
+def tessellate(shape: MitsubaObject) -> tuple[FloatArray, IntArray]:
+    """Return the points (n, 3) and triangles (m, 3) of a Mitsuba sphere, cylinder or disk.
 
     Raises `BrdfkitError` for other shapes.
     """
@@ -21,11 +24,11 @@ def tessellated(shape):
     kind = shape.class_name()
     if kind == "Sphere":
         theta = np.linspace(0, np.pi, UPWARDS + 1)
-        points, triangles = turned(np.sin(theta), np.cos(theta), poles=(0, UPWARDS))
+        points, triangles = revolve(np.sin(theta), np.cos(theta), poles=(0, UPWARDS))
     elif kind == "Cylinder":
-        points, triangles = turned(np.ones(2), np.arange(2.0))
+        points, triangles = revolve(np.ones(2), np.arange(2.0))
     elif kind == "Disk":
-        points, triangles = turned(np.arange(2.0), np.zeros(2), poles=(0,))
+        points, triangles = revolve(np.arange(2.0), np.zeros(2), poles=(0,))
     else:
         raise BrdfkitError(
             f"{shape.id()}: shadow volumes are made of triangles, and this shape "
@@ -35,21 +38,23 @@ def tessellated(shape):
     return points @ to_world[:3, :3].T + to_world[:3, 3], triangles
 
 
-def turned(radius, height, poles=()):
-    """Points (n, 3) and triangles (m, 3) of a line, `radius` (k,) by `height` (k,), turned about z.
+def revolve(
+    radius: FloatArray, height: FloatArray, poles: Sequence[int] = ()
+) -> tuple[FloatArray, IntArray]:
+    """Return points (n, 3) and triangles of a profile, `radius` (k,) by `height` (k,), about z.
 
-    poles : the numbers of the line's points that lie on the axis.
+    poles : the indices of the profile's points that lie on the axis.
     """
     phi = np.arange(AROUND) * 2 * np.pi / AROUND
-    points = np.stack([np.outer(radius, np.cos(phi)), np.outer(radius, np.sin(phi))], axis=-1)
-    points = np.dstack([points, np.repeat(height, AROUND).reshape(-1, AROUND)]).reshape(-1, 3)
+    circles = np.stack([np.outer(radius, np.cos(phi)), np.outer(radius, np.sin(phi))], axis=-1)
+    points = np.dstack([circles, np.repeat(height, AROUND).reshape(-1, AROUND)]).reshape(-1, 3)
     row, column = np.divmod(np.arange((len(radius) - 1) * AROUND), AROUND)
 
-    def number(row, column):
+    def index(row: IntArray, column: IntArray) -> IntArray:
         return row * AROUND + np.where(np.isin(row, poles), 0, column % AROUND)
 
-    a, b = number(row, column), number(row, column + 1)
-    c, d = number(row + 1, column), number(row + 1, column + 1)
+    a, b = index(row, column), index(row, column + 1)
+    c, d = index(row + 1, column), index(row + 1, column + 1)
     triangles = np.concatenate([np.column_stack([a, c, d]), np.column_stack([a, d, b])])
     flat = np.any(triangles == np.roll(triangles, 1, axis=1), axis=1)
     return points, triangles[~flat]

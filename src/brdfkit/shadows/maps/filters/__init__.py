@@ -1,7 +1,7 @@
-"""One way to look up a shadow map a file, by the file's name; a new file is found by being there.
+"""Filters, the ways to look up a shadow map; a file is a filter, and is found by its name.
 
-Each has a class `Lookup(depths, ...)`, of the depths (resolution, resolution) that the light sees,
-with `lit(point)`: of a `MapPoint`, the share of the light that arrives, in [0, 1]. `SETTINGS` are
-described in `techniques.py`. A file whose map holds something else has a function `see(scene,
-projection, resolution)`, as `depth_pass` is.
+Each file has a class `Lookup(depths, ...)` of the depths (resolution, resolution) that the light
+sees, with a method `lit_share(point)`: the share of the light, in [0, 1], at a `MapPoint`.
+`techniques.py` describes its `SETTINGS`. A file whose map holds something else has a function
+`render_map(scene, projection, resolution)` in place of `render_depths`.
 """

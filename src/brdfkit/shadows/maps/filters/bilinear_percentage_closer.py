@@ -1,31 +1,34 @@
-"""Bilinear percentage-closer filter: as PCF, but the window moves with the point, without steps.
+"""Bilinear percentage-closer filter: a percentage-closer window that moves with the point.
 
-    lit = Σ_ij w_i w_j [z ≤ f_ij],   w = (1 - f, 1 ... 1, f) / (n - 1)
+    lit = Σ_ij w_i w_j [z ≤ f_ij],   w = (1 - s, 1 ... 1, s) / (n - 1)
 
-f is where in a texel the window begins; of 3 texels, w = ((1 - f)/2, 1/2, f/2): the mean of the
-four bilinear interpolations of [Ergun 2008, 2.2.1.3], which are those that graphics hardware makes
-of the comparisons of 2 × 2 texels. The borders of shadows are n - 1 texels wide, and smooth.
+z is the depth of the point, f_ij the depth in a texel, and s, from 0 to 1, where the window begins
+in its first texel. With 3 texels, w = ((1 - s)/2, 1/2, s/2): the mean of the four bilinear
+interpolations of [Ergun 2008, 2.2.1.3], which graphics hardware makes of the comparisons of 2 × 2
+texels. The borders of shadows are n - 1 texels wide, and smooth.
 
 [Reeves et al. 1987], [Ergun 2008, 2.2.1.3]
 """
 
-from brdfkit.shadows.maps.window import WIDTH, Windows
+from brdfkit.core.array_types import JitFloat, MitsubaObject
+from brdfkit.shadows.maps.map_point import MapPoint
+from brdfkit.shadows.maps.texels import WIDTH, Windows
 
 SETTINGS = {"width": WIDTH}
 
 
 class Lookup:
-    """The mean of comparisons over a square, `width` - 1 texels along a side; of 1, `depth`'s."""
+    """The mean of comparisons over a square, `width` - 1 texels along a side; `depth` for 1."""
 
-    def __init__(self, depths, width):
+    def __init__(self, depths: MitsubaObject, width: int) -> None:
         self.windows, self.width = Windows(depths, width), width
 
-    def lit(self, point):
-        """The share of the light that arrives at a `MapPoint`."""
-        return self.windows.mean_lit(point, self.weights)
+    def lit_share(self, point: MapPoint) -> JitFloat:
+        """Return the share of the light that arrives at a point."""
+        return self.windows.lit_share(point, self.weights)
 
-    def weights(self, begin):
-        """Of the columns or rows of a window that begins at `begin`, 0 to 1, in its first texel."""
+    def weights(self, begin: JitFloat) -> list[JitFloat]:
+        """Return the weights of the columns or rows of a window that begins at `begin`, 0 to 1."""
         if self.width == 1:
             return [1.0]
         inner = [1.0] * (self.width - 2)

@@ -1,21 +1,24 @@
-"""One look-up: a point is dark where the map saw something nearer to the light.
+"""One look-up: a point is dark where the map holds a depth nearer to the light.
 
     lit = [z ≤ f(u, v)]
 
-The border of a shadow runs along the edges of texels, in steps.
+z is the depth of the point, f that in the map. The border of a shadow runs along the edges of
+texels, in steps.
 
 [Williams 1978], [Ergun 2008, 2.2.1.2]
 """
 
+from brdfkit.core.array_types import JitFloat, MitsubaObject
+from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.texels import Texels
 
 
 class Lookup:
-    """A map as it is, texel by texel."""
+    """The map itself, texel by texel."""
 
-    def __init__(self, depths):
+    def __init__(self, depths: MitsubaObject) -> None:
         self.texels = Texels(depths)
 
-    def lit(self, point):
-        """The share of the light that arrives at a `MapPoint`: 0 or 1."""
-        return self.texels.lit(point, point.u, point.v)
+    def lit_share(self, point: MapPoint) -> JitFloat:
+        """Return the share of the light that arrives at a point: 0 or 1."""
+        return self.texels.lit_share(point, point.u, point.v)

@@ -1,41 +1,46 @@
-"""Moment shadow map (MSM): the sharpest bound on the light from four moments of the depths near by.
+"""Moment shadow map (MSM): the sharpest bound on the light from four moments of nearby depths.
 
     lit = max { P(X ≥ z) : E(X) = b₁ ... E(X⁴) = b₄ }
 
-is the solution of a moment problem of Hamburger's. Of two planes above a third it is the share
-itself, where a variance shadow map leaks. Moments nearly of fewer depths are sensitive to rounding:
-they are drawn towards the middle by `rounding`, which lets some light through. The bound is sharp
-enough to see that half of a slanted surface's own window is nearer to the light than the point;
-where the bias follows planes, the point has the least depth of its plane within half a texel.
+is the solution of a Hamburger moment problem. With two occluding planes above a third it is the
+exact share, where a variance shadow map leaks. Moments that are nearly those of fewer depths are
+sensitive to rounding: they are drawn towards a middle by `rounding`, which lets some light through.
+The bound is sharp enough to show that half of the window on a slanted surface is nearer to the
+light than the point. So where the bias follows planes, the point has the least depth of its plane
+within half a texel.
 
 [Peters & Klein 2015]
 """
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat
 from brdfkit.mitsuba_bridge.properties.declarations import plain_number
+from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.moments import moving_depths
-from brdfkit.shadows.maps.moments.bounds import most_lit
-from brdfkit.shadows.maps.moments.moment_map import BLEEDING, BLUR, MomentMap, without_bleeding
+from brdfkit.shadows.maps.moments.bounds import bound_by_four_moments
+from brdfkit.shadows.maps.moments.moment_map import BLEEDING, BLUR, MomentMap, remove_bleeding
 
 SETTINGS = {
     "blur": BLUR,
     "bleeding": BLEEDING,
     "rounding": plain_number(3e-5, (0.0, 0.1), "by how much moments are drawn to the middle"),
 }
-see = moving_depths.see
+render_map = moving_depths.render_map
 
 
 class Lookup:
     """Four moments of depth, blurred."""
 
-    def __init__(self, depths, blur, bleeding, rounding):
+    def __init__(
+        self, depths: moving_depths.MovingDepths, blur: int, bleeding: float, rounding: float
+    ) -> None:
         self.moments = MomentMap(lambda z: [z, z * z, z**3, z**4], depths, blur)
         self.bleeding, self.rounding = bleeding, rounding
 
-    def lit(self, point):
-        """The greatest share of the light that may arrive at a `MapPoint`."""
+    def lit_share(self, point: MapPoint) -> JitFloat:
+        """Return the greatest share of the light that may arrive at a point."""
         depth = point.depth - (dr.abs(point.slope_u) + dr.abs(point.slope_v)) / 2
         depth = dr.clip(depth, -1, 1)
-        bound = most_lit(self.moments.at(point), depth, self.rounding)
-        return dr.select(self.moments.within(point), without_bleeding(bound, self.bleeding), 1)
+        bound = bound_by_four_moments(self.moments.means_at(point), depth, self.rounding)
+        return dr.select(self.moments.contains(point), remove_bleeding(bound, self.bleeding), 1)

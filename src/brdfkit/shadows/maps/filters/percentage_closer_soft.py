@@ -2,11 +2,12 @@
 
     w = w_light (d_r - d_b) / d_b
 
-d_r is the receiver's distance from the light and d_b the mean one of the occluders that a search
-finds, as if all of them were a plane there, parallel to the light. The search takes the cone from
-the receiver to the light, up to the map's near side. Both look at taps on a spiral in a disk that
-is round in the world, whatever the projection does to it. `light_size` makes a round light of the
-point that the scene has; of one far away it is the tangent of its diameter, the sun's 0.0093.
+w is the width of the penumbra and w_light that of the light, d_r the receiver's distance from the
+light. d_b is the mean distance of the occluders that a search finds, as if all of them were a plane
+parallel to the light. The search takes the cone from the receiver to the light, up to the map's
+near side. Both look at taps on a spiral in a disk that is round in the world, whatever the
+projection does to it. `light_size` gives the scene's point light a size; for a light far away it is
+the tangent of its diameter, 0.0093 for the sun.
 
 Occluders behind others are not seen, and the mean over several depths is none of them: overlapping
 penumbrae are wrong, and contacts a little too light.
@@ -15,10 +16,13 @@ penumbrae are wrong, and contacts a little too light.
 """
 
 import math
+from collections.abc import Iterator
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat, MitsubaObject
 from brdfkit.mitsuba_bridge.properties.declarations import count, plain_number
+from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.texels import Texels
 
 SETTINGS = {
@@ -30,47 +34,44 @@ SETTINGS = {
 class Lookup:
     """A search for occluders, then the mean of comparisons over a disk."""
 
-    def __init__(self, depths, light_size, taps):
-        self.texels, self.light_size, self.taps = Texels(depths), light_size, spiral(taps)
+    def __init__(self, depths: MitsubaObject, light_size: float, taps: int) -> None:
+        self.texels, self.light_size, self.taps = Texels(depths), light_size, make_spiral(taps)
 
-    def lit(self, point):
-        """The share of the light that arrives at a `MapPoint`."""
-        return self.mean_lit(point, self.penumbra(point, self.mean_depth_of_occluders(point)))
+    def lit_share(self, point: MapPoint) -> JitFloat:
+        """Return the share of the light that arrives at a point."""
+        width = self.penumbra_width(point, self.mean_occluder_depth(point))
+        lit = sum(self.texels.lit_share(point, u, v) for u, v in self.places(point, width))
+        return lit / len(self.taps)
 
-    def mean_depth_of_occluders(self, point):
-        """In the map's cube; the point's own where there are none."""
+    def mean_occluder_depth(self, point: MapPoint) -> JitFloat:
+        """Return the mean depth of occluders in the map's cube; the point's own without any."""
         import mitsuba as mi
 
-        total, found = mi.Float(0), mi.Float(0)
-        for u, v in self.places(point, self.penumbra(point, mi.Float(-1))):
-            seen, depth = self.texels.depth_under(point, u, v)
-            total += dr.select(seen < depth, dr.maximum(seen, -1), 0)
-            found += dr.select(seen < depth, mi.Float(1), 0)
-        return dr.select(found > 0, total / found, point.depth)
+        total, count = mi.Float(0), mi.Float(0)
+        for u, v in self.places(point, self.penumbra_width(point, mi.Float(-1))):
+            occluder, depth = self.texels.depths_at(point, u, v)
+            total += dr.select(occluder < depth, dr.maximum(occluder, -1), 0)
+            count += dr.select(occluder < depth, mi.Float(1), 0)
+        return dr.select(count > 0, total / count, point.depth)
 
-    def penumbra(self, point, depth):
-        """w of occluders at a depth of the map's cube [unit of length]."""
-        occluder, light = point.before(depth), point.projection.light
+    def penumbra_width(self, point: MapPoint, depth: JitFloat) -> JitFloat:
+        """Return w [unit of length] for occluders at a `depth` in the map's cube."""
+        occluder, light = point.move_to_depth(depth), point.projection.light
         gap = dr.norm(occluder - point.p)
         if not light.is_directional:
             gap = gap / dr.norm(occluder - type(occluder)(light.point.xyz))
         return self.light_size * gap
 
-    def mean_lit(self, point, width):
-        """The share of taps in a disk of this diameter that leave the point lit."""
-        lit = sum(self.texels.lit(point, u, v) for u, v in self.places(point, width))
-        return lit / len(self.taps)
-
-    def places(self, point, width):
-        """The taps on the map, in a disk about the point, across the light."""
-        (u_s, v_s), (u_t, v_t) = point.across()
+    def places(self, point: MapPoint, width: JitFloat) -> Iterator[tuple[JitFloat, JitFloat]]:
+        """Yield the taps on the map, in a disk of this diameter about the point and the light."""
+        (u_s, v_s), (u_t, v_t) = point.cross_section_axes()
         for s, t in self.taps:
             x, y = s * width / 2, t * width / 2
             yield point.u + x * u_s + y * u_t, point.v + x * v_s + y * v_t
 
 
-def spiral(n):
-    """Points of the unit disk, evenly by area: turned by the golden angle from one to the next."""
+def make_spiral(n: int) -> list[tuple[float, float]]:
+    """Return n points of the unit disk, evenly by area, each turned by the golden angle."""
     golden = math.pi * (3 - math.sqrt(5))
     return [
         (

@@ -1,39 +1,49 @@
-"""Variance shadow map (VSM): a bound on the light from mean and variance of the depths near by.
+"""Variance shadow map (VSM): a bound on the light from mean and variance of nearby depths.
 
     lit = p_max = σ² / (σ² + (z - μ)²) where z > μ, else 1;   lit' = (lit - ε)₊ / (1 - ε)
 
-μ = E(f) and σ² = E(f²) - μ² come of two moments that are blurred and interpolated as a picture is,
-once for all points. Of one plane above another the bound is the share itself, that of the
-percentage-closer filter. Where two occluders are behind each other the variance is large, and light
-bleeds into the shadow of the farther; shares below ε (`bleeding`) are therefore taken for none,
-which narrows true borders, too. The borders are soft and have derivatives.
+z is the depth of the point. The mean μ = E(f) and the variance σ² = E(f²) - μ² of the map's depths
+f come from two moments that are blurred and interpolated as a picture is, once for all points. For
+one plane above another the bound is the exact share, that of the percentage-closer filter. Where
+two occluders are behind each other the variance is large, and light bleeds into the shadow of the
+farther one. Shares below ε (`bleeding`) therefore count as 0, which narrows true borders, too. The
+borders are soft and have derivatives.
 
 [Donnelly & Lauritzen 2006], [Ergun 2008, 2.2.1.4]
 """
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat
 from brdfkit.mitsuba_bridge.properties.declarations import plain_number
+from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.moments import moving_depths
-from brdfkit.shadows.maps.moments.chebyshev import most_lit
-from brdfkit.shadows.maps.moments.moment_map import BLEEDING, BLUR, MomentMap, without_bleeding
+from brdfkit.shadows.maps.moments.bounds import bound_by_two_moments
+from brdfkit.shadows.maps.moments.moment_map import BLEEDING, BLUR, MomentMap, remove_bleeding
 
 SETTINGS = {
     "blur": BLUR,
     "bleeding": BLEEDING,
     "least_deviation": plain_number(3e-4, (0.0, 1.0), "of depths, over half the map's range"),
 }
-see = moving_depths.see
+render_map = moving_depths.render_map
 
 
 class Lookup:
     """Two moments of depth, blurred."""
 
-    def __init__(self, depths, blur, bleeding, least_deviation):
+    def __init__(
+        self,
+        depths: moving_depths.MovingDepths,
+        blur: int,
+        bleeding: float,
+        least_deviation: float,
+    ) -> None:
         self.moments = MomentMap(lambda z: [z, z * z], depths, blur)
         self.bleeding, self.least_variance = bleeding, least_deviation**2
 
-    def lit(self, point):
-        """The greatest share of the light that may arrive at a `MapPoint`."""
-        bound = most_lit(*self.moments.at(point), point.depth, self.least_variance)
-        return dr.select(self.moments.within(point), without_bleeding(bound, self.bleeding), 1)
+    def lit_share(self, point: MapPoint) -> JitFloat:
+        """Return the greatest share of the light that may arrive at a point."""
+        mean, square = self.moments.means_at(point)
+        bound = bound_by_two_moments(mean, square, point.depth, self.least_variance)
+        return dr.select(self.moments.contains(point), remove_bleeding(bound, self.bleeding), 1)

@@ -1,30 +1,53 @@
-"""The Hamburger moment problem: the most light that four moments of the occluders' depth allow.
+"""The most light that two, or four, moments of the occluders' depth X allow at the depth t.
 
-Of all distributions with the moments b₁ ... b₄, that with the least mass in front of t has three
-depths, t, z₂ and z₃, where z₂ and z₃ are the roots of c₁ + c₂ z + c₃ z² and
+Two moments, by Chebyshev's one-sided inequality [Donnelly & Lauritzen 2006], [Ergun 2008, 2.2.1.4]:
+
+    P(X ≥ t) ≤ σ² / (σ² + (t - μ)²) for t > μ, else 1;   μ = E(X), σ² = E(X²) - μ²
+
+Four moments, by the Hamburger moment problem [Peters & Klein 2015]: among all distributions with
+the moments b₁ ... b₄, the one with the least mass in front of t has three depths, t, z₂ and z₃,
+where z₂ and z₃ are the roots of c₁ + c₂ z + c₃ z² and
 
     | 1  b₁ b₂ |       | 1  |
     | b₁ b₂ b₃ | · c = | t  |
     | b₂ b₃ b₄ |       | t² |
-
-[Peters & Klein 2015]; the middle is that of [Münstermann et al. 2018]
 """
+
+from collections.abc import Sequence
 
 import drjit as dr
 
-MIDDLE = 0.0, 0.375, 0.0, 0.375  # moments of [-1, 1] well within what is possible
-LEAST_ROOT = 1e-7  # 1 over a root that is as good as infinite: t is one of two depths, then
+from brdfkit.core.array_types import JitFloat
+
+# Moments of depths in [-1, 1] well within what is possible [Münstermann et al. 2018]
+MIDDLE_MOMENTS = 0.0, 0.375, 0.0, 0.375
+LEAST_ROOT = 1e-7  # 1 over a root that counts as infinite: t is one of two depths, then
 
 
-def most_lit(b, t, rounding=0.0):
-    """The greatest P(X ≥ t) of a distribution with the moments `b`, four numbers.
+def bound_by_two_moments(
+    mean: JitFloat, mean_square: JitFloat, t: JitFloat, least_variance: JitFloat = 0.0
+) -> JitFloat:
+    """Return the greatest P(X ≥ t); exact where X has two values, of which one is t.
+
+    least_variance : the least σ², against rounding, and for the slant of a surface in a texel.
+    """
+    variance = dr.maximum(mean_square - mean * mean, least_variance)
+    behind = t - mean
+    return dr.select(behind > 0, variance / (variance + behind * behind), 1)
+
+
+def bound_by_four_moments(b: Sequence[JitFloat], t: JitFloat, rounding: float = 0.0) -> JitFloat:
+    """Return the greatest P(X ≥ t) of a distribution with the moments `b`, four numbers.
 
     Exact where X has two values, or three of which one is t.
 
-    rounding : by how much, 0 to 1, the moments are drawn towards the middle, lest rounding makes
-        them those of no distribution.
+    rounding : by how much, 0 to 1, the moments are drawn to `MIDDLE_MOMENTS`, as rounded ones may
+        belong to no distribution.
     """
-    b1, b2, b3, b4 = ((1 - rounding) * own + rounding * m for own, m in zip(b, MIDDLE, strict=True))
+    b1, b2, b3, b4 = (
+        (1 - rounding) * own + rounding * middle
+        for own, middle in zip(b, MIDDLE_MOMENTS, strict=True)
+    )
 
     # B = L D Lᵀ, L with the columns (1, b1, b2), (1, l32), (1); then L y = (1, t, t²), D Lᵀ c = y
     d2 = b2 - b1 * b1

@@ -1,11 +1,17 @@
 """Maps of moments: means of powers of depth, which may be blurred and interpolated as pictures are.
 
-Depths are taken in [-1, 1]: where the light sees nothing, 1; what is before the map, -1.
+Depths are clamped to [-1, 1]: 1 where the light sees nothing, -1 for surfaces before the map.
 """
+
+from collections.abc import Callable
+from typing import Any
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat, JitMask
 from brdfkit.mitsuba_bridge.properties.declarations import count, plain_number
+from brdfkit.shadows.maps.map_point import MapPoint
+from brdfkit.shadows.maps.moments.moving_depths import MovingDepths
 
 BLUR = count(2, (0, 31), "texels on each side over which moments are averaged")
 BLEEDING = plain_number(0.2, (0.0, 0.99), "share of the light below which a point counts as dark")
@@ -14,36 +20,39 @@ BLEEDING = plain_number(0.2, (0.0, 0.99), "share of the light below which a poin
 class MomentMap:
     """The means of moments over a square about any place of a map.
 
-    moments : of depths, a tensor; a function that gives a list of tensors.
-    depths : `MovingDepths`.
+    moments : function from the tensor of depths to the list of tensors of moments.
+    depths : the depths of the map.
     blur : texels on each side of a texel over which its moments are averaged; places between
         texels are interpolated.
     """
 
-    def __init__(self, moments, depths, blur):
+    def __init__(
+        self, moments: Callable[[Any], list[Any]], depths: MovingDepths, blur: int
+    ) -> None:
         import mitsuba as mi
 
-        values = dr.stack([depths.averaged(m) for m in moments(depths.values)], axis=2)
+        values = dr.stack([depths.attach_edges(m) for m in moments(depths.values)], axis=2)
         if blur:
             side = 2 * blur + 1
             values = dr.convolve(values, [1 / side] * side, axis=(0, 1), boundary="nearest")
         self.resolution = values.shape[0]
-        self.texture = mi.Texture2f(values, False, False, wrap_mode=dr.WrapMode.Clamp)
+        texture: Any = mi.Texture2f  # its annotation says object
+        self.texture = texture(values, False, False, wrap_mode=dr.WrapMode.Clamp)
 
-    def at(self, point):
-        """The list of means about a `MapPoint`."""
+    def means_at(self, point: MapPoint) -> list[JitFloat]:
+        """Return the means of all moments about a point."""
         import mitsuba as mi
 
-        scale = dr.opaque(mi.Float, 1 / self.resolution)
+        scale: JitFloat = dr.opaque(mi.Float, 1 / self.resolution)
         return self.texture.eval(mi.Point2f(point.u, point.v) * scale, point.active)
 
-    def within(self, point):
-        """Whether the map shows a `MapPoint`; beyond its edge all is lit."""
-        size = dr.opaque(type(point.u), self.resolution)
+    def contains(self, point: MapPoint) -> JitMask:
+        """Return whether the map shows a point; beyond its edge all is lit."""
+        size: JitFloat = dr.opaque(type(point.u), self.resolution)
         inside = (point.u >= 0) & (point.u <= size) & (point.v >= 0) & (point.v <= size)
         return point.active & inside
 
 
-def without_bleeding(lit, bleeding):
-    """The share of light, of which up to `bleeding` is taken for a leak: (lit - ε)₊ / (1 - ε)."""
+def remove_bleeding(lit: JitFloat, bleeding: float) -> JitFloat:
+    """Return the share of light, less a leak of up to ε = `bleeding`: (lit - ε)₊ / (1 - ε)."""
     return dr.clip((lit - bleeding) / (1 - bleeding), 0, 1)

@@ -1,6 +1,6 @@
-"""One way to share a scene among several maps a file, by the file's name; found by being there.
+"""Partitions, the ways to divide a scene among several maps; a file is one, found by its name.
 
-Each has `partition(scene, placement, project, resolution, ...)`, the `Partition` of a `mi.Scene`
-under a `Placement`: `project(placement)` makes the `Projection` of a map, `resolution` is how many
-texels it has along a side. More arguments are its `SETTINGS`.
+Each file has a function `make_partition(scene, placement, project, resolution, ...)`, which returns
+the `Partition` of a `mi.Scene` under a `Placement`. `project(placement)` makes the projection of a
+map, and `resolution` is its number of texels along a side. More arguments are its `SETTINGS`.
 """

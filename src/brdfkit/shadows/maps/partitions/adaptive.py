@@ -1,80 +1,94 @@
 """A tree of squares of the light's map, finest where the camera sees borders of shadows (ASM).
 
-The map is a square; the square that has the most wrong pixels to expect becomes four, each with a
-map as large as its own was, until the `budget` of maps is spent. To be expected are
+The map is a square. The square with the most wrong pixels to expect is divided into four, each with
+a map as large as its own was, until the `budget` of maps is spent. The number to expect is
 
     Σ footprint × side,   over the points in a square that lie at a border
 
-with the footprint √(1/|det J|) of a texel in the picture. Borders are where a ray to the light goes
-through and that of a neighbour does not, of 128² rays of the camera. [Fernando et al. 2001] find
-them on the map, and refine by what is gained for a texel, too.
+with the footprint √(1/|det J|) of a texel in the picture, see `resolution.py`. A border is where
+the shadow ray of one of 128² camera rays is unlike that of a neighbour. [Fernando et al. 2001] find
+borders on the map, and also refine by the gain per texel.
 
-Best where few borders are seen. A pass a square, and rays of shadow before; too slow for games, as
-[Ergun 2008, 2.2.3.1] says.
+Best where few borders are visible. It costs a pass for each square, and shadow rays before; too
+slow for games, as [Ergun 2008, 2.2.3.1] says.
 """
 
 import heapq
+from collections.abc import Callable
+from typing import Any, TypeAlias
 
 import numpy as np
 
+from brdfkit.core.array_types import BoolArray, FloatArray, IntArray, MitsubaObject
 from brdfkit.mitsuba_bridge.properties.declarations import count
-from brdfkit.shadows.maps.cells import Cell, by_cell
+from brdfkit.shadows.maps.cells import Cell, make_cell_finder
 from brdfkit.shadows.maps.partition import Part, Partition
-from brdfkit.shadows.maps.resolution import footprints, on_map
-from brdfkit.shadows.maps.seen_surfaces import lit, seen_surfaces
+from brdfkit.shadows.maps.placement import Placement
+from brdfkit.shadows.maps.projection import Projection
+from brdfkit.shadows.maps.resolution import footprints, places_on_map
+from brdfkit.shadows.maps.visible_surfaces import VisibleSurfaces, find_visible_surfaces, is_lit
 
 SETTINGS = {"budget": count(16, (1, 256), "maps at most, of the full resolution each")}
-DEEPEST = 7  # times that a square may be cut
+MAX_LEVEL = 7  # how often a square may be divided
+Leaf: TypeAlias = tuple[int, int, int]  # level, row and column of a square
 
 
-def partition(scene, placement, project, resolution, budget):
+def make_partition(
+    scene: MitsubaObject,
+    placement: Placement,
+    project: Callable[[Placement], Projection],
+    resolution: int,
+    budget: int,
+) -> Partition:
+    """Make a partition of at most `budget` squares of the map of the whole scene."""
     whole = project(placement)
-    seen = seen_surfaces(scene, placement.camera)
-    places = on_map(whole, seen)
-    border = at_borders(seen, lit(scene, placement.light, seen))
-    leaves = tree(places[border], footprints(places, seen)[border], budget)
+    surfaces = find_visible_surfaces(scene, placement.camera)
+    places = places_on_map(whole, surfaces)
+    border = is_at_border(surfaces, is_lit(scene, placement.light, surfaces))
+    leaves = grow_tree(places[border], footprints(places, surfaces)[border], budget)
     parts = [
-        Part(Cell.of_grid(whole, column, row, 2**level, resolution), resolution)
+        Part(Cell.from_grid(whole, column, row, 2**level, resolution), resolution)
         for level, row, column in leaves
     ]
-    return Partition(parts, by_cell(whole, table_of(leaves)))
+    return Partition(parts, make_cell_finder(whole, make_leaf_table(leaves)))
 
 
-def at_borders(seen, is_lit):
-    """Which points (n,) of a `SeenSurfaces` are lit unlike the next in their row or column."""
-    grid = np.full(seen.hit.shape, np.nan)
-    grid[seen.hit] = is_lit
+def is_at_border(surfaces: VisibleSurfaces, lit: BoolArray) -> BoolArray:
+    """Return which visible points (n,) are lit unlike the next one in their row or column."""
+    grid = np.full(surfaces.hit.shape, np.nan)
+    grid[surfaces.hit] = lit
     below, beside = (np.abs(np.diff(grid, axis=axis, append=np.nan)) == 1 for axis in (0, 1))
-    return (below | beside)[seen.hit]
+    border: BoolArray = (below | beside)[surfaces.hit]
+    return border
 
 
-def tree(places, weights, budget):
-    """The leaves (level, row, column) of the tree over [-1, 1]² whose greatest leaf is cut next.
+def grow_tree(places: FloatArray, weights: FloatArray, budget: int) -> list[Leaf]:
+    """Return the leaves of the tree over [-1, 1]², of which the greatest is divided first.
 
-    A leaf is as great as the sum of the `weights` (n,) of its `places` (n, 2), times its side.
+    The greatness of a leaf is the sum of the `weights` (n,) of its `places` (n, 2), times its side.
     """
-    number = np.clip((places + 1) / 2 * 2**DEEPEST, 0, 2**DEEPEST - 1).astype(int)
-    columns, rows = number.T
+    index = np.clip((places + 1) / 2 * 2**MAX_LEVEL, 0, 2**MAX_LEVEL - 1).astype(int)
+    columns, rows = index.T
 
-    def leaf(level, row, column):
-        shift = DEEPEST - level
+    def heap_entry(level: int, row: int, column: int) -> tuple[float, Leaf]:
+        shift = MAX_LEVEL - level
         within = (rows >> shift == row) & (columns >> shift == column)
-        greatness = weights[within].sum() / 2**level if level < DEEPEST else 0
+        greatness = weights[within].sum() / 2**level if level < MAX_LEVEL else 0
         return -greatness, (level, row, column)
 
-    heap = [leaf(0, 0, 0)]
+    heap: list[Any] = [heap_entry(0, 0, 0)]
     while len(heap) + 3 <= budget and heap[0][0] < 0:
         _, (level, row, column) = heapq.heappop(heap)
         for i, j in np.ndindex(2, 2):
-            heapq.heappush(heap, leaf(level + 1, 2 * row + i, 2 * column + j))
-    return sorted(found for _, found in heap)
+            heapq.heappush(heap, heap_entry(level + 1, 2 * row + i, 2 * column + j))
+    return sorted(leaf for _, leaf in heap)
 
 
-def table_of(leaves):
-    """The numbers of the `leaves` that cover each square (n, n) of the finest level."""
-    deepest = max(level for level, _, _ in leaves)
-    table = np.empty((2**deepest, 2**deepest), int)
+def make_leaf_table(leaves: list[Leaf]) -> IntArray:
+    """Return the indices of the leaves that cover each square (n, n) of the finest level."""
+    finest = max(level for level, _, _ in leaves)
+    table = np.empty((2**finest, 2**finest), int)
     for i, (level, row, column) in enumerate(leaves):
-        width = 2 ** (deepest - level)
+        width = 2 ** (finest - level)
         table[row * width : (row + 1) * width, column * width : (column + 1) * width] = i
     return table

@@ -1,39 +1,52 @@
-"""A map for each slice of what the camera sees, between planes across the view (PSSM).
+"""A map for each slice of the camera's view, between planes across the view (PSSM).
 
-The planes are those of `split_planes`, which knows three spacings. Near slices are small, so their
-texels are: with m slices, and logarithmic planes, texels shrink to m (n/f)^(1 - 1/m) or so of those
-of one map [Zhang et al. 2006]. Each slice has a projection of its own, of any kind but `uniform`,
-whose maps would be the same.
+The planes are those of `split_planes`, which has three spacings. Near slices are small, and so are
+their texels: with m slices and logarithmic planes from n to f, texels shrink to about
+m (n/f)^(1 - 1/m) of those of one map [Zhang et al. 2006]. Each slice has a projection of its own,
+of any kind but `uniform`, whose maps would all be the same.
 
-n and f are of the `surfaces` that the camera sees (sample distribution shadow maps, [Lauritzen et
-al. 2011]), or of its own planes, drawn in to the box of the scene. That box often begins at the
-eye: then n is Mitsuba's near plane, 0.01, and parts are wasted on the air before the eye.
+n and f are those of the `surfaces` that the camera sees (sample distribution shadow maps,
+[Lauritzen et al. 2011]), or of its own planes, drawn in to the box of the scene. That box often
+begins at the eye: then n is Mitsuba's near plane, 0.01, and parts are wasted on the air before it.
 
 Good for wide scenes. Slices change as the camera turns, and with them their texels: borders of
-shadows crawl (`stable_cascades` do not).
+shadows crawl (those of `stable_cascades` do not).
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 
+from brdfkit.core.array_types import MitsubaObject
 from brdfkit.mitsuba_bridge.properties.declarations import word
 from brdfkit.shadows.maps import split_planes
-from brdfkit.shadows.maps.partition import filled
-from brdfkit.shadows.maps.seen_surfaces import seen_surfaces
+from brdfkit.shadows.maps.partition import Partition, make_parts
+from brdfkit.shadows.maps.placement import Placement
+from brdfkit.shadows.maps.projection import Projection
+from brdfkit.shadows.maps.visible_surfaces import find_visible_surfaces
 
 SETTINGS = {
     **split_planes.SETTINGS,
     "ends": word(("surfaces", "camera"), "what the first and last plane are set to"),
 }
-ROOM = 0.05  # about the surfaces that rays found, for nearer ones between the rays
+MARGIN = 0.05  # around the surfaces that rays found, for nearer ones between the rays
 
 
-def partition(scene, placement, project, resolution, parts, spacing, ends):
+def make_partition(
+    scene: MitsubaObject,
+    placement: Placement,
+    project: Callable[[Placement], Projection],
+    resolution: int,
+    parts: int,
+    spacing: str,
+    ends: str,
+) -> Partition:
+    """Make a partition of at most `parts` slices of the camera's view."""
     camera = placement.camera
     if ends == "surfaces":
-        depths = camera.depths(seen_surfaces(scene, camera).points)
-        near, far = (1 - ROOM) * depths.min(), (1 + ROOM) * depths.max()
+        depths = camera.depths(find_visible_surfaces(scene, camera).points)
+        near, far = (1 - MARGIN) * depths.min(), (1 + MARGIN) * depths.max()
         camera = camera.with_planes(max(near, camera.near), min(far, camera.far))
-    planes = split_planes.split_planes(camera.near, camera.far, parts, spacing)
+    planes = split_planes.compute_split_planes(camera.near, camera.far, parts, spacing)
     slices = [replace(placement, camera=camera.with_planes(*pair)) for pair in pairwise(planes)]
-    return filled(slices, project, resolution, split_planes.by_depth(camera, planes))
+    return make_parts(slices, project, resolution, split_planes.make_slice_finder(camera, planes))

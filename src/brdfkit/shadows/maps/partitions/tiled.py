@@ -1,46 +1,60 @@
 """A grid of tiles on the light's map that share the texels of one map by need (tiled shadow maps).
 
-As [Arvo 2004], who leaves the weights open; ours make the expected count of wrong pixels least. A
+[Arvo 2004] leaves the tiles' weights open; ours minimise the expected number of wrong pixels. A
 tile of r × r texels has wrong pixels along borders, as many as its texels are wide in the picture:
-a sum over its points of footprint / r. The least sum over all tiles, of Σ r² = resolution², has
+a sum over its points of footprint / r. The least sum over all tiles, with Σ r² = resolution², has
 
     r ∝ (Σ footprints)^(1/3)
 
-Footprints are those of 128² rays of the camera. Good where few tiles are near the eye; costs a pass
-a tile, of the same texels in all.
+The footprints of texels in the picture are those of 128² camera rays. Good where few tiles are near
+the eye; costs a pass for each tile, with the same number of texels in all.
 """
+
+from collections.abc import Callable
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, IntArray, MitsubaObject
 from brdfkit.mitsuba_bridge.properties.declarations import count
-from brdfkit.shadows.maps.cells import GUTTER, Cell, by_cell
+from brdfkit.shadows.maps.cells import GUTTER, Cell, make_cell_finder
 from brdfkit.shadows.maps.partition import Part, Partition
-from brdfkit.shadows.maps.resolution import footprints, on_map
-from brdfkit.shadows.maps.seen_surfaces import seen_surfaces
+from brdfkit.shadows.maps.placement import Placement
+from brdfkit.shadows.maps.projection import Projection
+from brdfkit.shadows.maps.resolution import footprints, places_on_map
+from brdfkit.shadows.maps.visible_surfaces import find_visible_surfaces
 
 SETTINGS = {"tiles": count(4, (1, 16), "tiles along a side of the map")}
-LEAST = 4 * GUTTER  # texels along a side of a tile in which no ray saw anything
+LEAST_TEXELS = 4 * GUTTER  # along a side of a tile in which no ray saw anything
 
 
-def partition(scene, placement, project, resolution, tiles):
+def make_partition(
+    scene: MitsubaObject,
+    placement: Placement,
+    project: Callable[[Placement], Projection],
+    resolution: int,
+    tiles: int,
+) -> Partition:
+    """Make a partition of `tiles` × `tiles` squares of the map of the whole scene."""
     whole = project(placement)
-    seen = seen_surfaces(scene, placement.camera)
-    places = on_map(whole, seen)
-    weights = np.histogram2d(
-        places[:, 1], places[:, 0], tiles, [[-1, 1]] * 2, weights=footprints(places, seen)
-    )[0]
-    sizes = shared_out(weights, resolution)
+    surfaces = find_visible_surfaces(scene, placement.camera)
+    places = places_on_map(whole, surfaces)
+    widths = footprints(places, surfaces)
+    weights = np.histogram2d(places[:, 1], places[:, 0], tiles, [[-1, 1]] * 2, weights=widths)[0]
+    sizes = share_texels(weights, resolution)
     parts = [
-        Part(Cell.of_grid(whole, column, row, tiles, size), size)
+        Part(Cell.from_grid(whole, column, row, tiles, size), size)
         for row, its_sizes in enumerate(sizes.tolist())
         for column, size in enumerate(its_sizes)
     ]
-    return Partition(parts, by_cell(whole, np.arange(tiles**2).reshape(tiles, tiles)))
+    return Partition(parts, make_cell_finder(whole, np.arange(tiles**2).reshape(tiles, tiles)))
 
 
-def shared_out(weights, resolution):
-    """The texels along the sides of tiles, of together `resolution`², by the cube roots of their
-    `weights`; no tile has less than `LEAST`, so that small maps may have more in all."""
+def share_texels(weights: FloatArray, resolution: int) -> IntArray:
+    """Return the texels along the sides of tiles, by the cube roots of their `weights`.
+
+    Together they have `resolution`² texels. No tile has less than `LEAST_TEXELS` along a side, so
+    that small maps may have more in all.
+    """
     need = np.cbrt(weights)
-    share = need / max(np.linalg.norm(need), 1e-30)
-    return np.maximum(LEAST, np.floor(share * resolution)).astype(int)
+    share = need / max(float(np.linalg.norm(need)), 1e-30)
+    return np.maximum(LEAST_TEXELS, np.floor(share * resolution)).astype(int)

@@ -1,5 +1,6 @@
-"""One projection of a shadow map a file, by the file's name; a new file is found by being there.
+"""Projections, by which a light sees a scene; a file is a projection, and is found by its name.
 
-Each has `projection(placement, ...)`, the `Projection` of a `Placement`, which holds its body; the
-other arguments are the file's `SETTINGS`, see `techniques`.
+Each file has a function `make_projection(placement, ...)`, which returns the `Projection` of a
+`Placement` that encloses the placement's body. Its other arguments are the file's `SETTINGS`, see
+`techniques.py`.
 """

@@ -1,10 +1,14 @@
 """The uniform projection, fitted to what the camera sees and what may shadow it.
 
-[Ergun 2008, 2.2.2.1], with the body of Ogre's focused set-up: ((V ∩ S) + light) ∩ S.
+[Ergun 2008, 2.2.2.1], with the body of Ogre's focused set-up: ((V ∩ S) + light) ∩ S, for the
+camera's frustum V and the scene's box S.
 """
 
-from brdfkit.shadows.maps.light_camera import around
+from brdfkit.shadows.maps.light_camera import enclose_body
+from brdfkit.shadows.maps.placement import Placement
+from brdfkit.shadows.maps.projection import Projection
 
 
-def projection(placement):
-    return around(placement.light, placement.body)
+def make_projection(placement: Placement) -> Projection:
+    """Make the projection that encloses the placement's body."""
+    return enclose_body(placement.light, placement.body)

@@ -2,11 +2,11 @@
 
     v = 2 ln(y / n) / ln(y_f / n) - 1
 
-with y, from n to y_f, the distance from the apex of the perspective. At right angles to the light
-the apex is the eye, and a texel has the same size in the picture, across and along, wherever it
-is; at the angle γ, n is z_n / sin γ here, times `apex`. No matrix does that, so no hardware that
-draws triangles, but rays do [Lloyd et al. 2008]. The focused map where the eye looks along the
-light or is not before it.
+y, from n to y_f, is the distance from the apex of the perspective. At right angles to the light the
+apex is the eye, and a texel has the same size in the picture, across and along, wherever it is. At
+the angle γ, n is z_n / sin γ here, times `apex`, with the nearest visible depth z_n. No matrix does
+that, so no hardware that draws triangles, but rays do [Lloyd et al. 2008]. It is the focused map
+where the eye looks along the light or is not before it.
 
 Best for far views over a ground. Planes are bent on its map, by little within a texel.
 """
@@ -17,21 +17,24 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import JitFloat, JitVector
+from brdfkit.shadows.maps.line_of_sight import APEX, find_line_of_sight
+from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.projections import focused
-from brdfkit.shadows.maps.sight import APEX, line_of_sight
 
 SETTINGS = {"apex": APEX}
 
 
-def projection(placement, apex):
-    sight = line_of_sight(placement)
+def make_projection(placement: Placement, apex: float) -> Projection:
+    """Make the projection, or the focused one without a line of sight."""
+    sight = find_line_of_sight(placement)
     if sight is None:
-        return focused.projection(placement)
+        return focused.make_projection(placement)
     near, far = sight.ends
     n = apex * placement.depths[0] / sight.sine * sight.scale
-    warped = sight.warped(n)
-    # the logarithm of a ratio of 1 is no map, but nearly the same as none
+    warped = sight.warp(n)
+    # the logarithm of a ratio of 1 is no map, but this one is nearly linear
     ratio = max(1 + (far - near) / n, 1 + 1e-4)
     return Logarithmic(warped.matrix, warped.inverse, warped.light, ratio=ratio)
 
@@ -40,49 +43,52 @@ def projection(placement, apex):
 class Logarithmic(Projection):
     """A perspective by a matrix, and a logarithm along the second axis of its cube.
 
-    ratio : y_f / n, > 1, of the distances of the cube's two ends from the apex.
+    ratio : y_f / n > 1, the ratio of the distances of the cube's two ends from the apex.
     """
 
     ratio: Any = np.e
 
-    def opaque(self):
+    def opaque(self) -> "Logarithmic":
+        """Return the same for Dr.Jit."""
         import mitsuba as mi
 
-        return replace(super().opaque(), ratio=dr.opaque(mi.Float, self.ratio))
+        opaque: Any = super().opaque()
+        logarithmic: Logarithmic = replace(opaque, ratio=dr.opaque(mi.Float, self.ratio))
+        return logarithmic
 
-    def to_map(self, x, y, z):
-        """Where a point of the world is in the cube."""
+    def to_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
+        """Return where a point of the world is in the map's cube."""
         u, v, depth = super().to_map(x, y, z)
-        log = numbers(v).log
+        log = array_module(v).log
         return u, -2 * log(self.nearness(v)) / log(self.ratio) - 1, depth
 
-    def along(self, point, way):
-        """The derivative of `to_map` at a `point` along a `way`, both of three components."""
+    def derivative_along(self, point: JitVector, way: JitVector) -> tuple[JitFloat, ...]:
+        """Return the derivative of `to_map` at a `point` along a vector `way`."""
         v = super().to_map(*point)[1]
-        u_way, v_way, depth_way = super().along(point, way)
-        slope = (1 - 1 / self.ratio) / (self.nearness(v) * numbers(v).log(self.ratio))
+        u_way, v_way, depth_way = super().derivative_along(point, way)
+        slope = (1 - 1 / self.ratio) / (self.nearness(v) * array_module(v).log(self.ratio))
         return u_way, v_way * slope, depth_way
 
-    def ray(self, x, y):
-        """The ray of light at a place of the map: its origin and its unit direction."""
-        return super().ray(x, self.unbent(y))
+    def ray(self, x: JitFloat, y: JitFloat) -> tuple[Any, Any]:
+        """Return the ray of light at a place of the map: its origin and its unit direction."""
+        return super().ray(x, self.undo_logarithm(y))
 
-    def from_map(self, x, y, z):
-        """The point of the world at a place in the cube."""
-        if self.depth:  # then the way is by `ray`, which unbends
+    def from_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
+        """Return the point of the world at a place in the map's cube."""
+        if self.depth:  # then the base class calls `ray`, which undoes the logarithm
             return super().from_map(x, y, z)
-        return super().from_map(x, self.unbent(y), z)
+        return super().from_map(x, self.undo_logarithm(y), z)
 
-    def nearness(self, v):
-        """n / y, linear in the v of the perspective."""
+    def nearness(self, v: JitFloat) -> JitFloat:
+        """Return n / y, which is linear in the v of the perspective."""
         return 1 - (v + 1) / 2 * (1 - 1 / self.ratio)
 
-    def unbent(self, v):
-        """The v of the perspective."""
-        exp, log = numbers(v).exp, numbers(v).log
+    def undo_logarithm(self, v: JitFloat) -> JitFloat:
+        """Return the v of the perspective for the v of the map."""
+        exp, log = array_module(v).exp, array_module(v).log
         return 2 * (1 - exp(-(v + 1) / 2 * log(self.ratio))) / (1 - 1 / self.ratio) - 1
 
 
-def numbers(value):
-    """The functions for it: Dr.Jit's or NumPy's."""
+def array_module(value: JitFloat) -> Any:
+    """Return the module with functions for a value: Dr.Jit's or NumPy's."""
     return dr if dr.is_jit_v(value) else np

@@ -1,24 +1,28 @@
-"""The map is made in the camera's own space after its perspective (PSM).
+"""A map made in the space behind the camera's own perspective (PSM).
 
-The camera is moved back until all that is seen or casts shadows is before it; its matrix takes the
-light to another place, and a camera there sees what the picture's cube holds, its frustum fitted on
-each side. A light behind the eye comes to be beyond the cube, at w < 0, where its rays run
-backwards; depth is negated with its w [Stamminger & Drettakis 2002], [Ergun 2008, 2.2.2.2].
+The camera is moved back until all that is visible or casts shadows is before it. Its matrix takes
+the light to another place, and a second camera there sees the content of the picture's cube, its
+frustum fitted on each side. A light behind the eye comes to lie beyond the cube, at w < 0, where
+its rays run backwards; depth is negated with its w [Stamminger & Drettakis 2002], [Ergun 2008,
+2.2.2.2].
 
-Texels are shared as the picture's pixels are. Good where nothing is near the eye, else nearly all
-of the map shows that; and every step of the camera moves all texels.
+Texels are distributed as the picture's pixels are. Good where nothing is near the eye, else nearly
+all of the map shows that; and every step of the camera moves all texels.
 """
 
 from brdfkit.core.projective.homogeneous import project_all
-from brdfkit.shadows.maps.light_camera import fitted, view
+from brdfkit.shadows.maps.light_camera import fit_to_corners, view_matrix
+from brdfkit.shadows.maps.placement import Placement
+from brdfkit.shadows.maps.projection import Projection
 
 NEAREST = 1 / 200  # of the distances before the camera, over the farthest: depths are as 1 / z
 
 
-def projection(placement):
+def make_projection(placement: Placement) -> Projection:
+    """Make the projection through the camera's perspective and a camera at the light in it."""
     corners, middle = placement.body.corners, placement.body.middle
     z_n, z_f = placement.depths
     camera = placement.camera.with_planes(max(z_n, NEAREST * z_f), z_f).move_back(corners).matrix
     cube, (middle,) = project_all(camera, corners), project_all(camera, [middle])
-    seen = view(camera @ placement.light.point, cube, middle)
-    return fitted(seen @ camera, placement.light, corners)
+    light_view = view_matrix(camera @ placement.light.point, cube, middle)
+    return fit_to_corners(light_view @ camera, placement.light, corners)

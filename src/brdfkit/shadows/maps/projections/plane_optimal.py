@@ -1,81 +1,88 @@
-"""The shadows on one plane, as the camera sees them, are the map: there it is best (POSM).
+"""A map of the shadows on one plane, as the camera sees them: it is best there (POSM).
 
-Light l takes a point p to the plane π at (π·l) p - (π·p) l, and the camera takes that to the map,
+A light l takes a point p to the plane π at (π·l) p - (π·p) l, and the camera takes that to the map,
 so that a texel is a pixel. It is the projection by five pairs of points: the light, at infinity on
 the map, and four of the plane, one of them lifted towards the light [Chong & Gortler 2004],
 [Ergun 2008, 2.2.2.5]. Depth is the height over the plane, divided by w.
 
 The camera is moved back until all shadows fall before it, and the map stretched to what it must
 hold. The plane is `plane`, or else that face of the scene's box which catches most light, often the
-ground. Best on its plane, bad on what stands at right angles to it, such as walls. The focused map
-where no face of the scene's box can be the plane, or the eye is in it.
+ground. Best on its plane, bad on surfaces at right angles to it, such as walls. It is the focused
+map where no face of the scene's box can be the plane, or the eye is in the plane.
 """
+
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.homogeneous import project_all
 from brdfkit.mitsuba_bridge.properties.declarations import Setting
-from brdfkit.shadows.maps.light_camera import fitted
+from brdfkit.shadows.maps.light_camera import fit_to_corners
+from brdfkit.shadows.maps.placement import Placement
+from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.projections import focused
 
 
-def four_numbers(value):
-    """`value`, four numbers or a text of them, as an array (4,); None for None or no text."""
+def to_plane(value: Any) -> FloatArray | None:
+    """Return four numbers, or a text of them, as an array (4,); None for None or an empty text."""
     if value is None:
         return None
     numbers = value.split() if isinstance(value, str) else value
     try:
-        found = np.array(numbers, float)
+        plane = np.array(numbers, float)
     except (TypeError, ValueError):
-        found = np.full(1, np.nan)
-    if found.shape not in ((0,), (4,)) or not np.isfinite(found).all():
+        plane = np.full(1, np.nan)
+    if plane.shape not in ((0,), (4,)) or not np.isfinite(plane).all():
         raise ValueError("four numbers, a b c d, of the plane a x + b y + c z + d = 0")
-    return found if found.size else None
+    return plane if plane.size else None
 
 
 PLANE = "of plane_optimal: the receiver's a b c d, where a x + b y + c z + d = 0"
-SETTINGS = {"plane": Setting("", None, PLANE, four_numbers)}
+SETTINGS = {"plane": Setting("", None, PLANE, to_plane)}
 
 
-def projection(placement, plane):
+def make_projection(placement: Placement, plane: FloatArray | None) -> Projection:
+    """Make the projection for a `plane` (4,), or for a face of the scene's box without one."""
     if plane is None:
-        faces = [face for face in faces_by_light(placement) if takes_shadows(face, placement)]
-        return onto(placement, faces[0]) if faces else focused.projection(placement)
+        faces = [face for face in rank_faces_by_light(placement) if takes_shadows(face, placement)]
+        return project_onto(placement, faces[0]) if faces else focused.make_projection(placement)
     side = np.sign(plane @ placement.light.point)
-    plane = plane * side / max(np.linalg.norm(plane[:3]), 1e-30)
+    plane = plane * side / max(float(np.linalg.norm(plane[:3])), 1e-30)
     if not takes_shadows(plane, placement):
         raise BrdfkitError(
             "plane_optimal: the plane must cut what the camera sees, and the light be beyond all "
             "that casts shadows on it; choose another plane, or leave it out."
         )
-    return onto(placement, plane)
+    return project_onto(placement, plane)
 
 
-def onto(placement, plane):
-    """The `Projection` that is best on a `plane` (4,) that takes the shadows."""
+def project_onto(placement: Placement, plane: AnyArray) -> Projection:
+    """Return the projection that is best on a `plane` (4,) that takes the shadows."""
     light, corners = placement.light, placement.body.corners
     flat = (plane @ light.point) * np.eye(4) - np.outer(light.point, plane)
     camera = placement.camera.with_planes(*placement.depths).move_back(project_all(flat, corners))
-    if abs(height(plane, camera.position)) < 1e-3 * placement.size:
-        return focused.projection(placement)
+    if abs(height_over(plane, camera.position)) < 1e-3 * placement.size:
+        return focused.make_projection(placement)
     matrix = camera.matrix @ flat
     matrix[2] = -plane
-    return fitted(matrix, light, corners)
+    return fit_to_corners(matrix, light, corners)
 
 
-def takes_shadows(plane, placement):
-    """Whether a plane cuts what the camera sees, and every shadow falls on it."""
-    seen = height(plane, placement.seen.corners)
-    aside = 1e-6 * placement.size
+def takes_shadows(plane: AnyArray, placement: Placement) -> bool:
+    """Return whether a plane cuts what the camera sees, and every shadow falls on it."""
+    heights = height_over(plane, placement.visible.corners)
+    tolerance = 1e-6 * placement.size
     below_light = plane @ placement.light.point
     if not placement.light.is_directional:
-        below_light -= height(plane, placement.body.corners).max()
-    return below_light > aside and seen.min() < aside and seen.max() > -aside
+        below_light -= height_over(plane, placement.body.corners).max()
+    cuts: Any = heights.min() < tolerance and heights.max() > -tolerance
+    return bool(below_light > tolerance and cuts)
 
 
-def faces_by_light(placement):
-    """The planes (4,) of the scene's box, normals inwards, the one with most light first."""
+def rank_faces_by_light(placement: Placement) -> list[FloatArray]:
+    """Return the planes (4,) of the scene's box, normals inwards, the one with most light first."""
     sizes = placement.high - placement.low
     middle = (placement.low + placement.high) / 2
     areas = np.roll(sizes, 1) * np.roll(sizes, 2)
@@ -87,6 +94,6 @@ def faces_by_light(placement):
     ]
 
 
-def height(plane, points):
-    """Of points (n, 3) over a plane."""
+def height_over(plane: AnyArray, points: AnyArray) -> Any:
+    """Return the heights (n,) of points (n, 3) over a plane (4,)."""
     return points @ plane[:3] + plane[3]

@@ -1,23 +1,26 @@
-"""A trapezoid about what is seen becomes the map; most of it shows what is near the eye (TSM).
+"""A trapezoid about what is visible becomes the map; most of it shows what is near the eye (TSM).
 
 Two sides of the trapezoid are at right angles to the line of sight, at the near and the far end of
-what is seen, λ apart; the two others touch what is seen, and meet η before the near one:
+what is visible, λ apart. The two others touch what is visible, and meet η before the near side:
 
     η = λ δ (1 + ξ) / (λ - 2 δ - λ ξ),  ξ = -0.6
 
-so that the first δ after the near one, the focus, has 80 % of the map [Martin & Tan 2004, sections
-5 and 6]. The matrix N_T of the trapezoid [Ergun 2008, 2.2.2.4] is the perspective `Sight.warped`.
-The focused map where the near end is above the far one, as if one looks along the light.
+so that the first δ behind the near side, the focus, has 80 % of the map [Martin & Tan 2004,
+sections 5 and 6]. The matrix N_T of the trapezoid [Ergun 2008, 2.2.2.4] is the perspective
+`LineOfSight.warp`. It is the focused map where the near end is above the far one, as if one looks
+along the light.
 
 Good where the focus is known. Depth is divided by the width of the trapezoid, and coarse at its far
 end; where the map becomes the focused one shadows change at once.
 """
 
 from brdfkit.mitsuba_bridge.properties.declarations import plain_number
+from brdfkit.shadows.maps.line_of_sight import find_line_of_sight
+from brdfkit.shadows.maps.placement import Placement
+from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.projections import focused
-from brdfkit.shadows.maps.sight import line_of_sight
 
-XI = -0.6  # of the end of the focus on the map, which has 1 at the near side and -1 at the far
+XI = -0.6  # the end of the focus on the map, which has 1 at the near side and -1 at the far
 SETTINGS = {
     "focus": plain_number(
         0.3, (0.01, 0.79), "of trapezoidal: the share of what is seen that has 80 % of a map"
@@ -25,9 +28,10 @@ SETTINGS = {
 }
 
 
-def projection(placement, focus):
-    sight = line_of_sight(placement)
+def make_projection(placement: Placement, focus: float) -> Projection:
+    """Make the projection, or the focused one without a line of sight."""
+    sight = find_line_of_sight(placement)
     if sight is None or sight.ends[0] < 0:
-        return focused.projection(placement)
+        return focused.make_projection(placement)
     near, far = sight.ends
-    return sight.warped((far - near) * focus * (1 + XI) / (1 - 2 * focus - XI))
+    return sight.warp((far - near) * focus * (1 + XI) / (1 - 2 * focus - XI))

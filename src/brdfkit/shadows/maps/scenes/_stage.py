@@ -1,11 +1,15 @@
-"""What the scenes share: their views, their two suns, the camera, and things to build with.
+"""The common parts of the scenes: their views, two suns, the camera, and shapes to build with.
 
-The views are named by where they look and where the light goes [Ergun 2008, 4.2]. Light comes down
-along y, turned a little, and the azimuth of a view is reckoned from there.
+The views are named as in [Ergun 2008, 4.2], by their angle to the light. Light comes down nearly
+along y, from where the azimuth of a view is counted.
 """
+
+from collections.abc import Callable, Iterable
+from typing import Any, TypeAlias
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import no_such
 
 VIEWS = {
@@ -17,12 +21,23 @@ VIEWS = {
 LIGHTS = {1: 14, 2: 17}  # their azimuths [degrees]: the second one shows what changes at a step
 ELEVATION = 48  # of the suns [degrees]
 
+Place: TypeAlias = Iterable[float]  # three coordinates, or sizes
+Colour: TypeAlias = Iterable[float]  # red, green, blue
+Shape: TypeAlias = dict[str, Any]  # for `mitsuba.load_dict`
 
-def stage(view, light, size, eye, down, fov):
-    """The camera and the sun of a scene, as a dictionary.
 
-    eye : azimuth in radians → where the camera is (3,).
-    down : how far it looks down [degrees].
+def make_stage(
+    view: str,
+    light: int,
+    size: tuple[int, int],
+    eye: Callable[[float], Any],
+    down: float,
+    fov: float,
+) -> dict[str, Any]:
+    """Return the camera and the sun of a scene, as a dictionary.
+
+    eye : function from the azimuth [radians] to the camera's place (3,).
+    down : the angle by which it looks down [degrees].
     fov : its field of view [degrees].
     """
     import mitsuba as mi
@@ -33,10 +48,10 @@ def stage(view, light, size, eye, down, fov):
         raise no_such("light", str(light), map(str, LIGHTS))
     azimuth = np.radians(VIEWS[view])
     origin = np.asarray(eye(azimuth), float)
-    target = origin + heading(azimuth, -np.radians(down))
+    target = origin + unit_vector(azimuth, -np.radians(down))
     to_world = mi.ScalarTransform4f().look_at(origin.tolist(), target.tolist(), [0, 0, 1])
     film = {"type": "hdrfilm", "width": size[0], "height": size[1], "rfilter": {"type": "box"}}
-    sun = heading(np.radians(LIGHTS[light]), -np.radians(ELEVATION))
+    sun = unit_vector(np.radians(LIGHTS[light]), -np.radians(ELEVATION))
     return {
         "type": "scene",
         "integrator": {"type": "direct"},
@@ -49,47 +64,47 @@ def stage(view, light, size, eye, down, fov):
     }
 
 
-def heading(azimuth, elevation):
-    """The unit vector (3,) of an azimuth, from y towards x, and an elevation [radians]."""
+def unit_vector(azimuth: float, elevation: float) -> FloatArray:
+    """Return the unit vector (3,) of an azimuth, from y towards x, and an elevation [radians]."""
     level = np.cos(elevation)
     return np.array([level * np.sin(azimuth), level * np.cos(azimuth), np.sin(elevation)])
 
 
-def matte(colour):
-    """A diffuse material that is seen from both sides."""
+def matte(colour: Colour) -> dict[str, Any]:
+    """Return a diffuse material that is visible from both sides."""
     reflectance = {"type": "rgb", "value": list(colour)}
     return {"type": "twosided", "material": {"type": "diffuse", "reflectance": reflectance}}
 
 
-def box(centre, size, colour, turn=0):
-    """A cuboid that stands on the height of its `centre`, turned by `turn` [degrees]."""
+def box(centre: Place, size: Place, colour: Colour, turn: float = 0) -> Shape:
+    """Return a cuboid that stands on its `centre` and is turned by `turn` [degrees]."""
     import mitsuba as mi
 
-    x, y, z = centre
-    place = mi.ScalarTransform4f().translate([x, y, z + size[2] / 2]).rotate([0, 0, 1], turn)
-    half = [float(side) / 2 for side in size]
+    (x, y, z), half = centre, [float(side) / 2 for side in size]
+    place = mi.ScalarTransform4f().translate([x, y, z + half[2]]).rotate([0, 0, 1], turn)
     return {"type": "cube", "to_world": place.scale(half), "bsdf": matte(colour)}
 
 
-def pole(foot, height, radius, colour):
-    """An upright cylinder."""
+def pole(foot: Place, height: float, radius: float, colour: Colour) -> Shape:
+    """Return an upright cylinder."""
     x, y, z = foot
     ends = {"p0": [x, y, z], "p1": [x, y, z + height]}
     return {"type": "cylinder", **ends, "radius": radius, "bsdf": matte(colour)}
 
 
-def ball(centre, radius, colour):
+def ball(centre: Place, radius: float, colour: Colour) -> Shape:
+    """Return a sphere."""
     return {"type": "sphere", "center": list(centre), "radius": radius, "bsdf": matte(colour)}
 
 
-def ground(half, colour):
-    """A square in z = 0, from -half to half."""
+def ground(half: float, colour: Colour) -> Shape:
+    """Return a square in the plane z = 0, from -half to half."""
     import mitsuba as mi
 
     to_world = mi.ScalarTransform4f().scale([half, half, 1])
     return {"type": "rectangle", "to_world": to_world, "bsdf": matte(colour)}
 
 
-def numbered(name, things):
-    """The `things` with names of their own, for the dictionary of a scene."""
-    return {f"{name}_{i}": thing for i, thing in enumerate(things)}
+def number_shapes(name: str, shapes: Iterable[Shape]) -> dict[str, Shape]:
+    """Return shapes by numbered names, for the dictionary of a scene."""
+    return {f"{name}_{i}": shape for i, shape in enumerate(shapes)}

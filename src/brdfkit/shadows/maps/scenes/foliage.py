@@ -1,44 +1,48 @@
-"""Trees of many small leaves over a meadow: shadows that are nothing but borders."""
+"""Trees of many small leaves over a meadow, whose shadows consist of borders."""
+
+from typing import Any
 
 import numpy as np
 
-from brdfkit.shadows.maps.scenes._stage import ground, matte, numbered, pole, stage
+from brdfkit.core.array_types import FloatArray, MitsubaObject
+from brdfkit.shadows.maps.scenes._stage import ground, make_stage, matte, number_shapes, pole
 
-LEAVES = 3000  # of a tree
+LEAVES = 3000  # on a tree
 TREES = [(0, 0), (3.6, 1.2), (-3.2, 2.4), (1.2, -3.8), (-2.8, -2.6), (4.4, -3.2), (-0.6, 4.6)]
 
 
-def foliage(view="V1", light=1, size=(512, 512)):
-    """The scene's dictionary; see `brdfkit.shadows.maps.scenes`.
+def foliage(view: str = "V1", light: int = 1, size: tuple[int, int] = (512, 512)) -> dict[str, Any]:
+    """Return the scene's dictionary; see `brdfkit.shadows.maps.scenes`.
 
     >>> foliage()["stem_0"]["type"]
     'cylinder'
     """
     random = np.random.default_rng(24)
-    leaves, stems = [], []
+    leaves: list[FloatArray] = []
+    stems: list[dict[str, Any]] = []
     for x, y in TREES:
         tall = random.uniform(1.4, 2.2)
-        leaves.append(crown(random, [x, y, tall + 0.9], [1.35, 1.35, 1.1]))
+        leaves.append(make_crown(random, [x, y, tall + 0.9], [1.35, 1.35, 1.1]))
         stems.append(pole([float(x), float(y), 0], tall + 0.8, 0.11, (0.3, 0.2, 0.13)))
-    blades = grass(random)
+    blades = make_grass(random)
 
-    def eye(azimuth):
+    def eye(azimuth: float) -> tuple[float, float, float]:
         return -10.5 * np.sin(azimuth), -10.5 * np.cos(azimuth), 4.4
 
     return (
-        stage(view, light, size, eye, down=17, fov=46)
+        make_stage(view, light, size, eye, down=17, fov=46)
         | {"meadow": ground(10, (0.4, 0.42, 0.22))}
-        | {"leaves": triangles(np.concatenate(leaves), (0.24, 0.4, 0.1))}
-        | {"grass": triangles(blades, (0.36, 0.44, 0.14))}
-        | numbered("stem", stems)
+        | {"leaves": make_mesh(np.concatenate(leaves), (0.24, 0.4, 0.1))}
+        | {"grass": make_mesh(blades, (0.36, 0.44, 0.14))}
+        | number_shapes("stem", stems)
     )
 
 
-def crown(random, centre, radii):
-    """The leaves of a crown, near the surface of an ellipsoid: triangles (2 n, 3, 3)."""
+def make_crown(random: np.random.Generator, centre: list[float], radii: list[float]) -> FloatArray:
+    """Return the leaves of a crown, near the surface of an ellipsoid, as triangles (2 n, 3, 3)."""
     outwards = random.normal(size=(LEAVES, 3))
     outwards /= np.linalg.norm(outwards, axis=1, keepdims=True)
-    middles = centre + radii * outwards * random.uniform(0.55, 1, (LEAVES, 1)) ** 0.5
+    middles = np.array(centre) + radii * outwards * random.uniform(0.55, 1, (LEAVES, 1)) ** 0.5
     along = 0.06 * (outwards + random.normal(size=(LEAVES, 3)))
     across = 0.4 * np.cross(along, random.normal(size=(LEAVES, 3)))
     foot, tip = middles - along, middles + along
@@ -46,8 +50,8 @@ def crown(random, centre, radii):
     return np.concatenate([np.stack(half, axis=1) for half in halves])
 
 
-def grass(random, blades=6000):
-    """Blades on the meadow: triangles (n, 3, 3)."""
+def make_grass(random: np.random.Generator, blades: int = 6000) -> FloatArray:
+    """Return the blades of a meadow as triangles (n, 3, 3)."""
     feet = np.column_stack([random.uniform(-8, 8, (blades, 2)), np.zeros(blades)])
     aside = np.column_stack([0.03 * random.normal(size=(blades, 2)), np.zeros(blades)])
     tips = feet + np.column_stack(
@@ -56,15 +60,15 @@ def grass(random, blades=6000):
     return np.stack([feet - aside, feet + aside, tips], axis=1)
 
 
-def triangles(corners, colour):
-    """The `mitsuba.Mesh` of triangles (n, 3, 3) that share no corners."""
+def make_mesh(corners: FloatArray, colour: tuple[float, float, float]) -> MitsubaObject:
+    """Return the `mitsuba.Mesh` of triangles (n, 3, 3) that share no corners."""
     import mitsuba as mi
 
     properties = mi.Properties()
     properties["bsdf"] = mi.load_dict(matte(colour), parallel=False)
-    made = mi.Mesh("triangles", 3 * len(corners), len(corners), properties)
-    buffers = mi.traverse(made)
+    mesh = mi.Mesh("triangles", 3 * len(corners), len(corners), properties)
+    buffers = mi.traverse(mesh)
     buffers["vertex_positions"] = np.ravel(corners).astype(np.float32)
     buffers["faces"] = np.arange(3 * len(corners), dtype=np.uint32)
     buffers.update()
-    return made
+    return mesh

@@ -1,16 +1,29 @@
-"""Balls, boxes, columns and gates on a ground, as a child leaves its bricks."""
+"""Balls, boxes, columns and gates on a ground, scattered like a child's bricks."""
+
+from typing import Any
 
 import numpy as np
 
-from brdfkit.shadows.maps.scenes._stage import ball, box, ground, matte, numbered, pole, stage
+from brdfkit.core.array_types import FloatArray, MitsubaObject
+from brdfkit.shadows.maps.scenes._stage import (
+    ball,
+    box,
+    ground,
+    make_stage,
+    matte,
+    number_shapes,
+    pole,
+)
 
 COLOURS = np.array(
     [(0.75, 0.2, 0.14), (0.85, 0.55, 0.12), (0.2, 0.42, 0.62), (0.3, 0.5, 0.24), (0.8, 0.76, 0.66)]
 )
 
 
-def objects_on_a_ground(view="V1", light=1, size=(512, 512)):
-    """The scene's dictionary; see `brdfkit.shadows.maps.scenes`.
+def objects_on_a_ground(
+    view: str = "V1", light: int = 1, size: tuple[int, int] = (512, 512)
+) -> dict[str, Any]:
+    """Return the scene's dictionary; see `brdfkit.shadows.maps.scenes`.
 
     >>> objects_on_a_ground()["floor"]["type"]
     'rectangle'
@@ -18,22 +31,24 @@ def objects_on_a_ground(view="V1", light=1, size=(512, 512)):
     random = np.random.default_rng(2008)
     places = [(x, y) for x in range(-4, 5, 2) for y in range(-4, 5, 2)]
     bricks = [
-        brick(random, place + random.uniform(-0.45, 0.45, 2), COLOURS[i % len(COLOURS)])
+        make_bricks(random, place + random.uniform(-0.45, 0.45, 2), COLOURS[i % len(COLOURS)])
         for i, place in enumerate(np.array(places, float))
     ]
 
-    def eye(azimuth):
+    def eye(azimuth: float) -> tuple[float, float, float]:
         return -9 * np.sin(azimuth), -9 * np.cos(azimuth), 5.2
 
     return (
-        stage(view, light, size, eye, down=28, fov=48)
+        make_stage(view, light, size, eye, down=28, fov=48)
         | {"floor": ground(9, (0.62, 0.6, 0.56))}
-        | numbered("brick", [thing for things in bricks for thing in things])
+        | number_shapes("brick", [thing for things in bricks for thing in things])
     )
 
 
-def brick(random, place, colour):
-    """What stands at a place (2,): a list of shapes."""
+def make_bricks(
+    random: np.random.Generator, place: FloatArray, colour: FloatArray
+) -> list[dict[str, Any]]:
+    """Return the shapes of a random object at a place (2,): a ball, box, column or gate."""
     x, y = place.tolist()
     kind, large, turn = random.integers(4), random.uniform(0.3, 0.6), random.uniform(0, 90)
     if kind == 0:
@@ -49,7 +64,8 @@ def brick(random, place, colour):
     return [box([f, y, 0], [0.4 * large, 0.4 * large, 3 * large], colour) for f in feet] + [beam]
 
 
-def _lid(centre, radius):
+def _lid(centre: list[float], radius: float) -> MitsubaObject:
+    """Return the transform of a disk on top of a column."""
     import mitsuba as mi
 
     return mi.ScalarTransform4f().translate(centre).scale([radius, radius, 1])

@@ -1,11 +1,14 @@
-"""Two streets of a small town, from where they cross to 200 m away: a view much deeper than wide.
+"""Two streets of a small town, from their crossing to 200 m away: a view much deeper than wide.
 
-The eye is 1.7 m above the ground: what is seen begins at 3 m, so far over near is about 70.
+The eye is 1.7 m above the ground, and the nearest visible surface 3 m away, so that the ratio of
+far to near is about 70.
 """
+
+from typing import Any
 
 import numpy as np
 
-from brdfkit.shadows.maps.scenes._stage import ball, box, ground, numbered, pole, stage
+from brdfkit.shadows.maps.scenes._stage import ball, box, ground, make_stage, number_shapes, pole
 
 LENGTH = 200.0  # of a street, each way [m]
 WIDTH = 16.0  # between houses [m]
@@ -14,35 +17,37 @@ WALLS = [(0.74, 0.66, 0.54), (0.7, 0.46, 0.34), (0.78, 0.74, 0.68), (0.6, 0.5, 0
 DARK, GREEN = (0.12, 0.12, 0.13), (0.2, 0.34, 0.13)
 
 
-def street(view="V1", light=1, size=(512, 512)):
-    """The scene's dictionary; see `brdfkit.shadows.maps.scenes`.
+def street(view: str = "V1", light: int = 1, size: tuple[int, int] = (512, 512)) -> dict[str, Any]:
+    """Return the scene's dictionary; see `brdfkit.shadows.maps.scenes`.
 
     >>> street()["ground"]["type"]
     'rectangle'
     """
     random = np.random.default_rng(16)
     sides = [(along, way, side) for along in (0, 1) for way in (-1, 1) for side in (-1, 1)]
-    things = [thing for side in sides for thing in one_side(random, *side)]
+    things = [thing for side in sides for thing in build_side(random, *side)]
     return (
-        stage(view, light, size, lambda azimuth: (0.5, -0.5, 1.7), down=0.5, fov=60)
+        make_stage(view, light, size, lambda azimuth: (0.5, -0.5, 1.7), down=0.5, fov=60)
         | {"ground": ground(LENGTH + 20, (0.32, 0.32, 0.33))}
-        | numbered("thing", things)
+        | number_shapes("thing", things)
     )
 
 
-def one_side(random, along, way, side):
-    """The houses, trees, lamps and cars of one side of one arm of the streets.
+def build_side(
+    random: np.random.Generator, along: int, way: int, side: int
+) -> list[dict[str, Any]]:
+    """Return the houses, trees, lamps and cars on one side of one arm of the streets.
 
     along : the axis of the street, 0 or 1.
-    way, side : the direction of the arm, and on which side of it: -1 or 1.
+    way, side : the direction of the arm and the side of it, -1 or 1.
     """
 
-    def at(distance, aside, height=0.0):
+    def at(distance: float, aside: float, height: float = 0.0) -> list[float]:
         across = side * aside
         x, y = (way * distance, across) if along == 0 else (across, way * distance)
         return [x, y, height]
 
-    def sized(length, width, height):
+    def sized(length: float, width: float, height: float) -> list[float]:
         return [length, width, height] if along == 0 else [width, length, height]
 
     kerb = (LENGTH - WIDTH / 2, WIDTH / 2 - 6)

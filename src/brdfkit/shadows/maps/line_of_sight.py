@@ -1,0 +1,97 @@
+"""The line of sight on the map of a light, along which texels are shifted from far to near.
+
+Three projections have the same form: that of the light, then a perspective across the map,
+
+    x' = x / w,  y' = (y - y_0) / w,  w = 1 + (y - y_0) / n
+
+where y runs along the line of sight, and y_0 is where the visible part begins. The apex, in which
+lines of constant x' meet, is n before y_0. The projections differ by n [Lloyd et al. 2008]: the
+smaller it is, the more of the map the near end gets; as n grows, the map becomes uniform.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from brdfkit.core.array_types import AnyArray
+from brdfkit.core.projective.homogeneous import make_rigid, project, project_all, transform
+from brdfkit.core.projective.light import Light
+from brdfkit.mitsuba_bridge.properties.declarations import plain_number
+from brdfkit.shadows.maps.light_camera import fit_to_corners, view_matrix
+from brdfkit.shadows.maps.placement import Placement
+from brdfkit.shadows.maps.projection import Projection
+
+APEX = plain_number(
+    1.0,
+    (1e-3, np.inf),
+    "of light_space_ and logarithmic_perspective: n over the formula's; less favours what is near",
+)
+
+
+@dataclass(frozen=True)
+class LineOfSight:
+    """The line from an eye through the middle of the visible body, on the map of a light.
+
+    matrix : (4, 4), from the world to the light's view, in which the eye is at (0, 0), the line
+        is y, and x across.
+    light : the light.
+    corners : (n, 3), of the body that the map must hold.
+    eye, middle : (3,), two points of the line.
+    """
+
+    matrix: AnyArray
+    light: Light
+    corners: AnyArray
+    eye: Any
+    middle: Any
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The y at which the body of the map begins along the line, y_0, and at which it ends."""
+        y = project_all(self.matrix, self.corners)[:, 1]
+        return y.min(), y.max()
+
+    @property
+    def sine(self) -> float:
+        """The sine of the angle γ between the line and the light in the middle."""
+        line = self.middle - self.eye
+        light = self.light.direction(*self.middle)
+        return float(np.linalg.norm(np.cross(line, light)) / np.linalg.norm(line))
+
+    @property
+    def scale(self) -> float:
+        """Lengths on the map per unit of length at right angles to the light."""
+        across = self.sine * np.linalg.norm(self.middle - self.eye)
+        return float(project(self.matrix, *self.middle)[1] / across)
+
+    def warp(self, n: float) -> Projection:
+        """Return the projection whose apex lies `n` before y_0, in lengths on the map."""
+        warp, (near, _) = np.eye(4), self.ends
+        warp[1, 3] = -near
+        warp[3, 1], warp[3, 3] = 1 / n, 1 - near / n
+        return fit_to_corners(warp @ self.matrix, self.light, self.corners)
+
+
+def find_line_of_sight(placement: Placement) -> LineOfSight | None:
+    """Return the line of sight of a placement.
+
+    It is None if the eye looks along the light, or is not before it: what is near the eye has then
+    no side of the map of its own.
+    """
+    light, corners = placement.light, placement.body.corners
+    eye, middle = placement.camera.position, placement.visible.middle
+    matrix = view_matrix(light.point, corners, placement.body.middle)
+    x, y, _, w = transform(matrix, *eye)
+    if w < 1e-6 * transform(matrix, *middle)[3]:
+        return None
+    origin = np.array([x / w, y / w, 0])
+    line = np.array(project(matrix, *middle)) - origin
+    length = np.hypot(line[0], line[1])
+    if length < 1e-6 * np.ptp(project_all(matrix, corners), axis=0)[:2].max():
+        return None
+    a, b = line[:2] / length
+    turned = make_rigid(np.array([[b, -a, 0], [a, b, 0], [0, 0, 1]]), origin)
+    return LineOfSight(turned @ matrix, light, corners, eye, middle)

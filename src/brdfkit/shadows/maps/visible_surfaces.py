@@ -1,0 +1,64 @@
+"""The surfaces that a camera sees, by rays through a coarse picture, to tune partitions."""
+
+from dataclasses import dataclass
+
+import drjit as dr
+import numpy as np
+
+from brdfkit.core.array_types import AnyArray, BoolArray, MitsubaObject
+from brdfkit.core.projective.body import Empty
+from brdfkit.core.projective.camera import Camera
+from brdfkit.core.projective.homogeneous import project_all
+from brdfkit.core.projective.light import Light
+from brdfkit.mitsuba_bridge.surface_points import ray_off_surface
+
+SIDE = 128  # rays across a picture and down it
+
+
+@dataclass(frozen=True)
+class VisibleSurfaces:
+    """Surface points that the rays of a coarse picture hit.
+
+    points, normals : (n, 3).
+    distances : (n,), along the rays.
+    hit : (SIDE, SIDE), which of the rays hit a surface.
+    """
+
+    points: AnyArray
+    normals: AnyArray
+    distances: AnyArray
+    hit: AnyArray
+
+
+def find_visible_surfaces(scene: MitsubaObject, camera: Camera) -> VisibleSurfaces:
+    """Return the surfaces of a `mi.Scene` that a camera sees; raise `Empty` if all rays miss."""
+    import mitsuba as mi
+
+    places = (np.arange(SIDE) + 0.5) / SIDE * 2 - 1
+    x, y = (grid.ravel() for grid in np.meshgrid(places, places))
+    near, far = (
+        project_all(np.linalg.inv(camera.matrix), np.column_stack([x, y, np.full_like(x, z)]))
+        for z in (-1, 1)
+    )
+    ray = mi.Ray3f(mi.Point3f(near.T), dr.normalize(mi.Vector3f((far - near).T)))
+    si = scene.ray_intersect(ray)
+    hit = np.array(si.is_valid())
+    if not hit.any():
+        raise Empty("the camera does not see any surface: turn it, or move it.")
+    points, normals = (np.array(vectors).T[hit] for vectors in (si.p, si.n))
+    return VisibleSurfaces(points, normals, np.array(si.t)[hit], hit.reshape(SIDE, SIDE))
+
+
+def is_lit(scene: MitsubaObject, light: Light, surfaces: VisibleSurfaces) -> BoolArray:
+    """Return whether a light reaches each of the visible points (n,), by shadow rays."""
+    import mitsuba as mi
+
+    to_light = light.directions_from(surfaces.points)
+    p, n = mi.Point3f(surfaces.points.T), mi.Normal3f(surfaces.normals.T)
+    d = mi.Vector3f(to_light.T)
+    ray = ray_off_surface(p, n, mi.Float(surfaces.distances), d)
+    if not light.is_directional:
+        distances = np.linalg.norm(light.point[:3] - surfaces.points, axis=1)
+        ray.maxt = mi.Float(distances * (1 - 1e-4))
+    facing = np.einsum("ij,ij->i", surfaces.normals, to_light) > 0
+    return facing & ~np.array(scene.ray_test(ray))

@@ -1,0 +1,91 @@
+"""Faces in a camera's picture, as linear functions over the picture, without any clipping.
+
+A place (x, y) of the picture is the ray d = (x, y, 1). With corners v_i = (X / s_x, Y / s_y, -Z)
+and w_i in the camera's space, where s_x and s_y are the slopes of its field of view, the ray meets
+a face within its edges
+
+    E_i(d) = (v_i × v_{i+1}) · d ≥ 0      (all with one sign, which says the side that is visible)
+    1/z    = (w_2 v_0 × v_1 + w_0 v_1 × v_2 + w_1 v_2 × v_0) · d / (v_0 · v_1 × v_2)
+
+so that corners behind the eye and at infinity (w = 0) need no special treatment
+[Olano & Greer 1997].
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from brdfkit.core.array_types import AnyArray, FloatArray, MitsubaObject
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.projective.camera import Camera
+from brdfkit.shadows.volumes.volume import Faces
+
+
+def to_pinhole(sensor: MitsubaObject) -> Camera:
+    """Return the camera of a Mitsuba sensor; raise `BrdfkitError` for one with a lens."""
+    import mitsuba as mi
+
+    if "aperture_radius" in mi.traverse(sensor):
+        raise BrdfkitError(
+            "shadow volumes are counted along rays from one eye, and a thinlens camera has a whole "
+            "lens; use a perspective camera."
+        )
+    return Camera.from_sensor(sensor)
+
+
+@dataclass(frozen=True)
+class ProjectedFaces:
+    """k faces in a picture.
+
+    edges : (k, 4, 3), the coefficients of x, y and 1 in each E_i, of which the largest is 1.
+    ties : (k, 4), the least E_i within; of two faces at an edge, one includes the edge itself.
+    inverse_depth : (k, 3), the coefficients of 1/z.
+    times : (k,), how often a ray counts that meets the face; negative where it leaves the volume.
+    """
+
+    edges: AnyArray
+    ties: AnyArray
+    inverse_depth: AnyArray
+    times: AnyArray
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+
+def picture_matrix(camera: Camera) -> FloatArray:
+    """Return the matrix (4, 4) from the world to a camera's (X / s_x, Y / s_y, -Z)."""
+    matrix: FloatArray = np.diag([1 / camera.slope_x, 1 / camera.slope_y, -1, 1]) @ camera.view
+    return matrix
+
+
+def project_faces(faces: Faces, matrix: FloatArray) -> ProjectedFaces:
+    """Project faces into a picture; those that are seen edge-on are left out.
+
+    matrix : (4, 4), from the world to homogeneous points (v, w), such as a camera's
+        `picture_matrix`.
+    """
+    corners = faces.corners @ matrix.T
+    v, w = corners[..., :3], corners[..., 3]
+    crosses = np.cross(v, np.roll(v, -1, axis=1))
+    volume = np.einsum("ij,ij->i", v[:, 0], crosses[:, 1])
+    plane = w[:, 2, None] * crosses[:, 0] + w[:, 0, None] * crosses[:, 1]
+    plane += w[:, 1, None] * np.cross(v[:, 2], v[:, 0])
+    visible = volume != 0
+    crosses, plane, volume = crosses[visible], plane[visible], volume[visible]
+    edges = crosses / np.maximum(np.abs(crosses).max(axis=2, keepdims=True), 1e-300)
+    edges = (edges * np.sign(volume)[:, None, None]).astype(np.float32)
+    inverse_depth = (plane / volume[:, None]).astype(np.float32)
+    times = (np.sign(volume) * faces.times[visible]).astype(int)
+    return ProjectedFaces(edges, break_ties(edges), inverse_depth, times)
+
+
+def break_ties(edges: FloatArray) -> FloatArray:
+    """Return the least E_i (k, 4) of points within: 0, or the least positive number.
+
+    It is 0 where the first coefficient other than 0 is positive. The same edge has the opposite
+    sign in the neighbouring face. So exactly one of both includes the edge, and no ray slips
+    through.
+    """
+    a, b, c = np.moveaxis(edges, -1, 0)
+    leading = np.where(a != 0, a, np.where(b != 0, b, c))
+    return np.where(leading >= 0, 0, np.finfo(np.float32).tiny)
