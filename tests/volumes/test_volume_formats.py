@@ -17,7 +17,7 @@ from small_volumes import ORIGIN, SHAPE, SPACING, TO_WORLD, values
 import brdfkit as bk
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.volumes import made
-from brdfkit.volumes.formats import formats
+from brdfkit.volumes.formats import list_formats
 from brdfkit.volumes.transfer.files import list_presets
 
 LPS = np.diag([-1, -1, 1, 1])
@@ -520,7 +520,7 @@ def test_a_package_that_is_missing_is_named(tmp_path, monkeypatch):
 
 def test_the_page_of_volumes_names_what_there_is():
     page = (Path(__file__).parents[2] / "docs/volumes.md").read_text("utf-8")
-    for module in formats():
+    for module in list_formats():
         suffixes = " ".join(f"`{suffix}`" for suffix in module.SUFFIXES)
         assert f"| {module.NAME} | {suffixes}" in page
     for name in (*made.list_names(), *list_presets()):
@@ -529,7 +529,7 @@ def test_the_page_of_volumes_names_what_there_is():
 
 
 def test_no_two_formats_take_one_suffix():
-    suffixes = [suffix for module in formats() for suffix in module.SUFFIXES]
+    suffixes = [suffix for module in list_formats() for suffix in module.SUFFIXES]
     assert len(suffixes) == len(set(suffixes))
 
 

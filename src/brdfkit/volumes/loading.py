@@ -102,7 +102,7 @@ def load(
         return volume if downsample == 1 else volume.resized(downsample)
     file = VolumeFile(place, part, voxels, dtype, offset)
     with np.errstate(all="ignore"):  # of a damaged header's numbers `require_transform` tells
-        stored = formats.find(file)
+        stored = formats.read_header(file)
     if labels is not None:
         stored = replace(stored, labels=labels)
     if steps is not None:

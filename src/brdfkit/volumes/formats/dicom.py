@@ -1,66 +1,74 @@
-"""DICOM: a series of slices, a folder or one file of it (`.dcm`).
+"""DICOM: a series of slices in a folder, or one file of it (`.dcm`).
 
 Slices are sorted by their position along the normal of the image, not by name or number. Values are
-rescaled (slope and intercept: HU of CT). DICOM's world, LPS, is turned to RAS. Of several series in
-a folder ``scans#2`` names the one with the SeriesNumber 2.
+rescaled by slope and intercept, which gives HU for CT. DICOM's world, LPS, is converted to RAS. If
+a folder has several series, ``scans#2`` is the one with the SeriesNumber 2.
 """
+
+from collections.abc import Iterator
 
 import numpy as np
 
-from brdfkit.volumes.formats import _stored
-from brdfkit.volumes.formats._dicom_slices import pixels, read_slice
-from brdfkit.volumes.formats._stored import LPS_TO_RAS, Stored, transform
+from brdfkit.core.array_types import AnyArray, FloatArray
+from brdfkit.volumes.formats import _volume_file
+from brdfkit.volumes.formats._dicom_slices import Slice, read_pixels, read_slice
+from brdfkit.volumes.formats._volume_file import (
+    LPS_TO_RAS,
+    StoredVolume,
+    VolumeFile,
+    make_transform,
+)
 
 NAME = "DICOM"
 SUFFIXES = (".dcm", ".dicom", ".ima")
 
-UNEVEN = 0.01  # of the distance of slices: beyond it one is missing
-TURNED = 1e-3  # of the components of directions
+UNEVEN = 0.01  # relative deviation of the distance between slices above which one is missing
+TURNED = 1e-3  # difference of the components of directions above which slices are turned
 
 
-def sniff(head):
-    """Whether the head has DICOM's magic letters."""
+def sniff(head: bytes) -> bool:
+    """Return whether the head has DICOM's magic letters."""
     return head[128:132] == b"DICM"
 
 
-def find(file):
-    """The volume of a series of DICOM, of the folder or of the file."""
-    pydicom = file.package("pydicom", "pydicom")
-    paths = _stored.files(file.path) if file.path.is_dir() else [file.path]
+def read_header(file: VolumeFile) -> StoredVolume:
+    """Read the header of a DICOM series, in a folder or a file."""
+    pydicom = file.import_package("pydicom", "pydicom")
+    paths = _volume_file.list_files(file.path) if file.path.is_dir() else [file.path]
     images = [image for path in paths if (image := read_slice(file, pydicom, path)) is not None]
-    images = _one_series(file, images)
+    images = _choose_series(file, images)
     _require_alike(file, images)
     first = images[0]
     normal = np.cross(*first.frame)
     images.sort(key=lambda image: float(normal @ image.place))
-    step = _step(file, images, normal)
+    step = _find_step(file, images, normal)
     rescaled = any((image.slope, image.intercept) != (1, 0) for image in images)
     dtype = np.dtype(np.float32) if rescaled else first.dtype
 
-    def layers():
+    def read_layers() -> Iterator[AnyArray]:
         for image in images:
-            values = pixels(file, pydicom, image)
+            values = read_pixels(file, pydicom, image)
             scaled = values * image.slope + image.intercept if rescaled else values
             yield scaled.astype(dtype, copy=False)
 
     between_rows, between_columns = first.spacing
     directions = np.column_stack([*first.frame, step])
-    to_world = transform(directions, (between_columns, between_rows, 1), images[0].place)
-    return Stored(
+    to_world = make_transform(directions, (between_columns, between_rows, 1), images[0].place)
+    return StoredVolume(
         shape=(len(images), *first.shape),
         dtype=dtype,
-        layers=layers,
+        layers=read_layers,
         to_world=LPS_TO_RAS @ to_world,
         unit="mm",
         axes="RAS",
     )
 
 
-def _one_series(file, images):
-    """The images of the series that is named, or of the only one."""
+def _choose_series(file: VolumeFile, images: list[Slice]) -> list[Slice]:
+    """Return the images of the series that the file's part names, or of the only series."""
     if not images:
         raise file.error("holds no image of DICOM; name the folder of a series")
-    series = {}
+    series: dict[tuple[str, str], list[Slice]] = {}
     for image in images:
         series.setdefault(image.series, []).append(image)
     chosen = [s for (number, _), s in series.items() if file.part in (None, number)]
@@ -72,8 +80,8 @@ def _one_series(file, images):
     return chosen[0]
 
 
-def _require_alike(file, images):
-    """Raise `BrdfkitError` unless the slices can be of one volume."""
+def _require_alike(file: VolumeFile, images: list[Slice]) -> None:
+    """Raise `BrdfkitError` unless the slices can belong to one volume."""
     first = images[0]
     for what in ("shape", "dtype", "spacing"):
         if any(not np.array_equal(getattr(i, what), getattr(first, what)) for i in images):
@@ -82,22 +90,22 @@ def _require_alike(file, images):
         raise file.error("its slices are turned to each other; keep those of one volume")
 
 
-def _step(file, images, normal):
-    """From a slice to the next one, a vector (3,) [mm]; of a single slice, its thickness."""
+def _find_step(file: VolumeFile, images: list[Slice], normal: FloatArray) -> FloatArray:
+    """Return the vector (3,) [mm] from a slice to the next; a single slice has its thickness."""
     if len(images) == 1:
         return normal * images[0].thickness
     places = np.array([image.place for image in images])
     steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
-    usual = float(np.sort(steps)[(len(steps) - 1) // 2])  # the median; of two, the smaller
-    if not steps.min() > 1e-3 * max(usual, 1e-6):
+    median = float(np.sort(steps)[(len(steps) - 1) // 2])  # of two steps, the smaller one
+    if not steps.min() > 1e-3 * max(median, 1e-6):
         raise file.error(
             "has several slices at one place, as of several times; keep those of one volume"
         )
-    uneven = np.abs(steps / usual - 1)
+    uneven = np.abs(steps / median - 1)
     if uneven.max() > UNEVEN:
         at = int(uneven.argmax())
         raise file.error(
             f"slices are missing: {steps[at]:.4g} mm between the slices {at + 1} and {at + 2}, "
-            f"elsewhere {usual:.4g} mm; fetch the series again"
+            f"elsewhere {median:.4g} mm; fetch the series again"
         )
     return (places[-1] - places[0]) / (len(places) - 1)

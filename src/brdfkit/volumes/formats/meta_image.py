@@ -1,13 +1,26 @@
 """MetaImage: `.mha`, or a header `.mhd` beside its data, as ITK writes them.
 
-A row of ``TransformMatrix`` is the direction of an axis, and voxels lie x fastest. The world is
-ITK's, LPS, and is turned to RAS.
+The rows of ``TransformMatrix`` are the directions of the axes, and x is the fastest axis of the
+voxels. ITK's world, LPS, is converted to RAS.
 """
+
+from pathlib import Path
 
 import numpy as np
 
-from brdfkit.volumes.formats._stored import LPS_TO_RAS, Stored, transform
-from brdfkit.volumes.formats._streams import layers, numbers, opener, require_bytes
+from brdfkit.core.array_types import FloatArray
+from brdfkit.volumes.formats._streams import (
+    make_opener,
+    make_text_opener,
+    read_layers,
+    require_bytes,
+)
+from brdfkit.volumes.formats._volume_file import (
+    LPS_TO_RAS,
+    StoredVolume,
+    VolumeFile,
+    make_transform,
+)
 
 NAME = "MetaImage"
 SUFFIXES = (".mha", ".mhd")
@@ -19,68 +32,70 @@ TYPES = {
     "MET_USHORT": "u2",
     "MET_INT": "i4",
     "MET_UINT": "u4",
-    "MET_LONG": "i4",  # of MetaIO, on every machine
+    "MET_LONG": "i4",  # in MetaIO, on every machine
     "MET_ULONG": "u4",
     "MET_LONG_LONG": "i8",
     "MET_ULONG_LONG": "u8",
     "MET_FLOAT": "f4",
     "MET_DOUBLE": "f8",
 }
-LONGEST = 2**16  # bytes of a header
+HEADER_LIMIT = 2**16  # bytes
 
 
-def sniff(head):
-    """Whether the file begins with fields of a MetaImage."""
+def sniff(head: bytes) -> bool:
+    """Return whether the file begins with fields of a MetaImage."""
     return head.lstrip().startswith((b"ObjectType", b"NDims")) and b"=" in head[:80]
 
 
-def find(file):
-    """The volume of a MetaImage."""
-    fields, start = _fields(file)
+def read_header(file: VolumeFile) -> StoredVolume:
+    """Read the header of a MetaImage."""
+    fields, start = _read_fields(file)
     try:
-        shape = tuple(int(n) for n in fields["DimSize"].split())[::-1]
+        sizes = [int(n) for n in fields["DimSize"].split()]
         to_world = _to_world(fields)
-        dtype = TYPES.get(fields["ElementType"])
+        code = TYPES.get(fields["ElementType"])
         channels = int(fields.get("ElementNumberOfChannels", 1))
         skip = int(fields.get("HeaderSize", 0))
     except (KeyError, ValueError) as error:
         raise file.error(f"its header is damaged ({error}); fetch it again") from error
-    if len(shape) != 3 or min(shape) < 1:
-        raise file.error(f"has axes of {shape[::-1]}; three of 1 or more belong there")
-    if dtype is None or channels != 1:
+    if len(sizes) != 3 or min(sizes) < 1:
+        raise file.error(f"has axes of {tuple(sizes)}; three of 1 or more belong there")
+    shape = sizes[2], sizes[1], sizes[0]
+    if code is None or channels != 1:
         what = f"{channels} channels of {fields['ElementType']}"
         raise file.error(f"has {what} at each voxel; one number belongs there")
-    most_first = _is_true(fields, "BinaryDataByteOrderMSB", "ElementByteOrderMSB")
-    dtype = np.dtype((">" if most_first else "<") + dtype)
-    path, start = _data_file(file, fields["ElementDataFile"], start)
+    big_endian = _is_true(fields, "BinaryDataByteOrderMSB", "ElementByteOrderMSB")
+    dtype = np.dtype((">" if big_endian else "<") + code)
+    path, start = _find_data(file, fields["ElementDataFile"], start)
     if not _is_true(fields, "BinaryData", default="True"):
         require_bytes(file, path, start, shape, np.uint8)
-        stream = numbers(path, start, dtype)
+        stream = make_text_opener(path, start, dtype)
     else:
         packed = _is_true(fields, "CompressedData")
         if skip == -1 and not packed and path.exists():  # the data are the end of the file
             start, skip = path.stat().st_size - int(np.prod(shape)) * dtype.itemsize, 0
         start = max(start + max(skip, 0), 0)
         require_bytes(file, path, start, shape, dtype, "zlib" if packed else "")
-        stream = opener(path, start, "zlib" if packed else "")
-    return Stored(
+        stream = make_opener(path, start, "zlib" if packed else "")
+    return StoredVolume(
         shape=shape,
         dtype=dtype,
-        layers=lambda: layers(file, stream, shape, dtype),
+        layers=lambda: read_layers(file, stream, shape, dtype),
         to_world=LPS_TO_RAS @ to_world,
         unit="mm",
         axes="RAS",
     )
 
 
-def _fields(file):
-    """The fields of the header, and where it ends."""
-    fields, read = {}, 0
+def _read_fields(file: VolumeFile) -> tuple[dict[str, str], int]:
+    """Return the fields of the header, and the number of its bytes."""
+    fields: dict[str, str] = {}
+    read = 0
     with file.path.open("rb") as stream:
-        for line in iter(lambda: stream.readline(LONGEST), b""):
+        for line in iter(lambda: stream.readline(HEADER_LIMIT), b""):
             read += len(line)
             name, equals, value = line.decode("latin-1").partition("=")
-            if not equals or read > LONGEST:
+            if not equals or read > HEADER_LIMIT:
                 break
             fields[name.strip()] = value.strip()
             if name.strip() == "ElementDataFile":
@@ -88,17 +103,19 @@ def _fields(file):
     raise file.error("its header has no ElementDataFile at its end; fetch it again")
 
 
-def _to_world(fields):
+def _to_world(fields: dict[str, str]) -> FloatArray:
+    """Return the transform (4, 4) to ITK's world."""
     matrix = _first(
         fields, "TransformMatrix", "Rotation", "Orientation", default="1 0 0 0 1 0 0 0 1"
     )
     spacing = _first(fields, "ElementSpacing", "ElementSize", default="1 1 1")
     origin = _first(fields, "Offset", "Position", "Origin", default="0 0 0")
-    rows, spacing, origin = (np.array(text.split(), float) for text in (matrix, spacing, origin))
-    return transform(rows.reshape(3, 3).T, spacing.reshape(3), origin.reshape(3))
+    rows, steps, place = (np.array(text.split(), float) for text in (matrix, spacing, origin))
+    return make_transform(rows.reshape(3, 3).T, steps.reshape(3), place.reshape(3))
 
 
-def _data_file(file, name, start):
+def _find_data(file: VolumeFile, name: str, start: int) -> tuple[Path, int]:
+    """Return the path of the file with the voxels, and where they begin in it."""
     if name.upper() == "LOCAL":
         return file.path, start
     if name.upper().startswith("LIST") or "%" in name:
@@ -106,9 +123,11 @@ def _data_file(file, name, start):
     return file.path.parent / name, 0
 
 
-def _is_true(fields, *names, default="False"):
+def _is_true(fields: dict[str, str], *names: str, default: str = "False") -> bool:
+    """Return whether the first of several fields that exists says "true"."""
     return _first(fields, *names, default=default).lower() in ("true", "1", "yes")
 
 
-def _first(fields, *names, default):
+def _first(fields: dict[str, str], *names: str, default: str) -> str:
+    """Return the first of several fields that exists, or a default."""
     return next((fields[name] for name in names if name in fields), default)

@@ -1,11 +1,11 @@
-"""Mitsuba's `.vol`: version 3, one channel of float32, x fastest, and the box of its faces."""
+"""Mitsuba's `.vol`, version 3: one channel of float32, x fastest, and the box of the volume."""
 
 import struct
 
 import numpy as np
 
-from brdfkit.volumes.formats._stored import Stored, transform
-from brdfkit.volumes.formats._streams import layers, opener, require_bytes
+from brdfkit.volumes.formats._streams import make_opener, read_layers, require_bytes
+from brdfkit.volumes.formats._volume_file import StoredVolume, VolumeFile, make_transform
 
 NAME = "Mitsuba's grid"
 SUFFIXES = (".vol",)
@@ -13,13 +13,13 @@ SUFFIXES = (".vol",)
 HEADER = struct.Struct("<3sB5i6f")  # VOL, version, encoding, nx, ny, nz, channels, box
 
 
-def sniff(head):
-    """Whether the file begins as Mitsuba's grids do."""
+def sniff(head: bytes) -> bool:
+    """Return whether the file begins as Mitsuba's grids do."""
     return head.startswith(b"VOL")
 
 
-def find(file):
-    """The volume of a grid of Mitsuba's."""
+def read_header(file: VolumeFile) -> StoredVolume:
+    """Read the header of one of Mitsuba's grids."""
     with file.path.open("rb") as stream:
         head = stream.read(HEADER.size)
     if len(head) < HEADER.size or head[:3] != b"VOL":
@@ -37,10 +37,10 @@ def find(file):
     require_bytes(file, file.path, HEADER.size, shape, dtype)
     low, high = np.reshape(box, (2, 3))
     spacing = (high - low) / (nx, ny, nz)
-    stream = opener(file.path, HEADER.size)
-    return Stored(
+    open_stream = make_opener(file.path, HEADER.size)
+    return StoredVolume(
         shape=shape,
         dtype=dtype,
-        layers=lambda: layers(file, stream, shape, dtype),
-        to_world=transform(np.eye(3), spacing, low + spacing / 2),
+        layers=lambda: read_layers(file, open_stream, shape, dtype),
+        to_world=make_transform(np.eye(3), spacing, low + spacing / 2),
     )

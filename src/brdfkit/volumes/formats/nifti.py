@@ -1,52 +1,54 @@
 """NIfTI-1 and NIfTI-2: `.nii`, `.nii.gz`, and pairs of `.hdr` and `.img`.
 
-The header has two transforms to the world; of these the sform counts where it has a code, else the
-qform, as nibabel has it. The world is RAS. Voxels lie x fastest, and may be scaled by a slope.
-``brain.nii#3`` is the fourth of several volumes (from 0).
+The header has two transforms to the world, RAS. The sform counts if it has a code, otherwise the
+qform, as in nibabel. The axis x of the voxels is the fastest, and values may be scaled by a slope.
+``brain.nii#3`` is the fourth of several volumes, counted from 0.
 """
 
+from collections.abc import Iterator
 from math import prod
 from pathlib import Path
 
 import numpy as np
 
-from brdfkit.volumes.formats._stored import Stored
-from brdfkit.volumes.formats._streams import layers, opener, require_bytes
+from brdfkit.core.array_types import AnyArray
+from brdfkit.volumes.formats._streams import make_opener, read_layers, require_bytes
+from brdfkit.volumes.formats._volume_file import Shape, StoredVolume, VolumeFile
 
 NAME = "NIfTI"
 SUFFIXES = (".nii", ".nii.gz", ".hdr", ".img")
 
-LABELS = 1002  # intent code
+LABELS = 1002  # the intent code of labels
 UNITS = {"mm": "mm", "meter": "m", "micron": "µm"}
 
 
-def sniff(head):
-    """Whether the head has NIfTI-1's or NIfTI-2's magic number."""
+def sniff(head: bytes) -> bool:
+    """Return whether the head has NIfTI-1's or NIfTI-2's magic number."""
     return head[344:348] in (b"n+1\0", b"ni1\0") or head[4:8] in (b"n+2\0", b"ni2\0")
 
 
-def find(file):
-    """The volume of a NIfTI file."""
-    nibabel = file.package("nibabel", "nibabel")
+def read_header(file: VolumeFile) -> StoredVolume:
+    """Read the header of a NIfTI file."""
+    nibabel = file.import_package("nibabel", "nibabel")
     if not str(file.path).lower().endswith(SUFFIXES):
         raise file.error("is NIfTI by its content; rename it to .nii, or .nii.gz if it is packed")
     try:
         image = nibabel.load(file.path)
         header, dtype = image.header, image.header.get_data_dtype()
-        shape = tuple(map(int, image.shape))
+        sizes = tuple(map(int, image.shape))
         codes = [int(header[name]) for name in ("sform_code", "qform_code")]
         unit = UNITS.get(header.get_xyzt_units()[0], "mm" if any(codes) else "")
         slope, intercept = image.dataobj.slope, image.dataobj.inter
         start, intent = int(image.dataobj.offset), int(header["intent_code"])
     except Exception as error:
         raise file.error(
-            f"is no NIfTI file, or damaged ({_line(error)}); fetch it again"
+            f"is no NIfTI file, or damaged ({_first_line(error)}); fetch it again"
         ) from error
     if dtype.kind not in "iuf":
         raise file.error(
             f"holds {dtype} at each voxel, colours or vectors; one number belongs there"
         )
-    shape, number = _one(file, shape)
+    shape, number = _choose_volume(file, sizes)
     path = Path(image.file_map["image"].filename)
     packed = path.suffix.lower() == ".gz"
     volume = prod(shape) * dtype.itemsize
@@ -54,14 +56,14 @@ def find(file):
         file, path, 0 if packed else start + number * volume, shape, dtype, "gzip" if packed else ""
     )
     start += number * volume
-    stream = opener(path, 0, "gzip", start) if packed else opener(path, start)
+    stream = make_opener(path, 0, "gzip", start) if packed else make_opener(path, start)
     scaled = (slope, intercept) != (1, 0)
 
-    def scaled_layers():
-        for layer in layers(file, stream, shape, dtype):
+    def scaled_layers() -> Iterator[AnyArray]:
+        for layer in read_layers(file, stream, shape, dtype):
             yield (layer * slope + intercept).astype(np.float32) if scaled else layer
 
-    return Stored(
+    return StoredVolume(
         shape=shape,
         dtype=np.dtype(np.float32) if scaled else dtype,
         layers=scaled_layers,
@@ -72,19 +74,20 @@ def find(file):
     )
 
 
-def _one(file, shape):
-    """(nz, ny, nx) of one volume of a file, and its number."""
-    if len(shape) < 3 or min(shape) < 1:
-        raise file.error(f"has {'×'.join(map(str, shape))} voxels; three dimensions belong there")
-    count = prod(shape[3:])
+def _choose_volume(file: VolumeFile, sizes: tuple[int, ...]) -> tuple[Shape, int]:
+    """Return the shape (nz, ny, nx) of one volume of a file, and its number."""
+    if len(sizes) < 3 or min(sizes) < 1:
+        raise file.error(f"has {'×'.join(map(str, sizes))} voxels; three dimensions belong there")
+    count = prod(sizes[3:])
     if file.part is None and count > 1:
         raise file.error(f"holds {count} volumes; name one, from 0: {file.path.name}#0")
     part = file.part or "0"
     number = int(part) if part.isdecimal() else -1
     if not 0 <= number < count:
         raise file.error(f"has no volume '#{file.part}'; name one of 0 to {count - 1}")
-    return shape[2::-1], number
+    return (sizes[2], sizes[1], sizes[0]), number
 
 
-def _line(error):
+def _first_line(error: Exception) -> str:
+    """Return the first line of an error, or its class if it has no text."""
     return (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")

@@ -1,14 +1,25 @@
 """NRRD: `.nrrd`, or a header `.nhdr` beside its data.
 
-Voxels lie x fastest. ``space directions`` are the axes with their spacing; the spaces
-left-posterior-superior and left-anterior-superior are turned to RAS. A segmentation of Slicer's
-(``Segment0_ID``) has labels.
+The axis x of the voxels is the fastest. ``space directions`` are the axes with their spacing. The
+spaces left-posterior-superior and left-anterior-superior are converted to RAS. Slicer's
+segmentations (``Segment0_ID``) have labels.
 """
+
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from brdfkit.volumes.formats._stored import Stored, transform
-from brdfkit.volumes.formats._streams import layers, numbers, opener, require_bytes
+from brdfkit.core.array_types import FloatArray
+from brdfkit.volumes.formats._streams import (
+    DType,
+    Opener,
+    make_opener,
+    make_text_opener,
+    read_layers,
+    require_bytes,
+)
+from brdfkit.volumes.formats._volume_file import Shape, StoredVolume, VolumeFile, make_transform
 
 NAME = "NRRD"
 SUFFIXES = (".nrrd", ".nhdr")
@@ -25,7 +36,7 @@ TYPES = {
     "f4": "float",
     "f8": "double",
 }
-SPACES = {  # which way x, y and z go to become right, anterior, superior
+SPACES = {  # the signs that turn x, y and z to right, anterior, superior
     "right-anterior-superior": (1, 1, 1),
     "ras": (1, 1, 1),
     "left-posterior-superior": (-1, -1, 1),
@@ -37,26 +48,27 @@ PACKINGS = {"raw": "", "gzip": "gzip", "gz": "gzip", "bzip2": "bz2", "bz2": "bz2
 TEXT = "ascii", "text", "txt"
 
 
-def sniff(head):
-    """Whether the file begins as all NRRD files do."""
+def sniff(head: bytes) -> bool:
+    """Return whether the file begins as all NRRD files do."""
     return head.startswith(b"NRRD0")
 
 
-def find(file):
-    """The volume of an NRRD file."""
-    header, start = _header(file)
-    shape = tuple(int(n) for n in header["sizes"][::-1])
-    if len(shape) != 3 or min(shape) < 1:
-        raise file.error(f"has axes of {shape[::-1]}; three of 1 or more belong there")
-    dtype = _dtype(file, header)
-    path = _data_file(file, header)
-    stream = _stream(file, header, path, start if path == file.path else 0, shape, dtype)
+def read_header(file: VolumeFile) -> StoredVolume:
+    """Read the header of an NRRD file."""
+    header, start = _read_fields(file)
+    sizes = [int(n) for n in header["sizes"]]
+    if len(sizes) != 3 or min(sizes) < 1:
+        raise file.error(f"has axes of {tuple(sizes)}; three of 1 or more belong there")
+    shape = sizes[2], sizes[1], sizes[0]
+    dtype = _find_dtype(file, header)
+    path = _find_data(file, header)
+    stream = _make_opener(file, header, path, start if path == file.path else 0, shape, dtype)
     to_world, axes = _to_world(file, header)
     unit = (header.get("space units") or [""])[0]
-    return Stored(
+    return StoredVolume(
         shape=shape,
         dtype=dtype,
-        layers=lambda: layers(file, stream, shape, dtype),
+        layers=lambda: read_layers(file, stream, shape, dtype),
         to_world=to_world,
         labels="Segment0_ID" in header,
         unit=unit or "mm" * bool(axes),
@@ -64,9 +76,9 @@ def find(file):
     )
 
 
-def _header(file):
-    """The fields of the header, and where the data begin behind it."""
-    nrrd = file.package("nrrd", "pynrrd")
+def _read_fields(file: VolumeFile) -> tuple[dict[str, Any], int]:
+    """Return the fields of the header, and where the data begin behind it."""
+    nrrd = file.import_package("nrrd", "pynrrd")
     try:
         with file.path.open("rb") as stream:
             header = nrrd.read_header(stream)
@@ -79,32 +91,35 @@ def _header(file):
     return header, start
 
 
-def _dtype(file, header):
+def _find_dtype(file: VolumeFile, header: dict[str, Any]) -> DType:
+    """Return the type of the voxels."""
     for code, names in TYPES.items():
         if header["type"].lower() in names.split(", "):
             return np.dtype((">" if header.get("endian") == "big" else "<") + code)
     raise file.error(f"its type {header['type']!r} is not read; one number belongs at each voxel")
 
 
-def _data_file(file, header):
-    """The path of the file with the voxels."""
+def _find_data(file: VolumeFile, header: dict[str, Any]) -> Path:
+    """Return the path of the file with the voxels."""
     name = header.get("data file", header.get("datafile"))
     if name is None:
         return file.path
     if name.startswith("LIST") or "%" in name:
         raise file.error("its data lie in many files; save it as one .nrrd")
-    return file.path.parent / name
+    return file.path.parent / str(name)
 
 
-def _stream(file, header, path, start, shape, dtype):
-    """A function that opens the stream of the voxels."""
+def _make_opener(
+    file: VolumeFile, header: dict[str, Any], path: Path, start: int, shape: Shape, dtype: DType
+) -> Opener:
+    """Return a function that opens the stream of the voxels."""
     encoding = header["encoding"].lower()
     skip = int(header.get("byte skip", header.get("byteskip", 0)))
     if int(header.get("line skip", header.get("lineskip", 0))):
         raise file.error("lines are to be skipped before its data, which is not read; remove them")
     if encoding in TEXT:
-        require_bytes(file, path, start, shape, np.uint8)  # a digit and a blank at least
-        return numbers(path, start, dtype)
+        require_bytes(file, path, start, shape, np.uint8)  # a number has at least one digit
+        return make_text_opener(path, start, dtype)
     if encoding not in PACKINGS:
         raise file.error(f"its encoding {encoding!r} is not read; save it as raw or gzip")
     packing = PACKINGS[encoding]
@@ -113,11 +128,13 @@ def _stream(file, header, path, start, shape, dtype):
     if skip < 0 or start < 0:
         raise file.error("its byte skip is not possible: the file is cut short; fetch it again")
     require_bytes(file, path, start + (0 if packing else skip), shape, dtype, packing)
-    return opener(path, start, packing, skip) if packing else opener(path, start + skip)
+    if packing:
+        return make_opener(path, start, packing, skip)
+    return make_opener(path, start + skip)
 
 
-def _to_world(file, header):
-    """The transform to the world, turned to RAS where the header tells how; "RAS", or nothing."""
+def _to_world(file: VolumeFile, header: dict[str, Any]) -> tuple[FloatArray, str]:
+    """Return the transform to the world, and "RAS" if the header says how to convert to it."""
     directions = header.get("space directions")
     spacing = header.get("spacings", np.ones(3))
     flips = SPACES.get(header.get("space", "").lower())
@@ -125,7 +142,7 @@ def _to_world(file, header):
     origin = header.get("space origin", np.zeros(3))
     if columns.shape != (3, 3) or np.shape(origin) != (3,):
         raise file.error("its space has not three dimensions; save it anew")
-    to_world = transform(columns, np.ones(3), origin)
+    to_world = make_transform(columns, np.ones(3), origin)
     if flips is None:
         return to_world, ""
     return np.diag([*flips, 1]) @ to_world, "RAS"

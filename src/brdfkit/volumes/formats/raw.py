@@ -1,15 +1,16 @@
 """Raw voxels without a header: `.raw`, x fastest.
 
-Their size and type are given, or stand in the name as in ``engine_256x256x128_uint8.raw``, the
-convention of the Open SciVis Datasets; or a header, `.mhd` or `.nhdr`, is opened in their place.
+The user gives their size and type, or the name does, as in ``engine_256x256x128_uint8.raw``, the
+convention of the Open SciVis Datasets. If there is a header, `.mhd` or `.nhdr`, users open that.
 """
 
 import re
+from typing import Any
 
 import numpy as np
 
-from brdfkit.volumes.formats._stored import Stored
-from brdfkit.volumes.formats._streams import layers, opener, require_bytes
+from brdfkit.volumes.formats._streams import DType, make_opener, read_layers, require_bytes
+from brdfkit.volumes.formats._volume_file import StoredVolume, VolumeFile
 
 NAME = "raw voxels"
 SUFFIXES = (".raw",)
@@ -18,17 +19,17 @@ IN_NAME = re.compile(r"(\d+)x(\d+)x(\d+)_(u?int(?:8|16|32)|float(?:32|64))")
 HEADERS = ".mhd", ".nhdr"
 
 
-def sniff(head):
-    """Always False: there is no header."""
+def sniff(head: bytes) -> bool:
+    """Return False, because there is no header to recognise."""
     return False
 
 
-def find(file):
-    """The volume of raw voxels."""
+def read_header(file: VolumeFile) -> StoredVolume:
+    """Return the volume of raw voxels, and check the size of the file."""
     in_name = IN_NAME.search(file.path.name)
     size, dtype = file.size, file.dtype
     if in_name and size is None and dtype is None:
-        size, dtype = tuple(map(int, in_name.groups()[:3])), in_name[4]
+        size, dtype = (int(in_name[1]), int(in_name[2]), int(in_name[3])), in_name[4]
     if size is None or dtype is None:
         beside = [file.path.with_suffix(suffix) for suffix in HEADERS]
         header = next((path for path in beside if path.exists()), None)
@@ -37,7 +38,7 @@ def find(file):
             if header
             else "has no header; give its size=(nx, ny, nz) and dtype, such as 'uint16' or '>i2'"
         )
-    shape, dtype, offset = size[::-1], _dtype(file, dtype), file.offset or 0
+    shape, dtype, offset = (size[2], size[1], size[0]), _to_dtype(file, dtype), file.offset or 0
     require_bytes(file, file.path, offset, shape, dtype)
     expected = offset + int(np.prod(shape)) * dtype.itemsize
     present = file.path.stat().st_size
@@ -46,13 +47,14 @@ def find(file):
             f"has {present:,} bytes, where {'×'.join(map(str, size))} voxels of {dtype} behind "
             f"{offset} bytes make {expected:,}; give another size, dtype or offset"
         )
-    stream = opener(file.path, offset)
-    return Stored(shape, dtype, lambda: layers(file, stream, shape, dtype), np.eye(4))
+    stream = make_opener(file.path, offset)
+    return StoredVolume(shape, dtype, lambda: read_layers(file, stream, shape, dtype), np.eye(4))
 
 
-def _dtype(file, given):
+def _to_dtype(file: VolumeFile, given: Any) -> DType:
+    """Return the user's type of voxels; raise `BrdfkitError` if it is not one of real numbers."""
     try:
-        dtype = np.dtype(given)
+        dtype: DType = np.dtype(given)
     except TypeError:
         dtype = np.dtype(object)
     if dtype.kind not in "iuf":

@@ -1,18 +1,22 @@
-"""Stacks of TIFF: a file of many pages, or a folder of files, sorted by the numbers in their names.
+"""TIFF stacks: a file of many pages, or a folder of files, sorted by the numbers in their names.
 
-Spacing and unit are read where ImageJ or OME wrote them; else a voxel is 1×1×1. The world has the
+Spacing and unit are those that ImageJ or OME wrote; otherwise a voxel is 1×1×1. The world has the
 axes of the pixels: x right, y down, z through the pages.
 """
 
 import logging
 import re
+from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from brdfkit.volumes.formats import _stored
-from brdfkit.volumes.formats._stored import Stored, transform
-from brdfkit.volumes.formats._streams import layers, opener, require_bytes
+from brdfkit.core.array_types import AnyArray
+from brdfkit.volumes.formats import _volume_file
+from brdfkit.volumes.formats._streams import make_opener, read_layers, require_bytes
+from brdfkit.volumes.formats._volume_file import StoredVolume, VolumeFile, make_transform
 
 NAME = "TIFF"
 SUFFIXES = (".tif", ".tiff")
@@ -20,23 +24,24 @@ SUFFIXES = (".tif", ".tiff")
 MICRONS = "µm", "um", "micron", "microns", "\\u00B5m"
 
 
-def sniff(head):
-    """Whether the file begins as TIFF or BigTIFF does, in either byte order."""
+def sniff(head: bytes) -> bool:
+    """Return whether the file begins as TIFF or BigTIFF does, in either byte order."""
     return head[:4] in (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 
 
-def find(file):
-    """The volume of a stack, of a file or of a folder."""
-    tifffile = file.package("tifffile", "tifffile")
-    return _folder(file, tifffile) if file.path.is_dir() else _file(file, tifffile)
+def read_header(file: VolumeFile) -> StoredVolume:
+    """Read the header of a stack, in a file or a folder."""
+    tifffile = file.import_package("tifffile", "tifffile")
+    return _read_folder(file, tifffile) if file.path.is_dir() else _read_file(file, tifffile)
 
 
-def _file(file, tifffile):
-    with _opened(file, tifffile, file.path) as tiff:
+def _read_file(file: VolumeFile, tifffile: Any) -> StoredVolume:
+    """Read the header of a file of many pages."""
+    with _open_tiff(file, tifffile, file.path) as tiff:
         series, order = tiff.series[0], tiff.byteorder
         shape, dtype, start = series.shape, series.dtype, series.dataoffset
         axes, count = series.axes, len(tiff.series)
-        spacing, unit = _spacing(tiff)
+        spacing, unit = _read_spacing(tiff)
     shape = (1, *shape) if len(shape) == 2 else shape
     if len(shape) != 3 or axes[-1] == "S" or "C" in axes or dtype.kind not in "iuf" or count > 1:
         raise file.error(
@@ -45,20 +50,21 @@ def _file(file, tifffile):
         )
     dtype = dtype.newbyteorder(order)
     if start is None:
-        stack = _pages(file, tifffile, [file.path], shape[1:])
-    else:  # in one piece: of such a file ImageJ may state the first page alone
+        stack = _read_pages(file, tifffile, [file.path], shape[1:])
+    else:  # all in one piece, for which ImageJ may list the first page alone
         require_bytes(file, file.path, start, shape, dtype)
-        stack = layers(file, opener(file.path, start), shape, dtype)
-    return Stored(
-        shape, dtype, lambda: stack, transform(np.eye(3), spacing, np.zeros(3)), unit=unit
+        stack = read_layers(file, make_opener(file.path, start), shape, dtype)
+    return StoredVolume(
+        shape, dtype, lambda: stack, make_transform(np.eye(3), spacing, np.zeros(3)), unit=unit
     )
 
 
-def _folder(file, tifffile):
-    paths = sorted(_stored.pictures(file.path), key=_by_numbers)
+def _read_folder(file: VolumeFile, tifffile: Any) -> StoredVolume:
+    """Read the headers of a folder of files with one page each."""
+    paths = sorted(_volume_file.list_tiffs(file.path), key=_sort_key)
     kinds = []
     for path in paths:
-        with _opened(file, tifffile, path) as tiff:
+        with _open_tiff(file, tifffile, path) as tiff:
             kinds.append((tiff.pages[0].shape, tiff.pages[0].dtype, len(tiff.pages)))
     shape, dtype, pages = kinds[0]
     other = next((p for p, kind in zip(paths, kinds, strict=True) if kind != kinds[0]), None)
@@ -68,70 +74,73 @@ def _folder(file, tifffile):
         raise file.error(
             f"{paths[0].name} has colours or many pages; a layer of numbers belongs there"
         )
-    stack = _pages(file, tifffile, paths, shape)
-    return Stored((len(paths), *shape), dtype, lambda: stack, np.eye(4))
+    stack = _read_pages(file, tifffile, paths, shape)
+    return StoredVolume((len(paths), *shape), dtype, lambda: stack, np.eye(4))
 
 
-def _pages(file, tifffile, paths, shape):
-    """Yields the pages of the files at `paths`, each of this `shape` (ny, nx)."""
+def _read_pages(
+    file: VolumeFile, tifffile: Any, paths: list[Path], shape: tuple[int, int]
+) -> Iterator[AnyArray]:
+    """Yield the pages of the files at `paths`, each of this `shape` (ny, nx)."""
     for path in paths:
-        with _opened(file, tifffile, path) as tiff:
+        with _open_tiff(file, tifffile, path) as tiff:
             for page in tiff.pages:
-                if page.shape != shape:  # asked before its pixels are made room for
+                if page.shape != shape:  # checked before memory is taken for its pixels
                     raise ValueError("its pages differ in size")
                 yield page.asarray()
 
 
 @contextmanager
-def _opened(file, tifffile, path):
-    """A file opened by tifffile; what fails within the block is an error for people.
+def _open_tiff(file: VolumeFile, tifffile: Any, path: Path) -> Iterator[Any]:
+    """Open a file by tifffile, and turn errors within the block into a `BrdfkitError`.
 
-    So is what tifffile only logs: a chain of pages that is cut short would else be a smaller stack.
+    Errors that tifffile only logs are raised as well: otherwise a truncated chain of pages would be
+    a smaller stack.
     """
-    log, told = logging.getLogger("tifffile"), _Told(logging.ERROR)
+    log, logged = logging.getLogger("tifffile"), _LogRecorder(logging.ERROR)
     propagate, log.propagate = log.propagate, False
-    log.addHandler(told)
+    log.addHandler(logged)
     try:
         with tifffile.TiffFile(path) as tiff:
             yield tiff
-        if told.texts:
-            raise ValueError(told.texts[0])
-    except Exception as error:  # of each of its decoders another
+        if logged.texts:
+            raise ValueError(logged.texts[0])
+    except Exception as error:  # each decoder raises another one
         problem = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
         raise file.error(f"{path.name} cannot be read as TIFF ({problem})") from error
     finally:
-        log.removeHandler(told)
+        log.removeHandler(logged)
         log.propagate = propagate
 
 
-class _Told(logging.Handler):
-    """Keeps the texts that are logged."""
+class _LogRecorder(logging.Handler):
+    """A handler that collects the texts that are logged."""
 
-    def __init__(self, level):
+    def __init__(self, level: int) -> None:
         super().__init__(level)
-        self.texts = []
+        self.texts: list[str] = []
 
-    def emit(self, record):
+    def emit(self, record: logging.LogRecord) -> None:
         self.texts.append(record.getMessage())
 
 
-def _spacing(tiff):
-    """From voxel to voxel along x, y, z, and its unit."""
+def _read_spacing(tiff: Any) -> tuple[list[float], str]:
+    """Return the distances between voxels along x, y, z, and their unit."""
     if tiff.ome_metadata:
-        pixels = re.search(r"<Pixels\b[^>]*>", tiff.ome_metadata)[0]
-        told = dict(re.findall(r'(PhysicalSize\w+)="([^"]*)"', pixels))
-        spacing = [float(told.get(f"PhysicalSize{axis}", 1)) for axis in "XYZ"]
-        return spacing, told.get("PhysicalSizeXUnit", "µm") if told else ""  # OME's default
-    told = tiff.imagej_metadata or {}
-    if "spacing" not in told and "unit" not in told:
-        return (1, 1, 1), ""
+        pixels: Any = re.search(r"<Pixels\b[^>]*>", tiff.ome_metadata)
+        sizes = dict(re.findall(r'(PhysicalSize\w+)="([^"]*)"', pixels[0]))
+        spacing = [float(sizes.get(f"PhysicalSize{axis}", 1)) for axis in "XYZ"]
+        return spacing, sizes.get("PhysicalSizeXUnit", "µm") if sizes else ""  # OME's default
+    metadata = tiff.imagej_metadata or {}
+    if "spacing" not in metadata and "unit" not in metadata:
+        return [1, 1, 1], ""
     tags = tiff.pages[0].tags
-    pixels = [tags[name].value for name in ("XResolution", "YResolution")]  # pixels per unit
-    x, y = (below / max(above, 1e-12) for above, below in pixels)
-    unit = str(told.get("unit", ""))
-    return (x, y, float(told.get("spacing", 1))), "µm" if unit in MICRONS else unit
+    resolutions = [tags[name].value for name in ("XResolution", "YResolution")]  # pixels per unit
+    x, y = (below / max(above, 1e-12) for above, below in resolutions)
+    unit = str(metadata.get("unit", ""))
+    return [x, y, float(metadata.get("spacing", 1))], "µm" if unit in MICRONS else unit
 
 
-def _by_numbers(path):
-    """A key by which slice_9 comes before slice_10."""
+def _sort_key(path: Path) -> list[int | str]:
+    """Return a key that sorts slice_9 before slice_10."""
     return [int(part) if part.isdecimal() else part for part in re.split(r"(\d+)", path.name)]

@@ -1,20 +1,22 @@
-"""VTK's image data in XML: `.vti`, of point or cell data.
+"""VTK's image data in XML: `.vti`, with point or cell data.
 
-Points lie at origin + direction · (spacing × index), cells between them, so that a grid of n points
-has n - 1 cells along an axis. ``model.vti#facies`` names one of several arrays. The world is the
-file's own. The blocks of the data are in `_vti_blocks.py`.
+Points lie at origin + direction · (spacing × index), and cells lie between points, so that a grid
+of n points has n - 1 cells along an axis. ``model.vti#facies`` names one of several arrays. The
+world is the file's own. `_vti_blocks.py` reads the blocks of the data.
 """
 
 import mmap
 import re
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import no_such
-from brdfkit.volumes.formats._stored import Stored, transform
-from brdfkit.volumes.formats._streams import CUT_SHORT, layers
-from brdfkit.volumes.formats._vti_blocks import Encoding, opener
+from brdfkit.volumes.formats._streams import CUT_SHORT, DType, read_layers
+from brdfkit.volumes.formats._volume_file import Shape, StoredVolume, VolumeFile, make_transform
+from brdfkit.volumes.formats._vti_blocks import Encoding, make_opener
 
 NAME = "VTK image data"
 SUFFIXES = (".vti",)
@@ -25,28 +27,28 @@ APPENDED = re.compile(rb"<AppendedData\b[^>]*>\s*_")
 END = b"</DataArray>"
 
 
-def sniff(head):
-    """Whether the file begins as VTK's XML files of images do."""
+def sniff(head: bytes) -> bool:
+    """Return whether the file begins as VTK's XML files of images do."""
     return b"<VTKFile" in head and b'type="ImageData"' in head
 
 
-def find(file):
-    """The volume of a file of VTK's image data."""
+def read_header(file: VolumeFile) -> StoredVolume:
+    """Read the header of a file of VTK's image data."""
     with (
         file.path.open("rb") as stream,
         mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as m,
     ):
-        root, bodies, appended = _skeleton(file, m)
+        root, bodies, appended = _read_skeleton(file, m)
         end = len(m)
     image = root.find("ImageData")
     pieces = [] if image is None else image.findall("Piece")
-    if len(pieces) != 1:
+    if image is None or len(pieces) != 1:
         raise file.error(f"has {len(pieces)} pieces; one belongs there")
-    array, of_cells = _array(file, pieces[0])
+    array, of_cells = _find_array(file, pieces[0])
     try:
-        shape, to_world = _grid(image, pieces[0], of_cells)
-        dtype = _dtype(array)
-        start, stop = bodies[int(array.get("place"))]
+        shape, to_world = _read_grid(image, pieces[0], of_cells)
+        dtype = _read_dtype(array)
+        start, stop = bodies[int(array.get("place", ""))]
         place = int(array.get("offset", 0))
     except (AttributeError, OverflowError, TypeError, ValueError) as error:
         raise file.error(f"its header is damaged ({error}); fetch it again") from error
@@ -59,41 +61,53 @@ def find(file):
         if where is None:
             raise file.error(CUT_SHORT)
         start, stop = where + place, end
-    encoding = Encoding.of(file, root, array.get("format"), form)
+    encoding = Encoding.read(file, root, array.get("format"), form)
     dtype = dtype.newbyteorder(encoding.byte_order)
-    stream = opener(file, start, stop, encoding, shape, dtype)
-    return Stored(shape, dtype, lambda: layers(file, stream, shape, dtype), to_world)
+    open_stream = make_opener(file, start, stop, encoding, shape, dtype)
+    return StoredVolume(
+        shape, dtype, lambda: read_layers(file, open_stream, shape, dtype), to_world
+    )
 
 
-def _grid(image, piece, of_cells):
-    """(nz, ny, nx) of the voxels, and their transform to the world."""
-    extent = np.array(piece.get("Extent", image.get("WholeExtent")).split(), int).reshape(3, 2)
+def _read_grid(
+    image: ElementTree.Element, piece: ElementTree.Element, of_cells: bool
+) -> tuple[Shape, FloatArray]:
+    """Return the shape (nz, ny, nx) of the voxels, and their transform to the world."""
+    sizes: Any = piece.get("Extent", image.get("WholeExtent"))
+    extent = np.array(sizes.split(), int).reshape(3, 2)
     spacing, origin = (
         np.array(image.get(key, default).split(), float).reshape(3)
         for key, default in (("Spacing", "1 1 1"), ("Origin", "0 0 0"))
     )
     direction = np.array(image.get("Direction", "1 0 0 0 1 0 0 0 1").split(), float)
-    to_world = transform(direction.reshape(3, 3), spacing, origin)
-    first = extent[:, 0] + (0.5 if of_cells else 0)  # a cell's middle lies between points
+    to_world = make_transform(direction.reshape(3, 3), spacing, origin)
+    first = extent[:, 0] + (0.5 if of_cells else 0)  # the middle of a cell lies between points
     to_world[:3, 3] = (to_world @ [*first, 1])[:3]
     points = extent[:, 1] - extent[:, 0] + 1
-    return tuple(int(n) for n in (points - 1 if of_cells else points)[::-1]), to_world
+    nx, ny, nz = (points - 1 if of_cells else points).tolist()
+    return (nz, ny, nx), to_world
 
 
-def _dtype(array):
-    kind, bits = re.fullmatch(r"(Int|UInt|Float)(8|16|32|64)", array.get("type", "")).groups()
+def _read_dtype(array: ElementTree.Element) -> DType:
+    """Return the type of an array; raise AttributeError if it is damaged."""
+    match: Any = re.fullmatch(r"(Int|UInt|Float)(8|16|32|64)", array.get("type", ""))
+    kind, bits = match.groups()
     return np.dtype(f"{TYPES[kind]}{int(bits) // 8}")
 
 
-def _skeleton(file, data):
-    """The XML without its data; where the bodies of the arrays lie; where what is appended begins,
-    and its encoding.
+def _read_skeleton(
+    file: VolumeFile, data: mmap.mmap
+) -> tuple[ElementTree.Element, list[tuple[int, int]], tuple[int, str] | None]:
+    """Parse the XML without its data, since raw data are not XML, and arrays may be gigabytes.
 
-    What is appended raw is no XML, and the bodies may be gigabytes.
+    Returns the root, the places (start, end) of the arrays' bodies, and the place and form of
+    appended data, None if there are none.
     """
     appended = APPENDED.search(data)
     head_end = appended.start() if appended else len(data)
-    parts, bodies, at = [], [], 0
+    parts: list[bytes] = []
+    bodies: list[tuple[int, int]] = []
+    at = 0
     for tag in ARRAY.finditer(data, 0, head_end):
         close = tag.end() if tag[1] else data.find(END, tag.end())
         close = head_end if close < 0 else close
@@ -109,23 +123,26 @@ def _skeleton(file, data):
     except ElementTree.ParseError as error:
         raise file.error(f"its XML is cut short or damaged ({error}); fetch it again") from error
     raw = appended and b"base64" not in appended[0]
-    return root, bodies, appended and (appended.end(), "raw" if raw else "base64")
+    form = "raw" if raw else "base64"
+    return root, bodies, (appended.end(), form) if appended else None
 
 
-def _array(file, piece):
-    """The element of the array to read, and whether it is of cells."""
-    found = {}
+def _find_array(file: VolumeFile, piece: ElementTree.Element) -> tuple[ElementTree.Element, bool]:
+    """Return the element of the array to read, and whether its values belong to cells."""
+    arrays: dict[str, tuple[ElementTree.Element, bool, bool]] = {}
     for kind in ("PointData", "CellData"):
         data = piece.find(kind)
-        for i, array in enumerate([] if data is None else data.findall("DataArray")):
+        if data is None:
+            continue
+        for i, array in enumerate(data.findall("DataArray")):
             name = array.get("Name", f"{kind} {i}")
-            found[name] = array, kind == "CellData", name == data.get("Scalars")
-    if not found:
+            arrays[name] = array, kind == "CellData", name == data.get("Scalars")
+    if not arrays:
         raise file.error("has neither point nor cell data; one array belongs there")
-    if file.part is not None and file.part not in found:
-        raise no_such("array", file.part, found, str(file.path))
-    active = [name for name, (*_, is_active) in found.items() if is_active] or list(found)
+    if file.part is not None and file.part not in arrays:
+        raise no_such("array", file.part, arrays, str(file.path))
+    active = [name for name, (*_, is_active) in arrays.items() if is_active] or list(arrays)
     if file.part is None and len(active) > 1:
-        raise file.error(f"holds {', '.join(found)}; name one: {file.path.name}#{active[0]}")
-    array, of_cells, _ = found[file.part or active[0]]
+        raise file.error(f"holds {', '.join(arrays)}; name one: {file.path.name}#{active[0]}")
+    array, of_cells, _ = arrays[file.part or active[0]]
     return array, of_cells
