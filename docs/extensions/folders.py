@@ -9,7 +9,7 @@ import re
 PAGE = re.compile(r"\]\((\w+)\.md\)")
 CONTENTS = "\n\n```{{toctree}}\n:hidden:\n\n{}\n```\n"
 BELOW = {
-    "five_minutes": ["notes", "glossary"],
+    "five_minutes": ["notebooks/README", "notes", "glossary"],
     "environments": ["environment_samplers"],
     "distance_fields": ["single_ray_shadows"],
     "volumes": ["volume_programs"],
