@@ -1,4 +1,4 @@
-"""Draws `docs/entrance.png`, the picture of the README: a measurement, its fit, and what is between.
+"""Draw `docs/entrance.jpg`, the picture of the README: a measured material, its fit, their errors.
 
 python docs/tools/make_entrance.py           # some minutes
 
@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
-from PIL import Image
 
 import brdfkit as bk
 from brdfkit.core.colours import to_srgb
@@ -18,7 +17,7 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.images.errors.colour_difference import ciede2000
 
 MATERIAL, MODEL, LOSS = "car_paint", "ggx+ggx", "cbrt"
-PICTURE = Path(__file__).parents[1] / "entrance.png"
+PICTURE = Path(__file__).parents[1] / "entrance.jpg"
 SIZE, SPP, SEED = 320, 400, 1
 LARGEST_DIFFERENCE = 5.0  # ΔE₀₀ of the brightest colour
 INCIDENCES = {15: "#0072b2", 45: "#d55e00", 70: "#009e73"}  # θ_i in degrees: the curve's colour
@@ -79,6 +78,4 @@ def shapes(fit):
 
 
 if __name__ == "__main__":
-    draw().savefig(PICTURE)
-    with Image.open(PICTURE) as image:  # a palette takes less than half the bytes
-        image.convert("RGB").quantize(256, kmeans=3).save(PICTURE, optimize=True)
+    draw().savefig(PICTURE, pil_kwargs={"quality": 90})
