@@ -95,7 +95,7 @@ def test_the_readme_is_short():
 def test_the_wishes_run_on_the_command_line(here):
     """The materials that the README names come along; a small file stands for them here."""
     named = {word for command, _ in wishes() for word in command.split()}
-    assert {"car_paint", "plaster", "red_plastic"} == named & set(catalogue.materials())
+    assert {"car_paint", "plaster", "red_plastic"} == named & set(catalogue.list_materials())
     for command, _ in wishes():
         run(re.sub(r"\b(car_paint|plaster|red_plastic)\b(?!\.)", "copper.astm", command))
     written = {"car_paint.png", "fits/render.png", "paint.binary", "smoke.png", "ggx+ggx.png"}
