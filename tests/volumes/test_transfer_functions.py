@@ -92,7 +92,7 @@ def test_opacity_of_a_layer_becomes_extinction():
     values, a = np.array([0, 1, 1, 2, 5]), np.array([0, 0.5, 0.1, 1, 0.7])
     rgba = np.column_stack([values / 5, a, 1 - a, a])
     for distance in (0.5, 3.0):
-        function = TF.from_opacity(values, rgba, distance)
+        function = TF.from_opacity(values, rgba, unit_distance=distance)
         at = np.setdiff1d(np.linspace(0, 5, 4001), values)
         sigma = function.extinction * function(at)[:, 3]
         given = TF(values, rgba, colour="emission")
@@ -102,7 +102,7 @@ def test_opacity_of_a_layer_becomes_extinction():
         sample = 0.1  # VTK: 1 - (1 - a)^(s / d)
         vtk = 1 - (1 - np.minimum(given(at)[:, 3], opacity.OPAQUE)) ** (sample / distance)
         np.testing.assert_allclose(opacity.to_opacity(exact, sample), vtk, rtol=1e-9)
-    half = TF.from_opacity([0, 1], [[1, 1, 1, 0.5]] * 2, 2)
+    half = TF.from_opacity([0, 1], [[1, 1, 1, 0.5]] * 2, unit_distance=2)
     assert half.extinction == pytest.approx(np.log(2) / 2)
     assert len(half.values) == 2
     assert TF.from_opacity([0, 1], np.zeros((2, 4))).extinction == 1
@@ -111,7 +111,9 @@ def test_opacity_of_a_layer_becomes_extinction():
 def test_colour_maps_are_made_linear():
     import matplotlib
 
-    function = TF.from_colormap("viridis", (100, 200), [(0, 0), (0.5, 0), (0.5, 1)], 0.5)
+    function = TF.from_colormap(
+        "viridis", (100, 200), opacity=[(0, 0), (0.5, 0), (0.5, 1)], extinction=0.5
+    )
     screen = matplotlib.colormaps["viridis"](np.array([0, 1.0]))[:, :3]
     np.testing.assert_allclose(to_srgb(function([100, 200])[:, :3]), screen, atol=1e-6)
     assert function([149.9, 150.1])[:, 3].tolist() == [0, 1]
@@ -224,7 +226,7 @@ def test_bad_presets_of_slicer(tmp_path, xml, sentence):
         (lambda: TF([0, 1], np.full((2, 4), 1.5)), "as albedo they are 0 to 1"),
         (lambda: TF([0, 1], np.full((2, 4), 1.5), colour="emission"), "A at most 1"),
         (lambda: TF([0, 1], np.zeros((2, 4)), extinction=0), "should be a number above 0"),
-        (lambda: TF.from_opacity([0, 1], np.zeros((2, 4)), 0), "unit_distance = 0"),
+        (lambda: TF.from_opacity([0, 1], np.zeros((2, 4)), unit_distance=0), "unit_distance = 0"),
         (lambda: TF.from_colormap("vridis"), "no colour map 'vridis'; did you mean viridis"),
         (lambda: TF.load("ct_bon"), "did you mean ct_bone"),
         (lambda: RAMP.save("a.txt"), r"are written as \.json"),

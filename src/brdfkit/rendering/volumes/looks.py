@@ -39,7 +39,9 @@ def transfer_function(volume, renderer):
     if renderer == "maximum_intensity":
         return _of_largest_values(volume, "gray" if volume.axes else "inferno")
     if renderer == "emission_absorption":
-        return from_colormap("magma", volume.window, RAMP, GLOWING / _across(volume))
+        return from_colormap(
+            "magma", volume.window, opacity=RAMP, extinction=GLOWING / _across(volume)
+        )
     low, high = volume.range
     if volume.axes and low < AIR and high > TISSUE:
         values = windows.sample_values(volume.values)
@@ -48,7 +50,10 @@ def transfer_function(volume, renderer):
     if volume.axes:
         found = TransferFunction.load("mri_head").scaled_to(*volume.window)
         return replace(found, extinction=DENSE / _across(volume), length_unit="")
-    return from_colormap("RdYlBu_r", volume.window, RAMP, DENSE / _across(volume), "albedo")
+    density = DENSE / _across(volume)
+    return from_colormap(
+        "RdYlBu_r", volume.window, opacity=RAMP, extinction=density, colour="albedo"
+    )
 
 
 def _across(volume):

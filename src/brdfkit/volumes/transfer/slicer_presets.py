@@ -65,7 +65,7 @@ def _convert(cls: Any, preset: ElementTree.Element) -> Any:
     values = np.concatenate([*parts, ends[-1:]])
     rgb, alpha = from_srgb(_interpolate(values, colour)), _interpolate(values, opacity)
     rgba = np.column_stack([rgb, np.clip(alpha, 0, 1)])
-    function = cls.from_opacity(values, rgba, UNIT_DISTANCE)
+    function = cls.from_opacity(values, rgba, unit_distance=UNIT_DISTANCE)
     name = preset.get("name", "preset")
     unit = "HU" if name.startswith("CT") else ""
     function = replace(function, name=name, value_unit=unit, length_unit="mm")
