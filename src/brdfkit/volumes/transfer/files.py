@@ -102,9 +102,13 @@ def _from_record(cls: Any, record: dict[str, Any]) -> Any:
     settings: dict[str, Any] = {w: to_printable(record[w]) for w in WORDS if w in record}
     settings["extinction"] = record.get("extinction", 1.0)
     if "boundaries" in record:
-        shells = [record.get(key) for key in ("boundaries", "thickness", "range")]
-        colour = settings.pop("colour", "albedo")
-        function = cls.from_boundaries(*shells, settings.pop("extinction"), colour)
+        function = cls.from_boundaries(
+            record["boundaries"],
+            record.get("thickness"),
+            values=record.get("range"),
+            extinction=settings.pop("extinction"),
+            colour=settings.pop("colour", "albedo"),
+        )
         return replace(function, **settings)
     if "points" not in record:
         fields = "values", "rgba", "gradients"
