@@ -69,8 +69,9 @@ def coloured(case):
 def function(case):
     given = case.transfer
     if "opacity_unit_distance" in given:
-        opacity = given["values"], given["rgba"], given["opacity_unit_distance"]
-        return brdfkit.volumes.TransferFunction.from_opacity(*opacity)
+        return brdfkit.volumes.TransferFunction.from_opacity(
+            given["values"], given["rgba"], unit_distance=given["opacity_unit_distance"]
+        )
     gradients = given.get("gradients")
     return brdfkit.volumes.TransferFunction(
         given["values"], given["rgba"], given["extinction"], "emission", gradients

@@ -604,10 +604,10 @@ def test_help_names_every_loss(cli):
 def test_ctrl_c_keeps_the_finished_fits(cli, monkeypatch):
     fitted = bk.fit
 
-    def interrupted(name, *args, **options):
+    def interrupted(material, name, **options):
         if name == "ward":
             raise KeyboardInterrupt
-        return fitted(name, *args, **options)
+        return fitted(material, name, **options)
 
     monkeypatch.setattr("brdfkit.fitting.fit.fit", interrupted)
     words = "fit", "paint.binary", "-m", "lambert", "-m", "ward", "-o", "out", "--render"

@@ -184,7 +184,7 @@ def test_a_name_counts_once_and_names_are_made_unlike(here, fitted):
 
 @pytest.mark.quick
 def test_an_error_that_is_not_for_people_fails_one_fit(here, fitted, monkeypatch):
-    def broken(name, data, **settings):
+    def broken(data, name, **settings):
         return {}[name] if name == "lambert" else bk.fit(data, name, **settings)
 
     monkeypatch.setattr("brdfkit.fitting.sweeping.tasks.fit", broken)

@@ -139,7 +139,7 @@ def test_legend_and_styles_tell_all_apart():
 @pytest.mark.parametrize("theta_i", [(0,), (15, 45, 75), (5, 30, 60, 89)])
 def test_nothing_overlaps(peak, theta_i):
     things = [Spike(peak, name) for name in ("gold-metallic-paint", "cook_torrance", "ggx", "ward")]
-    figure = plot(things, theta_i)
+    figure = plot(things, theta_i=theta_i)
     boxes = texts(figure)
     for (one, a), (other, b) in itertools.combinations(boxes.items(), 2):
         assert not a.overlaps(b), (one.get_text(), other.get_text())
@@ -202,7 +202,7 @@ def test_no_global_state_and_shown_in_notebooks():
 @pytest.mark.parametrize("theta_i", [-1, 90, (10, np.nan), (), [[1, 2]]])
 def test_angles_out_of_range(theta_i):
     with pytest.raises(BrdfkitError, match="from 0 to below 90°"):
-        plot(Constant(1), theta_i)
+        plot(Constant(1), theta_i=theta_i)
 
 
 @pytest.mark.parametrize(

@@ -82,7 +82,7 @@ def light_of(file):
 def pictures_of(made, light, bsdf, methods):
     """(halves of the truth, (method, filter) → picture, pixels where the BSDF is seen)."""
     halves, scene = truth(made, light)
-    pictures = {kind: render(made, spp=light, size=by)[0] for kind, by in methods.items()}
+    pictures = {kind: render(made, light, by)[0] for kind, by in methods.items()}
     return halves, pictures, mask(scene, bsdf)
 
 

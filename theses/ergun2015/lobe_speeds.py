@@ -29,8 +29,8 @@ def run(sources, report):
     made = find_scene("ball")(material(ALPHA), (SIZE, SIZE))
     methods, seconds = integrators(), {}
     for done, (kind, integrator) in enumerate(methods.items()):
-        render(made, spp=light, size=integrator)  # fits, filters and compiles
-        seconds[kind] = min(render(made, spp=light, size=integrator)[1] for _ in range(TIMES))
+        render(made, light, integrator)  # fits, filters and compiles
+        seconds[kind] = min(render(made, light, integrator)[1] for _ in range(TIMES))
         report(done + 1, len(methods))
     mips = {method: taken for (method, filter_), taken in seconds.items() if filter_ == "mips"}
     speed = {method: mips[SLOWEST] / mips[method] for method in PRINTED}

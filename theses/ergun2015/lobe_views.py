@@ -43,7 +43,7 @@ def run(sources, report):
         if "nearest" in kind:
             lobes.around = nearest_view(lobes.around)
         integrator.shading.fit = lambda bsdf, lobes=lobes: lobes
-        pictures[kind] = render(made, spp=light, size=integrator)[0]
+        pictures[kind] = render(made, light, integrator)[0]
     psnrs = {kind: decibels(reference, p, seen)[0] for kind, p in pictures.items()}
     jumps = {kind: jump(p - reference, views, seen) for kind, p in pictures.items()}
     blocks, _, kernels = jumps.values()

@@ -170,9 +170,10 @@ def _refuse_to_mend(mends):
 def _refuse_for_pictures(*options):
     """Refuse these options of pictures where they were given without --render."""
     context = click.get_current_context()
+    names = {parameter.name: parameter.opts[0] for parameter in context.command.params}
     for name in options:
         if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
-            raise BrdfkitError(f"--{name} is for pictures; add --render, or leave it out.")
+            raise BrdfkitError(f"{names[name]} is for pictures; add --render, or leave it out.")
 
 
 def _fit_each(names, material, how, output, console):
