@@ -1,8 +1,8 @@
 """`measure`: a virtual goniometer, which path-traces light through microgeometry.
 
-`microgeometry.py`: the shapes of surfaces; `specimen.py`: a surface with the BSDFs of its facets,
-and paths through it; `measuring.py`: how many paths each cell of the table needs; `tally.py`: their
-means and standard errors.
+`microgeometry.py` has the shapes of surfaces; `specimen.py` a surface with the BSDFs of its facets,
+and paths through it; `measuring.py` plans how many paths each cell of the table needs, and collects
+their means and standard errors.
 """
 
 from brdfkit.materials.goniometer.measuring import measure as measure

@@ -2,11 +2,11 @@
 
 A cell of the table holds the mean of the samples at the directions of its centre, and the standard
 error of this mean, from the samples' variance. `specimen.py` explains one sample. A pilot run
-estimates how many samples each cell needs. Its samples are thrown away: a mean is biased where its
-own samples decided how many there are.
+estimates how many samples each cell needs. Its samples are thrown away, because a mean is biased
+where its own samples decide how many of them there are.
 
-By reciprocity the light may come from either direction of a pair. It comes from the steeper one:
-then more of what the eye sees is lit, and fewer samples are 0.
+By reciprocity the light may come from either direction of a pair. It comes from the steeper one,
+so that more of the visible surface is lit, and fewer samples are 0.
 """
 
 from __future__ import annotations
@@ -17,24 +17,59 @@ from typing import Any
 
 import numpy as np
 
+from brdfkit.core.arguments import to_number, to_whole_number, wrong_argument
+from brdfkit.core.array_types import BoolArray, FloatArray, IntArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.progress_bar import Progress
 from brdfkit.core.version import __version__
 from brdfkit.materials.goniometer.microgeometry import HeightField
 from brdfkit.materials.goniometer.specimen import Specimen
-from brdfkit.materials.goniometer.tally import Tally
 from brdfkit.materials.measured import Measured
 from brdfkit.model.samples import Table
 
 ISOTROPIC = (30, 30, 60)
 ANISOTROPIC = (16, 20, 12, 24)
-PILOT = 64  # samples a cell
-LEAST = 256  # samples a cell: the standard error of fewer is itself too uncertain
+PILOT_SAMPLES = 64  # for each cell
+FEWEST_SAMPLES = 256  # for each cell: the standard error of fewer is itself too uncertain
 PASSES = 8  # over all cells: after Ctrl-C each cell has the same part of its samples
-BATCH = 2**20  # paths at once: bounds the memory
-MOST_CELLS = 2**22  # bounds the memory to 1 GB; three times the cells of a MERL table
-MOST_SPP, LEAST_ERROR = 10**9, 1e-5  # bounds of the arguments; there, a cell takes weeks
+BATCH = 2**20  # paths at once, to bound the memory
+MOST_CELLS = 2**22  # to bound the memory to 1 GB; three times the cells of a MERL table
+MOST_SPP, LEAST_ERROR = 10**9, 1e-5  # with these, a cell takes weeks
+
+
+class Tally:
+    """The samples of m pairs of directions: their number (m,), sum and sum of squares (m, 3)."""
+
+    def __init__(self, pairs: int) -> None:
+        self.n = np.zeros(pairs, int)
+        self.sums, self.squares = np.zeros((2, pairs, 3))
+
+    def add(self, pair: IntArray, samples: FloatArray) -> None:
+        """Add `samples` (n, 3); `pair` (n,) is the index of each sample's pair, ascending."""
+        first = np.flatnonzero(np.diff(pair, prepend=-1))
+        rows = pair[first]
+        self.n[rows] += np.diff(first, append=len(pair))
+        self.sums[rows] += np.add.reduceat(samples, first)
+        self.squares[rows] += np.add.reduceat(samples**2, first)
+
+    @property
+    def mean(self) -> FloatArray:
+        """The mean of the samples, (m, 3)."""
+        return self.sums / self.n[:, None]
+
+    @property
+    def standard_error(self) -> FloatArray:
+        """The standard error of the mean, (m, 3)."""
+        n = self.n[:, None]
+        variance = np.maximum(self.squares / n - self.mean**2, 0) * n / (n - 1)
+        return np.sqrt(variance / n)
+
+    @property
+    def relative_error(self) -> FloatArray:
+        """The relative error of the sum of the channels, (m,); infinite where the sum is 0."""
+        errors, means = self.standard_error.sum(axis=1), self.mean.sum(axis=1)
+        return np.divide(errors, means, out=np.full(len(means), np.inf), where=means > 0)
 
 
 @in_turn
@@ -54,23 +89,23 @@ def measure(
     """Measure a table of a surface's BRDF, with the standard error of every cell.
 
     A virtual goniometer path-traces the surface's microgeometry. Ctrl-C ends it early, with larger
-    errors; before every cell has its share it is raised.
+    errors; before every cell has some samples, Ctrl-C raises `KeyboardInterrupt`.
 
     Parameters
     ----------
     surface : HeightField
-        As `brdfkit.materials.goniometer.microgeometry` makes them: ``gaussian``, ``brushed``,
-        ``woven``.
+        The surface, made by ``gaussian``, ``brushed`` or ``woven`` of
+        `brdfkit.materials.goniometer.microgeometry`.
     facets : dict, or several
-        The dictionary of a BSDF of Mitsuba's, or one for each part of the surface: reciprocal,
-        opaque and no mirror.
+        The dictionary of one of Mitsuba's BSDFs, or one for each part of the surface. The BSDFs
+        must be reciprocal, opaque and no mirrors.
     shape : (int, int, int) or (int, int, int, int), optional
         Cells of the table: 30×30×60 (theta_h, theta_d, phi_d) where the surface is isotropic, else
         16×20×12×24 (phi_h before them).
     error : float, default 0.05
-        The relative standard error, of the channels together, that a cell is to reach.
+        The relative standard error that a cell is to reach, in the sum of its channels.
     spp : int, default 16384
-        Samples per cell, at most.
+        The largest number of samples per cell.
     max_bounces : int, default 8
         Largest number of reflections between the facets; light that needs more is lost.
     name : str, default "specimen"
@@ -99,22 +134,23 @@ def measure(
     (54000, 3)
     """
     if not isinstance(surface, HeightField):
-        raise BrdfkitError(f"surface = {surface!r} should be a HeightField, such as gaussian().")
+        raise wrong_argument("surface", surface, "a HeightField, such as gaussian()")
     if isinstance(facets, str):
-        raise BrdfkitError(f"facets = {facets!r} should be the dictionary of a BSDF.")
-    shape = tuple(shape or (ISOTROPIC if surface.isotropic else ANISOTROPIC))
-    _require_valid(surface, shape, error, spp, seed)
+        raise wrong_argument("facets", facets, "the dictionary of a BSDF")
+    shape = _check_shape(shape, surface.isotropic)
+    error = to_number("error", error, LEAST_ERROR, 1)
+    spp, seed = to_whole_number("spp", spp, 2, MOST_SPP), to_whole_number("seed", seed, 0)
     specimen = Specimen(surface, facets, max_bounces)
     above, light, eye = _place_light_and_eye(shape)
     rng = np.random.default_rng(seed)
 
-    # the pilot run, and the samples that each cell gets in a pass
+    # The pilot run, and the samples that each cell gets in a pass
     pilot = Tally(len(light))
-    _trace(specimen, light, eye, np.full(len(light), PILOT), rng, pilot)
+    _trace(specimen, light, eye, np.full(len(light), PILOT_SAMPLES), rng, pilot)
     share = -(-_plan_samples(pilot, above, error, spp) // PASSES)
 
-    # the measurement
-    tally, total = Tally(len(light)), PASSES * share.sum()
+    # The measurement
+    tally, total = Tally(len(light)), PASSES * int(share.sum())
     try:
         for _ in range(PASSES):
             _trace(specimen, light, eye, share, rng, tally, progress, total)
@@ -122,15 +158,18 @@ def measure(
         if (tally.n < share).any():
             raise
 
-    # the table; NaN below the plane
+    # The table, NaN below the plane
     values, errors = np.full((2, *shape, 3), np.nan)
     values[above], errors[above] = tally.mean, tally.standard_error
-    notes = _notes(tally, total) | dict(info or {})
+    notes = _describe(tally, total) | dict(info or {})
     return Measured.from_table(values, name=name, info=notes, standard_error=errors)
 
 
-def _place_light_and_eye(shape):
-    """Which cells of a table are above the plane; of these, the light and the eye, both (m, 3)."""
+def _place_light_and_eye(shape: tuple[int, ...]) -> tuple[BoolArray, FloatArray, FloatArray]:
+    """Return a mask of the cells of a table above the plane, and the light and the eye of each.
+
+    The light and the eye are directions (m, 3).
+    """
     wi, wo = Table(np.empty((*shape, 0))).directions()
     above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
     wi, wo = wi[above], wo[above]
@@ -138,44 +177,57 @@ def _place_light_and_eye(shape):
     return above, np.where(steeper, wi, wo), np.where(steeper, wo, wi)
 
 
-def _plan_samples(pilot, above, error, spp):
-    """The number of samples (m,) that each cell needs for the relative standard error `error`.
+def _plan_samples(pilot: Tally, above: BoolArray, error: float, spp: int) -> IntArray:
+    """Return the number of samples (m,) that each cell needs for the relative standard `error`.
 
     Where a sample is rarely large, the few samples of the pilot in one cell often miss the large
-    ones: the cells around it are pooled with it.
+    ones, so that the cells around it are pooled with it.
     """
     from scipy.ndimage import uniform_filter
 
-    def pool(values):
-        """The mean over 3 × 3 × ... cells; cells below the plane count as 0."""
+    def pool(values: FloatArray | float) -> FloatArray:
+        """Average over 3 × 3 × ... cells; cells below the plane count as 0."""
         grid = np.zeros(above.shape)
         grid[above] = values
         return uniform_filter(grid, 3)[above]
 
-    # squared relative error of the pilot in the pooled cells; `share` of them is above the plane
+    # Squared relative error of the pilot in the pooled cells; a `share` of them is above the plane
     share, mean = pool(1.0), pool(pilot.mean.sum(axis=1))
-    # the errors of the channels rise and fall together: they add up, not their squares
+    # The errors of the channels rise and fall together, so that they add up, not their squares
     variance = share * pool(pilot.standard_error.sum(axis=1) ** 2)
     around = np.divide(variance, mean**2, out=np.ones_like(mean), where=mean > 0)
 
-    # the larger of it and of the cell's own falls as 1 / number of samples
+    # The larger of it and the cell's own error falls as 1 / number of samples
     squares = np.maximum(around, np.minimum(pilot.relative_error, 1) ** 2)
-    return np.ceil(np.clip(PILOT * squares / error**2, min(LEAST, spp), spp)).astype(int)
+    samples = PILOT_SAMPLES * squares / error**2
+    return np.ceil(np.clip(samples, min(FEWEST_SAMPLES, spp), spp)).astype(int)
 
 
-def _trace(specimen, light, eye, counts, rng, tally, progress=None, total=None):
-    """Add `counts` (m,) samples of each pair of directions to the tally."""
+def _trace(
+    specimen: Specimen,
+    light: FloatArray,
+    eye: FloatArray,
+    counts: IntArray,
+    rng: np.random.Generator,
+    tally: Tally,
+    progress: Progress | None = None,
+    total: int = 0,
+) -> None:
+    """Add `counts` (m,) samples of each pair of directions, light and eye (m, 3), to the tally.
+
+    `progress` is called with the number of samples in the tally, and with the `total`.
+    """
     ends = np.cumsum(counts)
     for first in range(0, ends[-1], BATCH):
         numbers = np.arange(first, min(first + BATCH, ends[-1]))
         batch = np.searchsorted(ends, numbers, side="right")
-        tally.add(batch, specimen.samples(light, eye, batch, int(rng.integers(2**32))))
+        tally.add(batch, specimen.draw_samples(light, eye, batch, int(rng.integers(2**32))))
         if progress:
             progress(tally.n.sum(), total)
 
 
-def _notes(tally, total):
-    """Notes on a measurement for which `total` samples were planned."""
+def _describe(tally: Tally, total: int) -> dict[str, str]:
+    """Return notes on a measurement for which `total` samples were planned."""
     median, most = np.percentile(tally.relative_error, (50, 95))
     notes = {
         "made by": f"brdfkit {__version__}, virtual goniometer",
@@ -187,18 +239,12 @@ def _notes(tally, total):
     return notes
 
 
-def _require_valid(surface, shape, error, spp, seed):
-    """Raise `BrdfkitError` for the first argument that is out of bounds."""
-    dimensions = 3 if surface.isotropic else 4
+def _check_shape(shape: Sequence[int] | None, isotropic: bool) -> tuple[int, ...]:
+    """Return the shape of the table, by default the usual one; raise `BrdfkitError` if unfit."""
+    shape = tuple(shape or (ISOTROPIC if isotropic else ANISOTROPIC))
+    dimensions = 3 if isotropic else 4
     if len(shape) != dimensions or min(shape) < 1:
         raise BrdfkitError(f"The table's shape {shape} should be {dimensions} numbers above 0.")
     if math.prod(shape) > MOST_CELLS:
         raise BrdfkitError(f"The table's shape {shape} is above {MOST_CELLS:,} cells; give fewer.")
-    if not 2 <= spp <= MOST_SPP:
-        raise BrdfkitError(f"spp = {spp} is out of bounds; give one from 2 to {MOST_SPP:,}.")
-    if seed < 0:
-        raise BrdfkitError(f"seed = {seed} is out of bounds; give at least 0.")
-    if not LEAST_ERROR <= error < 1:
-        raise BrdfkitError(
-            f"error = {error:g} is out of bounds; give one from {LEAST_ERROR:g} to below 1."
-        )
+    return shape

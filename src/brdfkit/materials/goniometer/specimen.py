@@ -1,4 +1,4 @@
-"""A specimen under the goniometer: microgeometry whose facets have BSDFs, and paths through it.
+"""A specimen of the goniometer: microgeometry whose facets have BSDFs, and paths through it.
 
 A directional light from wi, of irradiance E across its beam, falls on the plane of the mean height
 with the irradiance E cosθ_i. The plane's radiance towards wo is the mean ⟨L⟩ over lines along wo
@@ -7,35 +7,56 @@ that are spread evenly over one tile of the plane. Hence
     f(wi, wo) = ⟨L⟩ / (E cosθ_i)
               = 1 / (A cosθ_i cosθ_o) ∫ f_facet (n·wi)⁺ (n·wo)⁺ V(wi) V(wo) dS + more bounces,
 
-with A the area of the tile in the plane, S the surface, n its normal, and V = 1 where nothing is in
-the way, else 0. One sample is one such line. A path follows it from above down to the surface, and
-goes on by sampling the facets' BSDF; at every bounce a shadow ray tests whether the light is seen.
+with A the area of the tile in the plane, S the surface, n its normal, and the visibility V = 1
+where nothing is in the way, else 0. One sample is one such line. A path follows the line from above
+down to the surface, and goes on by sampling the facets' BSDF; at every bounce a shadow ray tests
+whether the light is visible.
 
 The tile repeats without end: a ray that leaves it sideways enters again on the other side.
 """
 
+from collections.abc import Sequence
+from typing import Any
+
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.array_types import (
+    FloatArray,
+    IntArray,
+    JitColour,
+    JitInt,
+    JitMask,
+    JitVector,
+    MitsubaModule,
+    MitsubaObject,
+)
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.padding import pad
+from brdfkit.materials.goniometer.microgeometry import HeightField
 
-# Offset, along the normal, of rays that leave a point [grid cells]. With Mitsuba's own, 20 times
-# larger, grazing light reaches 1 % too far; single precision needs about 1e-4 here.
-LIFT = 1e-3
-MOST_TILES = 1000  # tiles that a ray may cross; after them it counts as gone
+# Offset, along the normal, of rays that leave a point [grid cells]. With Mitsuba's own offset, 20
+# times larger, grazing light reaches 1 % too far; single precision needs about 1e-4 here.
+RAY_OFFSET = 1e-3
+MOST_TILES = 1000  # tiles that a ray may cross; after them it misses the surface
 
 
 class Specimen:
     """The triangles of a `HeightField` with Mitsuba BSDFs, in the current variant.
 
-    `facets`: one BSDF's dictionary, or one for each of the surface's parts; `max_bounces`: light of
-    longer paths is lost.
+    `facets` is one BSDF's dictionary, or one for each of the surface's parts; the light of paths
+    with more than `max_bounces` bounces is lost.
     """
 
-    def __init__(self, surface, facets, max_bounces=8):
-        mi = _mitsuba()
+    def __init__(
+        self,
+        surface: HeightField,
+        facets: dict[str, Any] | Sequence[dict[str, Any]],
+        max_bounces: int = 8,
+    ) -> None:
+        mi = _import_mitsuba()
         facets = [facets] if isinstance(facets, dict) else list(facets)
         if len(facets) == 1:
             facets *= len(surface.parts)
@@ -44,63 +65,64 @@ class Specimen:
                 f"{len(facets)} materials were given for {' and '.join(surface.parts)}; "
                 "give one, or one for each."
             )
-        if max_bounces < 1:
-            raise BrdfkitError(f"max_bounces = {max_bounces} is out of bounds; give at least 1.")
+        self.max_bounces = to_whole_number("max_bounces", max_bounces, 1)
         meshes = {
-            name: _mesh(name, surface.vertices(), surface.faces(part), _bsdf(facets[part]))
+            name: _make_mesh(name, surface.vertices(), surface.faces(part), _load(facets[part]))
             for part, name in enumerate(surface.parts)
         }
         self.scene = mi.load_dict({"type": "scene", **meshes}, parallel=False)
-        self.isotropic, self.max_bounces = surface.isotropic, max_bounces
-        # opaque to Dr.Jit: as literals in the kernel, every specimen would compile its own
+        self.isotropic = surface.isotropic
+        # Opaque to Dr.Jit: with literals in the kernel, every specimen would compile its own
         self.side = dr.opaque(mi.Float, len(surface.heights))
         self.bottom = dr.opaque(mi.Float, surface.heights.min())
         self.top = dr.opaque(mi.Float, surface.heights.max())
 
-    def samples(self, wi, wo, pair, seed):
-        """One sample (n, 3) of the BRDF in sr⁻¹ for each entry of `pair` (n,).
+    def draw_samples(self, wi: FloatArray, wo: FloatArray, pair: IntArray, seed: int) -> FloatArray:
+        """Draw one sample (n, 3) of the BRDF [sr⁻¹] for each entry of `pair` (n,).
 
-        `wi`, `wo`: (m, 3) unit vectors above the plane; `pair`: a row of both for each sample;
-        `seed`: 0 to 2³² - 1. An isotropic surface is rotated to a random azimuth for every sample,
-        and mirrored for half of them.
+        `wi` and `wo` are unit vectors (m, 3) above the plane, `pair` the row of both for each
+        sample, and `seed` is from 0 to 2³² - 1. An isotropic surface is rotated to a random azimuth
+        for every sample, and mirrored for half of them.
         """
         import mitsuba as mi
 
         sampler = mi.load_dict({"type": "independent"})
         sampler.seed(seed, len(pair))
-        pair = mi.UInt32(pad(pair.astype(np.uint32)))
-        wi, wo = (
-            dr.gather(mi.Vector3f, mi.Vector3f(w.T.astype(np.float32)), pair) for w in (wi, wo)
+        rows = mi.UInt32(pad(pair.astype(np.uint32)))
+        light, eye = (
+            dr.gather(mi.Vector3f, mi.Vector3f(w.T.astype(np.float32)), rows) for w in (wi, wo)
         )
         if self.isotropic:
-            wi, wo = _rotate_at_random(sampler, wi, wo)
-        radiance = self._radiance(wi, wo, sampler, dr.opaque(mi.UInt32, self.max_bounces))
-        return np.array(radiance / wi.z, float).T
+            light, eye = _rotate_at_random(sampler, light, eye)
+        radiance = self._trace(light, eye, sampler, dr.opaque(mi.UInt32, self.max_bounces))
+        return np.array(radiance / light.z, np.float64).T
 
     @dr.syntax
-    def _radiance(self, wi, wo, sampler, bounces):
-        """The radiance towards wo along one random line, of a light from wi with E = 1."""
+    def _trace(
+        self, wi: JitVector, wo: JitVector, sampler: MitsubaObject, bounces: JitInt
+    ) -> JitColour:
+        """Return the radiance towards wo along one random line, for a light from wi with E = 1."""
         import mitsuba as mi
 
-        # a line through a random point of the tile, from above the surface
+        # A line through a random point of the tile, from above the surface
         context = mi.BSDFContext()
         xy = (sampler.next_2d() - 0.5) * self.side
         ray = mi.Ray3f(mi.Point3f(xy.x, xy.y, self.top + 1), -wo)
         radiance, throughput = mi.Color3f(0), mi.Color3f(1)
         active = mi.Bool(True)
         while active:
-            si = self._first_hit(mi.Ray3f(ray), mi.Bool(active))
+            si = self._find_first_hit(mi.Ray3f(ray), mi.Bool(active))
             active &= si.is_valid()
 
-            # the light, where nothing is in its way
+            # The light, where nothing is in its way
             bsdf = si.bsdf()
             scattered = bsdf.eval(context, si, si.to_local(wi), active)
             lit = active & dr.any(scattered != 0)
-            start = si.p + LIFT * si.n
-            shadow = self._first_hit(mi.Ray3f(start, wi), mi.Bool(lit)).is_valid()
+            start = si.p + RAY_OFFSET * si.n
+            shadow = self._find_first_hit(mi.Ray3f(start, wi), mi.Bool(lit)).is_valid()
             radiance += dr.select(lit & ~shadow, throughput * scattered, 0)
 
-            # the path goes on
+            # The path goes on
             sample, weight = bsdf.sample(
                 context, si, sampler.next_1d(active), sampler.next_2d(active), active
             )
@@ -111,37 +133,37 @@ class Specimen:
         return radiance
 
     @dr.syntax
-    def _first_hit(self, ray, active):
-        """The surface interaction where a ray first meets the surface, in the central tile."""
+    def _find_first_hit(self, ray: MitsubaObject, active: JitMask) -> MitsubaObject:
+        """Return the interaction where a ray first meets the surface, in the central tile."""
         import mitsuba as mi
 
-        found = dr.zeros(mi.PreliminaryIntersection3f)
-        found.t = dr.inf
+        hit: Any = dr.zeros(mi.PreliminaryIntersection3f)
+        hit.t = dr.inf
         tiles = mi.UInt32(0)
         while active:
-            found = self.scene.ray_intersect_preliminary(ray, active=active)
+            hit = self.scene.ray_intersect_preliminary(ray, active=active)
 
-            # where the ray crosses the wall of the tile; at once where it starts behind the wall
+            # Where the ray crosses the wall of the tile; at once where it starts behind the wall
             side_x, side_y = dr.copysign(self.side, ray.d.x), dr.copysign(self.side, ray.d.y)
             to_x = (side_x / 2 - ray.o.x) / ray.d.x
             to_y = (side_y / 2 - ray.o.y) / ray.d.y
             wall = ray(dr.maximum(dr.minimum(to_x, to_y), 0))
 
-            # done where it hits the surface, or leaves the range of its heights
+            # Done where it hits the surface, or leaves the range of its heights
             above = (wall.z > self.top) & (ray.d.z > 0)
             below = (wall.z < self.bottom) & (ray.d.z < 0)
             tiles += 1
-            active &= ~found.is_valid() & ~above & ~below & (tiles < MOST_TILES)
+            active &= ~hit.is_valid() & ~above & ~below & (tiles < MOST_TILES)
 
-            # elsewhere it enters the tile again through the opposite wall
+            # Elsewhere it enters the tile again through the opposite wall
             wall.x -= dr.select(to_x <= to_y, side_x, 0)
             wall.y -= dr.select(to_y < to_x, side_y, 0)
             ray.o = dr.select(active, wall, ray.o)
-        return found.compute_surface_interaction(ray)
+        return hit.compute_surface_interaction(ray)
 
 
-def _mitsuba():
-    """The module `mitsuba`, in an RGB variant that traces many paths at once."""
+def _import_mitsuba() -> MitsubaModule:
+    """Return the module `mitsuba`, in an RGB variant that traces many paths at once."""
     import mitsuba as mi
 
     variant = use_variant()
@@ -153,8 +175,8 @@ def _mitsuba():
     return mi
 
 
-def _bsdf(facets):
-    """The Mitsuba BSDF of a dictionary; an error where a directional light cannot measure it."""
+def _load(facets: dict[str, Any]) -> MitsubaObject:
+    """Load a BSDF; raise `BrdfkitError` if a directional light cannot measure it."""
     import mitsuba as mi
 
     try:
@@ -170,8 +192,10 @@ def _bsdf(facets):
     return bsdf
 
 
-def _mesh(name, vertices, faces, bsdf):
-    """A Mitsuba mesh of flat triangles."""
+def _make_mesh(
+    name: str, vertices: FloatArray, faces: IntArray, bsdf: MitsubaObject
+) -> MitsubaObject:
+    """Make a Mitsuba mesh of flat triangles."""
     import mitsuba as mi
 
     properties = mi.Properties()
@@ -184,8 +208,8 @@ def _mesh(name, vertices, faces, bsdf):
     return mesh
 
 
-def _rotate_at_random(sampler, wi, wo):
-    """Both directions in the frame of a tile at a random azimuth, mirrored with probability ½."""
+def _rotate_at_random(sampler: MitsubaObject, wi: JitVector, wo: JitVector) -> list[JitVector]:
+    """Return both directions in the frame of a randomly turned, or also mirrored, tile."""
     import mitsuba as mi
 
     s, c = dr.sincos(2 * dr.pi * sampler.next_1d())
