@@ -261,7 +261,7 @@ def test_what_is_lost_is_told(tmp_path):
     assert "kind 3×2×4 table → samples" in told
     assert "without note" in told
     told = "; ".join(convert(spectrum(), tmp_path / "paint.bin").changes)
-    assert "kind samples → samples, anisotropic" in told
+    assert "kind samples → anisotropic samples" in told
     assert "valid 11 of 12 → 82,944 of 82,944" in told
     assert "negative 3.03% of the values → 0.00% of the values" in told
 

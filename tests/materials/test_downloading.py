@@ -18,7 +18,7 @@ from brdfkit.core import catalogue
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import sha256
 from brdfkit.materials.collections import public
-from brdfkit.materials.collections.downloading import get
+from brdfkit.materials.collections.downloading import download
 from brdfkit.materials.loading import load
 
 pytestmark = pytest.mark.quick
@@ -75,8 +75,8 @@ def server():
 @pytest.fixture
 def cache(tmp_path, monkeypatch):
     """An empty cache folder, not yet made."""
-    monkeypatch.setattr(public, "cache", lambda: tmp_path / "cache")
-    return tmp_path / "cache"
+    monkeypatch.setattr(public, "cache_folder", lambda: tmp_path / "cache")
+    return tmp_path / "cache_folder"
 
 
 @pytest.fixture
@@ -107,7 +107,7 @@ def lab(server, cache, monkeypatch):
     return put
 
 
-def fails(name="lab/grey", call=get):
+def fails(name="lab/grey", call=download):
     """The sentence with which a call ends."""
     with pytest.raises(BrdfkitError) as told:
         call(name)
@@ -126,14 +126,14 @@ def files(folder):
 
 def test_download_and_load_by_name(server, lab):
     place, told = lab(), []
-    assert get("lab/grey", lambda *progress: told.append(progress)) == place
+    assert download("lab/grey", lambda *progress: told.append(progress)) == place
     assert place.read_bytes() == TABLE
     assert files(place.parent) == ["grey.binary"]
     assert told == sorted(told)
     assert len(told) > 1
     assert told[-1] == (len(TABLE), len(TABLE))
     assert load("lab/grey").table.shape == (30, 20, 40)
-    get("lab/grey")
+    download("lab/grey")
     assert len(server.asked) == 1
 
 
@@ -150,11 +150,11 @@ def test_interrupted_then_resumed(server, lab):
     part = place.with_name("grey.binary.part")
     assert files(place.parent) == [part.name]
     assert "is not here" in fails(call=load)
-    assert not public.collection("lab").files_on_disk()
+    assert not public.find_collection("lab").files_on_disk()
     have = part.stat().st_size
     assert 0 < have <= server.breaks
     server.breaks = None
-    get("lab/grey")
+    download("lab/grey")
     assert place.read_bytes() == TABLE
     assert files(place.parent) == ["grey.binary"]
     assert server.asked[1] == ("/grey.binary", f"bytes={have}-")
@@ -168,9 +168,9 @@ def test_ctrl_c_keeps_what_is_there(server, lab):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        get("lab/grey", interrupt)
+        download("lab/grey", interrupt)
     assert files(place.parent) == ["grey.binary.part"]
-    get("lab/grey")
+    download("lab/grey")
     assert place.read_bytes() == TABLE
 
 
@@ -182,7 +182,7 @@ def test_starts_anew_where_it_cannot_resume(server, lab, case):
     place.parent.mkdir(parents=True)
     place.with_name("grey.binary.part").write_bytes(b"something else")
     server.ranges = case != "no ranges"
-    get("lab/grey")
+    download("lab/grey")
     assert place.read_bytes() == TABLE
 
 
@@ -190,7 +190,7 @@ def test_all_was_there_but_for_the_name(server, lab):
     place = lab()
     place.parent.mkdir(parents=True)
     place.with_name("grey.binary.part").write_bytes(TABLE)
-    get("lab/grey")
+    download("lab/grey")
     assert place.read_bytes() == TABLE
     assert server.sent == 0
 
@@ -207,7 +207,7 @@ def test_one_file_of_an_archive(server, lab):
     noise = hashlib.shake_256(b"").digest(20_000_000)
     server.files["/all.zip"] = archive(("db/other.bin", noise), ("db/grey.binary", TABLE))
     place, told = lab(url=f"http://127.0.0.1:{server.server_port}/all.zip#db/{{file}}"), []
-    get("lab/grey", lambda *progress: told.append(progress))
+    download("lab/grey", lambda *progress: told.append(progress))
     assert place.read_bytes() == TABLE
     assert told[-1] == (len(TABLE), len(TABLE))
     assert files(place.parent) == ["grey.binary"]
@@ -226,7 +226,7 @@ def test_the_wrong_file_is_removed(server, lab):
     assert "https://lab.example/greys" in sentence
     assert not files(place.parent)
     server.files["/grey.binary"] = TABLE
-    assert get("lab/grey").read_bytes() == TABLE
+    assert download("lab/grey").read_bytes() == TABLE
 
 
 def test_halves_that_do_not_belong_together(server, lab):
@@ -235,7 +235,7 @@ def test_halves_that_do_not_belong_together(server, lab):
     place.with_name("grey.binary.part").write_bytes(OTHER[:1000])
     assert "checksum differs" in fails()
     assert not files(place.parent)
-    assert get("lab/grey").read_bytes() == TABLE
+    assert download("lab/grey").read_bytes() == TABLE
 
 
 @pytest.mark.parametrize("status", [404, 429, 503])
@@ -282,12 +282,12 @@ def test_a_cache_that_cannot_be_written(server, lab, cache):
 
 def test_a_file_that_was_changed(server, lab):
     place = lab()
-    get("lab/grey")
+    download("lab/grey")
     place.write_bytes(OTHER)
     sentence = fails(call=load)
     assert str(place) in sentence
     assert "delete it and run 'brdfkit data get lab/grey'" in sentence
-    get("lab/grey")  # or leave the deleting to it
+    download("lab/grey")  # or leave the deleting to it
     assert place.read_bytes() == TABLE
 
 
@@ -296,7 +296,7 @@ def test_a_file_that_was_changed(server, lab):
 
 def test_by_hand_the_sentence_says_which_file_from_where_to_where(server, lab):
     place = lab(url="", note="unpacked from all.zip")
-    for call in (load, get):
+    for call in (load, download):
         assert fails(call=call) == (
             "lab/grey: is not here; fetch grey.binary from https://lab.example/greys and put it "
             f"into {place.parent}, unpacked from all.zip."
@@ -304,7 +304,7 @@ def test_by_hand_the_sentence_says_which_file_from_where_to_where(server, lab):
     place.parent.mkdir(parents=True)
     place.write_bytes(TABLE)
     assert load("lab/grey").name == "grey"
-    assert get("lab/grey") == place
+    assert download("lab/grey") == place
     place.write_bytes(OTHER)
     assert "checksum differs); delete it and fetch grey.binary" in fails(call=load)
     assert not server.asked
@@ -318,7 +318,7 @@ def test_files_that_the_index_does_not_know(lab, cache):
     for name in (".DS_Store", "notes.txt", "SHA256SUMS", "._mine.binary", "half.binary.part"):
         (cache / "lab" / name).write_bytes(TABLE)
     assert load("lab/mine").name == "mine"
-    assert list(public.collection("lab").files_on_disk()) == ["lab/mine"]
+    assert list(public.find_collection("lab").files_on_disk()) == ["lab/mine"]
 
 
 def test_a_sample_of_a_file_with_many(lab, cache):
@@ -393,7 +393,7 @@ def test_wrong_words(lab, cache, words, said):
 
 
 def test_the_index_is_complete():
-    found = public.collections()
+    found = public.list_collections()
     assert {name: len(c.files) for name, c in found.items()} == {
         "merl": 100, "rgl": 62, "cornell": 6, "curet": 1, "utia": 0,
     }  # fmt: skip
@@ -414,7 +414,7 @@ def test_the_index_is_complete():
 
 @pytest.mark.parametrize("folder", ["rgl", "cornell", "curet"])
 def test_checksums_are_those_of_real_files(measured_data, folder):
-    known = {listed.file: listed for listed in public.collection(folder).files.values()}
+    known = {listed.file: listed for listed in public.find_collection(folder).files.values()}
     there = [f for f in (measured_data / folder).iterdir() if known.get(f.name)]
     assert there
     for file in there:

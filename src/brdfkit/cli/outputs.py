@@ -63,9 +63,9 @@ def remember(target):
 
 def _is_ours(target):
     """Whether a file is brdfkit's own, in the user's cache folder."""
-    from brdfkit.materials.collections.public import cache  # only here: `--help` should be instant
+    from brdfkit.materials.collections.public import cache_folder  # only here: it is slow
 
-    return target.is_relative_to(cache().resolve())
+    return target.is_relative_to(cache_folder().resolve())
 
 
 def _is_own(target, context):
@@ -80,10 +80,10 @@ def _is_own(target, context):
 
 
 def _record_of(target):
-    from brdfkit.materials.collections.public import cache  # only here: `--help` should be instant
+    from brdfkit.materials.collections.public import cache_folder  # only here: it is slow
 
     name = hashlib.sha256(os.fsencode(target)).hexdigest()[:32]
-    return cache() / "written" / f"{name}.json"
+    return cache_folder() / "written" / f"{name}.json"
 
 
 def _origin(context):

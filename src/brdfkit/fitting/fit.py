@@ -21,7 +21,7 @@ from brdfkit.fitting.light_of_data import light_of_data
 from brdfkit.fitting.notes import list_notes
 from brdfkit.fitting.settings import require_material_first, require_plain, to_settings
 from brdfkit.images.ball import draw_pixels
-from brdfkit.materials.extrapolation import note_on_extrapolation
+from brdfkit.materials.extrapolation import note_extrapolation
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
 from brdfkit.materials.resolve import MaterialLike, to_measured
@@ -173,7 +173,7 @@ def fit(
                 *found.notes,
                 *warnings,
                 *list_notes(data, samples, loss, found, fitted, weights is not None),
-                *note_on_extrapolation(data, float(max_angle)),
+                *note_extrapolation(data, float(max_angle)),
             ),
             albedo=albedo,
             **tell_weights(loss, samples, max_angle),

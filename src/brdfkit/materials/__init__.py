@@ -1,3 +1,1 @@
-"""One measured material, and all that leads to it: files, collections, instruments, checks,
-plots.
-"""
+"""A measured material, and the verbs around it: files, collections, a goniometer, audits, plots."""

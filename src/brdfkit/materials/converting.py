@@ -1,4 +1,4 @@
-"""`convert`: writes a material in another file format, and finds out what that changed."""
+"""`convert`: writes a material in another file format, and says what that changed."""
 
 from __future__ import annotations
 
@@ -7,30 +7,30 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.extrapolation import describe_extrapolation
 from brdfkit.materials.loading import save_and_read
 from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.spectrum_to_rgb import format_channels
 from brdfkit.materials.measured.tabulation import choose_table_shape, tabulate
 from brdfkit.materials.resolve import Material, MaterialLike, to_material
 
 # Two materials are compared at this many direction pairs, up to this angle from the normal
-PAIRS, STEEPEST = 4000, np.radians(80)
-EQUAL = 5e-4  # relative difference: a smaller one would be printed as 0.0 %
+PAIRS, LARGEST_ANGLE = 4000, np.radians(80)
+LEAST_DIFFERENCE = 5e-4  # relative: a smaller one would be printed as 0.0 %
 
 
 @dataclass(frozen=True)
 class Conversion:
-    """The file that `convert` wrote, and what changed; prints as a line.
+    """The file that `convert` wrote, and what changed; prints as one line.
 
     Attributes
     ----------
     path : Path
         The file.
     changes : tuple of str
-        What it does not hold, or holds otherwise, in words.
+        The differences between the material and the file, in words.
     """
 
     path: Path
@@ -43,8 +43,8 @@ class Conversion:
 def convert(material: MaterialLike, path: str | Path) -> Conversion:
     """Write a material in another file format, and find out what that changed.
 
-    The file is read again and compared, so that no format need say what it leaves out. A model or a
-    fit is evaluated where a table would be.
+    The file is read again and compared with the material, so that no loss goes unnoticed. A model
+    or a fit is evaluated at the cells of a table.
 
     Parameters
     ----------
@@ -61,7 +61,8 @@ def convert(material: MaterialLike, path: str | Path) -> Conversion:
     Raises
     ------
     BrdfkitError
-        For what is no material, and where the format cannot hold it: then nothing is written.
+        For an object that is no material, and where the format cannot hold the material; then
+        nothing is written.
 
     Examples
     --------
@@ -79,8 +80,10 @@ def convert(material: MaterialLike, path: str | Path) -> Conversion:
 
 
 def evaluate_on_grid(thing: Material) -> Measured:
-    """A fit or a model as a `Measured`, whose samples are the cells of a table, and whose lookup
-    between them is `thing` itself."""
+    """Return a fit or a model as a `Measured` with samples at the cells of a table.
+
+    Its lookup between the samples is `thing` itself.
+    """
     model: Any = getattr(thing, "model", thing)
     free = getattr(model, "free_values", {})
     anisotropic = any(model.parameters[name].follows for name in free)
@@ -105,49 +108,47 @@ def evaluate_on_grid(thing: Material) -> Measured:
 
 
 def list_changes(before: Measured, after: Measured) -> tuple[str, ...]:
-    """The differences of `after` from `before`, and the notes that it lacks, in words."""
+    """Return the differences of `after` from `before`, and the notes that it lacks, in words."""
     old, new = describe(before), describe(after)
     changes = [f"{what} {old[what]} → {new[what]}" for what in old if old[what] != new[what]]
     if difference := compare_lookups(before, after):
         changes.append(f"between the samples: {difference}")
-    if lost := [key for key in before.info if key not in after.info]:
-        changes.append(f"without {', '.join(lost)}")
+    if missing := [key for key in before.info if key not in after.info]:
+        changes.append(f"without {', '.join(missing)}")
     return tuple(changes)
 
 
 def compare_lookups(before: Measured, after: Measured) -> str:
-    """How far the values of `eval` are apart, in words; "" where they are equal."""
+    """Return how far the values of two materials' `eval` differ, in words; "" if they are equal."""
     if not any(data.is_table or data.has_lookup for data in (before, after)):
         return ""  # equal samples are interpolated equally
     if before.channels != after.channels:
         before, after = before.rgb, after.rgb
     random = np.random.default_rng(0)
-    theta, phi = random.uniform(0, STEEPEST, (2, PAIRS)), random.uniform(0, 2 * np.pi, (2, PAIRS))
-    pairs = from_angles(theta, phi)
+    theta = random.uniform(0, LARGEST_ANGLE, (2, PAIRS))
+    pairs = from_angles(theta, random.uniform(0, 2 * np.pi, (2, PAIRS)))
     old, new = np.broadcast_arrays(before.eval(*pairs), after.eval(*pairs))
     larger = np.maximum(old, new)
-    apart = np.divide(np.abs(new - old), larger, out=np.zeros(old.shape), where=larger > 0)
-    median, most = np.percentile(apart, (50, 95))
-    return f"{median:.1%} in the median, 95 of 100 within {most:.1%}" if most >= EQUAL else ""
+    differences = np.divide(np.abs(new - old), larger, out=np.zeros(old.shape), where=larger > 0)
+    median, most = np.percentile(differences, (50, 95))
+    if most < LEAST_DIFFERENCE:
+        return ""
+    return f"{median:.1%} in the median, 95 of 100 within {most:.1%}"
 
 
 def describe(data: Measured) -> dict[str, str]:
-    """The contents of a measured material, without its notes, in words by topic."""
-    samples, channels, errors = data.samples, data.channels, data.standard_error
-    values = samples.values[samples.valid]
-    cosine = min(w[samples.valid, 2].min() for w in (samples.wi, samples.wo))
-    many = f"{len(channels)} wavelengths, {channels[0]} to {channels[-1]}"
-    kind = "×".join(map(str, data.table.shape)) + " table" if data.is_table else "samples"
+    """Return the contents of a measured material, without its notes, in words by topic."""
+    samples, valid, errors = data.samples, data.samples.valid, data.standard_error
+    values = samples.values[valid]
+    cosine = min(w[valid, 2].min() for w in (samples.wi, samples.wo))
     return {
-        "kind": f"{kind}, anisotropic" if data.anisotropic else kind,
-        "channels": many if len(channels) > 5 else " ".join(channels),
-        "valid": f"{samples.valid.sum():,} of {len(samples.valid):,}",
+        "kind": data.kind,
+        "channels": format_channels(data.channels),
+        "valid": f"{valid.sum():,} of {len(valid):,}",
         "angles": f"to {np.degrees(np.arccos(cosine)):.1f}°",
         "negative": f"{(values < 0).mean():.2%} of the values",
         "BRDF": f"{values.min():.4g} to {values.max():.4g}, median {np.median(values):.4g} sr⁻¹",
-        "standard error": "none" if errors is None else _describe_errors(errors[samples.valid]),
+        "standard error": "none"
+        if errors is None
+        else f"{np.median(errors[valid]):.3g} sr⁻¹ in the median",
     }
-
-
-def _describe_errors(errors: NDArray[np.float64]) -> str:
-    return f"{np.median(errors):.3g} sr⁻¹ in the median"

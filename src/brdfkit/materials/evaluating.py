@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from brdfkit.core.array_types import ArrayLike
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import normalize
 from brdfkit.core.geometry.quadrature import directional_albedo
@@ -12,7 +13,7 @@ from brdfkit.materials.resolve import MaterialLike, to_material
 
 
 def evaluate(material: MaterialLike, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
-    """The BRDF of a material for pairs of directions, without a cosine.
+    """Evaluate the BRDF of a material for pairs of directions, without a cosine.
 
     Parameters
     ----------
@@ -29,7 +30,8 @@ def evaluate(material: MaterialLike, wi: ArrayLike, wo: ArrayLike) -> NDArray[np
     Raises
     ------
     BrdfkitError
-        For what is no material, other shapes, and vectors whose length is not 1 (to 1e-4).
+        For an object that is no material, for other shapes, and for vectors whose length is not 1
+        (to 1e-4).
 
     Examples
     --------
@@ -50,26 +52,27 @@ def evaluate(material: MaterialLike, wi: ArrayLike, wo: ArrayLike) -> NDArray[np
 
 
 def albedo(material: MaterialLike, wi: ArrayLike) -> NDArray[np.float64]:
-    """The directional albedo ∫ f cosθ_o dω_o of a material: what it reflects of light from `wi`.
+    """Compute the directional albedo ∫ f cosθ_o dω_o: the share of light that a material reflects.
 
-    By quadrature that settles to 2e-4 of the value, of the narrowest lobes, too.
+    The integral of the BRDF f over the views is refined until it changes by less than 2e-4 of
+    itself, also for the narrowest lobes.
 
     Parameters
     ----------
     material : Measured, Fit, Model, str, Path or dict
         The material, its name or path, or a BSDF's dictionary.
     wi : array_like, shape (3,)
-        Where light comes from: a unit vector above the surface.
+        The direction to the light: a unit vector above the surface.
 
     Returns
     -------
     ndarray, shape (channels,)
-        Reflected over incident light; a material that gains no light has at most 1.
+        Reflected over incident light; at most 1 for a material that conserves energy.
 
     Raises
     ------
     BrdfkitError
-        For what is no material, and for what is no unit vector above the surface.
+        For an object that is no material, and for any `wi` but a unit vector above the surface.
 
     Examples
     --------
@@ -80,14 +83,15 @@ def albedo(material: MaterialLike, wi: ArrayLike) -> NDArray[np.float64]:
 
 
 def _check_incidence(wi: ArrayLike) -> NDArray[np.float64]:
-    """`wi` as a unit vector (3,) above the surface; `BrdfkitError` for anything else."""
+    """Return `wi` as a unit vector (3,) above the surface; raise `BrdfkitError` if it is none."""
     try:
-        found = np.array(wi, float)
+        direction = np.array(wi, float)
     except (TypeError, ValueError):
-        found = np.empty(0)
+        direction = np.empty(0)
     # "not (a <= b)" in place of "a > b", so that NaN is refused, too
-    if found.shape != (3,) or not (abs(np.linalg.norm(found) - 1) <= 1e-4 and found[2] > 0):
+    is_unit = direction.shape == (3,) and abs(np.linalg.norm(direction) - 1) <= 1e-4
+    if not (is_unit and direction[2] > 0):
         raise BrdfkitError(
             f"albedo: wi = {wi} should be one unit vector above the surface, such as [0, 0, 1]."
         )
-    return normalize(found)
+    return normalize(direction)

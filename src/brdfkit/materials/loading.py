@@ -19,46 +19,46 @@ from brdfkit.regression import Fit
 def load(
     path: str | Path, *, mirror_azimuth: bool = False, divide_by_cos: bool = False
 ) -> Measured | Fit:
-    """The measured material, or the saved fit, in a file of any known format.
+    """Load a measured material, or a saved fit, from a file of any known format.
 
-    The content decides the format; the suffix decides between formats that all, or none, recognise
-    it. ``.gz`` and ``.xz`` are unpacked.
+    The content decides the format; the suffix decides where several formats, or none, recognise the
+    content. ``.gz`` and ``.xz`` are unpacked.
 
     Parameters
     ----------
     path : str or Path
-        The file. ``abrdf.dat#1`` names a sample of one that holds many. Where there is no such
-        file, the name of a material that comes with brdfkit, ``car_paint``, or of one in a public
-        collection, ``merl/alum-bronze``, once ``brdfkit data get`` has downloaded it.
+        The file. ``abrdf.dat#1`` names one sample of a file that holds many. Where there is no such
+        file, the name of a material that comes with brdfkit, ``car_paint``, or of a material in a
+        public collection, ``merl/alum-bronze``, once ``brdfkit data get`` has downloaded it.
     mirror_azimuth : bool, default False
-        Whether 180° is added to every phi_o of samples: where the file has the mirror direction at
+        Whether 180° is added to every phi_o of samples, for a file with the mirror direction at
         phi_o = phi_i.
     divide_by_cos : bool, default False
-        Whether the values of samples are divided by cos theta_o: where they are the BRDF times this
-        cosine, and the file does not say so.
+        Whether the values of samples are divided by cos theta_o, for a file that has the BRDF times
+        this cosine and does not say so.
 
     Returns
     -------
     Measured or Fit
-        What the file holds.
+        The content of the file.
 
     Raises
     ------
     BrdfkitError
-        For every file that cannot be read: what is wrong with it, and what to do; and where a fit,
-        a table or a format that states its own convention would be mended.
+        For a file that cannot be read, with the reason and the remedy; and where one of the last
+        two arguments is True for a fit, a table or a format that states its own convention.
 
     Examples
     --------
     >>> print(load("gold-metallic-paint.binary.xz"))    # doctest: +SKIP
     gold-metallic-paint: 90×90×180 table, 1,048,000 of 1,458,000 valid, channels R G B
     """
-    found = read(*locate(path))
+    content = read(*locate(path))
     if not (mirror_azimuth or divide_by_cos):
-        return found
-    if not isinstance(found, Measured):
-        raise BrdfkitError(f"{path}: is a saved fit, of which there is nothing to mend.")
-    return found.mend(mirror_azimuth, divide_by_cos)
+        return content
+    if not isinstance(content, Measured):
+        raise BrdfkitError(f"{path}: is a saved fit, which needs no mending; leave the option out.")
+    return content.mend(mirror_azimuth, divide_by_cos)
 
 
 def locate(path: str | Path) -> tuple[Path, str | None]:
@@ -75,14 +75,15 @@ def locate(path: str | Path) -> tuple[Path, str | None]:
     file, sample = split_part(path)
     collection, slash, _ = file.as_posix().partition("/")
     if slash and collection in catalogue.read_index()["collections"] and not os.path.isfile(file):
-        return public.path(file.as_posix()), sample
+        return public.find_file(file.as_posix()), sample
     place = find_file_or_name(file, "material", catalogue.list_materials())
     return (catalogue.find_material_file(place) if isinstance(place, str) else place), sample
 
 
 def read(path: Path, sample: str | None = None) -> Measured | Fit:
-    """What the file at `path` holds; `sample`: which one, of a file that holds many."""
-    return formats.read(formats.Source(path, sample, read_bytes(path)))
+    """Return the content of the file at `path`; `sample` names one in a file that holds many."""
+    content: Measured | Fit = formats.read(formats.Source(path, sample, read_bytes(path)))
+    return content
 
 
 def save(material: Measured | Fit | Model, path: str | Path) -> None:
@@ -115,7 +116,7 @@ def save(material: Measured | Fit | Model, path: str | Path) -> None:
 
 
 def save_and_read(obj: Measured, path: str | Path) -> Measured:
-    """`save`, then what `load` makes of the file; nothing is written if it cannot be read again.
+    """Save a material, and return it as `load` reads it again; if it cannot, nothing is written.
 
     >>> save_and_read(load("copper.astm"), "copper.npz").name  # doctest: +SKIP
     'copper'
@@ -123,7 +124,8 @@ def save_and_read(obj: Measured, path: str | Path) -> Measured:
     with write_safely(path) as beside:
         formats.write(obj, Path(path), beside)
         try:
-            return formats.read(formats.Source(Path(path), None, read_bytes(beside)))
+            content: Measured = formats.read(formats.Source(Path(path), None, read_bytes(beside)))
+            return content
         except BrdfkitError as error:
             reason = str(error).removeprefix(f"{beside}: ").removeprefix(f"{path}: ")
             raise BrdfkitError(

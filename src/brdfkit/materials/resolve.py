@@ -1,9 +1,9 @@
-"""What verbs accept as a material: an object, a name, a path or a dictionary.
+"""Finds the material that a user means by an object, a name, a path or a dictionary.
 
 A material is a measured one, a fit, or a model with values: all have a `name`, `eval(wi, wo)` and
-`scene_dict()`. In its place one can give a name or a path, in Python as on the command line: the
-label of a model, which then has its defaults; a file that `load` reads; or the name of a material
-that brdfkit knows. The dictionary of one of Mitsuba's BSDFs is a material, too.
+`scene_dict()`. In its place every verb accepts a name or a path, in Python as on the command line:
+the label of a model, which then has its defaults; a file that `load` reads; or the name of a
+material that brdfkit knows. The dictionary of one of Mitsuba's BSDFs is a material, too.
 """
 
 import os
@@ -26,17 +26,17 @@ from brdfkit.model import labels
 
 @runtime_checkable
 class Material(Protocol):
-    """What a `Measured`, a `Fit` and a `Model` with values have in common."""
+    """The attributes that a `Measured`, a `Fit` and a `Model` with values have in common."""
 
     @property
     def name(self) -> str:
         """The name in pictures and tables."""
 
     def eval(self, wi: FloatArray, wo: FloatArray) -> NDArray[np.float64]:
-        """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3)."""
+        """Return the BRDF [sr⁻¹] (n, channels) of direction pairs (n, 3)."""
 
     def scene_dict(self) -> dict[str, Any]:
-        """The dictionary for `mitsuba.load_dict`."""
+        """Return the dictionary for `mitsuba.load_dict`."""
 
 
 MaterialLike: TypeAlias = Material | str | Path | dict[str, Any]
@@ -44,7 +44,7 @@ ATTRIBUTES = "name", "eval", "scene_dict"
 
 
 def to_material(thing: MaterialLike, needed: Iterable[str] = ATTRIBUTES) -> Material:
-    """The material that `thing` is, or stands for as a name, a path or a dictionary.
+    """Return the material that `thing` is, or means as a name, a path or a dictionary.
 
     An object with the `needed` attributes is returned as it is. Raises `BrdfkitError`, the same one
     for every verb, for anything that is no material.
@@ -76,25 +76,28 @@ def to_materials(
     """
     if isinstance(things, str | dict) or not isinstance(things, Iterable):
         things = [things]
-    found = [to_material(thing, needed) for thing in things]
-    if not found:
+    materials = [to_material(thing, needed) for thing in things]
+    if not materials:
         raise BrdfkitError("There is no material here; give at least one.")
-    return found
+    return materials
 
 
 def to_measured(thing: MaterialLike) -> Measured:
     """Return the `Measured` that `thing` is or stands for; raise `BrdfkitError` for any other."""
-    found = to_material(thing)
-    if not isinstance(found, Measured):
+    material = to_material(thing)
+    if not isinstance(material, Measured):
         raise BrdfkitError(
-            f"{found.name} was not measured; give a measured material, or the name or path of one."
+            f"{material.name} was not measured; give a measured material, or its name or path."
         )
-    return found
+    return material
 
 
 def _find(name: str) -> Material:
-    """The material of a name: a model of that label, unless a file has the same name; otherwise the
-    file's content or the known material."""
+    """Return the material of a name.
+
+    It is a model with this label, unless a file has the same name; otherwise the file's content or
+    the known material.
+    """
     label = labels.read_files(name)
     if labels.is_label(label) and (label != name or not os.path.isfile(name)):
         return labels.model(label)()
@@ -107,6 +110,6 @@ def _find(name: str) -> Material:
 
 
 def _describe(thing: object) -> str:
-    """Any object in one line: the beginning of its `repr`, and its type."""
+    """Return any object in one line: the beginning of its `repr`, and its type."""
     kind, words = type(thing).__name__, " ".join(repr(thing).split())
     return f"{words[:40]}{'…' if len(words) > 40 else ''} ({kind})"

@@ -22,10 +22,10 @@ def data(context, console):
     Downloads are kept in your cache folder. Only `brdfkit data get` downloads anything.
     """
     from brdfkit.core.catalogue import list_map_collections as map_collections
-    from brdfkit.materials.collections.public import collections
+    from brdfkit.materials.collections.public import list_collections
 
     if context.invoked_subcommand is None:
-        _print_all(collections(), map_collections(), console)
+        _print_all(list_collections(), map_collections(), console)
 
 
 @data.command("list")
@@ -38,7 +38,7 @@ def data_list(collection, console):
 
     maps = catalogue.list_map_collections().get(collection)
     if maps is None:
-        _print_collection(public.collection(collection), console)
+        _print_collection(public.find_collection(collection), console)
     elif console.as_json:
         console.json(asdict(maps))
     else:
@@ -54,20 +54,20 @@ def data_get(names, console):
     A NAME has its collection before it, as in merl/gold-metallic-paint. Checksums are verified. An
     interrupted download goes on where it stopped, unless the file is part of an archive (merl).
     """
-    from brdfkit.materials.collections.downloading import get
-    from brdfkit.materials.collections.public import collection
+    from brdfkit.materials.collections.downloading import download
+    from brdfkit.materials.collections.public import find_collection
 
-    collections = {c.name: c for c in map(collection, names)}
+    collections = {c.name: c for c in map(find_collection, names)}
     files = {}
     for name in names:
         with console.progress(f"download {name}") as progress:
-            files[name] = get(name, progress)
+            files[name] = download(name, progress)
     _print_files(files, collections.values(), console)
 
 
 def _print_all(collections, map_collections, console):
     """Print what comes with brdfkit, and the public collections."""
-    from brdfkit.materials.collections.public import cache
+    from brdfkit.materials.collections.public import cache_folder
 
     if console.as_json:
         maps = {name: asdict(c) for name, c in map_collections.items()}
@@ -76,7 +76,7 @@ def _print_all(collections, map_collections, console):
         return
     _print_collections(collections, console)
     console.out.print("The materials of a collection: brdfkit data list NAME")
-    console.out.print(f"Downloaded files lie in {cache()}")
+    console.out.print(f"Downloaded files lie in {cache_folder()}")
     _print_map_collections(map_collections, console)
     console.out.print("Fetch a map from its page, and look at it: brdfkit info MAP.hdr")
 

@@ -1,6 +1,5 @@
-"""Materials known by name: brdfkit's own, those of public collections, and their download.
+"""Materials of public collections, known by name, and their download.
 
-`core/index.py` reads `data/measured/index.toml`; `core/catalogue.py`: brdfkit's own materials;
-`public.py`: the collections; `downloading.py`: fetches a file and checks it; `remote_file.py`:
-reads parts of a file on a server.
+`public.py` lists the collections, which `data/measured/index.toml` describes; `downloading.py`
+fetches a file and checks it; `remote_file.py` reads parts of a file on a server.
 """

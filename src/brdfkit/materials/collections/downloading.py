@@ -1,16 +1,17 @@
 """Downloads files of public collections into the user's cache folder.
 
-`pooch` verifies the checksum and moves the file to its place. Two things that it lacks are here: an
-interrupted download resumes, and a single file of a zip archive is fetched without the rest.
+`pooch` verifies the checksum and moves the file to its place. This file adds two things: an
+interrupted download resumes, and a single file of a zip archive is fetched without the others.
 """
 
 import io
 import os
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlsplit
 from zipfile import BadZipFile, ZipFile
 
@@ -19,28 +20,31 @@ import requests
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.collections import public
-from brdfkit.materials.collections.public import PART, Listed
+from brdfkit.materials.collections.public import PART, Collection, ListedFile
 from brdfkit.materials.collections.remote_file import BLOCK, PARTIAL, PLAIN, TIMEOUT, RemoteFile
 
 CHUNK = 2**18  # bytes
 RANGE_NOT_SATISFIABLE = 416  # HTTP status where the requested part begins at the file's end
 
 
-def get(name, progress=None):
-    """Download a material of a public collection; returns the path of its file.
+Report = Callable[[int, int | None], object]  # called with bytes done, and in all where known
 
-    `progress` is called with (done, total) bytes; the total is None where the server does not tell
-    it. A file that is in its place with the right checksum is not downloaded again. Raises
-    `BrdfkitError`, which says what to do, where no address is known, the connection fails, or
-    the server sends another file.
 
-    >>> get("merl/alum-bronze").name    # doctest: +SKIP
+def download(name: str, progress: Report | None = None) -> Path:
+    """Download a material of a public collection, and return the path of its file.
+
+    `progress` is called with the numbers of bytes done and in all; the second is None where the
+    server does not state it. A file that is in its place with the right checksum is not downloaded
+    again. Raises `BrdfkitError`, which says what to do, where no address is known, the connection
+    fails, or the server sends another file.
+
+    >>> download("merl/alum-bronze").name    # doctest: +SKIP
     'alum-bronze.binary'
     """
-    owner = public.collection(name)
+    owner = public.find_collection(name)
     listed = owner.files.get(name)
     if listed is None or not listed.url:
-        return public.path(name)  # put there by hand; else the error says how
+        return public.find_file(name)  # put there by hand; else the error says how
     pooch.get_logger().setLevel("WARNING")
     with _explain_errors(listed, owner):
         pooch.retrieve(
@@ -54,9 +58,10 @@ def get(name, progress=None):
 
 
 @contextmanager
-def _explain_errors(listed, owner):
-    """Turns the errors of a download into a `BrdfkitError` that says what to do."""
-    by_hand = owner.by_hand(listed.file)
+def _explain_errors(listed: ListedFile, owner: Collection) -> Iterator[None]:
+    """Turn the errors of a download into a `BrdfkitError` that says what to do."""
+    by_hand = owner.explain_by_hand(listed.file)
+    host = urlsplit(listed.url).hostname
     try:
         yield
     except BrdfkitError:
@@ -64,21 +69,21 @@ def _explain_errors(listed, owner):
     except requests.HTTPError as error:
         status = error.response.status_code
         raise BrdfkitError(
-            f"{listed.name}: {_host(listed)} answers {status} {error.response.reason}; "
+            f"{listed.name}: {host} answers {status} {error.response.reason}; "
             f"try again later, or {by_hand}."
         ) from error
     except requests.RequestException as error:
         raise BrdfkitError(
-            f"{listed.name}: the connection to {_host(listed)} failed; check it and run the "
+            f"{listed.name}: the connection to {host} failed; check it and run the "
             f"command again, or {by_hand}."
         ) from error
     except (BadZipFile, KeyError, NotImplementedError, EOFError, zlib.error) as error:
         raise BrdfkitError(
-            f"{listed.name}: {_host(listed)} does not give this file of its archive; {by_hand}."
+            f"{listed.name}: {host} does not give this file of its archive; {by_hand}."
         ) from error
     except ValueError as error:  # pooch's, about the checksum
         raise BrdfkitError(
-            f"{listed.name}: what {_host(listed)} sent is not the file that was published (its "
+            f"{listed.name}: what {host} sent is not the file that was published (its "
             f"checksum differs), and was removed; run the command again, or {by_hand}."
         ) from error
     except OSError as error:
@@ -87,29 +92,24 @@ def _explain_errors(listed, owner):
         ) from error
 
 
-def _host(listed):
-    """The name of the server, as in the URL."""
-    return urlsplit(listed.url).hostname
-
-
 @dataclass(frozen=True)
 class _Download:
-    """Pooch's `downloader`: called with the URL and the file to write."""
+    """The `downloader` that pooch calls with the URL and the file to write."""
 
-    listed: Listed
-    progress: Callable
+    listed: ListedFile
+    progress: Report
 
-    def __call__(self, url, target, _pooch):
+    def __call__(self, url: str, target: str, _pooch: Any) -> None:
         archive, _, member = url.partition("#")
         if member:
             self._fetch_member(archive, member, target)
         else:
             self._fetch_file(url, Path(target))
 
-    def _fetch_file(self, url, target):
-        """Writes the file at `url` to `target`; an interrupted download resumes."""
+    def _fetch_file(self, url: str, target: Path) -> None:
+        """Write the file at `url` to `target`; an interrupted download resumes."""
         part = self.listed.path.with_name(self.listed.file + PART)
-        # without a checksum, nothing would show that the two parts are of the same file
+        # Without a checksum, nothing would show that the two parts belong to the same file
         have = part.stat().st_size if self.listed.sha256 and part.is_file() else 0
         headers = PLAIN | ({"Range": f"bytes={have}-"} if have else {})
         with requests.get(url, headers=headers, stream=True, timeout=TIMEOUT) as answer:
@@ -118,8 +118,8 @@ class _Download:
                 self._write(answer, part, have if answer.status_code == PARTIAL else 0)
         os.replace(part, target)
 
-    def _write(self, answer, part, have):
-        """Appends the server's `answer` to the file `part`, which holds `have` bytes already."""
+    def _write(self, answer: requests.Response, part: Path, have: int) -> None:
+        """Append the server's `answer` to the file `part`, which holds `have` bytes already."""
         length = answer.headers.get("Content-Length")
         total = have + int(length) if length else None
         with part.open("ab" if have else "wb") as stream:
@@ -128,8 +128,8 @@ class _Download:
                 have += len(chunk)
                 self.progress(have, total)
 
-    def _fetch_member(self, url, member, target):
-        """Writes one file of the zip archive at `url` to `target`."""
+    def _fetch_member(self, url: str, member: str, target: str) -> None:
+        """Write the file `member` of the zip archive at `url` to `target`."""
         with ZipFile(io.BufferedReader(RemoteFile(url), BLOCK)) as archive:
             total = archive.getinfo(member).file_size
             with archive.open(member) as source, open(target, "wb") as stream:

@@ -1,6 +1,7 @@
-"""`RemoteFile`: a file on a server, read by HTTP ranges, for one member of a large archive."""
+"""`RemoteFile`: a file on a server, read in parts, for one member of a large zip archive."""
 
 import io
+from typing import Any
 from zipfile import BadZipFile
 
 import requests
@@ -8,22 +9,22 @@ import requests
 BLOCK = 2**22  # bytes per request: servers limit their number
 TIMEOUT = 30  # seconds without an answer
 PARTIAL = 206  # HTTP status of an answer with a part of the file
-PLAIN = {"Accept-Encoding": "identity"}  # uncompressed, so that positions are those of the file
+PLAIN = {"Accept-Encoding": "identity"}  # uncompressed, so that positions agree with the file
 
 
 class RemoteFile(io.RawIOBase):
-    """The file at `url`, seekable. `zipfile` reads it through an `io.BufferedReader`.
+    """The seekable file at `url`, which `zipfile` reads through an `io.BufferedReader`.
 
     Raises the errors of `requests`, and `BadZipFile` where the server sends whole files only.
     """
 
-    def __init__(self, url):
+    def __init__(self, url: str) -> None:
         self.url, self.position = url, 0
         _, content_range = self._read_range(0, 0)
         self.size = int(content_range.rpartition("/")[2])
 
-    def _read_range(self, first, last):
-        """The bytes from `first` to `last` included, and the answer's Content-Range header."""
+    def _read_range(self, first: int, last: int) -> tuple[bytes, str]:
+        """Return the bytes from `first` to `last` included, and the header Content-Range."""
         headers = PLAIN | {"Range": f"bytes={first}-{last}"}
         with requests.get(self.url, headers=headers, stream=True, timeout=TIMEOUT) as answer:
             answer.raise_for_status()
@@ -31,21 +32,21 @@ class RemoteFile(io.RawIOBase):
                 raise BadZipFile("the server sends no parts")
             return answer.content, answer.headers["Content-Range"]
 
-    def readable(self):
+    def readable(self) -> bool:
         return True
 
-    def seekable(self):
+    def seekable(self) -> bool:
         return True
 
-    def tell(self):
+    def tell(self) -> int:
         return self.position
 
-    def seek(self, offset, whence=io.SEEK_SET):
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
         origin = {io.SEEK_SET: 0, io.SEEK_CUR: self.position, io.SEEK_END: self.size}[whence]
         self.position = origin + offset
         return self.position
 
-    def readinto(self, buffer):
+    def readinto(self, buffer: Any) -> int:
         count = min(len(buffer), self.size - self.position)
         if count <= 0:
             return 0
