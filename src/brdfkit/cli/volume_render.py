@@ -95,7 +95,7 @@ def render_volume(name, of_volume, values, console, **how):
     """
     from brdfkit import volumes
     from brdfkit.rendering import render_orbit, render_volume
-    from brdfkit.volumes.summary.report import may_be_labels
+    from brdfkit.volumes.summary.summary import may_be_labels
 
     loading = {key: of_volume.pop(key) for key in ("labels", "downsample") if key in of_volume}
     settings = parse_settings(values, "--set", free=True)

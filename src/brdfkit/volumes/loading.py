@@ -1,4 +1,4 @@
-"""`volumes.load`: a volume from a file, a folder or a name, within the memory that there is."""
+"""`volumes.load`: reading a volume from a file or folder, within the available memory."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ import numpy as np
 import psutil
 
 from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.locate import find_file_or_name, split_part
-from brdfkit.volumes import formats, made, reducing
-from brdfkit.volumes.formats import VolumeFile
-from brdfkit.volumes.summary.histograms import FEW
+from brdfkit.volumes import downsampling, formats, made
+from brdfkit.volumes.formats import StoredVolume, VolumeFile
+from brdfkit.volumes.summary.histograms import FEW_VALUES
 from brdfkit.volumes.volume import Volume, require_transform
 
-# Values whose rounding is more than this share of their range are told of
-COARSE = 1e-6
-MOST = 65  # up to which a `downsample` is proposed
-SPARE = 1.2  # times what the voxels take, for what Python and NumPy take beside them
+ROUNDING_WARNING = 1e-6  # share of the range of values above which rounding gives a warning
+LARGEST_DOWNSAMPLE = 64  # that an error proposes
+MEMORY_FACTOR = 1.2  # for the memory that Python and NumPy need besides the voxels
 
 
 def load(
@@ -37,43 +37,43 @@ def load(
     spacing: float | tuple[float, float, float] | None = None,
     offset: int | None = None,
 ) -> Volume:
-    """A volume of voxels from a file of any known format, a folder, or the name of a made one.
+    """Load a volume of voxels from a file or folder, or make a synthetic one by its name.
 
-    NIfTI, NRRD, DICOM, VTI, MetaImage, TIFF stacks, Mitsuba's .vol and raw voxels. The content
-    decides the format, then the suffix. Medical formats come in RAS: x, y and z of the world point
-    to the patient's right, front and head. The header alone is read before it is known that the
-    voxels fit into the memory.
+    The formats are NIfTI, NRRD, DICOM, VTI, MetaImage, TIFF stacks, Mitsuba's .vol and raw voxels.
+    The content decides on the format, then the suffix. Medical formats are in RAS: x, y and z of
+    the world point to the patient's right, front and head. The header is read first, to check that
+    the voxels fit into the memory.
 
     Parameters
     ----------
     path : str or Path
-        The file, or the folder of a series of DICOM or of TIFF files. ``model.vti#facies`` names
-        one of several arrays, ``scans#2`` a series, ``brain.nii#0`` a point in time. Or the name of
-        a volume that is made: ``marschner_lobb``, ``shepp_logan``, ``slab``, ``smoke``, ``sphere``.
+        The file, or the folder of a series of DICOM or TIFF files. ``model.vti#facies`` names one
+        of several arrays, ``scans#2`` a series, ``brain.nii#0`` a point in time. The synthetic
+        volumes are ``marschner_lobb``, ``shepp_logan``, ``slab``, ``smoke``, ``sphere``.
     downsample : int, default 1
-        Every block of so many voxels along each axis becomes one while the file is read; 1 or more.
+        Number of voxels along each axis that are averaged to one while the file is read, 1 or more.
     labels : bool, optional
-        Whether the values are labels, of which no means are taken; as the file tells if it is None.
-        Then a warning says where means are taken of values that may be labels.
+        Whether the values are labels, which are never averaged. By default the file decides, and a
+        warning says if values are averaged that may be labels.
     size : int or (int, int, int), optional
-        Voxels along x, y, z: of raw voxels; and of a made volume, one number for all three.
+        Numbers of voxels along x, y, z, of raw voxels or of a synthetic volume.
     dtype : str or dtype, optional
         The type of raw voxels, such as "uint16", or ">i2" for the other byte order.
     spacing : float or (float, float, float), optional
-        From voxel to voxel along x, y, z, in place of what the file tells.
+        Distances between voxels along x, y, z, in place of those in the file.
     offset : int, optional
-        Bytes before raw voxels.
+        Number of bytes before raw voxels.
 
     Returns
     -------
     Volume
-        The values, and where they lie.
+        The values, and their place in the world.
 
     Raises
     ------
     BrdfkitError
-        For every file that cannot be read, with what is wrong and what to do; where there is too
-        little memory, with a `downsample` that fits; for voxels that are not finite, or all 0.
+        If the file cannot be read, or if voxels are not finite or all 0. If there is too little
+        memory, the error proposes a `downsample` that fits.
 
     Examples
     --------
@@ -81,7 +81,7 @@ def load(
     marschner_lobb: 41×41×41 voxels of 0.04878×0.04878×0.04878 units, float32, 4.4e-05 to 0.999956
     """
     downsample = to_whole_number("downsample", downsample, 1)
-    voxels, steps = _triple("size", size, int), _triple("spacing", spacing, float)
+    voxels, steps = _to_triple("size", size, int), _to_triple("spacing", spacing, float)
     offset = None if offset is None else to_whole_number("offset", offset, 0)
     try:
         text = os.fspath(path)
@@ -101,19 +101,20 @@ def load(
         volume = made.make(place, voxels)
         return volume if downsample == 1 else volume.resized(downsample)
     file = VolumeFile(place, part, voxels, dtype, offset)
-    with np.errstate(all="ignore"):  # of a damaged header's numbers `require_transform` tells
+    with np.errstate(all="ignore"):  # `require_transform` checks the numbers of damaged headers
         stored = formats.read_header(file)
     if labels is not None:
         stored = replace(stored, labels=labels)
     if steps is not None:
-        stored = replace(stored, to_world=_spaced(stored.to_world, steps))
-    return _read(file, stored, downsample, doubtful=labels is None and downsample > 1)
+        stored = replace(stored, to_world=_set_spacing(stored.to_world, steps))
+    return _read_voxels(file, stored, downsample, warn=labels is None and downsample > 1)
 
 
 def looks_like_volume(name: str) -> bool:
-    """Whether a word of the command line means a volume: a file by its suffix, a series, a name.
+    """Return whether a word of the command line means a volume.
 
-    A file .hdr that begins as Radiance's maps do is none: Analyze's begin otherwise.
+    It does if it is the name of a synthetic volume, a folder of a series, or a file with the suffix
+    of a format. A .hdr file that begins like Radiance's maps is not Analyze's, and no volume.
     """
     path, _ = split_part(name)
     if name in made.list_names() or formats.is_series(path):
@@ -121,37 +122,38 @@ def looks_like_volume(name: str) -> bool:
     return formats.has_format(str(path)) and not _is_radiance(path)
 
 
-def _is_radiance(path):
-    """Whether a file is a map in Radiance's format."""
+def _is_radiance(path: Path) -> bool:
+    """Return whether a file is a map in Radiance's format."""
     if path.suffix.lower() != ".hdr" or not path.is_file():
         return False
     with path.open("rb") as stream:
         return stream.read(2) == b"#?"
 
 
-def _read(file, stored, downsample, doubtful):
-    """The `Volume` that was found in a file; `doubtful`: whether to ask if it has means at all."""
+def _read_voxels(file: VolumeFile, stored: StoredVolume, downsample: int, warn: bool) -> Volume:
+    """Read the `Volume` of a file; `warn` if values are averaged that may be labels."""
     require_transform(stored.to_world, file.path)
     _require_memory(file, stored, downsample)
-    shape = reducing.shape(stored.shape, downsample)
-    values = np.empty(shape, _dtype(stored, downsample))
+    shape = downsampling.reduce_shape(stored.shape, downsample)
+    values = np.empty(shape, _loaded_dtype(stored, downsample))
     layers = stored.layers()
     different: set[float] = set()  # values of one voxel of each block
-    rounding, ends = 0.0, []
-    # A double beyond float32 is infinite, which Volume refuses
+    rounding = 0.0
+    ends: list[float] = []  # smallest and largest values of layers
+    # A double beyond float32 becomes infinite, which Volume refuses
     with np.errstate(over="ignore", invalid="ignore"):
         for k in range(shape[0]):
             slab = np.stack(list(itertools.islice(layers, downsample)))
-            exact = reducing.reduced(slab, downsample, stored.labels)
+            exact = downsampling.reduce_slab(slab, downsample, stored.labels)
             values[k] = exact
             if exact.dtype.kind == "f" and exact.dtype.itemsize > values.dtype.itemsize:
-                rounding = max(rounding, np.abs(values[k] - exact).max())
+                rounding = max(rounding, float(np.abs(values[k] - exact).max()))
                 ends += [exact.min(), exact.max()]
-            if doubtful and len(different) <= FEW:
+            if warn and len(different) <= FEW_VALUES:
                 different.update(np.unique(slab[0, ::downsample, ::downsample]).tolist())
-    to_world = reducing.transform(stored.to_world, downsample)
-    name = _name(file)
-    if ends and np.isfinite(rounding) and rounding > COARSE * (max(ends) - min(ends)):
+    to_world = downsampling.reduce_transform(stored.to_world, downsample)
+    name = _make_name(file)
+    if ends and np.isfinite(rounding) and rounding > ROUNDING_WARNING * (max(ends) - min(ends)):
         warnings.warn(
             f"{name}: its values, {min(ends):.10g} to {max(ends):.10g}, are kept in single "
             f"precision, by which they are off by up to {rounding:.2g}; subtract what they have in "
@@ -167,27 +169,28 @@ def _read(file, stored, downsample, doubtful):
     return Volume(values, to_world, name, stored.labels, stored.unit, stored.axes)
 
 
-def _may_be_labels(different, count):
-    """Whether few whole numbers are the values of many voxels, of which there are `count`."""
-    return 1 < len(different) <= min(FEW, count / 8) and all(
+def _may_be_labels(different: set[float], count: int) -> bool:
+    """Return whether `count` voxels have few `different` values, all of them whole numbers."""
+    return 1 < len(different) <= min(FEW_VALUES, count / 8) and all(
         float(v).is_integer() for v in different
     )
 
 
-def _dtype(stored, downsample):
-    """The type of the voxels that are kept."""
+def _loaded_dtype(stored: StoredVolume, downsample: int) -> np.dtype[Any]:
+    """Return the type in which voxels are loaded."""
     if stored.dtype.kind == "f" or (downsample > 1 and not stored.labels):
         return np.dtype(np.float32)
     return stored.dtype.newbyteorder("=")
 
 
-def _require_memory(file, stored, downsample):
-    """Raise `BrdfkitError` where the voxels would take more memory than there is."""
+def _require_memory(file: VolumeFile, stored: StoredVolume, downsample: int) -> None:
+    """Raise `BrdfkitError` if loading the voxels needs more memory than is available."""
     available = psutil.virtual_memory().available
-    needed = _needed(stored, downsample)
+    needed = _memory_needed(stored, downsample)
     if needed <= available:
         return
-    fits = next((n for n in range(downsample + 1, MOST) if _needed(stored, n) <= available), None)
+    larger = range(downsample + 1, LARGEST_DOWNSAMPLE + 1)
+    fits = next((n for n in larger if _memory_needed(stored, n) <= available), None)
     size = "×".join(map(str, stored.shape[::-1]))
     raise file.error(
         f"its {size} voxels would take about {needed / 1e9:,.2g} GB of memory, of which "
@@ -196,8 +199,8 @@ def _require_memory(file, stored, downsample):
     )
 
 
-def _require_memory_to_make(name, size):
-    """Raise `BrdfkitError` where a made volume would take more memory than there is."""
+def _require_memory_to_make(name: str, size: tuple[int, int, int]) -> None:
+    """Raise `BrdfkitError` if making a synthetic volume needs more memory than is available."""
     available, needed = psutil.virtual_memory().available, made.memory_needed(name, size)
     if needed > available:
         raise BrdfkitError(
@@ -206,23 +209,23 @@ def _require_memory_to_make(name, size):
         )
 
 
-def _needed(stored, downsample):
-    """The memory [bytes] that loading takes at most."""
-    kept = math.prod(reducing.shape(stored.shape, downsample))
+def _memory_needed(stored: StoredVolume, downsample: int) -> float:
+    """Return the largest memory [bytes] that loading needs."""
+    voxels = math.prod(downsampling.reduce_shape(stored.shape, downsample))
     _, ny, nx = stored.shape
     slab = ny * nx * (downsample * stored.dtype.itemsize + np.dtype(float).itemsize)
-    return SPARE * (kept * _dtype(stored, downsample).itemsize + slab)
+    return MEMORY_FACTOR * (voxels * _loaded_dtype(stored, downsample).itemsize + slab)
 
 
-def _name(file):
-    """The name of a volume: that of its file without the suffixes, and of its part."""
+def _make_name(file: VolumeFile) -> str:
+    """Return the name of a volume: its file's without suffixes, and its part's."""
     name = file.path.name
     stem = name.removesuffix(".gz")[: -len(Path(name.removesuffix(".gz")).suffix) or None]
     return f"{stem}#{file.part}" if file.part else stem
 
 
-def _triple(what, given, kind):
-    """Three numbers above 0 of a setting that is one, three or None."""
+def _to_triple(what: str, given: Any, kind: type[int | float]) -> Any:
+    """Return three numbers above 0 from one or three, or None from None."""
     if given is None:
         return None
     numbers = np.ravel(given)
@@ -234,8 +237,8 @@ def _triple(what, given, kind):
     return tuple(kind(n) for n in numbers)
 
 
-def _spaced(to_world, spacing):
-    """The transform with another spacing along the same axes."""
-    found = to_world.copy()
-    found[:3, :3] *= np.array(spacing) / np.linalg.norm(found[:3, :3], axis=0)
-    return found
+def _set_spacing(to_world: FloatArray, spacing: tuple[float, float, float]) -> FloatArray:
+    """Return the transform with another spacing along the same axes."""
+    changed = to_world.copy()
+    changed[:3, :3] *= np.array(spacing) / np.linalg.norm(changed[:3, :3], axis=0)
+    return changed

@@ -1,4 +1,4 @@
-"""`Volume`: values on a regular grid of voxels, and where in the world they lie."""
+"""`Volume`: values on a regular grid of voxels, and the place of the grid in the world."""
 
 from __future__ import annotations
 
@@ -7,40 +7,41 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.volumes import in_mitsuba, reducing
+from brdfkit.volumes import downsampling, scene_dictionary
 from brdfkit.volumes.rays import reconstruction
 from brdfkit.volumes.transfer import windows
 from brdfkit.volumes.transfer.transfer_function import TransferLike
 
-LARGEST = 1e15  # of a transform's numbers, whose squares are multiplied with 32 bits
-MOST = 1e30  # of values, and the inverse of their span: renderers have 32 bits
+LARGEST_COORDINATE = 1e15  # in a transform: products of squares have to fit into 32 bits
+LARGEST_VALUE = 1e30  # also of the inverse of the span of values: renderers have 32 bits
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Volume:
-    """Values on a regular grid of voxels. `volumes.load` makes it of a file or a name.
+    """Values on a regular grid of voxels; `volumes.load` reads it from a file.
 
-    Raises `BrdfkitError` for no voxels, values that are not finite, and nothing but zeros.
+    Raises `BrdfkitError` if there are no voxels, a value is not finite, or all values are 0.
 
     Attributes
     ----------
     values : ndarray
-        float32 or integers (nz, ny, nx), x fastest: the order of Mitsuba's grids. float64 becomes
-        float32, booleans become uint8.
+        Values (nz, ny, nx), float32 or integers, x fastest as in Mitsuba's grids. float64 is
+        converted to float32, booleans to uint8.
     to_world : ndarray
-        (4, 4): from the indices (i, j, k) of a voxel's centre along x, y, z to a point of the
-        world, in the file's unit of length. The identity if None.
+        Transform (4, 4) from the indices (i, j, k) of a voxel's centre along x, y, z to a point of
+        the world, in the file's unit of length. None is the identity.
     name : str
-        What it is called.
+        The volume's name.
     labels : bool
-        Whether values are names of tissues or materials, of which no mean can be taken: they are
-        never interpolated. Whole numbers in floats become integers.
+        Whether values are labels of tissues or materials, which are never averaged or
+        interpolated. Whole numbers in floats are converted to integers.
     unit : str
-        The unit of length, such as "mm"; empty where it is not known, and printed as "units".
+        The unit of length, such as "mm"; empty if it is unknown, and printed as "units".
     axes : str
         "RAS" if x, y and z of the world point to the patient's right, front and head; empty for
         other data.
@@ -60,24 +61,24 @@ class Volume:
 
     def __post_init__(self) -> None:
         to_world = np.eye(4) if self.to_world is None else np.array(self.to_world, float)
-        object.__setattr__(self, "values", _checked(self.values, self.name, self.labels))
+        object.__setattr__(self, "values", _check_values(self.values, self.name, self.labels))
         object.__setattr__(self, "to_world", require_transform(to_world, self.name))
 
     @property
     def size(self) -> tuple[int, int, int]:
-        """Number of voxels along x, y, z."""
+        """The numbers of voxels along x, y, z."""
         nz, ny, nx = self.values.shape
         return nx, ny, nz
 
     @property
     def spacing(self) -> tuple[float, float, float]:
-        """From a voxel's centre to the next one, along the axes x, y, z of the grid."""
+        """The distances between voxels' centres along the axes x, y, z of the grid."""
         x, y, z = np.linalg.norm(self.to_world[:3, :3], axis=0).tolist()
         return x, y, z
 
     @property
     def cube_to_world(self) -> NDArray[np.float64]:
-        """(4, 4): from the unit cube to the box of all voxels, as Mitsuba's `gridvolume` has it.
+        """The transform (4, 4) from the unit cube to the box of all voxels, as for `gridvolume`.
 
         The cube's corners are corners of voxels; centres lie half a voxel further in.
         """
@@ -94,77 +95,78 @@ class Volume:
 
     @cached_property
     def range(self) -> tuple[float, float]:
-        """The least and the largest value."""
+        """The smallest and the largest value."""
         return float(self.values.min()), float(self.values.max())
 
     @cached_property
     def window(self) -> tuple[float, float]:
-        """(low, high), by the histogram: the background, such as air, is below, and only few bright
-        voxels are above. It is what `TransferFunction.scaled_to` wants.
+        """The values (low, high) for `TransferFunction.scaled_to`, from the histogram.
+
+        The background, such as air, is below, and only few bright voxels are above.
         """
         return windows.find_window(self.values)
 
     @cached_property
     def gradient_magnitude(self) -> NDArray[np.float32]:
-        """‖∇V‖ (nz, ny, nx) at the voxels' centres [value per unit of length].
+        """The gradient magnitude ‖∇V‖ (nz, ny, nx) at voxels' centres [value per unit of length].
 
-        By central differences, on the outermost voxels by one-sided ones.
+        It follows from central differences, and from one-sided ones on the outermost voxels.
         """
         return reconstruction.gradient_magnitude(self.values, self.to_world)
 
     def resized(self, factor: int) -> Volume:
-        """The volume with a voxel for each block of factor × factor × factor voxels.
+        """Return the volume with one voxel for each block of factor × factor × factor voxels.
 
-        Its value is the mean of those that the block has, as at the upper ends there may be fewer;
-        of labels that of the voxel at the block's middle.
+        Its value is the mean of the block, which may be smaller at the upper ends. A block of
+        labels has the value of the voxel in its middle.
         """
         factor = to_whole_number("factor", factor, 1)
         slabs = (self.values[k : k + factor] for k in range(0, len(self.values), factor))
-        values = np.stack([reducing.reduced(slab, factor, self.labels) for slab in slabs])
-        to_world = reducing.transform(self.to_world, factor)
+        values = np.stack([downsampling.reduce_slab(slab, factor, self.labels) for slab in slabs])
+        to_world = downsampling.reduce_transform(self.to_world, factor)
         return Volume(values, to_world, self.name, self.labels, self.unit, self.axes)
 
     def __call__(self, points: ArrayLike) -> NDArray:
-        """The values (n,) at `points` (n, 3) of the world: trilinear, of labels the nearest.
+        """Return the values (n,) at `points` (n, 3) of the world, trilinear, or nearest for labels.
 
-        Beyond the outermost centres the value stays as it is there; outside of the box it is 0.
+        Beyond the outermost centres the value is constant; outside the box it is 0.
         """
         return reconstruction.values_at(self, points)
 
     def gradient(self, points: ArrayLike, of_interpolant: bool = False) -> NDArray[np.float64]:
-        """∇V (n, 3) at `points` (n, 3) of the world [value per unit of length].
+        """Return ∇V (n, 3) at `points` (n, 3) of the world [value per unit of length].
 
-        By central differences, a voxel to either side; or, `of_interpolant`, the derivative of the
-        trilinear interpolant itself, which jumps at the centres of voxels.
+        By default this is a central difference over a voxel to either side; with `of_interpolant`
+        it is the derivative of the trilinear interpolant, which jumps at the centres of voxels.
         """
         return reconstruction.gradient_at(self, points, of_interpolant)
 
     def scene_dict(self, transfer: TransferLike | None = None) -> dict[str, Any]:
-        """The dictionary for `mitsuba.load_dict`, in the current variant.
+        """Return the dictionary of the volume for `mitsuba.load_dict`, in the current variant.
 
         Parameters
         ----------
         transfer : TransferFunction, str or Path, optional
-            What the values mean, or a preset's name, or a file: for media, and for the integrators
-            of brdfkit. Its lengths are converted to the volume's unit. None gives the values alone.
+            The meaning of the values, or a preset's name, or a file, for media and brdfkit's
+            integrators. Its lengths are converted to the volume's unit. None gives values alone.
 
         Returns
         -------
         dict
-            Of the type "transfer_function", or "gridvolume" for values alone, labels by the nearest
-            voxel; it lies where the volume does.
+            A dictionary of the type "transfer_function", or "gridvolume" for values alone, in the
+            place of the volume. Labels are looked up in the nearest voxel.
 
         Raises
         ------
         BrdfkitError
-            For a function that cannot be read, and for units of length of which one is unknown.
+            If the function cannot be read, or one of two different units of length is unknown.
 
         Examples
         --------
         >>> head = volumes.load("brain.nii.gz")    # doctest: +SKIP
         >>> {"type": "isosurface", "volume": head.scene_dict()}    # doctest: +SKIP
         """
-        return in_mitsuba.scene_dict(self, transfer)
+        return scene_dictionary.make_scene_dict(self, transfer)
 
     def __repr__(self) -> str:
         low, high = self.range
@@ -176,13 +178,13 @@ class Volume:
         )
 
 
-def require_transform(to_world, name):
-    """`to_world`; `BrdfkitError` unless it is a (4, 4) that can be inverted."""
+def require_transform(to_world: ArrayLike, name: object) -> FloatArray:
+    """Return `to_world` as floats; raise `BrdfkitError` unless it is an invertible (4, 4)."""
     to_world = np.asarray(to_world, float)
     fine = to_world.shape == (4, 4) and np.isfinite(to_world).all()
     fine = fine and (to_world[3] == (0, 0, 0, 1)).all()
-    fine = fine and np.abs(to_world).max() < LARGEST
-    fine = fine and np.abs(to_world[:3, :3]).max(axis=0).min() > 1 / LARGEST
+    fine = fine and np.abs(to_world).max() < LARGEST_COORDINATE
+    fine = fine and np.abs(to_world[:3, :3]).max(axis=0).min() > 1 / LARGEST_COORDINATE
     if not fine or not abs(np.linalg.det(to_world[:3, :3])) > 0:
         raise BrdfkitError(
             f"{name}: its transform from voxels to the world is no invertible 4×4 matrix of "
@@ -192,8 +194,8 @@ def require_transform(to_world, name):
     return to_world
 
 
-def _checked(values, name, labels):
-    """Voxels in one of the types that a `Volume` has; `BrdfkitError` where they cannot be used."""
+def _check_values(values: ArrayLike, name: str, labels: bool) -> AnyArray:
+    """Return voxels in a type of `Volume`; raise `BrdfkitError` if they cannot be used."""
     values = np.asarray(values)
     if values.ndim != 3 or not values.size:
         raise BrdfkitError(
@@ -203,7 +205,7 @@ def _checked(values, name, labels):
     if values.dtype.kind not in "biuf":
         raise BrdfkitError(f"{name}: its values are {values.dtype}, where real numbers belong.")
     if values.dtype.kind == "f" and not labels:
-        with np.errstate(over="ignore"):  # beyond float32 they are infinite
+        with np.errstate(over="ignore"):  # values beyond float32 become infinite
             values = values.astype(np.float32, copy=False)
     low, high = values.min(), values.max()  # not finite where a value is not
     if not (np.isfinite(low) and np.isfinite(high)):
@@ -213,7 +215,7 @@ def _checked(values, name, labels):
             "replace them, as by numpy.nan_to_num."
         )
     span, largest = float(high) - float(low), max(-float(low), float(high))
-    if largest > MOST or 0 < span < 1 / MOST:
+    if largest > LARGEST_VALUE or 0 < span < 1 / LARGEST_VALUE:
         raise BrdfkitError(
             f"{name}: its values, {low:g} to {high:g}, are too large or too near to each other for "
             "32 bits; multiply them by a number."
@@ -221,13 +223,14 @@ def _checked(values, name, labels):
     if low == high == 0:
         raise BrdfkitError(f"{name}: all voxels are 0; check that it is the right file.")
     if labels and values.dtype.kind == "f":
-        return _whole_numbers(values, name)
+        return _to_integers(values, name)
     boolean = values.dtype.kind == "b"
     return np.ascontiguousarray(values, np.uint8 if boolean else values.dtype.newbyteorder("="))
 
 
-def _whole_numbers(values, name):
-    with np.errstate(invalid="ignore"):  # beyond 32 bits they become others
+def _to_integers(values: AnyArray, name: str) -> AnyArray:
+    """Convert labels to integers; raise `BrdfkitError` unless they are whole numbers."""
+    with np.errstate(invalid="ignore"):  # values beyond 32 bits change
         whole = values.astype(np.int32)
     if not (whole == values).all():
         raise BrdfkitError(

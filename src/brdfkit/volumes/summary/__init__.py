@@ -1,1 +1,1 @@
-"""What a volume holds: values, histograms, slices; as text and pictures."""
+"""Summaries of volumes for `brdfkit info`: histograms, text and a figure."""

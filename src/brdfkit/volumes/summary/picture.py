@@ -1,23 +1,34 @@
-"""A `VolumeSummary` as a picture: three slices through the middle, and two histograms."""
+"""The figure of a `VolumeSummary`: three slices and two histograms, with a transfer function."""
+
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
+from brdfkit.core.colours import to_srgb
 from brdfkit.volumes.summary.histograms import PARTS
-from brdfkit.volumes.summary.picture_of_function import draw_curve, draw_function, for_volume
+from brdfkit.volumes.transfer.transfer_function import TransferFunction
+from brdfkit.volumes.transfer.windows import scale_to_values
+
+VolumeSummary = Any  # the class in `summary.py`, which imports this file
+Reach = tuple[float, float, float, float]  # first and last value, first and last gradient
 
 SIZE = 10.4, 7.2  # inches
 COLOUR = "#0072b2"
+POINTS = 400  # along each axis of a drawn transfer function
+LEVELS = 0.01, 0.25, 0.5, 0.75  # values of A that are drawn as lines
+VEIL = 0.85  # opacity of the function's colours where A is 1
 PLANES = (("x", "y", "z"), ("x", "z", "y"), ("y", "z", "x"))  # across, up, and through
 
 
-def picture(summary, transfer=None):
-    """The picture of a `VolumeSummary` as a matplotlib `Figure`, with a `TransferFunction`."""
+def draw(summary: VolumeSummary, transfer: TransferFunction | None = None) -> Figure:
+    """Draw a `VolumeSummary` as a matplotlib `Figure`, with an optional `TransferFunction`."""
     if transfer is not None:
-        transfer = for_volume(transfer, summary.data)
+        transfer = _fit_to_volume(transfer, summary.data)
     figure = Figure(figsize=SIZE, layout="constrained")
-    above, below = figure.subfigures(2, 1, height_ratios=(1.3, 1))
+    above, below = figure.subfigures(2, 1, squeeze=False, height_ratios=(1.3, 1))[:, 0]
     for axes, (across, up, through) in zip(above.subplots(1, 3), PLANES, strict=True):
         _draw_slice(axes, summary, "xyz".index(across), "xyz".index(up), "xyz".index(through))
     if summary.labels:
@@ -29,8 +40,8 @@ def picture(summary, transfer=None):
     return figure
 
 
-def _draw_slice(axes, summary, across, up, through):
-    """Draw the middle slice, with the two axes of the grid and where they go."""
+def _draw_slice(axes: Axes, summary: VolumeSummary, across: int, up: int, through: int) -> None:
+    """Draw the middle slice along the axis `through`, and say where the other two axes point."""
     middle = summary.size[through] // 2
     voxels = np.take(summary.data.values, middle, axis=2 - through)  # (up, across): z is slowest
     colours = "tab20" if summary.labels else "gray"
@@ -49,8 +60,8 @@ def _draw_slice(axes, summary, across, up, through):
     axes.set_title(f"slice {middle} along {'xyz'[through]}", fontsize=10)
 
 
-def span(volume, axis):
-    """Where the grid's `axis` begins and ends in the world, along it; it may run downwards."""
+def span(volume: Any, axis: int) -> tuple[float, float]:
+    """Return where the grid's `axis` begins and ends in the world; it may run downwards."""
     start, along = volume.cube_to_world[:3, 3], volume.cube_to_world[:3, axis]
     length = np.linalg.norm(along)
     one_way = np.sign(along[np.abs(along).argmax()])
@@ -58,25 +69,29 @@ def span(volume, axis):
     return begin, begin + one_way * length
 
 
-def draw_values(axes, summary, transfer=None):
-    """Draw the histogram of values, over it σ_t of a function of values, below it the colours."""
+def draw_values(
+    axes: Axes, summary: VolumeSummary, transfer: TransferFunction | None = None
+) -> None:
+    """Draw the histogram of values, with A of a function of values above and its colours below."""
     edges = np.linspace(summary.least, max(summary.largest, summary.least + 1e-9), PARTS + 1)
     axes.stairs(summary.counts, edges, fill=True, color=COLOUR)
     axes.set(yscale="log", xlabel="value", ylabel="voxels")
     axes.set_title(f"{summary.name}".replace("$", r"\$"), fontsize=10)
     axes.spines[["top", "right"]].set_visible(False)
     if transfer is not None and transfer.gradients is None:
-        draw_curve(axes, transfer, (edges[0], edges[-1]))
+        _draw_curve(axes, transfer, (edges[0], edges[-1]))
 
 
-def draw_gradients(axes, summary, transfer=None):
-    """Draw the joint histogram, over it what a function shows in its colours, with lines of A."""
+def draw_gradients(
+    axes: Axes, summary: VolumeSummary, transfer: TransferFunction | None = None
+) -> None:
+    """Draw the histogram of value × gradient, and a transfer function over it."""
     unit = f" per {summary.unit}" if summary.unit else ""
     axes.set(xlabel="value", ylabel=f"gradient magnitude{unit}")
     if not summary.joint.max() > 0 or summary.least == summary.largest:
         return
     reach = (summary.least, summary.largest, 0, summary.steepest or 1)
-    drawn = axes.imshow(
+    picture = axes.imshow(
         np.ma.masked_equal(summary.joint, 0),
         norm=LogNorm(1, max(int(summary.joint.max()), 2)),
         origin="lower",
@@ -84,6 +99,45 @@ def draw_gradients(axes, summary, transfer=None):
         aspect="auto",
         cmap="viridis",
     )
-    axes.figure.colorbar(drawn, ax=axes, label="voxels")
+    axes.figure.colorbar(picture, ax=axes, label="voxels")
     if transfer is not None:
-        draw_function(axes, transfer, reach)
+        _draw_function(axes, transfer, reach)
+
+
+def _fit_to_volume(transfer: TransferFunction, volume: Any) -> TransferFunction:
+    """Scale a function to the volume's values and unit of length, as renderers do."""
+    transfer = scale_to_values(transfer, volume.values)
+    return transfer.per(volume.unit) if volume.unit and transfer.length_unit else transfer
+
+
+def _draw_curve(axes: Axes, transfer: TransferFunction, reach: tuple[float, float]) -> None:
+    """Draw A of a function of values, on a second axis, and its colours below."""
+    values = np.linspace(*reach, POINTS)
+    rgba = transfer(values)
+    own = axes.twinx()
+    own.imshow(
+        to_srgb(np.clip(rgba[None, :, :3], 0, 1)),
+        extent=(*reach, -0.08, -0.02),
+        aspect="auto",
+        interpolation="nearest",
+    )
+    own.plot(values, rgba[:, 3], color="black", linewidth=1.4)
+    own.set(xlim=reach, ylim=(-0.1, 1.05), ylabel="A")
+
+
+def _draw_function(axes: Axes, transfer: TransferFunction, reach: Reach) -> None:
+    """Draw the colours of a function and lines of equal A, over values × gradients."""
+    low, high, _, steepest = reach
+    values, gradients = np.linspace(low, high, POINTS), np.linspace(0, steepest, POINTS)
+    if transfer.gradients is None:
+        rgba = np.broadcast_to(transfer(values), (POINTS, POINTS, 4))
+    else:
+        rgba = transfer(values, gradients[:, None])
+    colours = to_srgb(np.clip(rgba[..., :3], 0, 1))
+    veil = np.dstack([colours, VEIL * rgba[..., 3]])
+    axes.imshow(veil, origin="lower", extent=reach, aspect="auto", zorder=2)
+    lines = axes.contour(
+        values, gradients, rgba[..., 3], LEVELS, colors="black", linewidths=0.7, zorder=3
+    )
+    axes.clabel(lines, fmt="A = %g", fontsize=7)
+    axes.set_title(transfer.name.replace("$", r"\$"), fontsize=10)

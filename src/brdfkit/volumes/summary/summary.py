@@ -1,54 +1,63 @@
-"""`summarise`: what is in a volume, which way it lies, and what is doubtful: `brdfkit info`."""
+"""`summarise`: the content of a volume, its orientation and likely defects, for `brdfkit info`."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from brdfkit.core.array_types import IntArray
 from brdfkit.core.documents import Document, Paragraph, Picture, Shown, Table
 from brdfkit.core.documents.parts import BAD
-from brdfkit.volumes.summary import histograms, report
+from brdfkit.volumes.summary import histograms
+from brdfkit.volumes.summary.histograms import FEW_VALUES, PARTS, STEPS, bars, shades
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 from brdfkit.volumes.volume import Volume
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-DPI, WIDTH = 75, 760  # of the picture in a notebook
+PATIENT = (("left", "right"), ("back", "front"), ("feet", "head"))
+WORLD = (("-x", "+x"), ("-y", "+y"), ("-z", "+z"))
+LINES = 4  # of text for the histogram of value × gradient magnitude
+# Tolerances: a larger value is a finding
+UNEVEN_SPACING = 3.0  # the largest spacing over the smallest
+TURNED_DEGREES = 1.0  # angle between the grid's axes and the world's
+CLIPPED_SHARE = 0.01  # share of the voxels that have the largest value
+DPI, WIDTH = 75, 760  # resolution and width [pixels] of the picture in a notebook
 
 
 @dataclass(frozen=True, repr=False)
 class VolumeSummary(Shown):
-    """What is in a volume; prints as text. Made by `summarise`.
+    """The content of a volume, which prints as text; `summarise` makes it.
 
     Attributes
     ----------
     name : str
-        The volume's.
+        The volume's name.
     size : tuple of int
-        Voxels along x, y, z.
+        Numbers of voxels along x, y, z.
     spacing : tuple of float
-        From voxel to voxel along x, y, z.
+        Distances between voxels along x, y, z.
     unit : str
-        The unit of length; empty where the file tells none.
+        The unit of length; empty if it is unknown.
     directions : tuple of str
-        Where x, y and z of the grid go in the world: "right", "front", "+x" ...
+        Where the axes x, y and z of the grid point in the world: "right", "front", "+x" ...
     turned : float
-        The largest angle between an axis of the grid and the world's axis next to it [degrees].
+        The largest angle between an axis of the grid and the nearest axis of the world [degrees].
     low, high : tuple of float
         The corners of the box.
     kind : str
         The type of the values.
     labels : bool
-        Whether they are labels.
+        Whether the values are labels.
     least, largest, mean, median : float
-        Of the values.
+        Smallest, largest, mean and median value.
     different : int
-        How many different values there are, of whole numbers; 0 of others.
+        Number of different values, if they are of integer type; otherwise 0.
     counts : tuple of int
-        How many voxels are in each of equal parts of the range.
+        Numbers of voxels in equal parts of the range of values.
     steepest : float
         The largest gradient magnitude.
     data : Volume
@@ -72,33 +81,71 @@ class VolumeSummary(Shown):
     different: int
     counts: tuple[int, ...]
     steepest: float
-    data: Any = field(repr=False, compare=False)
+    data: Volume = field(repr=False, compare=False)
 
     @cached_property
-    def joint(self) -> NDArray[np.int64]:
-        """How many voxels have which gradient magnitude and value: (m, n), both from the least."""
-        return histograms.joint(self.data, self.steepest)
+    def joint(self) -> IntArray:
+        """The numbers of voxels (m, n) by gradient magnitude and by value, the smallest first."""
+        return histograms.count_jointly(self.data, self.steepest)
 
     def rows(self) -> dict[str, str]:
-        """The summary in words, by heading."""
-        return report.rows(self)
+        """Return the lines of the summary's text by their headings."""
+        unit = f" {self.unit}" if self.unit else " (no unit is told)"
+        turned = f"; turned by {self.turned:.1f}°" if self.turned > TURNED_DEGREES else ""
+        corners = zip(self.low, self.high, strict=True)
+        values = self.data.values
+        rows = {
+            "size": f"{_times(self.size)} voxels of {self.kind}, {values.nbytes / 1e6:,.4g} MB",
+            "spacing": f"{_times(self.spacing)}{unit}",
+            "axes": f"{_arrows(self.directions)}{turned}",
+            "box": ", ".join(f"{low:.6g} to {high:.6g}" for low, high in corners),
+            "values": f"{self.least:.6g} to {self.largest:.6g}, mean {self.mean:.4g}, "
+            f"median {self.median:.4g}",
+            "histogram": f"|{bars(np.array(self.counts))}| logarithmic",
+        }
+        if self.labels:
+            return rows | {"labels": f"{self.different}, never interpolated"}
+        steps = self.joint.reshape(LINES, STEPS // LINES, PARTS).sum(axis=1)
+        for i in reversed(range(LINES)):
+            reach = f"{i / LINES * self.steepest:.3g} to {(i + 1) / LINES * self.steepest:.3g}"
+            rows[f"gradients {reach}"] = f"|{shades(steps[i])}|"
+        return rows
 
     def findings(self) -> tuple[str, ...]:
-        """Sentences on what is doubtful."""
-        return report.findings(self)
+        """Return a sentence on each likely defect."""
+        sentences = []
+        if not self.labels and 0 < self.different <= FEW_VALUES:
+            sentences.append(
+                f"only {self.different} different values, all whole: perhaps labels, which are not "
+                "to be interpolated; load it with labels=True (--labels)"
+            )
+        ratio = max(self.spacing) / min(self.spacing)
+        if ratio > UNEVEN_SPACING:
+            sentences.append(
+                f"voxels are {ratio:.3g} times as long as wide: details differ by direction"
+            )
+        share = float((self.data.values == self.data.values.max()).mean())
+        if self.different > FEW_VALUES and share > CLIPPED_SHARE:
+            sentences.append(
+                f"{100 * share:.3g} % of the voxels have the largest value: perhaps clipped"
+            )
+        if self.least == self.largest:
+            sentences.append("of one value all over")
+        return tuple(sentences)
 
     def picture(self, transfer: TransferFunction | None = None) -> "Figure":
-        """Three slices through the middle, and the histograms of value, and of value × gradient,
-        over which a transfer function is drawn.
+        """Draw three slices through the middle, and histograms of values and value × gradient.
+
+        A transfer function is drawn over the histograms.
 
         >>> summarise(volumes.load("smoke")).picture().savefig("smoke.png")    # doctest: +SKIP
         """
-        from brdfkit.volumes.summary.picture import picture  # only here: matplotlib is slow to load
+        from brdfkit.volumes.summary.picture import draw  # imports matplotlib: slow
 
-        return picture(self, transfer)
+        return draw(self, transfer)
 
     def document(self) -> Document:
-        """What is in the volume, which way it lies, and what is doubtful."""
+        """Return the summary with its picture as a `Document`."""
         return Document(
             self.name,
             (
@@ -108,20 +155,21 @@ class VolumeSummary(Shown):
             ),
         )
 
-    def _draw(self):
-        from brdfkit.core.figures import to_png  # only here: it imports matplotlib
+    def _draw(self) -> bytes:
+        """Return the picture as a PNG file."""
+        from brdfkit.core.figures import to_png  # imports matplotlib: slow
 
         return to_png(self.picture(), DPI)
 
 
 def summarise(volume: Volume) -> VolumeSummary:
-    """What is in a volume, which way it lies, and what is doubtful.
+    """Summarise the content of a volume and its orientation.
 
     >>> summarise(volumes.load("slab")).directions
     ('+x', '+y', '+z')
     """
     values, (low, high) = volume.values, volume.bounds
-    directions, turned = report.directions(volume)
+    directions, turned = find_directions(volume)
     return VolumeSummary(
         name=volume.name,
         size=volume.size,
@@ -137,8 +185,33 @@ def summarise(volume: Volume) -> VolumeSummary:
         largest=volume.range[1],
         mean=float(values.mean(dtype=float)),
         median=float(np.median(values)),
-        different=histograms.different(values),
-        counts=tuple(histograms.counts(volume).tolist()),
+        different=histograms.count_different(values),
+        counts=tuple(histograms.count_values(volume).tolist()),
         steepest=float(volume.gradient_magnitude.max()),
         data=volume,
     )
+
+
+def find_directions(volume: Volume) -> tuple[tuple[str, ...], float]:
+    """Return where the grid's axes point in the world, and the largest angle to its axes [°]."""
+    axes = volume.to_world[:3, :3] / np.linalg.norm(volume.to_world[:3, :3], axis=0)
+    main = np.abs(axes).argmax(axis=0)
+    words = PATIENT if volume.axes == "RAS" else WORLD
+    named = tuple(words[w][int(axes[w, i] > 0)] for i, w in enumerate(main))
+    cosines = np.abs(axes[main, range(3)])
+    return named, float(np.degrees(np.arccos(np.clip(cosines.min(), -1, 1))))
+
+
+def may_be_labels(volume: Volume) -> bool:
+    """Return whether a volume that is not marked as labels has few values, of integer type."""
+    return not volume.labels and 0 < histograms.count_different(volume.values) <= FEW_VALUES
+
+
+def _times(numbers: Iterable[float]) -> str:
+    """Format numbers with × between them."""
+    return " × ".join(f"{n:.6g}" for n in numbers)
+
+
+def _arrows(names: Iterable[str]) -> str:
+    """Format where the axes x, y, z point."""
+    return ", ".join(f"{axis} → {name}" for axis, name in zip("xyz", names, strict=True))

@@ -1,30 +1,34 @@
-"""A `Volume` as dictionaries of Mitsuba's: its values, and these with a transfer function."""
+"""Dictionaries for Mitsuba's `load_dict`: a `Volume` alone, or with a transfer function."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray
 from brdfkit.core.jit.llvm import use_variant
-from brdfkit.volumes.transfer.transfer_function import TransferFunction
+from brdfkit.volumes.transfer.transfer_function import TransferFunction, TransferLike
 from brdfkit.volumes.transfer.windows import scale_to_values
 
+Volume = Any  # the class in `volume.py`, which imports this file
 
-def scene_dict(volume, transfer):
-    """See `Volume.scene_dict`."""
+
+def make_scene_dict(volume: Volume, transfer: TransferLike | None) -> dict[str, Any]:
+    """Return the dictionary of a volume; see `Volume.scene_dict`."""
     use_variant()
     if transfer is None:
-        return grid(volume, [volume.values])
+        return _make_grid(volume, [volume.values])
     if not isinstance(transfer, TransferFunction):
         transfer = TransferFunction.load(transfer)
     if volume.unit and transfer.length_unit:
         transfer = transfer.per(volume.unit)
     transfer = scale_to_values(transfer, volume.values)
     if volume.labels and transfer.gradients is None:
-        volume, transfer = numbered(volume, transfer)
+        volume, transfer = _number_labels(volume, transfer)
     channels = [volume.values]
     if transfer.gradients is not None:
         channels.append(volume.gradient_magnitude)
-    values = grid(volume, channels)
+    values = _make_grid(volume, channels)
     return {
         "type": "transfer_function",
         "values": values,
@@ -33,11 +37,11 @@ def scene_dict(volume, transfer):
     }
 
 
-def numbered(volume, transfer):
-    """The volume with its labels numbered 1, 2 ... in their order, and the function of the numbers.
+def _number_labels(volume: Volume, transfer: TransferFunction) -> tuple[Volume, TransferFunction]:
+    """Number the labels of a volume 1, 2 ... in their order, and convert the function likewise.
 
-    A renderer looks functions up in a table, in which labels of atlases, thousands or millions
-    apart, would share a row.
+    Renderers look functions up in a table, in which labels of atlases, thousands or millions apart,
+    would share a row.
     """
     labels, places = np.unique(volume.values, return_inverse=True)
     rgba = transfer([labels[0], *labels])
@@ -45,8 +49,8 @@ def numbered(volume, transfer):
     return replace(volume, values=values), replace(transfer, values=np.arange(len(rgba)), rgba=rgba)
 
 
-def grid(volume, channels):
-    """A gridvolume of some arrays (nz, ny, nx), where the volume is."""
+def _make_grid(volume: Volume, channels: list[AnyArray]) -> dict[str, Any]:
+    """Return the dictionary of a gridvolume of arrays (nz, ny, nx), in the place of the volume."""
     import mitsuba as mi
 
     return {
